@@ -34,13 +34,13 @@ flightwatt::ros::Settings settings_of(const ros::NodeHandle& own) {
 class Node {
   public:
     explicit Node(NodePredictor& predictor) : predictor_(predictor) {
-        constexpr std::uint32_t most_waiting = 1000;
+        constexpr std::uint32_t max_waiting = 1000;
         ros::NodeHandle shared;
         ros::NodeHandle own("~");
-        prediction_ = own.advertise<std_msgs::String>("prediction", most_waiting);
-        decision_ = own.advertise<std_msgs::String>("decision", most_waiting);
-        battery_ = shared.subscribe("battery", most_waiting, &Node::on_battery, this);
-        pose_ = shared.subscribe("pose", most_waiting, &Node::on_pose, this);
+        prediction_ = own.advertise<std_msgs::String>("prediction", max_waiting);
+        decision_ = own.advertise<std_msgs::String>("decision", max_waiting);
+        battery_ = shared.subscribe("battery", max_waiting, &Node::on_battery, this);
+        pose_ = shared.subscribe("pose", max_waiting, &Node::on_pose, this);
         timer_ = shared.createTimer(ros::Duration(1.0), &Node::look, this);
     }
 

@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 Json json_of(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
 
-Json json_of(const live::LandingOutlook& landing) {
+Json json_of(const live::LandingPrediction& landing) {
     return {
         {"remaining_s", landing.remaining_s},
         {"landing_s", landing.landing_s},
@@ -39,7 +39,7 @@ const char* name_of(live::FlightPhase phase) {
     return names[static_cast<std::size_t>(phase)];
 }
 
-std::string prediction_json(const live::Outlook& now, std::span<const live::AlarmText> alarms, double start_s) {
+std::string prediction_json(const live::PredictorState& now, std::span<const live::AlarmText> alarms, double start_s) {
     Json json{
         {"time_s", start_s + now.time_s},
         {"phase", name_of(now.phase)},
@@ -60,7 +60,7 @@ std::string prediction_json(const live::Outlook& now, std::span<const live::Alar
     return json.dump();
 }
 
-std::string decision_json(const live::Outlook& now, std::span<const live::ComponentRun> runs, double start_s) {
+std::string decision_json(const live::PredictorState& now, std::span<const live::ComponentState> runs, double start_s) {
     auto run = Json::object();
     for (const auto& component : runs)
         if (component.runs) run[std::string(component.name)] = component.quality;
@@ -103,9 +103,9 @@ class SamplePredictor : public NodePredictor {
 
     std::optional<NodeTexts> look(double now_s) override {
         if (!start_s_) return std::nullopt;
-        const auto& now = predictor_->look(std::max(0.0, now_s - latest_s_));
+        const auto& now = predictor_->update(std::max(0.0, now_s - latest_s_));
         NodeTexts texts{prediction_json(now, predictor_->alarms(), *start_s_), {}};
-        if (now.decision) texts.decision = decision_json(now, predictor_->runs(), *start_s_);
+        if (now.decision) texts.decision = decision_json(now, predictor_->component_states(), *start_s_);
         return texts;
     }
 
@@ -133,7 +133,7 @@ MadeNodePredictor make_node_predictor(const Settings& settings) {
     setup.battery_file = settings.battery_file;
     setup.remaining_s = settings.remaining_s;
     setup.initial_soc_percent = settings.initial_soc_percent;
-    setup.decides = settings.decides;
+    setup.replan = settings.decides;
     auto made = live::make_predictor(setup);
     if (!made.predictor) return {nullptr, made.error};
     return {std::make_unique<SamplePredictor>(std::move(made.predictor)), {}};

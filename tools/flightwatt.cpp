@@ -88,7 +88,7 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
 [[noreturn]] void run_program(const std::string& stage, char** arguments) {
     if (stage.find('/') != std::string::npos || stage.starts_with('-')) refuse_stage(stage);
     const auto program = "flightwatt-" + stage;
-    const auto beside = program_folder() / program;
+    const auto beside = executable_folder() / program;
     ::execv(beside.c_str(), arguments);
     if (errno == ENOENT) ::execvp(program.c_str(), arguments);
     if (errno == ENOENT) refuse_stage(stage);
@@ -96,7 +96,7 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
 }
 
 std::filesystem::path documentation() {
-    return program_files("docs", "FLIGHTWATT_DOCS", "the pages of the documentation");
+    return data_folder("docs", "FLIGHTWATT_DOCS", "the pages of the documentation");
 }
 
 void list_topics() {

@@ -2,7 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/file_use.h"
+#include "base/overwrite_guard.h"
 #include "base/signal_watch.h"
 #include "batch/batch_files.h"
 #include "batch/batch_fit.h"
@@ -57,7 +57,7 @@ batch::BatchProgress progress_of(const cli::StageCall& call, BatchProgressState&
         }
         const auto* what = flight.record.is_of_other_aircraft ? "left out"
                            : !flight.record.accepted          ? "rejected"
-                           : flight.is_kept                   ? "kept, its log is gone"
+                           : flight.log_is_missing            ? "kept, its log is gone"
                            : flight.was_up_to_date            ? "up to date"
                                                               : "done";
         cli::note(call, fmt::format("[{}/{}] {}: {}", done, all, flight.record.flight, what));
@@ -68,7 +68,7 @@ std::function<void(int)> on_signal(const cli::StageCall& call, BatchProgressStat
     return [&](int signal) {
         constexpr std::chrono::milliseconds patience(100);  // with a standard error that nobody reads
         [[maybe_unused]] const bool others_are_silent = state.speaking.try_lock_for(patience);
-        const batch::EmptyAtEnd unfinished{std::filesystem::path(*call.output) / batch::unfinished_folder};
+        const batch::RemoveIfEmpty unfinished{std::filesystem::path(*call.output) / batch::temporary_folder};
         if (state.bar) state.bar->clear();
         cli::note(call, fmt::format("stopped by {} after {} of {} logs; the same command goes on from there",
                                     signal_name(signal), state.done.load(), state.all));
@@ -138,21 +138,21 @@ std::string fingerprint_of(const cli::StageCall& call, const batch::BatchFlights
     auto more = call.get<std::string>("model") + "\n" + (published ? to_toml(*published) : std::string());
     for (const auto* names : {&options.load.excluded, &options.load.keep})
         more += fmt::format("{}: {}\n", names->size(), fmt::join(*names, "\n"));
-    return batch::fingerprint_of_fit(flights, fit_options, more);
+    return batch::fit_fingerprint(flights, fit_options, more);
 }
 
 /// What an earlier run fitted.
 FittedBatch known_fit(const std::filesystem::path& out) {
-    const OwnFiles own;
+    const OverwriteExemption own;
     return {batch::read_batch_fit(out).value(), std::nullopt};
 }
 
 /// One model of several aircraft is a model of none.
 void refuse_mix(const cli::StageCall& call, const batch::BatchFlights& flights, const std::filesystem::path& out) {
-    const auto mix = call.has("mix-aircraft") ? "" : mix_of(flights);
+    const auto mix = call.has("mix-aircraft") ? "" : mixed_aircraft_reason(flights);
     if (mix.empty()) return;
     remove_model(call, out);
-    throw NoAnswerError(
+    throw NoResultError(
         fmt::format("the catalogue is written, and no model: the flights are of several aircraft: {}; "
                     "--exclude flights, or fit all as if they were of one with --mix-aircraft",
                     mix));
@@ -174,13 +174,13 @@ nlohmann::ordered_json with_logs(nlohmann::ordered_json json, const batch::Batch
 /// memory.
 std::string flights_text(const cli::StageCall& call, const batch::BatchFlights& flights,
                          const batch::BatchOptions& options) {
-    constexpr std::size_t most_logs = 1000;
+    constexpr std::size_t max_logs = 1000;
     const cli::ScreenTable shown_first{fmt::format("{}: {} logs", options.out.string(), flights.size()),
                                        {"flight", "cruise s", "cruise W", "energy Wh", "phases fitted", "take-off s",
                                         "landing s", "take-off W", "landing W", "warnings", "gaps", "longest s"}};
-    auto text = screen_text(flights_table(flights, most_logs), screen_of(call), shown_first);
-    if (flights.size() > most_logs) {
-        text += fmt::format("the first {} of {} logs; {} has all\n", most_logs, flights.size(),
+    auto text = screen_text(flights_table(flights, max_logs), screen_of(call), shown_first);
+    if (flights.size() > max_logs) {
+        text += fmt::format("the first {} of {} logs; {} has all\n", max_logs, flights.size(),
                             (options.out / batch::catalogue_name).string());
     }
     return text;
@@ -192,15 +192,15 @@ batch::BatchOptions read_batch_options(const cli::StageCall& call, const mechani
     options.out = *call.output;
     options.load = cli::read_flight_options(call);
     options.jobs = static_cast<unsigned>(cli::count_option(call, "jobs", 0, 256));
-    options.needed_samples = mechanical::samples_needed(fit_options.phases.order);
+    options.min_samples = mechanical::min_samples(fit_options.phases.order);
     return options;
 }
 
 /// Writes the model and its Table I as files.
 void write_model(const batch::BatchFit& fit, const TextTable& table, const batch::BatchOptions& options) {
-    const batch::WriteGate::Pass pass(*options.gate);
+    const batch::WriteGate::WriterGuard pass(*options.gate);
     for (const auto* name : batch::table_names) {
-        write_file_atomically(options.out / name, cli::table_text(table, name), options.out / batch::unfinished_folder);
+        write_file_atomically(options.out / name, cli::table_text(table, name), options.out / batch::temporary_folder);
     }
     write_batch_fit(fit, options.out);
 }
@@ -219,16 +219,16 @@ int finish(const cli::StageCall& call, batch::BatchFlights flights, const batch:
            const std::optional<mechanical::MechanicalModel>& published) {
     const auto made_from = fingerprint_of(call, flights, options, published);
     const bool shows_physical = cli::model_kind(call) == cli::ModelKind::physical;  // how it came about is not kept
-    const bool is_known = !call.has("no-fit") && !shows_physical && batch::is_fit_of(options.out, made_from);
+    const bool is_known = !call.has("no-fit") && !shows_physical && batch::is_fit_current(options.out, made_from);
     auto known = is_known ? std::optional(known_fit(options.out)) : std::nullopt;
-    auto repeated = known ? std::move(known->fit.repeated) : find_repeated(flights, options.out);
-    exclude_repeated(flights, repeated);
+    auto repeated = known ? std::move(known->fit.repeated) : find_duplicates(flights, options.out);
+    exclude_duplicates(flights, repeated);
     repeated.copies = {};  // of an archive, too many to be held beside the fit
     report_notes(call, flights);
     {
-        const batch::WriteGate::Pass pass(*options.gate);
+        const batch::WriteGate::WriterGuard pass(*options.gate);
         write_file_atomically(options.out / batch::catalogue_name, catalogue_csv(flights),
-                              options.out / batch::unfinished_folder);
+                              options.out / batch::temporary_folder);
     }
     const auto shown = flights_text(call, flights, options);
     const auto totals = totals_of(flights);
@@ -244,7 +244,7 @@ int finish(const cli::StageCall& call, batch::BatchFlights flights, const batch:
                 cli::warn(call, "no flight has measured power: nothing was fitted, and there is no model");
             } else {
                 cli::note(call, fmt::format("nothing was fitted; next: flightwatt fit {} -o MODEL.toml",
-                                            cli::typed_in_shell(options.out.string())));
+                                            cli::shell_quoted(options.out.string())));
             }
             cli::print(call.json ? cli::json_text(with_logs({}, flights)) : shown);
             return exit_code(call, totals);
@@ -252,10 +252,10 @@ int finish(const cli::StageCall& call, batch::BatchFlights flights, const batch:
         refuse_mix(call, flights, options.out);
         auto [fit, physical] = known ? *std::move(known) : fit_batch(call, flights, options);
         ::malloc_trim(0);  // the samples
-        fit.repeated = {copies_among(flights), std::move(repeated.overlaps)};
+        fit.repeated = {excluded_duplicates(flights), std::move(repeated.overlaps)};
         fit.excluded = options.load.excluded;
         fit.keep = options.load.keep;
-        fit.made_from = made_from;
+        fit.input_fingerprint = made_from;
         const auto table = cli::table_of(fit.model, published);
         if (is_known) cli::note(call, "nothing has changed: the model is as it was");
         if (!is_known) write_model(fit, table, options);
@@ -269,7 +269,7 @@ int finish(const cli::StageCall& call, batch::BatchFlights flights, const batch:
     } catch (const InputError&) {
         if (!call.json) cli::print(shown);
         throw;
-    } catch (const NoAnswerError&) {
+    } catch (const NoResultError&) {
         if (!call.json) cli::print(shown);
         throw;
     }
@@ -279,7 +279,7 @@ int finish(const cli::StageCall& call, batch::BatchFlights flights, const batch:
 std::vector<batch::LogFile> chosen_logs(const cli::StageCall& call, std::vector<batch::LogFile> logs) {
     std::vector<std::string> names(logs.size());
     std::ranges::transform(logs, names.begin(), &batch::LogFile::flight);
-    const auto chosen = cli::chosen_flights(call, names);
+    const auto chosen = cli::filter_flights(call, names);
     std::size_t number = 0;
     std::erase_if(logs, [&](const batch::LogFile&) { return !chosen[number++]; });
     return logs;
@@ -287,12 +287,12 @@ std::vector<batch::LogFile> chosen_logs(const cli::StageCall& call, std::vector<
 
 /// The paths of --files-from. Throws UsageError where neither it nor the command names a log.
 std::vector<std::string> listed_logs(const cli::StageCall& call) {
-    const auto list = call.maybe<std::string>("files-from");
+    const auto list = call.get_optional<std::string>("files-from");
     if (!list && call.inputs.empty()) throw UsageError("no log given: expected LOG, FOLDER or --files-from LIST");
     if (!list) return {};
     const auto file = *list == "-" ? std::string("the standard input") : *list;
     const auto text = *list == "-" ? std::string(std::istreambuf_iterator<char>(std::cin), {}) : read_file(*list);
-    auto paths = batch::listed_paths(text, file);
+    auto paths = batch::parse_path_list(text, file);
     if (paths.empty()) {
         throw InputError({file}, "names no log", "expected the path of a log in each line");
     }
@@ -303,14 +303,14 @@ std::vector<std::string> listed_logs(const cli::StageCall& call) {
 batch::BatchPlan make_plan(const cli::StageCall& call, batch::BatchOptions& options) {
     auto logs = chosen_logs(call, batch::find_logs(call.inputs, listed_logs(call)));
     for (const auto& log : logs) {
-        note_input(log.path);
-        if (const auto file = telemetry::find_log_file(log.path)) note_input(*file);
+        register_input(log.path);
+        if (const auto file = telemetry::find_log_file(log.path)) register_input(*file);
     }
     auto plan = batch::plan_batch(std::move(logs), options.out, call.has("prune"));
-    refuse_files_of_others(plan, options.out);
+    refuse_foreign_files(plan, options.out);
     std::vector<std::string> names;
     for (std::size_t i = 0; i < plan.logs.size(); ++i) names.emplace_back(plan.logs.flight(i));
-    options.load.excluded = cli::with_matching(options.load.excluded, "exclude", names);
+    options.load.excluded = cli::expand_patterns(options.load.excluded, "exclude", names);
     cli::refuse_unknown_flights(options.load, names);
     return plan;
 }
@@ -329,7 +329,7 @@ void tell_plan(const cli::StageCall& call, const batch::BatchPlan& plan) {
     for (std::size_t i = 0; i < plan.logs.size(); ++i) {
         const auto log = plan.logs[i];
         if (!log.is_of_this_run) ++earlier;
-        if (log.is_gone) gone.push_back(log);
+        if (log.is_missing) gone.push_back(log);
     }
     if (earlier == 0) return;
     cli::note(call,
@@ -352,18 +352,18 @@ int run_over_logs(const cli::StageCall& call) {
     make_directories(options.out);
     if (!lock) {
         lock.emplace(options.out);
-        batch::refuse_new_batch(options.out);
+        batch::refuse_concurrent_batch(options.out);
     }
     prepare_folder(plan, options.out);
     plan.earlier = plan.manifest = {};
     ::malloc_trim(0);  // of a hundred thousand logs, the plan took more than the work is going to
-    const batch::EmptyAtEnd unfinished{options.out / batch::unfinished_folder};
+    const batch::RemoveIfEmpty unfinished{options.out / batch::temporary_folder};
     batch::WriteGate gate;
     options.gate = &gate;
     BatchProgressState state;
     state.all = plan.logs.size();
     if (::isatty(STDERR_FILENO) != 0) state.bar.emplace(stderr, "logs");
-    const batch::Interruption interruption(gate, on_signal(call, state));
+    const batch::TerminationHandler interruption(gate, on_signal(call, state));
     auto flights = run_batch(plan.logs, options, progress_of(call, state));
     plan = {};
     if (state.bar) state.bar->clear();

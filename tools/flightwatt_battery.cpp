@@ -26,8 +26,8 @@ battery::IdentificationOptions read_options(const cli::StageCall& call) {
     battery::IdentificationOptions options;
     options.capacity_ah = cli::capacity_option(call);
     if (call.has("cells")) options.cells = static_cast<int>(cli::count_option(call, "cells", 1, 24));
-    options.chain = !call.has("no-chain");
-    options.name = call.maybe<std::string>("name").value_or(
+    options.link_packs = !call.has("no-chain");
+    options.name = call.get_optional<std::string>("name").value_or(
         call.output ? std::filesystem::path(*call.output).stem().string() : "identified");
     return options;
 }
@@ -58,12 +58,12 @@ std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call) {
 }
 
 void warn_if_never_full(const cli::StageCall& call, const battery::BatteryIdentification& identified) {
-    if (identified.missing_ah <= 0.0) return;
+    if (identified.curve_start_depletion_ah <= 0.0) return;
     cli::warn(call,
               fmt::format(
                   "no flight begins full: the fullest rests at {:.3f} V; by the usual chart of {} LiPo cells "
                   "{:.0f} % are left{}",
-                  highest_resting_v(identified), identified.cells, identified.known_up_to_percent,
+                  highest_resting_v(identified), identified.cells, identified.observed_max_soc_percent,
                   identified.flights.size() == 1 ? ". One flight does not tell both capacity and initial charge" : ""));
 }
 
@@ -94,11 +94,11 @@ void note_what_it_rests_on(const cli::StageCall& call, const battery::BatteryIde
                                     "the pack says with --capacity",
                                     cli::describe(identified.capacity)));
     }
-    if (identified.known_down_to_percent > 0.0) {
+    if (identified.observed_min_soc_percent > 0.0) {
         cli::note(call,
                   fmt::format("below {:.0f} % ({:.3f} Ah drawn) no flight shows the open-circuit voltage: "
                               "it goes on in parallel to the usual chart of {} LiPo cells",
-                              identified.known_down_to_percent, identified.fit.knots_ah.back(), identified.cells));
+                              identified.observed_min_soc_percent, identified.fit.knots_ah.back(), identified.cells));
     }
     if (identified.fit.rc_resistance_ohm == 0.0) {
         cli::warn(call, "no RC pair explains anything: the battery has none");
@@ -108,13 +108,13 @@ void note_what_it_rests_on(const cli::StageCall& call, const battery::BatteryIde
 }
 
 /// On all records, and on all but each in turn: that is long work.
-std::pair<battery::BatteryIdentification, std::vector<battery::LeftOutCheck>> identify_and_check(
+std::pair<battery::BatteryIdentification, std::vector<battery::LeaveOneOutCheck>> identify_and_check(
     const std::vector<battery::DischargeRecord>& records, const battery::IdentificationOptions& options,
     std::size_t folds) {
     cli::TerminalProgress identifying("identifications");
     auto identified = identify_battery(records, options);
     const auto show = [&](std::size_t done, std::size_t all) { identifying.show(done + 1, all + 1); };
-    return {std::move(identified), leave_each_out(records, options, show, folds)};
+    return {std::move(identified), leave_one_out(records, options, show, folds)};
 }
 
 int identify(const cli::StageCall& call) {
@@ -161,7 +161,7 @@ the pack's state of health. Flights whose current was computed from throttle are
         "empty, or else a guess after the usual chart of LiPo cells");
     add("cells", cli::value("N"),
         "cells in series, checked against the voltage at rest; default: by the highest resting voltage");
-    cli::add_folds_option(stage.options, battery::most_battery_folds);
+    cli::add_folds_option(stage.options, battery::max_battery_folds);
     add("no-chain", "take no flight for one on the pack of the flight before it");
     add("name", cli::value("NAME"), "the battery's name; default: FILE's");
     cli::add_mix_option(stage.options);

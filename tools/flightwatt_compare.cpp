@@ -29,13 +29,14 @@ std::string ranking_json(const std::vector<mission::MissionSummary>& ranking, bo
 }
 
 /// Runs a mission; one that is yet to be planned is planned first.
-mission::Simulation simulation_of(const cli::StageCall& call, const mission::AnyMission& mission,
+mission::Simulation simulation_of(const cli::StageCall& call, const mission::MissionVariant& mission,
                                   const std::optional<mission::SamplingOptions>& sampling) {
     const auto& setup = setup_of(mission);
     const auto disturbances = cli::read_disturb_option(call, setup);
-    const auto prepared = prepare(mission);
-    auto simulation = fly(prepared, {}, disturbances).simulation;
-    if (sampling && has_spread(setup)) simulation.summary.samples = sample_flights(prepared, disturbances, *sampling);
+    const auto prepared = prepare_mission(mission);
+    auto simulation = simulate_prepared(prepared, {}, disturbances).simulation;
+    if (sampling && has_uncertainty(setup))
+        simulation.summary.samples = sample_flights(prepared, disturbances, *sampling);
     return simulation;
 }
 
@@ -107,7 +108,7 @@ int compare_missions(const cli::StageCall& call) {
     const auto sampling = sampling_options(call, false);
     const auto form = form_of(call);
     // All are read before the first is run: a bad file leaves no half answer.
-    std::vector<mission::AnyMission> missions;
+    std::vector<mission::MissionVariant> missions;
     missions.reserve(call.inputs.size());
     for (const auto& file : call.inputs) missions.push_back(mission::read_mission(file, {true, std::nullopt}));
     for (const auto& mission : missions) cli::warn_of_setup(call, setup_of(mission));
@@ -117,8 +118,9 @@ int compare_missions(const cli::StageCall& call) {
         simulations.push_back(simulation_of(call, mission, sampling));
         summaries.push_back(simulations.back().summary);
     }
-    if (sampling && std::ranges::none_of(missions, [](const auto& mission) { return has_spread(setup_of(mission)); })) {
-        require_spread(setup_of(missions.front()));  // says what is missing
+    if (sampling &&
+        std::ranges::none_of(missions, [](const auto& mission) { return has_uncertainty(setup_of(mission)); })) {
+        require_uncertainty(setup_of(missions.front()));  // says what is missing
     }
     const auto ranking = ranked(std::move(summaries));
     cli::write_result(call, ranking_text(call, ranking, form));

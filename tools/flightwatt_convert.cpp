@@ -2,7 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/file_use.h"
+#include "base/overwrite_guard.h"
 #include "cli/numeric_options.h"
 #include "cli/output/json_text.h"
 #include "cli/stage.h"
@@ -67,7 +67,7 @@ class TextWriter {
 };
 
 ConvertedLog convert_log(const flight::FlightFile& file) {
-    return flight::use_binary(file, [&](const telemetry::BinaryLog& log) {
+    return flight::with_binary_log(file, [&](const telemetry::BinaryLog& log) {
         telemetry::LinkDecoder decoder(*log.messages, log.framing, link_version(log));
         TextWriter writer;
         const auto sink = [&](const telemetry::LinkMessage& message) { writer.write(message); };
@@ -96,13 +96,13 @@ std::vector<std::string> warnings_of(const ConvertedLog& log, const std::string&
         warnings.push_back(fmt::format("{} frames are of messages that {} does not define: {}", counts.unknown,
                                        definitions, short_list(told_ids(counts.unknown_ids))));
     }
-    if (counts.other_lengths > 0) {
-        warnings.push_back(fmt::format("{} frames have other lengths than {} defines: {}", counts.other_lengths,
+    if (counts.length_mismatches > 0) {
+        warnings.push_back(fmt::format("{} frames have other lengths than {} defines: {}", counts.length_mismatches,
                                        definitions, short_list(told_ids(counts.other_length_ids))));
     }
     if (counts.skipped_bytes > 0) {
         warnings.push_back(fmt::format("damaged: {} bytes in {} places hold no frame with a right checksum",
-                                       counts.skipped_bytes, counts.skipped_parts));
+                                       counts.skipped_bytes, counts.skipped_runs));
     }
     if (!log.start_s) warnings.emplace_back("a capture of a link, whose messages have no times: all are written as 0");
     if (log.untimed > 0) {
@@ -130,10 +130,10 @@ Json summary(const flight::FlightFile& file, const ConvertedLog& log, const std:
             {"messages", log.lines},
             {"unknown", json_of(counts.unknown_ids)},
             {"other_lengths", json_of(counts.other_length_ids)},
-            {"other_frames", counts.other_frames},
+            {"other_frames", counts.non_message_frames},
             {"skipped_bytes", counts.skipped_bytes},
-            {"skipped_parts", counts.skipped_parts},
-            {"zero_bytes", counts.zero_bytes},
+            {"skipped_parts", counts.skipped_runs},
+            {"zero_bytes", counts.padding_bytes},
             {"untimed", log.untimed},
             {"senders", log.senders},
             {"start_s", log.start_s ? Json(*log.start_s) : Json()},
@@ -175,24 +175,25 @@ void write_both(const cli::StageCall& call, const std::string& text,
 void tell(const cli::StageCall& call, const flight::FlightFile& file, const ConvertedLog& log) {
     const auto& counts = log.counts;
     const auto times = log.start_s ? fmt::format(", {:.1f} to {:.1f} s", *log.start_s, log.end_s) : std::string();
-    cli::note(call, fmt::format("{}: {}, {}: {} frames, {} messages of {}{}{}", file.path().string(),
-                                to_string(counts.framing.value()), to_string(counts.version.value()), counts.frames,
-                                log.lines, fmt::join(log.senders, ", "), times,
-                                counts.zero_bytes > 0 ? fmt::format("; {} bytes set aside", counts.zero_bytes) : ""));
+    cli::note(call,
+              fmt::format("{}: {}, {}: {} frames, {} messages of {}{}{}", file.path().string(),
+                          to_string(counts.framing.value()), to_string(counts.version.value()), counts.frames,
+                          log.lines, fmt::join(log.senders, ", "), times,
+                          counts.padding_bytes > 0 ? fmt::format("; {} bytes set aside", counts.padding_bytes) : ""));
 }
 
 int convert(const cli::StageCall& call) {
     constexpr std::size_t bytes_per_mb = 1'000'000;
     const std::filesystem::path path = call.inputs.front();
-    const auto most_bytes = bytes_per_mb * cli::count_option(call, "max-log-mb", 1, 1'000'000);
-    const flight::FlightFile file(path, most_bytes, call.maybe<std::string>("messages"));
+    const auto max_bytes = bytes_per_mb * cli::count_option(call, "max-log-mb", 1, 1'000'000);
+    const flight::FlightFile file(path, max_bytes, call.get_optional<std::string>("messages"));
     if (!file.framing()) {
         throw InputError({path.string()}, "is no binary log: no frames with right checksums follow each other in it",
                          "expected the .LOG or .tlm of an SD card, or a capture of a link");
     }
     const auto log_file = log_to_write(call, file);
     if (log_file) {
-        declare_output(*log_file);
+        register_output(*log_file);
         if (std::filesystem::exists(*log_file) && !holds(*log_file, file.log_text().value())) {
             throw UsageError(
                 fmt::format("{} is there already, with other definitions than {}: move it away, or name "
@@ -204,7 +205,7 @@ int convert(const cli::StageCall& call) {
     file.require_unchanged();
     write_both(call, converted.text, log_file, file);
     auto warnings = warnings_of(converted, file.log_file().string());
-    if (!file.log_fault().empty()) warnings.push_back(file.log_fault());
+    if (!file.log_error().empty()) warnings.push_back(file.log_error());
     for (const auto& warning : warnings) cli::warn(call, fmt::format("{}: {}", path.string(), warning));
     if (call.json) {
         cli::print(cli::json_text(summary(file, converted, warnings)));

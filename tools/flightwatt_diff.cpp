@@ -88,17 +88,17 @@ double soc_at(const mission::SocCurve& curve, double time_s) {
 std::optional<Difference> soc_difference(const mission::SocCurve& a, const mission::SocCurve& b) {
     if (a.rows.empty() || b.rows.empty()) return std::nullopt;
     const auto end_s = std::min(a.rows.back().time_s, b.rows.back().time_s);
-    double furthest_s = 0.0;
+    double max_s = 0.0;
     double largest = -1.0;
     for (const auto* curve : {&a, &b}) {
         for (const auto& row : curve->rows) {
             if (row.time_s > end_s) break;
             const auto apart = std::abs(soc_at(b, row.time_s) - soc_at(a, row.time_s));
-            if (apart > largest) std::tie(largest, furthest_s) = std::pair(apart, row.time_s);
+            if (apart > largest) std::tie(largest, max_s) = std::pair(apart, row.time_s);
         }
     }
-    auto row = computed("mission", "soc_percent", "%", soc_at(a, furthest_s), soc_at(b, furthest_s));
-    row.at_s = furthest_s;
+    auto row = computed("mission", "soc_percent", "%", soc_at(a, max_s), soc_at(b, max_s));
+    row.at_s = max_s;
     return row;
 }
 
@@ -261,9 +261,9 @@ int show_difference(const cli::StageCall& call) {
             std::pair(mission::read_mission(a, {true, std::nullopt}), mission::read_mission(b, {true, std::nullopt}));
         cli::warn_of_setup(call, setup_of(missions.first));
         cli::warn_of_setup(call, setup_of(missions.second));
-        const auto prepared_a = prepare(missions.first);
-        const auto prepared_b = prepare(missions.second);
-        rows = mission_difference(fly(prepared_a).simulation, fly(prepared_b).simulation);
+        const auto prepared_a = prepare_mission(missions.first);
+        const auto prepared_b = prepare_mission(missions.second);
+        rows = mission_difference(simulate_prepared(prepared_a).simulation, simulate_prepared(prepared_b).simulation);
         if (const auto drawn = sample_difference(prepared_a, prepared_b)) {
             add_intervals(*drawn, rows);
             cli::note(call, describe(*drawn));

@@ -95,7 +95,7 @@ std::string format_names() {
 }
 
 const Format& format_of(const cli::StageCall& call) {
-    const auto name = call.maybe<std::string>("format");
+    const auto name = call.get_optional<std::string>("format");
     const auto ending = call.output ? std::filesystem::path(*call.output).extension().string() : "";
     for (const auto& format : formats())
         if (name ? format.name == *name : !ending.empty() && format.ending == ending) return format;
@@ -143,7 +143,7 @@ void refuse_idle_options(const cli::StageCall& call, const Format& format) {
 }
 
 exchange::TrackColour colour_of(const cli::StageCall& call) {
-    const auto name = call.maybe<std::string>("colour").value_or("phase");
+    const auto name = call.get_optional<std::string>("colour").value_or("phase");
     if (name == "phase") return exchange::TrackColour::phase;
     if (name == "power") return exchange::TrackColour::power;
     throw UsageError(fmt::format("--colour {}: expected phase or power", name));
@@ -162,7 +162,7 @@ Exported export_track(const cli::StageCall& call, const std::string& file, const
                                       : to_gpx(track, colour);
     constexpr std::array clocks{"log", "name", "none"};
     result.facts = {{"points", track.points.size()},
-                    {"parts", coloured_parts(track, colour).size()},
+                    {"parts", coloured_segments(track, colour).size()},
                     {"clock", clocks.at(static_cast<std::size_t>(track.clock))}};
     if (track.clock == exchange::TrackClock::name)
         result.notes.push_back(file + ": no .log tells the date: that of its name is taken, as if it were UTC");
@@ -175,8 +175,8 @@ Exported export_track(const cli::StageCall& call, const std::string& file, const
 Exported export_columns(const cli::StageCall& call, const std::string& file) {
     auto options = cli::read_flight_options(call);
     Exported result;
-    if (const auto message = call.maybe<std::string>("message")) {
-        auto table = exchange::message_table(flight::FlightFile(file, options.most_log_bytes, options.messages),
+    if (const auto message = call.get_optional<std::string>("message")) {
+        auto table = exchange::message_table(flight::FlightFile(file, options.max_log_bytes, options.messages),
                                              *message, options.aircraft_id);
         if (!table.left_out.empty())
             result.notes.push_back(
@@ -193,8 +193,8 @@ Exported export_columns(const cli::StageCall& call, const std::string& file) {
 }
 
 /// The mean power of the mission's computer, flown as it is stated or planned.
-double compute_w(const mission::AnyMission& mission) {
-    const auto summary = fly(prepare(mission)).simulation.summary;
+double compute_w(const mission::MissionVariant& mission) {
+    const auto summary = simulate_prepared(prepare_mission(mission)).simulation.summary;
     return summary.duration_s > 0.0 ? units::joule_from_wh(summary.compute_energy_wh) / summary.duration_s : 0.0;
 }
 
@@ -216,12 +216,12 @@ exchange::EstimatorInput estimator_input(const cli::StageCall& call, const std::
         result.compute_w = compute_w(mission);
         if (setup.reserve_soc_percent > 0.0) result.reserve_percent = setup.reserve_soc_percent;
     }
-    constexpr std::uint64_t most_cells = 100;
-    if (call.has("cells")) result.cells_in_series = static_cast<int>(cli::count_option(call, "cells", 1, most_cells));
+    constexpr std::uint64_t max_cells = 100;
+    if (call.has("cells")) result.cells_in_series = static_cast<int>(cli::count_option(call, "cells", 1, max_cells));
     if (call.has("parallel"))
-        result.cells_in_parallel = static_cast<int>(cli::count_option(call, "parallel", 1, most_cells));
-    constexpr double most_idle_w = 1e5;
-    if (call.has("idle-power")) result.idle_w = cli::number_option(call, "idle-power", 0.0, most_idle_w);
+        result.cells_in_parallel = static_cast<int>(cli::count_option(call, "parallel", 1, max_cells));
+    constexpr double max_idle_w = 1e5;
+    if (call.has("idle-power")) result.idle_w = cli::number_option(call, "idle-power", 0.0, max_idle_w);
     return result;
 }
 
@@ -249,11 +249,11 @@ std::string model_latex(const mechanical::MechanicalModel& model) {
 
 /// Of flights that are left out in turn, as the report has them: the work grows with their square.
 std::string validation_latex(const report::BatchContent& content) {
-    constexpr std::size_t most_flights = 30;
-    if (content.measured.size() < 2 || content.measured.size() > most_flights) return "";
+    constexpr std::size_t max_flights = 30;
+    if (content.measured.size() < 2 || content.measured.size() > max_flights) return "";
     auto tables = report::physical_tables(content.measured);
     tables.push_back(
-        {report::predictions_table(predict_each_minute(content, most_flights)),
+        {report::predictions_table(predict_each_minute(content, max_flights)),
          "Energy of each flight as it would have been predicted while it cruised, from what was flown until "
          "then and a model of the other flights",
          "tab:predictions"});
@@ -263,18 +263,18 @@ std::string validation_latex(const report::BatchContent& content) {
 }
 
 std::string identified_battery_latex(const cli::StageCall& call, const report::BatchContent& content,
-                                     const std::vector<mission::AnyMission>& missions) {
-    constexpr std::size_t most_flights = 12;  // likewise
+                                     const std::vector<mission::MissionVariant>& missions) {
+    constexpr std::size_t max_flights = 12;  // likewise
     if (!report::aircraft_mix(content).empty()) return "";
     battery::IdentificationOptions options;
     options.capacity_ah = cli::capacity_option(call);
-    const auto identified = identify_for_report(content.flights, options, most_flights, missions);
-    if (!identified.identified) cli::note(call, "no table of the battery: " + identified.no_answer);
+    const auto identified = identify_for_report(content.flights, options, max_flights, missions);
+    if (!identified.identified) cli::note(call, "no table of the battery: " + identified.no_result_reason);
     return to_latex(battery_tables(identified));
 }
 
 std::string batch_latex(const cli::StageCall& call, const report::BatchContent& content,
-                        const std::vector<mission::AnyMission>& missions) {
+                        const std::vector<mission::MissionVariant>& missions) {
     for (const auto& damaged : content.damaged) cli::warn(call, damaged);
     auto text = to_latex(report::flights_tables(content.flights));
     if (content.fit) text += "\n" + model_latex(content.fit->model) + "\n" + validation_latex(content);
@@ -282,7 +282,7 @@ std::string batch_latex(const cli::StageCall& call, const report::BatchContent& 
 }
 
 std::string replay_latex(const cli::StageCall& call, const report::BatchContent& content,
-                         const std::vector<mission::AnyMission>& missions) {
+                         const std::vector<mission::MissionVariant>& missions) {
     mission::ReplayOptions options;
     if (content.fit) options.fit = content.fit->options;
     const auto replays = replay_flights(missions, flights_with_power(content), options);
@@ -291,7 +291,7 @@ std::string replay_latex(const cli::StageCall& call, const report::BatchContent&
     return to_latex(report::replay_tables(replays.replays));
 }
 
-std::string missions_latex(const std::vector<mission::AnyMission>& missions) {
+std::string missions_latex(const std::vector<mission::MissionVariant>& missions) {
     const auto simulated = report::simulate_for_report(missions);
     auto text = to_latex(report::ranking_table(simulated), "Missions by final state of charge", "tab:missions");
     const auto plans = report::plans_table(simulated);
@@ -307,7 +307,7 @@ Exported export_latex(const cli::StageCall& call, const std::vector<Input>& inpu
         return {to_latex(cli::pack_table(pack), fmt::format("Battery {}", pack.name), "tab:battery")};
     }
     std::optional<report::BatchContent> content;
-    std::vector<mission::AnyMission> missions;
+    std::vector<mission::MissionVariant> missions;
     missions.reserve(inputs.size());
     for (const auto& input : inputs) {
         if (input.kind == Kind::batch)

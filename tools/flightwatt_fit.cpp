@@ -27,7 +27,7 @@ using namespace flightwatt;
 
 mechanical::ModelFitOptions read_options(const cli::StageCall& call) {
     auto options = read_fit_options(call, cli::AutoOrder::accepted);
-    options.name = call.maybe<std::string>("name").value_or(
+    options.name = call.get_optional<std::string>("name").value_or(
         call.output ? std::filesystem::path(*call.output).stem().string() : "fitted");
     const auto name = call.get<std::string>("loss");
     const auto loss = mechanical::loss_from(name);
@@ -37,7 +37,7 @@ mechanical::ModelFitOptions read_options(const cli::StageCall& call) {
     const auto curve = mechanical::curve_from(curve_name);
     if (!curve) throw UsageError(fmt::format("--curve {}: expected mean or least-squares", curve_name));
     options.phases.curve = *curve;
-    if (const auto covariate = call.maybe<std::string>("level-covariate")) {
+    if (const auto covariate = call.get_optional<std::string>("level-covariate")) {
         options.level_covariate = mechanical::covariate_from(*covariate);
         if (!options.level_covariate) {
             throw UsageError(
@@ -48,23 +48,23 @@ mechanical::ModelFitOptions read_options(const cli::StageCall& call) {
 }
 
 std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call, int order) {
-    const auto needed = mechanical::samples_needed(order);
+    const auto needed = mechanical::min_samples(order);
     const auto options = cli::read_flight_options(call);
     const auto chosen = cli::with_chosen_flights(call, options);
     return cli::from_flights<mechanical::MeasuredFlight>(chosen, options, [&](const auto&, const auto& loaded) {
-        auto measured = mechanical::measure_flights(loaded, needed);
+        auto measured = mechanical::extract_flights(loaded, needed);
         for (const auto& exclusion : measured.exclusions) cli::warn(call, to_string(exclusion));
         return std::move(measured.flights);
     });
 }
 
 /// Chooses each phase's order and says why.
-flight::PerPhase<mechanical::OrderChoice> choose_orders(const cli::StageCall& call,
-                                                        std::span<const mechanical::FlightSamples> flights,
-                                                        const mechanical::ModelFitOptions& options) {
-    flight::PerPhase<mechanical::OrderChoice> choices;
+flight::PerPhase<mechanical::OrderSelection> choose_orders(const cli::StageCall& call,
+                                                           std::span<const mechanical::FlightSamples> flights,
+                                                           const mechanical::ModelFitOptions& options) {
+    flight::PerPhase<mechanical::OrderSelection> choices;
     for (const auto phase : flight::all_phases) {
-        choices[phase] = choose_order(phase, samples_of_phase(flights, phase), options.phases, options.weights);
+        choices[phase] = select_order(phase, samples_of_phase(flights, phase), options.phases, options.weights);
         note_order(call, phase, choices[phase]);
     }
     return choices;
@@ -75,18 +75,18 @@ int fit(const cli::StageCall& call) {
     const bool with_motion = kind == cli::ModelKind::physical;
     const bool auto_order = !read_order(call, cli::AutoOrder::accepted);
     auto options = read_options(call);
-    const auto table_file = call.maybe<std::string>("table");
+    const auto table_file = call.get_optional<std::string>("table");
     if (table_file) cli::table_text({{""}, {}}, *table_file);  // refuses a bad ending before the work
-    const auto constants_file = call.maybe<std::string>("constants");
+    const auto constants_file = call.get_optional<std::string>("constants");
     if (constants_file && !with_motion) throw UsageError("--constants goes with --model physical");
     if (constants_file) cli::table_text({{""}, {}}, *constants_file);
-    const auto curves_file = call.maybe<std::string>("curves");
+    const auto curves_file = call.get_optional<std::string>("curves");
     const auto published = cli::read_published(call);
-    const auto measured = read_flights(call, auto_order ? mechanical::highest_tried_order : options.phases.order);
+    const auto measured = read_flights(call, auto_order ? mechanical::max_tested_order : options.phases.order);
     std::vector<mechanical::FlightSamples> flights;
     flights.reserve(measured.size());
     for (const auto& flight : measured) flights.push_back(flight.samples);
-    std::optional<flight::PerPhase<mechanical::OrderChoice>> choices;
+    std::optional<flight::PerPhase<mechanical::OrderSelection>> choices;
     if (auto_order) {
         choices = choose_orders(call, flights, options);
         for (const auto phase : flight::all_phases) options.orders[phase] = (*choices)[phase].order;

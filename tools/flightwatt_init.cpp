@@ -67,7 +67,7 @@ int make_folder(const cli::StageCall& call) {
             "{0}/fits      models, and what was found of each flight\n"
             "{0}/missions  what is to be flown\n"
             "{1}  the five commands from logs to report.html{2}\n",
-            root.string(), list.string(), call.output ? "" : ": make -C " + cli::typed_in_shell(root.string())));
+            root.string(), list.string(), call.output ? "" : ": make -C " + cli::shell_quoted(root.string())));
     }
     return cli::ok;
 }

@@ -46,14 +46,15 @@ Summary summary_of(const batch::MergePlan& plan, const batch::BatchFlights& flig
 }
 
 Json json_of(const cli::StageCall& call, const batch::MergePlan& plan, const batch::BatchFlights& flights,
-             const batch::RepeatedFlights& repeated) {
+             const batch::Duplicates& repeated) {
     const auto summary = summary_of(plan, flights);
-    Json json{
-        {"folder", *call.output},       {"batches", Json::array()},       {"flights", flights.size()},
-        {"accepted", summary.accepted}, {"rejected", summary.rejected},   {"already_there", summary.already_there},
-        {"renamed", Json::array()},     {"repeated_logs", plan.repeated}, {"copies", Json::array()}};
-    for (std::size_t i = 0; i < plan.given.size(); ++i)
-        json["batches"].push_back({{"folder", call.inputs[i]}, {"flights", plan.given[i]}});
+    Json json{{"folder", *call.output},       {"batches", Json::array()},
+              {"flights", flights.size()},    {"accepted", summary.accepted},
+              {"rejected", summary.rejected}, {"already_there", summary.already_there},
+              {"renamed", Json::array()},     {"repeated_logs", plan.duplicate_logs},
+              {"copies", Json::array()}};
+    for (std::size_t i = 0; i < plan.flights_per_batch.size(); ++i)
+        json["batches"].push_back({{"folder", call.inputs[i]}, {"flights", plan.flights_per_batch[i]}});
     for (std::size_t i = 0; i < flights.size(); ++i) {
         const auto& [from, before] = plan.sources[i];
         const auto name = plan.folder.logs.flight(i);
@@ -67,14 +68,14 @@ Json json_of(const cli::StageCall& call, const batch::MergePlan& plan, const bat
 std::string text_of(const cli::StageCall& call, const batch::MergePlan& plan, const batch::BatchFlights& flights) {
     const auto summary = summary_of(plan, flights);
     TextTable table{{"batch", "flights"}, {}};
-    for (std::size_t i = 0; i < plan.given.size(); ++i)
-        table.rows.push_back({call.inputs[i], fmt::format("{}", plan.given[i])});
+    for (std::size_t i = 0; i < plan.flights_per_batch.size(); ++i)
+        table.rows.push_back({call.inputs[i], fmt::format("{}", plan.flights_per_batch[i])});
     table.rows.push_back({*call.output, fmt::format("{}", flights.size())});
     return screen_text(table, screen_of(call), {"merged", {}}) +
            fmt::format(
                "{} accepted, {} rejected; {} renamed, {} were there already, {} of logs that were in another "
                "batch too\n",
-               summary.accepted, summary.rejected, summary.renamed, summary.already_there, plan.repeated);
+               summary.accepted, summary.rejected, summary.renamed, summary.already_there, plan.duplicate_logs);
 }
 
 /// A model that stands in the folder was fitted to other flights.
@@ -92,40 +93,40 @@ int merge(const cli::StageCall& call) {
     std::error_code none;
     if (std::filesystem::is_directory(out, none)) lock.emplace(out);
     const auto plan = batch::plan_merge(batches, out, call.has("prune"));
-    batch::refuse_files_of_others(plan.folder, out);
+    batch::refuse_foreign_files(plan.folder, out);
     for (const auto& dropped : plan.folder.dropped)
         cli::note(call, fmt::format("dropped: {}, {}", dropped.flight, dropped.reason));
     make_directories(out);
     if (!lock) {
         lock.emplace(out);
-        batch::refuse_new_batch(out);
+        batch::refuse_concurrent_batch(out);
     }
-    const batch::EmptyAtEnd unfinished{out / batch::unfinished_folder};
+    const batch::RemoveIfEmpty unfinished{out / batch::temporary_folder};
     batch::prepare_folder(plan.folder, out);
     remove_model(call, out);
     batch::WriteGate gate;
-    batch::MergeOptions options{out, mechanical::samples_needed(mechanical::ModelFitOptions{}.phases.order), gate};
+    batch::MergeOptions options{out, mechanical::min_samples(mechanical::ModelFitOptions{}.phases.order), gate};
     cli::TerminalProgress progress("flights");
-    const batch::Interruption interruption(gate, [&](int) {
-        const batch::EmptyAtEnd unfinished_folder{out / batch::unfinished_folder};
+    const batch::TerminationHandler interruption(gate, [&](int) {
+        const batch::RemoveIfEmpty unfinished_folder{out / batch::temporary_folder};
         cli::note(call, "stopped; the same command goes on from there");
     });
     auto flights = batch::merge_flights(
         plan, options, [&](std::size_t done, std::size_t all, const auto&) { progress.show(done, all); });
     progress.hide();
-    const auto repeated = batch::find_repeated(flights, out);
-    exclude_repeated(flights, repeated);
-    const auto copies = std::ranges::count_if(repeated.copies, &batch::CopiedFlight::has_power);
+    const auto repeated = batch::find_duplicates(flights, out);
+    exclude_duplicates(flights, repeated);
+    const auto copies = std::ranges::count_if(repeated.copies, &batch::DuplicateFlight::has_power);
     if (copies > 0) {
         const auto& [flight, other, has_power] =
-            *std::ranges::find_if(repeated.copies, &batch::CopiedFlight::has_power);
+            *std::ranges::find_if(repeated.copies, &batch::DuplicateFlight::has_power);
         cli::warn(call, fmt::format("{} of the flights are others under a second name, and are not fitted: {} is the "
                                     "same flight as {}{}; --json names all",
                                     copies, flight, other, copies > 1 ? ", ..." : ""));
     }
-    write_file_atomically(out / batch::catalogue_name, batch::catalogue_csv(flights), out / batch::unfinished_folder);
+    write_file_atomically(out / batch::catalogue_name, batch::catalogue_csv(flights), out / batch::temporary_folder);
     cli::print(call.json ? cli::json_text(json_of(call, plan, flights, repeated)) : text_of(call, plan, flights));
-    cli::note(call, fmt::format("next: flightwatt fit {} -o MODEL.toml", cli::typed_in_shell(out.string())));
+    cli::note(call, fmt::format("next: flightwatt fit {} -o MODEL.toml", cli::shell_quoted(out.string())));
     return cli::ok;
 }
 

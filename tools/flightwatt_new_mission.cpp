@@ -27,7 +27,7 @@ std::string named_from(const std::filesystem::path& folder, const std::filesyste
 }
 
 std::string required_file(const cli::StageCall& call, const std::string& option, const char* made_by) {
-    const auto file = call.maybe<std::string>(option);
+    const auto file = call.get_optional<std::string>(option);
     if (!file) throw UsageError(fmt::format("expected --{} FILE, from `flightwatt {}`", option, made_by));
     return *file;
 }
@@ -53,13 +53,14 @@ int write_new_mission(const cli::StageCall& call) {
     if (!std::filesystem::is_directory(folder, none))
         throw OutputError(fmt::format("{}: there is no folder {}: make it first", file.string(), folder.string()));
     mission::NewMission fresh;
-    fresh.name = call.maybe<std::string>("name").value_or(file.stem().string());
+    fresh.name = call.get_optional<std::string>("name").value_or(file.stem().string());
     fresh.mechanical = named_from(folder, mechanical);
     fresh.model = mechanical::read_mechanical_model(mechanical);
     fresh.battery = named_from(folder, pack);
     fresh.pack = battery::read_battery(pack);
     fresh.is_planned = call.has("plan");
-    for (const auto& profile : call.maybe<std::vector<std::string>>("profile").value_or(std::vector<std::string>())) {
+    for (const auto& profile :
+         call.get_optional<std::vector<std::string>>("profile").value_or(std::vector<std::string>())) {
         fresh.components.push_back({component_name(profile, fresh.components), named_from(folder, profile),
                                     compute::read_power_profile(profile)});
     }
@@ -67,8 +68,8 @@ int write_new_mission(const cli::StageCall& call) {
         throw UsageError("--plan: expected --profile FILE of the software whose schedule is to be planned");
     }
     const auto text = new_mission_toml(fresh);
-    mission::MissionReading reading;
-    reading.may_lack_schedule = fresh.is_planned;
+    mission::MissionReadOptions reading;
+    reading.allow_unplanned = fresh.is_planned;
     const auto read = mission::parse_mission(text, file, reading);
     cli::write_result(call, text);
     cli::warn_of_setup(call, setup_of(read));
@@ -79,7 +80,7 @@ int write_new_mission(const cli::StageCall& call) {
         cli::print(cli::json_text(json));
     } else if (call.output) {
         cli::note(call, fmt::format("{} is written; next: flightwatt {} {}", file.string(),
-                                    fresh.is_planned ? "plan" : "simulate", cli::typed_in_shell(file.string())));
+                                    fresh.is_planned ? "plan" : "simulate", cli::shell_quoted(file.string())));
         cli::note_power_model(call, setup_of(read));
     }
     return cli::ok;

@@ -4,9 +4,9 @@
 #include "cli/output/json_text.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
-#include "flight/chosen_track.h"
 #include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
+#include "flight/selected_track.h"
 #include "flight/series_file.h"
 
 #include <fmt/format.h>
@@ -26,7 +26,7 @@ Json summary(const flight::LoadedFlight& loaded, const flight::Track& power) {
             {"samples", power.time_s.size()},
             {"start_s", power.empty() ? Json() : Json(power.time_s.front())},
             {"end_s", power.empty() ? Json() : Json(power.time_s.back())},
-            {"usual_interval_s", power.empty() ? Json() : Json(flight::usual_interval_s(power.time_s))},
+            {"usual_interval_s", power.empty() ? Json() : Json(flight::median_interval_s(power.time_s))},
             {"sources", loaded.sources},
             {"warnings", loaded.warnings}};
 }
@@ -53,7 +53,7 @@ int parse(const cli::StageCall& call) {
     const auto samples =
         power.empty() ? std::string("no power")
                       : fmt::format("{} samples from {:.1f} to {:.1f} s, usually {:.2f} s apart", power.time_s.size(),
-                                    power.time_s.front(), power.time_s.back(), flight::usual_interval_s(power.time_s));
+                                    power.time_s.front(), power.time_s.back(), flight::median_interval_s(power.time_s));
     cli::note(call,
               fmt::format("{}: aircraft {} {}, {}", series.flight, series.aircraft_id, series.aircraft_name, samples));
     for (const auto& [name, source] : loaded.sources) {

@@ -41,8 +41,8 @@ void print_summary(const cli::StageCall& call, const mission::MissionSetup& miss
 }
 
 int show_path(const cli::StageCall& call) {
-    mission::MissionReading reading;
-    reading.may_lack_schedule = true;
+    mission::MissionReadOptions reading;
+    reading.allow_unplanned = true;
     const auto mission = mission::read_mission(call.inputs.front(), reading);
     const auto& setup = setup_of(mission);
     if (!setup.cruise_path) {
@@ -54,7 +54,7 @@ int show_path(const cli::StageCall& call) {
                    "climb_m_per_s", "load_factor", "mechanical_w"},
                   digits);
     double length_m = 0.0;
-    for (const auto& leg : flown_elements(*setup.cruise_path->plan)) {
+    for (const auto& leg : path_element_results(*setup.cruise_path->plan)) {
         csv.add(leg.name, leg.kind, leg.start_s, leg.duration_s, leg.length_m, leg.course_deg, leg.airspeed_m_per_s,
                 leg.climb_m_per_s, leg.load_factor, leg.mechanical_w);
         length_m += leg.length_m.value_or(0.0);
@@ -83,7 +83,7 @@ int take_path(const cli::StageCall& call, const std::string& file) {
                    "altitude_m", "airspeed_m_per_s", "duration_s"},
                   digits);
     double duration_s = 0.0;
-    for (const auto& place : path.places) {
+    for (const auto& place : path.waypoints) {
         const bool is_first = place.duration_s == 0.0;
         csv.add(place.east_m, place.north_m, place.altitude_m,
                 is_first ? std::nullopt : std::optional(place.airspeed_m_per_s),
@@ -94,13 +94,13 @@ int take_path(const cli::StageCall& call, const std::string& file) {
     if (call.json) {
         nlohmann::ordered_json json;
         json["flight"] = loaded.series.flight;
-        json["waypoints"] = path.places.size();
+        json["waypoints"] = path.waypoints.size();
         json["duration_s"] = duration_s;
         cli::print(cli::json_text(json));
     } else {
         cli::note(call, fmt::format("{}: {} waypoints of a cruise of {}, each with how long the way there took: a "
                                     "mission that is to fly them in another wind leaves duration_s out",
-                                    loaded.series.flight, path.places.size(), duration_text(duration_s)));
+                                    loaded.series.flight, path.waypoints.size(), duration_text(duration_s)));
     }
     return cli::ok;
 }
@@ -117,7 +117,7 @@ void refuse_flight_options(const cli::StageCall& call) {
 }
 
 int path_stage(const cli::StageCall& call) {
-    const auto log = call.maybe<std::string>("path-from");
+    const auto log = call.get_optional<std::string>("path-from");
     if (log.has_value() == !call.inputs.empty()) throw UsageError("give a mission, or a log with --path-from");
     if (!log) refuse_flight_options(call);
     return log ? take_path(call, *log) : show_path(call);

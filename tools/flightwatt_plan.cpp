@@ -26,15 +26,15 @@ struct MissionFile {
     std::filesystem::path path;
     std::string text;
 
-    mission::AnyMission read(mission::MissionReading reading = {}) const {
-        reading.may_lack_schedule = true;
+    mission::MissionVariant read(mission::MissionReadOptions reading = {}) const {
+        reading.allow_unplanned = true;
         return mission::parse_mission(text, path, reading);
     }
-    mission::AnyMission read_with_cruise(double cruise_s) const { return read({.cruise_s = cruise_s}); }
+    mission::MissionVariant read_with_cruise(double cruise_s) const { return read({.cruise_s = cruise_s}); }
 };
 
 std::optional<double> probability(const cli::StageCall& call) {
-    const auto given = call.maybe<double>("probability");
+    const auto given = call.get_optional<double>("probability");
     if (given && !(*given >= 0.5 && *given < 1.0)) {
         throw UsageError(fmt::format("--probability {}: expected 0.5 or more, and less than 1", *given));
     }
@@ -43,10 +43,12 @@ std::optional<double> probability(const cli::StageCall& call) {
 
 std::string describe(const mission::MissionPlan& plan, const mission::MissionSetup& mission) {
     const double utility = *plan.summary.utility;
-    const double gap = plan.plan.bound > 0.0 ? units::percent_of(plan.plan.bound - utility, plan.plan.bound) : 0.0;
+    const double gap = plan.plan.utility_bound > 0.0
+                           ? units::percentage(plan.plan.utility_bound - utility, plan.plan.utility_bound)
+                           : 0.0;
     const auto bound =
         plan.plan.bound_is_proven
-            ? fmt::format("at most {:.6g} is possible (gap {:.4f} %)", plan.plan.bound, std::max(gap, 0.0))
+            ? fmt::format("at most {:.6g} is possible (gap {:.4f} %)", plan.plan.utility_bound, std::max(gap, 0.0))
             : "how much is possible is not known, as the battery is charged in flight";
     auto text = fmt::format("{}: utility {:.6g}, {}; {:.4f} % left, reserve {:.4f} %", mission.name, utility, bound,
                             *plan.summary.final_soc_percent, mission.reserve_soc_percent);
@@ -57,7 +59,7 @@ std::string describe(const mission::MissionPlan& plan, const mission::MissionSet
 
 /// What the chance that was asked for holds for.
 void note_sources(const cli::StageCall& call, const mission::MissionSetup& mission,
-                  const mission::DrawnSources& sources, double standard_error = 0.0) {
+                  const mission::UncertaintySources& sources, double standard_error = 0.0) {
     constexpr double worth_saying = 5e-4;
     const auto exactness = standard_error < worth_saying ? "" : fmt::format(" (computed to +- {:.4f})", standard_error);
     cli::note(call, fmt::format("{}: chance {}{} over flights as --samples draws them; {}", mission.name,
@@ -66,7 +68,7 @@ void note_sources(const cli::StageCall& call, const mission::MissionSetup& missi
 
 [[noreturn]] void refuse_infeasible(const cli::StageCall& call, const MissionFile& file,
                                     const mission::PlanningProblem& problem, const mission::MissionPlan& plan) {
-    if (!plan.plan.deliverable) throw NoAnswerError(describe(plan.summary));
+    if (!plan.plan.deliverable) throw NoResultError(describe(plan.summary));
     const auto report = infeasibility_report(
         problem, plan, [&](double cruise_s) { return file.read_with_cruise(cruise_s); }, probability(call));
     if (call.json) {
@@ -74,7 +76,7 @@ void note_sources(const cli::StageCall& call, const mission::MissionSetup& missi
         json["shortfall"] = cli::to_json(report);
         cli::print(cli::json_text(json));
     }
-    throw NoAnswerError(fmt::format("{}: {}", problem.name, describe(problem, report)));
+    throw NoResultError(fmt::format("{}: {}", problem.name, describe(problem, report)));
 }
 
 int make_plan(const cli::StageCall& call, const MissionFile& file) {
@@ -87,12 +89,12 @@ int make_plan(const cli::StageCall& call, const MissionFile& file) {
     }
     cli::warn_of_setup(call, *problem);
     auto plan = plan_mission(*problem, chance);
-    plan.summary.by_flights = landing_by_flights(*problem, plan.flown.schedule);
+    plan.summary.by_flights = landing_by_flights(*problem, plan.mission.schedule);
     if (!plan.plan.feasible) refuse_infeasible(call, file, *problem, plan);
     const auto text = describe(plan, *problem);
     // The files that the result names are found from where it will stand.
     const auto folder = std::filesystem::absolute(call.output.value_or("result")).parent_path();
-    const auto planned = planned_mission_toml(file.text, file.path, problem->compute, plan.flown.schedule, folder);
+    const auto planned = planned_mission_toml(file.text, file.path, problem->compute, plan.mission.schedule, folder);
     cli::write_result(call, fmt::format("# {}\n", cli::one_line(text)) + planned.text);
     cli::warn_of_lost_comments(call, planned);
     if (call.json) {
@@ -100,19 +102,19 @@ int make_plan(const cli::StageCall& call, const MissionFile& file) {
     } else {
         cli::note(call, text);
         cli::note_power_model(call, *problem);
-        if (plan.sources) note_sources(call, *problem, *plan.sources, plan.chance_standard_error);
+        if (plan.sources) note_sources(call, *problem, *plan.sources, plan.probability_standard_error);
     }
     return cli::ok;
 }
 
 /// What the battery does beyond a limit; empty if charge is what ends it.
-std::string_view beyond(mission::FeasibilityBound bound) {
+std::string_view beyond(mission::LimitingFactor bound) {
     switch (bound) {
-        case mission::FeasibilityBound::power:
+        case mission::LimitingFactor::power:
             return "; beyond, the battery cannot deliver the power";
-        case mission::FeasibilityBound::cut_off:
+        case mission::LimitingFactor::cut_off:
             return "; beyond, the battery is cut off";
-        case mission::FeasibilityBound::charge:
+        case mission::LimitingFactor::charge:
             break;
     }
     return "";
@@ -152,8 +154,8 @@ int answer(const cli::StageCall& call, const mission::MissionSetup& mission, con
 
 /// --longest-cruise.
 int answer_reach(const cli::StageCall& call, const MissionFile& file) {
-    const auto reach = mission::longest_reach(
-        [&](const mission::MissionReading& reading) { return file.read(reading); }, probability(call));
+    const auto reach = mission::find_reach(
+        [&](const mission::MissionReadOptions& reading) { return file.read(reading); }, probability(call));
     const auto mission = file.read();
     const auto& setup = setup_of(mission);
     switch (reach.unit) {

@@ -25,7 +25,7 @@ using namespace flightwatt;
 /// The definitions that frames are made with and a binary log is read with: those of --messages, or of the log's own
 /// .log.
 telemetry::MessageDictionary read_definitions(const cli::StageCall& call) {
-    if (const auto file = call.maybe<std::string>("messages")) return telemetry::read_message_dictionary(*file);
+    if (const auto file = call.get_optional<std::string>("messages")) return telemetry::read_message_dictionary(*file);
     const auto& log = call.inputs.front();
     if (const auto beside = telemetry::find_log_file(log)) return telemetry::read_message_dictionary(*beside);
     throw InputError({log}, "no .log is beside it, and frames need the definitions of their messages",
@@ -52,7 +52,8 @@ live::PlaybackTargetSetup target_setup(const cli::StageCall& call, const std::st
 /// Those of a binary log; none of a text.
 std::optional<telemetry::MessageDictionary> log_definitions(const cli::StageCall& call,
                                                             const live::PlaybackTargetSetup& setup) {
-    const bool is_binary = telemetry::binary_framing(telemetry::DataFile(call.inputs.front()).text()).has_value();
+    const bool is_binary =
+        telemetry::detect_binary_framing(telemetry::DataFile(call.inputs.front()).text()).has_value();
     if (!is_binary && !setup.definitions && call.has("messages"))
         throw UsageError("--messages is of frames and of binary logs: this is a text, to a target that takes text");
     if (!is_binary) return std::nullopt;
@@ -63,7 +64,7 @@ std::optional<telemetry::MessageDictionary> log_definitions(const cli::StageCall
 class OutputTarget : public live::PlaybackTarget {
   public:
     std::string_view send(const live::PlayedMessage& message) override {
-        has_reader_ = cli::print_at_once(fmt::format("{} {}\n", message.time, message.text));
+        has_reader_ = cli::print_flushed(fmt::format("{} {}\n", message.time, message.text));
         return {};
     }
     bool has_reader() const { return has_reader_; }
@@ -76,7 +77,7 @@ nlohmann::ordered_json json_of(const live::PlaybackReport& report) {
     nlohmann::ordered_json left_out = nlohmann::ordered_json::object();
     for (const auto& [reason, lines] : report.left_out) left_out[reason] = lines;
     return {{"messages", report.messages}, {"left_out", left_out},        {"shortened_gaps", report.shortened_gaps},
-            {"log_s", report.log_s},       {"played_s", report.played_s}, {"latest_s", report.latest_s},
+            {"log_s", report.log_s},       {"played_s", report.played_s}, {"latest_s", report.max_delay_s},
             {"stopped", report.stopped}};
 }
 
@@ -85,7 +86,7 @@ void tell(const cli::StageCall& call, const live::PlaybackReport& report) {
         cli::warn(call, fmt::format("{} line{} left out: {}", lines, lines == 1 ? "" : "s", reason));
     if (report.shortened_gaps > 0) {
         cli::note(call, fmt::format("{} gap{} of more than {:.0f} s played as so long", report.shortened_gaps,
-                                    report.shortened_gaps == 1 ? "" : "s", live::longest_played_gap_s));
+                                    report.shortened_gaps == 1 ? "" : "s", live::max_played_gap_s));
     }
     if (call.json) cli::print(cli::json_text(json_of(report)));
     const auto text = fmt::format("{} messages, {:.1f} s of the log, played in {:.1f} s{}\n", report.messages,
@@ -103,7 +104,7 @@ int play(const cli::StageCall& call) {
     if (to == "-" && call.json) throw UsageError("--json would stand among the lines of --to -");
     const double speed = cli::positive_option(call, "speed", "times as fast", fastest).value_or(1.0);
     const SignalWatch signals;
-    const auto stop = [&] { return signals.caught().has_value(); };
+    const auto stop = [&] { return signals.received().has_value(); };
     const auto setup = target_setup(call, to);
     const auto definitions = log_definitions(call, setup);
     if (to == "-") {
@@ -113,9 +114,9 @@ int play(const cli::StageCall& call) {
         return cli::ok;
     }
     const auto target = live::open_playback_target(to, setup);
-    constexpr std::chrono::seconds longest_wait{10};
-    if (!target->is_heard(longest_wait)) {
-        throw NoAnswerError(fmt::format("{}: no other agent came within {} s", to, longest_wait.count()));
+    constexpr std::chrono::seconds max_wait{10};
+    if (!target->has_receiver(max_wait)) {
+        throw NoResultError(fmt::format("{}: no other agent came within {} s", to, max_wait.count()));
     }
     tell(call, live::play(call.inputs.front(), speed, *target, stop, definitions));
     return cli::ok;

@@ -7,8 +7,8 @@
 #include "cli/output/moment_option.h"
 #include "cli/output/prediction_output.h"
 #include "cli/stage.h"
-#include "flight/chosen_track.h"
 #include "flight/flight_series.h"
+#include "flight/selected_track.h"
 #include "mechanical/prediction.h"
 
 #include <algorithm>
@@ -31,22 +31,22 @@ struct KnownFlight {
 
 /// What was known at the moment: nothing that the log wrote later is looked at, in what is read, chosen,
 /// judged or said.
-KnownFlight read_progress(const cli::StageCall& call, const cli::Moment& moment) {
+KnownFlight read_progress(const cli::StageCall& call, const cli::RequestedTime& moment) {
     auto options = cli::read_flight_options(call);
     const auto sortie = options.sortie.value_or(1) - 1;
     options.sortie.reset();
     options.flight_required = false;
     const auto& file = call.inputs.front();
     auto candidates =
-        read_candidates(flight::FlightFile(file, options.most_log_bytes, options.messages), options.aircraft_id);
-    const double until_s = cli::time_of(moment, candidates, sortie, options.segmentation);
-    for (auto& series : candidates) series = cut_series(series, until_s);
+        read_candidates(flight::FlightFile(file, options.max_log_bytes, options.messages), options.aircraft_id);
+    const double until_s = cli::resolve_log_time(moment, candidates, sortie, options.segmentation);
+    for (auto& series : candidates) series = truncate_series(series, until_s);
     auto series = choose_aircraft(std::move(candidates));
     cli::refuse_unknown_flights(options, {series.flight});
     if (power_track(series).empty() && !series.clock_restart) {
-        throw NoAnswerError(fmt::format("{}: no power was measured by {:.1f} s of the log", series.flight, until_s));
+        throw NoResultError(fmt::format("{}: no power was measured by {:.1f} s of the log", series.flight, until_s));
     }
-    auto loaded = examine_flight(std::move(series), options);
+    auto loaded = segment_and_check(std::move(series), options);
     cli::warn_of(call, file, loaded);
     if (!loaded.exclusion.empty()) {
         cli::warn(call, fmt::format("{}: no prediction can be trusted: {}", file, loaded.exclusion));
@@ -56,10 +56,10 @@ KnownFlight read_progress(const cli::StageCall& call, const cli::Moment& moment)
 }
 
 Prediction predict_flight(const cli::StageCall& call) {
-    const auto moment = cli::moment_of(call);
+    const auto moment = cli::read_requested_time(call);
     const auto basis = cli::read_basis(call, cli::PathNeed::required);
     const auto known = read_progress(call, moment);
-    live::Remarks remarks;
+    live::Diagnostics remarks;
     try {
         auto prediction = live::predict_flight(basis, known.flown, known.series, remarks);
         cli::warn_of(call, remarks);

@@ -32,8 +32,8 @@ std::vector<std::string> words_of(const std::string& list) {
 compute::ProfileNaming naming_of(const cli::StageCall& call) {
     compute::ProfileNaming naming;
     naming.where.file = "the command line";
-    if (const auto names = call.maybe<std::string>("parameters")) naming.parameters = words_of(*names);
-    if (const auto names = call.maybe<std::string>("columns")) naming.columns = words_of(*names);
+    if (const auto names = call.get_optional<std::string>("parameters")) naming.parameters = words_of(*names);
+    if (const auto names = call.get_optional<std::string>("columns")) naming.columns = words_of(*names);
     return naming;
 }
 
@@ -59,7 +59,7 @@ int check_interpolation(const cli::StageCall& call) {
 /// What the command line says otherwise than the specification.
 void apply_options(const cli::StageCall& call, compute::ProfileSpecification& specification) {
     auto& sampler = specification.sampler;
-    if (const auto name = call.maybe<std::string>("sampler")) {
+    if (const auto name = call.get_optional<std::string>("sampler")) {
         using enum compute::SamplerKind;
         const auto kind = compute::sampler_kind_from(*name);
         const bool needs_more = kind == command || kind == recorded;
@@ -73,7 +73,7 @@ void apply_options(const cli::StageCall& call, compute::ProfileSpecification& sp
         }
         sampler.kind = *kind;
     }
-    if (const auto sysfs = call.maybe<std::string>("sysfs")) {
+    if (const auto sysfs = call.get_optional<std::string>("sysfs")) {
         std::error_code error;
         if (!std::filesystem::is_directory(*sysfs, error)) {
             const bool is_absent = !error || error == std::errc::no_such_file_or_directory;
@@ -97,7 +97,7 @@ struct RunsDone {
 
 void note_run(const cli::StageCall& call, const compute::ProfileRun& run, const RunsDone& runs) {
     const auto name = run.configuration.empty() ? run.component : run.component + " " + run.configuration;
-    const auto what = run.was_done                           ? "up to date"
+    const auto what = run.is_from_earlier_run                ? "up to date"
                       : run.status == compute::RunStatus::ok ? fmt::format("{:.4g} W", run.estimate.power_w)
                                                              : std::string(to_string(run.status));
     cli::note(call, fmt::format("[{}/{}] {} repeat {}: {}{}", runs.done, runs.all, name, run.repeat, what,
@@ -107,9 +107,9 @@ void note_run(const cli::StageCall& call, const compute::ProfileRun& run, const 
 compute::ProfilerOptions options_of(const cli::StageCall& call, const SignalWatch& signals) {
     compute::ProfilerOptions options;
     options.folder = *call.output;
-    options.signals = signals.file();
-    options.caught = [&signals] { return signals.caught().value_or(SIGINT); };
-    options.opened = [&call](const compute::PowerSampler& sampler) {
+    options.signal_fd = signals.fd();
+    options.caught = [&signals] { return signals.received().value_or(SIGINT); };
+    options.on_sampler_opened = [&call](const compute::PowerSampler& sampler) {
         for (const auto& line : sampler.found) cli::note(call, "found " + line);
         cli::note(call, fmt::format("sampling with {}: {}", to_string(sampler.kind), sampler.source));
     };

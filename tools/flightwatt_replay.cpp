@@ -21,9 +21,9 @@ namespace {
 
 using namespace flightwatt;
 
-std::vector<mission::AnyMission> read_missions(const cli::StageCall& call) {
+std::vector<mission::MissionVariant> read_missions(const cli::StageCall& call) {
     if (!call.has("mission")) throw UsageError("no mission given: --mission FILE, as often as there are missions");
-    std::vector<mission::AnyMission> missions;
+    std::vector<mission::MissionVariant> missions;
     std::set<std::string> names;
     for (const auto& file : call.get<std::vector<std::string>>("mission")) {
         missions.push_back(mission::read_mission(file, {true, std::nullopt}));
@@ -38,7 +38,7 @@ std::vector<mission::AnyMission> read_missions(const cli::StageCall& call) {
 std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call, std::size_t needed_samples) {
     const auto options = cli::read_flight_options(call);
     return cli::from_flights<mechanical::MeasuredFlight>(call, options, [&](const auto&, const auto& loaded) {
-        auto measured = mechanical::measure_flights(loaded, needed_samples);
+        auto measured = mechanical::extract_flights(loaded, needed_samples);
         for (const auto& exclusion : measured.exclusions) cli::warn(call, to_string(exclusion));
         return std::move(measured.flights);
     });
@@ -49,8 +49,9 @@ int replay(const cli::StageCall& call) {
     options.fit = cli::read_fit_options(call);
     options.durations_are_known = call.has("know-durations");
     const auto missions = read_missions(call);
-    if (const auto file = call.maybe<std::string>("model")) options.model = mechanical::read_mechanical_model(*file);
-    const auto flights = read_flights(call, mechanical::samples_needed(options.fit.phases.order));
+    if (const auto file = call.get_optional<std::string>("model"))
+        options.model = mechanical::read_mechanical_model(*file);
+    const auto flights = read_flights(call, mechanical::min_samples(options.fit.phases.order));
     auto replays = replay_flights(missions, flights, options);
     for (const auto& left : replays.not_replayed)
         cli::warn(call, fmt::format("{}: {} is not flown on it: {}", left.flight, left.mission, left.reason));
@@ -60,7 +61,7 @@ int replay(const cli::StageCall& call) {
     for (const auto& replay : replays.replays)
         for (const auto& text : replay.notes)
             cli::note(call, fmt::format("{}, {}: {}", replay.flight, replay.mission, text));
-    if (replays.replays.empty()) throw NoAnswerError("no mission could be flown on any flight");
+    if (replays.replays.empty()) throw NoResultError("no mission could be flown on any flight");
     if (call.output) cli::write_result(call, cli::replay_csv(replays.replays));
     if (call.json)
         cli::print(cli::json_text(cli::to_json(replays)));

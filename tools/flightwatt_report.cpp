@@ -12,7 +12,6 @@
 #include "cli/stage.h"
 #include "mechanical/model_check.h"
 #include "mission/mission_file.h"
-#include "report/answers_section.h"
 #include "report/batch_content.h"
 #include "report/battery_section.h"
 #include "report/figure_files.h"
@@ -21,6 +20,7 @@
 #include "report/model_section.h"
 #include "report/page.h"
 #include "report/replay_section.h"
+#include "report/summary_section.h"
 #include "report/trends_section.h"
 
 #include <algorithm>
@@ -40,7 +40,7 @@ using namespace flightwatt;
 
 struct ReportInputs {
     std::vector<std::filesystem::path> outs;
-    std::vector<mission::AnyMission> missions;
+    std::vector<mission::MissionVariant> missions;
 };
 
 ReportInputs read_inputs(const cli::StageCall& call) {
@@ -71,19 +71,19 @@ std::string time_of_report() {
 struct Page {
     report::PageHead head;
     std::vector<report::Section> sections;
-    report::PageAnswers answers;
+    report::PageSummary answers;
     std::vector<report::ReportFlight> flights;
     std::vector<mechanical::MechanicalModel> models;  ///< of the folders that have one
 };
 
 /// "There is no model of these flights", with the folder where there are several.
-std::string of_folder(const report::SectionOf& of, const std::string& text) {
+std::string of_folder(const report::SectionScope& of, const std::string& text) {
     return of.folder.empty() ? text : of.folder + ": " + text;
 }
 
 /// The flights' model with its validation.
 void add_model(Page& page, const cli::StageCall& call, const report::BatchContent& content,
-               const report::PublishedFigures& figures, const report::SectionOf& of) {
+               const report::PublishedFigures& figures, const report::SectionScope& of) {
     auto& notes = page.answers.notes;
     if (!content.fit) {
         notes.push_back(of_folder(of, "There is no model of these flights: the batch could not fit them."));
@@ -115,7 +115,7 @@ void add_model(Page& page, const cli::StageCall& call, const report::BatchConten
     }
     if (auto section = report::physical_section(content.measured, of)) page.sections.push_back(std::move(*section));
     cli::TerminalProgress validating("fits");
-    auto validated = leave_one_out(content.measured, content.fit->options, {}, validating.shown());
+    auto validated = leave_one_out(content.measured, content.fit->options, {}, validating.callback());
     for (const auto& rejected : remove_rejected(validated)) notes.push_back(of_folder(of, rejected + "."));
     page.answers.validated.push_back({of.folder, std::move(validated), synthetic});
     page.sections.push_back(report::validation_section(page.answers.validated.back().flights, synthetic, of));
@@ -130,28 +130,28 @@ std::map<std::string, report::PredictedFlight> predicted_of(const report::BatchC
 }
 
 /// What the flights of all folders are drawn with.
-struct DrawnBeside {
+struct FigureContext {
     std::vector<std::optional<mechanical::MechanicalModel>> models;  ///< one a folder
     std::map<std::string, report::PredictedFlight> predicted;
 };
 
-DrawnBeside drawn_beside(std::span<const report::BatchContent> batches, std::size_t most_predicted) {
-    DrawnBeside beside;
+FigureContext drawn_beside(std::span<const report::BatchContent> batches, std::size_t max_predicted) {
+    FigureContext beside;
     for (const auto& content : batches) {
         beside.models.push_back(content.fit ? std::optional(content.fit->model) : std::nullopt);
-        beside.predicted.merge(predicted_of(content, most_predicted));
+        beside.predicted.merge(predicted_of(content, max_predicted));
     }
     return beside;
 }
 
-report::Section section_of_flights(std::span<const report::ReportFlight> flights, const DrawnBeside& beside) {
+report::Section section_of_flights(std::span<const report::ReportFlight> flights, const FigureContext& beside) {
     cli::TerminalProgress drawing("flights");
-    return report::flights_section(flights, beside.models, beside.predicted, drawing.shown());
+    return report::flights_section(flights, beside.models, beside.predicted, drawing.callback());
 }
 
 /// What the folders have to say: flights, and of each folder model, validation and battery.
 void add_batches(Page& page, const cli::StageCall& call, std::vector<report::BatchContent>& batches,
-                 std::span<const mission::AnyMission> missions, const report::PublishedFigures& figures) {
+                 std::span<const mission::MissionVariant> missions, const report::PublishedFigures& figures) {
     battery::IdentificationOptions identification;
     identification.capacity_ah = cli::capacity_option(call);
     std::vector<std::future<std::optional<report::ReportBattery>>> batteries;
@@ -170,7 +170,7 @@ void add_batches(Page& page, const cli::StageCall& call, std::vector<report::Bat
     const auto beside = drawn_beside(batches, cli::count_option(call, "max-validation-flights"));
     if (batches.size() == 1) page.sections.push_back(section_of_flights(batches.front().flights, beside));
     for (std::size_t i = 0; i < batches.size(); ++i) {
-        const report::SectionOf of{batches[i].folder, i == 0 ? "" : fmt::format("-{}", i + 1)};
+        const report::SectionScope of{batches[i].folder, i == 0 ? "" : fmt::format("-{}", i + 1)};
         add_model(page, call, batches[i], figures, of);
         if (const auto identified = batteries[i].get()) {
             page.sections.push_back(report::battery_section(*identified, of));
@@ -193,11 +193,11 @@ void add_trends(Page& page, const cli::StageCall& call) {
     std::vector<const report::ReportFlight*> usable;
     for (const auto& flight : page.flights)
         if (flight.rejected.empty() && flight.unusable_power.empty()) usable.push_back(&flight);
-    std::vector<report::FlownFlight> flights(usable.size());
-    for_each_in_parallel(usable.size(), [&](std::size_t i) { flights[i] = flown_flight(*usable[i]); });
+    std::vector<report::FlightTrendData> flights(usable.size());
+    for_each_in_parallel(usable.size(), [&](std::size_t i) { flights[i] = extract_trend_data(*usable[i]); });
     if (!trends_section(trends_of(flights))) return;  // and so none of packs, whose work is long
     const auto notes =
-        add_pack_wear(flights, cli::count_option(call, "max-battery-flights"), cli::capacity_option(call));
+        add_state_of_health(flights, cli::count_option(call, "max-battery-flights"), cli::capacity_option(call));
     auto section = trends_section(trends_of(flights));
     section->html += report::list_html(notes);
     page.sections.push_back(std::move(*section));
@@ -219,14 +219,14 @@ void add_missions(Page& page, const ReportInputs& inputs, const report::Publishe
     for (const auto& mission : inputs.missions) names += (names.empty() ? "" : ", ") + setup_of(mission).file;
     page.head.facts.emplace_back("missions", names);
     cli::TerminalProgress flying("missions");
-    page.answers.missions = report::simulate_for_report(inputs.missions, flying.shown());
+    page.answers.missions = report::simulate_for_report(inputs.missions, flying.callback());
     cli::TerminalProgress answering("answers");
     for (std::size_t i = 0; i < inputs.missions.size(); ++i) {
         answering.show(i, inputs.missions.size());
         const std::filesystem::path file = setup_of(inputs.missions[i]).file;
-        page.answers.answers.push_back(report::answer_for(
+        page.answers.answers.push_back(report::assess_mission(
             page.answers.missions[i],
-            [&](const mission::MissionReading& reading) { return mission::read_mission(file, reading); }));
+            [&](const mission::MissionReadOptions& reading) { return mission::read_mission(file, reading); }));
     }
     auto sections = mission_sections(page.answers.missions, figures, page.models);
     std::move(sections.begin(), sections.end(), std::back_inserter(page.sections));
@@ -273,7 +273,7 @@ nlohmann::ordered_json summary_json(const Page& page) {
 }
 
 std::optional<double> figure_width_pt(const cli::StageCall& call) {
-    const auto width = call.maybe<std::string>("figure-width");
+    const auto width = call.get_optional<std::string>("figure-width");
     if (!width) return std::nullopt;
     if (!call.has("figures")) throw UsageError("--figure-width is that of the files of --figures DIR");
     return report::parse_figure_width_pt(*width);
@@ -282,7 +282,7 @@ std::optional<double> figure_width_pt(const cli::StageCall& call) {
 /// Where figures are wanted as files.
 void write_figure_files(const cli::StageCall& call, const std::vector<report::Section>& sections,
                         const report::WebFiles& web) {
-    const auto folder = call.maybe<std::string>("figures");
+    const auto folder = call.get_optional<std::string>("figures");
     if (!folder) return;
     const auto files = write_figures(sections, web, *folder, figure_width_pt(call));
     cli::note(call, fmt::format("{} figures in {}: .vl.json{}{}", files.figures, *folder, files.has_svg ? ", .svg" : "",
@@ -309,11 +309,11 @@ int write_page(const cli::StageCall& call) {
     if (wants_page || call.has("figures")) web = report::read_web_files(report::web_folder());
     Page page;
     page.head.title = "FlightWatt report";
-    if (const auto title = call.maybe<std::string>("title")) page.head.title = report::valid_utf8(*title);
+    if (const auto title = call.get_optional<std::string>("title")) page.head.title = report::valid_utf8(*title);
     auto& facts = page.head.facts;
     facts = {{"computed", time_of_report()}, {"by", "flightwatt " FLIGHTWATT_VERSION}};
     report::PublishedFigures published;
-    if (const auto folder = call.maybe<std::string>("reference-figures")) {
+    if (const auto folder = call.get_optional<std::string>("reference-figures")) {
         published = report::read_published_figures(*folder);
         facts.emplace_back("beside", "the paper's Figs. 2 (c-e), 3 (a, b) and 4, digitised");
     }
@@ -326,7 +326,7 @@ int write_page(const cli::StageCall& call) {
     }
     if (!inputs.missions.empty()) add_missions(page, inputs, published);
     if (call.has("replay")) add_replay(page, call, inputs);
-    page.sections.insert(page.sections.begin(), report::answers_section(page.answers, page.flights));
+    page.sections.insert(page.sections.begin(), report::summary_section(page.answers, page.flights));
     if (web) write_figure_files(call, page.sections, *web);
     if (wants_page) cli::write_result(call, page_html(page.head, page.sections, *web));
     if (call.json) cli::print(cli::json_text(summary_json(page)));

@@ -3,13 +3,13 @@
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/error.h"
-#include "base/file_use.h"
+#include "base/overwrite_guard.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
 #include "cli/output/segment_output.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
-#include "exchange/log_cut.h"
+#include "exchange/log_slices.h"
 #include "flight/phases_file.h"
 #include "telemetry/log_configuration.h"
 
@@ -35,11 +35,11 @@ struct CutFiles {
     std::vector<std::string> told;
 };
 
-std::vector<exchange::LogPiece> chosen_pieces(const cli::StageCall& call, const flight::LoadedFlight& loaded,
+std::vector<exchange::LogSlice> chosen_pieces(const cli::StageCall& call, const flight::LoadedFlight& loaded,
                                               const flight::LoadOptions& options) {
-    if (call.has("cut-phases")) return exchange::phase_pieces(loaded.phases);
+    if (call.has("cut-phases")) return exchange::phase_slices(loaded.phases);
     // Of all sorties, as the ground of one ends where another begins, even if --sortie leaves that out.
-    auto pieces = exchange::sortie_pieces(loaded.series, flight::segment(loaded.series, options.segmentation));
+    auto pieces = exchange::sortie_slices(loaded.series, flight::segment(loaded.series, options.segmentation));
     if (options.sortie) pieces = {pieces.at(*options.sortie - 1)};
     return pieces;
 }
@@ -59,7 +59,7 @@ CutFiles cut_log(const cli::StageCall& call, const flight::FlightFile& file, con
     CutFiles cut;
     for (const auto& piece : chosen_pieces(call, loaded, options)) {
         const auto name = telemetry::flight_name(file.path()) + "_" + piece.name;
-        auto lines = exchange::lines_of(text, piece);
+        auto lines = exchange::lines_in_slice(text, piece);
         const auto count = std::ranges::count(lines, '\n');
         cut.told.push_back(fmt::format("{}: {} lines", (folder / (name + ".data")).string(), count));
         // The .log first: no text stands without its definitions.
@@ -69,7 +69,7 @@ CutFiles cut_log(const cli::StageCall& call, const flight::FlightFile& file, con
     file.require_unchanged();
     std::error_code error;
     for (const auto& [path, content] : cut.files) {
-        declare_output(path, "--cut");
+        register_output(path, "--cut");
         if (std::filesystem::exists(path, error) && !holds(path, content)) {
             throw UsageError(
                 fmt::format("{} is there already and holds something else: move it away, or name another "
@@ -122,7 +122,7 @@ void add_flight(const cli::StageCall& call, const std::string& file, const fligh
         cli::warn(call, fmt::format("{}: power fault: {}", file, fault));
     }
     if (call.has("cut")) {
-        write(call, cut_log(call, flight::FlightFile(file, options.most_log_bytes, options.messages), loaded, options));
+        write(call, cut_log(call, flight::FlightFile(file, options.max_log_bytes, options.messages), loaded, options));
     }
     segmented.title = cli::describe_flight(series, phases);
     if (segmented.are_several)
@@ -141,7 +141,7 @@ SegmentedFlights segment_several(const cli::StageCall& call, flight::LoadOptions
     const auto files = cli::files_of(call, options);
     std::vector<std::string> names(files.size());
     std::ranges::transform(files, names.begin(), cli::flight_of_file);
-    options.excluded = cli::with_matching(options.excluded, "exclude", names);
+    options.excluded = cli::expand_patterns(options.excluded, "exclude", names);
     cli::refuse_unknown_flights(options, names);
     SegmentedFlights segmented;
     segmented.are_several = true;

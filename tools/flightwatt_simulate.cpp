@@ -19,8 +19,8 @@ using namespace flightwatt;
 
 /// The mission with the schedule that was flown, wherever it came from.
 void write_schedule(const cli::StageCall& call, const std::string& text, const mission::PreparedMission& prepared,
-                    const mission::FlownMission& flight) {
-    const auto file = call.maybe<std::string>("schedule-out");
+                    const mission::SimulatedFlight& flight) {
+    const auto file = call.get_optional<std::string>("schedule-out");
     if (!file) return;
     const auto folder = std::filesystem::absolute(*file).parent_path();
     const auto heading = fmt::format("# {}\n", cli::one_line(describe(flight.simulation.summary)));
@@ -35,7 +35,7 @@ void sample(const cli::StageCall& call, const mission::PreparedMission& prepared
     const auto options = sampling_options(call, call.has("samples-csv"));
     if (!options) return;
     summary.samples = sample_flights(prepared, disturbed_by, *options);
-    if (const auto file = call.maybe<std::string>("samples-csv"))
+    if (const auto file = call.get_optional<std::string>("samples-csv"))
         write_file_atomically(*file, to_csv(summary.samples->bands));
 }
 
@@ -44,12 +44,12 @@ int simulate_mission(const cli::StageCall& call) {
     const auto mission = mission::parse_mission(text, call.inputs.front());
     cli::warn_of_setup(call, setup_of(mission));
     const auto disturbed_by = cli::read_disturb_option(call, setup_of(mission));
-    const auto prepared = prepare(mission);
-    mission::SimulationSteps steps;
+    const auto prepared = prepare_mission(mission);
+    mission::SimulationOptions steps;
     steps.output_s = call.get<double>("step");
-    auto flight = fly(prepared, steps, disturbed_by);
+    auto flight = simulate_prepared(prepared, steps, disturbed_by);
     auto& summary = flight.simulation.summary;
-    if (summary.undeliverable) throw NoAnswerError(describe(summary));
+    if (summary.undeliverable) throw NoResultError(describe(summary));
     sample(call, prepared, disturbed_by, summary);
     write_schedule(call, text, prepared, flight);
     constexpr std::size_t rows = 24;

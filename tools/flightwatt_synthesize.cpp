@@ -4,7 +4,7 @@
 #include "base/csv.h"
 #include "base/duration_text.h"
 #include "base/error.h"
-#include "base/file_use.h"
+#include "base/overwrite_guard.h"
 #include "cli/numeric_options.h"
 #include "cli/output/json_text.h"
 #include "cli/stage.h"
@@ -65,11 +65,11 @@ std::string truth_csv(const synthetic::SyntheticScenario& scenario) {
 }
 
 /// The hazards asked for: none, one by its name, or all.
-std::vector<std::pair<std::string, synthetic::Hazard>> chosen_hazards(const std::string& name) {
-    if (name == "none") return {{"", synthetic::Hazard::none}};
-    if (name == "all") return synthetic::hazards();
+std::vector<std::pair<std::string, synthetic::LogAnomaly>> chosen_hazards(const std::string& name) {
+    if (name == "none") return {{"", synthetic::LogAnomaly::none}};
+    if (name == "all") return synthetic::anomaly_names();
     std::vector<std::string> names{"none", "all"};
-    for (const auto& known : synthetic::hazards()) {
+    for (const auto& known : synthetic::anomaly_names()) {
         if (known.first == name) return {known};
         names.push_back(known.first);
     }
@@ -92,7 +92,7 @@ void declare_logs(const cli::StageCall& call, const std::string& name, std::size
     for (std::size_t i = 1; i <= count; ++i) {
         for (const auto& hazard : hazards) {
             const auto stem = (std::filesystem::path(*call.output) / log_name(name, i, hazard.first)).string();
-            for (const auto* ending : {".log", ".data", ".truth.csv"}) declare_output(stem + ending);
+            for (const auto* ending : {".log", ".data", ".truth.csv"}) register_output(stem + ending);
         }
     }
 }
@@ -114,21 +114,21 @@ std::size_t write_log(const cli::StageCall& call, const synthetic::SyntheticScen
 
 /// Refuses models of which no log could be made: days long, or with power beyond any number.
 void require_flyable(const mechanical::MechanicalModel& model, const std::string& file) {
-    constexpr double longest_phase_s = 1e5;
-    constexpr double most_power_w = 1e6;
+    constexpr double max_phase_s = 1e5;
+    constexpr double max_power_w = 1e6;
     for (const auto phase : flight::all_phases) {
         const auto& fourier = model.phases[phase].fourier;
         const double duration_s = model.phases[phase].duration_s;
-        double most_w = std::abs(fourier.a0_w);
-        for (const double part_w : fourier.cos_w) most_w += std::abs(part_w);
-        for (const double part_w : fourier.sin_w) most_w += std::abs(part_w);
-        if (duration_s > longest_phase_s) {
-            throw InputError({file}, fmt::format("{} takes {} s, expected at most {} s", to_string(phase), duration_s,
-                                                 longest_phase_s));
+        double max_w = std::abs(fourier.a0_w);
+        for (const double part_w : fourier.cos_w) max_w += std::abs(part_w);
+        for (const double part_w : fourier.sin_w) max_w += std::abs(part_w);
+        if (duration_s > max_phase_s) {
+            throw InputError(
+                {file}, fmt::format("{} takes {} s, expected at most {} s", to_string(phase), duration_s, max_phase_s));
         }
-        if (!(most_w <= most_power_w)) {
+        if (!(max_w <= max_power_w)) {
             throw InputError({file}, fmt::format("the coefficients of {} add up to {} W, expected at most {} W",
-                                                 to_string(phase), most_w, most_power_w));
+                                                 to_string(phase), max_w, max_power_w));
         }
     }
 }
@@ -146,7 +146,7 @@ mechanical::MechanicalModel read_model(const cli::StageCall& call) {
     if (call.has("cruise")) {
         auto& cruise = model.phases[flight::Phase::cruise];
         const double duration_s = cli::number_option(call, "cruise", 60.0, 1e5);
-        cruise.fourier = flown_model(cruise, duration_s, mechanical::PhaseClock::stretched);
+        cruise.fourier = time_scaled_model(cruise, duration_s, mechanical::PhaseTimeScaling::stretched);
         cruise.duration_s = duration_s;
     }
     require_flyable(model, call.inputs.front());
@@ -159,7 +159,7 @@ int synthesize(const cli::StageCall& call) {
     const auto seed = cli::count_option(call, "seed");
     const auto name = read_name(call);
     synthetic::SpreadOptions spread;
-    spread.bands = cli::number_option(call, "spread", 0.0, 100.0);  // beyond, hardly a flight has power left
+    spread.band_scale = cli::number_option(call, "spread", 0.0, 100.0);  // beyond, hardly a flight has power left
     synthetic::SyntheticSensors sensors;
     sensors.current_noise_a = cli::number_option(call, "current-noise", 0.0, 1000.0);
     sensors.sends_other_messages = !call.has("flight-messages-only");
@@ -179,7 +179,7 @@ int synthesize(const cli::StageCall& call) {
             identity.made_by =
                 fmt::format("Made by flightwatt synthesize: model {}, flight {} of {}, seed {}{}{}.", model.name, i + 1,
                             count, seed, hazard_name.empty() ? "" : ", hazard ", hazard_name);
-            const auto bytes = write_log(call, scenario_with(flight, hazard), sensors, identity, log_seed);
+            const auto bytes = write_log(call, scenario_with_anomaly(flight, hazard), sensors, identity, log_seed);
             written.push_back({{"flight", identity.name}, {"bytes", bytes}});
         }
     }

@@ -26,27 +26,27 @@ namespace {
 using namespace flightwatt;
 using Json = nlohmann::ordered_json;
 
-std::vector<report::FlownFlight> read_flights(const cli::StageCall& call) {
+std::vector<report::FlightTrendData> read_flights(const cli::StageCall& call) {
     const auto options = cli::read_flight_options(call);
     const auto chosen = cli::with_chosen_flights(call, options);
-    return cli::from_flights<report::FlownFlight>(
+    return cli::from_flights<report::FlightTrendData>(
         chosen, options, [&](const std::string& file, flight::LoadedFlight& loaded) {
             if (!loaded.exclusion.empty()) {
                 cli::warn(call, fmt::format("excluded: {}: {}", loaded.series.flight, loaded.exclusion));
-                return std::vector<report::FlownFlight>{};
+                return std::vector<report::FlightTrendData>{};
             }
             report::ReportFlight flight;
             flight.name = loaded.series.flight;
             flight.series = std::move(loaded.series);
             flight.phases = std::move(loaded.phases);
-            auto flown = flown_flight(flight);
+            auto flown = extract_trend_data(flight);
             if (!flown.no_record.empty())
                 cli::note(call, fmt::format("no resistance and no capacity of {}: {}", file, flown.no_record));
             return std::vector{std::move(flown)};
         });
 }
 
-std::string flights_csv(const std::vector<report::FlownFlight>& flights) {
+std::string flights_csv(const std::vector<report::FlightTrendData>& flights) {
     const auto quantities = report::trend_quantities();
     CsvWriter csv({"flight", "aircraft", "date", "in_air_s", "energy_wh", "distance_m", "air_distance_m",
                    quantities[0].name, quantities[1].name, quantities[2].name, quantities[3].name, quantities[4].name,
@@ -67,14 +67,14 @@ std::string flights_csv(const std::vector<report::FlownFlight>& flights) {
             high_ah = flight.capacity_interval_ah.high;
         }
         csv.add(flight.name, flight.aircraft, facts.date, facts.in_air_s, facts.energy_wh, facts.distance_m,
-                facts.air_distance_m, quantities[0].of(flight), quantities[1].of(flight), quantities[2].of(flight),
-                quantities[3].of(flight), quantities[4].of(flight), quantities[5].of(flight), low_ohm, high_ohm, low_ah,
-                high_ah, flight.charge_ah);
+                facts.air_distance_m, quantities[0].value(flight), quantities[1].value(flight),
+                quantities[2].value(flight), quantities[3].value(flight), quantities[4].value(flight),
+                quantities[5].value(flight), low_ohm, high_ohm, low_ah, high_ah, flight.charge_ah);
     }
     return csv.text();
 }
 
-Json flight_json(const report::FlownFlight& flight) {
+Json flight_json(const report::FlightTrendData& flight) {
     const auto& facts = flight.facts;
     Json json{{"flight", flight.name},
               {"aircraft", flight.aircraft},
@@ -94,7 +94,8 @@ Json flight_json(const report::FlownFlight& flight) {
     return json;
 }
 
-Json trends_json(const std::vector<report::FlownFlight>& flights, const std::vector<report::AircraftTrend>& trends) {
+Json trends_json(const std::vector<report::FlightTrendData>& flights,
+                 const std::vector<report::AircraftTrend>& trends) {
     Json json{{"flights", Json::array()}, {"trends", Json::array()}};
     for (const auto& flight : flights) json["flights"].push_back(flight_json(flight));
     for (const auto& row : trends) {
@@ -111,13 +112,13 @@ Json trends_json(const std::vector<report::FlownFlight>& flights, const std::vec
             relative ? Json::array({relative->low_percent_per_day, relative->high_percent_per_day}) : Json(nullptr);
         item["level_is_guess"] = row.level_is_guess;
         item["significant"] = trend ? Json(is_significant(*trend)) : Json(nullptr);
-        item["why_not"] = row.answer.why_not;
+        item["why_not"] = row.answer.no_trend_reason;
         json["trends"].push_back(std::move(item));
     }
     return json;
 }
 
-void say_what_changes(const cli::StageCall& call, const std::vector<report::FlownFlight>& flights,
+void say_what_changes(const cli::StageCall& call, const std::vector<report::FlightTrendData>& flights,
                       const std::vector<report::AircraftTrend>& trends) {
     std::vector<std::string> undated;
     for (const auto& flight : flights)
@@ -136,12 +137,12 @@ void say_what_changes(const cli::StageCall& call, const std::vector<report::Flow
         const auto [slope, low, high, unit] = shown_slope(row);
         const auto [least, most] = std::minmax({std::abs(low), std::abs(high)});
         changing.push_back(fmt::format("{} of {} {} by {:.3g}{} in 30 days ({:.3g} to {:.3g}{})", row.quantity,
-                                       row.aircraft, trend_verdict(row), std::abs(slope),
+                                       row.aircraft, trend_direction(row), std::abs(slope),
                                        unit.empty() ? "" : " % of its level", least, most, unit));
     }
     for (const auto& text : changing) cli::note(call, text);
     if (judged == 0)
-        cli::note(call, "no trend can be told: " + trends.front().answer.why_not);
+        cli::note(call, "no trend can be told: " + trends.front().answer.no_trend_reason);
     else if (changing.empty())
         cli::note(call, fmt::format("none of {} quantities has a trend beyond its 95 % interval", judged));
     else
@@ -172,8 +173,8 @@ int show_trends(const cli::StageCall& call) {
     std::ranges::stable_sort(flights, {}, [](const auto& flight) {
         return std::pair(flight.aircraft, flight.facts.start_clock_s.value_or(0.0));
     });
-    constexpr std::size_t most_records = 60;
-    for (const auto& note : add_pack_wear(flights, most_records, capacity_ah)) cli::note(call, note);
+    constexpr std::size_t max_records = 60;
+    for (const auto& note : add_state_of_health(flights, max_records, capacity_ah)) cli::note(call, note);
     const auto trends = trends_of(flights);
     const auto screen = screen_of(call);
     write_csv_result(call, flights_csv(flights),

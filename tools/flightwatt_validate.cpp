@@ -9,7 +9,7 @@
 #include "cli/progress.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
-#include "flight/chosen_track.h"
+#include "flight/selected_track.h"
 #include "mechanical/covariates.h"
 #include "mechanical/measured_flight.h"
 
@@ -28,19 +28,19 @@ std::vector<mechanical::MeasuredFlight> in_cruise(const cli::StageCall& call, co
                                                   mechanical::MeasuredFlights measured, double until_s,
                                                   const flight::SegmentationOptions& options) {
     std::vector<mechanical::MeasuredFlight> flights;
-    const flight::ChosenTracks tracks(loaded.series);
+    const flight::SelectedTracks tracks(loaded.series);
     for (std::size_t i = 0; i < measured.flights.size(); ++i) {
         auto& flight = measured.flights[i];
         try {
             const auto sortie = measured.sorties[i];
-            const double time_s = mechanical::time_since_lift_off(loaded.series, until_s, sortie, options);
+            const double time_s = mechanical::log_time_after_lift_off(loaded.series, until_s, sortie, options);
             flight.flown = mechanical::progress_at(loaded.series, time_s, sortie, options);
             if (const auto& cruise = flight.samples.phases[flight::Phase::cruise]) {
                 const double end_s = cruise->start_s + cruise->duration_s;
-                flight.cruise_ahead = mechanical::motion_of(tracks, {{flight::Phase::cruise, time_s, end_s}}).bins;
+                flight.remaining_cruise = mechanical::bin_flight(tracks, {{flight::Phase::cruise, time_s, end_s}}).bins;
             }
             flights.push_back(std::move(flight));
-        } catch (const NoAnswerError& error) {
+        } catch (const NoResultError& error) {
             cli::warn(call, fmt::format("{} is excluded: {}", flight.samples.flight, error.what()));
         }
     }
@@ -49,10 +49,10 @@ std::vector<mechanical::MeasuredFlight> in_cruise(const cli::StageCall& call, co
 
 /// The flights of all inputs. In flight, those that are not in cruise at the moment are excluded.
 std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call, std::size_t needed_samples) {
-    const auto until_s = call.maybe<double>("until");
+    const auto until_s = call.get_optional<double>("until");
     const auto options = cli::read_flight_options(call);
     return cli::from_flights<mechanical::MeasuredFlight>(call, options, [&](const auto&, const auto& loaded) {
-        auto measured = mechanical::measure_flights(loaded, needed_samples);
+        auto measured = mechanical::extract_flights(loaded, needed_samples);
         for (const auto& exclusion : measured.exclusions) cli::warn(call, to_string(exclusion));
         return until_s ? in_cruise(call, loaded, std::move(measured), *until_s, options.segmentation)
                        : std::move(measured.flights);
@@ -61,7 +61,7 @@ std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call,
 
 /// --covariate NAME[,NAME] or all.
 std::vector<mechanical::Covariate> read_covariates(const cli::StageCall& call) {
-    const auto text = call.maybe<std::string>("covariate");
+    const auto text = call.get_optional<std::string>("covariate");
     if (!text) return {};
     if (call.has("until")) throw UsageError("--covariate is for predictions before the flight: give it or --until");
     if (*text == "all") return {mechanical::all_covariates.begin(), mechanical::all_covariates.end()};
@@ -83,7 +83,7 @@ std::vector<mechanical::ValidatedFlight> validate(const std::vector<mechanical::
                                                   const std::vector<mechanical::Covariate>& covariates,
                                                   std::size_t folds) {
     cli::TerminalProgress fitting("fits");
-    return leave_one_out(flights, options, covariates, fitting.shown(), folds);
+    return leave_one_out(flights, options, covariates, fitting.callback(), folds);
 }
 
 int validate_flights(const cli::StageCall& call) {
@@ -91,7 +91,7 @@ int validate_flights(const cli::StageCall& call) {
     const auto until_s = cli::positive_option(call, "until", "s since lift-off");
     const auto covariates = read_covariates(call);
     const auto folds = cli::count_option(call, "folds", 2);
-    const auto flights = read_flights(call, mechanical::samples_needed(options.phases.order));
+    const auto flights = read_flights(call, mechanical::min_samples(options.phases.order));
     cli::note_folds(call, flights.size(), folds);
     auto validated = validate(flights, options, covariates, folds);
     for (const auto& rejected : remove_rejected(validated)) cli::note(call, rejected);
@@ -139,7 +139,7 @@ shown, where the mean power predicts better.)" +
         "also predict the cruise by what is known before the flight (height_m, initial_voltage_v, "
         "time_to_cruise_s) or in the first 60 s of the cruise (wind_m_per_s, airspeed_m_per_s, "
         "ground_speed_m_per_s, airspeed_cubed_m3_per_s3), or all: one further model by_NAME each");
-    cli::add_folds_option(stage.options, mechanical::most_validation_folds);
+    cli::add_folds_option(stage.options, mechanical::max_validation_folds);
     cli::add_mix_option(stage.options);
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, validate_flights);

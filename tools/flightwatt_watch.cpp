@@ -9,9 +9,9 @@
 #include "cli/output/prediction_output.h"
 #include "cli/output/source_options.h"
 #include "cli/output/watch_output.h"
-#include "cli/said_warnings.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
+#include "cli/warning_throttle.h"
 #include "live/page_server.h"
 #include "live/recorder.h"
 #include "report/page.h"
@@ -48,24 +48,24 @@ std::string wrapped(std::string line, std::size_t columns) {
 }
 
 /// What is said, in the way that was asked for.
-class Speaker {
+class WatchOutput {
   public:
-    Speaker(const cli::StageCall& call, const compute::ComputeModel& compute,
-            const std::optional<live::PredictionBasis>& basis)
+    WatchOutput(const cli::StageCall& call, const compute::ComputeModel& compute,
+                const std::optional<live::PredictionInput>& basis)
         : call_(call), compute_(compute), basis_(basis), plot_(cli::terminal_plot(call, "state of charge, %")) {}
 
-    void say(const live::LiveState& state) {
+    void print_state(const live::LiveState& state) {
         warnings_ = state.warnings;
-        const auto to_say = said_.to_say(warnings_, state.time_s);
+        const auto to_say = said_.due(warnings_, state.time_s);
         for (const auto& warning : to_say)
             if (!plot_) cli::warn(call_, warning);
         if (state.battery && state.battery->state) soc_.add(state.time_s, state.battery->state->soc_percent);
         if (plot_) {
             draw(state);
         } else if (call_.json) {
-            is_read_ = cli::print_at_once(cli::json_of(state, compute_).dump(-1, ' ', false, replace) + "\n");
+            is_read_ = cli::print_flushed(cli::json_of(state, compute_).dump(-1, ' ', false, replace) + "\n");
         } else {
-            is_read_ = cli::print_at_once(cli::line_of(state, compute_));
+            is_read_ = cli::print_flushed(cli::line_of(state, compute_));
         }
     }
 
@@ -73,7 +73,7 @@ class Speaker {
 
     /// The last words.
     void end(const live::LiveFlight& flight, const std::string& why) {
-        for (const auto& warning : said_.last_words(warnings_)) cli::warn(call_, warning);
+        for (const auto& warning : said_.final_updates(warnings_)) cli::warn(call_, warning);
         const auto& last = flight.last_predicted();
         if (call_.json) {
             nlohmann::ordered_json json{{"ended", why}, {"last_prediction", nullptr}};
@@ -97,7 +97,7 @@ class Speaker {
         for (const auto& warning : state.warnings) lines.push_back("          " + cli::one_line(warning));
         std::string text = "\x1b[H\x1b[J";  // the whole screen anew
         for (const auto& line : lines) text += wrapped(line, plot_->columns);
-        is_read_ = cli::print_at_once(text + curve(state));
+        is_read_ = cli::print_flushed(text + curve(state));
     }
 
     std::string curve(const live::LiveState& state) const {
@@ -113,10 +113,10 @@ class Speaker {
 
     const cli::StageCall& call_;
     const compute::ComputeModel& compute_;
-    const std::optional<live::PredictionBasis>& basis_;
+    const std::optional<live::PredictionInput>& basis_;
     std::optional<cli::TerminalPlot> plot_;
     live::CurveHistory soc_;
-    cli::SaidWarnings said_;
+    cli::WarningThrottle said_;
     std::vector<std::string> warnings_;  ///< of the latest state
     std::optional<Clock::time_point> drawn_;
     bool is_read_ = true;
@@ -129,7 +129,7 @@ class DecisionHook {
         if (call.has("on-decision")) command_.emplace(call.get<std::string>("on-decision"));
     }
 
-    void look(const live::LiveState& state) {
+    void update_flight(const live::LiveState& state) {
         if (!command_) return;
         if (state.decision && state.decision->changes != changes_) {
             changes_ = state.decision->changes;
@@ -139,15 +139,15 @@ class DecisionHook {
     }
 
     void end() {
-        constexpr int most_ms = 5000;
+        constexpr int max_ms = 5000;
         if (!command_) return;
-        if (!command_->wait(most_ms)) cli::warn(call_, "--on-decision: its command still runs");
+        if (!command_->wait(max_ms)) cli::warn(call_, "--on-decision: its command still runs");
         tell();
     }
 
   private:
     void tell() {
-        if (const auto failure = command_->look()) cli::warn(call_, "--on-decision: " + *failure);
+        if (const auto failure = command_->poll()) cli::warn(call_, "--on-decision: " + *failure);
     }
 
     const cli::StageCall& call_;
@@ -160,7 +160,7 @@ class DecisionHook {
 class Page {
   public:
     Page(const cli::StageCall& call, const compute::ComputeModel& compute,
-         const std::optional<live::PredictionBasis>& basis)
+         const std::optional<live::PredictionInput>& basis)
         : compute_(compute), basis_(basis) {
         if (!call.has("serve")) return;
         const auto web = report::read_live_web_files(report::web_folder());
@@ -170,7 +170,7 @@ class Page {
             cli::warn(call, "the page has no charts: what draws them is not installed (scripts/install_dependencies)");
     }
 
-    void say(const live::LiveState& state) {
+    void print_state(const live::LiveState& state) {
         if (!server_) return;
         const auto ahead = basis_ ? live::soc_ahead(state, *basis_) : live::TimeCurve{};
         const auto event = cli::page_event(state, compute_, ahead);
@@ -179,13 +179,13 @@ class Page {
 
   private:
     const compute::ComputeModel& compute_;
-    const std::optional<live::PredictionBasis>& basis_;
+    const std::optional<live::PredictionInput>& basis_;
     std::optional<live::PageServer> server_;
 };
 
 struct Watched {
-    std::optional<mission::AnyMission> mission;
-    std::optional<live::PredictionBasis> basis;
+    std::optional<mission::MissionVariant> mission;
+    std::optional<live::PredictionInput> basis;
     compute::ComputeModel compute;
 };
 
@@ -212,18 +212,18 @@ using Look = std::function<std::string(double silent_s)>;
 
 /// What was received and not looked at yet is recorded, and in the last words.
 void take_what_waits(live::MessageSource& source, live::LiveFlight& flight, double now_s) {
-    constexpr double longest_s = 10.0;
+    constexpr double max_s = 10.0;
     const auto start = Clock::now();
     std::vector<live::IncomingMessage> messages;
     do {
         messages.clear();
         source.receive(std::chrono::milliseconds(0), messages);
         for (const auto& message : messages) flight.receive(message, now_s);
-    } while (!messages.empty() && seconds_since(start) < longest_s);
+    } while (!messages.empty() && seconds_since(start) < max_s);
 }
 
-/// Until the source ends, a signal comes, or `look` says why to end; returns that.
-std::string watch_source(live::MessageSource& source, live::LiveFlight& flight, const Look& look) {
+/// Until the source ends, a signal comes, or `update_flight` says why to end; returns that.
+std::string watch_source(live::MessageSource& source, live::LiveFlight& flight, const Look& update_flight) {
     constexpr std::chrono::milliseconds wait{100};
     constexpr double silence_said_s = 1.0;
     const SignalWatch signals;
@@ -241,17 +241,17 @@ std::string watch_source(live::MessageSource& source, live::LiveFlight& flight, 
             const bool is_due = clock_s && (!looked_at_s || std::abs(*clock_s - *looked_at_s) >= 1.0);
             if (!is_due) continue;
             looked_at_s = clock_s;
-            if (auto why = look(0.0); !why.empty()) return why;
+            if (auto why = update_flight(0.0); !why.empty()) return why;
             looked = Clock::now();
         }
         if (!messages.empty()) heard = Clock::now();
-        if (const auto signal = signals.caught()) {
+        if (const auto signal = signals.received()) {
             take_what_waits(source, flight, seconds_since(start));
             return "ended by " + signal_name(*signal);
         }
         if (source.at_end()) return "the telemetry ends";
         if (seconds_since(looked) < silence_said_s) continue;
-        if (auto why = look(seconds_since(heard)); !why.empty()) return why;
+        if (auto why = update_flight(seconds_since(heard)); !why.empty()) return why;
         looked = Clock::now();
     }
 }
@@ -259,44 +259,44 @@ std::string watch_source(live::MessageSource& source, live::LiveFlight& flight, 
 int watch(const cli::StageCall& call) {
     auto watched = read_watched(call);
     live::LiveOptions options;
-    options.aircraft_id = call.maybe<std::string>("aircraft");
-    options.silence_s = cli::positive_option(call, "silence-s", "s").value();
+    options.aircraft_id = call.get_optional<std::string>("aircraft");
+    options.silence_threshold_s = cli::positive_option(call, "silence-s", "s").value();
     std::optional<std::string> log_text;
     if (const auto file = cli::definitions_of_source(call)) {
-        log_text = read_file(*file, telemetry::most_log_configuration_bytes);
+        log_text = read_file(*file, telemetry::max_log_configuration_bytes);
         options.configuration = telemetry::parse_log_configuration(*log_text, *file);
     }
     const auto source = cli::open_source(call);
     std::optional<live::Recorder> recorder;
-    if (const auto folder = call.maybe<std::string>("record")) {
+    if (const auto folder = call.get_optional<std::string>("record")) {
         const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
         recorder.emplace(*folder, live::log_name(now), log_text);
         options.on_lines = [&](std::string_view lines, bool anew) { recorder->write(lines, anew); };
     }
     live::LiveFlight flight(std::move(options), watched.basis, schedule_of(call, watched));
-    Speaker speaker(call, watched.compute, watched.basis);
+    WatchOutput speaker(call, watched.compute, watched.basis);
     DecisionHook hook(call, watched.compute);
     Page page(call, watched.compute, watched.basis);
-    const auto look = [&](double silent_s) -> std::string {
-        auto state = flight.look(silent_s);
+    const auto update_flight = [&](double silent_s) -> std::string {
+        auto state = flight.update(silent_s);
         for (const auto& [reason, count] : source->report().unusable) state.unusable[reason] += count;
-        speaker.say(state);
-        page.say(state);
-        hook.look(state);
+        speaker.print_state(state);
+        page.print_state(state);
+        hook.update_flight(state);
         if (!speaker.is_read()) return "nobody reads the output any more";
         return call.has("until-landed") && state.landed ? "the aircraft has landed" : "";
     };
-    const auto why = watch_source(*source, flight, look);
+    const auto why = watch_source(*source, flight, update_flight);
     flight.end();
-    look(0.0);
+    update_flight(0.0);
     hook.end();
     for (const auto& [reason, count] : source->report().unusable) cli::warn(call, fmt::format("{}: {}", reason, count));
     if (recorder && !recorder->lacks_definitions().empty())
         cli::warn(call, "recorded without its .log: " + recorder->lacks_definitions());
     if (recorder && !recorder->failure().empty()) cli::warn(call, "the recording ended early: " + recorder->failure());
     speaker.end(flight, why);
-    return flight.last_predicted() || !watched.basis || !watched.basis->cannot_predict.empty() ? cli::ok
-                                                                                               : cli::no_answer;
+    return flight.last_predicted() || !watched.basis || !watched.basis->no_prediction_reason.empty() ? cli::ok
+                                                                                                     : cli::no_answer;
 }
 
 }  // namespace

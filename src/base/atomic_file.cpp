@@ -1,7 +1,7 @@
 #include "base/atomic_file.h"
 
 #include "base/error.h"
-#include "base/file_use.h"
+#include "base/overwrite_guard.h"
 
 #include <cerrno>
 #include <cstring>
@@ -43,14 +43,14 @@ struct Destination {
 
 Destination destination_of(const std::filesystem::path& path) {
     Destination destination{path};
-    constexpr int most_links = 40;  // as the kernel
+    constexpr int max_links = 40;  // as the kernel
     for (int links = 0;; ++links) {
         // What the system links to an open file (-o /dev/stdout) has a name that means nothing.
         destination.is_special = destination.is_special || destination.file.string().starts_with("/proc/");
         std::error_code none;
         const auto next = std::filesystem::read_symlink(destination.file, none);
         if (none) break;
-        if (links == most_links) fail(path, ELOOP);
+        if (links == max_links) fail(path, ELOOP);
         destination.file = next.is_absolute() ? next : destination.file.parent_path() / next;
     }
     struct stat found {};
@@ -111,8 +111,8 @@ void write_directly(const std::filesystem::path& path, const TextWriter& write) 
 /// False where the folder of unfinished files is not there, or of another file system than the destination.
 bool replace(const std::filesystem::path& path, const Destination& destination, const TextWriter& write,
              const std::filesystem::path& folder) {
-    std::filesystem::path unfinished;
-    const int file = open_unfinished(folder, unfinished);
+    std::filesystem::path temporary_folder;
+    const int file = open_unfinished(folder, temporary_folder);
     if (file < 0 && errno == ENOENT) return false;
     if (file < 0) fail(path, errno);
     try {
@@ -120,12 +120,12 @@ bool replace(const std::filesystem::path& path, const Destination& destination, 
         if (destination.before && !keep_permissions(file, *destination.before)) fail(path, errno);
     } catch (...) {
         ::close(file);
-        ::unlink(unfinished.c_str());
+        ::unlink(temporary_folder.c_str());
         throw;
     }
-    if (::close(file) == 0 && ::rename(unfinished.c_str(), destination.file.c_str()) == 0) return true;
+    if (::close(file) == 0 && ::rename(temporary_folder.c_str(), destination.file.c_str()) == 0) return true;
     const int error = errno;
-    ::unlink(unfinished.c_str());
+    ::unlink(temporary_folder.c_str());
     if (error == EXDEV) return false;
     fail(path, error);
 }
@@ -133,39 +133,40 @@ bool replace(const std::filesystem::path& path, const Destination& destination, 
 }  // namespace
 
 void write_file_atomically(const std::filesystem::path& path, std::string_view content,
-                           const std::filesystem::path& unfinished) {
+                           const std::filesystem::path& temporary_folder) {
     const TextWriter write = [content](const TextSink& sink) { sink(content); };
-    write_file_atomically(path, write, unfinished);
+    write_file_atomically(path, write, temporary_folder);
 }
 
 void write_file_atomically(const std::filesystem::path& path, const TextWriter& write,
-                           const std::filesystem::path& unfinished) {
+                           const std::filesystem::path& temporary_folder) {
     const auto destination = destination_of(path);
     if (destination.is_special) return write_directly(path, write);
-    refuse_to_lose(path);
+    check_overwrite(path);
     // Without the right to write it a file is not replaced either, though its folder would allow that.
     if (destination.before && ::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0) fail(path, errno);
     auto beside = destination.file.parent_path();
     if (beside.empty()) beside = ".";
-    if (unfinished.empty() || !replace(path, destination, write, unfinished)) {
+    if (temporary_folder.empty() || !replace(path, destination, write, temporary_folder)) {
         if (!replace(path, destination, write, beside)) fail(path, ENOENT);
     }
-    note_written(path);
+    mark_written(path);
 }
 
 void link_or_copy_file(const std::filesystem::path& source, const std::filesystem::path& path,
-                       const std::filesystem::path& unfinished) {
-    const auto link = unfinished_name(unfinished);
-    if (::link(source.c_str(), link.c_str()) != 0) return write_file_atomically(path, read_file(source), unfinished);
-    refuse_to_lose(path);
+                       const std::filesystem::path& temporary_folder) {
+    const auto link = unfinished_name(temporary_folder);
+    if (::link(source.c_str(), link.c_str()) != 0)
+        return write_file_atomically(path, read_file(source), temporary_folder);
+    check_overwrite(path);
     const bool is_done = ::rename(link.c_str(), path.c_str()) == 0;
     const int error = errno;
     ::unlink(link.c_str());  // rename does nothing where both are names of one file
     if (!is_done) fail(path, error);
-    note_written(path);
+    mark_written(path);
 }
 
-bool is_unfinished_name(std::string_view name) {
+bool is_temporary_name(std::string_view name) {
     return name.starts_with(unfinished_prefix) && name.size() == unfinished_prefix.size() + unfinished_digits &&
            name.find_first_not_of("0123456789abcdef", unfinished_prefix.size()) == std::string_view::npos;
 }

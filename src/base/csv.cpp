@@ -15,9 +15,9 @@ namespace flightwatt {
 namespace {
 
 /// The widest table of ours, a series, has some forty columns.
-constexpr std::size_t most_columns = 1000;
+constexpr std::size_t max_columns = 1000;
 /// Of a table in memory, where a row costs as much as two cells: some 500 MB. Series are read row by row.
-constexpr std::size_t most_cells = 8'000'000;
+constexpr std::size_t max_cells = 8'000'000;
 
 /// Splits lines into cells, in place of those of the last line.
 class LineSplitter {
@@ -29,8 +29,8 @@ class LineSplitter {
         row_.cells.clear();
         unquoted_.clear();
         for (std::size_t p = 0;; ++p) {
-            if (row_.cells.size() == most_columns) {
-                throw InputError({file_, row_.line}, fmt::format("has more than {} cells", most_columns),
+            if (row_.cells.size() == max_columns) {
+                throw InputError({file_, row_.line}, fmt::format("has more than {} cells", max_columns),
                                  "is it a CSV table?");
             }
             p = p < text.size() && text[p] == '"' ? add_quoted(text, p) : add_plain(text, p);
@@ -106,8 +106,8 @@ CsvTable parse_csv(std::string_view text, const std::string& file, CsvHeader hea
     std::size_t cells = 0;
     for_each_csv_row(text, file, [&](const CsvRowView& row) {
         cells += row.cells.size() + 2;
-        if (cells > most_cells) {
-            throw InputError({file, row.line}, fmt::format("holds more than {} rows and cells", most_cells),
+        if (cells > max_cells) {
+            throw InputError({file, row.line}, fmt::format("holds more than {} rows and cells", max_cells),
                              "is it the file that was meant?");
         }
         if (header == CsvHeader::present && table.columns.empty()) {

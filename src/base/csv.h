@@ -74,7 +74,7 @@ class CsvWriter {
     }
     const std::string& text() const { return text_; }
     /// What was written since the last call, for texts too large to hold.
-    std::string take() { return std::exchange(text_, {}); }
+    std::string take_text() { return std::exchange(text_, {}); }
 
   private:
     std::string cell(double number) const;

@@ -21,7 +21,7 @@ std::string to_string(const Location& where) {
     return text;
 }
 
-std::string clipped(std::string_view text) {
+std::string truncated(std::string_view text) {
     constexpr std::size_t most = 2000;
     constexpr std::size_t tail = 400;  // errors end with what was expected
     if (text.size() <= most) return std::string(text);
@@ -41,6 +41,6 @@ std::string short_list(const std::vector<std::string>& names) {
 }
 
 InputError::InputError(Location where, const std::string& message, const std::string& hint)
-    : std::runtime_error(clipped(message)), where_(std::move(where)), hint_(clipped(hint)) {}
+    : std::runtime_error(truncated(message)), where_(std::move(where)), hint_(truncated(hint)) {}
 
 }  // namespace flightwatt

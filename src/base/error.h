@@ -19,7 +19,7 @@ struct Location {
 std::string to_string(const Location& where);
 
 /// `text`, without its middle if it has more than 2000 bytes: what an error quotes may come from any file.
-std::string clipped(std::string_view text);
+std::string truncated(std::string_view text);
 
 /// "a, b, c", and of more than a dozen "... and 34 more".
 std::string short_list(const std::vector<std::string>& names);
@@ -43,7 +43,7 @@ class UsageError : public std::runtime_error {
 };
 
 /// Sound input that has no usable answer: not converged, undeliverable, infeasible (exit code 4).
-class NoAnswerError : public std::runtime_error {
+class NoResultError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 

@@ -1,7 +1,7 @@
 #include "base/input_file.h"
 
 #include "base/error.h"
-#include "base/file_use.h"
+#include "base/overwrite_guard.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -38,7 +38,7 @@ std::size_t read_some(const InputFile& file, char* to, std::size_t most) {
 }  // namespace
 
 InputFile::InputFile(const std::filesystem::path& path) : path_(path) {
-    note_input(path);
+    register_input(path);
     descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a pipe would wait for who writes it
     if (descriptor_ < 0) cannot_read(path, errno);
     struct stat status {};
@@ -55,7 +55,7 @@ InputFile::InputFile(const std::filesystem::path& path) : path_(path) {
 
 InputFile::~InputFile() { ::close(descriptor_); }
 
-void InputFile::require_uncut() const {
+void InputFile::require_not_truncated() const {
     struct stat status {};
     if (::fstat(descriptor_, &status) != 0) cannot_read(path_, errno);
     if (!is_regular_ || static_cast<std::size_t>(status.st_size) >= size_) return;
@@ -64,13 +64,13 @@ void InputFile::require_uncut() const {
                      "run again when it is whole");
 }
 
-std::string read_file(const std::filesystem::path& path, std::size_t most_bytes, std::string_view hint) {
-    constexpr std::size_t least_step = 65536;
+std::string read_file(const std::filesystem::path& path, std::size_t max_bytes, std::string_view hint) {
+    constexpr std::size_t min_step = 65536;
     const InputFile file(path);
     const auto refuse_more = [&](std::size_t bytes) {
-        if (bytes <= most_bytes) return;
+        if (bytes <= max_bytes) return;
         throw InputError({path.string()},
-                         fmt::format("holds more than {:.4g} MB", static_cast<double>(most_bytes) / 1e6),
+                         fmt::format("holds more than {:.4g} MB", static_cast<double>(max_bytes) / 1e6),
                          std::string(hint));
     };
     refuse_more(file.size());
@@ -78,29 +78,29 @@ std::string read_file(const std::filesystem::path& path, std::size_t most_bytes,
     std::size_t used = 0;
     for (std::size_t count = 1; count > 0; used += count) {
         refuse_more(used);
-        if (used == content.size()) content.resize(std::max({file.size() + 1, used + used / 2, least_step}));
+        if (used == content.size()) content.resize(std::max({file.size() + 1, used + used / 2, min_step}));
         count = read_some(file, content.data() + used, content.size() - used);
     }
-    file.require_uncut();
+    file.require_not_truncated();
     content.resize(used);
     return content;
 }
 
-std::error_code reading_error(const std::filesystem::path& path) {
+std::error_code open_error(const std::filesystem::path& path) {
     return ::faccessat(AT_FDCWD, path.c_str(), R_OK, AT_EACCESS) == 0 ? std::error_code()
                                                                       : std::error_code(errno, std::generic_category());
 }
 
-std::filesystem::path program_folder() {
+std::filesystem::path executable_folder() {
     std::error_code error;
     const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
     return error ? std::filesystem::path() : program.parent_path();
 }
 
-std::filesystem::path program_files(const std::string& name, const char* variable, const std::string& what) {
+std::filesystem::path data_folder(const std::string& name, const char* variable, const std::string& what) {
     const char* named = std::getenv(variable);
     auto folder = named != nullptr ? std::filesystem::path(named)
-                                   : program_folder().parent_path() / "share" / "flightwatt" / name;
+                                   : executable_folder().parent_path() / "share" / "flightwatt" / name;
     std::error_code error;
     if (std::filesystem::is_directory(folder, error)) return folder;
     throw InputError({folder.string()}, what + " are not there",

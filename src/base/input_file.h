@@ -10,10 +10,10 @@ namespace flightwatt {
 
 /// What a file that is read whole may hold: no mission, model, profile or record comes near it, and an endless
 /// one (/dev/zero, a pipe that never ends) is refused before it fills the memory.
-inline constexpr std::size_t most_file_bytes = 128'000'000;
+inline constexpr std::size_t max_file_bytes = 128'000'000;
 
-/// A file that is open for reading, or a pipe that the program was started with (/dev/fd/63). Throws InputError where it
-/// cannot be opened, in the system's words, and at once for folders, devices and named pipes.
+/// A file that is open for reading, or a pipe that the program was started with (/dev/fd/63). Throws InputError where
+/// it cannot be opened, in the system's words, and at once for folders, devices and named pipes.
 class InputFile {
   public:
     explicit InputFile(const std::filesystem::path& path);
@@ -26,7 +26,7 @@ class InputFile {
     /// Of a regular file, when it was opened; 0 for pipes and devices.
     std::size_t size() const { return size_; }
     /// Throws InputError if the file is shorter now than it was then. One that grows is as good as it was.
-    void require_uncut() const;
+    void require_not_truncated() const;
 
   private:
     std::filesystem::path path_;
@@ -36,19 +36,19 @@ class InputFile {
 };
 
 /// The whole file. Throws InputError where it is missing, a folder, unreadable, cut while it is
-/// read, or holds more than `most_bytes`; `hint` says what to do about that.
-std::string read_file(const std::filesystem::path& path, std::size_t most_bytes = most_file_bytes,
+/// read, or holds more than `max_bytes`; `hint` says what to do about that.
+std::string read_file(const std::filesystem::path& path, std::size_t max_bytes = max_file_bytes,
                       std::string_view hint = "is it the file that was meant?");
 
 /// Why a file cannot be opened for reading; no error where it can be. A pipe is not opened.
-std::error_code reading_error(const std::filesystem::path& path);
+std::error_code open_error(const std::filesystem::path& path);
 
 /// The folder of the running program; empty where the system does not tell.
-std::filesystem::path program_folder();
+std::filesystem::path executable_folder();
 
 /// A folder of files that come with the programs: what the environment variable `variable` says, or
 /// ../share/flightwatt/NAME beside the folder of the running program, installed or not. Throws InputError
 /// "`what` are not there" where it is absent.
-std::filesystem::path program_files(const std::string& name, const char* variable, const std::string& what);
+std::filesystem::path data_folder(const std::string& name, const char* variable, const std::string& what);
 
 }  // namespace flightwatt

@@ -38,11 +38,11 @@ std::optional<std::uint64_t> as_hundred_millionths(double value) {
     constexpr double most = 1e7;    // 15 digits
     constexpr double least = 1e-4;  // what is less is written with an exponent
     if (!(value < most) || value < least) return std::nullopt;
-    constexpr double most_rounded = 4.0 * std::numeric_limits<double>::epsilon();  // far more than product and quotient
+    constexpr double max_rounded = 4.0 * std::numeric_limits<double>::epsilon();  // far more than product and quotient
     const double scaled = value * scale;
     // NOLINTNEXTLINE(bugprone-incorrect-roundings): quicker than llround, and what is rounded wrong is not equal below
     const auto whole = static_cast<double>(static_cast<std::int64_t>(scaled + 0.5));
-    if (std::abs(scaled - whole) > most_rounded * scaled) return std::nullopt;  // quicker than to divide
+    if (std::abs(scaled - whole) > max_rounded * scaled) return std::nullopt;  // quicker than to divide
     if (whole / scale != value) return std::nullopt;
     return static_cast<std::uint64_t>(whole);
 }
@@ -87,13 +87,13 @@ char* write_whole(char* to, std::uint64_t value) {
 
 /// A whole number as that many decimal places, 24 at most.
 char* write_places(char* to, std::uint64_t value, std::ptrdiff_t places) {
-    constexpr std::ptrdiff_t most_at_once = 16;
-    if (places > most_at_once) {
+    constexpr std::ptrdiff_t max_at_once = 16;
+    if (places > max_at_once) {
         to = write_places(to, value / eight_places, places - 8);
         write_eight(to, eight_digits(value % eight_places));
         return to + 8;
     }
-    value *= whole_powers_of_ten[most_at_once - places];
+    value *= whole_powers_of_ten[max_at_once - places];
     write_eight(to, eight_digits(value / eight_places));
     write_eight(to + 8, eight_digits(value % eight_places));
     return to + places;
@@ -114,12 +114,12 @@ char* write_shortest(char* to, double value) {
 }  // namespace
 
 char* write_number(char* to, double value) {
-    constexpr double least_fixed = 1e-4;  // beyond, an exponent is written
-    constexpr double most_fixed = 1e16;
+    constexpr double min_fixed = 1e-4;  // beyond, an exponent is written
+    constexpr double max_fixed = 1e16;
     const double magnitude = std::abs(value);
     if (magnitude == 0.0 && !std::signbit(value)) return write_whole(to, 0);
     const auto hundred_millionths = as_hundred_millionths(magnitude);
-    if (!hundred_millionths && !(magnitude >= least_fixed && magnitude < most_fixed))
+    if (!hundred_millionths && !(magnitude >= min_fixed && magnitude < max_fixed))
         return fmt::format_to(to, "{}", value);
     if (value < 0.0) *to++ = '-';
     if (!hundred_millionths) return write_shortest(to, magnitude);
@@ -133,7 +133,7 @@ char* write_number(char* to, double value) {
 
 namespace detail {
 
-double number_or_nan_slowly(std::string_view text) {
+double number_or_nan_general(std::string_view text) {
     if (!text.empty() && text.front() == '+') text.remove_prefix(1);
     double value = 0.0;
     const char* end = text.data() + text.size();

@@ -15,7 +15,7 @@ inline constexpr double powers_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1
 
 /// The general case: exponents, 16 digits and more, and everything that is not a number. Kept out of line,
 /// because its stack frame would slow the short decimals down.
-double number_or_nan_slowly(std::string_view text);
+double number_or_nan_general(std::string_view text);
 
 }  // namespace detail
 
@@ -43,18 +43,18 @@ inline double number_or_nan(std::string_view text) {
             digits = digits * 10 + static_cast<std::uint64_t>(*p++ - '0');
         }
     }
-    if (p != end || count == 0 || count > 15) return detail::number_or_nan_slowly(text);
+    if (p != end || count == 0 || count > 15) return detail::number_or_nan_general(text);
     const double magnitude = static_cast<double>(static_cast<std::int64_t>(digits)) / detail::powers_of_ten[decimals];
     return negative ? -magnitude : magnitude;
 }
 
 /// How many characters a number's text has at most: "-1.7976931348623157e+308".
-inline constexpr std::size_t longest_number_text = 24;
+inline constexpr std::size_t max_number_chars = 24;
 /// Room for it: whole words of memory are written, of which not all count.
-inline constexpr std::size_t longest_number = 48;
+inline constexpr std::size_t number_buffer_size = 48;
 
 /// Writes a finite number as fmt's "{}" does, in the shortest way that reads back as the same, and returns where it
-/// ends. `to` has room for `longest_number` characters. Quick for short decimals, as logs are made of.
+/// ends. `to` has room for `number_buffer_size` characters. Quick for short decimals, as logs are made of.
 char* write_number(char* to, double value);
 
 /// The same with std::nullopt for what is no number.

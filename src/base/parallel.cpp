@@ -41,7 +41,7 @@ struct AtWork {
 
 }  // namespace
 
-void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work, std::size_t most_threads) {
+void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work, std::size_t max_threads) {
     std::atomic<std::size_t> next = 0;
     std::mutex mutex;  // guards what follows
     std::size_t failed = count;
@@ -62,7 +62,7 @@ void for_each_in_parallel(std::size_t count, const std::function<void(std::size_
         }
     };
     {
-        const std::size_t most = is_at_work ? 1 : most_threads > 0 ? most_threads : cores();
+        const std::size_t most = is_at_work ? 1 : max_threads > 0 ? max_threads : cores();
         const std::size_t threads = std::min(most, count);
         const bool is_shared = threads > 1 || most == 1;
         std::vector<std::jthread> workers;
@@ -77,8 +77,8 @@ void for_each_in_parallel(std::size_t count, const std::function<void(std::size_
 }
 
 void for_each_in_order(std::size_t count, const std::function<void(std::size_t, std::size_t)>& make,
-                       const std::function<void(std::size_t, std::size_t)>& take, std::size_t most_threads) {
-    const auto threads = threads_for(count, most_threads);
+                       const std::function<void(std::size_t, std::size_t)>& take, std::size_t max_threads) {
+    const auto threads = threads_for(count, max_threads);
     std::atomic<std::size_t> next = 0;
     std::mutex mutex;  // guards what follows, and is held by the one that takes
     std::condition_variable taken;
@@ -114,8 +114,8 @@ void for_each_in_order(std::size_t count, const std::function<void(std::size_t, 
     for_each_in_parallel(threads, work_at, threads);
 }
 
-std::size_t threads_for(std::size_t count, std::size_t most_threads) {
-    return std::min(count, most_threads > 0 ? most_threads : cores());
+std::size_t threads_for(std::size_t count, std::size_t max_threads) {
+    return std::min(count, max_threads > 0 ? max_threads : cores());
 }
 
 }  // namespace flightwatt

@@ -5,7 +5,7 @@
 
 namespace flightwatt {
 
-KnotPlace place_among(std::span<const double> knots, double x) {
+KnotInterval find_knot_interval(std::span<const double> knots, double x) {
     const auto above = std::upper_bound(knots.begin() + 1, knots.end() - 1, x);
     const auto lower = static_cast<std::size_t>(above - knots.begin()) - 1;
     return {lower, (x - knots[lower]) / (knots[lower + 1] - knots[lower])};
@@ -18,7 +18,7 @@ double interpolate_clamped(std::span<const double> knots, std::span<const double
 }
 
 double interpolate_extended(std::span<const double> knots, std::span<const double> values, double x) {
-    const auto place = place_among(knots, x);
+    const auto place = find_knot_interval(knots, x);
     return std::lerp(values[place.lower], values[place.lower + 1], place.fraction);
 }
 

@@ -7,13 +7,13 @@
 namespace flightwatt {
 
 /// Where x lies among knots: between `lower` and the next one, `fraction` of the way.
-struct KnotPlace {
+struct KnotInterval {
     std::size_t lower = 0;
     double fraction = 0.0;
 };
 
 /// Beyond the ends, on the first or last line continued: `fraction` is then negative or above 1.
-KnotPlace place_among(std::span<const double> knots, double x);
+KnotInterval find_knot_interval(std::span<const double> knots, double x);
 
 /// The value at x; beyond the ends, that of the end. One knot or more, as many values.
 double interpolate_clamped(std::span<const double> knots, std::span<const double> values, double x);

@@ -16,7 +16,7 @@ std::string signal_name(int signal) {
     return std::string("SIG") + (name == nullptr ? "?" : name);
 }
 
-std::vector<int> ending_signals() {
+std::vector<int> termination_signals() {
     std::vector<int> signals;
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         struct sigaction action {};
@@ -29,7 +29,7 @@ std::vector<int> ending_signals() {
 SignalWatch::SignalWatch() {
     sigset_t watched;
     sigemptyset(&watched);
-    for (const int signal : ending_signals()) sigaddset(&watched, signal);
+    for (const int signal : termination_signals()) sigaddset(&watched, signal);
     ::sigprocmask(SIG_BLOCK, &watched, &before_);
     file_ = ::signalfd(-1, &watched, SFD_CLOEXEC | SFD_NONBLOCK);
     if (file_ >= 0) return;
@@ -43,7 +43,7 @@ SignalWatch::~SignalWatch() {
     ::sigprocmask(SIG_SETMASK, &before_, nullptr);
 }
 
-std::optional<int> SignalWatch::caught() const {
+std::optional<int> SignalWatch::received() const {
     signalfd_siginfo info{};
     if (::read(file_, &info, sizeof info) != sizeof info) return std::nullopt;
     return static_cast<int>(info.ssi_signo);

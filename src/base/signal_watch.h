@@ -11,7 +11,7 @@ namespace flightwatt {
 std::string signal_name(int signal);
 
 /// SIGINT, SIGTERM and SIGHUP, without those that the program was started to ignore (nohup).
-std::vector<int> ending_signals();
+std::vector<int> termination_signals();
 
 /// While it lives, the ending signals do not end the program but wait here to be asked for: for programs of one thread
 /// that have something to put in order first. Throws OutputError where the system has no more files.
@@ -23,9 +23,9 @@ class SignalWatch {
     SignalWatch& operator=(const SignalWatch&) = delete;
 
     /// A file that poll() finds readable once a signal has come.
-    int file() const { return file_; }
+    int fd() const { return file_; }
     /// The signal that has come, if one has.
-    std::optional<int> caught() const;
+    std::optional<int> received() const;
 
   private:
     sigset_t before_{};

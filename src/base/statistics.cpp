@@ -27,7 +27,7 @@ double sample_sd(std::span<const double> values) { return std::sqrt(sample_varia
 
 double median(std::vector<double> values) { return boost::math::statistics::median(values.begin(), values.end()); }
 
-double upper_median(std::vector<double> values) {
+double median_high(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
@@ -51,7 +51,7 @@ double student_t_half_width(double degrees_of_freedom) {
     return boost::math::quantile(distribution, upper_tail);
 }
 
-std::vector<std::vector<std::size_t>> folds_of(std::size_t count, std::size_t most) {
+std::vector<std::vector<std::size_t>> make_folds(std::size_t count, std::size_t most) {
     std::vector<std::vector<std::size_t>> folds(std::min(count, most));
     for (std::size_t i = 0; i < count && !folds.empty(); ++i) folds[i % folds.size()].push_back(i);
     return folds;

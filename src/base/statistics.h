@@ -21,7 +21,7 @@ double sample_sd(std::span<const double> values);
 double median(std::vector<double> values);
 
 /// Of an even number of values, the larger of the two middle ones: one that was measured. Not empty.
-double upper_median(std::vector<double> values);
+double median_high(std::vector<double> values);
 
 /// Quantile of values in ascending order, straight lines between them (Hyndman and Fan's type 7). `sorted`
 /// must not be empty; `probability` from 0 to 1.
@@ -39,6 +39,6 @@ double student_t_half_width(double degrees_of_freedom);
 
 /// For cross-validation: which of `count` things are left out together. Each alone, or, of more than `most`, in so many
 /// groups of almost equal size in which no two neighbours are. Within a group they rise.
-std::vector<std::vector<std::size_t>> folds_of(std::size_t count, std::size_t most);
+std::vector<std::vector<std::size_t>> make_folds(std::size_t count, std::size_t most);
 
 }  // namespace flightwatt

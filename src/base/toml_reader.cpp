@@ -54,7 +54,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 /// No file of ours nests deeper than five; the parser would end the program at some ten thousand (its stack).
 constexpr std::size_t deepest_nesting = 50;
 /// A file in memory takes up to some hundred times its size. A mission or model has some 10 kB.
-constexpr std::size_t most_toml_bytes = 8'000'000;
+constexpr std::size_t max_toml_bytes = 8'000'000;
 
 /// How deep keys, arrays and tables nest, told from dots and brackets outside of strings and comments.
 class NestingCounter {
@@ -120,8 +120,8 @@ class NestingCounter {
 };
 
 void refuse_monsters(std::string_view text, const std::string& file) {
-    if (text.size() > most_toml_bytes) {
-        throw InputError({file}, fmt::format("holds more than {} MB of TOML", most_toml_bytes / 1'000'000),
+    if (text.size() > max_toml_bytes) {
+        throw InputError({file}, fmt::format("holds more than {} MB of TOML", max_toml_bytes / 1'000'000),
                          "is it the file that was meant?");
     }
     const auto at = NestingCounter(text).find_deeper_than(deepest_nesting);
@@ -131,7 +131,7 @@ void refuse_monsters(std::string_view text, const std::string& file) {
                      fmt::format("keys, arrays or tables are nested more than {} levels deep", deepest_nesting));
 }
 
-std::set<AskedKey>* recorded_keys = nullptr;
+std::set<RequestedKey>* recorded_keys = nullptr;
 
 std::string path_below(const std::string& path, std::string_view key) {
     return path.empty() ? std::string(key) : path + "." + std::string(key);
@@ -148,15 +148,15 @@ std::string describe(NumberRange range) {
 
 }  // namespace
 
-void record_asked_keys(std::set<AskedKey>* asked) { recorded_keys = asked; }
+void record_requested_keys(std::set<RequestedKey>* asked) { recorded_keys = asked; }
 
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known) {
-    constexpr std::size_t longest_word = 100;
+    constexpr std::size_t max_word = 100;
     std::string nearest;
-    if (word.size() > longest_word) return nearest;
+    if (word.size() > max_word) return nearest;
     std::size_t best = std::max<std::size_t>(2, word.size() / 3) + 1;
     for (const auto& candidate : known) {
-        if (candidate.size() > longest_word) continue;
+        if (candidate.size() > max_word) continue;
         const auto distance = edit_distance(word, candidate);
         if (distance < best) {
             best = distance;
@@ -186,13 +186,13 @@ TomlTable parse_toml(std::string_view text, const std::string& file) {
 
 TomlTable read_toml(const std::filesystem::path& path) { return parse_toml(read_file(path), path.string()); }
 
-void TomlTable::ask(std::string_view key) const {
+void TomlTable::mark_used(std::string_view key) const {
     asked_->emplace(key);
     if (recorded_keys != nullptr) recorded_keys->insert({file_, path_, std::string(key)});
 }
 
 const toml::node* TomlTable::find(std::string_view key) const {
-    ask(key);
+    mark_used(key);
     return table_->get(key);
 }
 
@@ -298,7 +298,7 @@ void TomlTable::refuse_unknown_keys() const {
 }
 
 void TomlTable::refuse_keys_except(std::initializer_list<std::string_view> known) const {
-    for (const auto key : known) ask(key);
+    for (const auto key : known) mark_used(key);
     refuse_unknown_keys();
 }
 
@@ -329,8 +329,8 @@ std::optional<double> optional_number_in(NumberRange range, const TomlTable& tab
     return value;
 }
 
-double number_in_or(NumberRange range, const TomlTable& table, std::string_view key, double otherwise) {
-    return optional_number_in(range, table, key).value_or(otherwise);
+double number_in_or(NumberRange range, const TomlTable& table, std::string_view key, double default_value) {
+    return optional_number_in(range, table, key).value_or(default_value);
 }
 
 std::uint64_t count_in(const TomlTable& table, std::string_view key, std::uint64_t least) {
@@ -346,11 +346,12 @@ std::uint64_t count_in(const TomlTable& table, std::string_view key, std::uint64
     return static_cast<std::uint64_t>(value);
 }
 
-std::uint64_t count_in_or(const TomlTable& table, std::string_view key, std::uint64_t least, std::uint64_t otherwise) {
-    return table.has(key) ? count_in(table, key, least) : otherwise;
+std::uint64_t count_in_or(const TomlTable& table, std::string_view key, std::uint64_t least,
+                          std::uint64_t default_value) {
+    return table.has(key) ? count_in(table, key, least) : default_value;
 }
 
-void refuse_other_kinds(const TomlTable& root, FileKind expected) {
+void require_kind(const TomlTable& root, FileKind expected) {
     struct Sign {
         FileKind kind;
         std::string_view key;  // that only this kind has, and always

@@ -58,7 +58,7 @@ class TomlTable {
   private:
     friend TomlTable parse_toml(std::string_view text, const std::string& file);
     TomlTable(std::shared_ptr<const toml::table> root, const toml::table* table, std::string file, std::string path);
-    void ask(std::string_view key) const;
+    void mark_used(std::string_view key) const;
 
     const toml::node& require(std::string_view key) const;
     const toml::node* find(std::string_view key) const;
@@ -71,16 +71,16 @@ class TomlTable {
 };
 
 /// A key that a reader asked a table of a file for, whether it was there or not.
-struct AskedKey {
+struct RequestedKey {
     std::string file;
     std::string table;  ///< its path in the file; empty for the file itself
     std::string key;
-    auto operator<=>(const AskedKey&) const = default;  // NOLINT(modernize-use-nullptr): it takes the 0 of "< 0"
+    auto operator<=>(const RequestedKey&) const = default;  // NOLINT(modernize-use-nullptr): it takes the 0 of "< 0"
 };
 
 /// From now on every key that any reader asks for is put into `asked`, until this is called with nullptr. For
 /// the test that holds the documents to the readers; not while several threads read.
-void record_asked_keys(std::set<AskedKey>* asked);
+void record_requested_keys(std::set<RequestedKey>* asked);
 
 /// Throws InputError with line and column where the text is not TOML.
 TomlTable read_toml(const std::filesystem::path& path);
@@ -109,11 +109,12 @@ void require_in(NumberRange range, double value, std::string_view name, const Lo
 double number_in(NumberRange range, const TomlTable& table, std::string_view key, std::string_view hint = "");
 std::optional<double> optional_number_in(NumberRange range, const TomlTable& table, std::string_view key,
                                          std::string_view hint = "");
-double number_in_or(NumberRange range, const TomlTable& table, std::string_view key, double otherwise);
+double number_in_or(NumberRange range, const TomlTable& table, std::string_view key, double default_value);
 
 /// A whole number of at least `least`, and small enough that a double holds it exactly.
 std::uint64_t count_in(const TomlTable& table, std::string_view key, std::uint64_t least = 0);
-std::uint64_t count_in_or(const TomlTable& table, std::string_view key, std::uint64_t least, std::uint64_t otherwise);
+std::uint64_t count_in_or(const TomlTable& table, std::string_view key, std::uint64_t least,
+                          std::uint64_t default_value);
 
 /// Version of the file formats that FlightWatt writes, and the newest that it reads.
 inline constexpr int format_version = 1;
@@ -125,7 +126,7 @@ std::string format_line();
 enum class FileKind { mechanical_model, battery, mission };
 
 /// Throws InputError where the keys of the file are those of another kind, with what it is and what was expected.
-void refuse_other_kinds(const TomlTable& root, FileKind expected);
+void require_kind(const TomlTable& root, FileKind expected);
 
 /// Checks `format` of a file of ours, which may be absent (files of version 0.1 have none). Throws InputError
 /// for a format that is newer than this program, or is none.

@@ -25,8 +25,8 @@ constexpr double ah_from_coulomb(double charge_as) { return charge_as / seconds_
 constexpr double mv_from_v(double voltage_v) { return voltage_v * 1000.0; }
 constexpr double mohm_from_ohm(double resistance_ohm) { return resistance_ohm * 1000.0; }
 constexpr double minute_from_second(double time_s) { return time_s / seconds_per_minute; }
-constexpr double percent_of(double part, double whole) { return part / whole * percent_per_whole; }
-constexpr double part_of(double whole, double percent) { return whole * percent / percent_per_whole; }
+constexpr double percentage(double part, double whole) { return part / whole * percent_per_whole; }
+constexpr double amount_from_percent(double whole, double percent) { return whole * percent / percent_per_whole; }
 constexpr double percent_from_pprz(double throttle_pprz) { return throttle_pprz / pprz_full_scale * percent_per_whole; }
 constexpr double pprz_from_percent(double throttle_percent) {
     return throttle_percent / percent_per_whole * pprz_full_scale;

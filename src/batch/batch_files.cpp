@@ -2,8 +2,8 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/file_use.h"
 #include "base/fingerprint.h"
+#include "base/overwrite_guard.h"
 #include "base/parallel.h"
 #include "batch/manifest.h"
 #include "flight/phases_file.h"
@@ -34,7 +34,7 @@ std::vector<LogFile> stored_flights(const std::filesystem::path& out) {
     std::vector<LogFile> flights;
     for (std::size_t i = 0; i < listed.size(); ++i) {
         std::error_code none;
-        const auto record = result_path(out, listed.flight(i), record_ending);
+        const auto record = result_path(out, listed.flight(i), record_suffix);
         if (std::filesystem::exists(record, none)) flights.push_back(listed[i]);
     }
     return flights;
@@ -49,13 +49,13 @@ struct Results {
 Results read_results(const std::filesystem::path& out, const std::string& flight) {
     Results results;
     Fingerprint fingerprint;
-    for (const auto* ending : {series_ending, phases_ending}) {
+    for (const auto* ending : {series_suffix, phases_suffix}) {
         const auto path = result_path(out, flight, ending);
         std::error_code none;
         if (!std::filesystem::is_regular_file(path, none)) return {};
         auto text = read_file(path);
         fingerprint.add(text);
-        if (ending == series_ending) results.series_csv = std::move(text);
+        if (ending == series_suffix) results.series_csv = std::move(text);
     }
     results.fingerprint = fingerprint.hex();
     return results;
@@ -68,14 +68,14 @@ struct IntactFlight {
 
 /// Throws InputError for files that are not as the batch wrote them.
 IntactFlight read_intact(const std::filesystem::path& out, const std::string& flight) {
-    const auto file = result_path(out, flight, record_ending);
+    const auto file = result_path(out, flight, record_suffix);
     const std::string hint = "run flightwatt batch again";
     auto record = record_from_json(read_file(file));
     if (!record) {
         throw InputError({file.string()},
                          "this is no record of a flight as this version wrote it: it was changed, or damaged", hint);
     }
-    if (record->flight != in_record(flight)) {
+    if (record->flight != to_valid_utf8(flight)) {
         throw InputError({file.string()}, fmt::format("this is the record of {}: it was renamed", record->flight),
                          hint);
     }
@@ -84,7 +84,7 @@ IntactFlight read_intact(const std::filesystem::path& out, const std::string& fl
     if (!intact.record.accepted) return intact;
     auto results = read_results(out, flight);
     if (intact.record.results.empty() || intact.record.results != results.fingerprint) {
-        throw InputError({result_path(out, flight, series_ending).string()},
+        throw InputError({result_path(out, flight, series_suffix).string()},
                          "it or the phases beside it are not as the batch wrote them", hint);
     }
     intact.series_csv = std::move(results.series_csv);
@@ -95,17 +95,17 @@ IntactFlight read_intact(const std::filesystem::path& out, const std::string& fl
 StoredFlight read_recorded(const std::filesystem::path& out, const LogFile& listed, bool with_series) {
     const auto& name = listed.flight;
     // No result is to replace the log either, of which all this was made.
-    note_input(listed.place);
-    if (const auto configuration = telemetry::find_log_file(listed.place)) note_input(*configuration);
+    register_input(listed.place);
+    if (const auto configuration = telemetry::find_log_file(listed.place)) register_input(*configuration);
     StoredFlight flight;
     try {
         auto [record, series_csv] = read_intact(out, name);
         flight.record = std::move(record);
         if (with_series && flight.record.accepted) {
             const auto folder = out / "flights";
-            flight.series = flight::parse_series_csv(series_csv, folder / (name + series_ending));
+            flight.series = flight::parse_series_csv(series_csv, folder / (name + series_suffix));
             flight.series.flight = name;
-            flight.phases = flight::read_phases_csv(folder / (name + phases_ending));
+            flight.phases = flight::read_phases_csv(folder / (name + phases_suffix));
         }
     } catch (const InputError& error) {
         std::error_code none;
@@ -113,7 +113,7 @@ StoredFlight read_recorded(const std::filesystem::path& out, const LogFile& list
         flight = {};
         flight.record.flight = name;
         flight.record.log = listed.path;
-        flight.damage = fmt::format("{}: {}, and its log is gone", to_string(error.where()), error.what());
+        flight.damage_reason = fmt::format("{}: {}, and its log is gone", to_string(error.where()), error.what());
     }
     return flight;
 }
@@ -125,9 +125,9 @@ std::vector<StoredFlight> read_stored(const std::filesystem::path& out, bool wit
         throw InputError({out.string()}, "this is no folder of flightwatt batch: there is no flights/ in it",
                          fmt::format("make it with: flightwatt batch LOGS -o {}", out.string()));
     }
-    note_input(out / manifest_name);
-    note_input(out / catalogue_name);
-    for (const auto* name : model_names) note_input(out / name);
+    register_input(out / manifest_name);
+    register_input(out / catalogue_name);
+    for (const auto* name : model_names) register_input(out / name);
     const auto listed = stored_flights(out);
     std::vector<StoredFlight> flights(listed.size());
     for_each_in_parallel(listed.size(),
@@ -148,8 +148,8 @@ std::filesystem::path result_path(const std::filesystem::path& out, std::string_
 std::vector<std::string> recorded_flights(const std::filesystem::path& folder) {
     std::vector<std::string> flights;
     for (const auto& file : file_names(folder)) {
-        if (file.ends_with(record_ending)) {
-            flights.push_back(file.substr(0, file.size() - std::string_view(record_ending).size()));
+        if (file.ends_with(record_suffix)) {
+            flights.push_back(file.substr(0, file.size() - std::string_view(record_suffix).size()));
         }
     }
     return flights;
@@ -157,14 +157,14 @@ std::vector<std::string> recorded_flights(const std::filesystem::path& folder) {
 
 void remove_results(const std::filesystem::path& out, const std::string& flight) {
     std::error_code ignored;
-    for (const auto* ending : result_endings) std::filesystem::remove(result_path(out, flight, ending), ignored);
+    for (const auto* ending : result_suffixes) std::filesystem::remove(result_path(out, flight, ending), ignored);
 }
 
 std::string results_fingerprint(const std::filesystem::path& out, const std::string& flight) {
     return read_results(out, flight).fingerprint;
 }
 
-FlightRecord read_intact_record(const std::filesystem::path& out, const std::string& flight) {
+FlightRecord read_verified_record(const std::filesystem::path& out, const std::string& flight) {
     return read_intact(out, flight).record;
 }
 

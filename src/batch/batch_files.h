@@ -12,10 +12,10 @@
 namespace flightwatt::batch {
 
 /// What a batch writes of a flight, after its name: OUT/flights/NAME.series.csv, ...
-inline constexpr auto series_ending = ".series.csv";
-inline constexpr auto phases_ending = ".phases.csv";
-inline constexpr auto record_ending = ".record.json";
-inline constexpr std::array result_endings{record_ending, series_ending, phases_ending};
+inline constexpr auto series_suffix = ".series.csv";
+inline constexpr auto phases_suffix = ".phases.csv";
+inline constexpr auto record_suffix = ".record.json";
+inline constexpr std::array result_suffixes{record_suffix, series_suffix, phases_suffix};
 
 /// What a batch writes into OUT itself; the first one is the catalogue, the others are the fit's.
 inline constexpr auto catalogue_name = "flights.csv";
@@ -39,14 +39,14 @@ void remove_results(const std::filesystem::path& out, const std::string& flight)
 std::string results_fingerprint(const std::filesystem::path& out, const std::string& flight);
 
 /// The record of a flight whose files are all as the batch wrote them. Throws InputError for others.
-FlightRecord read_intact_record(const std::filesystem::path& out, const std::string& flight);
+FlightRecord read_verified_record(const std::filesystem::path& out, const std::string& flight);
 
 /// A log as a batch left it in its folder.
 struct StoredFlight {
     FlightRecord record;
-    flight::FlightSeries series;  ///< of an accepted log
-    flight::FlightPhases phases;  ///< with the evidence at their edges, which the record does not hold
-    std::string damage = {};      ///< why its files are not used: they are not as the batch wrote them
+    flight::FlightSeries series;     ///< of an accepted log
+    flight::FlightPhases phases;     ///< with the evidence at their edges, which the record does not hold
+    std::string damage_reason = {};  ///< why its files are not used: they are not as the batch wrote them
 };
 
 /// What a batch wrote into OUT, flight by flight, by name. Throws InputError where OUT is no batch's folder, or the

@@ -2,8 +2,8 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/file_use.h"
 #include "base/fingerprint.h"
+#include "base/overwrite_guard.h"
 #include "base/toml_reader.h"
 #include "batch/batch_files.h"
 #include "batch/manifest.h"
@@ -43,8 +43,8 @@ Json options_json(const mechanical::ModelFitOptions& options) {
             {{"flight", flight}, {"phase", phase ? Json(to_string(*phase)) : Json()}, {"weight", weight}});
     }
     return {{"order", options.phases.order},
-            {"least_omega_duration_rad", options.phases.low_rad},
-            {"most_periods", options.phases.high_periods},
+            {"least_omega_duration_rad", options.phases.min_theta_rad},
+            {"most_periods", options.phases.max_periods},
             {"weights", to_string(options.weights.weighting)},
             {"weights_by_hand", by_hand}};
 }
@@ -52,11 +52,11 @@ Json options_json(const mechanical::ModelFitOptions& options) {
 mechanical::ModelFitOptions options_from(const Json& json) {
     mechanical::ModelFitOptions options;
     options.phases.order = json.at("order");
-    options.phases.low_rad = json.at("least_omega_duration_rad");
-    options.phases.high_periods = json.at("most_periods");
+    options.phases.min_theta_rad = json.at("least_omega_duration_rad");
+    options.phases.max_periods = json.at("most_periods");
     options.weights.weighting = mechanical::weighting_from(json.at("weights").get<std::string>()).value();
     for (const auto& entry : json.at("weights_by_hand")) {
-        mechanical::HandWeight weight{entry.at("flight"), std::nullopt, entry.at("weight")};
+        mechanical::ManualWeight weight{entry.at("flight"), std::nullopt, entry.at("weight")};
         if (const auto& phase = entry.at("phase"); !phase.is_null()) {
             weight.phase = flight::phase_from(phase.get<std::string>()).value();
         }
@@ -71,7 +71,7 @@ constexpr auto fit_number = "fit 2";
 constexpr auto copies_key = "copies";
 constexpr auto copies_without_power_key = "copies_without_power";
 
-constexpr std::size_t most_fit_bytes = 16'000'000;  // fit.json has some 100 kB
+constexpr std::size_t max_fit_bytes = 16'000'000;  // fit.json has some 100 kB
 
 /// Of a hundred thousand copies no list is there twice.
 Json json_of(const BatchFit& fit) {
@@ -91,7 +91,7 @@ Json json_of(const BatchFit& fit) {
     json[copies_key] = std::move(copies);
     json[copies_without_power_key] = std::move(without_power);
     json["overlaps"] = std::move(overlaps);
-    json["made_from"] = fit.made_from;
+    json["made_from"] = fit.input_fingerprint;
     json["bands"] = std::move(bands);
     return json;
 }
@@ -108,7 +108,7 @@ bool require_shallow(int depth, Json::parse_event_t /*event*/, Json& /*parsed*/)
 void read_fit_json(const std::filesystem::path& file, BatchFit& fit) {
     const std::string again = "run flightwatt batch again";
     try {
-        const auto json = Json::parse(read_file(file, most_fit_bytes), require_shallow);
+        const auto json = Json::parse(read_file(file, max_fit_bytes), require_shallow);
         if (json.at("format").get<double>() > format_version) {
             throw InputError(
                 {file.string()},
@@ -121,7 +121,7 @@ void read_fit_json(const std::filesystem::path& file, BatchFit& fit) {
         for (const auto* key : {copies_key, copies_without_power_key})
             for (const auto& copy : json.at(key))
                 fit.repeated.copies.push_back({copy.at("flight"), copy.at("of"), key == copies_key});
-        std::ranges::sort(fit.repeated.copies, {}, &CopiedFlight::flight);
+        std::ranges::sort(fit.repeated.copies, {}, &DuplicateFlight::flight);
         for (const auto& part : json.at("overlaps"))
             fit.repeated.overlaps.emplace_back(part.at("flight"), part.at("warning"));
         for (const auto phase : flight::all_phases) {
@@ -138,7 +138,7 @@ void read_fit_json(const std::filesystem::path& file, BatchFit& fit) {
 
 /// Of the files of a fit but fit.json, and of its content.
 std::string seal_of(const std::filesystem::path& out, const Json& json) {
-    const OwnFiles own;
+    const OverwriteExemption own;
     Fingerprint seal;
     seal.add(json.dump());
     for (const auto* name : model_names) {
@@ -162,8 +162,8 @@ std::string text_of(const mechanical::ModelFitOptions& options) {
 
 }  // namespace
 
-std::string fingerprint_of_fit(const BatchFlights& flights, const mechanical::ModelFitOptions& options,
-                               const std::string& more) {
+std::string fit_fingerprint(const BatchFlights& flights, const mechanical::ModelFitOptions& options,
+                            const std::string& more) {
     Fingerprint fingerprint;
     const auto add = [&](std::string_view text) {
         fingerprint.add(fmt::format("{}:", text.size()));  // or two texts could be taken for others
@@ -174,7 +174,7 @@ std::string fingerprint_of_fit(const BatchFlights& flights, const mechanical::Mo
     add(text_of(options));
     add(more);
     for (const auto& [record, was_up_to_date, is_of_this_run, is_kept, selection] : flights) {
-        if (in_record(record.flight) != record.flight) return "";  // its JSON cannot name the flights
+        if (to_valid_utf8(record.flight) != record.flight) return "";  // its JSON cannot name the flights
         add(is_kept ? "kept" : "");
         add(record.flight);
         add(record.results);
@@ -187,11 +187,11 @@ std::string fingerprint_of_fit(const BatchFlights& flights, const mechanical::Mo
     return fingerprint.hex();
 }
 
-bool is_fit_of(const std::filesystem::path& out, const std::string& made_from) {
+bool is_fit_current(const std::filesystem::path& out, const std::string& made_from) {
     if (made_from.empty()) return false;
-    const OwnFiles own;
+    const OverwriteExemption own;
     try {
-        auto json = Json::parse(read_file(out / fit_name, most_fit_bytes), require_shallow);
+        auto json = Json::parse(read_file(out / fit_name, max_fit_bytes), require_shallow);
         const auto seal = json.at("seal").get<std::string>();
         json.erase("seal");
         return json.at("made_from").get<std::string>() == made_from && seal == seal_of(out, json);
@@ -209,16 +209,16 @@ BatchFit fit_flights(std::span<const mechanical::FlightSamples> flights, const m
 }
 
 void write_batch_fit(const BatchFit& fit, const std::filesystem::path& out) {
-    write_file_atomically(out / model_errors_name, to_toml(fit.model), out / unfinished_folder);
+    write_file_atomically(out / model_errors_name, to_toml(fit.model), out / temporary_folder);
     auto plain = fit.model;
     for (auto& phase : plain.phases.values) {
         phase.errors.reset();
         phase.spread.reset();
     }
-    write_file_atomically(out / model_name, to_toml(plain), out / unfinished_folder);
+    write_file_atomically(out / model_name, to_toml(plain), out / temporary_folder);
     auto sealed = Json::parse(text_of(json_of(fit)));  // as it will be read: numbers and names that are no UTF-8
     sealed["seal"] = seal_of(out, sealed);
-    write_file_atomically(out / fit_name, text_of(sealed), out / unfinished_folder);
+    write_file_atomically(out / fit_name, text_of(sealed), out / temporary_folder);
 }
 
 std::vector<std::string> remove_batch_fit(const std::filesystem::path& out) {

@@ -17,20 +17,21 @@ struct BatchFit {
     mechanical::ModelFitOptions options;
     std::set<std::string> excluded;     ///< flights that were not to be used
     std::set<std::string> keep;         ///< flights that were used in spite of what spoke against it
-    RepeatedFlights repeated = {};      ///< flights that are another one under a second name, or share a part of one
+    Duplicates repeated = {};           ///< flights that are another one under a second name, or share a part of one
     mechanical::MechanicalModel model;  ///< with its errors
     flight::PerPhase<mechanical::CurveBand> bands;
-    std::string made_from;  ///< see fingerprint_of_fit; empty: not to be recognised
+    std::string input_fingerprint;  ///< see fit_fingerprint; empty: not to be recognised
 };
 
 /// Of all that a fit is made from: the flights as they are recorded and selected, before copies are looked for, and how
 /// they are fitted. Equal where the same program would come to the same model, of the same flights; empty where that
 /// cannot be told, as fit.json cannot name a flight.
-std::string fingerprint_of_fit(const BatchFlights& flights, const mechanical::ModelFitOptions& options,
-                               const std::string& more);
+std::string fit_fingerprint(const BatchFlights& flights, const mechanical::ModelFitOptions& options,
+                            const std::string& more);
 
-/// Whether what write_batch_fit wrote into OUT was made from the same, and its files and tables are as they were written.
-bool is_fit_of(const std::filesystem::path& out, const std::string& made_from);
+/// Whether what write_batch_fit wrote into OUT was made from the same, and its files and tables are as they were
+/// written.
+bool is_fit_current(const std::filesystem::path& out, const std::string& made_from);
 
 /// Fits, analyses the errors and draws the bands. Throws what fit_model throws.
 BatchFit fit_flights(std::span<const mechanical::FlightSamples> flights, const mechanical::ModelFitOptions& options);

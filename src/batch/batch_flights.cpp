@@ -30,16 +30,16 @@ void serialize(Archive& archive, RecordedPhase& phase) {
     auto& statistics = phase.statistics;
     archive(phase.sortie, phase.phase, phase.start_s, phase.end_s, phase.start_gap_s, phase.end_gap_s, phase.complete,
             statistics.samples, statistics.mean_power_w, statistics.energy_wh, statistics.counter_energy_wh,
-            statistics.gaps, statistics.longest_gap_s);
+            statistics.gaps, statistics.max_gap_s);
 }
 
 template <typename Archive>
 void serialize(Archive& archive, FlightRecord& record) {
     archive(record.flight, record.log, record.fingerprint, record.results, record.accepted, record.error,
             record.is_of_other_aircraft, record.aircraft_id, record.aircraft_name, record.power_source,
-            record.current_origin, record.phases, record.warnings, record.power_faults, record.lacks_power,
-            record.why_not_fitted, record.content.decimals, record.content.has_definitions, record.content.samples,
-            record.content.parts);
+            record.current_origin, record.phases, record.warnings, record.power_faults, record.no_power_reason,
+            record.not_fitted_reason, record.content.decimals, record.content.has_definitions, record.content.samples,
+            record.content.hash_divisor);
 }
 
 template <typename Archive>
@@ -49,8 +49,8 @@ void serialize(Archive& archive, SelectedSortie& sortie) {
 
 template <typename Archive>
 void serialize(Archive& archive, BatchFlight& flight) {
-    archive(flight.record, flight.was_up_to_date, flight.is_of_this_run, flight.is_kept, flight.selection.flights,
-            flight.selection.exclusions, flight.selection.same_as);
+    archive(flight.record, flight.was_up_to_date, flight.is_of_this_run, flight.log_is_missing,
+            flight.selection.flights, flight.selection.exclusions, flight.selection.same_as);
 }
 
 namespace {
@@ -60,7 +60,7 @@ constexpr auto nowhere = std::numeric_limits<std::uint64_t>::max();
 }  // namespace
 
 BatchFlights::BatchFlights(std::size_t count, const std::filesystem::path& folder)
-    : file_(std::make_unique<SpoolFile>(folder)), places_(count, nowhere) {}
+    : file_(std::make_unique<SpoolFile>(folder)), offsets_(count, nowhere) {}
 
 BatchFlights::BatchFlights(std::span<const BatchFlight> flights, const std::filesystem::path& folder)
     : BatchFlights(flights.size(), folder) {
@@ -75,12 +75,12 @@ void BatchFlights::put(std::size_t number, const BatchFlight& flight) {
     std::ostringstream text;
     cereal::BinaryOutputArchive archive(text);
     archive(flight);
-    places_.at(number) = file_->add(std::move(text).str());
+    offsets_.at(number) = file_->add(std::move(text).str());
 }
 
 BatchFlight BatchFlights::operator[](std::size_t number) const {
-    if (places_.at(number) == nowhere) throw OutputError("a log of the batch was not done");
-    std::istringstream text(file_->read(places_[number]));
+    if (offsets_.at(number) == nowhere) throw OutputError("a log of the batch was not done");
+    std::istringstream text(file_->read(offsets_[number]));
     cereal::BinaryInputArchive archive(text);
     BatchFlight flight;
     archive(flight);

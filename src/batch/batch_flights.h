@@ -17,7 +17,7 @@ class SpoolFile;
 
 /// A sortie that a fit takes, and which of its phases.
 struct SelectedSortie {
-    std::string flight;  ///< see flight_name_of_sortie
+    std::string flight;  ///< see sortie_name
     flight::PerPhase<bool> phases;
 };
 
@@ -32,13 +32,13 @@ struct Selection {
 struct BatchFlight {
     FlightRecord record;
     bool was_up_to_date = false;
-    bool is_of_this_run = true;  ///< see LogFile
-    bool is_kept = false;        ///< its log is gone: it is as an earlier run left it
+    bool is_of_this_run = true;   ///< see LogFile
+    bool log_is_missing = false;  ///< its log is gone: it is as an earlier run left it
     Selection selection;
 };
 
-/// What became of the logs of a batch, in their order, without samples, marks and verdicts, which their records hold. It
-/// lies in a file, so that a hundred thousand take little more memory than a thousand: eight bytes each.
+/// What became of the logs of a batch, in their order, without samples, marks and verdicts, which their records hold.
+/// It lies in a file, so that a hundred thousand take little more memory than a thousand: eight bytes each.
 class BatchFlights {
   public:
     /// So many, none of which is there yet. Throws OutputError where no file can be made in the folder.
@@ -48,7 +48,7 @@ class BatchFlights {
     BatchFlights(BatchFlights&&) noexcept;
     BatchFlights& operator=(BatchFlights&&) noexcept;
 
-    std::size_t size() const { return places_.size(); }
+    std::size_t size() const { return offsets_.size(); }
     /// From any thread, of one number from one at a time. Throws OutputError where the file cannot be written.
     void put(std::size_t number, const BatchFlight& flight);
     /// Throws OutputError where the file cannot be read, or it was not put there.
@@ -80,7 +80,7 @@ class BatchFlights {
 
   private:
     std::unique_ptr<SpoolFile> file_;
-    std::vector<std::uint64_t> places_;  ///< in the file
+    std::vector<std::uint64_t> offsets_;  ///< in the file
 };
 
 }  // namespace flightwatt::batch

@@ -2,8 +2,8 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/file_use.h"
 #include "base/fingerprint.h"
+#include "base/overwrite_guard.h"
 #include "base/parallel.h"
 #include "batch/batch_files.h"
 #include "batch/manifest.h"
@@ -27,10 +27,10 @@ namespace {
 
 void write_result(const BatchOptions& options, const std::string& flight, const char* ending,
                   const std::string& content) {
-    std::optional<WriteGate::Pass> pass;
+    std::optional<WriteGate::WriterGuard> pass;
     if (options.gate != nullptr) pass.emplace(*options.gate);
-    const OwnFiles own;  // its name is no other's: what a batch writes is not kept in mind file by file
-    write_file_atomically(result_path(options.out, flight, ending), content, options.out / unfinished_folder);
+    const OverwriteExemption own;  // its name is no other's: what a batch writes is not kept in mind file by file
+    write_file_atomically(result_path(options.out, flight, ending), content, options.out / temporary_folder);
 }
 
 /// Of everything that the result depends on.
@@ -53,19 +53,19 @@ std::string fingerprint_of(const flight::FlightFile& file, const LogFile& log, c
 }
 
 bool has_results(const BatchOptions& options, const std::string& flight) {
-    return std::filesystem::exists(result_path(options.out, flight, series_ending)) ||
-           std::filesystem::exists(result_path(options.out, flight, phases_ending));
+    return std::filesystem::exists(result_path(options.out, flight, series_suffix)) ||
+           std::filesystem::exists(result_path(options.out, flight, phases_suffix));
 }
 
 /// The remembered result of a log, if it is that of this fingerprint and its files are as they were written.
 std::optional<FlightRecord> remembered(const BatchOptions& options, const LogFile& log,
                                        const std::string& fingerprint) {
-    const OwnFiles own;
+    const OverwriteExemption own;
     std::error_code none;
-    if (!std::filesystem::is_regular_file(result_path(options.out, log.flight, record_ending), none))
+    if (!std::filesystem::is_regular_file(result_path(options.out, log.flight, record_suffix), none))
         return std::nullopt;
     try {
-        auto record = read_intact_record(options.out, log.flight);
+        auto record = read_verified_record(options.out, log.flight);
         if (record.fingerprint != fingerprint || (!record.accepted && has_results(options, log.flight))) {
             return std::nullopt;
         }
@@ -87,9 +87,9 @@ FlightRecord do_accepted(const flight::FlightFile& file, const LogFile& log, con
     auto loaded = flight::load_flight(file, load);
     loaded.series.flight = log.flight;
     auto record = record_of(loaded);
-    record.why_not_fitted = log.why_not_fitted;
-    write_result(options, log.flight, series_ending, to_csv(loaded.series));
-    write_result(options, log.flight, phases_ending, flight::phases_csv(loaded.series, loaded.phases));
+    record.not_fitted_reason = log.why_not_fitted;
+    write_result(options, log.flight, series_suffix, to_csv(loaded.series));
+    write_result(options, log.flight, phases_suffix, flight::phases_csv(loaded.series, loaded.phases));
     return record;
 }
 
@@ -99,7 +99,7 @@ void conclude(BatchFlight& done, const LogFile& log, const std::string& fingerpr
     done.record.log = log.path;
     done.record.fingerprint = fingerprint;
     const auto text = to_json_text(done.record);
-    write_result(options, log.flight, record_ending, text);
+    write_result(options, log.flight, record_suffix, text);
     done.record = record_from_json(text).value();  // what later runs remember: both must report the same
     done.record.flight = log.flight;
 }
@@ -107,7 +107,7 @@ void conclude(BatchFlight& done, const LogFile& log, const std::string& fingerpr
 /// A log that is there; `fingerprint` is set as soon as it is known. Throws whatever is wrong with the log.
 BatchFlight do_existing(const LogFile& log, const BatchOptions& options, std::string& fingerprint) {
     BatchFlight done;
-    const flight::FlightFile file(log.path, options.load.most_log_bytes, options.load.messages);
+    const flight::FlightFile file(log.path, options.load.max_log_bytes, options.load.messages);
     fingerprint = fingerprint_of(file, log, options);
     file.require_unchanged();
     if (auto record = remembered(options, log, fingerprint)) {
@@ -117,22 +117,22 @@ BatchFlight do_existing(const LogFile& log, const BatchOptions& options, std::st
         remove_results(options.out, log.flight);
         done.record = do_accepted(file, log, options);
         {
-            const OwnFiles own;
+            const OverwriteExemption own;
             done.record.results = results_fingerprint(options.out, log.flight);
         }
         conclude(done, log, fingerprint, options);
     }
-    done.selection = selection_of(select_for_fit(done.record, options.needed_samples, options.load));
+    done.selection = select_without_samples(select_for_fit(done.record, options.min_samples, options.load));
     return done;
 }
 
 /// What an earlier run left of a log that is gone. Throws InputError where that is not as it was written.
 BatchFlight do_gone(const LogFile& log, const BatchOptions& options) {
-    const OwnFiles own;
+    const OverwriteExemption own;
     BatchFlight kept;
-    kept.was_up_to_date = kept.is_kept = true;
-    kept.record = read_intact_record(options.out, log.flight);
-    kept.selection = selection_of(select_for_fit(kept.record, options.needed_samples, options.load));
+    kept.was_up_to_date = kept.log_is_missing = true;
+    kept.record = read_verified_record(options.out, log.flight);
+    kept.selection = select_without_samples(select_for_fit(kept.record, options.min_samples, options.load));
     return kept;
 }
 
@@ -165,7 +165,7 @@ BatchFlight reject(const LogFile& log, const std::string& why, bool is_of_other_
     rejected.record.is_of_other_aircraft = is_of_other_aircraft;
     rejected.record.flight = log.flight;
     rejected.record.log = log.path;
-    if (!log.problem.empty() || log.is_gone) return rejected;  // there is nothing of it to write, or all to keep
+    if (!log.problem.empty() || log.is_missing) return rejected;  // there is nothing of it to write, or all to keep
     remove_results(options.out, log.flight);
     conclude(rejected, log, fingerprint, options);
     return rejected;
@@ -178,13 +178,13 @@ BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
     bool is_of_other_aircraft = false;
     try {
         if (!log.problem.empty()) throw InputError({log.path}, log.problem);
-        done = log.is_gone ? do_gone(log, options) : do_existing(log, options, fingerprint);
+        done = log.is_missing ? do_gone(log, options) : do_existing(log, options, fingerprint);
     } catch (const flight::OtherAircraftError& error) {
         is_of_other_aircraft = true;
         why = fmt::format("{}; {}", error.what(), error.hint());
     } catch (...) {
         why = why_rejected(log, fingerprint);
-        if (log.is_gone) why += ", and its log is gone: bring it back, or drop the flight with --prune";
+        if (log.is_missing) why += ", and its log is gone: bring it back, or drop the flight with --prune";
     }
     if (!why.empty()) done = reject(log, why, is_of_other_aircraft, fingerprint, options);
     done.is_of_this_run = log.is_of_this_run;
@@ -193,7 +193,7 @@ BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
 
 }  // namespace
 
-Selection selection_of(mechanical::MeasuredFlights measured) {
+Selection select_without_samples(mechanical::MeasuredFlights measured) {
     Selection selection;
     for (auto& flight : measured.flights) {
         SelectedSortie sortie{std::move(flight.samples.flight), {}};
@@ -206,8 +206,8 @@ Selection selection_of(mechanical::MeasuredFlights measured) {
 
 BatchFlights run_batch(const LogList& logs, const BatchOptions& options, const BatchProgress& progress) {
     make_directories(options.out / "flights");
-    make_directories(options.out / unfinished_folder);
-    BatchFlights flights(logs.size(), options.out / unfinished_folder);
+    make_directories(options.out / temporary_folder);
+    BatchFlights flights(logs.size(), options.out / temporary_folder);
     std::mutex mutex;  // guards what follows
     std::size_t done = 0;
     const auto work = [&](std::size_t i) {
@@ -227,26 +227,26 @@ std::vector<mechanical::MeasuredFlight> read_samples(const BatchFlights& flights
     std::vector<std::vector<mechanical::MeasuredFlight>> of_logs(selected.size());
     for_each_in_parallel(selected.size(), [&](std::size_t i) {
         const auto flight = flights[selected[i]];
-        const OwnFiles own;
-        const auto file = result_path(options.out, flight.record.flight, record_ending);
+        const OverwriteExemption own;
+        const auto file = result_path(options.out, flight.record.flight, record_suffix);
         auto record = record_from_json(read_file(file));
         if (!record) throw InputError({file.string()}, "it changed while it was read", "run flightwatt batch again");
         record->flight = flight.record.flight;  // of a name that is no UTF-8, too
-        of_logs[i] = select_for_fit(*record, options.needed_samples, options.load).flights;
+        of_logs[i] = select_for_fit(*record, options.min_samples, options.load).flights;
     });
     std::vector<mechanical::MeasuredFlight> measured;
     for (auto& of_log : of_logs) std::ranges::move(of_log, std::back_inserter(measured));
     return measured;
 }
 
-std::string mix_of(const BatchFlights& flights) {
-    std::vector<flight::FlownBy> flown;
+std::string mixed_aircraft_reason(const BatchFlights& flights) {
+    std::vector<flight::FlightAircraft> flown;
     for (const auto& flight : flights) {
         const auto& record = flight.record;
         if (!flight.selection.flights.empty())
             flown.push_back({record.flight, record.aircraft_id, record.aircraft_name});
     }
-    return describe_mix(flown);
+    return describe_mixed_aircraft(flown);
 }
 
 }  // namespace flightwatt::batch

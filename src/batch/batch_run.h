@@ -20,7 +20,7 @@ struct BatchOptions {
     std::filesystem::path out;
     flight::LoadOptions load;
     unsigned jobs = 0;  ///< logs at a time; 0: one a core
-    std::size_t needed_samples = 8;
+    std::size_t min_samples = 8;
     WriteGate* gate = nullptr;  ///< passed to write a file, if there is one
 };
 
@@ -39,40 +39,40 @@ BatchFlights run_batch(const LogList& logs, const BatchOptions& options, const B
 std::vector<mechanical::MeasuredFlight> read_samples(const BatchFlights& flights, const BatchOptions& options);
 
 /// What select_for_fit selected, without its samples.
-Selection selection_of(mechanical::MeasuredFlights measured);
+Selection select_without_samples(mechanical::MeasuredFlights measured);
 
 /// A flight that is another one under a second name.
-struct CopiedFlight {
+struct DuplicateFlight {
     std::string flight;
     std::string same_as;    ///< the one that is used
     bool has_power = true;  ///< or nothing of it would be fitted anyway
-    bool operator==(const CopiedFlight&) const = default;
+    bool operator==(const DuplicateFlight&) const = default;
 };
 
 /// Flights that are there more than once.
-struct RepeatedFlights {
-    std::vector<CopiedFlight> copies;                             ///< by name
+struct Duplicates {
+    std::vector<DuplicateFlight> copies;                          ///< by name
     std::vector<std::pair<std::string, std::string>> overlaps{};  ///< flight and warning: it shares less than half
 };
 
 /// Each flight is used once: one with power, of these one whose log is still there, of these the better copy
-/// (is_better_copy), then the first. Reads the marks of their contents from the records in OUT.
-RepeatedFlights find_repeated(const BatchFlights& flights, const std::filesystem::path& out);
+/// (is_preferred_duplicate), then the first. Reads the marks of their contents from the records in OUT.
+Duplicates find_duplicates(const BatchFlights& flights, const std::filesystem::path& out);
 
 /// What is used instead of a flight with power; nullptr if it is itself.
-const std::string* used_instead_of(const std::string& flight, const RepeatedFlights& repeated);
+const std::string* original_of(const std::string& flight, const Duplicates& repeated);
 
 /// Takes copies out of what is fitted, and says so; warns of overlaps.
-void exclude_repeated(BatchFlights& flights, const RepeatedFlights& repeated);
+void exclude_duplicates(BatchFlights& flights, const Duplicates& repeated);
 
-/// The copies that exclude_repeated took out. Nobody has to hold a hundred thousand of them meanwhile.
-std::vector<CopiedFlight> copies_among(const BatchFlights& flights);
+/// The copies that exclude_duplicates took out. Nobody has to hold a hundred thousand of them meanwhile.
+std::vector<DuplicateFlight> excluded_duplicates(const BatchFlights& flights);
 
 /// Why a flight is not fitted that is a copy of another.
-std::string reason_of_copy(const std::string& other);
+std::string duplicate_reason(const std::string& other);
 
-/// Why the flights that are fitted are not of one aircraft (describe_mix); empty if they may be.
-std::string mix_of(const BatchFlights& flights);
+/// Why the flights that are fitted are not of one aircraft (describe_mixed_aircraft); empty if they may be.
+std::string mixed_aircraft_reason(const BatchFlights& flights);
 
 /// What became of the logs, in all.
 struct Totals {
@@ -85,10 +85,11 @@ struct Totals {
 Totals totals_of(const BatchFlights& flights);
 
 /// A row a sortie (or rejected log) for people, of the first logs.
-TextTable flights_table(const BatchFlights& flights, std::size_t most_logs);
+TextTable flights_table(const BatchFlights& flights, std::size_t max_logs);
 
-/// OUT/flights.csv, piece by piece, as long as `flights` is there: flight,sortie,phase,start_s,end_s,duration_s,samples,mean_power_w,energy_wh,
-/// counter_energy_wh,used and more; rejected logs have a row with their error.
+/// OUT/flights.csv, piece by piece, as long as `flights` is there:
+/// flight,sortie,phase,start_s,end_s,duration_s,samples,mean_power_w,energy_wh, counter_energy_wh,used and more;
+/// rejected logs have a row with their error.
 TextWriter catalogue_csv(const BatchFlights& flights);
 
 }  // namespace flightwatt::batch

@@ -1,9 +1,9 @@
 #include "batch/flight_record.h"
 
 #include "base/fingerprint.h"
-#include "flight/chosen_track.h"
-#include "flight/edge_witness.h"
+#include "flight/edge_events.h"
 #include "flight/power_check.h"
+#include "flight/selected_track.h"
 
 #include <cmath>
 #include <concepts>
@@ -36,7 +36,7 @@ void visit_recorded_phase(Phase& phase, const Visit& visit) {
     visit("energy_wh", phase.statistics.energy_wh);
     visit("counter_energy_wh", phase.statistics.counter_energy_wh);
     visit("gaps", phase.statistics.gaps);
-    visit("longest_gap_s", phase.statistics.longest_gap_s);
+    visit("longest_gap_s", phase.statistics.max_gap_s);
 }
 
 template <typename Flight, typename Samples, typename Visit>
@@ -68,7 +68,7 @@ void visit_bin(Bin& bin, const Visit& visit) {
 template <typename Motion, typename Visit>
 void visit_motion(Motion& motion, const Visit& visit) {
     visit("bank_measured", motion.bank_measured);
-    visit("lacks", motion.lacks);
+    visit("lacks", motion.no_bins_reason);
     visit("bins", motion.bins);
 }
 
@@ -77,7 +77,7 @@ void visit_content(Content& content, const Visit& visit) {
     visit("has_definitions", content.has_definitions);
     visit("samples", content.samples);
     visit("decimals", content.decimals);
-    visit("parts", content.parts);
+    visit("parts", content.hash_divisor);
 }
 
 template <typename Record, typename Visit>
@@ -97,8 +97,8 @@ void visit_record(Record& record, const Visit& visit) {
     visit("verdicts", record.verdicts);
     visit("warnings", record.warnings);
     visit("power_faults", record.power_faults);
-    visit("lacks_power", record.lacks_power);
-    visit("why_not_fitted", record.why_not_fitted);
+    visit("lacks_power", record.no_power_reason);
+    visit("why_not_fitted", record.not_fitted_reason);
     visit("measured", record.measured);
     visit("content", record.content);
     // Its marks follow: they stand last, so that all else can be read without them.
@@ -130,17 +130,17 @@ struct RecordWriter {
         }
         return json;
     }
-    static Json json_of(const mechanical::FlightMotion& motion) {
+    static Json json_of(const mechanical::BinnedFlight& motion) {
         Json json = Json::object();
         visit_motion(motion, RecordWriter{json});
         return json;
     }
-    static Json json_of(const std::vector<mechanical::MotionBin>& bins) {
+    static Json json_of(const std::vector<mechanical::FlightBin>& bins) {
         Json json = Json::array();
         for (const auto& bin : bins) visit_bin(bin, RecordWriter{json.emplace_back()});
         return json;
     }
-    static Json json_of(const flight::FlightContent& content) {
+    static Json json_of(const flight::FlightSketch& content) {
         Json json = Json::object();
         visit_content(content, RecordWriter{json});
         return json;
@@ -163,7 +163,7 @@ struct RecordWriter {
         for (const auto& phase : phases) visit_recorded_phase(phase, RecordWriter{json.emplace_back()});
         return json;
     }
-    static Json json_of(const std::vector<RecordedVerdict>& verdicts) {
+    static Json json_of(const std::vector<RecordedEdgeCheck>& verdicts) {
         Json json = Json::array();
         for (const auto& [time_s, text] : verdicts) json.push_back({{"time_s", time_s}, {"verdict", text}});
         return json;
@@ -234,10 +234,10 @@ struct RecordReader {
             covariates[mechanical::covariate_from(name).value()] = value.get<double>();
         }
     }
-    static void read(const Json& json, std::vector<mechanical::MotionBin>& bins) {
+    static void read(const Json& json, std::vector<mechanical::FlightBin>& bins) {
         for (const auto& entry : json) visit_bin(bins.emplace_back(), RecordReader{entry});
     }
-    static void read(const Json& json, flight::FlightContent& content) { visit_content(content, RecordReader{json}); }
+    static void read(const Json& json, flight::FlightSketch& content) { visit_content(content, RecordReader{json}); }
     static void read(const Json& json, FlightMarks& of_precisions) {
         for (std::size_t i = 0; i < of_precisions.size(); ++i) {
             const auto& fingerprints = json.at(i).at("fingerprints");
@@ -249,7 +249,7 @@ struct RecordReader {
     static void read(const Json& json, std::vector<RecordedPhase>& phases) {
         for (const auto& entry : json) visit_recorded_phase(phases.emplace_back(), RecordReader{entry});
     }
-    static void read(const Json& json, std::vector<RecordedVerdict>& verdicts) {
+    static void read(const Json& json, std::vector<RecordedEdgeCheck>& verdicts) {
         for (const auto& entry : json) verdicts.push_back({entry.at("time_s"), entry.at("verdict")});
     }
     static void read(const Json& json, mechanical::MeasuredFlights& measured) {
@@ -295,11 +295,11 @@ std::size_t marks_at(const std::string& text) {
 }
 
 /// What the best witness of an edge says.
-std::string verdict_text(const flight::ExplainedEdge& explained) {
-    if (explained.witnesses.empty()) return explained.verdict;
-    const auto& best = explained.witnesses.front();
+std::string verdict_text(const flight::EdgeReport& explained) {
+    if (explained.matching_events.empty()) return explained.agreement;
+    const auto& best = explained.matching_events.front();
     const bool agrees = std::abs(best.after_s) <= flight::agreement_s;
-    return fmt::format("{} {} {} ({:+.1f} s)", explained.verdict, agrees ? "with" : "from", best.what, best.after_s);
+    return fmt::format("{} {} {} ({:+.1f} s)", explained.agreement, agrees ? "with" : "from", best.what, best.after_s);
 }
 
 }  // namespace
@@ -312,17 +312,17 @@ FlightRecord record_of(const flight::LoadedFlight& loaded) {
     record.accepted = true;
     record.aircraft_id = series.aircraft_id;
     record.aircraft_name = series.aircraft_name;
-    record.content = content_of(series);
+    record.content = make_sketch(series);
     record.power_source = power_track(series).source;
     record.current_origin = to_string(series.current_origin);
     record.warnings = loaded.warnings;
     record.power_faults = loaded.power.power_faults;
-    record.lacks_power = loaded.lacks_power;
-    if (record.lacks_power.empty()) record.measured = mechanical::measure_flights(series, phases, 0);
-    const flight::ChosenTracks tracks(series);
+    record.no_power_reason = loaded.lacks_power;
+    if (record.no_power_reason.empty()) record.measured = mechanical::extract_flights(series, phases, 0);
+    const flight::SelectedTracks tracks(series);
     const flight::PowerStatistics power(series);
     for (const auto& sortie : phases.sorties) {
-        for (const auto& edge : explain_edges(tracks, sortie)) {
+        for (const auto& edge : compare_edges_with_events(tracks, sortie)) {
             record.verdicts.push_back({edge.edge.time_s, verdict_text(edge)});
         }
         for (const auto& span : sortie.phases) {
@@ -336,7 +336,7 @@ FlightRecord record_of(const flight::LoadedFlight& loaded) {
 std::string to_json_text(const FlightRecord& record) {
     Json json;
     visit_record(record, RecordWriter{json});
-    RecordWriter{json}(marks_name, record.content.marks);
+    RecordWriter{json}(marks_name, record.content.hashes);
     // File names need not be UTF-8, and a record must never fail for that.
     auto text = json.dump(1, ' ', false, Json::error_handler_t::replace);
     text.resize(text.size() - std::string_view("\n}").size());
@@ -367,22 +367,22 @@ std::optional<FlightMarks> marks_from_json(const std::string& text) {
     }
 }
 
-std::string in_record(const std::string& name) {
+std::string to_valid_utf8(const std::string& name) {
     return Json::parse(Json(name).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
 }
 
-std::string exclusion_of(const FlightRecord& record, const flight::LoadOptions& options) {
+std::string exclusion_reason(const FlightRecord& record, const flight::LoadOptions& options) {
     if (options.excluded.contains(record.flight)) return "--exclude names it";
-    if (!record.lacks_power.empty()) return record.lacks_power;
+    if (!record.no_power_reason.empty()) return record.no_power_reason;
     if (options.keep.contains(record.flight)) return "";
     if (!record.power_faults.empty()) return flight::describe_power_faults(record.power_faults);
-    return record.why_not_fitted;
+    return record.not_fitted_reason;
 }
 
 mechanical::MeasuredFlights select_for_fit(FlightRecord& record, std::size_t needed_samples,
                                            const flight::LoadOptions& options) {
     auto measured = std::exchange(record.measured, {});
-    if (const auto exclusion = exclusion_of(record, options); !exclusion.empty() && record.accepted) {
+    if (const auto exclusion = exclusion_reason(record, options); !exclusion.empty() && record.accepted) {
         measured.flights.clear();
         measured.sorties.clear();
         measured.exclusions.push_back({record.flight, std::nullopt, exclusion});

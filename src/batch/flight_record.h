@@ -26,12 +26,12 @@ struct RecordedPhase {
 };
 
 /// What the autopilot says of an edge of a phase.
-struct RecordedVerdict {
+struct RecordedEdgeCheck {
     double time_s = 0.0;  ///< of the edge
     std::string text;     ///< "agrees with TAKEOFF (-0.4 s)", "no witness"
 };
 
-using FlightMarks = decltype(flight::FlightContent::marks);
+using FlightMarks = decltype(flight::FlightSketch::hashes);
 
 /// What became of one log: enough to go on without reading it again.
 struct FlightRecord {
@@ -47,20 +47,20 @@ struct FlightRecord {
     std::string power_source;
     std::string current_origin;  ///< see CurrentOrigin
     std::vector<RecordedPhase> phases;
-    std::vector<RecordedVerdict> verdicts;  ///< of the edges that the log shows
+    std::vector<RecordedEdgeCheck> verdicts;  ///< of the edges that the log shows
     std::vector<std::string> warnings;
     std::vector<std::string> power_faults;  ///< of its power record: see PowerReport
-    std::string lacks_power;                ///< why no power was measured; empty if it was
-    std::string why_not_fitted;             ///< what its folder says: see LogFile
+    std::string no_power_reason;            ///< why no power was measured; empty if it was
+    std::string not_fitted_reason;          ///< what its folder says: see LogFile
     mechanical::MeasuredFlights measured;   ///< of every complete phase, however few its samples
-    flight::FlightContent content;          ///< to find it under another name; its marks are read where they are needed
+    flight::FlightSketch content;           ///< to find it under another name; its marks are read where they are needed
 };
 
 /// The record of a flight that was read and segmented.
 FlightRecord record_of(const flight::LoadedFlight& loaded);
 
-/// The record as JSON with a seal, the fingerprint of its text, and back, without the marks of its content. Reading gives
-/// std::nullopt for what is no record of this version, or was changed since.
+/// The record as JSON with a seal, the fingerprint of its text, and back, without the marks of its content. Reading
+/// gives std::nullopt for what is no record of this version, or was changed since.
 std::string to_json_text(const FlightRecord& record);
 std::optional<FlightRecord> record_from_json(const std::string& text);
 
@@ -68,10 +68,10 @@ std::optional<FlightRecord> record_from_json(const std::string& text);
 std::optional<FlightMarks> marks_from_json(const std::string& text);
 
 /// The name as a record holds it: JSON has none that is not UTF-8.
-std::string in_record(const std::string& name);
+std::string to_valid_utf8(const std::string& name);
 
 /// Why a batch uses nothing of the flight: its power record, its folder or --exclude; empty if it does.
-std::string exclusion_of(const FlightRecord& record, const flight::LoadOptions& options);
+std::string exclusion_reason(const FlightRecord& record, const flight::LoadOptions& options);
 
 /// What a fit of a batch takes of a flight. Takes the samples out of the record: of thousands of flights they
 /// are kept until the fit, once.

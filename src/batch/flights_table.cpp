@@ -10,7 +10,7 @@ namespace flightwatt::batch {
 namespace {
 
 bool is_used(const BatchFlight& flight, const RecordedPhase& phase) {
-    const auto name = mechanical::flight_name_of_sortie(flight.record.flight, phase.sortie);
+    const auto name = mechanical::sortie_name(flight.record.flight, phase.sortie);
     return std::ranges::any_of(flight.selection.flights, [&](const SelectedSortie& sortie) {
         return sortie.flight == name && sortie.phases[phase.phase];
     });
@@ -24,7 +24,7 @@ struct SortieRow {
     bool has_counter = true;
     std::size_t samples = 0;
     std::size_t gaps = 0;
-    double longest_gap_s = 0.0;
+    double max_gap_s = 0.0;
 };
 
 std::vector<SortieRow> sortie_rows(const FlightRecord& record) {
@@ -38,13 +38,13 @@ std::vector<SortieRow> sortie_rows(const FlightRecord& record) {
         row.has_counter = row.has_counter && phase.statistics.counter_energy_wh.has_value();
         row.samples += phase.statistics.samples;
         row.gaps += phase.statistics.gaps;
-        row.longest_gap_s = std::max(row.longest_gap_s, phase.statistics.longest_gap_s);
+        row.max_gap_s = std::max(row.max_gap_s, phase.statistics.max_gap_s);
     }
     return rows;
 }
 
 std::vector<std::string> cells_of(const BatchFlight& flight, const SortieRow& row, std::size_t sortie) {
-    const bool has_power = flight.record.lacks_power.empty();
+    const bool has_power = flight.record.no_power_reason.empty();
     std::vector<std::string> cells{flight.record.flight,
                                    flight::describe_aircraft(flight.record.aircraft_id, flight.record.aircraft_name),
                                    fmt::format("{}", sortie)};
@@ -64,7 +64,7 @@ std::vector<std::string> cells_of(const BatchFlight& flight, const SortieRow& ro
     cells.push_back(row.has_counter ? fmt::format("{:.3f}", row.counter_wh) : "-");
     cells.push_back(fmt::format("{}", row.samples));
     cells.push_back(has_power ? fmt::format("{}", row.gaps) : "-");
-    cells.push_back(has_power ? fmt::format("{:.1f}", row.longest_gap_s) : "-");
+    cells.push_back(has_power ? fmt::format("{:.1f}", row.max_gap_s) : "-");
     cells.push_back(fmt::format("{}", flight.record.warnings.size()));
     const auto fitted = std::count_if(row.phases.values.begin(), row.phases.values.end(),
                                       [&](const auto* phase) { return phase != nullptr && is_used(flight, *phase); });
@@ -82,15 +82,15 @@ void add_rows(const BatchFlight& flight, CsvWriter& csv) {
                 none, none, none, none, record.error);
         return;
     }
-    const bool has_power = record.lacks_power.empty();
+    const bool has_power = record.no_power_reason.empty();
     const auto known = [&](auto value) { return has_power ? std::optional(value) : std::nullopt; };
-    const auto faults = has_power ? fmt::format("{}", fmt::join(record.power_faults, "; ")) : record.lacks_power;
+    const auto faults = has_power ? fmt::format("{}", fmt::join(record.power_faults, "; ")) : record.no_power_reason;
     for (const auto& phase : record.phases) {
         const auto& statistics = phase.statistics;
         csv.add(record.flight, phase.sortie, to_string(phase.phase), phase.start_s, phase.end_s,
                 phase.end_s - phase.start_s, known(statistics.samples), known(statistics.mean_power_w),
                 known(statistics.energy_wh), statistics.counter_energy_wh, is_used(flight, phase),
-                known(statistics.gaps), known(statistics.longest_gap_s), phase.complete, record.aircraft_id,
+                known(statistics.gaps), known(statistics.max_gap_s), phase.complete, record.aircraft_id,
                 record.aircraft_name, flight::is_synthetic(record.aircraft_name), record.power_source, faults, none);
     }
 }
@@ -102,7 +102,7 @@ Totals totals_of(const BatchFlights& flights) {
     for (const auto& flight : flights) {
         const auto& record = flight.record;
         if (record.accepted) ++totals.accepted;
-        if (record.accepted && record.lacks_power.empty()) ++totals.with_power;
+        if (record.accepted && record.no_power_reason.empty()) ++totals.with_power;
         if (!flight.is_of_this_run) continue;
         ++totals.of_this_run;
         if (!record.accepted && !record.is_of_other_aircraft) ++totals.rejected_of_this_run;
@@ -110,12 +110,12 @@ Totals totals_of(const BatchFlights& flights) {
     return totals;
 }
 
-TextTable flights_table(const BatchFlights& flights, std::size_t most_logs) {
+TextTable flights_table(const BatchFlights& flights, std::size_t max_logs) {
     TextTable table;
     table.header = {"flight",     "aircraft",  "sortie",    "take-off s",   "cruise s",   "landing s",
                     "take-off W", "cruise W",  "landing W", "energy Wh",    "counter Wh", "samples",
                     "gaps",       "longest s", "warnings",  "phases fitted"};
-    for (std::size_t i = 0; i < std::min(flights.size(), most_logs); ++i) {
+    for (std::size_t i = 0; i < std::min(flights.size(), max_logs); ++i) {
         const auto flight = flights[i];
         if (!flight.record.accepted) {
             std::vector<std::string> row{flight.record.flight, "-"};
@@ -138,9 +138,9 @@ TextWriter catalogue_csv(const BatchFlights& flights) {
                        "aircraft_name", "synthetic", "power_source",  "power_faults", "error"});
         for (const auto& flight : flights) {
             add_rows(flight, csv);
-            if (csv.text().size() > piece_bytes) sink(csv.take());
+            if (csv.text().size() > piece_bytes) sink(csv.take_text());
         }
-        sink(csv.take());
+        sink(csv.take_text());
     };
 }
 

@@ -69,7 +69,7 @@ void add_folder(const std::filesystem::path& folder, const std::filesystem::path
 }
 
 std::vector<LogFile> each_once(std::vector<LogFile> logs) {
-    PlaceFinder find_place;
+    CanonicalPathCache find_place;
     for (auto& log : logs) {
         auto normal = std::filesystem::path(log.path).lexically_normal().string();
         // Behind a link, LINK/.. is not where LINK stands.
@@ -77,7 +77,7 @@ std::vector<LogFile> each_once(std::vector<LogFile> logs) {
         if (is_same) log.path = std::move(normal);
     }
     std::ranges::sort(logs, [](const LogFile& a, const LogFile& b) {
-        return a.path == b.path ? a.why_not_fitted < b.why_not_fitted : comes_before(a.path, b.path);
+        return a.path == b.path ? a.why_not_fitted < b.why_not_fitted : path_less(a.path, b.path);
     });
     for (auto& log : logs) log.place = find_place(log.path);
     {
@@ -103,7 +103,7 @@ std::string file_name_of(std::string name) {
 
 }  // namespace
 
-std::string PlaceFinder::operator()(const std::string& log) {
+std::string CanonicalPathCache::operator()(const std::string& log) {
     const std::filesystem::path path(log);
     auto folder = path.has_parent_path() ? path.parent_path().string() : std::string(".");
     if (folder != folder_) {
@@ -116,11 +116,11 @@ std::string PlaceFinder::operator()(const std::string& log) {
     return (place_ / path.filename()).string();
 }
 
-std::string place_of(const std::string& log) { return PlaceFinder()(log); }
+std::string canonical_path(const std::string& log) { return CanonicalPathCache()(log); }
 
-void FreeNames::take(const std::string& name) { taken_.insert(name); }
+void UniqueNames::reserve(const std::string& name) { taken_.insert(name); }
 
-std::string FreeNames::give(const std::filesystem::path& log) {
+std::string UniqueNames::assign(const std::filesystem::path& log) {
     auto name = file_name_of(telemetry::flight_name(log));
     if (name.empty()) name = "unnamed";
     if (taken_.insert(name).second) return name;
@@ -131,7 +131,7 @@ std::string FreeNames::give(const std::filesystem::path& log) {
     }
 }
 
-std::vector<std::string> listed_paths(std::string_view text, const std::string& file) {
+std::vector<std::string> parse_path_list(std::string_view text, const std::string& file) {
     if (const auto nul = text.find('\0'); nul != std::string_view::npos) {
         const auto line = static_cast<std::size_t>(std::ranges::count(text.substr(0, nul), '\n')) + 1;
         throw InputError({file, line}, "holds a NUL, which no path does",
@@ -175,16 +175,16 @@ std::vector<LogFile> find_logs(const std::vector<std::string>& inputs, const std
     }
     logs = each_once(std::move(logs));
     if (logs.empty()) {
-        constexpr std::size_t most_named = 3;
+        constexpr std::size_t max_named = 3;
         auto named = inputs;
         named.insert(named.end(), listed.begin(), listed.end());
-        const bool are_more = named.size() > most_named;
-        named.resize(std::min(named.size(), most_named));
+        const bool are_more = named.size() > max_named;
+        named.resize(std::min(named.size(), max_named));
         throw InputError({}, fmt::format("no log in {}{}", fmt::join(named, ", "), are_more ? ", ..." : ""),
                          "expected *.data, *.LOG or *.tlm, also .gz, .bz2, .xz or .zst");
     }
-    FreeNames names;
-    for (auto& log : logs) log.flight = names.give(log.path);
+    UniqueNames names;
+    for (auto& log : logs) log.flight = names.assign(log.path);
     return logs;
 }
 

@@ -13,10 +13,10 @@
 namespace flightwatt::batch {
 
 /// The path of a log from the root, its folder without links: one log, one place, however it is written.
-std::string place_of(const std::string& log);
+std::string canonical_path(const std::string& log);
 
 /// The same of many logs, whose folders are asked for once as long as they follow each other.
-class PlaceFinder {
+class CanonicalPathCache {
   public:
     std::string operator()(const std::string& log);
 
@@ -36,16 +36,16 @@ std::vector<LogFile> find_logs(const std::vector<std::string>& inputs, const std
 
 /// The paths of a text that names one a line: what stands in a line is the path. Empty lines are passed over.
 /// Throws InputError for `file` where it holds a NUL, as lists of find -print0 do.
-std::vector<std::string> listed_paths(std::string_view text, const std::string& file);
+std::vector<std::string> parse_path_list(std::string_view text, const std::string& file);
 
 /// Names for the results of logs, each given once.
-class FreeNames {
+class UniqueNames {
   public:
-    void take(const std::string& name);
+    void reserve(const std::string& name);
 
     /// The log's own name, shortened where no file could be called so, or, where that is taken, the next free one of
     /// NAME_2, NAME_3, ...
-    std::string give(const std::filesystem::path& log);
+    std::string assign(const std::filesystem::path& log);
 
   private:
     std::unordered_set<std::string> taken_;

@@ -34,7 +34,7 @@ void LogList::push_back(const LogFile& log) {
     Lengths lengths{};
     std::ranges::transform(texts, lengths.begin(), [](auto text) { return static_cast<std::uint32_t>(text.size()); });
     starts_.push_back(bytes_.size());
-    bytes_.push_back(static_cast<char>((log.is_of_this_run ? of_this_run : 0) | (log.is_gone ? gone : 0) |
+    bytes_.push_back(static_cast<char>((log.is_of_this_run ? of_this_run : 0) | (log.is_missing ? gone : 0) |
                                        (is_place_path ? place_is_path : 0)));
     const auto append = [this](std::string_view text) { bytes_.insert(bytes_.end(), text.begin(), text.end()); };
     std::array<char, sizeof(Lengths)> framed{};
@@ -71,7 +71,7 @@ LogFile LogList::operator[](std::size_t number) const {
 
 std::vector<std::size_t> LogList::by_path() const {
     auto numbers = numbers_below(size());
-    std::ranges::stable_sort(numbers, comes_before, [&](std::size_t number) { return path(number); });
+    std::ranges::stable_sort(numbers, path_less, [&](std::size_t number) { return path(number); });
     return numbers;
 }
 
@@ -81,7 +81,7 @@ std::vector<std::size_t> LogList::by_flight() const {
     return numbers;
 }
 
-bool comes_before(std::string_view one, std::string_view other) {
+bool path_less(std::string_view one, std::string_view other) {
     const bool is_one_whole = one.starts_with('/');
     const bool is_other_whole = other.starts_with('/');
     if (is_one_whole != is_other_whole) return is_other_whole;

@@ -16,7 +16,7 @@ struct LogFile {
     std::string why_not_fitted = {};  ///< empty: it is fitted
     std::string problem = {};         ///< why it cannot be read at all: a folder that cannot be listed
     bool is_of_this_run = true;       ///< false: a log of an earlier run into the same folder
-    bool is_gone = false;             ///< of an earlier run, and no longer there
+    bool is_missing = false;          ///< of an earlier run, and no longer there
     std::string place = {};           ///< the path from the root (place_of)
 };
 
@@ -35,7 +35,7 @@ class LogList {
     std::string_view flight(std::size_t number) const { return text(number, 1); }
     std::string_view place(std::size_t number) const;
 
-    /// The numbers of the logs in the order of their paths, folder by folder (comes_before); equal ones as they stand.
+    /// The numbers of the logs in the order of their paths, folder by folder (path_less); equal ones as they stand.
     std::vector<std::size_t> by_path() const;
     /// In the order of their flights' names.
     std::vector<std::size_t> by_flight() const;
@@ -49,6 +49,6 @@ class LogList {
 };
 
 /// Whether a path is the earlier one of two, part by part as std::filesystem::path orders them.
-bool comes_before(std::string_view one, std::string_view other);
+bool path_less(std::string_view one, std::string_view other);
 
 }  // namespace flightwatt::batch

@@ -2,7 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/file_use.h"
+#include "base/overwrite_guard.h"
 #include "base/toml_reader.h"
 #include "batch/batch_files.h"
 
@@ -91,7 +91,7 @@ std::optional<LogFile> flight_of_record(const std::filesystem::path& file, const
             if (!json.contains(key)) return std::nullopt;
         const std::string log = json.at("log");
         LogFile flight{log, name, json.value("why_not_fitted", "")};
-        flight.place = place_of(log);
+        flight.place = canonical_path(log);
         return flight;
     } catch (const InputError&) {
         return std::nullopt;
@@ -104,7 +104,7 @@ std::optional<LogFile> flight_of_record(const std::filesystem::path& file, const
 Manifest manifest_of_records(const std::filesystem::path& out) {
     Manifest manifest;
     for (const auto& name : recorded_flights(out / "flights")) {
-        const auto flight = flight_of_record(result_path(out, name, record_ending), name);
+        const auto flight = flight_of_record(result_path(out, name, record_suffix), name);
         if (flight) manifest.flights.push_back(*flight);
     }
     manifest.is_of_earlier_version = !manifest.flights.empty();
@@ -115,7 +115,8 @@ Manifest manifest_of_records(const std::filesystem::path& out) {
     return manifest;
 }
 
-/// Finds the earlier flight of a log: at the same place, or of the same path where its own place is gone (moved folders).
+/// Finds the earlier flight of a log: at the same place, or of the same path where its own place is gone (moved
+/// folders).
 class EarlierFlights {
   public:
     explicit EarlierFlights(const LogList& flights) : flights_(flights) {
@@ -141,27 +142,27 @@ class EarlierFlights {
 std::unordered_set<std::string_view> name_logs(std::vector<LogFile>& logs, const LogList& earlier, bool prune) {
     const EarlierFlights flights(earlier);
     std::unordered_set<std::string_view> known;
-    FreeNames names;
+    UniqueNames names;
     std::vector<LogFile*> without_name;
     for (auto& log : logs) {
         const auto before = log.problem.empty() ? flights.find(log) : std::nullopt;
         if (before && known.insert(earlier.flight(*before)).second) {
             log.flight = earlier.flight(*before);
-            names.take(log.flight);
+            names.reserve(log.flight);
         } else {
             without_name.push_back(&log);
         }
     }
     if (!prune)
-        for (std::size_t i = 0; i < earlier.size(); ++i) names.take(std::string(earlier.flight(i)));
-    for (auto* log : without_name) log->flight = names.give(log->path);
+        for (std::size_t i = 0; i < earlier.size(); ++i) names.reserve(std::string(earlier.flight(i)));
+    for (auto* log : without_name) log->flight = names.assign(log->path);
     return known;
 }
 
 /// Whether a flight without its log has a result worth keeping; a damaged record may be of one.
 bool was_usable(const std::filesystem::path& out, const std::string& flight) {
-    const OwnFiles own;
-    const auto file = result_path(out, flight, record_ending);
+    const OverwriteExemption own;
+    const auto file = result_path(out, flight, record_suffix);
     std::error_code none;
     if (!std::filesystem::is_regular_file(file, none)) return false;
     const auto record = record_from_json(read_file(file));
@@ -169,15 +170,15 @@ bool was_usable(const std::filesystem::path& out, const std::string& flight) {
 }
 
 /// An earlier flight that is not among this run's logs.
-void add_earlier(LogFile flight, const std::filesystem::path& out, PlaceFinder& find_place, bool prune, BatchPlan& plan,
-                 LogList& logs) {
+void add_earlier(LogFile flight, const std::filesystem::path& out, CanonicalPathCache& find_place, bool prune,
+                 BatchPlan& plan, LogList& logs) {
     if (find_place(flight.path) != flight.place) flight.path = flight.place;  // run from another folder
     flight.is_of_this_run = false;
-    flight.is_gone = !is_there(flight.path);
-    const auto gone = flight.is_gone ? "is gone" : "is not in this batch";
+    flight.is_missing = !is_there(flight.path);
+    const auto gone = flight.is_missing ? "is gone" : "is not in this batch";
     if (prune) {
         plan.dropped.push_back({flight.flight, fmt::format("its log {} {}", flight.path, gone)});
-    } else if (flight.is_gone && !was_usable(out, flight.flight)) {
+    } else if (flight.is_missing && !was_usable(out, flight.flight)) {
         plan.dropped.push_back({flight.flight, fmt::format("its log {} is gone, and nothing came of it", flight.path)});
     } else {
         logs.push_back(flight);
@@ -202,7 +203,7 @@ void refuse_if_in_the_way(const std::filesystem::path& file, bool is_listed) {
 
 /// What stands in OUT may be another folder's, whose files would be replaced and removed.
 void refuse_links(const std::filesystem::path& out) {
-    for (const auto* name : {manifest_name, unfinished_folder}) refuse_if_in_the_way(out / name, true);
+    for (const auto* name : {manifest_name, temporary_folder}) refuse_if_in_the_way(out / name, true);
     std::error_code unknown;
     const auto flights = std::filesystem::weakly_canonical(out / "flights", unknown);
     if (unknown || flights == std::filesystem::weakly_canonical(out, unknown) / "flights") return;
@@ -217,7 +218,7 @@ void remove_unfinished(const std::filesystem::path& folder) {
     std::error_code ignored;
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
-        if (is_unfinished_name(entry.path().filename().string())) files.push_back(entry.path());
+        if (is_temporary_name(entry.path().filename().string())) files.push_back(entry.path());
     }
     for (const auto& file : files) std::filesystem::remove(file, ignored);
 }
@@ -225,7 +226,7 @@ void remove_unfinished(const std::filesystem::path& folder) {
 }  // namespace
 
 Manifest read_manifest(const std::filesystem::path& out) {
-    const OwnFiles own;
+    const OverwriteExemption own;
     const auto file = out / manifest_name;
     std::error_code none;
     if (std::filesystem::symlink_status(file, none).type() == std::filesystem::file_type::not_found) {
@@ -267,7 +268,7 @@ Manifest read_manifest(const std::filesystem::path& out) {
 void write_manifest(const Manifest& manifest, const std::filesystem::path& out) {
     const ManifestJson json{{"format", format_version},
                             {"files", manifest.files},
-                            {"unfinished", unfinished_folder},
+                            {"unfinished", temporary_folder},
                             {"flights", ManifestJson::array()}};
     const TextWriter write = [&](const TextSink& sink) {
         auto text = json.dump(1, ' ');
@@ -282,15 +283,15 @@ void write_manifest(const Manifest& manifest, const std::filesystem::path& out) 
         if (!manifest.flights.empty()) text += "\n ";
         sink(text + std::string(end) + "\n");
     };
-    const OwnFiles own;  // written before the work and after
-    write_file_atomically(out / manifest_name, write, out / unfinished_folder);
+    const OverwriteExemption own;  // written before the work and after
+    write_file_atomically(out / manifest_name, write, out / temporary_folder);
 }
 
 BatchPlan plan_batch(std::vector<LogFile> logs, const std::filesystem::path& out, bool prune) {
     BatchPlan plan;
     plan.earlier = read_manifest(out);
     const auto& earlier = plan.earlier.flights;
-    PlaceFinder find_place;
+    CanonicalPathCache find_place;
     for (auto& log : logs)
         if (log.place.empty()) log.place = find_place(log.path);
     const auto known = name_logs(logs, earlier, prune);
@@ -308,35 +309,35 @@ BatchPlan plan_batch(std::vector<LogFile> logs, const std::filesystem::path& out
     return plan;
 }
 
-void refuse_files_of_others(const BatchPlan& plan, const std::filesystem::path& out) {
+void refuse_foreign_files(const BatchPlan& plan, const std::filesystem::path& out) {
     for (const auto& name : plan.manifest.files) {
-        declare_output(out / name);
+        register_output(out / name);
         refuse_if_in_the_way(out / name, plan.earlier.files.contains(name));
     }
-    declare_output(out / manifest_name);
+    register_output(out / manifest_name);
     refuse_links(out);
     for (const auto& dropped : plan.dropped)
-        for (const auto* ending : result_endings) refuse_to_lose(result_path(out, dropped.flight, ending));
+        for (const auto* ending : result_suffixes) check_overwrite(result_path(out, dropped.flight, ending));
     const auto earlier = names_of(plan.earlier.flights);
     const auto& flights = plan.manifest.flights;
     for (std::size_t i = 0; i < flights.size(); ++i) {
-        for (const auto* ending : result_endings) {
+        for (const auto* ending : result_suffixes) {
             const auto file = result_path(out, flights.flight(i), ending);
-            refuse_to_lose(file);  // a log, say
+            check_overwrite(file);  // a log, say
             refuse_if_in_the_way(file, earlier.contains(flights.flight(i)));
         }
     }
 }
 
-void refuse_new_batch(const std::filesystem::path& out) {
+void refuse_concurrent_batch(const std::filesystem::path& out) {
     if (!is_there(out / manifest_name)) return;
     throw OutputError(fmt::format("another run has made {} meanwhile; run the command again", out.string()));
 }
 
 void prepare_folder(const BatchPlan& plan, const std::filesystem::path& out) {
     make_directories(out / "flights");
-    make_directories(out / unfinished_folder);
-    remove_unfinished(out / unfinished_folder);
+    make_directories(out / temporary_folder);
+    remove_unfinished(out / temporary_folder);
     const auto stay = names_of(plan.manifest.flights);
     std::vector<LogFile> others;
     for (std::size_t i = 0; i < plan.earlier.flights.size(); ++i)

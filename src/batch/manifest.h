@@ -12,7 +12,7 @@ namespace flightwatt::batch {
 
 inline constexpr auto manifest_name = "batch.json";
 /// The folder in OUT where files stand until they are whole.
-inline constexpr auto unfinished_folder = ".flightwatt-unfinished";
+inline constexpr auto temporary_folder = ".flightwatt-unfinished";
 
 struct Manifest {
     std::set<std::string> files;         ///< in OUT itself
@@ -46,10 +46,10 @@ struct BatchPlan {
 BatchPlan plan_batch(std::vector<LogFile> logs, const std::filesystem::path& out, bool prune);
 
 /// Throws UsageError, naming it, where a file that no batch wrote stands where this one is going to write.
-void refuse_files_of_others(const BatchPlan& plan, const std::filesystem::path& out);
+void refuse_foreign_files(const BatchPlan& plan, const std::filesystem::path& out);
 
 /// Throws OutputError where another run made a batch of the folder since it was not there when this one was planned.
-void refuse_new_batch(const std::filesystem::path& out);
+void refuse_concurrent_batch(const std::filesystem::path& out);
 
 /// Makes the folders, lists in batch.json what is going to be written, and removes what is dropped and what killed runs
 /// left unfinished. Killed at any moment, every file is listed.

@@ -2,7 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/file_use.h"
+#include "base/overwrite_guard.h"
 #include "base/parallel.h"
 #include "batch/batch_files.h"
 #include "flight/phases_file.h"
@@ -38,7 +38,7 @@ std::vector<ListedFlight> flights_of(const std::filesystem::path& batch) {
     const auto listed_flights = read_manifest(batch).flights;
     for (std::size_t i = 0; i < listed_flights.size(); ++i) {
         auto listed = listed_flights[i];
-        if (!std::filesystem::exists(result_path(batch, listed.flight, record_ending), none)) {
+        if (!std::filesystem::exists(result_path(batch, listed.flight, record_suffix), none)) {
             throw InputError({batch.string()},
                              fmt::format("this batch was not finished: {} has no record", listed.flight),
                              "run the command that makes it again; it goes on where it stopped");
@@ -50,8 +50,8 @@ std::vector<ListedFlight> flights_of(const std::filesystem::path& batch) {
 
 /// Of what a flight was made from: the log's content and the options.
 std::string fingerprint_in(const ListedFlight& flight) {
-    const OwnFiles own;
-    return read_intact_record(flight.from, flight.listed.flight).fingerprint;
+    const OverwriteExemption own;
+    return read_verified_record(flight.from, flight.listed.flight).fingerprint;
 }
 
 /// Throws InputError where the log was another one, or was read with other options, in the second batch.
@@ -69,8 +69,7 @@ void require_same(const ListedFlight& one, const ListedFlight& other) {
 std::size_t keep_each_once(std::vector<ListedFlight>& flights) {
     std::ranges::stable_sort(flights, [](const ListedFlight& one, const ListedFlight& other) {
         const auto& [log, place] = std::tie(one.listed.path, one.listed.place);
-        return log == other.listed.path ? comes_before(place, other.listed.place)
-                                        : comes_before(log, other.listed.path);
+        return log == other.listed.path ? path_less(place, other.listed.place) : path_less(log, other.listed.path);
     });
     std::map<std::string, std::size_t> seen;
     std::vector<ListedFlight> kept;
@@ -108,7 +107,7 @@ FlightRecord renamed(FlightRecord record, const std::string& name) {
     for (auto& exclusion : measured.exclusions) exclusion.flight.replace(0, old.size(), name);  // NAME or NAME#2
     for (std::size_t i = 0; i < measured.flights.size(); ++i) {
         auto& flight = measured.flights[i];
-        flight.samples.flight = mechanical::flight_name_of_sortie(name, measured.sorties[i] + 1);
+        flight.samples.flight = mechanical::sortie_name(name, measured.sorties[i] + 1);
         flight.motion.flight = flight.samples.flight;
     }
     return record;
@@ -119,20 +118,20 @@ class FlightMerger {
     FlightMerger(const MergePlan& plan, const MergeOptions& options) : plan_(plan), options_(options) {}
 
     BatchFlight merge(std::size_t number) const {
-        const OwnFiles own;  // its batches' results, which are no inputs that a result could replace
+        const OverwriteExemption own;  // its batches' results, which are no inputs that a result could replace
         const auto& [from, flight] = plan_.sources[number];
         const std::string name(plan_.folder.logs.flight(number));
         BatchFlight merged;
-        const auto text = read_file(result_path(from, flight, record_ending));
-        merged.record = read_intact_record(from, flight);
+        const auto text = read_file(result_path(from, flight, record_suffix));
+        merged.record = read_verified_record(from, flight);
         merged.was_up_to_date = name == flight ? is_there(name, text) : false;
         if (name == flight) {
             if (!merged.was_up_to_date) take_over(from, name, merged.record.accepted);
         } else {
-            merged.record.content.marks = marks_from_json(text).value();  // sealed with the rest
+            merged.record.content.hashes = marks_from_json(text).value();  // sealed with the rest
             take_over_as(name, from, flight, merged.record);
         }
-        merged.selection = selection_of(select_for_fit(merged.record, options_.needed_samples, {}));
+        merged.selection = select_without_samples(select_for_fit(merged.record, options_.needed_samples, {}));
         return merged;
     }
 
@@ -140,9 +139,9 @@ class FlightMerger {
     bool is_there(const std::string& name, const std::string& record) const {
         try {
             std::error_code none;
-            const auto file = result_path(options_.out, name, record_ending);
+            const auto file = result_path(options_.out, name, record_suffix);
             if (!std::filesystem::is_regular_file(file, none) || read_file(file) != record) return false;
-            read_intact_record(options_.out, name);
+            read_verified_record(options_.out, name);
             return true;
         } catch (const InputError&) {
             return false;
@@ -151,12 +150,12 @@ class FlightMerger {
 
     /// The record last, as a batch does.
     void take_over(const std::filesystem::path& from, const std::string& name, bool is_accepted) const {
-        const WriteGate::Pass inside(options_.gate);
+        const WriteGate::WriterGuard inside(options_.gate);
         remove_results(options_.out, name);
-        for (const auto* ending : {series_ending, phases_ending, record_ending}) {
-            if (!is_accepted && ending != std::string_view(record_ending)) continue;
+        for (const auto* ending : {series_suffix, phases_suffix, record_suffix}) {
+            if (!is_accepted && ending != std::string_view(record_suffix)) continue;
             link_or_copy_file(result_path(from, name, ending), result_path(options_.out, name, ending),
-                              options_.out / unfinished_folder);
+                              options_.out / temporary_folder);
         }
     }
 
@@ -165,25 +164,25 @@ class FlightMerger {
         std::string series_text;
         std::string phases_text;
         if (record.accepted) {
-            auto series = flight::read_series_csv(result_path(from, flight, series_ending));
-            const auto phases = flight::read_phases_csv(result_path(from, flight, phases_ending));
+            auto series = flight::read_series_csv(result_path(from, flight, series_suffix));
+            const auto phases = flight::read_phases_csv(result_path(from, flight, phases_suffix));
             series.flight = name;
             series_text = to_csv(series);
             phases_text = flight::phases_csv(series, phases);
         }
         record = renamed(std::move(record), name);
-        const WriteGate::Pass inside(options_.gate);
+        const WriteGate::WriterGuard inside(options_.gate);
         remove_results(options_.out, name);
         if (record.accepted) {
-            write(name, series_ending, series_text);
-            write(name, phases_ending, phases_text);
+            write(name, series_suffix, series_text);
+            write(name, phases_suffix, phases_text);
             record.results = results_fingerprint(options_.out, name);
         }
-        write(name, record_ending, to_json_text(record));
+        write(name, record_suffix, to_json_text(record));
     }
 
     void write(const std::string& name, const char* ending, const std::string& text) const {
-        write_file_atomically(result_path(options_.out, name, ending), text, options_.out / unfinished_folder);
+        write_file_atomically(result_path(options_.out, name, ending), text, options_.out / temporary_folder);
     }
 
     const MergePlan& plan_;
@@ -201,20 +200,20 @@ MergePlan plan_merge(const std::vector<std::filesystem::path>& batches, const st
             throw UsageError(fmt::format("{} would be read and written; choose another folder with -o", out.string()));
         }
         auto of_batch = flights_of(batch);
-        plan.given.push_back(of_batch.size());
+        plan.flights_per_batch.push_back(of_batch.size());
         std::ranges::move(of_batch, std::back_inserter(flights));
     }
-    plan.repeated = keep_each_once(flights);
+    plan.duplicate_logs = keep_each_once(flights);
     auto& folder = plan.folder;
     folder.earlier = read_manifest(out);
     folder.manifest.files = {model_names.begin(), model_names.end()};
     folder.manifest.files.insert(catalogue_name);
-    FreeNames names;
+    UniqueNames names;
     std::set<std::string> places;
     for (auto& [from, listed] : flights) {
         places.insert(listed.place);
         plan.sources.push_back({from.string(), std::move(listed.flight)});
-        listed.flight = names.give(listed.path);
+        listed.flight = names.assign(listed.path);
         folder.logs.push_back(listed);
     }
     for (const auto number : folder.logs.by_flight()) folder.manifest.flights.push_back(folder.logs[number]);
@@ -223,8 +222,8 @@ MergePlan plan_merge(const std::vector<std::filesystem::path>& batches, const st
 }
 
 BatchFlights merge_flights(const MergePlan& plan, const MergeOptions& options, const BatchProgress& progress) {
-    make_directories(options.out / unfinished_folder);
-    BatchFlights flights(plan.sources.size(), options.out / unfinished_folder);
+    make_directories(options.out / temporary_folder);
+    BatchFlights flights(plan.sources.size(), options.out / temporary_folder);
     const FlightMerger merger(plan, options);
     std::mutex mutex;  // guards what follows
     std::size_t done = 0;

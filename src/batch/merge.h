@@ -19,10 +19,10 @@ struct MergedFlight {
 };
 
 struct MergePlan {
-    BatchPlan folder;                   ///< what is going to stand in OUT, as for a batch of all logs
-    std::vector<MergedFlight> sources;  ///< of `folder.logs`, one each
-    std::vector<std::size_t> given;     ///< flights of each batch
-    std::size_t repeated = 0;           ///< logs that are in several batches, each beyond the first
+    BatchPlan folder;                            ///< what is going to stand in OUT, as for a batch of all logs
+    std::vector<MergedFlight> sources;           ///< of `folder.logs`, one each
+    std::vector<std::size_t> flights_per_batch;  ///< flights of each batch
+    std::size_t duplicate_logs = 0;              ///< logs that are in several batches, each beyond the first
 };
 
 /// Joins the lists of several batches: logs in the order of their paths, each once by its place, named as find_logs

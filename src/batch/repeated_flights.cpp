@@ -1,5 +1,5 @@
 #include "base/error.h"
-#include "base/file_use.h"
+#include "base/overwrite_guard.h"
 #include "base/parallel.h"
 #include "batch/batch_files.h"
 #include "batch/batch_run.h"
@@ -22,8 +22,8 @@ struct Candidate {
     bool is_fitted = false;
     bool is_kept = false;
 
-    flight::FlightContent content() const {
-        flight::FlightContent content;
+    flight::FlightSketch content() const {
+        flight::FlightSketch content;
         content.samples = samples;
         content.decimals = decimals;
         content.has_definitions = has_definitions;
@@ -38,15 +38,15 @@ std::vector<Candidate> candidates_among(const BatchFlights& flights) {
         const auto flight = flights[i];
         const auto& content = flight.record.content;
         const bool is_fitted = !flight.selection.flights.empty();
-        if (is_fitted || !flight.record.lacks_power.empty())
+        if (is_fitted || !flight.record.no_power_reason.empty())
             candidates.push_back(
-                {i, content.samples, content.decimals, content.has_definitions, is_fitted, flight.is_kept});
+                {i, content.samples, content.decimals, content.has_definitions, is_fitted, flight.log_is_missing});
     }
     // The one with power is used, of these one that is still there, of these the better copy.
     std::ranges::stable_sort(candidates, [](const Candidate& one, const Candidate& other) {
         const auto rank = [](const Candidate& flight) { return std::pair(!flight.is_fitted, flight.is_kept); };
         if (rank(one) != rank(other)) return rank(one) < rank(other);
-        return is_better_copy(one.content(), other.content());
+        return is_preferred_duplicate(one.content(), other.content());
     });
     return candidates;
 }
@@ -54,30 +54,30 @@ std::vector<Candidate> candidates_among(const BatchFlights& flights) {
 struct NamedContent {
     std::string flight;
     bool has_power = false;
-    flight::FlightContent content;  ///< with its marks, which only its file has
+    flight::FlightSketch content;  ///< with its marks, which only its file has
 };
 
 NamedContent content_of(const FlightRecord& record, const std::filesystem::path& out) {
-    const OwnFiles own;
-    const auto file = result_path(out, record.flight, record_ending);
+    const OverwriteExemption own;
+    const auto file = result_path(out, record.flight, record_suffix);
     auto marks = marks_from_json(read_file(file));
     if (!marks) throw InputError({file.string()}, "it changed while it was read", "run flightwatt batch again");
-    NamedContent named{record.flight, record.lacks_power.empty(), record.content};
-    named.content.marks = *std::move(marks);
+    NamedContent named{record.flight, record.no_power_reason.empty(), record.content};
+    named.content.hashes = *std::move(marks);
     return named;
 }
 
 }  // namespace
 
-std::string reason_of_copy(const std::string& other) {
+std::string duplicate_reason(const std::string& other) {
     return fmt::format("it is the same flight as {}, which is used", other);
 }
 
-RepeatedFlights find_repeated(const BatchFlights& flights, const std::filesystem::path& out) {
+Duplicates find_duplicates(const BatchFlights& flights, const std::filesystem::path& out) {
     const auto candidates = candidates_among(flights);
-    flight::KnownFlights known;
+    flight::SketchIndex known;
     std::vector<std::string> used;
-    RepeatedFlights repeated;
+    Duplicates repeated;
     constexpr std::size_t at_once = 256;  // of a hundred thousand, marks would fill the memory
     std::vector<NamedContent> contents(at_once);
     for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -99,24 +99,24 @@ RepeatedFlights find_repeated(const BatchFlights& flights, const std::filesystem
         used.push_back(name);
     }
     repeated.copies.shrink_to_fit();
-    std::ranges::sort(repeated.copies, {}, &CopiedFlight::flight);
+    std::ranges::sort(repeated.copies, {}, &DuplicateFlight::flight);
     return repeated;
 }
 
-const std::string* used_instead_of(const std::string& flight, const RepeatedFlights& repeated) {
-    const auto copy = std::ranges::lower_bound(repeated.copies, flight, {}, &CopiedFlight::flight);
+const std::string* original_of(const std::string& flight, const Duplicates& repeated) {
+    const auto copy = std::ranges::lower_bound(repeated.copies, flight, {}, &DuplicateFlight::flight);
     const bool is_found = copy != repeated.copies.end() && copy->flight == flight && copy->has_power;
     return is_found ? &copy->same_as : nullptr;
 }
 
-void exclude_repeated(BatchFlights& flights, const RepeatedFlights& repeated) {
+void exclude_duplicates(BatchFlights& flights, const Duplicates& repeated) {
     if (repeated.copies.empty() && repeated.overlaps.empty()) return;
     auto overlaps = repeated.overlaps;
     std::ranges::stable_sort(overlaps, {}, &std::pair<std::string, std::string>::first);
     for (std::size_t i = 0; i < flights.size(); ++i) {
         auto flight = flights[i];
         const auto& name = flight.record.flight;
-        const auto copy = std::ranges::lower_bound(repeated.copies, name, {}, &CopiedFlight::flight);
+        const auto copy = std::ranges::lower_bound(repeated.copies, name, {}, &DuplicateFlight::flight);
         const bool is_copy = copy != repeated.copies.end() && copy->flight == name;
         auto part = std::ranges::lower_bound(overlaps, name, {}, &std::pair<std::string, std::string>::first);
         const bool has_part = part != overlaps.end() && part->first == name;
@@ -127,20 +127,20 @@ void exclude_repeated(BatchFlights& flights, const RepeatedFlights& repeated) {
             flight.selection.same_as = copy->same_as;
             flight.selection.exclusions.push_back({name, std::nullopt,
                                                    copy->has_power
-                                                       ? reason_of_copy(copy->same_as)
+                                                       ? duplicate_reason(copy->same_as)
                                                        : fmt::format("it is the same flight as {}", copy->same_as)});
         }
         flights.put(i, flight);
     }
 }
 
-std::vector<CopiedFlight> copies_among(const BatchFlights& flights) {
-    std::vector<CopiedFlight> copies;
+std::vector<DuplicateFlight> excluded_duplicates(const BatchFlights& flights) {
+    std::vector<DuplicateFlight> copies;
     for (auto&& flight : flights) {
         if (flight.selection.same_as.empty()) continue;
-        copies.push_back({flight.record.flight, flight.selection.same_as, flight.record.lacks_power.empty()});
+        copies.push_back({flight.record.flight, flight.selection.same_as, flight.record.no_power_reason.empty()});
     }
-    std::ranges::sort(copies, {}, &CopiedFlight::flight);
+    std::ranges::sort(copies, {}, &DuplicateFlight::flight);
     return copies;
 }
 

@@ -8,8 +8,8 @@
 
 namespace flightwatt::batch {
 
-/// A file without a name, for what would fill the memory: it is gone with this, and with the program, however that ends.
-/// For any number of threads.
+/// A file without a name, for what would fill the memory: it is gone with this, and with the program, however that
+/// ends. For any number of threads.
 class SpoolFile {
   public:
     /// Throws OutputError where no file can be made in the folder.

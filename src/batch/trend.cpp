@@ -14,10 +14,11 @@
 namespace flightwatt::batch {
 namespace {
 
-constexpr std::size_t most_exact = 50;
+constexpr std::size_t max_exact = 50;
 constexpr double tail = (1.0 - confidence_level) / 2.0;
 
-/// The greatest number k such that fewer than k inversions of a random order of n values have a chance of at most `tail`.
+/// The greatest number k such that fewer than k inversions of a random order of n values have a chance of at most
+/// `tail`.
 std::size_t rare_inversions(std::size_t n) {
     std::vector<double> chance{1.0};  // by the number of inversions
     for (std::size_t i = 2; i <= n; ++i) {
@@ -37,7 +38,7 @@ std::size_t outside(std::span<const DatedValue> values, std::size_t pairs) {
     std::map<double, std::size_t> at_one_time;
     for (const auto& value : values) ++at_one_time[value.day];
     const auto n = values.size();
-    if (at_one_time.size() == n && n <= most_exact) return rare_inversions(n);
+    if (at_one_time.size() == n && n <= max_exact) return rare_inversions(n);
     const auto term = [](std::size_t count) {
         const auto c = static_cast<double>(count);
         return c * (c - 1.0) * (2.0 * c + 5.0);
@@ -53,21 +54,21 @@ std::size_t outside(std::span<const DatedValue> values, std::size_t pairs) {
 
 std::optional<RelativeTrend> relative_trend(const Trend& trend) {
     if (!(trend.median > 0.0)) return std::nullopt;
-    const auto percent = [&](double per_day) { return units::percent_of(per_day, trend.median); };
+    const auto percent = [&](double per_day) { return units::percentage(per_day, trend.median); };
     return RelativeTrend{percent(trend.per_day), percent(trend.low_per_day), percent(trend.high_per_day)};
 }
 
-TrendAnswer trend_over(std::span<const DatedValue> values) {
-    if (values.size() < least_trend_flights)
+TrendResult estimate_trend(std::span<const DatedValue> values) {
+    if (values.size() < min_trend_flights)
         return {{},
                 fmt::format("{} flight{}, expected {} or more", values.size(), values.size() == 1 ? "" : "s",
-                            least_trend_flights)};
+                            min_trend_flights)};
     std::set<double> days;
     for (const auto& value : values) days.insert(std::floor(value.day));
-    if (days.size() < least_trend_days) {
+    if (days.size() < min_trend_days) {
         return {{},
                 fmt::format("all {} flights are of {}, expected {} days or more", values.size(),
-                            days.size() == 1 ? "one day" : "two days", least_trend_days)};
+                            days.size() == 1 ? "one day" : "two days", min_trend_days)};
     }
     std::vector<double> slopes;
     slopes.reserve(values.size() * (values.size() - 1) / 2);

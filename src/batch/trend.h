@@ -36,20 +36,20 @@ struct RelativeTrend {
 std::optional<RelativeTrend> relative_trend(const Trend& trend);
 
 /// A trend, or why there is none.
-struct TrendAnswer {
+struct TrendResult {
     std::optional<Trend> trend;
-    std::string why_not;  ///< "3 flights, expected 5 or more"; empty with a trend
+    std::string no_trend_reason;  ///< "3 flights, expected 5 or more"; empty with a trend
 };
 
 /// Of fewer flights no order of their values is as rare as one in 20.
-inline constexpr std::size_t least_trend_flights = 5;
+inline constexpr std::size_t min_trend_flights = 5;
 /// Flights of a day have their weather in common: those of two days tell these apart and no more.
-inline constexpr std::size_t least_trend_days = 3;
+inline constexpr std::size_t min_trend_days = 3;
 
-/// The median of the slopes between all pairs of flights, with the interval that inverts Kendall's test (P. K. Sen, 1968,
-/// Journal of the American Statistical Association 63): by the exact distribution of the orders, or by its normal
+/// The median of the slopes between all pairs of flights, with the interval that inverts Kendall's test (P. K. Sen,
+/// 1968, Journal of the American Statistical Association 63): by the exact distribution of the orders, or by its normal
 /// approximation for more than 50 flights and for flights at one time. Assumes nothing of how the values scatter, but
 /// that they do so independently. In any order; the work grows with their square.
-TrendAnswer trend_over(std::span<const DatedValue> values);
+TrendResult estimate_trend(std::span<const DatedValue> values);
 
 }  // namespace flightwatt::batch

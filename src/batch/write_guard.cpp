@@ -44,41 +44,42 @@ FolderLock::FolderLock(const std::filesystem::path& folder)
         fmt::format("another run is writing into {}; wait for it, or choose another folder", folder.string()));
 }
 
-EmptyAtEnd::~EmptyAtEnd() {
+RemoveIfEmpty::~RemoveIfEmpty() {
     std::error_code ignored;
     std::filesystem::remove(folder, ignored);
 }
 
 FolderLock::~FolderLock() { ::close(folder_); }
 
-WriteGate::Pass::Pass(WriteGate& gate) : gate_(gate) {
+WriteGate::WriterGuard::WriterGuard(WriteGate& gate) : gate_(gate) {
     std::unique_lock lock(gate_.mutex_);
     gate_.changed_.wait(lock, [this] { return !gate_.closed_; });
-    ++gate_.inside_;
+    ++gate_.active_writers_;
 }
 
-WriteGate::Pass::~Pass() {
+WriteGate::WriterGuard::~WriterGuard() {
     const std::lock_guard lock(gate_.mutex_);
-    --gate_.inside_;
+    --gate_.active_writers_;
     gate_.changed_.notify_all();
 }
 
-bool WriteGate::close(std::chrono::milliseconds patience) {
+bool WriteGate::close(std::chrono::milliseconds timeout) {
     std::unique_lock lock(mutex_);
     closed_ = true;
-    return changed_.wait_for(lock, patience, [this] { return inside_ == 0; });
+    return changed_.wait_for(lock, timeout, [this] { return active_writers_ == 0; });
 }
 
-Interruption::Interruption(WriteGate& gate, std::function<void(int signal)> farewell) : signals_(ending_signals()) {
+TerminationHandler::TerminationHandler(WriteGate& gate, std::function<void(int signal)> on_signal)
+    : signals_(termination_signals()) {
     if (signals_.empty()) return;
     change_mask(SIG_BLOCK, signals_);
-    const auto wait = [this, &gate, farewell = std::move(farewell), over = over_.get_token()] {
+    const auto wait = [this, &gate, on_signal = std::move(on_signal), over = over_.get_token()] {
         const auto set = set_of(signals_);
         int signal = 0;
         if (::sigwait(&set, &signal) != 0 || over.stop_requested()) return;
         change_mask(SIG_UNBLOCK, signals_);  // here, so that a second one ends the program if we are stuck
         gate.close(patience_with_writers);
-        farewell(signal);
+        on_signal(signal);
         // Not exit(): it would destroy what the other threads are using. All files are whole, and the
         // kernel releases the rest.
         constexpr int killed_by_signal = 128;
@@ -87,7 +88,7 @@ Interruption::Interruption(WriteGate& gate, std::function<void(int signal)> fare
     thread_.emplace(wait);
 }
 
-Interruption::~Interruption() {
+TerminationHandler::~TerminationHandler() {
     if (!thread_) return;
     over_.request_stop();
     ::pthread_kill(thread_->native_handle(), signals_.front());  // wakes it

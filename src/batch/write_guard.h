@@ -28,9 +28,9 @@ class FolderLock {
 };
 
 /// A folder that is removed at the end if nothing is left in it.
-struct EmptyAtEnd {
+struct RemoveIfEmpty {
     std::filesystem::path folder;
-    ~EmptyAtEnd();
+    ~RemoveIfEmpty();
 };
 
 /// Lets files be written whole before the program ends: those who write are inside, whoever ends the program
@@ -38,38 +38,38 @@ struct EmptyAtEnd {
 class WriteGate {
   public:
     /// Being inside, as long as it lives.
-    class Pass {
+    class WriterGuard {
       public:
-        explicit Pass(WriteGate& gate);
-        ~Pass();
-        Pass(const Pass&) = delete;
-        Pass& operator=(const Pass&) = delete;
+        explicit WriterGuard(WriteGate& gate);
+        ~WriterGuard();
+        WriterGuard(const WriterGuard&) = delete;
+        WriterGuard& operator=(const WriterGuard&) = delete;
 
       private:
         WriteGate& gate_;
     };
 
     /// Lets nobody in any more (who comes waits for the end of the program) and waits until all have left,
-    /// but no longer than `patience`; false if some are still inside then.
-    bool close(std::chrono::milliseconds patience);
+    /// but no longer than `timeout`; false if some are still inside then.
+    bool close(std::chrono::milliseconds timeout);
 
   private:
     std::mutex mutex_;  ///< guards what follows
     std::condition_variable changed_;
-    std::size_t inside_ = 0;
+    std::size_t active_writers_ = 0;
     bool closed_ = false;
 };
 
 /// While it lives, SIGINT, SIGTERM and SIGHUP end the program within a second, whatever its threads are computing: the
-/// gate is closed, `farewell` is called with the signal, in a thread of its own, and the exit code is 128 + the signal,
-/// as shells expect. A second signal ends it at once. Signals that the program was started to ignore (nohup) stay
-/// ignored. To be made before other threads are, which inherit that the signals are blocked.
-class Interruption {
+/// gate is closed, `on_signal` is called with the signal, in a thread of its own, and the exit code is 128 + the
+/// signal, as shells expect. A second signal ends it at once. Signals that the program was started to ignore (nohup)
+/// stay ignored. To be made before other threads are, which inherit that the signals are blocked.
+class TerminationHandler {
   public:
-    Interruption(WriteGate& gate, std::function<void(int signal)> farewell);
-    ~Interruption();
-    Interruption(const Interruption&) = delete;
-    Interruption& operator=(const Interruption&) = delete;
+    TerminationHandler(WriteGate& gate, std::function<void(int signal)> on_signal);
+    ~TerminationHandler();
+    TerminationHandler(const TerminationHandler&) = delete;
+    TerminationHandler& operator=(const TerminationHandler&) = delete;
 
   private:
     std::vector<int> signals_;

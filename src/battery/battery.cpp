@@ -16,10 +16,10 @@
 namespace flightwatt::battery {
 namespace {
 
-constexpr double least_time_constant_s = 0.1;
-constexpr double greatest_time_constant_s = 1e5;
-constexpr double greatest_number = 1e6;  // squared and divided, values below stay numbers
-constexpr int most_cells = 100;
+constexpr double min_time_constant_s = 0.1;
+constexpr double max_time_constant_s = 1e5;
+constexpr double max_number = 1e6;  // squared and divided, values below stay numbers
+constexpr int max_cells = 100;
 
 OpenCircuitVoltage read_curve(const TomlTable& table) {
     OpenCircuitVoltage curve{table.numbers("soc_percent"), table.numbers("voltage_v")};
@@ -61,7 +61,7 @@ TheveninCircuit read_circuit(const TomlTable& table, BatteryIntervals& intervals
     if (table.has("rc_resistance_ohm"))
         circuit.rc_resistance_ohm = number_in(at_least(0.0), table, "rc_resistance_ohm");
     if (circuit.rc_resistance_ohm > 0.0 || table.has("rc_time_constant_s")) {
-        circuit.rc_time_constant_s = number_in(between(least_time_constant_s, greatest_time_constant_s), table,
+        circuit.rc_time_constant_s = number_in(between(min_time_constant_s, max_time_constant_s), table,
                                                "rc_time_constant_s", "what is faster counts as resistance_ohm");
     }
     return circuit;
@@ -202,13 +202,13 @@ double power_limit_w(const Battery& battery, const BatteryState& state) {
 double internal_current_a(const Battery& battery, double power_w, const BatteryState& state) {
     const double limit_w = power_limit_w(battery, state);
     if (power_w > limit_w) {
-        throw NoAnswerError(
+        throw NoResultError(
             fmt::format("the battery cannot deliver {} W: its limit U^2 / (4 R) is {} W", power_w, limit_w));
     }
     return current_at_a(battery, source_voltage_v(battery, state), power_w);
 }
 
-double delivered_current_a(const Battery& battery, double power_w, const BatteryState& state) {
+double limited_current_a(const Battery& battery, double power_w, const BatteryState& state) {
     const double voltage_v = source_voltage_v(battery, state);
     return current_at_a(battery, voltage_v, std::min(power_w, limit_at_w(battery, voltage_v)));
 }
@@ -221,12 +221,12 @@ Battery battery_from(const TomlTable& table) {
         throw InputError(table.where("model"), fmt::format("there is no battery model '{}'", model),
                          "it is \"paper\" or \"thevenin\"");
     }
-    if (model == "paper") battery.voltage_v = number_in(more_than_up_to(0.0, greatest_number), table, "voltage_v");
+    if (model == "paper") battery.voltage_v = number_in(more_than_up_to(0.0, max_number), table, "voltage_v");
     battery.resistance_ohm = number_in(at_least(0.0), table, "resistance_ohm");
     battery.capacity_ah = number_in(more_than_up_to(0.0, max_capacity_ah), table, "capacity_ah", capacity_hint);
     if (table.has("cells")) {
         const auto cells = count_in(table, "cells");
-        require_in(between(1.0, most_cells), static_cast<double>(cells), "cells", table.where("cells"));
+        require_in(between(1.0, max_cells), static_cast<double>(cells), "cells", table.where("cells"));
         battery.cells = static_cast<int>(cells);
     }
     if (model == "thevenin") {
@@ -242,7 +242,7 @@ Battery battery_from(const TomlTable& table) {
 
 Battery read_battery(const std::filesystem::path& path) {
     const auto root = read_toml(path);
-    refuse_other_kinds(root, FileKind::battery);
+    require_kind(root, FileKind::battery);
     require_known_format(root);
     return battery_from(root);
 }
@@ -271,22 +271,22 @@ std::string capacity_warning(const Battery& battery) {
 }
 
 std::vector<std::string> battery_warnings(const Battery& battery) {
-    constexpr double least_v = 2.5;
-    constexpr double greatest_v = 60.0;
-    constexpr double least_ah = 0.05;
-    constexpr double least_limit_w = 1.0;
+    constexpr double min_v = 2.5;
+    constexpr double max_v = 60.0;
+    constexpr double min_ah = 0.05;
+    constexpr double min_limit_w = 1.0;
     std::vector<std::string> warnings;
     const auto full_v = open_circuit_voltage_v(battery, units::percent_per_whole);
-    if (full_v < least_v || full_v > greatest_v) {
+    if (full_v < min_v || full_v > max_v) {
         warnings.push_back(fmt::format("battery: {:.4g} V when full is {}: is its unit V?", full_v,
-                                       full_v < least_v ? "less than one cell's" : "more than 14 LiPo cells'"));
+                                       full_v < min_v ? "less than one cell's" : "more than 14 LiPo cells'"));
     }
-    if (battery.capacity_ah < least_ah) {
+    if (battery.capacity_ah < min_ah) {
         warnings.push_back(fmt::format("battery: {:.4g} Ah is the capacity of no small drone's pack: is its unit Ah?",
                                        battery.capacity_ah));
     }
     if (const auto warning = capacity_warning(battery); !warning.empty()) warnings.push_back("battery: " + warning);
-    if (const double limit_w = power_limit_w(battery); limit_w < least_limit_w) {
+    if (const double limit_w = power_limit_w(battery); limit_w < min_limit_w) {
         warnings.push_back(
             fmt::format("battery: it cannot deliver more than {:.3g} W: is resistance_ohm in ohm?", limit_w));
     }

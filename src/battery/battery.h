@@ -101,12 +101,12 @@ double terminal_voltage_v(const Battery& battery, const BatteryState& state, dou
 double power_limit_w(const Battery& battery, const BatteryState& state = {});
 
 /// I_int [A] while the load draws `power_w` (Eq. 10): the smaller root of R I^2 - U I + P = 0, in a form that
-/// is exact for R = 0. Negative power charges: the current is then negative. Throws NoAnswerError if the
+/// is exact for R = 0. Negative power charges: the current is then negative. Throws NoResultError if the
 /// power is above the limit.
 double internal_current_a(const Battery& battery, double power_w, const BatteryState& state = {});
 
 /// The same of as much of the power as the battery can deliver.
-double delivered_current_a(const Battery& battery, double power_w, const BatteryState& state = {});
+double limited_current_a(const Battery& battery, double power_w, const BatteryState& state = {});
 
 /// Reads a battery (docs/formats.md). Throws InputError for keys missing, unknown or of another model, and values
 /// that no battery has.

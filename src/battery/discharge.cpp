@@ -52,8 +52,8 @@ BatteryState after(const Step& step, double elapsed_s) {
     const auto rate = [&](const State& x, State& per_s, double time) {
         const BatteryState state{x[0], x[1]};
         // The limit is looked for at the step's samples: what lies beyond it is only taken away.
-        const double current_a = delivered_current_a(battery, step.power_w.at(time), state);
-        per_s[0] = -units::percent_of(current_a, units::coulomb_from_ah(battery.capacity_ah));
+        const double current_a = limited_current_a(battery, step.power_w.at(time), state);
+        per_s[0] = -units::percentage(current_a, units::coulomb_from_ah(battery.capacity_ah));
         per_s[1] = 0.0;
         if (!battery.thevenin) return;
         const auto& [curve, rc_ohm, tau_s] = *battery.thevenin;
@@ -131,7 +131,7 @@ std::optional<Onset> first_excess(StepStates& states) {
 bool is_below_cutoff(StepStates& states, double elapsed_s, double cutoff_v) {
     const auto& step = states.step();
     const auto state = states.at(elapsed_s);
-    const double current_a = delivered_current_a(step.battery, step.power_w.at(step.time_s + elapsed_s), state);
+    const double current_a = limited_current_a(step.battery, step.power_w.at(step.time_s + elapsed_s), state);
     return terminal_voltage_v(step.battery, state, current_a) < cutoff_v;
 }
 

@@ -96,11 +96,11 @@ class LanesRun {
 
     /// The rest of a moment whose charge, RC voltage and power are known.
     void complete(Moments& now) {
-        constexpr double least_v = 1e-300;  // no 0 / 0 of what draws nothing
+        constexpr double min_v = 1e-300;  // no 0 / 0 of what draws nothing
         voltages_.at(now.soc_percent, source_v_);
         source_v_ = (source_v_ - now.rc_voltage_v).max(0.0);
         now.spare_v2 = source_v_ * source_v_ - four_ohm_ * now.power_w;
-        now.current_a = 2.0 * now.power_w / (source_v_ + now.spare_v2.max(0.0).sqrt()).max(least_v);
+        now.current_a = 2.0 * now.power_w / (source_v_ + now.spare_v2.max(0.0).sqrt()).max(min_v);
         now.terminal_v = source_v_ - batteries_.resistance_ohm * now.current_a;
     }
 
@@ -161,7 +161,7 @@ class LanesRun {
 
 }  // namespace
 
-BatteryLanes lanes_like(const Battery& battery) {
+BatteryLanes make_lanes(const Battery& battery) {
     if (!battery.thevenin) throw std::invalid_argument("lanes_like: needs a Thevenin circuit");
     BatteryLanes lanes;
     lanes.knots_percent = battery.thevenin->open_circuit.soc_percent;
@@ -173,14 +173,14 @@ BatteryLanes lanes_like(const Battery& battery) {
 void set_lane(BatteryLanes& lanes, int lane, const Battery& battery) {
     const auto& circuit = *battery.thevenin;
     lanes.resistance_ohm(lane) = battery.resistance_ohm;
-    lanes.percent_per_as(lane) = units::percent_of(1.0, units::coulomb_from_ah(battery.capacity_ah));
+    lanes.percent_per_as(lane) = units::percentage(1.0, units::coulomb_from_ah(battery.capacity_ah));
     lanes.rc_resistance_ohm(lane) = circuit.rc_resistance_ohm;
     lanes.rc_time_constant_s(lane) = circuit.rc_time_constant_s;
     for (std::size_t k = 0; k < lanes.knots_v.size(); ++k) lanes.knots_v[k](lane) = circuit.open_circuit.voltage_v[k];
 }
 
 void discharge_lanes(const BatteryLanes& batteries, const LoadLanes& load, double cutoff_voltage_v,
-                     const LookCloser& look_closer, StateLanes& state) {
+                     const StepResolver& resolve_step, StateLanes& state) {
     LanesRun run(batteries, load, cutoff_voltage_v, state);
     Moments start;
     start.soc_percent = state.soc_percent;
@@ -189,16 +189,16 @@ void discharge_lanes(const BatteryLanes& batteries, const LoadLanes& load, doubl
     Moments end = start;
     load.power_w(0, start.power_w);
     run.complete(start);
-    for (std::size_t k = 0; k < load.steps && state.is_on.any(); ++k) {
+    for (std::size_t k = 0; k < load.steps && state.is_active.any(); ++k) {
         load.power_w(2 * k + 1, middle.power_w);
         load.power_w(2 * k + 2, end.power_w);
         run.step(start, middle, end);
-        if (const auto danger = run.in_danger(start, middle, end) & state.is_on; danger.any()) {
+        if (const auto danger = run.in_danger(start, middle, end) & state.is_active; danger.any()) {
             for (std::size_t i = 0; i < lane_count; ++i) {
                 if (!danger[i]) continue;
                 const int lane = static_cast<int>(i);
                 BatteryState now{start.soc_percent(lane), start.rc_voltage_v(lane)};
-                state.is_on[i] = look_closer(lane, k, now);
+                state.is_active[i] = resolve_step(lane, k, now);
                 end.soc_percent(lane) = now.soc_percent;
                 end.rc_voltage_v(lane) = now.rc_voltage_v;
             }

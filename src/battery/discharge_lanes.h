@@ -30,13 +30,13 @@ struct BatteryLanes {
 };
 
 /// No circuits yet, but room for those of `battery`. Throws std::invalid_argument if that is none of Thévenin's.
-BatteryLanes lanes_like(const Battery& battery);
+BatteryLanes make_lanes(const Battery& battery);
 void set_lane(BatteryLanes& lanes, int lane, const Battery& battery);
 
 struct StateLanes {
     Lanes soc_percent = Lanes::Constant(100.0);
     Lanes rc_voltage_v = Lanes::Zero();
-    LaneMask is_on;  ///< the others have ended, or are empty lanes
+    LaneMask is_active;  ///< the others have ended, or are empty lanes
 };
 
 /// What the batteries feed: loads that never charge, each in as many steps as the others.
@@ -49,11 +49,11 @@ struct LoadLanes {
 
 /// Looks closer at a step that may end a lane's battery: from the state at its start to that at its end, or false if it
 /// ended.
-using LookCloser = std::function<bool(int lane, std::size_t step, BatteryState& state)>;
+using StepResolver = std::function<bool(int lane, std::size_t step, BatteryState& state)>;
 
-/// As quick_discharge() with these steps, of all lanes at once. Lanes that may reach what ends a battery are passed to
-/// `look_closer`: empty, below the cut-off voltage (0: never), beyond the power limit.
+/// As fast_discharge() with these steps, of all lanes at once. Lanes that may reach what ends a battery are passed to
+/// `resolve_step`: empty, below the cut-off voltage (0: never), beyond the power limit.
 void discharge_lanes(const BatteryLanes& batteries, const LoadLanes& load, double cutoff_voltage_v,
-                     const LookCloser& look_closer, StateLanes& state);
+                     const StepResolver& resolve_step, StateLanes& state);
 
 }  // namespace flightwatt::battery

@@ -31,7 +31,7 @@ double highest_resting_v(std::span<const DischargeRecord> records) {
 
 /// A circuit whose flights are chained, and why each of them is.
 struct Chained {
-    AlignedFit aligned;
+    JointCircuitFit aligned;
     std::vector<std::optional<PackLink>> links;  ///< one a record
     CircuitErrors errors;
     std::vector<std::optional<FlightResistance>> resistances;
@@ -51,7 +51,7 @@ double counted_error_ah(const std::vector<std::optional<PackLink>>& links, std::
 void add_errors(Chained& chained, bool with_capacities) {
     chained.resistances.clear();
     chained.capacities.clear();
-    for (const auto& wear : flight_wear(chained.aligned, with_capacities)) {
+    for (const auto& wear : estimate_state_of_health(chained.aligned, with_capacities)) {
         chained.resistances.push_back(wear.resistance);
         chained.capacities.push_back(wear.capacity);
     }
@@ -77,35 +77,35 @@ bool agrees(const Chained& free, std::size_t later, const PackLink& link) {
     const double error_ah = std::hypot(free.errors.initial_charge_error_ah[later],
                                        free.errors.initial_charge_error_ah[link.earlier], link.error_ah);
     constexpr double deviations = 3.0;
-    constexpr double unlike_part = 0.05;  // of the charge shown: what no circuit follows
-    return std::abs(apart_ah) < deviations * error_ah + unlike_part * free.aligned.fit.knots_ah.back();
+    constexpr double unlike_fraction = 0.05;  // of the charge shown: what no circuit follows
+    return std::abs(apart_ah) < deviations * error_ah + unlike_fraction * free.aligned.fit.knots_ah.back();
 }
 
 /// The circuit with every flight's pack its own; then chained, where that agrees.
 Chained chained_fit(std::span<const DischargeRecord> records, int cells, const IdentificationOptions& options,
                     std::span<const double> begin_ah) {
     Chained chained;
-    chained.aligned = aligned_fit(records, cells, {}, begin_ah);
+    chained.aligned = fit_circuit_jointly(records, cells, {}, begin_ah);
     chained.links.resize(records.size());
     add_errors(chained, options.with_capacities);
-    std::vector<ChargeLink> links;
-    for (std::size_t f = 0; options.chain && f < records.size(); ++f) {
-        const auto link = pack_link(records[f], chained.aligned.records, chained.aligned.fit);
+    std::vector<PackConstraint> links;
+    for (std::size_t f = 0; options.link_packs && f < records.size(); ++f) {
+        const auto link = find_pack_link(records[f], chained.aligned.records, chained.aligned.fit);
         if (!link || !agrees(chained, f, *link)) continue;
         links.push_back({f, link->earlier, link->charge_ah, tied_ah});
         chained.links[f] = link;
     }
     if (links.empty()) return chained;
-    chained.aligned = aligned_fit(records, cells, links, begin_ah);
+    chained.aligned = fit_circuit_jointly(records, cells, links, begin_ah);
     add_errors(chained, options.with_capacities);
     return chained;
 }
 
-std::vector<double> rms_of_each(const AlignedFit& aligned) {
+std::vector<double> rms_of_each(const JointCircuitFit& aligned) {
     std::vector<double> rms_v;
     Eigen::Index row = 0;
     for (const auto& [record, initial_ah] : aligned.records) {
-        const auto samples = used_samples(*record);
+        const auto samples = used_sample_count(*record);
         rms_v.push_back(
             std::sqrt(aligned.fit.residual_v.segment(row, samples).squaredNorm() / static_cast<double>(samples)));
         row += samples;
@@ -122,7 +122,7 @@ std::vector<std::size_t> order_in_time(std::span<const AlignedRecord> records) {
     return order;
 }
 
-ShownCurve shown_curve(const Chained& chained) {
+ObservedOcv shown_curve(const Chained& chained) {
     const auto& [records, links, fit, reference] = chained.aligned;
     return {fit.knots_ah,
             fit.open_circuit_v,
@@ -132,7 +132,7 @@ ShownCurve shown_curve(const Chained& chained) {
             fit.weights.cells};
 }
 
-std::vector<IdentifiedFlight> identified_flights(const Chained& chained, std::span<const ChargeScale> posterior,
+std::vector<IdentifiedFlight> identified_flights(const Chained& chained, std::span<const CapacityHypothesis> posterior,
                                                  double missing_ah) {
     const auto rms_v = rms_of_each(chained.aligned);
     std::vector<IdentifiedFlight> flights;
@@ -143,16 +143,16 @@ std::vector<IdentifiedFlight> identified_flights(const Chained& chained, std::sp
         flight.resting_voltage_v = record->resting_voltage_v;
         const double error_ah = chained.errors.initial_charge_error_ah[f];
         const auto& [low_ah, high_ah] = flight.initial_charge_interval_ah =
-            missing_interval_ah(posterior, offset_ah, error_ah);
-        flight.initial_charge_ah = std::clamp(missing_ah + offset_ah, low_ah, high_ah);
+            depletion_interval_ah(posterior, offset_ah, error_ah);
+        flight.initial_depletion_ah = std::clamp(missing_ah + offset_ah, low_ah, high_ah);
         flight.drawn_ah = record->charge_ah.back();
         flight.link = chained.links[f];
-        if (flight.link) flight.pack_of = chained.aligned.records[flight.link->earlier].record->flight;
+        if (flight.link) flight.same_pack_as = chained.aligned.records[flight.link->earlier].record->flight;
         flight.resistance = chained.resistances[f];
         flight.capacity = chained.capacities[f];
         flight.air_temperature_c = record->air_temperature_c;
         flight.samples = record->time_s.size();
-        flight.unused = flight.samples - static_cast<std::size_t>(used_samples(*record));
+        flight.unused = flight.samples - static_cast<std::size_t>(used_sample_count(*record));
         flight.voltage_rms_v = rms_v[f];
         flights.push_back(std::move(flight));
     }
@@ -160,10 +160,10 @@ std::vector<IdentifiedFlight> identified_flights(const Chained& chained, std::sp
 }
 
 /// All that is told of a battery but what is told of each flight, and what that is told from.
-struct Told {
+struct IdentificationResult {
     BatteryIdentification identification;
     Chained chained;
-    std::vector<ChargeScale> posterior;
+    std::vector<CapacityHypothesis> posterior;
 };
 
 Battery battery_of(const BatteryIdentification& result, const ExtendedCurve& extended, const std::string& name) {
@@ -184,33 +184,33 @@ Battery battery_of(const BatteryIdentification& result, const ExtendedCurve& ext
     return battery;
 }
 
-/// `begin_ah`: see aligned_fit.
-Told told_by(std::span<const DischargeRecord> records, const IdentificationOptions& options,
-             std::span<const double> begin_ah = {}) {
-    if (records.empty()) throw NoAnswerError("no flight is left to identify a battery from");
+/// `begin_ah`: see fit_circuit_jointly.
+IdentificationResult identify_common(std::span<const DischargeRecord> records, const IdentificationOptions& options,
+                                     std::span<const double> begin_ah = {}) {
+    if (records.empty()) throw NoResultError("no flight is left to identify a battery from");
     const int cells = options.cells.value_or(lipo_cells(highest_resting_v(records)));
-    Told told;
+    IdentificationResult told;
     told.chained = chained_fit(records, cells, options, begin_ah);
-    told.posterior = match_chart(shown_curve(told.chained), options.capacity_ah);
+    told.posterior = capacity_posterior(shown_curve(told.chained), options.capacity_ah);
     const auto& [identification, chained, posterior] = told;
     auto& result = told.identification;
     result.fit = chained.aligned.fit;
     result.errors = chained.errors;
     result.cells = cells;
     result.cells_are_given = options.cells.has_value();
-    result.capacity = capacity_of(result.fit.knots_ah.back(), posterior, options.capacity_ah);
-    result.missing_ah = probable_missing_ah(posterior);
-    const auto extended = extended_curve(result.fit, result.errors.open_circuit_standard_error_v,
-                                         result.capacity.value_ah, result.missing_ah);
-    result.known_down_to_percent = extended.known_down_to_percent;
-    result.known_up_to_percent = extended.known_up_to_percent;
+    result.capacity = estimate_capacity(result.fit.knots_ah.back(), posterior, options.capacity_ah);
+    result.curve_start_depletion_ah = estimate_depletion_ah(posterior);
+    const auto extended = extrapolate_curve(result.fit, result.errors.open_circuit_standard_error_v,
+                                            result.capacity.value_ah, result.curve_start_depletion_ah);
+    result.observed_min_soc_percent = extended.known_down_to_percent;
+    result.observed_max_soc_percent = extended.known_up_to_percent;
     result.battery = battery_of(result, extended, options.name);
     result.battery.intervals.resistance_scatter = resistance_scatter(chained.resistances, result.fit.resistance_ohm);
     return told;
 }
 
 /// The capacity that the flights indicate without the one that is given; none where they drew too little.
-std::shared_ptr<const FlightEstimate> flight_estimate(const Told& told) {
+std::shared_ptr<const FlightEstimate> flight_estimate(const IdentificationResult& told) {
     const auto& [identification, chained, posterior] = told;
     const auto& [fit, capacity] = std::tie(identification.fit, identification.capacity);
     auto estimate = std::make_shared<FlightEstimate>();
@@ -221,16 +221,16 @@ std::shared_ptr<const FlightEstimate> flight_estimate(const Told& told) {
         estimate->capacity_interval_ah = *capacity.interval_ah;
         return estimate;
     }
-    const auto free = match_chart(shown_curve(chained), std::nullopt);
+    const auto free = capacity_posterior(shown_curve(chained), std::nullopt);
     try {
-        const auto free_capacity = capacity_of(fit.knots_ah.back(), free, std::nullopt);
+        const auto free_capacity = estimate_capacity(fit.knots_ah.back(), free, std::nullopt);
         estimate->capacity_ah = free_capacity.value_ah;
         estimate->capacity_interval_ah = free_capacity.interval_ah.value();
-        estimate->open_circuit = extended_curve(fit, identification.errors.open_circuit_standard_error_v,
-                                                estimate->capacity_ah, probable_missing_ah(free))
+        estimate->open_circuit = extrapolate_curve(fit, identification.errors.open_circuit_standard_error_v,
+                                                   estimate->capacity_ah, estimate_depletion_ah(free))
                                      .curve;
         return estimate;
-    } catch (const NoAnswerError&) {
+    } catch (const NoResultError&) {
         return nullptr;
     }
 }
@@ -243,7 +243,7 @@ double charge_at_voltage_ah(const CircuitFit& fit, double voltage_v) {
 }
 
 /// Where on the curve a record begins, by its resting voltage: as much below the reference as it rests lower.
-double resting_place_ah(const DischargeRecord& record, const AlignedFit& aligned) {
+double resting_place_ah(const DischargeRecord& record, const JointCircuitFit& aligned) {
     const auto& fit = aligned.fit;
     const auto& [reference, reference_ah] = aligned.records[aligned.reference];
     const double resistance_ohm = fit.resistance_ohm + fit.rc_resistance_ohm;
@@ -268,7 +268,7 @@ PredictedVoltage predict_from_settled(const Battery& battery, const DischargeRec
     predicted.voltage_v.reserve(record.time_s.size());
     for (std::size_t i = 0; i < record.time_s.size(); ++i) {
         const double drawn_ah = initial_charge_ah + record.charge_ah[i];
-        const BatteryState state{units::percent_per_whole - units::percent_of(drawn_ah, battery.capacity_ah),
+        const BatteryState state{units::percent_per_whole - units::percentage(drawn_ah, battery.capacity_ah),
                                  circuit.rc_resistance_ohm * settled_a[i]};
         predicted.soc_percent.push_back(state.soc_percent);
         predicted.voltage_v.push_back(terminal_voltage_v(battery, state, record.current_a[i]));
@@ -288,7 +288,7 @@ VoltageErrors errors_of(const PredictedVoltage& predicted, const DischargeRecord
         (rests ? rest_squares : load_squares) += std::pow(rests ? error_v - above_v : error_v, 2);
         if (!rests) loaded += 1.0;
     }
-    return {(rest_squares + load_squares) / static_cast<double>(used_samples(record)),
+    return {(rest_squares + load_squares) / static_cast<double>(used_sample_count(record)),
             load_squares / std::max(1.0, loaded)};
 }
 
@@ -297,50 +297,50 @@ double beyond_percent(const BatteryIdentification& identified, const DischargeRe
     const auto predicted = predict_voltage(identified.battery, record, initial_charge_ah);
     double beyond = 0.0;
     for (std::size_t i = 0; i < record.time_s.size(); ++i)
-        if (record.used[i] && predicted.soc_percent[i] < identified.known_down_to_percent) beyond += 1.0;
-    return units::percent_of(beyond, static_cast<double>(used_samples(record)));
+        if (record.used[i] && predicted.soc_percent[i] < identified.observed_min_soc_percent) beyond += 1.0;
+    return units::percentage(beyond, static_cast<double>(used_sample_count(record)));
 }
 
 /// The initial charge with which the record's voltage under load is met best.
-void add_best_place(const Battery& battery, const DischargeRecord& record, LeftOutCheck& check) {
+void add_best_place(const Battery& battery, const DischargeRecord& record, LeaveOneOutCheck& check) {
     constexpr int places = 50;
-    const auto settled_a = settled_current_a(record, battery.thevenin.value().rc_time_constant_s);
+    const auto settled_a = rc_branch_current_a(record, battery.thevenin.value().rc_time_constant_s);
     const auto error_at = [&](double tried_ah) {
         return errors_of(predict_from_settled(battery, record, settled_a, tried_ah), record, 0.0).load_v2;
     };
     double best_ah = 0.0;
-    double least_v2 = std::numeric_limits<double>::infinity();
+    double min_v2 = std::numeric_limits<double>::infinity();
     const auto at = [&](int place) { return battery.capacity_ah * place / places; };
     for (int place = 0; place < places; ++place) {
         const double error_v2 = error_at(at(place));
-        if (error_v2 >= least_v2) continue;
-        least_v2 = error_v2;
+        if (error_v2 >= min_v2) continue;
+        min_v2 = error_v2;
         best_ah = at(place);
     }
     constexpr int half_the_digits = std::numeric_limits<double>::digits / 2;
     const auto [place_ah, error_v2] = boost::math::tools::brent_find_minima(error_at, std::max(0.0, best_ah - at(1)),
                                                                             best_ah + at(1), half_the_digits);
-    check.placed_charge_ah = error_v2 < least_v2 ? place_ah : best_ah;
-    check.placed_load_rms_v = std::sqrt(std::min(error_v2, least_v2));
+    check.best_offset_ah = error_v2 < min_v2 ? place_ah : best_ah;
+    check.best_offset_load_rms_v = std::sqrt(std::min(error_v2, min_v2));
 }
 
-LeftOutCheck checked(const Told& told, const DischargeRecord& record, bool chain) {
+LeaveOneOutCheck checked(const IdentificationResult& told, const DischargeRecord& record, bool chain) {
     const auto& identified = told.identification;
-    LeftOutCheck check;
+    LeaveOneOutCheck check;
     check.flight = record.flight;
     const auto& aligned = told.chained.aligned;
     double place_ah = resting_place_ah(record, aligned);
-    if (const auto link = chain ? pack_link(record, aligned.records, aligned.fit) : std::nullopt) {
+    if (const auto link = chain ? find_pack_link(record, aligned.records, aligned.fit) : std::nullopt) {
         const auto& earlier = aligned.records[link->earlier];
         check.pack_of = earlier.record->flight;
         place_ah = earlier.initial_charge_ah + link->charge_ah;
     }
-    check.initial_charge_ah = identified.missing_ah + place_ah;
+    check.initial_charge_ah = identified.curve_start_depletion_ah + place_ah;
     const auto errors = errors_of(predict_voltage(identified.battery, record, check.initial_charge_ah), record,
                                   identified.fit.common_rest_offset_v);
     check.voltage_rms_v = std::sqrt(errors.all_v2);
     check.load_rms_v = std::sqrt(errors.load_v2);
-    check.beyond_percent = beyond_percent(identified, record, check.initial_charge_ah);
+    check.extrapolated_percent = beyond_percent(identified, record, check.initial_charge_ah);
     add_best_place(identified.battery, record, check);
     return check;
 }
@@ -353,10 +353,10 @@ double highest_resting_v(const BatteryIdentification& identified) {
 
 BatteryIdentification identify_battery(std::span<const DischargeRecord> records, const IdentificationOptions& options) {
     if (options.cells && !records.empty()) require_possible_cells(highest_resting_v(records), *options.cells);
-    const auto told = told_by(records, options);
+    const auto told = identify_common(records, options);
     const auto& [identification, chained, posterior] = told;
     auto result = identification;
-    result.flights = identified_flights(chained, posterior, result.missing_ah);
+    result.flights = identified_flights(chained, posterior, result.curve_start_depletion_ah);
     result.battery.flight_estimate = flight_estimate(told);
     std::vector<std::optional<FlightResistance>> in_order;
     for (const auto f : order_in_time(chained.aligned.records)) in_order.push_back(chained.resistances[f]);
@@ -365,19 +365,20 @@ BatteryIdentification identify_battery(std::span<const DischargeRecord> records,
 }
 
 PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& record, double initial_charge_ah) {
-    const auto settled_a = settled_current_a(record, battery.thevenin.value().rc_time_constant_s);
+    const auto settled_a = rc_branch_current_a(record, battery.thevenin.value().rc_time_constant_s);
     return predict_from_settled(battery, record, settled_a, initial_charge_ah);
 }
 
-std::vector<LeftOutCheck> leave_each_out(std::span<const DischargeRecord> records, const IdentificationOptions& options,
-                                         const std::function<void(std::size_t, std::size_t)>& progress,
-                                         std::size_t most_folds) {
+std::vector<LeaveOneOutCheck> leave_one_out(std::span<const DischargeRecord> records,
+                                            const IdentificationOptions& options,
+                                            const std::function<void(std::size_t, std::size_t)>& progress,
+                                            std::size_t max_folds) {
     if (records.size() < 2) return {};
-    const auto folds = folds_of(records.size(), std::max<std::size_t>(2, most_folds));
-    const auto all = told_by(records, options).chained.aligned;
+    const auto folds = make_folds(records.size(), std::max<std::size_t>(2, max_folds));
+    const auto all = identify_common(records, options).chained.aligned;
     auto of_others = options;
     of_others.cells = all.fit.weights.cells;
-    std::vector<LeftOutCheck> checks(records.size());
+    std::vector<LeaveOneOutCheck> checks(records.size());
     std::mutex mutex;  // guards what follows
     std::size_t done = 0;
     for_each_in_parallel(folds.size(), [&](std::size_t fold) {
@@ -388,8 +389,8 @@ std::vector<LeftOutCheck> leave_each_out(std::span<const DischargeRecord> record
             others.push_back(records[f]);
             begin_ah.push_back(all.records[f].initial_charge_ah);
         }
-        const auto told = told_by(others, of_others, begin_ah);
-        for (const auto k : folds[fold]) checks[k] = checked(told, records[k], options.chain);
+        const auto told = identify_common(others, of_others, begin_ah);
+        for (const auto k : folds[fold]) checks[k] = checked(told, records[k], options.link_packs);
         if (!progress) return;
         const std::lock_guard lock(mutex);
         progress(++done, folds.size());

@@ -27,7 +27,7 @@ double number_option(const StageCall& call, const std::string& option, double le
 
 std::optional<double> positive_option(const StageCall& call, const std::string& option, const std::string& unit,
                                       double most) {
-    const auto value = call.maybe<double>(option);
+    const auto value = call.get_optional<double>(option);
     if (!value || (*value > 0.0 && *value <= most && std::isfinite(*value))) return value;
     const auto limit = std::isfinite(most) ? fmt::format(" and at most {:g}", most) : std::string();
     throw UsageError(fmt::format("--{} {:g}: expected more than 0{} {}", option, *value, limit, unit));

@@ -12,13 +12,13 @@
 namespace flightwatt::cli {
 namespace {
 
-constexpr auto least_interval = std::chrono::milliseconds(100);
+constexpr auto min_interval = std::chrono::milliseconds(100);
 constexpr auto rate_window = std::chrono::seconds(10);
 
 /// "0:07", "12:34", "3:05:09".
 std::string clock_text(double time_s) {
-    constexpr double most_s = 359999.0;  // 99:59:59
-    const std::chrono::seconds whole(static_cast<long>(std::ceil(std::min(time_s, most_s))));
+    constexpr double max_s = 359999.0;  // 99:59:59
+    const std::chrono::seconds whole(static_cast<long>(std::ceil(std::min(time_s, max_s))));
     const std::chrono::hh_mm_ss clock(whole);
     const auto [hours, minutes, s] =
         std::tuple(clock.hours().count(), clock.minutes().count(), clock.seconds().count());
@@ -66,7 +66,7 @@ ProgressBar::~ProgressBar() { clear(); }
 void ProgressBar::show(std::size_t done, std::size_t all) {
     const std::lock_guard lock(mutex_);
     const auto now = Clock::now();
-    if (cleared_ || now - recent_.back().time < least_interval) return;
+    if (cleared_ || now - recent_.back().time < min_interval) return;
     recent_.push_back({now, done});
     while (recent_.size() > 2 && now - recent_.front().time > rate_window) recent_.pop_front();
     const std::chrono::duration<double> window = now - recent_.front().time;
@@ -113,7 +113,7 @@ void TerminalProgress::hide() {
     if (bar_) bar_->hide();
 }
 
-std::function<void(std::size_t, std::size_t)> TerminalProgress::shown() {
+std::function<void(std::size_t, std::size_t)> TerminalProgress::callback() {
     return [this](std::size_t done, std::size_t all) { show(done, all); };
 }
 

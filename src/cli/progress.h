@@ -53,14 +53,15 @@ class ProgressBar {
     void erase();
 };
 
-/// A progress bar of what is done of `unit` where the standard error is a terminal, and nothing elsewhere; gone with it.
+/// A progress bar of what is done of `unit` where the standard error is a terminal, and nothing elsewhere; gone with
+/// it.
 class TerminalProgress {
   public:
     explicit TerminalProgress(const std::string& unit);
     void show(std::size_t done, std::size_t all);
     void hide();
     /// show(), for what takes a function; not longer than this lives.
-    std::function<void(std::size_t done, std::size_t all)> shown();
+    std::function<void(std::size_t done, std::size_t all)> callback();
 
   private:
     std::optional<ProgressBar> bar_;

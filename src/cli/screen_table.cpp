@@ -143,10 +143,10 @@ ShownColumn shown_column(const TextTable& table, std::size_t index) {
         if (row[index].empty() || is_number_like(row[index])) ++numbers;
     }
     column.is_text = numbers * 2 < table.rows.size() || table.rows.empty();
-    std::size_t longest_word = 0;
-    for (const auto& word : words_of(column.name)) longest_word = std::max(longest_word, characters_of(word));
-    column.natural = std::max(widest, longest_word);
-    column.least = column.is_text ? std::max(std::min(widest, text_wraps_from), longest_word) : column.natural;
+    std::size_t max_word = 0;
+    for (const auto& word : words_of(column.name)) max_word = std::max(max_word, characters_of(word));
+    column.natural = std::max(widest, max_word);
+    column.least = column.is_text ? std::max(std::min(widest, text_wraps_from), max_word) : column.natural;
     return column;
 }
 

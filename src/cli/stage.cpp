@@ -2,7 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/file_use.h"
+#include "base/overwrite_guard.h"
 #include "base/toml_reader.h"
 #include "cli/screen_table.h"
 #include "cli/terminal.h"
@@ -48,7 +48,7 @@ constexpr int color_of_warnings = 172;
 ExitCode failed(ExitCode code, const std::string& program, const std::string& message, const std::string& where = "") {
     const auto place = where.empty() ? "" : where + ": ";
     tell(fmt::format("{}: {}{} {}\n", program, one_line(place), alert("error", color_of_errors),
-                     one_line(clipped(message))));
+                     one_line(truncated(message))));
     return code;
 }
 
@@ -140,7 +140,7 @@ StageCall parse(int argc, char** argv, const StageDefinition& definition, const 
     }
     po::notify(call.options);
     call.json = call.has("json");
-    call.output = call.maybe<std::string>("output");
+    call.output = call.get_optional<std::string>("output");
     if (call.output == "-") call.output.reset();  // as everywhere: the standard output
     if (call.has(inputs_option)) call.inputs = call.get<std::vector<std::string>>(inputs_option);
     return call;
@@ -153,8 +153,8 @@ std::string usage_line(const StageDefinition& definition) {
 /// Tells which files the user named are read and written: a result that replaces what it was made from would lose a
 /// log for good.
 void declare_files(const StageCall& call, const po::options_description& options) {
-    watch_file_use();
-    for (const auto& input : call.inputs) note_input(input);
+    enable_overwrite_guard();
+    for (const auto& input : call.inputs) register_input(input);
     const auto visit = [&](FileRole role, const auto& use) {
         for (const auto& option : options.options()) {
             const auto* file = dynamic_cast<const FileValue*>(option->semantic().get());
@@ -162,14 +162,14 @@ void declare_files(const StageCall& call, const po::options_description& options
             if (file != nullptr && file->role() == role && call.has(name)) use(call.get<std::string>(name), name);
         }
     };
-    visit(FileRole::input, [](const std::string& file, const std::string&) { note_input(file); });
+    visit(FileRole::input, [](const std::string& file, const std::string&) { register_input(file); });
     for (const auto& option : options.options()) {
         const bool names_files = dynamic_cast<const InputFilesValue*>(option->semantic().get()) != nullptr;
         if (!names_files || !call.has(option->long_name())) continue;
-        for (const auto& file : call.get<std::vector<std::string>>(option->long_name())) note_input(file);
+        for (const auto& file : call.get<std::vector<std::string>>(option->long_name())) register_input(file);
     }
     visit(FileRole::output, [](const std::string& file, const std::string& name) {
-        if (file != "-") declare_output(file, "--" + name);
+        if (file != "-") register_output(file, "--" + name);
     });
 }
 
@@ -222,7 +222,7 @@ int run_guarded(const std::string& program, const std::function<int()>& body) {
         return code;
     } catch (const InputError& error) {
         return failed(input_rejected, program, reason_of(error), to_string(error.where()));
-    } catch (const NoAnswerError& error) {
+    } catch (const NoResultError& error) {
         return failed(no_answer, program, error.what());
     } catch (const UsageError& error) {
         return failed(usage_error, program, error.what());
@@ -254,7 +254,7 @@ void print(std::string_view text) {
     reader_has_left = true;
 }
 
-bool print_at_once(std::string_view text) {
+bool print_flushed(std::string_view text) {
     print(text);
     if (!reader_has_left && std::fflush(stdout) != 0) {
         if (errno != EPIPE) cannot_print();
@@ -288,7 +288,7 @@ std::string one_line(std::string_view text) {
     return line;
 }
 
-std::string typed_in_shell(std::string_view file) {
+std::string shell_quoted(std::string_view file) {
     if (!file.empty() && file.find_first_of(" \t\n'\"\\$`&;|<>()*?[]#~!{}") == std::string_view::npos)
         return std::string(file);
     std::string quoted = "'";

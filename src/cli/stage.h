@@ -80,7 +80,7 @@ struct StageCall {
     }
     /// The option's value, if it was given.
     template <typename T>
-    std::optional<T> maybe(const std::string& option) const {
+    std::optional<T> get_optional(const std::string& option) const {
         return has(option) ? std::optional<T>(get<T>(option)) : std::nullopt;
     }
 };
@@ -90,8 +90,8 @@ using StageBody = std::function<int(const StageCall&)>;
 /// Parses the options of a stage, answers --help and --version, and runs the body, guarded as below.
 int run_stage(int argc, char** argv, const StageDefinition& definition, const StageBody& body);
 
-/// Names an input that cannot be used, on the standard error, so that the others go on. The exit code of the stage is then
-/// input_rejected instead of ok.
+/// Names an input that cannot be used, on the standard error, so that the others go on. The exit code of the stage is
+/// then input_rejected instead of ok.
 void skip_input(const StageCall& call, const std::string& file, const InputError& error);
 
 /// The exit code of the body. An exception becomes one line on the standard error and its exit code; a standard
@@ -103,18 +103,19 @@ int run_guarded(const std::string& program, const std::function<int()>& body);
 /// The result to --output's file (atomically), or to the standard output unless --json claims that.
 void write_result(const StageCall& call, std::string_view content);
 
-/// To the standard output. Throws OutputError (full disk, closed); of a pipe that nobody reads any more see run_guarded.
+/// To the standard output. Throws OutputError (full disk, closed); of a pipe that nobody reads any more see
+/// run_guarded.
 void print(std::string_view text);
 
 /// The same, seen at once, for programs that go on; false if nobody reads any more.
-bool print_at_once(std::string_view text);
+bool print_flushed(std::string_view text);
 
 /// `text` with blanks for control characters: diagnostics stay on one line, whatever a file (or its name) put
 /// into them.
 std::string one_line(std::string_view text);
 
 /// A file's name as a user types it in a shell: quoted where it has to be.
-std::string typed_in_shell(std::string_view file);
+std::string shell_quoted(std::string_view file);
 
 /// A line on the standard error: "flightwatt-fit: warning: ...".
 void warn(const StageCall& call, std::string_view message);

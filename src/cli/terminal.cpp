@@ -37,7 +37,7 @@ constexpr std::size_t dots_across = 2;  // of a braille character
 constexpr std::size_t dots_down = 4;
 constexpr std::size_t axis_columns = 7;   // "100.0 ┤"
 constexpr std::size_t label_columns = 8;  // behind the area
-constexpr std::size_t least_columns = 20;
+constexpr std::size_t min_columns = 20;
 /// Of the 256 colours those nearest to Okabe and Ito's, who chose them for the colour-blind.
 constexpr std::array<int, 6> color_codes{33, 166, 36, 175, 214, 74};
 
@@ -124,8 +124,8 @@ std::string axis_text(const TerminalPlot& plot, std::size_t row) {
 
 }  // namespace
 
-TerminalAbility ability_of(bool is_terminal, std::size_t columns, const Environment& environment) {
-    TerminalAbility ability;
+TerminalCapabilities detect_capabilities(bool is_terminal, std::size_t columns, const Environment& environment) {
+    TerminalCapabilities ability;
     if (columns > 0) ability.columns = columns;
     const auto kind = value_of(environment, "TERM");
     ability.is_terminal = is_terminal;
@@ -135,31 +135,32 @@ TerminalAbility ability_of(bool is_terminal, std::size_t columns, const Environm
     return ability;
 }
 
-TerminalAbility standard_output_ability() {
+TerminalCapabilities standard_output_ability() {
     winsize size{};
     const bool known = ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0;
-    return ability_of(::isatty(STDOUT_FILENO) != 0, known ? size.ws_col : 0,
-                      [](const char* name) { return std::getenv(name); });
+    return detect_capabilities(::isatty(STDOUT_FILENO) != 0, known ? size.ws_col : 0,
+                               [](const char* name) { return std::getenv(name); });
 }
 
 bool standard_error_has_colors() {
-    return ability_of(::isatty(STDERR_FILENO) != 0, 0, [](const char* name) { return std::getenv(name); }).colors;
+    return detect_capabilities(::isatty(STDERR_FILENO) != 0, 0, [](const char* name) { return std::getenv(name); })
+        .colors;
 }
 
 std::optional<TerminalPlot> terminal_plot(const StageCall& call, const std::string& title) {
     const auto ability = standard_output_ability();
     if (!ability.draws || call.output || call.json) return std::nullopt;
-    constexpr std::size_t most_columns = 100;
+    constexpr std::size_t max_columns = 100;
     TerminalPlot plot;
     plot.title = "\n" + title;
     plot.x_label = "s";
-    plot.columns = std::min(ability.columns, most_columns);
+    plot.columns = std::min(ability.columns, max_columns);
     plot.colors = ability.colors;
     return plot;
 }
 
 std::string draw(const TerminalPlot& plot, std::span<const TerminalLine> lines) {
-    if (lines.empty() || plot.rows < 2 || plot.columns < axis_columns + label_columns + least_columns) return "";
+    if (lines.empty() || plot.rows < 2 || plot.columns < axis_columns + label_columns + min_columns) return "";
     double x_low = lines.front().x.front();
     double x_high = lines.front().x.back();
     for (const auto& line : lines) {

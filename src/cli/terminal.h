@@ -13,7 +13,7 @@
 namespace flightwatt::cli {
 
 /// What the standard output can show.
-struct TerminalAbility {
+struct TerminalCapabilities {
     bool is_terminal = false;
     bool draws = false;   ///< a terminal that shows Unicode
     bool colors = false;  ///< one that has colours, and they are wanted (no-color.org)
@@ -25,10 +25,10 @@ using Environment = std::function<const char*(const char* name)>;
 
 /// What a terminal of so many columns can show, after TERM (not "dumb"), the locale (LC_ALL, LC_CTYPE, LANG:
 /// UTF-8) and NO_COLOR.
-TerminalAbility ability_of(bool is_terminal, std::size_t columns, const Environment& environment);
+TerminalCapabilities detect_capabilities(bool is_terminal, std::size_t columns, const Environment& environment);
 
 /// The same of the standard output of this program.
-TerminalAbility standard_output_ability();
+TerminalCapabilities standard_output_ability();
 
 /// Whether diagnostics are read on a terminal with colours.
 bool standard_error_has_colors();

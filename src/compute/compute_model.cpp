@@ -23,7 +23,7 @@ void refuse_duplicates(const std::vector<std::string>& parameters, const std::ve
     for (std::size_t i = 1; i < sorted.size(); ++i) {
         if (sorted[i].qos != sorted[i - 1].qos) continue;
         const auto what =
-            parameters.empty() ? "a profile without parameters" : spell_qos(parameters, sorted[i].qos, " = ", ", ");
+            parameters.empty() ? "a profile without parameters" : format_qos(parameters, sorted[i].qos, " = ", ", ");
         throw InputError(sorted[i].where,
                          fmt::format("{} has a second node, the first is in line {}", what, sorted[i - 1].where.line),
                          "keep one row for each configuration");
@@ -54,7 +54,7 @@ void require_full_grid(const PowerProfile& profile, const std::vector<ProfileNod
     if (static_cast<double>(k) >= grid_size) return;
     throw InputError({profile.file},
                      fmt::format("the grid is incomplete: there is no node at {}",
-                                 spell_qos(profile.parameters, grid_point(profile.axes, k), " = ", ", ")),
+                                 format_qos(profile.parameters, grid_point(profile.axes, k), " = ", ", ")),
                      fmt::format("profile every combination of the values, here {} nodes", fmt::join(counts, " x ")));
 }
 
@@ -83,7 +83,7 @@ std::string negative_power_warning(const PowerProfile& profile) {
     const auto least = std::ranges::min_element(profile.power_w);
     if (*least >= 0.0) return "";
     const auto node = grid_point(profile.axes, static_cast<std::size_t>(least - profile.power_w.begin()));
-    const auto at = profile.parameters.empty() ? "" : " at " + spell_qos(profile.parameters, node, " = ", ", ");
+    const auto at = profile.parameters.empty() ? "" : " at " + format_qos(profile.parameters, node, " = ", ", ");
     return fmt::format(
         "{}: {:.3g} W{}: software that gives power back does not exist; within the noise of the profile "
         "it is 0",
@@ -103,11 +103,11 @@ double power_w(const PowerProfile& profile, const std::vector<double>& qos) {
     if (qos.size() != profile.axes.size()) {
         throw std::invalid_argument("the number of QoS values is not that of the parameters");
     }
-    std::vector<KnotPlace> places;
+    std::vector<KnotInterval> places;
     for (std::size_t i = 0; i < qos.size(); ++i) {
         require_in_range(profile, i, qos[i], {profile.file});
         const auto& axis = profile.axes[i];
-        places.push_back(axis.size() == 1 ? KnotPlace{} : place_among(axis, qos[i]));
+        places.push_back(axis.size() == 1 ? KnotInterval{} : find_knot_interval(axis, qos[i]));
     }
     // The sum over the 2^d corners of the cell, bit i of `corner` choosing the upper node of axis i.
     double power = 0.0;

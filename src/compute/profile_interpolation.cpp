@@ -100,8 +100,9 @@ std::optional<VectorXd> errors_of(const MatrixXd& points, const VectorXd& values
 
 }  // namespace
 
-LeaveOneOut summarize_errors(std::string method, std::vector<double> error_w, const std::vector<double>& power_w) {
-    LeaveOneOut summary;
+LeaveOneOutErrors summarize_errors(std::string method, std::vector<double> error_w,
+                                   const std::vector<double>& power_w) {
+    LeaveOneOutErrors summary;
     summary.method = std::move(method);
     double squares = 0.0;
     for (std::size_t i = 0; i < error_w.size(); ++i) {
@@ -109,7 +110,7 @@ LeaveOneOut summarize_errors(std::string method, std::vector<double> error_w, co
         ++summary.nodes;
         const double size = std::abs(error_w[i]);
         summary.mean_absolute_w += size;
-        summary.mean_absolute_percent += units::percent_of(size, std::abs(power_w[i]));
+        summary.mean_absolute_percent += units::percentage(size, std::abs(power_w[i]));
         squares += size * size;
         summary.largest_w = std::max(summary.largest_w, size);
     }
@@ -131,15 +132,15 @@ std::vector<double> interpolate_thin_plate(AxisScale scale, const QosPoints& kno
     const auto terms = plane_terms(queries);
     const Eigen::FullPivLU<MatrixXd> lu(spline_system(points));
     if (n < terms.cols() || !lu.isInvertible()) {
-        throw NoAnswerError(fmt::format("{} nodes do not determine the thin plate", n));
+        throw NoResultError(fmt::format("{} nodes do not determine the thin plate", n));
     }
     const VectorXd weights = lu.solve(padded(values, n + terms.cols()));
     const VectorXd found = kernel(queries, points) * weights.head(n) + terms * weights.tail(terms.cols());
     return {found.begin(), found.end()};
 }
 
-std::optional<LeaveOneOut> leave_one_out(AxisScale scale, const QosPoints& known, const std::vector<double>& power_w,
-                                         const QosPoints& at) {
+std::optional<LeaveOneOutErrors> leave_one_out(AxisScale scale, const QosPoints& known,
+                                               const std::vector<double>& power_w, const QosPoints& at) {
     const MatrixXd points = scaled_together(known, at, scale).topRows(static_cast<Index>(known.size()));
     const VectorXd values = Eigen::Map<const VectorXd>(power_w.data(), static_cast<Index>(power_w.size()));
     const auto errors = errors_of(points, values);
@@ -162,10 +163,10 @@ std::optional<ScaleChoice> choose_scale(const QosPoints& known, const std::vecto
 QosPoints grid_points(const PowerProfile& profile) {
     std::vector<QosRange> ranges;
     for (const auto& axis : profile.axes) ranges.push_back({"", axis});
-    return combinations_of(ranges);
+    return cartesian_product(ranges);
 }
 
-LeaveOneOut leave_one_out(const PowerProfile& profile) {
+LeaveOneOutErrors leave_one_out(const PowerProfile& profile) {
     std::vector<double> errors;
     for (std::size_t k = 0; k < profile.power_w.size(); ++k) {
         double sum = 0.0;
@@ -186,8 +187,8 @@ LeaveOneOut leave_one_out(const PowerProfile& profile) {
     return summarize_errors("linear between neighbours", std::move(errors), profile.power_w);
 }
 
-std::vector<LeaveOneOut> interpolation_errors(const PowerProfile& profile) {
-    std::vector<LeaveOneOut> errors{leave_one_out(profile)};
+std::vector<LeaveOneOutErrors> interpolation_errors(const PowerProfile& profile) {
+    std::vector<LeaveOneOutErrors> errors{leave_one_out(profile)};
     if (const auto choice = choose_scale(grid_points(profile), profile.power_w)) errors.push_back(choice->error);
     return errors;
 }

@@ -39,11 +39,11 @@ ProfileTiming timing_from(const TomlTable& table, const ProfileTiming& fallback)
     if (table.has("duration_s")) timing.duration_s = number_in(more_than(0.0), table, "duration_s");
     timing.warm_up_s = number_in_or(at_least(0.0), table, "warm_up_s", fallback.warm_up_s);
     timing.timeout_s = number_in_or(more_than(0.0), table, "timeout_s", fallback.timeout_s);
-    const double least_s = timing.warm_up_s + timing.duration_s.value_or(0.0);
-    if (timing.timeout_s <= least_s && table.has("timeout_s")) {
+    const double min_s = timing.warm_up_s + timing.duration_s.value_or(0.0);
+    if (timing.timeout_s <= min_s && table.has("timeout_s")) {
         throw InputError(
             table.where("timeout_s"),
-            fmt::format("timeout_s = {} is over before warm-up and duration, {} s", timing.timeout_s, least_s));
+            fmt::format("timeout_s = {} is over before warm-up and duration, {} s", timing.timeout_s, min_s));
     }
     return timing;
 }
@@ -63,10 +63,10 @@ std::vector<double> values_from(const TomlTable& ranges, const std::string& name
     const double step = range.number("step");
     if (step <= 0.0) throw InputError(range.where("step"), fmt::format("step = {} is not positive", step));
     if (to < from) throw InputError(range.where("to"), fmt::format("to = {} is less than from = {}", to, from));
-    if ((to - from) / step > static_cast<double>(most_configurations)) {
+    if ((to - from) / step > static_cast<double>(max_configurations)) {
         throw InputError(range.where("step"), fmt::format("step = {} makes too many values", step));
     }
-    return evenly_spaced(from, to, step);
+    return linear_range(from, to, step);
 }
 
 std::vector<QosRange> ranges_from(const TomlTable& component) {
@@ -134,18 +134,18 @@ ProfiledComponent multiplied_out(const std::string& name, const std::vector<Writ
         component.parameters.push_back(range.name);
         count *= static_cast<double>(range.values.size());
     }
-    if (count > static_cast<double>(most_configurations)) {
+    if (count > static_cast<double>(max_configurations)) {
         throw InputError(where, fmt::format("{} has {} configurations", name, count), "profile fewer values");
     }
-    for (auto& qos : combinations_of(ranges)) {
+    for (auto& qos : cartesian_product(ranges)) {
         ProfiledConfiguration configuration;
         for (const auto& part : parts) {
             std::vector<std::string> words;
-            for (const auto& word : part.command) words.push_back(with_qos(word, component.parameters, qos));
+            for (const auto& word : part.command) words.push_back(substitute_qos(word, component.parameters, qos));
             configuration.commands.push_back(std::move(words));
         }
         if (sampler.kind == SamplerKind::recorded) {
-            auto file = with_qos(sampler.file, component.parameters, qos);
+            auto file = substitute_qos(sampler.file, component.parameters, qos);
             constexpr std::string_view placeholder = "{component}";
             const auto at = file.find(placeholder);
             if (at != std::string::npos) file.replace(at, placeholder.size(), name);

@@ -31,7 +31,7 @@ std::vector<std::vector<std::size_t>> chosen_nodes(const ProfileSpecification& s
             }
             QosPoints points;
             for (const auto& configuration : component.configurations) points.push_back(configuration.qos);
-            nodes = spread_nodes(points, *trials);
+            nodes = select_maximin(points, *trials);
             std::ranges::sort(nodes);
         }
         chosen.push_back(std::move(nodes));
@@ -39,7 +39,7 @@ std::vector<std::vector<std::size_t>> chosen_nodes(const ProfileSpecification& s
     return chosen;
 }
 
-ComponentRun execute(const ProfileRun& run, const ProfileSpecification& specification, const RunFrame& frame) {
+ComponentRun execute(const ProfileRun& run, const ProfileSpecification& specification, const RunContext& frame) {
     const auto& settings = specification.sampler;
     const bool is_idle = run.component == idle_component;
     const bool is_recorded = settings.kind == SamplerKind::recorded;
@@ -64,7 +64,7 @@ void do_run(ProfileRun& run, const ProfileSpecification& specification, const Pr
     auto output = std::filesystem::path(path).replace_extension(".txt");
     auto result =
         execute(run, specification,
-                {&sampler, specification.sampler.interval_s, std::move(output), options.signals, options.caught});
+                {&sampler, specification.sampler.interval_s, std::move(output), options.signal_fd, options.caught});
     run.status = result.status;
     run.note = std::move(result.note);
     run.trace = std::move(result.trace);
@@ -73,18 +73,18 @@ void do_run(ProfileRun& run, const ProfileSpecification& specification, const Pr
     write_layer1(run, options.folder);
 }
 
-/// A meter takes its time to start, which is none of the first run's. Throws NoAnswerError for one that says nothing.
+/// A meter takes its time to start, which is none of the first run's. Throws NoResultError for one that says nothing.
 void await_meter(PowerSampler& sampler, const ProfilerOptions& options) {
     using Clock = std::chrono::steady_clock;
     constexpr std::chrono::seconds patience(30);
     if (sampler.file() < 0) return;  // a sensor, which answers when asked
     for (const auto end = Clock::now() + patience; Clock::now() < end;) {
-        pollfd files[2] = {{options.signals, POLLIN, 0}, {sampler.file(), POLLIN, 0}};
+        pollfd files[2] = {{options.signal_fd, POLLIN, 0}, {sampler.file(), POLLIN, 0}};
         ::poll(files, 2, 100);
         if (files[0].revents != 0) throw Interrupted(options.caught());
         if (!sampler.read().empty()) return;
     }
-    throw NoAnswerError(fmt::format("the sampler '{}' printed nothing for {} s", sampler.source, patience.count()));
+    throw NoResultError(fmt::format("the sampler '{}' printed nothing for {} s", sampler.source, patience.count()));
 }
 
 void do_runs(std::vector<ProfileRun>& runs, const ProfileSpecification& specification, const ProfilerOptions& options,
@@ -137,7 +137,7 @@ void interpolate(const QosPoints& missing, ComponentEstimate& estimate) {
 PowerEstimate idle_of(const std::vector<ProfileRun>& runs) {
     const auto& idle = runs.front();
     if (idle.status == RunStatus::ok) return idle.estimate;
-    throw NoAnswerError(fmt::format("no idle power: {} {}", to_string(idle.status), idle.note));
+    throw NoResultError(fmt::format("no idle power: {} {}", to_string(idle.status), idle.note));
 }
 
 /// Layer 2 from the runs; configurations that were not to be run are interpolated, those that failed are not in it.
@@ -168,12 +168,12 @@ ComponentEstimate estimate_component(const ProfiledComponent& component, std::si
 ProfileOutcome profile(const ProfileSpecification& specification, const ProfilerOptions& options) {
     ProfileOutcome outcome;
     outcome.runs = planned_runs(specification, chosen_nodes(specification, options.trials));
-    claim_results(specification, outcome.runs, options.folder);
-    recall_runs(outcome.runs, options.folder);
+    check_result_files(specification, outcome.runs, options.folder);
+    load_completed_runs(outcome.runs, options.folder);
     const bool is_recorded = specification.sampler.kind == SamplerKind::recorded;
     PowerSampler sampler{SamplerKind::recorded, "recorded", {}, {}};
     if (!is_recorded) sampler = open_sampler(specification.sampler);
-    if (options.opened) options.opened(sampler);
+    if (options.on_sampler_opened) options.on_sampler_opened(sampler);
     outcome.sampler = to_string(sampler.kind);
     if (!is_recorded) outcome.sampler += ": " + sampler.source;
     make_directories(options.folder);

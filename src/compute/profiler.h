@@ -25,8 +25,8 @@ struct ComponentEstimate {
     std::vector<std::string> parameters;
     std::vector<NodeEstimate> nodes;  ///< without those that failed
     std::size_t configurations = 0;
-    std::vector<ProfileRun> failures;          ///< runs without power
-    std::optional<LeaveOneOut> interpolation;  ///< of the method that was used, on the measured nodes
+    std::vector<ProfileRun> failures;                ///< runs without power
+    std::optional<LeaveOneOutErrors> interpolation;  ///< of the method that was used, on the measured nodes
 };
 
 struct ProfileOutcome {
@@ -40,16 +40,16 @@ struct ProfileOutcome {
 struct ProfilerOptions {
     std::filesystem::path folder;       ///< of the results
     std::optional<std::size_t> trials;  ///< configurations of each component to run; absent: all
-    int signals = -1;                   ///< as in RunFrame
+    int signal_fd = -1;                 ///< as in RunContext
     std::function<int()> caught;
-    std::function<void(const PowerSampler&)> opened;  ///< called before the first run
+    std::function<void(const PowerSampler&)> on_sampler_opened;  ///< called before the first run
     /// Called after each run with how many are done.
     std::function<void(const ProfileRun&, std::size_t done, std::size_t all)> progress;
 };
 
 /// Profiles: runs what is not done yet, one run after the other, keeping runs.csv and layer 1 in the folder up to
 /// date after each. Throws UsageError for trials too few to interpolate from, Interrupted (the folder then tells
-/// how far it came), NoAnswerError where there is no sampler or the idle computer could not be measured,
+/// how far it came), NoResultError where there is no sampler or the idle computer could not be measured,
 /// InputError of the sampler's files.
 ProfileOutcome profile(const ProfileSpecification& specification, const ProfilerOptions& options);
 

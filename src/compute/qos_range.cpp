@@ -35,14 +35,14 @@ std::vector<double> values_on(const QosPoints& points, std::size_t axis) {
 
 }  // namespace
 
-std::vector<double> evenly_spaced(double from, double to, double step) {
+std::vector<double> linear_range(double from, double to, double step) {
     std::vector<double> values;
     const double steps = std::floor((to - from) / step + rounding);
     for (int i = 0; i <= steps; ++i) values.push_back(rounded(from + i * step));
     return values;
 }
 
-std::vector<double> multiplied(double from, double to, double factor) {
+std::vector<double> geometric_range(double from, double to, double factor) {
     std::vector<double> values;
     double value = from;
     while (value <= to) {
@@ -52,7 +52,7 @@ std::vector<double> multiplied(double from, double to, double factor) {
     return values;
 }
 
-QosPoints combinations_of(const std::vector<QosRange>& ranges) {
+QosPoints cartesian_product(const std::vector<QosRange>& ranges) {
     QosPoints combinations{{}};
     for (const auto& range : ranges) {
         QosPoints longer;
@@ -67,8 +67,8 @@ QosPoints combinations_of(const std::vector<QosRange>& ranges) {
     return combinations;
 }
 
-std::string spell_qos(const std::vector<std::string>& parameters, const std::vector<double>& qos,
-                      std::string_view equals, std::string_view between) {
+std::string format_qos(const std::vector<std::string>& parameters, const std::vector<double>& qos,
+                       std::string_view equals, std::string_view between) {
     std::vector<std::string> parts;
     for (std::size_t i = 0; i < qos.size(); ++i) {
         parts.push_back(fmt::format("{}{}{}", parameters[i], equals, qos[i]));
@@ -76,8 +76,8 @@ std::string spell_qos(const std::vector<std::string>& parameters, const std::vec
     return fmt::format("{}", fmt::join(parts, between));
 }
 
-std::string with_qos(const std::string& text, const std::vector<std::string>& parameters,
-                     const std::vector<double>& qos) {
+std::string substitute_qos(const std::string& text, const std::vector<std::string>& parameters,
+                           const std::vector<double>& qos) {
     std::string result = text;
     for (std::size_t i = 0; i < parameters.size(); ++i) {
         const auto placeholder = "{" + parameters[i] + "}";
@@ -109,7 +109,7 @@ QosPoints unit_points(const QosPoints& points, AxisScale scale) {
     return unit;
 }
 
-std::vector<std::size_t> spread_nodes(const QosPoints& points, std::size_t count) {
+std::vector<std::size_t> select_maximin(const QosPoints& points, std::size_t count) {
     const auto unit = unit_points(points, AxisScale::rank);
     std::vector<double> distance(points.size(), std::numeric_limits<double>::infinity());
     std::vector<std::size_t> chosen;

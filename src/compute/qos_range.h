@@ -8,7 +8,7 @@
 namespace flightwatt::compute {
 
 /// More are a mistake in a range: they would take weeks to profile.
-inline constexpr std::size_t most_configurations = 100000;
+inline constexpr std::size_t max_configurations = 100000;
 
 /// Configurations of a component: one value a parameter each.
 using QosPoints = std::vector<std::vector<double>>;
@@ -21,21 +21,21 @@ struct QosRange {
 
 /// from, from + step, ... up to `to`, which is among them if it is a whole number of steps away. `step` > 0
 /// and `to` >= `from`. Rounded to 12 digits, so that 0.1 + 0.2 is spelled 0.3 on a command line.
-std::vector<double> evenly_spaced(double from, double to, double step);
+std::vector<double> linear_range(double from, double to, double step);
 
 /// powprofiler's pow(factor): from, from * factor, ... up to `to`; 0 is followed by the factor. `factor` > 1.
-std::vector<double> multiplied(double from, double to, double factor);
+std::vector<double> geometric_range(double from, double to, double factor);
 
 /// Every combination of the values, the last parameter running fastest; one empty combination of no ranges.
-QosPoints combinations_of(const std::vector<QosRange>& ranges);
+QosPoints cartesian_product(const std::vector<QosRange>& ranges);
 
 /// "fps=4 key_bits=32", or with other texts between name and value and between parameters.
-std::string spell_qos(const std::vector<std::string>& parameters, const std::vector<double>& qos,
-                      std::string_view equals = "=", std::string_view between = " ");
+std::string format_qos(const std::vector<std::string>& parameters, const std::vector<double>& qos,
+                       std::string_view equals = "=", std::string_view between = " ");
 
 /// `text` with every {name} of a parameter replaced by its value; other braces stay (they may be a shell's).
-std::string with_qos(const std::string& text, const std::vector<std::string>& parameters,
-                     const std::vector<double>& qos);
+std::string substitute_qos(const std::string& text, const std::vector<std::string>& parameters,
+                           const std::vector<double>& qos);
 
 /// How the values of a parameter become coordinates from 0 to 1.
 enum class AxisScale {
@@ -48,6 +48,6 @@ QosPoints unit_points(const QosPoints& points, AxisScale scale);
 
 /// `count` of the points, as indices in the order chosen: first the corners of their range, then always the
 /// one farthest from those chosen (maximin), by rank. All of them if count is not less.
-std::vector<std::size_t> spread_nodes(const QosPoints& points, std::size_t count);
+std::vector<std::size_t> select_maximin(const QosPoints& points, std::size_t count);
 
 }  // namespace flightwatt::compute

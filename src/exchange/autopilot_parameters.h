@@ -39,8 +39,8 @@ ParameterText to_inav(const EstimatorInput& input);
 /// level flight, energies of take-off and landing, the pack. Throws InputError without battery and physical model.
 ParameterText to_paparazzi(const EstimatorInput& input);
 
-/// Its batterymodel.csv: cell voltage from 4.20 to 2.50 V by 0.01 V, and the charge drawn of a cell [mAh] where it shows
-/// that voltage under 2, 4, 6, 8 and 10 A. Throws InputError without a battery, or for one of constant voltage.
+/// Its batterymodel.csv: cell voltage from 4.20 to 2.50 V by 0.01 V, and the charge drawn of a cell [mAh] where it
+/// shows that voltage under 2, 4, 6, 8 and 10 A. Throws InputError without a battery, or for one of constant voltage.
 ParameterText to_paparazzi_map(const EstimatorInput& input);
 
 }  // namespace flightwatt::exchange

@@ -1,10 +1,10 @@
 #include "exchange/flown_track.h"
 
 #include "base/error.h"
-#include "flight/chosen_track.h"
 #include "flight/flight_identity.h"
 #include "flight/log_name.h"
 #include "flight/phase_statistics.h"
+#include "flight/selected_track.h"
 
 #include <algorithm>
 #include <array>
@@ -89,7 +89,7 @@ bool crosses_antimeridian(const TrackPoint& from, const TrackPoint& to) {
     return std::abs(from.longitude_deg - to.longitude_deg) > half_turn_deg;
 }
 
-std::optional<double> mean_power_w(const FlownTrack& track, const TrackPart& part) {
+std::optional<double> mean_power_w(const FlownTrack& track, const TrackSegment& part) {
     std::vector<double> time_s;
     std::vector<double> power_w;
     for (std::size_t i = part.first; i <= part.last; ++i) {
@@ -106,10 +106,10 @@ std::optional<double> mean_power_w(const FlownTrack& track, const TrackPart& par
 }  // namespace
 
 FlownTrack flown_track(const flight::FlightSeries& series, const flight::FlightPhases& phases) {
-    const auto latitude = chosen_track(series, "latitude_deg");
-    const auto longitude = chosen_at(series, "longitude_deg", latitude.time_s);
+    const auto latitude = select_track(series, "latitude_deg");
+    const auto longitude = sample_selected_track(series, "longitude_deg", latitude.time_s);
     if (latitude.time_s.size() < 2 || longitude.empty()) {
-        const bool in_metres = !chosen_track(series, "east_m").empty();
+        const bool in_metres = !select_track(series, "east_m").empty();
         throw InputError({series.file},
                          in_metres ? "has positions in metres alone, from an origin that it does not tell"
                                    : "has no positions, of which a track is made",
@@ -117,8 +117,8 @@ FlownTrack flown_track(const flight::FlightSeries& series, const flight::FlightP
     }
     FlownTrack track{series.flight, flight::describe_aircraft(series.aircraft_id, series.aircraft_name), {}};
     set_clock(track, series);
-    const auto altitude = chosen_at(series, "altitude_m", latitude.time_s);
-    const auto power = chosen_at(series, "power_w", latitude.time_s);
+    const auto altitude = sample_selected_track(series, "altitude_m", latitude.time_s);
+    const auto power = sample_selected_track(series, "power_w", latitude.time_s);
     for (std::size_t i = 0; i < latitude.time_s.size(); ++i) {
         TrackPoint point{latitude.time_s[i], longitude[i], latitude.value[i]};
         if (!altitude.empty()) point.altitude_m = altitude[i];
@@ -137,9 +137,9 @@ std::string utc_text(const FlownTrack& track, double time_s) {
     return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03d}Z", fmt::gmtime(seconds), ms);
 }
 
-std::vector<TrackPart> coloured_parts(const FlownTrack& track, TrackColour colour) {
+std::vector<TrackSegment> coloured_segments(const FlownTrack& track, TrackColour colour) {
     const double step_w = colour == TrackColour::power ? power_step_w(track) : 0.0;
-    std::vector<TrackPart> parts;
+    std::vector<TrackSegment> parts;
     bool is_open = false;
     for (std::size_t i = 0; i + 1 < track.points.size(); ++i) {
         const auto& point = track.points[i];

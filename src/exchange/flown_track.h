@@ -46,8 +46,9 @@ std::string utc_text(const FlownTrack& track, double time_s);
 enum class TrackColour { phase, power };
 
 /// A part of a track that is drawn in one colour: its points from `first` to `last`, two or more. The next part begins
-/// with the point that this one ends with, but for the meridian of 180 degrees, which no part crosses (RFC 7946, 3.1.9).
-struct TrackPart {
+/// with the point that this one ends with, but for the meridian of 180 degrees, which no part crosses (RFC 7946,
+/// 3.1.9).
+struct TrackSegment {
     std::string name;    ///< "cruise", "ground"; "20 to 40 W"
     std::string colour;  ///< "#0072b2"
     std::size_t first = 0;
@@ -57,6 +58,6 @@ struct TrackPart {
 
 /// The whole track in parts. Classes of power are six equal, round steps from 0 to what 95 % of the points are below.
 /// Throws InputError for the colour of power where the log measured none.
-std::vector<TrackPart> coloured_parts(const FlownTrack& track, TrackColour colour);
+std::vector<TrackSegment> coloured_segments(const FlownTrack& track, TrackColour colour);
 
 }  // namespace flightwatt::exchange

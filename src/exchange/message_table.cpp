@@ -65,16 +65,16 @@ telemetry::TelemetryLog read_message(const flight::FlightFile& file,
                                      std::optional<telemetry::LogConfiguration> configuration,
                                      const telemetry::MessageRequest& wanted) {
     if (!file.framing()) return parse_telemetry(file.text(), file.path(), std::move(configuration), {wanted});
-    return flight::use_binary(file, [&](const telemetry::BinaryLog& log) {
+    return flight::with_binary_log(file, [&](const telemetry::BinaryLog& log) {
         return parse_binary_telemetry(log, std::move(configuration).value(), {wanted});
     });
 }
 
 [[noreturn]] void refuse_absent(const flight::FlightFile& file, const std::string& message, bool is_defined) {
     std::vector<std::string> names;
-    const auto counts = file.framing()
-                            ? flight::use_binary(file, [](const auto& log) { return census_of_binary_messages(log); })
-                            : telemetry::census_of_messages(file.text());
+    const auto counts =
+        file.framing() ? flight::with_binary_log(file, [](const auto& log) { return census_of_binary_messages(log); })
+                       : telemetry::count_messages(file.text());
     bool is_there = false;
     for (const auto& [name, count] : counts) {
         is_there = is_there || name == message;

@@ -17,8 +17,8 @@ struct MessageTable {
 };
 
 /// All rows of one message of one sender, every field in the base unit of its quantity (ENERGY.voltage in V:
-/// voltage_v). `sender` may be absent where one alone sent it. Throws InputError for a series, for a message that the log
-/// does not hold (it says which it holds), and for one of several senders.
+/// voltage_v). `sender` may be absent where one alone sent it. Throws InputError for a series, for a message that the
+/// log does not hold (it says which it holds), and for one of several senders.
 MessageTable message_table(const flight::FlightFile& file, const std::string& message,
                            const std::optional<std::string>& sender);
 

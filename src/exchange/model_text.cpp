@@ -65,7 +65,7 @@ std::string heading(const mechanical::MechanicalModel& model, const std::string&
         flights.empty() ? "" : fmt::format(" * Flights: {}.\n", fmt::join(flights, ", ")), upper(prefix), prefix);
 }
 
-std::size_t highest_order(const mechanical::MechanicalModel& model) {
+std::size_t model_order(const mechanical::MechanicalModel& model) {
     std::size_t order = 1;  // C has no arrays of length 0
     for (const auto phase : flight::all_phases) order = std::max(order, model.phases[phase].fourier.cos_w.size());
     return order;
@@ -104,7 +104,7 @@ std::string constants(const mechanical::MechanicalModel& model, std::size_t orde
 }
 
 std::string curve_functions(const mechanical::MechanicalModel& model, const std::string& prefix) {
-    const auto order = highest_order(model);
+    const auto order = model_order(model);
     const auto values = constants(model, order);
     const auto durations = a_phase(model, [](const mechanical::PhaseModel& phase) { return phase.duration_s; });
     return fmt::format(

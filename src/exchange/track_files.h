@@ -4,8 +4,8 @@
 
 #include <string>
 
-/// Tracks for maps. A part of coloured_parts becomes a line of its own; altitudes are the log's, above sea level. Times
-/// are UTC, and absent where the track has no clock. What coloured_parts throws.
+/// Tracks for maps. A part of coloured_segments becomes a line of its own; altitudes are the log's, above sea level.
+/// Times are UTC, and absent where the track has no clock. What coloured_segments throws.
 namespace flightwatt::exchange {
 
 /// GeoJSON (RFC 7946): a FeatureCollection with a LineString a part, [longitude, latitude, altitude]. Properties:

@@ -14,66 +14,67 @@
 namespace flightwatt::flight {
 
 /// Two values of one field, some samples apart, and when: one of many by which a flight is known again.
-struct FlightMark {
+struct SketchHash {
     std::uint64_t fingerprint = 0;  ///< of the two values and the time between them; odd: of an altitude
     double time_s = 0.0;            ///< the log's own seconds
-    bool operator==(const FlightMark&) const = default;
+    bool operator==(const SketchHash&) const = default;
 };
 
 /// In how many ways values are compared: rounded to 0, 1 and 2 decimals, and exactly.
 inline constexpr std::size_t precisions = 4;
-inline constexpr std::size_t most_decimals = 2;
+inline constexpr std::size_t max_decimals = 2;
 
 /// What its samples are, in short: marks of its altitude, voltage, current and power.
-struct FlightContent {
-    std::array<std::vector<FlightMark>, precisions> marks;  ///< of each precision those with the least fingerprints
-    std::size_t decimals = most_decimals;                   ///< of what was logged in the fewest, if less
-    bool has_definitions = true;                            ///< its .log is beside it
-    std::size_t samples = 0;                                ///< of power, or else of altitude
-    std::size_t parts = 1;  ///< of the fingerprints that can be, only the lowest one of so many parts was looked at
+struct FlightSketch {
+    std::array<std::vector<SketchHash>, precisions> hashes;  ///< of each precision those with the least fingerprints
+    std::size_t decimals = max_decimals;                     ///< of what was logged in the fewest, if less
+    bool has_definitions = true;                             ///< its .log is beside it
+    std::size_t samples = 0;                                 ///< of power, or else of altitude
+    std::size_t hash_divisor =
+        1;  ///< of the fingerprints that can be, only the lowest one of so many parts was looked at
 
-    bool operator==(const FlightContent&) const = default;
+    bool operator==(const FlightSketch&) const = default;
 };
 
-FlightContent content_of(const FlightSeries& series);
+FlightSketch make_sketch(const FlightSeries& series);
 
 /// What two recordings have in common.
-struct Likeness {
+struct SketchMatch {
     bool is_same = false;   ///< at least half of the time that the shorter one tells of is in the other too
     double shared_s = 0.0;  ///< how long, about; 0 if they have nothing in common
 };
 
 /// Whether two are recordings of one flight: marks of both at one offset of their clocks (docs/guide.md). So are copies
-/// that lost other lines, were rounded, have another clock, begin or end elsewhere, or hold several flights. Two of which
-/// nothing varies are not, nor two that sampled the flight at other moments.
-Likeness likeness_of(const FlightContent& one, const FlightContent& other);
+/// that lost other lines, were rounded, have another clock, begin or end elsewhere, or hold several flights. Two of
+/// which nothing varies are not, nor two that sampled the flight at other moments.
+SketchMatch compare_sketches(const FlightSketch& one, const FlightSketch& other);
 
 /// Which of two recordings of one flight is used: one with definitions, then one with more samples, then one with more
 /// decimals.
-bool is_better_copy(const FlightContent& one, const FlightContent& other);
+bool is_preferred_duplicate(const FlightSketch& one, const FlightSketch& other);
 
 /// A warning that two flights, which both are used, share a part.
-std::string describe_overlap(const std::string& one, const std::string& other, const Likeness& likeness);
+std::string describe_overlap(const std::string& one, const std::string& other, const SketchMatch& likeness);
 
 /// Flights, to be asked for those that another is like, without comparing it with all.
-class KnownFlights {
+class SketchIndex {
   public:
-    struct Like {
+    struct Hit {
         std::size_t number = 0;  ///< in the order in which they were added
-        Likeness likeness = {};
+        SketchMatch likeness = {};
     };
 
-    std::vector<Like> find(const FlightContent& content) const;
-    void add(FlightContent content);
-    const FlightContent& operator[](std::size_t number) const { return contents_[number]; }
+    std::vector<Hit> find(const FlightSketch& content) const;
+    void add(FlightSketch content);
+    const FlightSketch& operator[](std::size_t number) const { return contents_[number]; }
 
   private:
-    std::vector<FlightContent> contents_;
+    std::vector<FlightSketch> contents_;
     std::unordered_multimap<std::uint64_t, std::size_t> with_mark_;
 };
 
 /// A flight and the aircraft that flew it, as far as its file tells.
-struct FlownBy {
+struct FlightAircraft {
     std::string flight;
     std::string aircraft_id;    ///< empty: unknown, which goes with any
     std::string aircraft_name;  ///< may be empty
@@ -90,6 +91,6 @@ std::string describe_aircraft(const std::string& id, const std::string& name);
 
 /// Why the flights are not of one aircraft, each with its own; empty if they may be. Synthetic ones and real ones never
 /// are.
-std::string describe_mix(std::span<const FlownBy> flights);
+std::string describe_mixed_aircraft(std::span<const FlightAircraft> flights);
 
 }  // namespace flightwatt::flight

@@ -73,7 +73,7 @@ struct PhaseSpan {
 };
 
 /// A height that was held, above the ground, after which the aircraft did not come back to a greater one.
-struct HeldHeight {
+struct HeldAltitude {
     double height_m = 0.0;
     double start_s = 0.0;
     double end_s = 0.0;
@@ -86,8 +86,8 @@ struct Sortie {
     std::size_t number = 1;         ///< its place among those of the log
     std::vector<PhaseSpan> phases;  ///< in order; a log that begins or ends in the air lacks some
     double ground_altitude_m = 0.0;
-    double height_m = 0.0;         ///< median height above the ground while in the upper half of it
-    std::vector<HeldHeight> held;  ///< in order; the landing begins where the last one that is not of it is left
+    double height_m = 0.0;           ///< median height above the ground while in the upper half of it
+    std::vector<HeldAltitude> held;  ///< in order; the landing begins where the last one that is not of it is left
 
     double start_s() const { return phases.front().start.time_s; }
     double end_s() const { return phases.back().end.time_s; }
@@ -110,7 +110,7 @@ struct FlightPhases {
     std::vector<Sortie> sorties;
     std::vector<Rest> rests;  ///< on the ground, in their order
     std::vector<GroundEvent> ground_events;
-    std::string motor_evidence;  ///< what told whether the motor runs: "ENERGY.throttle"
+    std::string motor_source;  ///< what told whether the motor runs: "ENERGY.throttle"
     std::vector<std::string> warnings;
 };
 

@@ -136,11 +136,11 @@ void replace_track(FlightSeries& series, Track track) {
     series.tracks.insert(series.tracks.begin() + at, std::move(track));
 }
 
-FlightSeries cut_series(const FlightSeries& series, double until_s) {
-    return cut_series(FlightSeries(series), until_s);
+FlightSeries truncate_series(const FlightSeries& series, double until_s) {
+    return truncate_series(FlightSeries(series), until_s);
 }
 
-FlightSeries cut_series(FlightSeries&& series, double until_s) {
+FlightSeries truncate_series(FlightSeries&& series, double until_s) {
     FlightSeries cut = std::move(series);
     std::erase_if(cut.tracks, [&](const Track& track) { return track.since_s > until_s; });
     for (auto& track : cut.tracks) {
@@ -150,7 +150,7 @@ FlightSeries cut_series(FlightSeries&& series, double until_s) {
     }
     std::erase_if(cut.assumed_definitions, [&](const auto& definition) { return definition.since_s > until_s; });
     cut_skipped(cut.skipped, until_s);
-    if (cut.clock_restart && cut.clock_restart->known_s > until_s) cut.clock_restart.reset();
+    if (cut.clock_restart && cut.clock_restart->visible_from_s > until_s) cut.clock_restart.reset();
     return cut;
 }
 

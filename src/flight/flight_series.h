@@ -50,7 +50,7 @@ using telemetry::CurrentOrigin;
 
 /// The log's clock began anew: what stands behind is another recording, or lies over the first.
 struct ClockRestart {
-    double known_s = 0.0;  ///< a log that ends before this time shows nothing of it
+    double visible_from_s = 0.0;  ///< a log that ends before this time shows nothing of it
     double from_s = 0.0;
     double to_s = 0.0;
     std::string message;
@@ -59,7 +59,7 @@ struct ClockRestart {
 
 /// One aircraft in one log, as it was logged: every track that could tell something, several of one name
 /// where several messages tell it. What is taken for the altitude, the power ... is decided when it is asked
-/// for (chosen_track.h), so that a series which is cut equals the series of a log that ends there.
+/// for (selected_track.h), so that a series which is cut equals the series of a log that ends there.
 struct FlightSeries {
     std::string file;           ///< it was read from, for errors
     std::string flight;         ///< the log's name without folder and ending
@@ -72,7 +72,7 @@ struct FlightSeries {
     std::optional<double> planned_ground_altitude_m;
     std::optional<double> start_clock_s;     ///< Unix time at which the log's own seconds begin
     std::map<int, std::string> block_names;  ///< of the track "block"
-    bool lacks_log = false;                  ///< telemetry without its .log
+    bool log_is_missing = false;             ///< telemetry without its .log
 
     std::vector<Track> tracks;  ///< in the order of track_names(), of one name the best first
     std::vector<telemetry::AssumedDefinition> assumed_definitions;
@@ -92,8 +92,8 @@ void replace_track(FlightSeries& series, Track track);
 
 /// The series as it would have been read from a log that ends at `until_s` (the log's own seconds), in every
 /// field: nothing later is left. What is known before a flight stays.
-FlightSeries cut_series(const FlightSeries& series, double until_s);
+FlightSeries truncate_series(const FlightSeries& series, double until_s);
 /// In place.
-FlightSeries cut_series(FlightSeries&& series, double until_s);
+FlightSeries truncate_series(FlightSeries&& series, double until_s);
 
 }  // namespace flightwatt::flight

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
-#include "flight/chosen_track.h"
+#include "flight/selected_track.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,7 @@ std::vector<double> edges_of_parts(const PhaseSpan& phase) {
 
 /// A track at the times; throws where the log has none.
 std::vector<double> required_at(const FlightSeries& series, const char* name, const std::vector<double>& times_s) {
-    auto values = chosen_at(series, name, times_s);
+    auto values = sample_selected_track(series, name, times_s);
     if (values.empty()) {
         throw InputError({series.file}, std::string("has no ") + name + ", which a path needs",
                          "a path as it was flown takes airspeed, altitude and position");
@@ -70,11 +70,11 @@ double off_line_m(const GroundTrack& track, std::size_t from, std::size_t to, st
 /// appended in order.
 void add_bends(const GroundTrack& track, std::size_t from, std::size_t to, std::vector<std::size_t>& bends) {
     std::size_t farthest = from;
-    double most_m = bend_m;
+    double max_m = bend_m;
     for (std::size_t i = from + 1; i < to; ++i) {
         const double off_m = off_line_m(track, from, to, i);
-        if (!(off_m > most_m)) continue;
-        most_m = off_m;
+        if (!(off_m > max_m)) continue;
+        max_m = off_m;
         farthest = i;
     }
     if (farthest == from) return;
@@ -104,15 +104,15 @@ GroundTrack ground_track(const FlightSeries& series, bool is_geographic, double 
 FlownPath flown_path(const FlightSeries& series, const PhaseSpan& phase) {
     const auto edges_s = edges_of_parts(phase);
     required_at(series, "airspeed_m_per_s", {edges_s.front()});
-    const auto airspeed = chosen_track(series, "airspeed_m_per_s");
+    const auto airspeed = select_track(series, "airspeed_m_per_s");
     const auto altitude_m = required_at(series, "altitude_m", edges_s);
     FlownPath path;
-    path.is_geographic = chosen_track(series, "east_m").empty() && !chosen_track(series, "latitude_deg").empty();
+    path.is_geographic = select_track(series, "east_m").empty() && !select_track(series, "latitude_deg").empty();
     for (std::size_t part = 0; part + 1 < edges_s.size(); ++part) {
         const double start_s = edges_s[part];
         const double of_part_s = edges_s[part + 1] - start_s;
         const auto track = ground_track(series, path.is_geographic, start_s, edges_s[part + 1]);
-        if (part == 0) path.places.push_back({track.first.front(), track.second.front(), altitude_m.front()});
+        if (part == 0) path.waypoints.push_back({track.first.front(), track.second.front(), altitude_m.front()});
         const double mean_m_per_s = mean_airspeed(airspeed, start_s, edges_s[part + 1]);
         std::vector<std::size_t> chosen;
         add_bends(track, 0, track.time_s.size() - 1, chosen);
@@ -120,15 +120,15 @@ FlownPath flown_path(const FlightSeries& series, const PhaseSpan& phase) {
         double before_s = start_s;
         for (const auto i : chosen) {
             const double done = (track.time_s[i] - start_s) / of_part_s;
-            path.places.push_back({track.first[i], track.second[i],
-                                   std::lerp(altitude_m[part], altitude_m[part + 1], done), track.time_s[i] - before_s,
-                                   mean_m_per_s});
+            path.waypoints.push_back({track.first[i], track.second[i],
+                                      std::lerp(altitude_m[part], altitude_m[part + 1], done),
+                                      track.time_s[i] - before_s, mean_m_per_s});
             before_s = track.time_s[i];
         }
     }
     if (path.is_geographic) return path;
-    const auto origin = path.places.front();
-    for (auto& place : path.places) {
+    const auto origin = path.waypoints.front();
+    for (auto& place : path.waypoints) {
         place.east_m -= origin.east_m;
         place.north_m -= origin.north_m;
     }

@@ -8,7 +8,7 @@
 namespace flightwatt::flight {
 
 /// Where an aircraft was, and how it came there from the place before.
-struct FlownPlace {
+struct FlownWaypoint {
     double east_m = 0.0;   ///< from the first place; or latitude_deg
     double north_m = 0.0;  ///< or longitude_deg
     double altitude_m = 0.0;
@@ -18,12 +18,13 @@ struct FlownPlace {
 
 struct FlownPath {
     bool is_geographic = false;  ///< places in degrees: the log has none in metres
-    std::vector<FlownPlace> places;
+    std::vector<FlownWaypoint> waypoints;
 };
 
 /// The path of a phase: a place every 30 s or so (what the power of motion is fitted over), and between as many as
 /// straight lines need to stay within 3 m of the track over ground. Airspeed is the mean of the 30 s, altitude linear
-/// in them: what changes faster is an exchange of height and speed. Throws InputError where the log measured no airspeed, no altitude or no position.
+/// in them: what changes faster is an exchange of height and speed. Throws InputError where the log measured no
+/// airspeed, no altitude or no position.
 FlownPath flown_path(const FlightSeries& series, const PhaseSpan& phase);
 
 }  // namespace flightwatt::flight

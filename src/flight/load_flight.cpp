@@ -2,9 +2,9 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/file_use.h"
-#include "flight/chosen_track.h"
+#include "base/overwrite_guard.h"
 #include "flight/flight_identity.h"
+#include "flight/selected_track.h"
 #include "flight/series_file.h"
 #include "flight/telemetry_series.h"
 
@@ -19,15 +19,16 @@
 namespace flightwatt::flight {
 namespace {
 
-constexpr std::size_t least_altitudes = 2;  // by which a flight can be segmented
+constexpr std::size_t min_altitudes = 2;  // by which a flight can be segmented
 
 /// The messages of a log, the most frequent first: "GPS 310, ALIVE 12, ...".
 std::string census(const FlightFile& file) {
     if (file.is_series()) return "";
     std::vector<std::string> names;
     const auto counts =
-        file.framing() ? use_binary(file, [](const auto& log) { return telemetry::census_of_binary_messages(log); })
-                       : telemetry::census_of_messages(file.text());
+        file.framing()
+            ? with_binary_log(file, [](const auto& log) { return telemetry::census_of_binary_messages(log); })
+            : telemetry::count_messages(file.text());
     names.reserve(counts.size());
     for (const auto& [name, count] : counts) names.push_back(fmt::format("{} {}", name, count));
     constexpr std::size_t shown = 12;
@@ -40,7 +41,7 @@ telemetry::TelemetryLog read_log(const FlightFile& file) {
     std::optional<telemetry::LogConfiguration> configuration;
     if (const auto& text = file.log_text()) configuration = telemetry::parse_log_configuration(*text, file.log_file());
     if (file.framing()) {
-        return use_binary(file, [&](const telemetry::BinaryLog& log) {
+        return with_binary_log(file, [&](const telemetry::BinaryLog& log) {
             return telemetry::read_binary_telemetry(log, std::move(configuration).value(), flight_messages());
         });
     }
@@ -59,19 +60,19 @@ void name_synthetic(const FlightFile& file, std::vector<FlightSeries>& candidate
 /// has no altitude either.
 FlightSeries read_series(const FlightFile& file, const std::optional<std::string>& aircraft_id, bool power_required) {
     auto series = choose_aircraft(read_candidates(file, aircraft_id));
-    const bool needs_power = power_required || ChosenTracks(series)["altitude_m"].time_s.size() < least_altitudes;
+    const bool needs_power = power_required || SelectedTracks(series)["altitude_m"].time_s.size() < min_altitudes;
     if (series.clock_restart || (needs_power && power_track(series).empty())) require_power(series, census(file));
     return series;
 }
 
 /// What a series shows: whether there is a flight, and else what there is.
-struct Sighting {
+struct SeriesOverview {
     bool flew = false;
     std::string instead;
 };
 
-Sighting look_at(const FlightSeries& series) {
-    const ChosenTracks tracks(series);
+SeriesOverview summarize_series(const FlightSeries& series) {
+    const SelectedTracks tracks(series);
     if (tracks["altitude_m"].time_s.size() < 2) return {false, "no altitude"};
     const auto phases = segment(tracks);
     if (!phases.sorties.empty()) return {true, ""};
@@ -89,17 +90,17 @@ void restrict_to_sortie(FlightPhases& phases, std::size_t number, const std::str
 std::string parenthesised(const std::string& text) { return text.empty() ? "" : fmt::format(" ({})", text); }
 
 /// Nobody flies so often in one log: a log of a day with twenty sorties at 10 Hz has 17 million samples.
-void refuse_endless_work(const ChosenTracks& tracks, const FlightPhases& phases) {
-    constexpr std::size_t most_work = 100'000'000;
+void refuse_endless_work(const SelectedTracks& tracks, const FlightPhases& phases) {
+    constexpr std::size_t max_work = 100'000'000;
     const auto samples = tracks["power_w"].time_s.size();
-    if (phases.sorties.size() * samples <= most_work) return;
+    if (phases.sorties.size() * samples <= max_work) return;
     throw InputError({tracks.series().file},
                      fmt::format("{} sorties in {} samples of power", phases.sorties.size(), samples),
                      "is it the log of one flight? Split it, or choose one with --sortie N");
 }
 
-std::vector<std::string> all_warnings(const ChosenTracks& tracks, const FlightPhases& phases,
-                                      const Judgement& judgement) {
+std::vector<std::string> all_warnings(const SelectedTracks& tracks, const FlightPhases& phases,
+                                      const FlightAssessment& judgement) {
     auto warnings = warnings_of(tracks);
     if (!judgement.lacks_power.empty())
         warnings.push_back(judgement.lacks_power + ": the energy of its phases is not known");
@@ -108,10 +109,10 @@ std::vector<std::string> all_warnings(const ChosenTracks& tracks, const FlightPh
     return warnings;
 }
 
-std::string exclusion_of(const std::string& flight, const Judgement& judgement, const LoadOptions& options) {
+std::string exclusion_of(const std::string& flight, const FlightAssessment& judgement, const LoadOptions& options) {
     if (options.excluded.contains(flight)) return "--exclude names it";
     if (judgement.lacks_power.empty() && options.keep.contains(flight)) return "";
-    return exclusion_by(judgement);
+    return exclusion_reason(judgement);
 }
 
 /// What was flown before the log began or after it ended is in no sum.
@@ -130,21 +131,21 @@ void warn_of_missing_ends(LoadedFlight& loaded) {
 
 /// Each is segmented to see whether it flew, and holds what was skipped of the whole log.
 std::vector<FlightSeries> all_candidates(telemetry::TelemetryLog log) {
-    constexpr std::size_t most_candidates = 32;
-    constexpr std::size_t most_skips = 10'000'000;
+    constexpr std::size_t max_candidates = 32;
+    constexpr std::size_t max_skips = 10'000'000;
     auto senders = telemetry_senders(log);
     if (senders.empty()) senders.emplace_back();
     auto skipped = std::exchange(log.skipped, {});
     std::size_t skips = 0;
     for (const auto& kind : skipped) skips += kind.lines.size();
-    if (senders.size() > most_candidates || (senders.size() > 1 && skips * senders.size() > most_skips)) {
+    if (senders.size() > max_candidates || (senders.size() > 1 && skips * senders.size() > max_skips)) {
         throw InputError({log.data_file.string()},
                          fmt::format("{} senders may be aircraft: {}", senders.size(), short_list(senders)),
                          "choose one with --aircraft ID");
     }
     std::vector<FlightSeries> candidates;
     for (const auto& sender : senders) {
-        candidates.push_back(take_flight_series(log, sender));
+        candidates.push_back(extract_flight_series(log, sender));
         candidates.back().skipped = skipped;
     }
     return candidates;
@@ -153,7 +154,7 @@ std::vector<FlightSeries> all_candidates(telemetry::TelemetryLog log) {
 /// Why a .log cannot be used; empty if it can.
 std::string fault_of_definitions(const std::filesystem::path& log, bool for_frames) {
     try {
-        const auto text = read_file(log, telemetry::most_log_configuration_bytes);
+        const auto text = read_file(log, telemetry::max_log_configuration_bytes);
         telemetry::parse_log_configuration(text, log);
         if (for_frames) telemetry::parse_message_dictionary(text, log);
     } catch (const InputError& error) {
@@ -178,7 +179,7 @@ std::vector<FlightSeries> parse_candidates(const FlightFile& file, const std::op
             return candidates;
         }
         if (std::find(ids.begin(), ids.end(), *aircraft_id) != ids.end()) {
-            candidates.push_back(take_flight_series(log, *aircraft_id));
+            candidates.push_back(extract_flight_series(log, *aircraft_id));
             name_synthetic(file, candidates);
             return candidates;
         }
@@ -189,22 +190,22 @@ std::vector<FlightSeries> parse_candidates(const FlightFile& file, const std::op
 
 }  // namespace
 
-FlightFile::FlightFile(const std::filesystem::path& path, std::size_t most_bytes,
+FlightFile::FlightFile(const std::filesystem::path& path, std::size_t max_bytes,
                        const std::optional<std::filesystem::path>& messages)
     : path_(path) {
     std::error_code error;
     if (path.extension() == ".csv" && std::filesystem::is_regular_file(path, error)) {
-        series_text_ = read_file(path, most_bytes, "if it is a series all the same, --max-log-mb raises the limit");
+        series_text_ = read_file(path, max_bytes, "if it is a series all the same, --max-log-mb raises the limit");
         return;
     }
-    data_.emplace(path, most_bytes);
-    framing_ = telemetry::binary_framing(data_->text());
+    data_.emplace(path, max_bytes);
+    framing_ = telemetry::detect_binary_framing(data_->text());
     auto log = telemetry::find_log_file(path);
     if (log && messages) log_fault_ = fault_of_definitions(*log, framing_.has_value());
     if (!log || !log_fault_.empty()) log = messages;
     if (log) {
         log_file_ = *log;
-        log_text_ = read_file(*log, telemetry::most_log_configuration_bytes);
+        log_text_ = read_file(*log, telemetry::max_log_configuration_bytes);
     }
     if (!log_fault_.empty()) log_fault_ += fmt::format(": the definitions are those of {}", log_file_.string());
 }
@@ -231,15 +232,15 @@ std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::opt
     }
     file.require_unchanged();
     for (auto& series : candidates)
-        if (!file.log_fault().empty()) series.notes.push_back(file.log_fault());
+        if (!file.log_error().empty()) series.notes.push_back(file.log_error());
     return candidates;
 }
 
 FlightSeries choose_aircraft(std::vector<FlightSeries> candidates) {
     if (candidates.size() == 1) return std::move(candidates.front());
-    std::vector<Sighting> sightings(candidates.size());
-    std::ranges::transform(candidates, sightings.begin(), look_at);
-    const bool any = std::ranges::any_of(sightings, &Sighting::flew);
+    std::vector<SeriesOverview> sightings(candidates.size());
+    std::ranges::transform(candidates, sightings.begin(), summarize_series);
+    const bool any = std::ranges::any_of(sightings, &SeriesOverview::flew);
     std::vector<std::string> ids;
     std::size_t last = 0;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -257,43 +258,44 @@ FlightSeries choose_aircraft(std::vector<FlightSeries> candidates) {
     return std::move(candidates[last]);
 }
 
-Judgement judge(const ChosenTracks& tracks, const FlightPhases& phases, const SegmentationOptions& options) {
+FlightAssessment assess_flight(const SelectedTracks& tracks, const FlightPhases& phases,
+                               const SegmentationOptions& options) {
     const auto& series = tracks.series();
-    const bool has_altitude = tracks["altitude_m"].time_s.size() >= least_altitudes;
+    const bool has_altitude = tracks["altitude_m"].time_s.size() >= min_altitudes;
     const bool has_power = !tracks["power_w"].empty();
-    Judgement judgement;
-    if (!has_power) judgement.lacks_power = "no measured power" + parenthesised(why_no_power(series));
+    FlightAssessment judgement;
+    if (!has_power) judgement.lacks_power = "no measured power" + parenthesised(no_power_reason(series));
     judgement.power.origin = series.current_origin;
     if (has_altitude && has_power) judgement.power = check_power_record(tracks, phases, options);
     judgement.warnings = all_warnings(tracks, phases, judgement);
     return judgement;
 }
 
-std::string exclusion_by(const Judgement& judgement) {
+std::string exclusion_reason(const FlightAssessment& judgement) {
     if (!judgement.lacks_power.empty()) return judgement.lacks_power;
     return judgement.power.power_faults.empty() ? "" : describe_power_faults(judgement.power.power_faults);
 }
 
-LoadedFlight examine_flight(FlightSeries series, const LoadOptions& options) {
+LoadedFlight segment_and_check(FlightSeries series, const LoadOptions& options) {
     LoadedFlight loaded;
-    Judgement judgement;
+    FlightAssessment judgement;
     {
-        const ChosenTracks tracks(series);
-        tracks.make_all();
-        const bool has_altitude = tracks["altitude_m"].time_s.size() >= least_altitudes;
+        const SelectedTracks tracks(series);
+        tracks.compute_all();
+        const bool has_altitude = tracks["altitude_m"].time_s.size() >= min_altitudes;
         if (options.power_required || !has_altitude || series.clock_restart) require_power(series);
         if (options.flight_required || has_altitude) loaded.phases = segment(tracks, options.segmentation);
         if (options.flight_required) require_sortie(series, loaded.phases, series.file);
         if (options.sortie) restrict_to_sortie(loaded.phases, *options.sortie, series.file);
         if (options.flight_required) refuse_endless_work(tracks, loaded.phases);
-        judgement = judge(tracks, loaded.phases, options.segmentation);
-        loaded.sources = sources_of(tracks);
+        judgement = assess_flight(tracks, loaded.phases, options.segmentation);
+        loaded.sources = track_sources(tracks);
     }
     if (options.correct_idle_offset && judgement.lacks_power.empty()) {
         correct_idle_offset(series, judgement.power.idle);
-        const ChosenTracks tracks(series);
+        const SelectedTracks tracks(series);
         judgement.warnings = all_warnings(tracks, loaded.phases, judgement);
-        loaded.sources = sources_of(tracks);
+        loaded.sources = track_sources(tracks);
     }
     loaded.exclusion = exclusion_of(series.flight, judgement, options);
     loaded.power = std::move(judgement.power);
@@ -304,14 +306,14 @@ LoadedFlight examine_flight(FlightSeries series, const LoadOptions& options) {
 }
 
 LoadedFlight load_flight(const FlightFile& file, const LoadOptions& options) {
-    auto loaded = examine_flight(read_series(file, options.aircraft_id, options.power_required), options);
-    warn_of_missing_ends(loaded);  // not in examine_flight: predict looks at what is still in the air
+    auto loaded = segment_and_check(read_series(file, options.aircraft_id, options.power_required), options);
+    warn_of_missing_ends(loaded);  // not in segment_and_check: predict looks at what is still in the air
     return loaded;
 }
 
 LoadedFlight load_flight(const std::filesystem::path& path, const LoadOptions& options) {
     try {
-        return load_flight(FlightFile(path, options.most_log_bytes, options.messages), options);
+        return load_flight(FlightFile(path, options.max_log_bytes, options.messages), options);
     } catch (const std::bad_alloc&) {
         throw InputError({path.string()}, "there is not enough memory to read it");
     }

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "base/error.h"
-#include "flight/chosen_track.h"
 #include "flight/flight_series.h"
 #include "flight/power_check.h"
 #include "flight/segmentation.h"
+#include "flight/selected_track.h"
 #include "telemetry/binary_log.h"
 #include "telemetry/data_file.h"
 
@@ -30,7 +30,7 @@ struct LoadOptions {
     bool flight_required = true;
     /// False: a log without measured power is segmented all the same, if it has an altitude.
     bool power_required = true;
-    std::size_t most_log_bytes = telemetry::usual_most_log_bytes;  ///< see DataFile
+    std::size_t max_log_bytes = telemetry::default_max_log_bytes;  ///< see DataFile
     std::optional<std::filesystem::path> messages = {};            ///< see FlightFile
 };
 
@@ -49,7 +49,7 @@ struct LoadedFlight {
 /// Throws InputError for a file that cannot be read.
 class FlightFile {
   public:
-    explicit FlightFile(const std::filesystem::path& path, std::size_t most_bytes = telemetry::usual_most_log_bytes,
+    explicit FlightFile(const std::filesystem::path& path, std::size_t max_bytes = telemetry::default_max_log_bytes,
                         const std::optional<std::filesystem::path>& messages = std::nullopt);
     FlightFile(const FlightFile&) = delete;
     FlightFile& operator=(const FlightFile&) = delete;
@@ -63,7 +63,7 @@ class FlightFile {
     const std::optional<std::string>& log_text() const { return log_text_; }
     std::filesystem::path log_file() const { return log_file_; }
     /// What is wrong with the .log that `messages` stand in for; empty if nothing is.
-    const std::string& log_fault() const { return log_fault_; }
+    const std::string& log_error() const { return log_fault_; }
     /// Of a binary log. Throws InputError where nothing defines its messages.
     telemetry::MessageDictionary definitions() const;
     /// See DataFile: to be asked after the text was read.
@@ -81,7 +81,7 @@ class FlightFile {
 
 /// Calls use(BinaryLog) with a binary file. Throws InputError where nothing defines its messages.
 template <typename Use>
-auto use_binary(const FlightFile& file, const Use& use) {
+auto with_binary_log(const FlightFile& file, const Use& use) {
     const auto messages = file.definitions();
     return use(telemetry::BinaryLog{file.text(), file.framing().value(), file.path(), file.log_file(), &messages});
 }
@@ -101,19 +101,21 @@ std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::opt
 FlightSeries choose_aircraft(std::vector<FlightSeries> candidates);
 
 /// What a series that is segmented is worth: its power record, why none can be used, and what a user should know.
-struct Judgement {
+struct FlightAssessment {
     PowerReport power;                  ///< as measured
     std::string lacks_power = {};       ///< why no power was measured; empty if it was
     std::vector<std::string> warnings;  ///< of the series, the segmentation and the power
 };
-Judgement judge(const ChosenTracks& tracks, const FlightPhases& phases, const SegmentationOptions& options = {});
+FlightAssessment assess_flight(const SelectedTracks& tracks, const FlightPhases& phases,
+                               const SegmentationOptions& options = {});
 
 /// Why power of that judgement is not to be used; empty if it is.
-std::string exclusion_by(const Judgement& judgement);
+std::string exclusion_reason(const FlightAssessment& judgement);
 
 /// Segments and judges a series. Throws InputError where no power was measured (if it is required, or no altitude
-/// either), for a sortie that the log has not, and, if a flight is required, where there is no altitude or nothing flew.
-LoadedFlight examine_flight(FlightSeries series, const LoadOptions& options);
+/// either), for a sortie that the log has not, and, if a flight is required, where there is no altitude or nothing
+/// flew.
+LoadedFlight segment_and_check(FlightSeries series, const LoadOptions& options);
 
 /// From file to judgement: Paparazzi .data or binary log (compressed or not, with its .log beside it) or series CSV.
 LoadedFlight load_flight(const FlightFile& file, const LoadOptions& options);

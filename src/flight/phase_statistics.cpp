@@ -3,7 +3,7 @@
 #include "base/piecewise_linear.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "flight/chosen_track.h"
+#include "flight/selected_track.h"
 
 #include <algorithm>
 #include <utility>
@@ -17,15 +17,15 @@ std::size_t first_at_or_after(const std::vector<double>& time_s, double t) {
 
 }  // namespace
 
-double usual_interval_s(const std::vector<double>& time_s) {
+double median_interval_s(const std::vector<double>& time_s) {
     std::vector<double> intervals;
     for (std::size_t i = 1; i < time_s.size(); ++i) intervals.push_back(time_s[i] - time_s[i - 1]);
-    return intervals.empty() ? 0.0 : upper_median(std::move(intervals));
+    return intervals.empty() ? 0.0 : median_high(std::move(intervals));
 }
 
 double gap_threshold_s(const std::vector<double>& time_s) {
-    constexpr double longest_s = 10.0;  // however seldom there are samples
-    return std::min(3.0 * usual_interval_s(time_s), longest_s);
+    constexpr double max_s = 10.0;  // however seldom there are samples
+    return std::min(3.0 * median_interval_s(time_s), max_s);
 }
 
 double integrated(const std::vector<double>& time_s, const std::vector<double>& values, double start_s, double end_s) {
@@ -69,7 +69,7 @@ std::optional<double> mean_cubed_airspeed_m3_per_s3(const Track& airspeed, doubl
 
 PowerStatistics::PowerStatistics(const FlightSeries& series)
     : power_(power_track(series)),
-      counter_wh_(chosen_at(series, "energy_wh", power_.time_s)),
+      counter_wh_(sample_selected_track(series, "energy_wh", power_.time_s)),
       gap_s_(gap_threshold_s(power_.time_s)) {}
 
 PhaseStatistics PowerStatistics::between(double start_s, double end_s) const {
@@ -79,7 +79,7 @@ PhaseStatistics PowerStatistics::between(double start_s, double end_s) const {
     double last_s = start_s;
     const auto count_gap = [&](double until_s) {
         const double interval_s = until_s - last_s;
-        statistics.longest_gap_s = std::max(statistics.longest_gap_s, interval_s);
+        statistics.max_gap_s = std::max(statistics.max_gap_s, interval_s);
         if (interval_s > gap_s_) ++statistics.gaps;
         last_s = until_s;
     };

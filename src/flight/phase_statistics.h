@@ -15,7 +15,7 @@ struct PhaseStatistics {
     double energy_wh = 0.0;                   ///< integral of the power, linear between samples
     std::optional<double> counter_energy_wh;  ///< what the on-board counter counted meanwhile
     std::size_t gaps = 0;                     ///< times without a sample, see gap_threshold_s()
-    double longest_gap_s = 0.0;
+    double max_gap_s = 0.0;
 };
 
 /// The power of a series, made once to be asked for many phases.
@@ -52,6 +52,6 @@ std::optional<double> mean_cubed_airspeed_m3_per_s3(const Track& airspeed, doubl
 double gap_threshold_s(const std::vector<double>& time_s);
 
 /// Median interval of the power samples [s].
-double usual_interval_s(const std::vector<double>& time_s);
+double median_interval_s(const std::vector<double>& time_s);
 
 }  // namespace flightwatt::flight

@@ -2,8 +2,8 @@
 
 #include "base/csv.h"
 #include "base/error.h"
-#include "flight/chosen_track.h"
 #include "flight/phase_statistics.h"
+#include "flight/selected_track.h"
 
 #include <cmath>
 #include <optional>
@@ -89,7 +89,7 @@ std::string phases_csv(const FlightSeries& series, const FlightPhases& phases) {
             const auto known = [&](auto value) { return power.has_power() ? std::optional(value) : std::nullopt; };
             csv.add(sortie.number, to_string(phase), start.time_s, end.time_s, span.duration_s(),
                     known(statistics.samples), known(statistics.mean_power_w), known(statistics.energy_wh),
-                    statistics.counter_energy_wh, known(statistics.gaps), known(statistics.longest_gap_s), complete,
+                    statistics.counter_energy_wh, known(statistics.gaps), known(statistics.max_gap_s), complete,
                     altitude(start), start.gap_s, start.throttle_percent, start.mode, start.block,
                     start.takeoff_after_s, altitude(end), end.gap_s, end.throttle_percent, end.mode, end.block,
                     end.takeoff_after_s);

@@ -35,19 +35,19 @@ std::optional<PhysicalBounds> physical_bounds(std::string_view track_name) {
     return found == bounds_by_name.end() ? std::nullopt : std::optional(found->bounds);
 }
 
-bool is_within_bounds(const Track& track) {
+bool is_plausible(const Track& track) {
     const auto bounds = physical_bounds(track.name);
     return !bounds || std::ranges::all_of(track.value, [&](double value) { return is_within(*bounds, value); });
 }
 
 Track within_bounds(const Track& track) {
-    if (is_within_bounds(track)) return track;
+    if (is_plausible(track)) return track;
     const auto bounds = physical_bounds(track.name).value();
     const auto is_possible = [&](double value) { return is_within(bounds, value); };
     Track kept{track.name, track.source, track.device, track.since_s, {}, {}};
-    constexpr double most_beyond = 0.1;
+    constexpr double max_beyond = 0.1;
     const auto beyond = track.value.size() - static_cast<std::size_t>(std::ranges::count_if(track.value, is_possible));
-    if (static_cast<double>(beyond) > most_beyond * static_cast<double>(track.value.size())) return kept;
+    if (static_cast<double>(beyond) > max_beyond * static_cast<double>(track.value.size())) return kept;
     for (std::size_t i = 0; i < track.value.size(); ++i) {
         if (!is_possible(track.value[i])) continue;
         kept.time_s.push_back(track.time_s[i]);

@@ -31,10 +31,10 @@ std::optional<IdleCurrent> idle_current(const std::vector<double>& current_a, co
     if (current_a.empty() || resting.size() < enough) return std::nullopt;
     std::vector<double> values(resting.size());
     std::ranges::transform(resting, values.begin(), [&](auto i) { return current_a[i]; });
-    const double middle = upper_median(values);
+    const double middle = median_high(values);
     std::vector<double> distances(values.size());
     std::ranges::transform(values, distances.begin(), [&](double value) { return std::abs(value - middle); });
-    const double reach = 5.0 * std::max(upper_median(std::move(distances)), 1e-6);  // beyond 3 sigma is no idling
+    const double reach = 5.0 * std::max(median_high(std::move(distances)), 1e-6);  // beyond 3 sigma is no idling
     std::erase_if(values, [&](double value) { return std::abs(value - middle) > reach; });
     IdleCurrent idle;
     double squares = 0.0;
@@ -44,7 +44,7 @@ std::optional<IdleCurrent> idle_current(const std::vector<double>& current_a, co
         idle.mean_a += delta / static_cast<double>(idle.samples);
         squares += delta * (value - idle.mean_a);
     }
-    if (idle.samples > 1) idle.deviation_a = std::sqrt(squares / static_cast<double>(idle.samples - 1));
+    if (idle.samples > 1) idle.sd_a = std::sqrt(squares / static_cast<double>(idle.samples - 1));
     return idle;
 }
 
@@ -53,10 +53,10 @@ std::vector<std::optional<IdleCurrent>> idle_currents(const PowerRecord& record,
                                                       const std::vector<std::size_t>& resting) {
     std::vector<std::optional<IdleCurrent>> currents;
     auto begin = resting.begin();
-    for (std::size_t sortie = 0; sortie <= record.flown.size(); ++sortie) {
-        const auto end = sortie == record.flown.size()
+    for (std::size_t sortie = 0; sortie <= record.in_flight.size(); ++sortie) {
+        const auto end = sortie == record.in_flight.size()
                              ? resting.end()
-                             : std::lower_bound(begin, resting.end(), record.flown[sortie].first);
+                             : std::lower_bound(begin, resting.end(), record.in_flight[sortie].first);
         currents.push_back(idle_current(record.current_a, {begin, end}));
         begin = end;
     }
@@ -87,12 +87,12 @@ double power_difference(const PowerRecord& record) {
         if (std::abs(product) < compared_power_w) continue;
         differences.push_back(std::abs(record.power_w[i] - product) / std::abs(product));
     }
-    return differences.empty() ? 0.0 : upper_median(std::move(differences));
+    return differences.empty() ? 0.0 : median_high(std::move(differences));
 }
 
 bool is_constant_in_flight(const PowerRecord& record) {
     constexpr std::size_t enough = 10;
-    return std::any_of(record.flown.begin(), record.flown.end(), [&](const SampleRange& flown) {
+    return std::any_of(record.in_flight.begin(), record.in_flight.end(), [&](const SampleRange& flown) {
         const auto power_w = std::span(record.power_w).subspan(flown.first, flown.last - flown.first);
         return power_w.size() >= enough && std::ranges::count(power_w, power_w.front()) == std::ssize(power_w);
     });
@@ -101,7 +101,7 @@ bool is_constant_in_flight(const PowerRecord& record) {
 /// Of the samples' power, whose mean has the same sign.
 double power_sum_in_flight_w(const PowerRecord& record) {
     double sum_w = 0.0;
-    for (const auto& [first, last] : record.flown)
+    for (const auto& [first, last] : record.in_flight)
         for (auto i = first; i < last; ++i) sum_w += record.power_w[i];
     return sum_w;
 }
@@ -114,7 +114,7 @@ std::vector<std::string> power_faults_of(const PowerRecord& record, std::vector<
     }
     for (const auto& [name, counter] :
          {std::pair{"energy", &record.energy_wh}, std::pair{"charge", &record.charge_ah}}) {
-        if (const double part = counter_return(*counter, record.flown); part > faulty_counter_return) {
+        if (const double part = counter_return(*counter, record.in_flight); part > faulty_counter_return) {
             add(fmt::format("the {} counter ran back by {:.0f} % of what it counted in flight", name,
                             part * units::percent_per_whole));
         }
@@ -122,7 +122,7 @@ std::vector<std::string> power_faults_of(const PowerRecord& record, std::vector<
     for (const auto& [name, closure, rounding_percent] :
          {std::tuple{"energy", report.energy_closure_percent, report.energy_rounding_percent},
           std::tuple{"charge", report.charge_closure_percent, report.charge_rounding_percent}}) {
-        if (closure && std::abs(*closure) > faulty_closure_percent + rounding_percent) {
+        if (closure && std::abs(*closure) > max_closure_percent + rounding_percent) {
             add(fmt::format("what was measured is {:+.0f} % away from the on-board {} counter", *closure, name));
         }
     }
@@ -148,17 +148,17 @@ Closure closure_of(const std::vector<double>& time_s, const std::vector<double>&
                       interpolate_clamped(time_s, counter, sortie.start_s());
     }
     if (!(difference > 0.0)) return {};
-    return {(integral / difference - 1.0) * units::percent_per_whole, units::percent_of(2.0 * resolution, difference)};
+    return {(integral / difference - 1.0) * units::percent_per_whole, units::percentage(2.0 * resolution, difference)};
 }
 
 /// A log that goes on without power: what is flown then is not seen.
-void warn_of_short_record(const ChosenTracks& tracks, const std::vector<double>& time_s,
+void warn_of_short_record(const SelectedTracks& tracks, const std::vector<double>& time_s,
                           std::vector<std::string>& warnings) {
-    constexpr double least_s = 30.0;
-    constexpr double least_part = 0.05;
+    constexpr double min_s = 30.0;
+    constexpr double min_part = 0.05;
     const auto& altitude = tracks["altitude_m"];
     if (altitude.empty() || time_s.empty()) return;
-    const double limit_s = std::max(least_s, least_part * (altitude.time_s.back() - altitude.time_s.front()));
+    const double limit_s = std::max(min_s, min_part * (altitude.time_s.back() - altitude.time_s.front()));
     const auto warn = [&](const char* way, const char* when, double power_s, double altitude_s) {
         if (std::abs(power_s - altitude_s) <= limit_s) return;
         warnings.push_back(
@@ -173,14 +173,14 @@ void warn_of_short_record(const ChosenTracks& tracks, const std::vector<double>&
 
 PowerReport check_power_record(const FlightSeries& series, const FlightPhases& phases,
                                const SegmentationOptions& options) {
-    return check_power_record(ChosenTracks(series), phases, options);
+    return check_power_record(SelectedTracks(series), phases, options);
 }
 
-PowerReport check_power_record(const ChosenTracks& tracks, const FlightPhases& phases,
+PowerReport check_power_record(const SelectedTracks& tracks, const FlightPhases& phases,
                                const SegmentationOptions& options) {
     PowerReport report;
     report.origin = tracks.series().current_origin;
-    const auto record = record_of(tracks, phases);
+    const auto record = make_power_record(tracks, phases);
     const auto& time_s = record.time_s;
     const auto resting = resting_samples(record, phases.rests, options);
     const auto at_rest = idle_current(record.current_a, resting);
@@ -193,7 +193,7 @@ PowerReport check_power_record(const ChosenTracks& tracks, const FlightPhases& p
     report.charge_closure_percent = charge.percent;
     report.charge_rounding_percent = charge.rounding_percent;
     const double gap_s = gap_threshold_s(time_s);
-    for (const auto& [first, last] : record.flown) {
+    for (const auto& [first, last] : record.in_flight) {
         for (auto i = first + 1; i < last; ++i) {
             const double interval_s = time_s[i] - time_s[i - 1];
             if (interval_s > gap_s) report.gaps.push_back({time_s[i - 1], interval_s});
@@ -202,7 +202,7 @@ PowerReport check_power_record(const ChosenTracks& tracks, const FlightPhases& p
     const auto motor_off = motor_known ? resting : std::vector<std::size_t>{};
     const auto samples = apply_sample_rules(record, motor_off);
     report.power_faults = power_faults_of(record, samples.faults, report);
-    report.warnings = power_warnings_of({record, phases, samples, report, at_rest, idle_currents(record, resting)});
+    report.warnings = find_power_warnings({record, phases, samples, report, at_rest, idle_currents(record, resting)});
     warn_of_short_record(tracks, time_s, report.warnings);
     return report;
 }
@@ -214,8 +214,8 @@ std::string describe_power_faults(const std::vector<std::string>& power_faults) 
 void correct_idle_offset(FlightSeries& series, const std::optional<IdleCurrent>& idle) {
     if (!idle) return;
     auto power = power_track(series);
-    auto current = chosen_track(series, "current_a");
-    const auto voltage_v = chosen_at(series, "voltage_v", power.time_s);
+    auto current = select_track(series, "current_a");
+    const auto voltage_v = sample_selected_track(series, "voltage_v", power.time_s);
     const auto current_a = resample(current, power.time_s);
     for (std::size_t i = 0; i < power.time_s.size(); ++i) {
         const double volts = !voltage_v.empty()    ? voltage_v[i]
@@ -228,7 +228,7 @@ void correct_idle_offset(FlightSeries& series, const std::optional<IdleCurrent>&
     for (auto& value : current.value) value -= idle->mean_a;
     // What was not chosen goes, since its offset is not known; what was said of the choice stays.
     const auto before = warnings_of(series);
-    if (energy_and_power_are_exchanged(series)) replace_track(series, chosen_track(series, "charge_ah"));
+    if (energy_and_power_are_swapped(series)) replace_track(series, select_track(series, "charge_ah"));
     replace_track(series, std::move(power));
     replace_track(series, std::move(current));
     const auto after = warnings_of(series);

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "flight/chosen_track.h"
 #include "flight/flight_phases.h"
 #include "flight/flight_series.h"
+#include "flight/selected_track.h"
 
 #include <cstddef>
 #include <optional>
@@ -14,7 +14,7 @@ namespace flightwatt::flight {
 /// What the current sensor reads on the ground with the motor off.
 struct IdleCurrent {
     double mean_a = 0.0;
-    double deviation_a = 0.0;  ///< standard deviation of the samples: the sensor's noise
+    double sd_a = 0.0;  ///< standard deviation of the samples: the sensor's noise
     std::size_t samples = 0;
 };
 
@@ -25,7 +25,7 @@ struct PowerGap {
 };
 
 /// An integral that is further away from the on-board counter is a fault.
-inline constexpr double faulty_closure_percent = 10.0;
+inline constexpr double max_closure_percent = 10.0;
 
 /// How far a power record can be trusted.
 struct PowerReport {
@@ -49,7 +49,7 @@ struct PowerReport {
 PowerReport check_power_record(const FlightSeries& series, const FlightPhases& phases,
                                const SegmentationOptions& options = {});
 /// The same of tracks that are asked for more.
-PowerReport check_power_record(const ChosenTracks& tracks, const FlightPhases& phases,
+PowerReport check_power_record(const SelectedTracks& tracks, const FlightPhases& phases,
                                const SegmentationOptions& options = {});
 
 /// The faults as the reason why a flight is not fitted, and how to overrule that.

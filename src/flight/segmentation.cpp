@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "flight/segmentation/activity.h"
 #include "flight/segmentation/flight_grid.h"
-#include "flight/segmentation/no_flight.h"
+#include "flight/segmentation/flight_rejection.h"
 #include "flight/segmentation/phase_edges.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ double gap_around_s(const std::vector<double>& sample_s, double time_s) {
 constexpr double long_gap_s = 10.0;  // for an edge between altitudes
 
 /// With what is noted beside an edge.
-PhaseEdge describe_edge(const ChosenTracks& tracks, const FlightGrid& grid, double exact_s) {
+PhaseEdge describe_edge(const SelectedTracks& tracks, const ResampledFlight& grid, double exact_s) {
     PhaseEdge edge;
     const double time_s = to_millisecond(exact_s);
     edge.time_s = time_s;
@@ -46,8 +46,8 @@ PhaseEdge describe_edge(const ChosenTracks& tracks, const FlightGrid& grid, doub
     return edge;
 }
 
-Sortie make_sortie(const ChosenTracks& tracks, const FlightGrid& grid, const Activity& activity, const Heights& heights,
-                   const SegmentationOptions& options) {
+Sortie make_sortie(const SelectedTracks& tracks, const ResampledFlight& grid, const Activity& activity,
+                   const Heights& heights, const SegmentationOptions& options) {
     const auto edges = find_edges(grid, activity, heights, options);
     const double first_s = edges.lift_off_s.value_or(grid.time_s(activity.span.begin));
     const double last_s = edges.touchdown_s.value_or(grid.time_s(activity.span.end - 1));
@@ -55,7 +55,7 @@ Sortie make_sortie(const ChosenTracks& tracks, const FlightGrid& grid, const Act
     const double cruise_to = std::max(edges.landing_start_s.value_or(last_s), cruise_from);
     Sortie sortie;
     sortie.ground_altitude_m = heights.ground_m;
-    sortie.height_m = heights.top_m;
+    sortie.height_m = heights.cruise_height_m;
     sortie.held = edges.held;
     const auto add = [&](Phase phase, double start_s, double end_s, bool complete) {
         if (end_s <= start_s) return;
@@ -97,29 +97,29 @@ void validate(const SegmentationOptions& options) {
 }
 
 FlightPhases segment(const FlightSeries& series, const SegmentationOptions& options) {
-    return segment(ChosenTracks(series), options);
+    return segment(SelectedTracks(series), options);
 }
 
-FlightPhases segment(const ChosenTracks& tracks, const SegmentationOptions& options) {
+FlightPhases segment(const SelectedTracks& tracks, const SegmentationOptions& options) {
     validate(options);
     const auto grid = make_grid(tracks);
     FlightPhases phases;
-    phases.motor_evidence = grid.motor_evidence;
+    phases.motor_source = grid.motor_evidence;
     const auto rests = find_rests(grid, options);
     for (const auto& rest : rests) phases.rests.push_back({grid.time_s(rest.begin), grid.time_s(rest.end)});
-    auto why_not = why_ground_vehicle(tracks);
+    auto why_not = ground_vehicle_reason(tracks);
     if (why_not.empty()) why_not = grid.unusable;
     if (!why_not.empty()) {
         phases.ground_events.push_back({grid.time_s(0), grid.time_s(grid.size() - 1), std::move(why_not)});
         return phases;
     }
     phases.warnings = grid.warnings;
-    if (auto doubt = unit_doubt(tracks, grid); !doubt.empty()) phases.warnings.push_back(std::move(doubt));
+    if (auto doubt = suspected_unit_error(tracks, grid); !doubt.empty()) phases.warnings.push_back(std::move(doubt));
     const auto ground_m = ground_altitude_m(tracks);
     for (const auto& activity : find_activities(grid, rests, options)) {
-        const auto grounds = grounds_of(grid, activity, ground_m);
-        const auto heights = heights_of(grid, activity, grounds);
-        auto why = why_no_flight(tracks, grid, activity, heights, options);
+        const auto grounds = estimate_ground_levels(grid, activity, ground_m);
+        const auto heights = compute_heights(grid, activity, grounds);
+        auto why = no_flight_reason(tracks, grid, activity, heights, options);
         if (!why.empty()) {
             phases.ground_events.push_back(
                 {grid.time_s(activity.moving.begin), grid.time_s(activity.moving.end - 1), std::move(why)});
@@ -137,7 +137,7 @@ FlightPhases segment(const ChosenTracks& tracks, const SegmentationOptions& opti
         if (sortie.phases.empty()) {
             phases.ground_events.push_back({grid.time_s(activity.moving.begin), grid.time_s(activity.moving.end - 1),
                                             fmt::format("height of {:.0f} m for less than {} s: too short for a phase",
-                                                        heights.highest_m, grid.step_s)});
+                                                        heights.max_m, grid.step_s)});
             continue;
         }
         phases.sorties.push_back(std::move(sortie));
@@ -157,7 +157,7 @@ void require_sortie(const FlightSeries& series, const FlightPhases& phases, cons
     const auto seen = events.empty() ? std::string("it stood still throughout")
                                      : fmt::format("seen instead: {}", fmt::join(events, "; "));
     auto clock = power_track(series);
-    if (clock.empty()) clock = chosen_track(series, "altitude_m");
+    if (clock.empty()) clock = select_track(series, "altitude_m");
     throw InputError({file}, fmt::format("holds no flight in {:.0f} s", clock.time_s.back() - clock.time_s.front()),
                      seen);
 }

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "flight/chosen_track.h"
 #include "flight/flight_phases.h"
 #include "flight/flight_series.h"
+#include "flight/selected_track.h"
 
 #include <string>
 
@@ -17,7 +17,7 @@ void validate(const SegmentationOptions& options);
 /// block are noted as witnesses and decide nothing. Throws InputError where the series has no altitude.
 FlightPhases segment(const FlightSeries& series, const SegmentationOptions& options = {});
 /// The same of tracks that are asked for more.
-FlightPhases segment(const ChosenTracks& tracks, const SegmentationOptions& options = {});
+FlightPhases segment(const SelectedTracks& tracks, const SegmentationOptions& options = {});
 
 /// Throws InputError saying what the log shows instead, if there is no sortie. `file` is named in it.
 void require_sortie(const FlightSeries& series, const FlightPhases& phases, const std::string& file);

@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/toml_reader.h"
-#include "flight/chosen_track.h"
+#include "flight/selected_track.h"
 #include "flight/series_file/front_matter.h"
 #include "flight/series_file/series_table.h"
 #include "telemetry/log_configuration.h"
@@ -120,10 +120,10 @@ std::string to_csv(const FlightSeries& series) {
     return text;
 }
 
-void write_csv(const FlightSeries& series, const TextSink& sink, std::size_t most_threads) {
+void write_csv(const FlightSeries& series, const TextSink& sink, std::size_t max_threads) {
     const auto names = column_names(series.tracks);
-    sink(fmt::format("{}time_s,{}\n", front_matter(series), fmt::join(names, ",")));
-    write_series_rows(series.tracks, sink, most_threads);
+    sink(fmt::format("{}time_s,{}\n", format_front_matter(series), fmt::join(names, ",")));
+    write_series_rows(series.tracks, sink, max_threads);
 }
 
 FlightSeries parse_series_csv(std::string_view text, const std::filesystem::path& file) {
@@ -133,7 +133,7 @@ FlightSeries parse_series_csv(std::string_view text, const std::filesystem::path
     series.file = file.string();
     if (series.flight.empty()) series.flight = telemetry::flight_name(file);
     const auto samples = power_track(series).time_s.size();
-    const bool is_flight = samples >= 2 || (samples == 0 && chosen_track(series, "altitude_m").time_s.size() >= 2);
+    const bool is_flight = samples >= 2 || (samples == 0 && select_track(series, "altitude_m").time_s.size() >= 2);
     if (!is_flight) throw InputError({series.file}, "has fewer than two samples");
     return series;
 }

@@ -17,8 +17,8 @@ inline constexpr auto plain_source = "series CSV";
 /// value; a cell is empty where its track has none. Further candidates of a name are called NAME.2, NAME.3,
 /// ... Nothing is lost: read_series_csv gives the same series. Not for a series whose clock restarts.
 std::string to_csv(const FlightSeries& series);
-/// The same in pieces, made on `most_threads` at most (0: on every core).
-void write_csv(const FlightSeries& series, const TextSink& sink, std::size_t most_threads = 0);
+/// The same in pieces, made on `max_threads` at most (0: on every core).
+void write_csv(const FlightSeries& series, const TextSink& sink, std::size_t max_threads = 0);
 
 /// Reads a series file, or a CSV without front matter (time_s, power_w and what else of track_names() there
 /// is). Throws InputError with file, line and column for a format that is newer, an unknown column, a value

@@ -3,7 +3,7 @@
 #include "base/parallel.h"
 #include "base/units.h"
 #include "flight/sources/clock_check.h"
-#include "flight/sources/made_tracks.h"
+#include "flight/sources/derived_tracks.h"
 
 #include <algorithm>
 #include <iterator>
@@ -127,15 +127,15 @@ auto logged_fields(Sender& sender) {
 template <typename Sender>
 std::vector<Track> logged_tracks(Sender& sender, bool definitions_assumed) {
     std::vector<Track> made;
-    add_made_tracks(made, sender, definitions_assumed);
+    add_derived_tracks(made, sender, definitions_assumed);
     const auto fields = logged_fields(sender);
     std::vector<Track> tracks(fields.size());
     for_each_in_parallel(
         fields.size(),
         [&](std::size_t i) {
             const auto& [wanted, table, column] = fields[i];
-            tracks[i] = as_track(wanted->name, fmt::format("{}.{}", wanted->message, wanted->field), *table,
-                                 std::move(column->values), wanted->merge);
+            tracks[i] = make_candidate(wanted->name, fmt::format("{}.{}", wanted->message, wanted->field), *table,
+                                       std::move(column->values), wanted->merge);
         },
         threads_worth(sender));
     std::ranges::move(made, std::back_inserter(tracks));
@@ -144,7 +144,7 @@ std::vector<Track> logged_tracks(Sender& sender, bool definitions_assumed) {
 }
 
 void add_configuration(FlightSeries& series, const telemetry::TelemetryLog& log) {
-    series.lacks_log = !log.configuration;
+    series.log_is_missing = !log.configuration;
     series.assumed_definitions = log.assumed_definitions;
     series.skipped = log.skipped;
     if (!log.configuration) return;
@@ -170,8 +170,8 @@ FlightSeries series_without_tracks(const telemetry::TelemetryLog& log, const std
 
 template <typename Sender>
 void add_tracks(FlightSeries& series, Sender& sender) {
-    series.clock_restart = clock_restart_in(sender);
-    series.tracks = logged_tracks(sender, series.lacks_log);
+    series.clock_restart = find_clock_restart(sender);
+    series.tracks = logged_tracks(sender, series.log_is_missing);
 }
 
 }  // namespace
@@ -218,7 +218,7 @@ FlightSeries flight_series(const telemetry::TelemetryLog& log, const std::string
     return series;
 }
 
-FlightSeries take_flight_series(telemetry::TelemetryLog& log, const std::string& aircraft_id) {
+FlightSeries extract_flight_series(telemetry::TelemetryLog& log, const std::string& aircraft_id) {
     auto series = series_without_tracks(log, aircraft_id);
     const auto sender = std::ranges::find(log.senders, aircraft_id, &telemetry::SenderLog::id);
     if (sender != log.senders.end()) add_tracks(series, *sender);

@@ -18,6 +18,6 @@ std::vector<std::string> telemetry_senders(const telemetry::TelemetryLog& log);
 FlightSeries flight_series(const telemetry::TelemetryLog& log, const std::string& aircraft_id);
 
 /// The same without a copy: the columns that it can use are empty in the log afterwards.
-FlightSeries take_flight_series(telemetry::TelemetryLog& log, const std::string& aircraft_id);
+FlightSeries extract_flight_series(telemetry::TelemetryLog& log, const std::string& aircraft_id);
 
 }  // namespace flightwatt::flight

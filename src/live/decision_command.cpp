@@ -72,7 +72,7 @@ void DecisionCommand::start(const Environment& variables) {
     failure_ = fmt::format("cannot be run: {}", std::strerror(error));
 }
 
-std::optional<std::string> DecisionCommand::look() {
+std::optional<std::string> DecisionCommand::poll() {
     int status = 0;
     if (child_ >= 0 && ::waitpid(child_, &status, WNOHANG) == child_) {
         child_ = -1;
@@ -84,13 +84,13 @@ std::optional<std::string> DecisionCommand::look() {
     return std::exchange(failure_, {});
 }
 
-bool DecisionCommand::wait(int most_ms) {
+bool DecisionCommand::wait(int max_ms) {
     constexpr int look_again_ms = 10;
     for (int waited_ms = 0; child_ >= 0; waited_ms += look_again_ms) {
-        const auto failure = look();
+        const auto failure = poll();
         if (failure) failure_ = *failure;
         if (child_ < 0) break;
-        if (waited_ms >= most_ms) return false;
+        if (waited_ms >= max_ms) return false;
         std::this_thread::sleep_for(std::chrono::milliseconds(look_again_ms));
     }
     return true;

@@ -22,9 +22,9 @@ class DecisionCommand {
     /// With these variables beside the program's own. Its standard output goes to the standard error.
     void run(const Environment& variables);
     /// What ended since, and badly: "exit code 3", "ended by SIGKILL", "cannot be run: ..."; starts what waits.
-    std::optional<std::string> look();
+    std::optional<std::string> poll();
     /// Waits for what runs, at most so long; false if it still does.
-    bool wait(int most_ms);
+    bool wait(int max_ms);
 
   private:
     void start(const Environment& variables);

@@ -23,22 +23,22 @@ void CurveHistory::add(double time_s, double value) {
     if (added_++ % stride_ != 0) return;
     curve_.time_s.push_back(time_s);
     curve_.value.push_back(value);
-    if (curve_.time_s.size() < most_points) return;
+    if (curve_.time_s.size() < max_points) return;
     halve(curve_.time_s);
     halve(curve_.value);
     stride_ *= 2;
 }
 
-TimeCurve soc_ahead(const LiveState& state, const PredictionBasis& basis) {
-    constexpr double most_points = 100.0;
+TimeCurve soc_ahead(const LiveState& state, const PredictionInput& basis) {
+    constexpr double max_points = 100.0;
     constexpr double finest_s = 10.0;
     constexpr double integration_s = 5.0;
     TimeCurve curve;
     if (!state.prediction || !basis.battery || !state.battery || !state.battery->state) return curve;
-    const auto stretches = power_ahead(*state.prediction);
+    const auto stretches = remaining_power(*state.prediction);
     double rest_s = 0.0;
     for (const auto& stretch : stretches) rest_s += stretch.duration_s;
-    const double step_s = std::max(finest_s, rest_s / most_points);
+    const double step_s = std::max(finest_s, rest_s / max_points);
     battery::BatteryState now = *state.battery->state;
     double time_s = state.time_s;
     curve = {{time_s}, {now.soc_percent}};

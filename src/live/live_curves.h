@@ -17,7 +17,7 @@ struct TimeCurve {
 /// one is taken.
 class CurveHistory {
   public:
-    static constexpr std::size_t most_points = 2000;
+    static constexpr std::size_t max_points = 2000;
 
     /// `time_s` rises; what does not begins anew.
     void add(double time_s, double value);
@@ -29,8 +29,8 @@ class CurveHistory {
     std::size_t added_ = 0;
 };
 
-/// The state of charge ahead as it is predicted, from now to the landing or to where the battery fails, in up to about a
-/// hundred points; empty where there is no prediction with a battery.
-TimeCurve soc_ahead(const LiveState& state, const PredictionBasis& basis);
+/// The state of charge ahead as it is predicted, from now to the landing or to where the battery fails, in up to about
+/// a hundred points; empty where there is no prediction with a battery.
+TimeCurve soc_ahead(const LiveState& state, const PredictionInput& basis);
 
 }  // namespace flightwatt::live

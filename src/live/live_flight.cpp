@@ -1,17 +1,17 @@
 #include "live/live_flight.h"
 
 #include "base/units.h"
-#include "flight/chosen_track.h"
 #include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
+#include "flight/selected_track.h"
+#include "live/state/airborne_start.h"
 #include "live/state/aircraft_choice.h"
 #include "live/state/alarms.h"
-#include "live/state/battery_check.h"
 #include "live/state/carried_flight.h"
 #include "live/state/flight_clock.h"
-#include "live/state/flight_from_air.h"
-#include "live/state/path_place.h"
+#include "live/state/path_tracker.h"
 #include "live/state/sender_clocks.h"
+#include "live/state/soc_estimation.h"
 #include "live/state/telemetry_store.h"
 #include "mechanical/prediction.h"
 
@@ -29,7 +29,7 @@ namespace {
 
 constexpr double judged_every_s = 30.0;  // the record's warnings take as long as all the rest
 
-std::optional<double> last_of(const flight::ChosenTracks& tracks, const char* name) {
+std::optional<double> last_of(const flight::SelectedTracks& tracks, const char* name) {
     const auto& track = tracks[name];
     return track.empty() ? std::nullopt : std::optional(track.value.back());
 }
@@ -37,9 +37,9 @@ std::optional<double> last_of(const flight::ChosenTracks& tracks, const char* na
 }  // namespace
 
 /// What cannot be computed from what came in is said, and the watch goes on: whatever a library throws of it.
-class LiveFlight::Watch {
+class LiveFlight::Impl {
   public:
-    Watch(LiveOptions options, std::optional<PredictionBasis> basis, std::unique_ptr<LiveSchedule> schedule)
+    Impl(LiveOptions options, std::optional<PredictionInput> basis, std::unique_ptr<LiveSchedule> schedule)
         : options_(std::move(options)),
           basis_(std::move(basis)),
           schedule_(std::move(schedule)),
@@ -57,13 +57,14 @@ class LiveFlight::Watch {
         ++messages_;
         choice_.count(message.text);
         believed_.clear();
-        const auto anew =
-            clocks_.push(message.time_s.value_or(arrival_s), message.text, message.after_restart, believed_, arrival_s);
-        const bool is_restart = anew == SenderClocks::Anew::all ||
-                                (anew == SenderClocks::Anew::sender && clocks_.is_followed(sender_of(message.text)));
-        if (anew != SenderClocks::Anew::none) store_pending();
-        if (anew == SenderClocks::Anew::sender) store_.drop(std::string(sender_of(message.text)));
-        if (anew == SenderClocks::Anew::all) store_.clear();
+        const auto clock_restarted = clocks_.push(message.time_s.value_or(arrival_s), message.text,
+                                                  message.is_after_restart, believed_, arrival_s);
+        const bool is_restart =
+            clock_restarted == SenderClocks::RestartScope::all ||
+            (clock_restarted == SenderClocks::RestartScope::sender && clocks_.is_followed(sender_of(message.text)));
+        if (clock_restarted != SenderClocks::RestartScope::none) store_pending();
+        if (clock_restarted == SenderClocks::RestartScope::sender) store_.drop(std::string(sender_of(message.text)));
+        if (clock_restarted == SenderClocks::RestartScope::all) store_.clear();
         if (is_restart) restart();
         take(is_restart);
     }
@@ -83,13 +84,14 @@ class LiveFlight::Watch {
     const std::optional<LiveState>& last_predicted() const { return last_predicted_; }
 
   private:
-    void take(bool anew) {
+    void take(bool clock_restarted) {
         const auto begin = pending_.size();
         for (const auto& line : believed_)
             fmt::format_to(std::back_inserter(pending_), "{} {}\n", line.time_s, line.text);
-        if (options_.on_lines && !believed_.empty()) options_.on_lines(std::string_view(pending_).substr(begin), anew);
-        constexpr std::size_t most_pending_bytes = 1'000'000;
-        if (pending_.size() > most_pending_bytes) store_pending();
+        if (options_.on_lines && !believed_.empty())
+            options_.on_lines(std::string_view(pending_).substr(begin), clock_restarted);
+        constexpr std::size_t max_pending_bytes = 1'000'000;
+        if (pending_.size() > max_pending_bytes) store_pending();
     }
 
     void store_pending() {
@@ -107,27 +109,27 @@ class LiveFlight::Watch {
         rejected_.clear();
         judged_s_.reset();
         warnings_.clear();
-        if (schedule_) schedule_->begin_anew();
+        if (schedule_) schedule_->reset();
     }
 
-    void look_at_flight(const flight::ChosenTracks& tracks, LiveState& state);
-    void look_at_battery_of(const flight::ChosenTracks& tracks, LiveState& state,
+    void update_flight(const flight::SelectedTracks& tracks, LiveState& state);
+    void look_at_battery_of(const flight::SelectedTracks& tracks, LiveState& state,
                             std::optional<battery::DischargeRecord>& record);
-    void predict(const flight::ChosenTracks& tracks, const std::optional<battery::DischargeRecord>& record,
+    void predict(const flight::SelectedTracks& tracks, const std::optional<battery::DischargeRecord>& record,
                  LiveState& state);
     void look_ahead(LiveState& state) const;
     void decide(LiveState& state);
-    void continue_after_restart(const flight::ChosenTracks& tracks, LiveState& state);
-    void judge_record(const flight::ChosenTracks& tracks, const LiveState& state);
+    void continue_after_restart(const flight::SelectedTracks& tracks, LiveState& state);
+    void check_record(const flight::SelectedTracks& tracks, const LiveState& state);
     void trim(const std::optional<battery::DischargeRecord>& record, const LiveState& state);
 
     LiveOptions options_;
-    std::optional<PredictionBasis> basis_;
+    std::optional<PredictionInput> basis_;
     std::unique_ptr<LiveSchedule> schedule_;
     TelemetryStore store_;
     SenderClocks clocks_;
-    AircraftChoice choice_;
-    std::optional<PathPlaceFinder> places_;    ///< where the path is to go on from
+    AircraftSelector choice_;
+    std::optional<PathTracker> places_;        ///< where the path is to go on from
     std::vector<ClockFilter::Line> believed_;  ///< of the last message: its memory is used again
     std::string pending_;
     std::size_t messages_ = 0;
@@ -149,7 +151,7 @@ class LiveFlight::Watch {
     std::optional<LiveState> last_predicted_;
 };
 
-LiveState LiveFlight::Watch::look(double silent_s) {
+LiveState LiveFlight::Impl::look(double silent_s) {
     store_pending();
     LiveState state;
     state.messages = messages_;
@@ -157,19 +159,19 @@ LiveState LiveFlight::Watch::look(double silent_s) {
     auto series = choice_.choose(store_);
     clocks_.follow(series.aircraft_id);
     state.time_s = clocks_.latest_s();
-    state.silent_s = silent_s + clocks_.silent_s();
+    state.time_since_message_s = silent_s + clocks_.silent_s();
     // What is known at the moment of the last power or altitude, as it is cut by predict.
     if (const double now_s = mechanical::last_time_s(series); std::isfinite(now_s))
-        series = cut_series(std::move(series), now_s);
-    const flight::ChosenTracks tracks(series);
+        series = truncate_series(std::move(series), now_s);
+    const flight::SelectedTracks tracks(series);
     state.aircraft_id = series.aircraft_id;
     state.aircraft_name = series.aircraft_name;
-    state.others = choice_.others();
+    state.other_senders = choice_.others();
     std::optional<battery::DischargeRecord> record;
-    look_at_flight(tracks, state);
+    update_flight(tracks, state);
     look_at_battery_of(tracks, state, record);
     continue_after_restart(tracks, state);
-    judge_record(tracks, state);
+    check_record(tracks, state);
     predict(tracks, record, state);
     try {
         look_ahead(state);
@@ -189,7 +191,7 @@ LiveState LiveFlight::Watch::look(double silent_s) {
             "the clock of the telemetry was set ahead by {:.0f} s: as seen by the arrival of its lines", set_s));
     for (const auto& [message, stride] : store_.thinned())
         state.warnings.push_back(fmt::format("of {} every {}th row is kept", message, stride));
-    state.alarms = alarms_of(state, basis_, options_.silence_s);
+    state.alarms = alarms_of(state, basis_, options_.silence_threshold_s);
     trim(record, state);
     state.rows = store_.rows();
     if (state.prediction) last_predicted_ = state;
@@ -198,14 +200,14 @@ LiveState LiveFlight::Watch::look(double silent_s) {
     return state;
 }
 
-void LiveFlight::Watch::look_at_flight(const flight::ChosenTracks& tracks, LiveState& state) {
+void LiveFlight::Impl::update_flight(const flight::SelectedTracks& tracks, LiveState& state) {
     phases_ = {};
     not_segmented_.clear();
     try {
         if (!tracks["altitude_m"].empty()) phases_ = segment(tracks);
     } catch (const std::exception& error) {
         not_segmented_ = error.what();
-        state.waits_for = without_flight_name(not_segmented_, tracks.series().flight);
+        state.no_prediction_reason = without_flight_name(not_segmented_, tracks.series().flight);
     }
     sorties_kept_ = phases_.sorties.size();
     state.sortie = sorties_before_ + sorties_kept_;
@@ -216,117 +218,120 @@ void LiveFlight::Watch::look_at_flight(const flight::ChosenTracks& tracks, LiveS
     if (phases_.sorties.empty()) return;
     const auto& sortie = phases_.sorties.back();
     const double now_s = mechanical::last_time_s(tracks.series());
-    set_flight_clock(sortie, tracks["altitude_m"], now_s, ended_ || state.silent_s >= options_.silence_s, state);
+    update_flight_times(sortie, tracks["altitude_m"], now_s,
+                        ended_ || state.time_since_message_s >= options_.silence_threshold_s, state);
     if (!state.power_w) return;
     state.energy_wh = integrated_energy_wh(tracks["power_w"], sortie.start_s(), state.landed ? sortie.end_s() : now_s);
 }
 
-void LiveFlight::Watch::look_at_battery_of(const flight::ChosenTracks& tracks, LiveState& state,
-                                           std::optional<battery::DischargeRecord>& record) {
+void LiveFlight::Impl::look_at_battery_of(const flight::SelectedTracks& tracks, LiveState& state,
+                                          std::optional<battery::DischargeRecord>& record) {
     if (!basis_ || !basis_->battery) return;
-    state.battery = look_at_battery(*basis_, carried_percent_, tracks, record);
-    if (state.began_in_air && !record) look_at_counter(*basis_, tracks.series(), *state.battery);
+    state.battery = estimate_soc(*basis_, carried_percent_, tracks, record);
+    if (state.began_in_air && !record) estimate_soc_from_counter(*basis_, tracks.series(), *state.battery);
 }
 
-void LiveFlight::Watch::predict(const flight::ChosenTracks& tracks,
-                                const std::optional<battery::DischargeRecord>& record, LiveState& state) {
+void LiveFlight::Impl::predict(const flight::SelectedTracks& tracks,
+                               const std::optional<battery::DischargeRecord>& record, LiveState& state) {
     if (!basis_) {
-        state.waits_for = "a model: give --model or --mission";
+        state.no_prediction_reason = "a model: give --model or --mission";
         return;
     }
-    if (!basis_->cannot_predict.empty()) {
-        state.waits_for = basis_->cannot_predict;
+    if (!basis_->no_prediction_reason.empty()) {
+        state.no_prediction_reason = basis_->no_prediction_reason;
         return;
     }
     const double now_s = mechanical::last_time_s(tracks.series());
     if (!rejected_.empty()) {
-        state.waits_for = "a power record that can be trusted: " + rejected_;
+        state.no_prediction_reason = "a power record that can be trusted: " + rejected_;
         return;
     }
     if (state.landed) {
-        state.waits_for = fmt::format("at {:.1f} s of the log the aircraft has landed", now_s);
+        state.no_prediction_reason = fmt::format("at {:.1f} s of the log the aircraft has landed", now_s);
         return;
     }
     if (!state.power_w) {
-        const auto why = why_no_power(tracks.series());
-        state.waits_for = why.empty() ? "telemetry that tells of power" : "measured power: " + why;
+        const auto why = no_power_reason(tracks.series());
+        state.no_prediction_reason = why.empty() ? "telemetry that tells of power" : "measured power: " + why;
         return;
     }
-    if (!state.waits_for.empty()) return;  // it cannot be segmented
-    Remarks remarks;
+    if (!state.no_prediction_reason.empty()) return;  // it cannot be segmented
+    Diagnostics remarks;
     try {
         if (state.began_in_air) {
-            state.prediction =
-                predict_from_air(*basis_, tracks.series(), phases_.sorties.back(),
-                                 state.battery ? &*state.battery : nullptr, places_ ? &*places_ : nullptr, remarks);
-            state.expected_power_w = power_ahead(*state.prediction).front().power_w;
+            state.prediction = predict_airborne_start(*basis_, tracks.series(), phases_.sorties.back(),
+                                                      state.battery ? &*state.battery : nullptr,
+                                                      places_ ? &*places_ : nullptr, remarks);
+            state.expected_power_w = remaining_power(*state.prediction).front().power_w;
             state.warnings.insert(state.warnings.end(), remarks.warnings.begin(), remarks.warnings.end());
             return;
         }
         const auto* sortie = phases_.sorties.empty() ? nullptr : &phases_.sorties.back();
-        const auto flown = mechanical::progress_in(tracks, sortie, now_s);
+        const auto flown = mechanical::progress_of(tracks, sortie, now_s);
         state.expected_power_w = units::joule_from_wh(flown.cruise_energy_wh) / flown.cruise_s();
-        std::optional<PathSighting> sighting;
+        std::optional<PathFix> sighting;
         if (places_) sighting = places_->find(tracks, flown.cruise_start_s, flown.until_s);
         auto energy = predict_energy(*basis_, flown, sighting, remarks);
         if (record && state.battery && state.battery->soc_percent) {
             energy.battery = BatteryPrediction{};
             energy.battery->limits = basis_->limits;
             energy.battery->initial_soc_percent = state.battery->initial_soc_percent;
-            energy.battery->initial_is_measured = state.battery->initial_is_measured;
-            land(*basis_->battery, *record, energy, *energy.battery);
+            energy.battery->initial_is_measured = state.battery->initial_is_from_voltage;
+            forecast_battery(*basis_->battery, *record, energy, *energy.battery);
         }
         state.prediction = std::move(energy);
-        state.expected_power_w = power_ahead(*state.prediction).front().power_w;
+        state.expected_power_w = remaining_power(*state.prediction).front().power_w;
     } catch (const std::exception& error) {
-        state.waits_for = without_flight_name(error.what(), tracks.series().flight);
+        state.no_prediction_reason = without_flight_name(error.what(), tracks.series().flight);
     }
     state.warnings.insert(state.warnings.end(), remarks.warnings.begin(), remarks.warnings.end());
 }
 
-void LiveFlight::Watch::look_ahead(LiveState& state) const {
+void LiveFlight::Impl::look_ahead(LiveState& state) const {
     if (!state.expected_power_w || !state.battery || !state.battery->state) return;
     const auto& now = *state.battery->state;
     // Where nobody knows for how long the cruise goes on, it does so as it was.
     const double cruise_w =
         state.prediction ? state.prediction->cruise.remaining_mean_w : state.expected_power_w.value();
-    const std::vector<battery::PowerStretch> nothing{{cruise_w, 0.0}};
-    state.battery->reserve_in_s =
-        forecast_landing(*basis_->battery, now, nothing, cruise_w, basis_->limits).seconds_left;
+    const std::vector<battery::ConstantLoad> nothing{{cruise_w, 0.0}};
+    state.battery->time_to_reserve_s =
+        forecast_landing(*basis_->battery, now, nothing, cruise_w, basis_->limits).endurance_s;
     if (!state.prediction) return;
     const auto& prediction = *state.prediction;
-    state.battery->chance_below = chance_below_reserve(*basis_, prediction, *state.battery);
+    state.battery->probability_below_reserve = probability_below_reserve(*basis_, prediction, *state.battery);
     if (!basis_->path || basis_->remaining_s || state.phase != flight::Phase::cruise) return;
-    const double part = prediction.rest.energy_wh > 0.0 ? prediction.interval.high_wh / prediction.rest.energy_wh : 1.0;
-    TurnBudget budget{*basis_->battery, now, basis_->limits, power_ahead(prediction, part), {}, 1.0};
+    const double part = prediction.remaining_energy.energy_wh > 0.0
+                            ? prediction.interval.high_wh / prediction.remaining_energy.energy_wh
+                            : 1.0;
+    ReturnFlightInput budget{*basis_->battery, now, basis_->limits, remaining_power(prediction, part), {}, 1.0};
     double planned_j = 0.0;
     double expected_j = 0.0;
-    for (const auto& stretch : prediction.power_ahead) planned_j += stretch.power_w * stretch.duration_s;
+    for (const auto& stretch : prediction.remaining_power) planned_j += stretch.power_w * stretch.duration_s;
     if (prediction.landing_s > 0.0) {
         budget.landing = budget.cruise_ahead.back();
         budget.cruise_ahead.pop_back();
     }
     for (const auto& stretch : budget.cruise_ahead) expected_j += stretch.power_w * stretch.duration_s;
     if (planned_j > 0.0) budget.power_factor = expected_j / planned_j;
-    state.turn_home = latest_turn_home(*basis_->path, prediction.on_path_s.value(), budget);
+    state.turn_home = latest_return(*basis_->path, prediction.on_path_s.value(), budget);
 }
 
-void LiveFlight::Watch::decide(LiveState& state) {
+void LiveFlight::Impl::decide(LiveState& state) {
     if (!schedule_ || state.landed) return;
     if (state.phase && state.sortie != deciding_for_) {
-        if (deciding_for_ > 0) schedule_->begin_anew();
+        if (deciding_for_ > 0) schedule_->reset();
         deciding_for_ = state.sortie;
     }
     const auto phase = state.phase.value_or(flight::Phase::takeoff);
     const auto now = state.battery ? state.battery->state : std::nullopt;
     try {
-        state.decision = schedule_->at({phase, state.phase ? state.phase_s : 0.0}, state.time_s, now);
+        state.decision = schedule_->at({phase, state.phase ? state.phase_time_s : 0.0}, state.time_s, now);
     } catch (const std::exception& error) {
         state.warnings.push_back(fmt::format("no schedule: {}", error.what()));
     }
 }
 
-void LiveFlight::Watch::continue_after_restart(const flight::ChosenTracks& tracks, LiveState& state) {
+void LiveFlight::Impl::continue_after_restart(const flight::SelectedTracks& tracks, LiveState& state) {
     if (!before_restart_ || phases_.sorties.empty()) return;
     if (!state.began_in_air || phases_.sorties.size() > 1) {
         before_restart_.reset();  // another flight
@@ -336,7 +341,7 @@ void LiveFlight::Watch::continue_after_restart(const flight::ChosenTracks& track
     continue_flight(*before_restart_, tracks, until_s, basis_ ? basis_->battery : std::nullopt, state);
 }
 
-void LiveFlight::Watch::judge_record(const flight::ChosenTracks& tracks, const LiveState& state) {
+void LiveFlight::Impl::check_record(const flight::SelectedTracks& tracks, const LiveState& state) {
     constexpr double gap_s = 10.0;  // what was written across it is in doubt at once
     if (looked_s_ && std::abs(state.time_s - *looked_s_) > gap_s) judged_s_.reset();
     looked_s_ = state.time_s;
@@ -348,7 +353,7 @@ void LiveFlight::Watch::judge_record(const flight::ChosenTracks& tracks, const L
         return;
     }
     try {
-        auto judgement = judge(tracks, phases_);
+        auto judgement = assess_flight(tracks, phases_);
         const auto& faults = judgement.power.power_faults;
         rejected_ = faults.empty() ? "" : fmt::format("{}", fmt::join(faults, ", "));
         warnings_ = std::move(judgement.warnings);
@@ -357,9 +362,9 @@ void LiveFlight::Watch::judge_record(const flight::ChosenTracks& tracks, const L
     }
 }
 
-void LiveFlight::Watch::trim(const std::optional<battery::DischargeRecord>& record, const LiveState& state) {
+void LiveFlight::Impl::trim(const std::optional<battery::DischargeRecord>& record, const LiveState& state) {
     if (store_.rows() <= options_.most_rows) return;
-    const double from_s = first_needed_s(phases_, state);
+    const double from_s = retention_start_s(phases_, state);
     if (record && state.battery && state.battery->soc_percent) {
         if (const auto percent = soc_at(*basis_->battery, *record, state.battery->initial_soc_percent, from_s))
             carried_percent_ = percent;
@@ -369,9 +374,9 @@ void LiveFlight::Watch::trim(const std::optional<battery::DischargeRecord>& reco
     while (store_.rows() > options_.most_rows) store_.thin();
 }
 
-LiveFlight::LiveFlight(LiveOptions options, std::optional<PredictionBasis> basis,
+LiveFlight::LiveFlight(LiveOptions options, std::optional<PredictionInput> basis,
                        std::unique_ptr<LiveSchedule> schedule)
-    : watch_(std::make_unique<Watch>(std::move(options), std::move(basis), std::move(schedule))) {}
+    : watch_(std::make_unique<Impl>(std::move(options), std::move(basis), std::move(schedule))) {}
 
 LiveFlight::~LiveFlight() = default;
 
@@ -381,7 +386,7 @@ std::optional<double> LiveFlight::clock_s() const { return watch_->clock_s(); }
 
 void LiveFlight::end() { watch_->end(); }
 
-LiveState LiveFlight::look(double silent_s) { return watch_->look(silent_s); }
+LiveState LiveFlight::update(double silent_s) { return watch_->look(silent_s); }
 
 const std::optional<LiveState>& LiveFlight::last_predicted() const { return watch_->last_predicted(); }
 

@@ -23,9 +23,10 @@ struct LiveOptions {
     std::string flight = "live";                                    ///< its name
     std::optional<std::string> aircraft_id = {};                    ///< none: the one that flies
     std::optional<telemetry::LogConfiguration> configuration = {};  ///< definitions; none: the built-in ones
-    double silence_s = 30.0;                                        ///< after which the link is called silent
-    /// Called with every .data line that is believed, in their order; `anew`: the clock began anew before them.
-    std::function<void(std::string_view lines, bool anew)> on_lines = {};
+    double silence_threshold_s = 30.0;                              ///< after which the link is called silent
+    /// Called with every .data line that is believed, in their order; `clock_restarted`: the clock began anew before
+    /// them.
+    std::function<void(std::string_view lines, bool clock_restarted)> on_lines = {};
     std::size_t most_rows = 30'000;  ///< of messages, kept in memory
 };
 
@@ -39,28 +40,28 @@ struct LiveBattery {
     std::optional<double> soc_percent;             ///< its charge at the start less what was drawn
     std::optional<double> soc_by_voltage_percent;  ///< as the battery model tells it from voltage and current
     double initial_soc_percent = 0.0;
-    bool initial_is_measured = false;            ///< by the resting voltage
-    std::optional<double> drawn_ah;              ///< since the first message that is kept
-    std::optional<double> voltage_off_v;         ///< measured less the model's, median of the last minute
-    std::optional<double> reserve_in_s;          ///< so long could a cruise go on until only the reserve is left
-    std::optional<double> chance_below;          ///< of landing below the reserve, 0 to 1
-    std::optional<battery::BatteryState> state;  ///< what the forecasts start from
+    bool initial_is_from_voltage = false;             ///< by the resting voltage
+    std::optional<double> drawn_ah;                   ///< since the first message that is kept
+    std::optional<double> voltage_residual_v;         ///< measured less the model's, median of the last minute
+    std::optional<double> time_to_reserve_s;          ///< so long could a cruise go on until only the reserve is left
+    std::optional<double> probability_below_reserve;  ///< of landing below the reserve, 0 to 1
+    std::optional<battery::BatteryState> state;       ///< what the forecasts start from
 };
 
 /// All that is known at a moment of a flight.
 struct LiveState {
-    double time_s = 0.0;                        ///< of the latest message, on the clock of the telemetry
-    std::string aircraft_id;                    ///< empty: none is known yet
-    std::string aircraft_name;                  ///< as the .log has it
-    std::map<std::string, std::size_t> others;  ///< messages of other senders
+    double time_s = 0.0;                               ///< of the latest message, on the clock of the telemetry
+    std::string aircraft_id;                           ///< empty: none is known yet
+    std::string aircraft_name;                         ///< as the .log has it
+    std::map<std::string, std::size_t> other_senders;  ///< messages of other senders
 
     std::optional<flight::Phase> phase;  ///< none: on the ground
     std::size_t sortie = 0;              ///< since the watch began; 0: none yet
     bool began_in_air = false;           ///< what was flown before the first message is not known
     bool landed = false;
     std::optional<double> lift_off_s;
-    double flight_s = 0.0;  ///< in the air, or since the first message there
-    double phase_s = 0.0;   ///< in the phase
+    double flight_time_s = 0.0;  ///< in the air, or since the first message there
+    double phase_time_s = 0.0;   ///< in the phase
     std::optional<double> energy_wh;
 
     std::optional<double> power_w;
@@ -71,15 +72,15 @@ struct LiveState {
 
     std::optional<LiveBattery> battery;
     std::optional<Prediction> prediction;
-    std::string waits_for;  ///< why there is none
-    std::optional<TurnHome> turn_home;
+    std::string no_prediction_reason;  ///< why there is none
+    std::optional<ReturnDeadline> turn_home;
     std::optional<LiveDecision> decision;
 
     std::vector<Alarm> alarms;
     std::vector<std::string> warnings;  ///< of the battery's file, the record and the prediction
     std::size_t messages = 0;
     std::size_t restarts = 0;  ///< of the clock
-    double silent_s = 0.0;
+    double time_since_message_s = 0.0;
     std::map<std::string, std::size_t> unusable;  ///< lines and values by reason
     std::size_t rows = 0;                         ///< kept
 };
@@ -89,7 +90,7 @@ struct LiveState {
 /// in makes it throw.
 class LiveFlight {
   public:
-    LiveFlight(LiveOptions options, std::optional<PredictionBasis> basis, std::unique_ptr<LiveSchedule> schedule);
+    LiveFlight(LiveOptions options, std::optional<PredictionInput> basis, std::unique_ptr<LiveSchedule> schedule);
     ~LiveFlight();
 
     /// Takes a message; `arrival_s` is its time if its source has none, and tells a clock that was set ahead from a gap
@@ -100,14 +101,14 @@ class LiveFlight {
     /// No more messages will come.
     void end();
 
-    /// What is known now. `silent_s`: for how long nothing has come.
-    LiveState look(double silent_s = 0.0);
+    /// What is known now. `time_since_message_s`: for how long nothing has come.
+    LiveState update(double silent_s = 0.0);
     /// The last state that had a prediction; none before.
     const std::optional<LiveState>& last_predicted() const;
 
   private:
-    class Watch;
-    std::unique_ptr<Watch> watch_;
+    class Impl;
+    std::unique_ptr<Impl> watch_;
 };
 
 }  // namespace flightwatt::live

@@ -11,10 +11,10 @@
 namespace flightwatt::live {
 namespace {
 
-using mission::PhaseMoment;
+using mission::PhaseTime;
 
 /// Of a mission that is to decide in flight.
-mission::PlanningProblem deciding(const mission::AnyMission& mission) {
+mission::PlanningProblem deciding(const mission::MissionVariant& mission) {
     const auto* problem = std::get_if<mission::PlanningProblem>(&mission);
     if (problem == nullptr) {
         throw InputError({setup_of(mission).file}, "its schedule is fixed: there is nothing to decide",
@@ -29,19 +29,19 @@ mission::PlanningProblem deciding(const mission::AnyMission& mission) {
 }
 
 /// The schedule that is known before the flight.
-mission::Schedule planned_schedule(mission::AnyMission mission) {
+mission::Schedule planned_schedule(mission::MissionVariant mission) {
     if (auto* problem = std::get_if<mission::PlanningProblem>(&mission)) problem->adaptive.reset();
-    return prepare(mission).schedule;
+    return prepare_mission(mission).schedule;
 }
 
-bool is_after(const mission::ScheduleSegment& segment, const PhaseMoment& moment) {
+bool is_after(const mission::ScheduleSegment& segment, const PhaseTime& moment) {
     return segment.phase > moment.phase || (segment.phase == moment.phase && segment.end_s > moment.time_s);
 }
 
 }  // namespace
 
-LiveSchedule::LiveSchedule(mission::AnyMission mission, bool decides) : mission_(std::move(mission)) {
-    if (decides) {
+LiveSchedule::LiveSchedule(mission::MissionVariant mission, bool replans) : mission_(std::move(mission)) {
+    if (replans) {
         planner_ = std::make_unique<mission::AdaptivePlanner>(make_adaptive_planner(deciding(mission_)));
         decider_.emplace(*planner_);
     } else {
@@ -49,13 +49,13 @@ LiveSchedule::LiveSchedule(mission::AnyMission mission, bool decides) : mission_
     }
 }
 
-void LiveSchedule::begin_anew() {
+void LiveSchedule::reset() {
     slot_.reset();
     running_.reset();
     if (planner_) decider_.emplace(*planner_);
 }
 
-PhaseMoment LiveSchedule::planned_moment(PhaseMoment moment) const {
+PhaseTime LiveSchedule::planned_moment(PhaseTime moment) const {
     const auto& duration_s = setup().duration_s;
     while (moment.phase != mission::Phase::landing && !(duration_s[moment.phase] > 0.0))
         moment = {static_cast<mission::Phase>(static_cast<int>(moment.phase) + 1), 0.0};
@@ -65,26 +65,26 @@ PhaseMoment LiveSchedule::planned_moment(PhaseMoment moment) const {
     return moment;
 }
 
-void LiveSchedule::learn_slot(double clock_s, double soc_percent) {
+void LiveSchedule::update_from_slot(double clock_s, double soc_percent) {
     const mission::PhaseSegment interval{slot_->start.phase, slot_->start.time_s,
                                          slot_->start.time_s + clock_s - slot_->clock_s};
     if (interval.duration_s() <= 0.0 || interval.end_s > setup().duration_s[interval.phase]) return;
-    decider_->learn(interval, part_of(schedule_, interval), slot_->battery, soc_percent);
+    decider_->update(interval, clip_to_interval(schedule_, interval), slot_->battery, soc_percent);
 }
 
-void LiveSchedule::decide(const PhaseMoment& moment, double clock_s, const battery::BatteryState& now) {
-    const double every_s = planner_->known.adaptive->decide_every_s;
-    const auto slot_of = [&](const PhaseMoment& at) { return std::floor(at.time_s / every_s); };
+void LiveSchedule::decide(const PhaseTime& moment, double clock_s, const battery::BatteryState& now) {
+    const double every_s = planner_->nominal.adaptive->decide_every_s;
+    const auto slot_of = [&](const PhaseTime& at) { return std::floor(at.time_s / every_s); };
     if (slot_ && slot_->start.phase == moment.phase && slot_of(slot_->start) == slot_of(moment)) return;
-    if (slot_) learn_slot(clock_s, now.soc_percent);
-    auto plan = decider_->decide(moment, now);
+    if (slot_) update_from_slot(clock_s, now.soc_percent);
+    auto plan = decider_->replan(moment, now);
     schedule_ = std::move(plan.schedule);
     keeps_reserve_ = plan.feasible;
     final_soc_percent_ = plan.final_soc_percent;
     slot_ = Slot{moment, clock_s, now};
 }
 
-std::optional<LiveDecision> LiveSchedule::at(const PhaseMoment& moment, double clock_s,
+std::optional<LiveDecision> LiveSchedule::at(const PhaseTime& moment, double clock_s,
                                              const std::optional<battery::BatteryState>& now) {
     const auto planned = planned_moment(moment);
     if (decider_ && now) decide(planned, clock_s, *now);
@@ -108,7 +108,7 @@ std::optional<LiveDecision> LiveSchedule::at(const PhaseMoment& moment, double c
         decision.next_in_s = start_s - now_s;
     }
     const bool has_utility = std::ranges::any_of(of.utilities, [](const auto& each) { return each.has_value(); });
-    if (has_utility && rest_s > 0.0) decision.rest_utility = utility / rest_s;
+    if (has_utility && rest_s > 0.0) decision.remaining_utility_per_s = utility / rest_s;
     if (running_ != decision.run) ++changes_;
     running_ = decision.run;
     decision.changes = changes_;

@@ -4,7 +4,7 @@
 #include "live/serve/page_session.h"
 #include "live/sources/close_on_exec.h"
 #include "live/sources/host_and_port.h"
-#include "live/sources/quiet_thread.h"
+#include "live/sources/signal_free_thread.h"
 
 #include <algorithm>
 #include <atomic>
@@ -29,7 +29,7 @@ using asio::ip::tcp;
 using boost::system::error_code;
 
 constexpr std::chrono::milliseconds try_again{500};
-constexpr std::size_t most_posted = 64;
+constexpr std::size_t max_posted = 64;
 
 std::string event_of(std::string_view name, std::string_view data) {
     return fmt::format("event: {}\ndata: {}\n\n", name, data);
@@ -58,7 +58,7 @@ class PageServer::Server {
         contents_.first_events = [this] { return first_events(); };
         contents_.has_room = [this] {
             const auto listeners = std::ranges::count_if(sessions_, [](const auto& of) { return of->is_listener(); });
-            return listeners < static_cast<std::ptrdiff_t>(most_connections);
+            return listeners < static_cast<std::ptrdiff_t>(max_connections);
         };
         listen(at);
         accept();
@@ -74,7 +74,7 @@ class PageServer::Server {
     tcp::endpoint endpoint() const { return endpoint_; }
 
     void publish(std::string state, std::string point) {
-        if (posted_ >= most_posted) return;  // the machine has no time for pages
+        if (posted_ >= max_posted) return;  // the machine has no time for pages
         ++posted_;
         asio::post(context_, [this, state = std::move(state), point = std::move(point)]() mutable {
             --posted_;
@@ -88,7 +88,7 @@ class PageServer::Server {
         acceptor_.open(at.protocol(), error);
         if (!error) acceptor_.set_option(asio::socket_base::reuse_address(true), error);
         if (!error) acceptor_.bind(at, error);
-        if (!error) acceptor_.listen(most_connections, error);
+        if (!error) acceptor_.listen(max_connections, error);
         if (error) {
             throw InputError({fmt::format("--serve {}:{}", at.address().to_string(), at.port())},
                              fmt::format("cannot listen: {}", error.message()),
@@ -109,7 +109,7 @@ class PageServer::Server {
                 return;
             }
             close_on_exec(socket);
-            if (sessions_.size() >= 2 * most_connections) close_oldest_asker();
+            if (sessions_.size() >= 2 * max_connections) close_oldest_asker();
             const auto on_end = [this](const PageSession& ended) {
                 sessions_.remove_if([&](const auto& session) { return session.get() == &ended; });
             };
@@ -145,7 +145,7 @@ class PageServer::Server {
         }
         if (point.empty()) return;
         points_.push_back(std::move(point));
-        if (points_.size() > most_points) thin();
+        if (points_.size() > max_points) thin();
     }
 
     /// The newest quarter stays as it is.

@@ -16,11 +16,11 @@ namespace flightwatt::live {
 class PageServer {
   public:
     /// Points that are kept for pages that are opened later; of more, every second one of the older ones goes.
-    static constexpr std::size_t most_points = 1800;
-    static constexpr std::size_t most_connections = 32;
+    static constexpr std::size_t max_points = 1800;
+    static constexpr std::size_t max_connections = 32;
 
-    /// `at`: "8080" (this machine alone), "ADDRESS:PORT". Throws UsageError for what is none, InputError where it cannot
-    /// listen there.
+    /// `at`: "8080" (this machine alone), "ADDRESS:PORT". Throws UsageError for what is none, InputError where it
+    /// cannot listen there.
     PageServer(std::string_view at, std::string page);
     ~PageServer();
     PageServer(const PageServer&) = delete;

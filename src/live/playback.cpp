@@ -18,7 +18,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
-constexpr std::chrono::milliseconds longest_wait{50};  // until somebody asks whether to stop
+constexpr std::chrono::milliseconds max_wait{50};  // until somebody asks whether to stop
 
 /// Waits in short steps; false: it was stopped.
 bool wait_for(Clock::time_point then, PlaybackTarget& target, const std::function<bool()>& stop) {
@@ -26,7 +26,7 @@ bool wait_for(Clock::time_point then, PlaybackTarget& target, const std::functio
         if (stop()) return false;
         const auto now = Clock::now();
         if (now >= then) return true;
-        target.wait_until(std::min(then, now + longest_wait));
+        target.wait_until(std::min(then, now + max_wait));
     }
 }
 
@@ -36,8 +36,8 @@ class LogClock {
     /// Returns the time since the first message that it was told of.
     double advance_to(double time_s, PlaybackReport& report) {
         const double step_s = last_s_ ? std::max(0.0, time_s - *last_s_) : 0.0;
-        if (step_s > longest_played_gap_s) ++report.shortened_gaps;
-        report.log_s += std::min(step_s, longest_played_gap_s);
+        if (step_s > max_played_gap_s) ++report.shortened_gaps;
+        report.log_s += std::min(step_s, max_played_gap_s);
         last_s_ = time_s;
         return report.log_s;
     }
@@ -63,7 +63,7 @@ class Player {
                                       Seconds(clock_.advance_to(message.time_s, report_) / speed_));
         report_.stopped = !wait_for(due, target_, stop_);
         if (report_.stopped) return;
-        report_.latest_s = std::max(report_.latest_s, Seconds(Clock::now() - due).count());
+        report_.max_delay_s = std::max(report_.max_delay_s, Seconds(Clock::now() - due).count());
         const auto why_not = target_.send(message);
         if (why_not.empty()) {
             ++report_.messages;
@@ -114,15 +114,15 @@ void play_binary(const telemetry::BinaryLog& log, Player& player) {
     if (player.is_stopped()) return;
     decoder.flush(sink);
     require_fitting(decoder.counts(), log);
-    tell_unusable(decoder.counts(), {},
-                  [&](const char* reason, std::size_t times) { player.leave_out(reason, times); });
+    report_unusable(decoder.counts(), {},
+                    [&](const char* reason, std::size_t times) { player.leave_out(reason, times); });
 }
 
 /// What was sent gets out, if it is fetched.
 void drain(PlaybackTarget& target, const std::function<bool()>& stop) {
     constexpr std::chrono::seconds longest{10};
     const auto end = Clock::now() + longest;
-    while (!target.is_idle() && Clock::now() < end && !stop()) target.wait_until(Clock::now() + longest_wait);
+    while (!target.is_drained() && Clock::now() < end && !stop()) target.wait_until(Clock::now() + max_wait);
 }
 
 }  // namespace
@@ -132,7 +132,7 @@ void PlaybackTarget::wait_until(Clock::time_point then) { std::this_thread::slee
 PlaybackReport play(const std::filesystem::path& log, double speed, PlaybackTarget& target,
                     const std::function<bool()>& stop, const std::optional<telemetry::MessageDictionary>& definitions) {
     const telemetry::DataFile file(log);
-    const auto framing = telemetry::binary_framing(file.text());
+    const auto framing = telemetry::detect_binary_framing(file.text());
     if (framing && !definitions) {
         throw InputError({log.string()}, "is a binary log, and no .log beside it defines its messages",
                          "name the messages.xml or .log of the aircraft and build that flew, with --messages FILE");

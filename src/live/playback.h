@@ -30,13 +30,13 @@ class PlaybackTarget {
     PlaybackTarget& operator=(const PlaybackTarget&) = delete;
 
     /// Whether there is somebody to play to; waits for that at most so long.
-    virtual bool is_heard(std::chrono::milliseconds) { return true; }
+    virtual bool has_receiver(std::chrono::milliseconds) { return true; }
     /// One message. Returns why it cannot be sent, and an empty text else. Throws OutputError where nothing can be.
     virtual std::string_view send(const PlayedMessage& message) = 0;
     /// Until then nothing is sent.
     virtual void wait_until(std::chrono::steady_clock::time_point then);
     /// Whether all that was sent is out.
-    virtual bool is_idle() const { return true; }
+    virtual bool is_drained() const { return true; }
 };
 
 /// What a target needs beside its name.
@@ -59,14 +59,14 @@ struct PlaybackReport {
     std::size_t messages = 0;                                  ///< sent
     std::map<std::string, std::size_t, std::less<>> left_out;  ///< lines, by reason
     std::size_t shortened_gaps = 0;
-    double log_s = 0.0;     ///< how much of the log, on its clock
-    double played_s = 0.0;  ///< in how long
-    double latest_s = 0.0;  ///< the most that a message was behind its time
+    double log_s = 0.0;        ///< how much of the log, on its clock
+    double played_s = 0.0;     ///< in how long
+    double max_delay_s = 0.0;  ///< the most that a message was behind its time
     bool stopped = false;
 };
 
 /// Gaps of a log that are longer are played as so long: nobody waits for the clock that was set between them.
-inline constexpr double longest_played_gap_s = 600.0;
+inline constexpr double max_played_gap_s = 600.0;
 
 /// Plays the messages of a log, text or binary (compressed or not), in their own time, `speed` times as fast, until its
 /// end or until `stop` says so. Where the log's clock goes back it goes on at once. `definitions`: of a binary log's

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
-#include "live/state/path_place.h"
+#include "live/state/path_tracker.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,32 +13,33 @@
 namespace flightwatt::live {
 namespace {
 
+using mechanical::CruisePrior;
 using mechanical::FlightProgress;
-using mechanical::LevelSource;
 
 /// The level law where the model has one and the flight tells its covariate.
-LevelSource automatic_source(const mechanical::PhaseModel& cruise, const FlightProgress& flown, Remarks& remarks) {
-    if (!cruise.level_law) return LevelSource::curve;
+CruisePrior automatic_source(const mechanical::PhaseModel& cruise, const FlightProgress& flown, Diagnostics& remarks) {
+    if (!cruise.level_law) return CruisePrior::curve;
     const auto covariate = cruise.level_law->covariate;
-    if (flown.covariates[covariate]) return LevelSource::covariate;
+    if (flown.covariates[covariate]) return CruisePrior::covariate;
     remarks.warnings.push_back(fmt::format(
         "the model's level follows {}, which this flight does not tell: expected by the curve", to_string(covariate)));
-    return LevelSource::curve;
+    return CruisePrior::curve;
 }
 
 /// What a law says beyond its flights is told, not refused: the flight is as it is.
-void warn_of_reach(const mechanical::PhaseModel& cruise, const FlightProgress& flown, Remarks& remarks) {
+void warn_of_reach(const mechanical::PhaseModel& cruise, const FlightProgress& flown, Diagnostics& remarks) {
     const auto& law = cruise.level_law.value();
     const double value = flown.covariates[law.covariate].value();
-    if (level_at(law, value).within_flights) return;
+    if (predict_mean_power(law, value).within_flights) return;
     remarks.warnings.push_back(fmt::format(
         "{} = {:.4g} is beyond what the model's flights showed, {:.4g} to {:.4g}{}", to_string(law.covariate), value,
         law.least, law.most, law.covariate == mechanical::Covariate::airspeed_cubed ? "" : ": taken as the nearest"));
 }
 
 /// A motion that the model's flights did not fly.
-void warn_of_motion(const mechanical::PhysicalModel& model, const mechanical::AirMotion& motion, Remarks& remarks) {
-    if (was_flown(model, motion)) return;
+void warn_of_motion(const mechanical::PhysicalModel& model, const mechanical::FlightState& motion,
+                    Diagnostics& remarks) {
+    if (is_within_flown_range(model, motion)) return;
     const auto& speeds = model.airspeed_m_per_s;
     remarks.warnings.push_back(
         fmt::format("{:.1f} m/s at {:+.1f} m/s of climb is beyond what the model's flights flew: {:.1f} to {:.1f} m/s, "
@@ -48,43 +49,43 @@ void warn_of_motion(const mechanical::PhysicalModel& model, const mechanical::Ai
 }
 
 /// A flight's own level that no flight of the model's aircraft should have.
-void warn_of_level(const mechanical::PhysicalModel& model, double level, Remarks& remarks) {
-    constexpr double most_sds = 3.0;
+void warn_of_level(const mechanical::PhysicalModel& model, double level, Diagnostics& remarks) {
+    constexpr double max_sds = 3.0;
     const double sd = model.level_sd.value_or(0.0);
-    if (std::abs(level) <= most_sds * sd) return;
+    if (std::abs(level) <= max_sds * sd) return;
     remarks.warnings.push_back(fmt::format(
         "this flight takes {:+.1f} % of what the model says, whose flights differ by {:.1f} % (1 sd): is it "
         "another aircraft, load or propeller?",
-        units::percent_of(level, 1.0), units::percent_of(sd, 1.0)));
+        units::percentage(level, 1.0), units::percentage(sd, 1.0)));
 }
 
-/// Where on the path the flight is: where it was seen, after as long as it has cruised, or the remaining time before its
-/// end.
-double seconds_on_path(const PredictionBasis& basis, const FlightProgress& flown,
-                       const std::optional<PathSighting>& sighting) {
+/// Where on the path the flight is: where it was seen, after as long as it has cruised, or the remaining time before
+/// its end.
+double seconds_on_path(const PredictionInput& basis, const FlightProgress& flown,
+                       const std::optional<PathFix>& sighting) {
     const auto& path = basis.path->flown();
     if (basis.remaining_s) {
         if (*basis.remaining_s <= path.duration_s) return path.duration_s - *basis.remaining_s;
         throw UsageError(fmt::format("--remaining {:g}: the mission's path takes only {:.1f} s", *basis.remaining_s,
                                      path.duration_s));
     }
-    const bool is_sighted = sighting && sighting->on_path_s;
-    if (is_sighted && *sighting->on_path_s < path.duration_s) return *sighting->on_path_s;
+    const bool is_sighted = sighting && sighting->path_time_s;
+    if (is_sighted && *sighting->path_time_s < path.duration_s) return *sighting->path_time_s;
     if (is_sighted) {
-        throw NoAnswerError(
+        throw NoResultError(
             "the flight has flown the mission's path to its end: say with --remaining how long it "
             "flies on");
     }
     if (flown.cruise_s() <= path.duration_s) return flown.cruise_s();
-    throw NoAnswerError(
+    throw NoResultError(
         fmt::format("the flight has cruised for {:.1f} s and the mission's path takes {:.1f} s: say "
                     "with --remaining how much of it is left",
                     flown.cruise_s(), path.duration_s));
 }
 
-void remark_on(const std::optional<PathSighting>& sighting, double cruise_s, Remarks& remarks) {
+void remark_on(const std::optional<PathFix>& sighting, double cruise_s, Diagnostics& remarks) {
     if (!sighting) return;
-    if (!sighting->on_path_s) {
+    if (!sighting->path_time_s) {
         remarks.warnings.emplace_back(
             "the positions of this flight are not on the mission's path: it is taken to be as far along it as the time "
             "since its cruise began");
@@ -94,54 +95,55 @@ void remark_on(const std::optional<PathSighting>& sighting, double cruise_s, Rem
         remarks.warnings.push_back(
             fmt::format("the flight has left the mission's path, and is {:.0f} m from where it did: expected to go on "
                         "from there, without the way back",
-                        sighting->off_m));
+                        sighting->distance_m));
     }
     constexpr double much_s = 30.0;
-    const double ahead_s = *sighting->on_path_s - cruise_s;
+    const double ahead_s = *sighting->path_time_s - cruise_s;
     if (std::abs(ahead_s) < much_s) return;
     remarks.notes.push_back(fmt::format("by its position the flight is {:.0f} s {} the mission's plan",
                                         std::abs(ahead_s), ahead_s > 0.0 ? "ahead of" : "behind"));
 }
 
 /// The cruise along what is left of the path.
-mechanical::RestPrediction predict_along(const PredictionBasis& basis, const FlightProgress& flown,
-                                         const std::optional<PathSighting>& sighting, Prediction& prediction,
-                                         Remarks& remarks) {
+mechanical::RemainingCruise predict_along(const PredictionInput& basis, const FlightProgress& flown,
+                                          const std::optional<PathFix>& sighting, Prediction& prediction,
+                                          Diagnostics& remarks) {
     prediction.on_path_s = seconds_on_path(basis, flown, sighting);
-    prediction.is_sighted = sighting && sighting->on_path_s;
+    prediction.is_from_position = sighting && sighting->path_time_s;
     remark_on(sighting, flown.cruise_s(), remarks);
-    auto rest = basis.path->predict(flown, place_at(basis.path->flown(), *prediction.on_path_s));
-    if (rest.forbidden_part > 0.0) {
+    auto rest = basis.path->predict(flown, position_at(basis.path->flown(), *prediction.on_path_s));
+    if (rest.infeasible_fraction > 0.0) {
         remarks.warnings.push_back(
             fmt::format("{:.0f} % of the winds that [wind] makes likely forbid what is left of the path: they are not "
                         "in what follows",
-                        units::percent_of(rest.forbidden_part, 1.0)));
+                        units::percentage(rest.infeasible_fraction, 1.0)));
     }
     prediction.remaining_s = rest.duration_s;
-    prediction.power_ahead = std::move(rest.power);
+    prediction.remaining_power = std::move(rest.power);
     return rest.cruise;
 }
 
 /// The cruise by the model's curve or laws.
-mechanical::RestPrediction predict_level(const PredictionBasis& basis, const FlightProgress& flown, double remaining_s,
-                                         Remarks& remarks) {
+mechanical::RemainingCruise predict_level(const PredictionInput& basis, const FlightProgress& flown, double remaining_s,
+                                          Diagnostics& remarks) {
     const auto& cruise = basis.model.phases[flight::Phase::cruise];
     const auto source = basis.level ? *basis.level : automatic_source(cruise, flown, remarks);
-    auto rest = predict_rest(forecast_of(basis.model, flight::Phase::cruise), flown, remaining_s, source);
-    if (source == LevelSource::covariate) warn_of_reach(cruise, flown, remarks);
+    auto rest = predict_remaining_cruise(forecast_of(basis.model, flight::Phase::cruise), flown, remaining_s, source);
+    if (source == CruisePrior::covariate) warn_of_reach(cruise, flown, remarks);
     return rest;
 }
 
-mechanical::RestPrediction predict_cruise(const PredictionBasis& basis, const FlightProgress& flown,
-                                          const std::optional<PathSighting>& sighting, Prediction& prediction,
-                                          Remarks& remarks) {
-    prediction.by_motion = basis.path || basis.motion;
-    if (prediction.by_motion && !flown.motion.lacks.empty())
-        remarks.warnings.push_back(fmt::format("this flight's own level is not known: {}", flown.motion.lacks));
+mechanical::RemainingCruise predict_cruise(const PredictionInput& basis, const FlightProgress& flown,
+                                           const std::optional<PathFix>& sighting, Prediction& prediction,
+                                           Diagnostics& remarks) {
+    prediction.uses_physical_model = basis.path || basis.motion;
+    if (prediction.uses_physical_model && !flown.motion.no_bins_reason.empty())
+        remarks.warnings.push_back(
+            fmt::format("this flight's own level is not known: {}", flown.motion.no_bins_reason));
     if (basis.path) return predict_along(basis, flown, sighting, prediction, remarks);
     prediction.remaining_s = basis.remaining_s ? *basis.remaining_s : basis.cruise_s.value() - flown.cruise_s();
     if (prediction.remaining_s < 0.0) {
-        throw NoAnswerError(
+        throw NoResultError(
             fmt::format("the cruise takes {:.0f} s longer than the mission's {:.0f} s: how long it goes on "
                         "is not known (--remaining says it)",
                         -prediction.remaining_s, *basis.cruise_s));
@@ -149,12 +151,12 @@ mechanical::RestPrediction predict_cruise(const PredictionBasis& basis, const Fl
     if (!basis.motion) return predict_level(basis, flown, prediction.remaining_s, remarks);
     const auto& model = basis.model.physical.value();
     warn_of_motion(model, *basis.motion, remarks);
-    return predict_rest_by_motion(model, flown, terms_of(*basis.motion), prediction.remaining_s);
+    return predict_remaining_physical(model, flown, term_values(*basis.motion), prediction.remaining_s);
 }
 
 /// The battery through the rest, from what was measured of it until now.
-std::optional<BatteryPrediction> predict_battery(const PredictionBasis& basis, const flight::FlightSeries& series,
-                                                 const Prediction& prediction, Remarks& remarks) {
+std::optional<BatteryPrediction> predict_battery(const PredictionInput& basis, const flight::FlightSeries& series,
+                                                 const Prediction& prediction, Diagnostics& remarks) {
     if (!basis.battery) return std::nullopt;
     const auto& battery = *basis.battery;
     for (const auto& warning : battery_warnings(battery))
@@ -166,13 +168,13 @@ std::optional<BatteryPrediction> predict_battery(const PredictionBasis& basis, c
     of.limits = basis.limits;
     of.initial_is_measured = !basis.initial_soc_percent;
     of.initial_soc_percent = initial_soc_percent(basis, record);
-    land(battery, record, prediction, of);
+    forecast_battery(battery, record, prediction, of);
     return of;
 }
 
 }  // namespace
 
-void require_spread(const mechanical::MechanicalModel& model, flight::Phase phase, const std::string& file) {
+void require_interval(const mechanical::MechanicalModel& model, flight::Phase phase, const std::string& file) {
     if (model.phases[phase].level_spread) return;
     throw InputError({file}, fmt::format("[{}] has no spread: how much flights differ", to_string(phase)),
                      "fit it to two flights or more: flightwatt fit FLIGHT... -o MODEL.toml");
@@ -185,11 +187,11 @@ void require_physical(const mechanical::MechanicalModel& model, const std::strin
         fmt::format("{} needs one of two flights or more: flightwatt fit --model physical FLIGHT...", option));
 }
 
-double initial_soc_percent(const PredictionBasis& basis, const battery::DischargeRecord& flown) {
+double initial_soc_percent(const PredictionInput& basis, const battery::DischargeRecord& flown) {
     return basis.initial_soc_percent ? *basis.initial_soc_percent : initial_soc_by_voltage_percent(basis, flown);
 }
 
-double initial_soc_by_voltage_percent(const PredictionBasis& basis, const battery::DischargeRecord& flown) {
+double initial_soc_by_voltage_percent(const PredictionInput& basis, const battery::DischargeRecord& flown) {
     const auto& battery = basis.battery.value();
     if (!battery.thevenin) {
         throw InputError({basis.battery_file}, "a battery of constant voltage does not tell its state of charge",
@@ -199,42 +201,42 @@ double initial_soc_by_voltage_percent(const PredictionBasis& basis, const batter
     return battery::resting_soc_percent(battery, rest_v);
 }
 
-Prediction predict_flight(const PredictionBasis& basis, const mechanical::FlightProgress& flown,
-                          const flight::FlightSeries& series, Remarks& remarks) {
-    auto prediction = predict_energy(basis, flown, sighting_of(basis, flown, series), remarks);
+Prediction predict_flight(const PredictionInput& basis, const mechanical::FlightProgress& flown,
+                          const flight::FlightSeries& series, Diagnostics& remarks) {
+    auto prediction = predict_energy(basis, flown, find_path_fix(basis, flown, series), remarks);
     prediction.battery = predict_battery(basis, series, prediction, remarks);
     return prediction;
 }
 
-std::optional<PathSighting> sighting_of(const PredictionBasis& basis, const FlightProgress& flown,
-                                        const flight::FlightSeries& series) {
+std::optional<PathFix> find_path_fix(const PredictionInput& basis, const FlightProgress& flown,
+                                     const flight::FlightSeries& series) {
     if (!basis.path || basis.remaining_s) return std::nullopt;
-    return sighted_on_path(*basis.path, series, flown.cruise_start_s, flown.until_s);
+    return locate_on_path(*basis.path, series, flown.cruise_start_s, flown.until_s);
 }
 
-Prediction predict_energy(const PredictionBasis& basis, const FlightProgress& flown,
-                          const std::optional<PathSighting>& sighting, Remarks& remarks) {
+Prediction predict_energy(const PredictionInput& basis, const FlightProgress& flown,
+                          const std::optional<PathFix>& sighting, Diagnostics& remarks) {
     Prediction prediction;
     prediction.flown = flown;
     prediction.cruise = predict_cruise(basis, flown, sighting, prediction, remarks);
-    if (prediction.by_motion) warn_of_level(basis.model.physical.value(), prediction.cruise.gain, remarks);
+    if (prediction.uses_physical_model) warn_of_level(basis.model.physical.value(), prediction.cruise.gain, remarks);
     prediction.landing_s = basis.landing_s;
     if (basis.landing_s > 0.0) {
         prediction.landing =
             mechanical::predict_before_flight(forecast_of(basis.model, flight::Phase::landing), basis.landing_s);
     }
-    prediction.rest = sum_of(prediction.cruise.energy, prediction.landing);
-    prediction.interval = interval_95(prediction.rest).value();
+    prediction.remaining_energy = sum_of(prediction.cruise.energy, prediction.landing);
+    prediction.interval = interval_95(prediction.remaining_energy).value();
     return prediction;
 }
 
-std::vector<battery::PowerStretch> power_ahead(const Prediction& prediction, double part) {
+std::vector<battery::ConstantLoad> remaining_power(const Prediction& prediction, double part) {
     double along_path_j = 0.0;
-    for (const auto& stretch : prediction.power_ahead) along_path_j += stretch.power_w * stretch.duration_s;
-    std::vector<battery::PowerStretch> ahead;
+    for (const auto& stretch : prediction.remaining_power) along_path_j += stretch.power_w * stretch.duration_s;
+    std::vector<battery::ConstantLoad> ahead;
     if (along_path_j > 0.0) {
         const double cruise_j = units::joule_from_wh(prediction.cruise.energy.energy_wh);
-        for (const auto& [power_w, duration_s] : prediction.power_ahead)
+        for (const auto& [power_w, duration_s] : prediction.remaining_power)
             ahead.push_back({power_w * part * cruise_j / along_path_j, duration_s});
     } else {
         ahead.push_back({prediction.cruise.remaining_mean_w * part, prediction.remaining_s});
@@ -251,29 +253,29 @@ template <typename StateOf>
 void land_from(const battery::Battery& battery, const StateOf& state_of, const Prediction& prediction,
                BatteryPrediction& result) {
     const auto forecast = [&](const battery::Battery& of, double part) {
-        return battery::forecast_landing(of, state_of(of), power_ahead(prediction, part),
+        return battery::forecast_landing(of, state_of(of), remaining_power(prediction, part),
                                          prediction.cruise.remaining_mean_w * part, result.limits);
     };
-    const double rest_wh = prediction.rest.energy_wh;
+    const double rest_wh = prediction.remaining_energy.energy_wh;
     auto least = battery;
-    result.with_least_capacity = battery.intervals.capacity_ah.has_value();
-    if (result.with_least_capacity) least.capacity_ah = battery.intervals.capacity_ah->low;
+    result.worst_uses_min_capacity = battery.intervals.capacity_ah.has_value();
+    if (result.worst_uses_min_capacity) least.capacity_ah = battery.intervals.capacity_ah->low;
     result.expected = forecast(battery, 1.0);
     result.worst = forecast(least, rest_wh > 0.0 ? prediction.interval.high_wh / rest_wh : 1.0);
 }
 
 }  // namespace
 
-void land(const battery::Battery& battery, const battery::DischargeRecord& flown, const Prediction& prediction,
-          BatteryPrediction& result) {
+void forecast_battery(const battery::Battery& battery, const battery::DischargeRecord& flown,
+                      const Prediction& prediction, BatteryPrediction& result) {
     const auto state_of = [&](const battery::Battery& of) {
         return battery::state_after(of, flown, result.initial_soc_percent);
     };
     land_from(battery, state_of, prediction, result);
 }
 
-void land(const battery::Battery& battery, const battery::BatteryState& now, const Prediction& prediction,
-          BatteryPrediction& result) {
+void forecast_battery(const battery::Battery& battery, const battery::BatteryState& now, const Prediction& prediction,
+                      BatteryPrediction& result) {
     land_from(
         battery, [&](const battery::Battery&) { return now; }, prediction, result);
 }

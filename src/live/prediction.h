@@ -13,63 +13,63 @@
 namespace flightwatt::live {
 
 /// What a prediction rests on beside the flight.
-struct PredictionBasis {
+struct PredictionInput {
     mechanical::MechanicalModel model;
-    std::optional<mechanical::LevelSource> level = {};  ///< none: the level law where there is one, else the curve
+    std::optional<mechanical::CruisePrior> level = {};  ///< none: the level law where there is one, else the curve
     double landing_s = 0.0;
     std::optional<double> remaining_s = {};  ///< of the cruise, from the moment on, whatever was flown
     std::optional<double> cruise_s = {};     ///< else: what is left of so long; none: what is left of the path
-    std::optional<mechanical::AirMotion> motion = {};        ///< how the rest is flown
+    std::optional<mechanical::FlightState> motion = {};      ///< how the rest is flown
     std::shared_ptr<const mission::PathForecast> path = {};  ///< or along what
     std::optional<battery::Battery> battery = {};
     std::string battery_file = {};                   ///< for errors
     std::optional<double> initial_soc_percent = {};  ///< none: by the voltage at rest
     battery::LandingLimits limits = {};
-    std::string cannot_predict = {};  ///< why the model does not allow it; empty: it does
+    std::string no_prediction_reason = {};  ///< why the model does not allow it; empty: it does
 };
 
 /// The battery's part of a prediction.
 struct BatteryPrediction {
     battery::LandingForecast expected;
-    battery::LandingForecast worst;    ///< of energy's high end, and where its interval is known capacity's low one
-    battery::LandingLimits limits;     ///< of the mission
-    bool with_least_capacity = false;  ///< `worst`
+    battery::LandingForecast worst;        ///< of energy's high end, and where its interval is known capacity's low one
+    battery::LandingLimits limits;         ///< of the mission
+    bool worst_uses_min_capacity = false;  ///< `worst`
     double initial_soc_percent = 0.0;
-    bool initial_is_measured = false;  ///< by the resting voltage
-    bool is_of_now = false;            ///< what was drawn before is not known: `initial_soc_percent` is that of now
+    bool initial_is_measured = false;     ///< by the resting voltage
+    bool initial_soc_is_current = false;  ///< what was drawn before is not known: `initial_soc_percent` is that of now
 };
 
 /// Where a flight is on its path, by its positions.
-struct PathSighting {
-    std::optional<double> on_path_s = {};  ///< in the path's planned time; none: they do not lie on the path
-    bool is_on_path = true;                ///< else it has left it, and was there last
-    double off_m = 0.0;                    ///< so far from there now
+struct PathFix {
+    std::optional<double> path_time_s = {};  ///< in the path's planned time; none: they do not lie on the path
+    bool is_on_path = true;                  ///< else it has left it, and was there last
+    double distance_m = 0.0;                 ///< so far from there now
 };
 
 struct Prediction {
     mechanical::FlightProgress flown;
     bool began_in_air = false;             ///< `flown` since the first message: the lift-off was not seen
     std::optional<double> on_path_s = {};  ///< where on its path the flight is, in the path's planned time
-    bool is_sighted = false;               ///< there, by its positions; else by the time
+    bool is_from_position = false;         ///< there, by its positions; else by the time
     double remaining_s = 0.0;
-    bool by_motion = false;  ///< the cruise, by airspeed and climb; else by the curve or a law
-    mechanical::RestPrediction cruise;
-    std::vector<battery::PowerStretch> power_ahead = {};  ///< the cruise's course along a path; empty: even
+    bool uses_physical_model = false;  ///< the cruise, by airspeed and climb; else by the curve or a law
+    mechanical::RemainingCruise cruise;
+    std::vector<battery::ConstantLoad> remaining_power = {};  ///< the cruise's course along a path; empty: even
     mechanical::EnergyEstimate landing;
     double landing_s = 0.0;
-    mechanical::EnergyEstimate rest;
+    mechanical::EnergyEstimate remaining_energy;
     mechanical::EnergyInterval interval;
     std::optional<BatteryPrediction> battery = {};
 };
 
 /// What a user should know of a prediction.
-struct Remarks {
+struct Diagnostics {
     std::vector<std::string> warnings;
     std::vector<std::string> notes;
 };
 
 /// Throws InputError for a model whose interval would rest on nothing.
-void require_spread(const mechanical::MechanicalModel& model, flight::Phase phase, const std::string& file);
+void require_interval(const mechanical::MechanicalModel& model, flight::Phase phase, const std::string& file);
 
 /// Throws InputError for a model that does not know how power follows from airspeed and climb, or how flights differ in
 /// it. `option` is what needs that.
@@ -77,37 +77,37 @@ void require_physical(const mechanical::MechanicalModel& model, const std::strin
 
 /// The state of charge when a record began: as given, else by its voltage at rest. Throws InputError where a battery of
 /// constant voltage would have to tell it. The basis has a battery.
-double initial_soc_percent(const PredictionBasis& basis, const battery::DischargeRecord& flown);
+double initial_soc_percent(const PredictionInput& basis, const battery::DischargeRecord& flown);
 
 /// The same by the voltage at rest, whatever was given.
-double initial_soc_by_voltage_percent(const PredictionBasis& basis, const battery::DischargeRecord& flown);
+double initial_soc_by_voltage_percent(const PredictionInput& basis, const battery::DischargeRecord& flown);
 
 /// The rest of a flight that is where `flown` says, and of which `series` holds what was measured until then. Throws
-/// NoAnswerError where the moment does not allow it (the path is behind it, more charge was drawn than there was),
-/// UsageError for a remaining time that the path does not have, and as mechanical::predict_rest and
+/// NoResultError where the moment does not allow it (the path is behind it, more charge was drawn than there was),
+/// UsageError for a remaining time that the path does not have, and as mechanical::predict_remaining_cruise and
 /// battery::discharge_records.
-Prediction predict_flight(const PredictionBasis& basis, const mechanical::FlightProgress& flown,
-                          const flight::FlightSeries& series, Remarks& remarks);
+Prediction predict_flight(const PredictionInput& basis, const mechanical::FlightProgress& flown,
+                          const flight::FlightSeries& series, Diagnostics& remarks);
 
 /// The same without the battery. `sighting`: where the path is to go on from; none: after as long as it has cruised.
-Prediction predict_energy(const PredictionBasis& basis, const mechanical::FlightProgress& flown,
-                          const std::optional<PathSighting>& sighting, Remarks& remarks);
+Prediction predict_energy(const PredictionInput& basis, const mechanical::FlightProgress& flown,
+                          const std::optional<PathFix>& sighting, Diagnostics& remarks);
 
 /// Where the positions see the flight on the path that is to be flown on; none where there is no path, where the time
 /// that is left is stated, or without positions.
-std::optional<PathSighting> sighting_of(const PredictionBasis& basis, const mechanical::FlightProgress& flown,
-                                        const flight::FlightSeries& series);
+std::optional<PathFix> find_path_fix(const PredictionInput& basis, const mechanical::FlightProgress& flown,
+                                     const flight::FlightSeries& series);
 
 /// The stretches of power ahead, cruise and landing, as expected times `part`.
-std::vector<battery::PowerStretch> power_ahead(const Prediction& prediction, double part = 1.0);
+std::vector<battery::ConstantLoad> remaining_power(const Prediction& prediction, double part = 1.0);
 
 /// Flies the battery through the rest of `prediction`, from its initial charge and what was drawn of it. Throws as
 /// battery::state_after.
-void land(const battery::Battery& battery, const battery::DischargeRecord& flown, const Prediction& prediction,
-          BatteryPrediction& result);
+void forecast_battery(const battery::Battery& battery, const battery::DischargeRecord& flown,
+                      const Prediction& prediction, BatteryPrediction& result);
 
 /// The same from the state that it is in.
-void land(const battery::Battery& battery, const battery::BatteryState& now, const Prediction& prediction,
-          BatteryPrediction& result);
+void forecast_battery(const battery::Battery& battery, const battery::BatteryState& now, const Prediction& prediction,
+                      BatteryPrediction& result);
 
 }  // namespace flightwatt::live

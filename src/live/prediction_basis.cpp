@@ -10,17 +10,17 @@ namespace flightwatt::live {
 namespace {
 
 /// Throws InputError where the model does not allow a prediction.
-void require_predicting(const PredictionBasis& basis, const std::string& file) {
+void require_predicting(const PredictionInput& basis, const std::string& file) {
     if (basis.path)
         require_physical(basis.model, file, "--mission");
     else
-        require_spread(basis.model, flight::Phase::cruise, file);
-    if (basis.landing_s > 0.0) require_spread(basis.model, flight::Phase::landing, file);
+        require_interval(basis.model, flight::Phase::cruise, file);
+    if (basis.landing_s > 0.0) require_interval(basis.model, flight::Phase::landing, file);
 }
 
 /// Model and path, or time, of a mission.
-PredictionBasis basis_of(const mission::MissionSetup& setup) {
-    PredictionBasis basis{setup.mechanical.value(), {}, setup.duration_s[flight::Phase::landing]};
+PredictionInput basis_of(const mission::MissionSetup& setup) {
+    PredictionInput basis{setup.mechanical.value(), {}, setup.duration_s[flight::Phase::landing]};
     basis.limits = {setup.cutoff_voltage_v, setup.reserve_soc_percent};
     if (setup.cruise_path) {
         basis.path = std::make_shared<const mission::PathForecast>(*setup.cruise_path->plan);
@@ -32,7 +32,7 @@ PredictionBasis basis_of(const mission::MissionSetup& setup) {
 }
 
 /// The mission's own battery; and where a schedule is all that the mission can tell, that and why.
-void add_mission_battery(const mission::MissionSetup& setup, const std::string& file, PredictionBasis& basis) {
+void add_mission_battery(const mission::MissionSetup& setup, const std::string& file, PredictionInput& basis) {
     basis.battery = setup.battery;
     basis.battery->intervals.capacity_ah = capacity_interval_ah(setup);
     basis.battery_file = file;
@@ -40,27 +40,27 @@ void add_mission_battery(const mission::MissionSetup& setup, const std::string& 
     try {
         require_predicting(basis, file);
     } catch (const InputError& error) {
-        basis.cannot_predict = error.what();
+        basis.no_prediction_reason = error.what();
     }
 }
 
 }  // namespace
 
-PredictionBasis mission_basis(const mission::MissionSetup& setup, const std::string& file) {
+PredictionInput input_from_mission(const mission::MissionSetup& setup, const std::string& file) {
     auto basis = basis_of(setup);
     add_mission_battery(setup, file, basis);
     return basis;
 }
 
-PredictionBasis path_basis(const mission::MissionSetup& setup, const std::string& file) {
+PredictionInput path_input_from_mission(const mission::MissionSetup& setup, const std::string& file) {
     auto basis = basis_of(setup);
     require_predicting(basis, file);
     return basis;
 }
 
-PredictionBasis model_basis(mechanical::MechanicalModel model, const std::string& file, double remaining_s) {
-    PredictionBasis basis;
-    for (const auto phase : {flight::Phase::cruise, flight::Phase::landing}) require_spread(model, phase, file);
+PredictionInput input_from_model(mechanical::MechanicalModel model, const std::string& file, double remaining_s) {
+    PredictionInput basis;
+    for (const auto phase : {flight::Phase::cruise, flight::Phase::landing}) require_interval(model, phase, file);
     basis.model = std::move(model);
     basis.remaining_s = remaining_s;
     basis.landing_s = basis.model.phases[flight::Phase::landing].duration_s;

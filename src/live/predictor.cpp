@@ -44,22 +44,22 @@ telemetry::LogConfiguration sample_configuration() {
 }
 
 struct Start {
-    std::optional<PredictionBasis> basis;
+    std::optional<PredictionInput> basis;
     std::unique_ptr<LiveSchedule> schedule;
     compute::ComputeModel compute;
 };
 
 Start start_of_mission(const PredictorSetup& setup) {
     if (!setup.model_file.empty()) throw UsageError("mission_file and model_file exclude each other");
-    mission::MissionReading reading;
-    reading.may_lack_schedule = true;
+    mission::MissionReadOptions reading;
+    reading.allow_unplanned = true;
     const auto mission = mission::read_mission(setup.mission_file, reading);
     const auto& of = setup_of(mission);
     if (!of.mechanical)
         throw InputError({setup.mission_file}, "the mission has no mechanical model", "name one: mechanical = FILE");
-    Start start{mission_basis(of, setup.mission_file), nullptr, of.compute};
-    if (!start.compute.components.empty() || setup.decides)
-        start.schedule = std::make_unique<LiveSchedule>(mission, setup.decides);
+    Start start{input_from_mission(of, setup.mission_file), nullptr, of.compute};
+    if (!start.compute.components.empty() || setup.replan)
+        start.schedule = std::make_unique<LiveSchedule>(mission, setup.replan);
     return start;
 }
 
@@ -71,9 +71,9 @@ Start start_of(const PredictorSetup& setup) {
     } else {
         if (setup.model_file.empty()) throw UsageError("no model given: expected mission_file, or model_file");
         if (!setup.remaining_s) throw UsageError("model_file goes with remaining_s");
-        if (setup.decides) throw UsageError("decides goes with mission_file");
+        if (setup.replan) throw UsageError("decides goes with mission_file");
         start.basis =
-            model_basis(mechanical::read_mechanical_model(setup.model_file), setup.model_file, *setup.remaining_s);
+            input_from_model(mechanical::read_mechanical_model(setup.model_file), setup.model_file, *setup.remaining_s);
     }
     auto& basis = *start.basis;
     basis.remaining_s = setup.remaining_s;
@@ -93,12 +93,12 @@ Start start_of(const PredictorSetup& setup) {
 LiveOptions options_of(const PredictorSetup& setup) {
     LiveOptions options;
     if (!setup.aircraft_id.empty()) options.aircraft_id = setup.aircraft_id;
-    options.most_rows = setup.most_rows;
+    options.most_rows = setup.max_rows;
     if (setup.input == PredictorInput::samples) {
         options.configuration = sample_configuration();
     } else if (!setup.definitions_file.empty()) {
         options.configuration = telemetry::parse_log_configuration(
-            read_file(setup.definitions_file, telemetry::most_log_configuration_bytes), setup.definitions_file);
+            read_file(setup.definitions_file, telemetry::max_log_configuration_bytes), setup.definitions_file);
     }
     return options;
 }
@@ -109,15 +109,15 @@ FlightPhase phase_of(const std::optional<flight::Phase>& phase) {
     return phases[static_cast<std::size_t>(*phase)];
 }
 
-LandingOutlook landing_of(const LiveState& state) {
+LandingPrediction landing_of(const LiveState& state) {
     const auto& of = *state.prediction;
-    LandingOutlook landing{of.remaining_s,
-                           of.landing_s,
-                           of.rest.energy_wh,
-                           of.interval.low_wh,
-                           of.interval.high_wh,
-                           of.flown.energy_wh + of.rest.energy_wh,
-                           state.expected_power_w.value_or(0.0)};
+    LandingPrediction landing{of.remaining_s,
+                              of.landing_s,
+                              of.remaining_energy.energy_wh,
+                              of.interval.low_wh,
+                              of.interval.high_wh,
+                              of.flown.energy_wh + of.remaining_energy.energy_wh,
+                              state.expected_power_w.value_or(0.0)};
     if (of.battery) {
         landing.soc_percent = of.battery->expected.soc_percent;
         landing.worst_soc_percent = of.battery->worst.soc_percent;
@@ -125,15 +125,15 @@ LandingOutlook landing_of(const LiveState& state) {
         landing.fails_in_s = of.battery->expected.fails_after_s;
     }
     if (state.battery) {
-        landing.reserve_in_s = state.battery->reserve_in_s;
-        landing.chance_below_reserve = state.battery->chance_below;
+        landing.reserve_in_s = state.battery->time_to_reserve_s;
+        landing.chance_below_reserve = state.battery->probability_below_reserve;
     }
     if (state.turn_home) landing.turn_home_in_s = state.turn_home->latest_in_s;
     return landing;
 }
 
-DecisionOutlook decision_of(const LiveDecision& of) {
-    DecisionOutlook decision{of.utility_per_s, {}, of.rest_utility, of.keeps_reserve, of.changes};
+ScheduleState decision_of(const LiveDecision& of) {
+    ScheduleState decision{of.utility_per_s, {}, of.remaining_utility_per_s, of.keeps_reserve, of.changes};
     if (of.next) decision.next_in_s = of.next_in_s;
     return decision;
 }
@@ -144,7 +144,7 @@ class Predictor::State {
   public:
     State(const PredictorSetup& setup, Start start)
         : input_(setup.input),
-          waiting_(setup.most_waiting_bytes),
+          waiting_(setup.max_pending_bytes),
           flight_(options_of(setup), std::move(start.basis), std::move(start.schedule)),
           compute_(std::move(start.compute)) {
         if (setup.input == PredictorInput::messages && !setup.definitions_file.empty())
@@ -155,9 +155,9 @@ class Predictor::State {
             runs.push_back({compute_.components[c].name, false, quality_[c]});
     }
 
-    bool push(WaitingInput::Kind kind, double time_s, std::string_view bytes) {
+    bool push(InputBuffer::Kind kind, double time_s, std::string_view bytes) {
         const bool is_wanted = input_ == PredictorInput::messages && std::isfinite(time_s) &&
-                               (kind != WaitingInput::Kind::frames || decoder_);
+                               (kind != InputBuffer::Kind::frames || decoder_);
         if (is_wanted && waiting_.push(kind, time_s, bytes)) return true;
         ++outlook.dropped;
         return false;
@@ -172,18 +172,18 @@ class Predictor::State {
     void look(double silent_s);
     void end();
 
-    Outlook outlook;
-    std::vector<ComponentRun> runs;
+    PredictorState outlook;
+    std::vector<ComponentState> runs;
     std::vector<AlarmText> alarms;
 
   private:
-    void take_in();
+    void ingest();
     void receive(const Sample& sample);
     void receive(const telemetry::LinkMessage& message, double time_s);
     void set_runs(const compute::Configuration& configuration);
 
     PredictorInput input_;
-    WaitingInput waiting_;
+    InputBuffer waiting_;
     LiveFlight flight_;
     compute::ComputeModel compute_;
     std::optional<telemetry::LinkDecoder> decoder_;
@@ -211,10 +211,10 @@ void Predictor::State::receive(const telemetry::LinkMessage& message, double tim
     flight_.receive({message.time_s, std::string(message.text)}, time_s);
 }
 
-void Predictor::State::take_in() {
-    using Kind = WaitingInput::Kind;
+void Predictor::State::ingest() {
+    using Kind = InputBuffer::Kind;
     waiting_.take([&](Kind kind, double time_s, std::string_view bytes) {
-        if (kind == Kind::sample) return receive(WaitingInput::sample_of(bytes));
+        if (kind == Kind::sample) return receive(InputBuffer::sample_of(bytes));
         if (kind == Kind::message) return flight_.receive({time_s, std::string(bytes)}, time_s);
         if (kind == Kind::frames) {
             return decoder_->push(bytes, [&](const telemetry::LinkMessage& message) { receive(message, time_s); });
@@ -237,13 +237,14 @@ void Predictor::State::set_runs(const compute::Configuration& configuration) {
 }
 
 void Predictor::State::look(double silent_s) {
-    take_in();
-    state_ = flight_.look(silent_s);
-    Outlook now{state_.time_s,    phase_of(state_.phase), state_.landed,    state_.began_in_air, state_.flight_s,
-                state_.energy_wh, state_.power_w,         state_.voltage_v, state_.altitude_m};
+    ingest();
+    state_ = flight_.update(silent_s);
+    PredictorState now{state_.time_s,       phase_of(state_.phase), state_.landed,
+                       state_.began_in_air, state_.flight_time_s,   state_.energy_wh,
+                       state_.power_w,      state_.voltage_v,       state_.altitude_m};
     if (state_.battery && state_.battery->state) now.soc_percent = state_.battery->state->soc_percent;
     if (state_.prediction) now.landing = landing_of(state_);
-    now.waits_for = state_.waits_for;
+    now.waits_for = state_.no_prediction_reason;
     if (state_.decision) {
         now.decision = decision_of(*state_.decision);
         set_runs(state_.decision->run);
@@ -252,14 +253,14 @@ void Predictor::State::look(double silent_s) {
     now.dropped = outlook.dropped;
     now.unusable = not_lines_;
     for (const auto& [reason, count] : state_.unusable) now.unusable += count;
-    if (decoder_) now.unusable += decoder_->counts().unknown + decoder_->counts().other_lengths;
+    if (decoder_) now.unusable += decoder_->counts().unknown + decoder_->counts().length_mismatches;
     alarms.clear();
     for (const auto& alarm : state_.alarms) alarms.push_back({alarm.kind, alarm.text});
     outlook = now;
 }
 
 void Predictor::State::end() {
-    take_in();
+    ingest();
     if (decoder_) {
         const double time_s = flight_.clock_s().value_or(0.0);
         decoder_->flush([&](const telemetry::LinkMessage& message) { receive(message, time_s); });
@@ -271,19 +272,19 @@ void Predictor::State::end() {
 Predictor::Predictor(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Predictor::~Predictor() = default;
 
-bool Predictor::push_line(std::string_view line) noexcept { return state_->push(WaitingInput::Kind::line, 0.0, line); }
+bool Predictor::push_line(std::string_view line) noexcept { return state_->push(InputBuffer::Kind::line, 0.0, line); }
 
 bool Predictor::push_message(double time_s, std::string_view message) noexcept {
-    return state_->push(WaitingInput::Kind::message, time_s, message);
+    return state_->push(InputBuffer::Kind::message, time_s, message);
 }
 
 bool Predictor::push_frames(double time_s, std::string_view bytes) noexcept {
-    return state_->push(WaitingInput::Kind::frames, time_s, bytes);
+    return state_->push(InputBuffer::Kind::frames, time_s, bytes);
 }
 
 bool Predictor::push_sample(const Sample& sample) noexcept { return state_->push(sample); }
 
-const Outlook& Predictor::look(double silent_s) noexcept {
+const PredictorState& Predictor::update(double silent_s) noexcept {
     try {
         state_->look(silent_s);
     } catch (const std::exception&) {  // of telemetry nothing is thrown: LiveFlight
@@ -292,7 +293,7 @@ const Outlook& Predictor::look(double silent_s) noexcept {
     return state_->outlook;
 }
 
-const Outlook& Predictor::end() noexcept {
+const PredictorState& Predictor::end() noexcept {
     try {
         state_->end();
     } catch (const std::exception&) {
@@ -301,8 +302,8 @@ const Outlook& Predictor::end() noexcept {
     return state_->outlook;
 }
 
-const Outlook& Predictor::outlook() const noexcept { return state_->outlook; }
-std::span<const ComponentRun> Predictor::runs() const noexcept { return state_->runs; }
+const PredictorState& Predictor::state() const noexcept { return state_->outlook; }
+std::span<const ComponentState> Predictor::component_states() const noexcept { return state_->runs; }
 std::span<const AlarmText> Predictor::alarms() const noexcept { return state_->alarms; }
 
 struct PredictorMaker {

@@ -26,10 +26,10 @@ struct PredictorSetup {
     std::string aircraft_id = {};       ///< empty: the one that flies
     std::optional<double> remaining_s = {};          ///< of the cruise, from each moment on
     std::optional<double> initial_soc_percent = {};  ///< none: by the voltage at rest
-    bool decides = false;                            ///< plans the rest anew at every slot of the mission's plan
+    bool replan = false;                             ///< plans the rest anew at every slot of the mission's plan
     PredictorInput input = PredictorInput::messages;
-    std::size_t most_rows = 30'000;              ///< of messages that are kept; of more every second one goes
-    std::size_t most_waiting_bytes = 1'000'000;  ///< pushed between two looks; what does not fit is dropped
+    std::size_t max_rows = 30'000;              ///< of messages that are kept; of more every second one goes
+    std::size_t max_pending_bytes = 1'000'000;  ///< pushed between two looks; what does not fit is dropped
 };
 
 /// What was measured at a time; NaN: not known. Power is voltage times current where it is not known itself.
@@ -50,7 +50,7 @@ struct Sample {
 enum class FlightPhase { ground, takeoff, cruise, landing };
 
 /// From a moment in cruise to the touchdown.
-struct LandingOutlook {
+struct LandingPrediction {
     double remaining_s = 0.0;  ///< of the cruise
     double landing_s = 0.0;    ///< of the landing after it
     double energy_wh = 0.0;    ///< from now to the touchdown, with its 95 % interval
@@ -68,8 +68,8 @@ struct LandingOutlook {
     std::optional<double> turn_home_in_s = {};        ///< with a path: the latest moment to leave it for home
 };
 
-/// What the mission's schedule says, or with `decides` the plan from here.
-struct DecisionOutlook {
+/// What the mission's schedule says, or with `replan` the plan from here.
+struct ScheduleState {
     double utility_per_s = 0.0;               ///< of what runs now
     std::optional<double> next_in_s = {};     ///< until something else is to run
     std::optional<double> rest_utility = {};  ///< mean a second from here to the mission's end
@@ -78,14 +78,14 @@ struct DecisionOutlook {
 };
 
 /// A component of the mission's computer, and whether it is to run.
-struct ComponentRun {
+struct ComponentState {
     std::string_view name;
     bool runs = false;
     std::span<const double> quality = {};  ///< one value a parameter of its quality of service; 0 where it is off
 };
 
 /// What is known at a moment. Texts are valid until the next look.
-struct Outlook {
+struct PredictorState {
     double time_s = 0.0;  ///< of the latest message
     FlightPhase phase = FlightPhase::ground;
     bool landed = false;
@@ -96,9 +96,9 @@ struct Outlook {
     std::optional<double> voltage_v = {};
     std::optional<double> altitude_m = {};
     std::optional<double> soc_percent = {};
-    std::optional<LandingOutlook> landing = {};
+    std::optional<LandingPrediction> landing = {};
     std::string_view waits_for = {};  ///< why there is no prediction
-    std::optional<DecisionOutlook> decision = {};
+    std::optional<ScheduleState> decision = {};
     std::size_t rows = 0;           ///< kept
     std::size_t dropped = 0;        ///< what was pushed and did not fit, since the start
     std::size_t unusable = 0;       ///< lines, frames and values, since the start
@@ -131,13 +131,13 @@ class Predictor {
 
     /// Takes in what was pushed, and computes anew: once a second of flight is often enough. `silent_s`: for how long
     /// nothing has come. Valid until the next look.
-    const Outlook& look(double silent_s = 0.0) noexcept;
+    const PredictorState& update(double silent_s = 0.0) noexcept;
     /// Nothing more will come: what was held back, as no other message confirmed its time, counts now. Looks.
-    const Outlook& end() noexcept;
+    const PredictorState& end() noexcept;
     /// The last one.
-    const Outlook& outlook() const noexcept;
+    const PredictorState& state() const noexcept;
     /// All components of the mission, with what the last look's decision says of them.
-    std::span<const ComponentRun> runs() const noexcept;
+    std::span<const ComponentState> component_states() const noexcept;
     std::span<const AlarmText> alarms() const noexcept;
 
   private:

@@ -2,7 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/file_use.h"
+#include "base/overwrite_guard.h"
 
 #include <cerrno>
 #include <cstring>
@@ -33,8 +33,8 @@ Recorder::Recorder(std::filesystem::path folder, std::string name, std::optional
 }
 
 void Recorder::open_next() {
-    constexpr std::size_t most_files = 10'000;
-    while (++number_ < most_files) {
+    constexpr std::size_t max_files = 10'000;
+    while (++number_ < max_files) {
         const auto stem = number_ == 1 ? name_ : fmt::format("{}_{}", name_, number_);
         const auto data = folder_ / (stem + ".data");
         const auto log = folder_ / (stem + ".log");
@@ -43,7 +43,7 @@ void Recorder::open_next() {
         file_ = data;
         return;
     }
-    throw OutputError(fmt::format("{} holds {} logs of this name", folder_.string(), most_files));
+    throw OutputError(fmt::format("{} holds {} logs of this name", folder_.string(), max_files));
 }
 
 /// Telemetry is what cannot be had again: it is recorded without its definitions, where there is no room for both.

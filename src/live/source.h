@@ -18,7 +18,7 @@ struct IncomingMessage {
     std::string text;  ///< "20 ENERGY 57 11.62 1.64 19.1 0.08 0.97": sender, name, fields
     /// The first since its source began anew (a file that was replaced, a link that was opened again): its clock may
     /// have begun anew, too.
-    bool after_restart = false;
+    bool is_after_restart = false;
 };
 
 /// What a source has seen beside messages, for warnings and the page. Counts only grow.

@@ -12,7 +12,8 @@
 /// throws when it is opened: UsageError for a name that is none, InputError for what cannot be opened.
 namespace flightwatt::live {
 
-/// The Ivy bus "127.255.255.255:2010": what aircraft say, and what a log player says of them, with a replay's own times.
+/// The Ivy bus "127.255.255.255:2010": what aircraft say, and what a log player says of them, with a replay's own
+/// times.
 std::unique_ptr<MessageSource> open_ivy_bus(std::string_view bus, double clock_factor = 1.0);
 
 /// Link frames that come in on a UDP port: "4242", or "127.0.0.1:4242" for those to this address alone.
@@ -23,8 +24,8 @@ std::unique_ptr<MessageSource> open_udp(std::string_view at, telemetry::MessageD
 std::unique_ptr<MessageSource> open_serial(std::string_view line, telemetry::MessageDictionary definitions,
                                            double clock_factor = 1.0);
 
-/// A binary log that is being written: an SD card's, with the times of its frames, or a capture of a link or an XBee. Where
-/// the file gets shorter or another takes its name, that is read from its beginning.
+/// A binary log that is being written: an SD card's, with the times of its frames, or a capture of a link or an XBee.
+/// Where the file gets shorter or another takes its name, that is read from its beginning.
 std::unique_ptr<MessageSource> follow_binary_log(const std::filesystem::path& path,
                                                  telemetry::MessageDictionary definitions);
 

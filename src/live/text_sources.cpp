@@ -29,9 +29,9 @@ class TextMessages {
         if (buffer_.overlong() > 0) report_.unusable["lines longer than any message"] = buffer_.overlong();
     }
     /// The last line, if it lacks its break.
-    void finish(std::vector<IncomingMessage>& messages) { add(buffer_.take_rest(), messages); }
+    void finish(std::vector<IncomingMessage>& messages) { add(buffer_.take_partial_line(), messages); }
     void begin_anew() {
-        if (!buffer_.take_rest().empty()) ++report_.unusable["lines cut off by a restart"];
+        if (!buffer_.take_partial_line().empty()) ++report_.unusable["lines cut off by a restart"];
         ++report_.restarts;
         restarted_ = true;
     }
@@ -45,7 +45,7 @@ class TextMessages {
             ++report_.unusable["lines that are no message (TIME SENDER NAME ...)"];
             return;
         }
-        message->after_restart = std::exchange(restarted_, false);
+        message->is_after_restart = std::exchange(restarted_, false);
         ++report_.messages;
         messages.push_back(std::move(*message));
     }
@@ -93,7 +93,7 @@ class FollowedFile : public MessageSource {
     const SourceReport& report() const override { return text_.report(); }
 
   private:
-    FollowedBytes followed_;
+    FileTail followed_;
     TextMessages text_;
 };
 

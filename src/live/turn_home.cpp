@@ -31,29 +31,29 @@ void add_part(Displacement& at, const mission::PathElement& element, double part
 }
 
 /// Straight home from a place, level; none where the wind forbids it.
-std::optional<battery::PowerStretch> way_home(const mission::PathForecast& path, double on_path_s,
+std::optional<battery::ConstantLoad> way_home(const mission::PathForecast& path, double on_path_s,
                                               double power_factor) {
     const auto& plan = path.plan();
-    const auto place = place_at(path.flown(), on_path_s);
+    const auto place = position_at(path.flown(), on_path_s);
     const auto at = displacement_at(plan.path, place);
     const double distance_m = std::hypot(at.east_m, at.north_m);
     const auto& element = plan.path.elements[std::min(place.element, plan.path.elements.size() - 1)];
     const double power_w = mechanical::power_w(plan.power, {.airspeed_m_per_s = element.airspeed_m_per_s});
-    if (distance_m < 1.0) return battery::PowerStretch{power_w * power_factor, 0.0};
+    if (distance_m < 1.0) return battery::ConstantLoad{power_w * power_factor, 0.0};
     const double course_deg = std::atan2(-at.east_m, -at.north_m) * units::degree_per_rad;
     const auto speed = ground_speed_m_per_s(element.airspeed_m_per_s, course_deg, plan.wind);
     if (!speed) return std::nullopt;
-    return battery::PowerStretch{power_w * power_factor, distance_m / *speed};
+    return battery::ConstantLoad{power_w * power_factor, distance_m / *speed};
 }
 
 bool has_failed(const battery::Discharge& end) { return end.ended_at_s() || end.undeliverable; }
 
-bool lands_with_reserve(const TurnBudget& budget, battery::BatteryState state,
-                        const std::optional<battery::PowerStretch>& home) {
+bool lands_with_reserve(const ReturnFlightInput& budget, battery::BatteryState state,
+                        const std::optional<battery::ConstantLoad>& home) {
     if (!home) return false;
     for (const auto& stretch : {home, budget.landing}) {
         if (!stretch || !(stretch->duration_s > 0.0)) continue;
-        const auto end = discharge_through(budget.battery, state, *stretch, budget.limits.cutoff_voltage_v);
+        const auto end = discharge_constant_load(budget.battery, state, *stretch, budget.limits.cutoff_voltage_v);
         if (has_failed(end)) return false;
         state = end;
     }
@@ -61,14 +61,14 @@ bool lands_with_reserve(const TurnBudget& budget, battery::BatteryState state,
 }
 
 /// So much more of the stretches ahead; false where the battery fails on it.
-bool fly_on(const TurnBudget& budget, std::vector<battery::PowerStretch>& ahead, double time_s,
+bool fly_on(const ReturnFlightInput& budget, std::vector<battery::ConstantLoad>& ahead, double time_s,
             battery::BatteryState& state) {
     while (time_s > 0.0 && !ahead.empty()) {
         auto& stretch = ahead.front();
         const double part_s = std::min(time_s, stretch.duration_s);
         if (part_s > 0.0) {
-            const auto end =
-                discharge_through(budget.battery, state, {stretch.power_w, part_s}, budget.limits.cutoff_voltage_v);
+            const auto end = discharge_constant_load(budget.battery, state, {stretch.power_w, part_s},
+                                                     budget.limits.cutoff_voltage_v);
             if (has_failed(end)) return false;
             state = end;
         }
@@ -81,22 +81,22 @@ bool fly_on(const TurnBudget& budget, std::vector<battery::PowerStretch>& ahead,
 
 }  // namespace
 
-Displacement displacement_at(const mission::FlightPath& path, const mission::PathPlace& place) {
+Displacement displacement_at(const mission::FlightPath& path, const mission::PathPosition& place) {
     Displacement at;
     for (std::size_t i = 0; i < path.elements.size() && i <= place.element; ++i)
         add_part(at, path.elements[i], i < place.element ? 1.0 : place.part);
     return at;
 }
 
-TurnHome latest_turn_home(const mission::PathForecast& path, double on_path_s, const TurnBudget& budget) {
+ReturnDeadline latest_return(const mission::PathForecast& path, double on_path_s, const ReturnFlightInput& budget) {
     constexpr double finest_s = 10.0;
-    constexpr double most_looks = 40.0;
+    constexpr double max_looks = 40.0;
     double rest_s = 0.0;
     for (const auto& stretch : budget.cruise_ahead) rest_s += stretch.duration_s;
-    const double step_s = std::max(finest_s, rest_s / most_looks);
+    const double step_s = std::max(finest_s, rest_s / max_looks);
     auto ahead = budget.cruise_ahead;
     auto state = budget.now;
-    TurnHome turn;
+    ReturnDeadline turn;
     double in_s = 0.0;
     while (lands_with_reserve(budget, state, way_home(path, on_path_s + in_s, budget.power_factor))) {
         turn.latest_in_s = in_s;

@@ -1,9 +1,9 @@
 #include "mechanical/covariates.h"
 
 #include "base/statistics.h"
-#include "flight/chosen_track.h"
 #include "flight/phase_statistics.h"
 #include "flight/segmentation.h"
+#include "flight/selected_track.h"
 
 #include <algorithm>
 #include <vector>
@@ -29,7 +29,7 @@ std::optional<double> early_mean(const flight::Track& track, double start_s) {
     return mean(values);
 }
 
-std::optional<double> resting_voltage_v(const flight::ChosenTracks& tracks, double lift_off_s) {
+std::optional<double> resting_voltage_v(const flight::SelectedTracks& tracks, double lift_off_s) {
     constexpr double watched_s = 120.0;
     const auto& time_s = tracks["power_w"].time_s;
     const auto& voltage = tracks["voltage_v"];
@@ -63,7 +63,7 @@ std::string_view covariate_names() {
     return text;
 }
 
-Covariates covariates_of(const flight::ChosenTracks& tracks, const flight::Sortie& sortie) {
+Covariates covariates_of(const flight::SelectedTracks& tracks, const flight::Sortie& sortie) {
     Covariates found;
     const auto& airspeed = tracks["airspeed_m_per_s"];
     found[Covariate::height] = sortie.height_m;

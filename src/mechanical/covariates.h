@@ -5,7 +5,7 @@
 #include <string_view>
 
 namespace flightwatt::flight {
-class ChosenTracks;
+class SelectedTracks;
 struct Sortie;
 }  // namespace flightwatt::flight
 
@@ -41,6 +41,6 @@ inline constexpr double early_s = 60.0;
 ///   time_to_cruise_s           from lift-off to the cruise
 ///   wind_m_per_s, airspeed_m_per_s, ground_speed_m_per_s   means over the first early_s of the cruise
 ///   airspeed_cubed_m3_per_s3   mean cube of the airspeed over that time
-Covariates covariates_of(const flight::ChosenTracks& tracks, const flight::Sortie& sortie);
+Covariates covariates_of(const flight::SelectedTracks& tracks, const flight::Sortie& sortie);
 
 }  // namespace flightwatt::mechanical

@@ -1,8 +1,8 @@
 #include "mechanical/measured_flight.h"
 
 #include "base/piecewise_linear.h"
-#include "flight/chosen_track.h"
 #include "flight/phase_statistics.h"
+#include "flight/selected_track.h"
 #include "mechanical/covariates.h"
 #include "mechanical/fit/edge_samples.h"
 
@@ -14,13 +14,13 @@
 namespace flightwatt::mechanical {
 namespace {
 
-constexpr double longest_edge_gap = 0.25;  // of the phase
+constexpr double max_edge_gap = 0.25;  // of the phase
 
 /// Why a phase cannot be fitted, whatever its samples; empty if it can.
 std::string why_excluded(const flight::PhaseSpan& span) {
     if (!span.complete) return "the log begins or ends inside of it";
     const double gap_s = std::max(span.start.gap_s, span.end.gap_s);
-    if (gap_s <= longest_edge_gap * span.duration_s()) return "";
+    if (gap_s <= max_edge_gap * span.duration_s()) return "";
     return fmt::format("its {} lies in a gap of {:.1f} s", span.start.gap_s == gap_s ? "start" : "end", gap_s);
 }
 
@@ -33,7 +33,7 @@ PhaseSamples samples_of(const flight::Track& power, const flight::PhaseSpan& spa
     PhaseSamples samples{flight, span.duration_s(), {}, {}, span.start.time_s};
     const auto first = std::ranges::lower_bound(power.time_s, span.start.time_s) - power.time_s.begin();
     const auto last = std::ranges::upper_bound(power.time_s, span.end.time_s) - power.time_s.begin();
-    const auto edges = span.complete ? samples_of_neighbours(power, span) : EdgeSamples{};
+    const auto edges = span.complete ? count_neighbour_samples(power, span) : EdgeSamples{};
     samples.edge_samples = edges.at_start + edges.at_end;
     for (auto i = static_cast<std::size_t>(first) + edges.at_start; i + edges.at_end < static_cast<std::size_t>(last);
          ++i) {
@@ -84,18 +84,18 @@ std::string to_string(const Exclusion& exclusion) {
     return fmt::format("{}: {} is excluded from the fit: {}", exclusion.flight, what, exclusion.reason);
 }
 
-std::string flight_name_of_sortie(const std::string& flight, std::size_t sortie) {
+std::string sortie_name(const std::string& flight, std::size_t sortie) {
     return sortie == 1 ? flight : fmt::format("{}#{}", flight, sortie);
 }
 
-MeasuredFlights measure_flights(const flight::FlightSeries& series, const flight::FlightPhases& phases,
+MeasuredFlights extract_flights(const flight::FlightSeries& series, const flight::FlightPhases& phases,
                                 std::size_t needed_samples) {
     MeasuredFlights measured;
-    const flight::ChosenTracks tracks(series);
+    const flight::SelectedTracks tracks(series);
     const flight::PowerStatistics statistics_of_power(series);
     for (const auto& sortie : phases.sorties) {
         MeasuredFlight flight;
-        flight.samples.flight = flight_name_of_sortie(series.flight, sortie.number);
+        flight.samples.flight = sortie_name(series.flight, sortie.number);
         for (const auto& span : sortie.phases) {
             const double start_s = span.start.time_s;
             auto samples = samples_of(tracks["power_w"], span, flight.samples.flight);
@@ -118,7 +118,7 @@ MeasuredFlights measure_flights(const flight::FlightSeries& series, const flight
             flight.samples.phases[span.phase] = std::move(samples);
         }
         if (!has_any_phase(flight)) continue;
-        flight.motion = motion_of(tracks, spans_of(sortie));
+        flight.motion = bin_flight(tracks, phase_spans(sortie));
         flight.motion.flight = flight.samples.flight;
         measured.flights.push_back(std::move(flight));
         measured.sorties.push_back(sortie.number - 1);
@@ -126,9 +126,9 @@ MeasuredFlights measure_flights(const flight::FlightSeries& series, const flight
     return measured;
 }
 
-MeasuredFlights measure_flights(const flight::LoadedFlight& loaded, std::size_t needed_samples) {
+MeasuredFlights extract_flights(const flight::LoadedFlight& loaded, std::size_t needed_samples) {
     if (!loaded.exclusion.empty()) return {{}, {{loaded.series.flight, std::nullopt, loaded.exclusion}}, {}};
-    return measure_flights(loaded.series, loaded.phases, needed_samples);
+    return extract_flights(loaded.series, loaded.phases, needed_samples);
 }
 
 void exclude_short_phases(MeasuredFlights& measured, std::size_t needed_samples) {

@@ -62,9 +62,9 @@ double energy_j(const FourierModel& model, double time_s) {
     return energy;
 }
 
-FourierModel flown_model(const PhaseModel& phase, double flown_s, PhaseClock clock) {
+FourierModel time_scaled_model(const PhaseModel& phase, double flown_s, PhaseTimeScaling clock) {
     FourierModel flown = phase.fourier;
-    if (clock == PhaseClock::stretched) flown.omega_rad_per_s *= phase.duration_s / flown_s;
+    if (clock == PhaseTimeScaling::stretched) flown.omega_rad_per_s *= phase.duration_s / flown_s;
     return flown;
 }
 
@@ -82,7 +82,7 @@ CoefficientIntervals coefficient_intervals(const PhaseModel& phase) {
     return intervals;
 }
 
-std::size_t points_of_curve(const FourierModel& model, double duration_s) {
+std::size_t curve_point_count(const FourierModel& model, double duration_s) {
     const double turns = model.omega_rad_per_s * duration_s / units::rad_per_turn;
     const double swings = turns * static_cast<double>(model.cos_w.size());
     return std::max<std::size_t>(1000, static_cast<std::size_t>(std::ceil(16.0 * swings)));
@@ -97,8 +97,9 @@ std::vector<double> curve_w(const FourierModel& model, double duration_s, std::s
     return curve;
 }
 
-double curve_rms_difference_w(const PhaseModel& a, const PhaseModel& b) {
-    const auto points = std::max(points_of_curve(a.fourier, a.duration_s), points_of_curve(b.fourier, b.duration_s));
+double rms_difference_w(const PhaseModel& a, const PhaseModel& b) {
+    const auto points =
+        std::max(curve_point_count(a.fourier, a.duration_s), curve_point_count(b.fourier, b.duration_s));
     const auto curve_a = curve_w(a.fourier, a.duration_s, points);
     const auto curve_b = curve_w(b.fourier, b.duration_s, points);
     double sum = 0.0;

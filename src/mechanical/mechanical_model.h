@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flight/flight_phases.h"
-#include "mechanical/level_law.h"
+#include "mechanical/covariate_regression.h"
 #include "mechanical/physical_model.h"
 
 #include <filesystem>
@@ -38,8 +38,8 @@ struct FrequencyRange {
     FrequencyBound at_bound = FrequencyBound::none;
 };
 
-/// What the noise's autocorrelation is at most, in the longest phases (highest_autocorrelation_of).
-inline constexpr double highest_autocorrelation = 0.99;
+/// What the noise's autocorrelation is at most, in the longest phases (autocorrelation_limit).
+inline constexpr double max_autocorrelation = 0.99;
 
 /// A 95 % interval.
 struct Interval {
@@ -57,7 +57,7 @@ struct CoefficientIntervals {
 
 /// How well the noise of the samples lets a phase's averaged coefficients be known: standard deviations of the
 /// weighted mean of these very flights, weights and durations taken as given, frequency and autocorrelation
-/// integrated over. How flights differ is another question: see PhaseSpread.
+/// integrated over. How flights differ is another question: see FlightEnvelope.
 struct PhaseErrors {
     double omega_rad_per_s = 0.0;
     double a0_w = 0.0;
@@ -66,7 +66,7 @@ struct PhaseErrors {
     double curve_w = 0.0;             ///< root mean square over the phase of the curve's own standard error
     double degrees_of_freedom = 0.0;  ///< of the Student's t at each frequency
     /// The errors hold for the frequency as given: the curve is a constant, or (of files of 0.2) it stands at a bound.
-    bool frequency_is_given = false;
+    bool frequency_is_fixed = false;
     double r2 = 0.0;                 ///< of all samples about their own flights' curves and means
     double condition = 0.0;          ///< of the basis on the samples, columns of length 1; the worst flight's
     double autocorrelation = 0.0;    ///< of the noise of samples one median gap apart; the mean over all that may be
@@ -76,19 +76,19 @@ struct PhaseErrors {
 };
 
 /// How the flights' own curves differ over the phase, at evenly spread parts of it from begin to end.
-struct PhaseSpread {
+struct FlightEnvelope {
     std::vector<double> low_w;                 ///< the least of the flights that count (the paper's grey band)
     std::vector<double> high_w;                ///< the greatest of them
     std::vector<double> standard_deviation_w;  ///< of one flight about the weighted mean
-    double counted_flights = 0.0;              ///< 1 / sum of squared weights: equal flights worth as much
+    double effective_flights = 0.0;            ///< 1 / sum of squared weights: equal flights worth as much
 };
 
 /// How the flights of one phase differ from the model and change meanwhile: what a prediction's interval needs.
-struct LevelSpread {
-    std::size_t flights = 0;     ///< 2 or more: what the standard deviation between them rests on
-    double level_sd_w = 0.0;     ///< of the flights' mean powers
-    double drift_sd_w = 0.0;     ///< of the power about the curve at the flight's own level
-    double correlation_s = 0.0;  ///< for how long that deviation lasts (exponential correlation)
+struct VarianceComponents {
+    std::size_t flights = 0;           ///< 2 or more: what the standard deviation between them rests on
+    double between_flight_sd_w = 0.0;  ///< of the flights' mean powers
+    double drift_sd_w = 0.0;           ///< of the power about the curve at the flight's own level
+    double correlation_s = 0.0;        ///< for how long that deviation lasts (exponential correlation)
 };
 
 struct PhaseModel;
@@ -108,13 +108,13 @@ struct PhaseModel {
     std::size_t edge_samples = 0;  ///< left out at the phase's ends: their power is the neighbouring phase's
     bool mean_curve = false;       ///< the mean over all frequencies that may be, for the samples leave it open
     bool not_negative = false;     ///< the curve was kept from falling below 0, or below negative power measured
-    std::optional<PhaseErrors> errors = {};  ///< absent unless they were asked for
-    std::optional<PhaseSpread> spread = {};  ///< absent too where a single flight counts
+    std::optional<PhaseErrors> errors = {};     ///< absent unless they were asked for
+    std::optional<FlightEnvelope> spread = {};  ///< absent too where a single flight counts
     /// Absent with fewer than 2 flights, or if published without.
-    std::optional<LevelSpread> level_spread = {};
-    std::optional<LevelLaw> level_law = {};  ///< absent unless it was asked for
+    std::optional<VarianceComponents> level_spread = {};
+    std::optional<CovariateRegression> level_law = {};  ///< absent unless it was asked for
     /// Of airspeed_cubed; absent unless 2 flights or more measured their airspeed.
-    std::optional<LevelLaw> airspeed_law = {};
+    std::optional<CovariateRegression> airspeed_law = {};
     /// Mean cube of the airspeed in equal parts of the phase, over the flights that measured it in all; may be empty.
     std::vector<double> airspeed_cubed_parts_m3_per_s3 = {};
 };
@@ -165,13 +165,13 @@ struct MechanicalModel {
 MechanicalModel with_default_power(MechanicalModel model);
 
 /// How a phase flown in another time than the model's is read.
-enum class PhaseClock {
+enum class PhaseTimeScaling {
     stretched,  ///< the curve is stretched or squeezed to the time flown
     absolute    ///< the curve runs on in the model's own seconds
 };
 
 /// The curve of `phase` when the phase takes `flown_s` seconds.
-FourierModel flown_model(const PhaseModel& phase, double flown_s, PhaseClock clock);
+FourierModel time_scaled_model(const PhaseModel& phase, double flown_s, PhaseTimeScaling clock);
 
 /// fits/mechanical/NAME.toml. Reading throws InputError with its place for a missing or unknown key, other
 /// numbers of cosines than sines, a duration or frequency that is not positive, a count that is not whole, a
@@ -181,13 +181,13 @@ std::string to_toml(const MechanicalModel& model);
 
 /// How many evenly spread points show every swing of the series over `duration_s`: 16 a period of its highest
 /// harmonic, and at least 1000.
-std::size_t points_of_curve(const FourierModel& model, double duration_s);
+std::size_t curve_point_count(const FourierModel& model, double duration_s);
 
 /// f [W] at the middles of `points` equal parts of the phase.
 std::vector<double> curve_w(const FourierModel& model, double duration_s, std::size_t points);
 
 /// The root mean square of the difference between two phases' curves [W], each over its own duration: the
 /// curves are compared at equal parts of the phase, whatever the seconds.
-double curve_rms_difference_w(const PhaseModel& a, const PhaseModel& b);
+double rms_difference_w(const PhaseModel& a, const PhaseModel& b);
 
 }  // namespace flightwatt::mechanical

@@ -70,7 +70,7 @@ PhaseErrors read_errors(const TomlTable& table, std::size_t order) {
     constexpr std::string_view as_coefficients = "one for each coefficient of the phase";
     PhaseErrors errors;
     errors.omega_rad_per_s = not_negative(table, "omega_rad_per_s");
-    errors.frequency_is_given = table.optional_boolean("frequency_is_given").value_or(false);
+    errors.frequency_is_fixed = table.optional_boolean("frequency_is_given").value_or(false);
     errors.a0_w = not_negative(table, "a0_w");
     errors.cos_w = sizes(table, "cos_w", order, as_coefficients);
     errors.sin_w = sizes(table, "sin_w", order, as_coefficients);
@@ -88,8 +88,8 @@ PhaseErrors read_errors(const TomlTable& table, std::size_t order) {
     return errors;
 }
 
-PhaseSpread read_spread(const TomlTable& table) {
-    PhaseSpread spread;
+FlightEnvelope read_spread(const TomlTable& table) {
+    FlightEnvelope spread;
     spread.low_w = table.numbers("low_w");
     spread.high_w = table.numbers("high_w");
     if (spread.low_w.size() < 2 || spread.high_w.size() != spread.low_w.size()) {
@@ -103,7 +103,7 @@ PhaseSpread read_spread(const TomlTable& table) {
                                                             spread.high_w[i], spread.low_w[i]));
     }
     spread.standard_deviation_w = sizes(table, "standard_deviation_w", spread.low_w.size(), "as many as low_w has");
-    spread.counted_flights = number_in(at_least(1.0), table, "counted_flights");
+    spread.effective_flights = number_in(at_least(1.0), table, "counted_flights");
     table.refuse_unknown_keys();
     return spread;
 }
@@ -131,7 +131,7 @@ std::string intervals_toml(const CoefficientIntervals& intervals) {
 std::string errors_toml(const PhaseErrors& errors) {
     return "# standard errors and intervals of the weighted mean of these flights, from the noise of their samples\n" +
            fmt::format("omega_rad_per_s = {}\nfrequency_is_given = {}\na0_w = {}\ncos_w = {}\nsin_w = {}\n",
-                       toml_real(errors.omega_rad_per_s), errors.frequency_is_given, toml_real(errors.a0_w),
+                       toml_real(errors.omega_rad_per_s), errors.frequency_is_fixed, toml_real(errors.a0_w),
                        toml_reals(errors.cos_w), toml_reals(errors.sin_w)) +
            fmt::format("curve_w = {}\ndegrees_of_freedom = {}\nr2 = {}\ncondition = {}\n", toml_real(errors.curve_w),
                        toml_real(errors.degrees_of_freedom), toml_real(errors.r2), toml_real(errors.condition)) +
@@ -141,11 +141,11 @@ std::string errors_toml(const PhaseErrors& errors) {
            (errors.intervals ? intervals_toml(*errors.intervals) : "");
 }
 
-std::string spread_toml(const PhaseSpread& spread) {
+std::string spread_toml(const FlightEnvelope& spread) {
     return "# how the flights differ, at evenly spread parts of the phase from begin to end\n" +
            fmt::format("low_w = {}\nhigh_w = {}\nstandard_deviation_w = {}\ncounted_flights = {}\n",
                        toml_reals(spread.low_w), toml_reals(spread.high_w), toml_reals(spread.standard_deviation_w),
-                       toml_real(spread.counted_flights));
+                       toml_real(spread.effective_flights));
 }
 
 FrequencyBound read_bound(const TomlTable& table) {
@@ -163,9 +163,9 @@ FrequencyRange read_range(const TomlTable& table) {
     return range;
 }
 
-LevelSpread read_level_spread(const TomlTable& table) {
-    const LevelSpread spread{count_in(table, "flights", 2), not_negative(table, "level_sd_w"),
-                             not_negative(table, "drift_sd_w"), positive(table, "correlation_s")};
+VarianceComponents read_level_spread(const TomlTable& table) {
+    const VarianceComponents spread{count_in(table, "flights", 2), not_negative(table, "level_sd_w"),
+                                    not_negative(table, "drift_sd_w"), positive(table, "correlation_s")};
     table.refuse_unknown_keys();
     return spread;
 }
@@ -177,25 +177,25 @@ Covariate read_covariate(const TomlTable& table) {
                      fmt::format("it is one of {}", covariate_names()));
 }
 
-LevelLaw read_level_law(const TomlTable& table) {
+CovariateRegression read_level_law(const TomlTable& table) {
     const auto covariate = read_covariate(table);
-    const LevelLaw law{.covariate = covariate,
-                       .flights = count_in(table, "flights", least_flights_of_law(covariate)),
-                       .mean = table.number("mean"),
-                       .sd = positive(table, "sd"),
-                       .least = table.number("least"),
-                       .most = table.number("most"),
-                       .mean_power_w = positive(table, "mean_power_w"),
-                       .slope_w = table.number("slope_w"),
-                       .residual_sd_w = not_negative(table, "residual_sd_w")};
+    const CovariateRegression law{.covariate = covariate,
+                                  .flights = count_in(table, "flights", min_regression_flights(covariate)),
+                                  .mean = table.number("mean"),
+                                  .sd = positive(table, "sd"),
+                                  .least = table.number("least"),
+                                  .most = table.number("most"),
+                                  .mean_power_w = positive(table, "mean_power_w"),
+                                  .slope_w = table.number("slope_w"),
+                                  .residual_sd_w = not_negative(table, "residual_sd_w")};
     require_in(between(law.least, law.most), law.mean, "mean", table.where("mean"),
                "the mean lies between least and most");
-    if (goes_through_origin(covariate)) require_in(more_than(0.0), law.mean, "mean", table.where("mean"));
+    if (is_through_origin(covariate)) require_in(more_than(0.0), law.mean, "mean", table.where("mean"));
     table.refuse_unknown_keys();
     return law;
 }
 
-LevelLaw read_airspeed_law(const TomlTable& table) {
+CovariateRegression read_airspeed_law(const TomlTable& table) {
     const auto law = read_level_law(table);
     if (law.covariate == Covariate::airspeed_cubed) return law;
     throw InputError(table.where("covariate"), fmt::format("an airspeed law of {}", to_string(law.covariate)),
@@ -203,7 +203,7 @@ LevelLaw read_airspeed_law(const TomlTable& table) {
 }
 
 /// The airspeed law as FlightWatt 0.1 wrote it, which did not keep its flights' airspeeds.
-LevelLaw read_airspeed_of_0_1(const TomlTable& table) {
+CovariateRegression read_airspeed_of_0_1(const TomlTable& table) {
     const auto flights = count_in(table, "flights", 2);
     const double coefficient = positive(table, "coefficient_w_s3_per_m3");
     const double relative_sd = not_negative(table, "relative_sd");
@@ -300,7 +300,7 @@ std::string validation_toml(const ModelValidation& validation) {
     return text;
 }
 
-std::string level_law_toml(std::string_view key, const LevelLaw& law) {
+std::string level_law_toml(std::string_view key, const CovariateRegression& law) {
     return fmt::format(
         "{} = {{ covariate = {}, flights = {}, mean = {}, sd = {}, least = {}, most = {}, "
         "mean_power_w = {}, slope_w = {}, residual_sd_w = {} }}\n",
@@ -327,7 +327,7 @@ std::string phase_toml(flight::Phase name, const PhaseModel& phase) {
     if (phase.not_negative) text += "not_negative = true\n";
     if (const auto& spread = phase.level_spread) {
         text += fmt::format("level_spread = {{ flights = {}, level_sd_w = {}, drift_sd_w = {}, correlation_s = {} }}\n",
-                            spread->flights, toml_real(spread->level_sd_w), toml_real(spread->drift_sd_w),
+                            spread->flights, toml_real(spread->between_flight_sd_w), toml_real(spread->drift_sd_w),
                             toml_real(spread->correlation_s));
     }
     if (phase.level_law) text += level_law_toml("level_law", *phase.level_law);
@@ -357,7 +357,7 @@ std::string flight_toml(const FlightContribution& flight) {
 
 MechanicalModel read_mechanical_model(const std::filesystem::path& path) {
     const auto root = read_toml(path);
-    refuse_other_kinds(root, FileKind::mechanical_model);
+    require_kind(root, FileKind::mechanical_model);
     require_known_format(root);
     MechanicalModel model;
     model.name = root.string("name");

@@ -9,7 +9,7 @@ namespace flightwatt::mechanical {
 
 /// What a user should know of a model before it is used, a line each: a phase whose curve falls below 0 W, where a
 /// drone takes no energy back; a phase whose errors are no more than a bound, because the noise of its samples is alike
-/// for as long as the phase lasts (autocorrelation at highest_autocorrelation).
+/// for as long as the phase lasts (autocorrelation at max_autocorrelation).
 std::vector<std::string> model_warnings(const MechanicalModel& model);
 
 /// How the fit came to its curves where that is not least squares of all samples, a line each: samples that were left

@@ -104,7 +104,7 @@ void add_coefficients(std::vector<Difference>& all, const PhasePair& pair) {
         return Estimate{values[n], of != nullptr && n < of->size() ? std::optional((*of)[n]) : std::nullopt};
     };
     const auto omega = [](const PhaseModel& phase, const auto& of) {
-        const bool is_known = of && !phase.errors->frequency_is_given;
+        const bool is_known = of && !phase.errors->frequency_is_fixed;
         return Estimate{phase.fourier.omega_rad_per_s, is_known ? std::optional(of->omega_rad_per_s) : std::nullopt};
     };
     add("a0_w", "W", a0(pair.a, intervals_a), a0(pair.b, intervals_b));
@@ -145,8 +145,8 @@ void add_means(std::vector<Difference>& all, const PhasePair& pair) {
 
 /// The curves at equal parts of the phase, where they are furthest apart. Files hold no error of one place of a curve.
 Difference curve_difference(const PhasePair& pair) {
-    const auto points = std::max(points_of_curve(pair.a.fourier, pair.a.duration_s),
-                                 points_of_curve(pair.b.fourier, pair.b.duration_s));
+    const auto points = std::max(curve_point_count(pair.a.fourier, pair.a.duration_s),
+                                 curve_point_count(pair.b.fourier, pair.b.duration_s));
     const auto a = curve_w(pair.a.fourier, pair.a.duration_s, points);
     const auto b = curve_w(pair.b.fourier, pair.b.duration_s, points);
     std::size_t furthest = 0;

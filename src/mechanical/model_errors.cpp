@@ -17,12 +17,12 @@ double part_at(std::size_t i, std::size_t points) { return static_cast<double>(i
 
 void add_curve(CsvWriter& csv, const ModelFit& fit, flight::Phase phase, const ErrorAnalysis& analysis) {
     const auto& model = fit.model.phases[phase];
-    const auto points = points_of_curve(model.fourier, model.duration_s) / 5 + 1;
-    const auto spread = flight_envelope(fit.fits[phase], fit.weights[phase], points);
+    const auto points = curve_point_count(model.fourier, model.duration_s) / 5 + 1;
+    const auto spread = compute_envelope(fit.fits[phase], fit.weights[phase], points);
     std::vector<double> taus;
     for (std::size_t i = 0; i < points; ++i) taus.push_back(part_at(i, points));
     const auto intervals = curve_intervals_w(analysis, taus);
-    const double population_wide = spread ? student_t_half_width(spread->counted_flights - 1.0) : 0.0;
+    const double population_wide = spread ? student_t_half_width(spread->effective_flights - 1.0) : 0.0;
     for (std::size_t i = 0; i < points; ++i) {
         const double tau = part_at(i, points);
         const double time_s = tau * model.duration_s;
@@ -42,11 +42,12 @@ void add_curve(CsvWriter& csv, const ModelFit& fit, flight::Phase phase, const E
 
 }  // namespace
 
-std::optional<PhaseSpread> flight_envelope(const PhaseFit& fit, std::span<const double> weights, std::size_t points) {
+std::optional<FlightEnvelope> compute_envelope(const PhaseFit& fit, std::span<const double> weights,
+                                               std::size_t points) {
     const double squares = std::inner_product(weights.begin(), weights.end(), weights.begin(), 0.0);
     if (std::ranges::count_if(weights, [](double weight) { return weight > 0.0; }) < 2) return std::nullopt;
-    PhaseSpread spread;
-    spread.counted_flights = 1.0 / squares;
+    FlightEnvelope spread;
+    spread.effective_flights = 1.0 / squares;
     for (std::size_t i = 0; i < points; ++i) {
         const double tau = part_at(i, points);
         std::vector<double> powers;
@@ -69,8 +70,8 @@ std::optional<PhaseSpread> flight_envelope(const PhaseFit& fit, std::span<const 
     return spread;
 }
 
-double population_standard_error_w(const PhaseSpread& spread, std::size_t i) {
-    return spread.standard_deviation_w[i] / std::sqrt(spread.counted_flights);
+double population_standard_error_w(const FlightEnvelope& spread, std::size_t i) {
+    return spread.standard_deviation_w[i] / std::sqrt(spread.effective_flights);
 }
 
 flight::PerPhase<ErrorAnalysis> analyse_model(ModelFit& fit) {
@@ -78,7 +79,7 @@ flight::PerPhase<ErrorAnalysis> analyse_model(ModelFit& fit) {
     for (const auto phase : flight::all_phases) {
         analyses[phase] = analyse_errors(fit.samples[phase], fit.fits[phase], fit.weights[phase]);
         fit.model.phases[phase].errors = analyses[phase].errors;
-        fit.model.phases[phase].spread = flight_envelope(fit.fits[phase], fit.weights[phase]);
+        fit.model.phases[phase].spread = compute_envelope(fit.fits[phase], fit.weights[phase]);
     }
     return analyses;
 }
@@ -109,7 +110,7 @@ flight::PerPhase<CurveBand> curve_bands(const ModelFit& fit, const flight::PerPh
             band.low_95_w.push_back(low);
             band.high_95_w.push_back(high);
         }
-        if (const auto spread = flight_envelope(fit.fits[phase], fit.weights[phase], points)) {
+        if (const auto spread = compute_envelope(fit.fits[phase], fit.weights[phase], points)) {
             band.flights_low_w = spread->low_w;
             band.flights_high_w = spread->high_w;
         }

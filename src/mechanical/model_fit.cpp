@@ -3,10 +3,10 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/statistics.h"
+#include "mechanical/covariate_regression.h"
 #include "mechanical/fit/fourier_basis.h"
 #include "mechanical/fit/frequency_scan.h"
-#include "mechanical/level_law.h"
-#include "mechanical/prediction/level_spread.h"
+#include "mechanical/prediction/variance_components.h"
 
 #include <algorithm>
 #include <memory>
@@ -41,24 +41,24 @@ std::string described(const ModelFitOptions& options, std::size_t flights) {
     return fmt::format("fitted to {} flight{}: Fourier series {}, {}{}weights: {}; flightwatt {}", flights,
                        flights == 1 ? "" : "s", orders_of(options),
                        loss == Loss::none ? "" : fmt::format("loss: {}, ", to_string(loss)),
-                       options.phases.curve == Curve::mean ? "" : "curve: least-squares, ",
+                       options.phases.curve == CurveEstimator::mean ? "" : "curve: least-squares, ",
                        to_string(options.weights.weighting), FLIGHTWATT_VERSION);
 }
 
 /// Power beyond any aircraft's overflows on the way; a model of that is none.
 void refuse_what_is_no_number(flight::Phase phase, const FourierModel& model) {
     if (coefficients_of(model).allFinite()) return;
-    throw NoAnswerError(fmt::format("{}: the fit's coefficients are no numbers; is the power of all samples possible?",
+    throw NoResultError(fmt::format("{}: the fit's coefficients are no numbers; is the power of all samples possible?",
                                     to_string(phase)));
 }
 
 /// A law with the spread that a prediction needs.
-LevelLaw wanted_law(std::span<const PhaseSamples> flights, Covariate covariate) {
-    const auto law = fit_level_law(flights, covariate);
+CovariateRegression wanted_law(std::span<const PhaseSamples> flights, Covariate covariate) {
+    const auto law = fit_covariate_regression(flights, covariate);
     const auto having = law ? law->flights : 0;
     constexpr std::size_t needed = 3;
     if (having >= needed) return *law;
-    throw NoAnswerError(fmt::format(
+    throw NoResultError(fmt::format(
         "the cruise level cannot follow {}: {}, expected {} flights or more that have it and differ in it",
         to_string(covariate),
         having == 0 ? "fewer than 2 flights tell it, or all tell the same" : fmt::format("{} flights tell it", having),
@@ -99,20 +99,20 @@ std::vector<PhaseSamples> samples_of_phase(std::span<const FlightSamples> flight
     return samples;
 }
 
-void keep_scans(std::span<FlightSamples> flights, const ModelFitOptions& options) {
+void cache_scans(std::span<FlightSamples> flights, const ModelFitOptions& options) {
     for (const auto phase : flight::all_phases) {
         auto phase_options = options.phases;
         phase_options.order = options.order(phase);
         if (phase_options.order <= 0) continue;
         const auto samples = samples_of_phase(flights, phase);
         const auto lacks_samples = [&](const auto& own) {
-            return own.tau.size() < samples_needed(phase_options.order) || own.tau.size() != own.power_w.size();
+            return own.tau.size() < min_samples(phase_options.order) || own.tau.size() != own.power_w.size();
         };
         if (samples.empty() || std::ranges::any_of(samples, lacks_samples)) continue;
         std::optional<FrequencyRange> range;
         try {
-            range = admissible_range(samples, phase_options);
-        } catch (const NoAnswerError&) {
+            range = admissible_frequencies(samples, phase_options);
+        } catch (const NoResultError&) {
             continue;  // as the fits will say
         }
         for_each_in_parallel(flights.size(), [&](std::size_t i) {
@@ -136,9 +136,9 @@ FittedPhase fit_phase_model(flight::Phase phase, std::span<const PhaseSamples> f
     fitted.model = average_phase(fitted.fit, fitted.weights);
     for (const auto& samples : flights) fitted.model.edge_samples += samples.edge_samples;
     refuse_what_is_no_number(phase, fitted.model.fourier);
-    fitted.model.level_spread = level_spread(fitted.model, counted(flights, fitted.weights));
+    fitted.model.level_spread = estimate_variance_components(fitted.model, counted(flights, fitted.weights));
     if (phase == flight::Phase::cruise) {
-        fitted.model.airspeed_law = fit_level_law(flights, Covariate::airspeed_cubed);
+        fitted.model.airspeed_law = fit_covariate_regression(flights, Covariate::airspeed_cubed);
         fitted.model.airspeed_cubed_parts_m3_per_s3 = mean_airspeed_cubed_parts(flights);
         if (options.level_covariate) fitted.model.level_law = wanted_law(flights, *options.level_covariate);
     }
@@ -147,7 +147,7 @@ FittedPhase fit_phase_model(flight::Phase phase, std::span<const PhaseSamples> f
 
 ModelFit fit_model(std::span<const FlightSamples> flights, const ModelFitOptions& options) {
     const auto names = names_of(flights);
-    check_weights(options.weights, names);
+    validate_weights(options.weights, names);
     ModelFit parts;
     auto& model = parts.model;
     model.name = options.name;
@@ -173,8 +173,8 @@ ModelFit fit_model(std::span<const FlightSamples> flights, const ModelFitOptions
     return parts;
 }
 
-std::optional<FourierModel> nearest_series(const PhaseModel& model, std::span<const double> tau,
-                                           std::span<const double> power_w) {
+std::optional<FourierModel> fit_series(const PhaseModel& model, std::span<const double> tau,
+                                       std::span<const double> power_w) {
     const auto order = static_cast<int>(model.fourier.cos_w.size());
     const double theta_rad = model.fourier.omega_rad_per_s * model.duration_s;
     const auto fit = solve_least_squares(fourier_basis(tau, order, theta_rad), as_vector(power_w));

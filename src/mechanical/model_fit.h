@@ -27,7 +27,7 @@ struct FittedPhase {
 };
 
 /// Fits and averages one phase (Eqs. 1, 5-7), with its spread and, for the cruise, its airspeed law and the
-/// level law that was asked for. Throws NoAnswerError for a level covariate that fewer than 3 flights have,
+/// level law that was asked for. Throws NoResultError for a level covariate that fewer than 3 flights have,
 /// or that does not differ between them, and what fit_phase and flight_weights throw.
 FittedPhase fit_phase_model(flight::Phase phase, std::span<const PhaseSamples> flights,
                             const ModelFitOptions& options = {});
@@ -45,19 +45,19 @@ std::vector<PhaseSamples> samples_of_phase(std::span<const FlightSamples> flight
 
 /// Keeps with the samples what each flight contributes to the scan for the frequency (PhaseSamples::scan), so that fits
 /// to most of these flights need not make it again. A phase that cannot be fitted keeps nothing.
-void keep_scans(std::span<FlightSamples> flights, const ModelFitOptions& options);
+void cache_scans(std::span<FlightSamples> flights, const ModelFitOptions& options);
 
 /// The mechanical power of a flight from several flights (Eqs. 1-7): each phase is fitted over the flights
 /// that have it and averaged with their weights. A phase's rms_w is that of the samples about their own
-/// flights' curves. Throws NoAnswerError naming a phase that no flight has, or a flight with too few samples
-/// in a phase (samples_needed tells beforehand; such a phase may be excluded), UsageError for a flight given
+/// flights' curves. Throws NoResultError naming a phase that no flight has, or a flight with too few samples
+/// in a phase (min_samples tells beforehand; such a phase may be excluded), UsageError for a flight given
 /// twice and for weights that do not fit the flights, and what fit_phase throws.
 ModelFit fit_model(std::span<const FlightSamples> flights, const ModelFitOptions& options = {});
 
 /// The series of the model's order and frequency which is nearest (least squares) to `power_w` at the parts `tau`
 /// of the phase; std::nullopt if the frequency is too low for these to determine one.
-std::optional<FourierModel> nearest_series(const PhaseModel& model, std::span<const double> tau,
-                                           std::span<const double> power_w);
+std::optional<FourierModel> fit_series(const PhaseModel& model, std::span<const double> tau,
+                                       std::span<const double> power_w);
 
 /// A sample whose robust weight is below 0.5.
 struct DownWeightedSample {

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/statistics.h"
-#include "mechanical/physical/level_mixture.h"
+#include "mechanical/physical/student_t_fit.h"
 #include "mechanical/physical/term_choice.h"
 
 #include <algorithm>
@@ -45,7 +45,7 @@ void summarise(PhysicalModel& model, const PowerPosterior& posterior, const Term
     double shrink = 1.0;
     if (model.flights.size() > 1) {
         const auto sds_w = node_sds_w(posterior, mean, terms);
-        const auto t = student_t_of_mixture(sds_w, posterior.weights);
+        const auto t = fit_student_t(sds_w, posterior.weights);
         shrink = t.scale * t.scale / weighted_square(sds_w, posterior.weights);
         std::vector<double> levels;
         for (const auto& node : posterior.nodes) levels.push_back(node.level_sd);
@@ -71,19 +71,19 @@ void summarise(PhysicalModel& model, const PowerPosterior& posterior, const Term
 }
 
 /// Means of the terms over all bins.
-TermValues typical_values(std::span<const FlightMotion> flights) {
-    std::vector<MotionBin> bins;
+TermValues typical_values(std::span<const BinnedFlight> flights) {
+    std::vector<FlightBin> bins;
     for (const auto& flight : flights) bins.insert(bins.end(), flight.bins.begin(), flight.bins.end());
     return mean_values(bins);
 }
 
-void add_value(MotionRange& range, double value, bool first) {
+void add_value(FlownRange& range, double value, bool first) {
     range.low = first ? value : std::min(range.low, value);
     range.high = first ? value : std::max(range.high, value);
 }
 
 /// What the model rests on.
-void describe_flights(PhysicalModel& model, std::span<const FlightMotion> flights) {
+void describe_flights(PhysicalModel& model, std::span<const BinnedFlight> flights) {
     std::vector<double> cruise_speeds;
     double duration_s = 0.0;
     for (const auto& flight : flights) {
@@ -119,14 +119,14 @@ double drift_degrees_of_freedom(const PhysicalModel& model, const std::vector<do
     return std::clamp(2.0 / std::max(relative - by_chance, 2.0 / most), std::min(flights - 1.0, most), most);
 }
 
-PhysicalModel fit_terms(std::span<const FlightMotion> flights, const MotionRegression& regression,
+PhysicalModel fit_terms(std::span<const BinnedFlight> flights, const PowerRegression& regression,
                         const std::vector<PowerTerm>& terms) {
     PhysicalModel model;
     model.terms = terms;
     std::ranges::sort(model.terms);
     describe_flights(model, flights);
     const auto posterior = regression.posterior(columns_of(model.terms));
-    if (!posterior) throw NoAnswerError("the flights' motion does not determine a power model: it hardly varies");
+    if (!posterior) throw NoResultError("the flights' motion does not determine a power model: it hardly varies");
     summarise(model, *posterior, typical_values(flights));
     model.drift_degrees_of_freedom = drift_degrees_of_freedom(model, posterior->drift_variances_w2);
     return model;
@@ -134,17 +134,17 @@ PhysicalModel fit_terms(std::span<const FlightMotion> flights, const MotionRegre
 
 }  // namespace
 
-PhysicalModel fit_power_terms(std::span<const FlightMotion> flights, const std::vector<PowerTerm>& terms) {
-    return fit_terms(flights, MotionRegression(flights), terms);
+PhysicalModel fit_power_terms(std::span<const BinnedFlight> flights, const std::vector<PowerTerm>& terms) {
+    return fit_terms(flights, PowerRegression(flights), terms);
 }
 
-PhysicalFit fit_physical_model(std::span<const FlightMotion> flights) {
+PhysicalFit fit_physical_model(std::span<const BinnedFlight> flights) {
     PhysicalFit fit;
-    std::vector<FlightMotion> moving;
+    std::vector<BinnedFlight> moving;
     std::size_t bins = 0;
     for (const auto& flight : flights) {
-        if (!flight.lacks.empty()) {
-            fit.without.push_back({flight.flight, flight.lacks});
+        if (!flight.no_bins_reason.empty()) {
+            fit.skipped.push_back({flight.flight, flight.no_bins_reason});
             continue;
         }
         moving.push_back(flight);
@@ -152,23 +152,23 @@ PhysicalFit fit_physical_model(std::span<const FlightMotion> flights) {
     }
     if (moving.empty()) {
         std::string reasons;
-        for (const auto& [flight, reason] : fit.without) reasons += fmt::format("; {}: {}", flight, reason);
-        throw NoAnswerError("no flight tells how its power follows its motion" + reasons);
+        for (const auto& [flight, reason] : fit.skipped) reasons += fmt::format("; {}: {}", flight, reason);
+        throw NoResultError("no flight tells how its power follows its motion" + reasons);
     }
-    constexpr std::size_t least_bins = 10;
-    if (bins < least_bins) {
-        throw NoAnswerError(
+    constexpr std::size_t min_bins = 10;
+    if (bins < min_bins) {
+        throw NoResultError(
             fmt::format("{} stretches of {:.0f} s with power, airspeed and altitude: a physical model "
                         "needs {} or more",
-                        bins, usual_bin_s, least_bins));
+                        bins, default_bin_s, min_bins));
     }
-    const MotionRegression regression(moving);
-    auto choice = choose_terms(moving, regression);
+    const PowerRegression regression(moving);
+    auto choice = select_terms(moving, regression);
     if (choice.terms.empty())
-        throw NoAnswerError("power follows neither the airspeed's cube nor a constant: are power and airspeed sound?");
+        throw NoResultError("power follows neither the airspeed's cube nor a constant: are power and airspeed sound?");
     fit.trials = std::move(choice.trials);
     fit.folds = choice.folds;
-    fit.held_back_flights = moving.size() > 1;
+    fit.folds_are_flights = moving.size() > 1;
     fit.phases_decided = choice.phases_decided;
     fit.model = fit_terms(moving, regression, choice.terms);
     return fit;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mechanical/physical/motion_bins.h"
+#include "mechanical/physical/flight_bins.h"
 #include "mechanical/physical_model.h"
 
 #include <optional>
@@ -20,7 +20,7 @@ struct TermTrial {
 };
 
 /// A flight that is not in the fit.
-struct MotionlessFlight {
+struct SkippedFlight {
     std::string flight;
     std::string reason;
 };
@@ -28,27 +28,27 @@ struct MotionlessFlight {
 struct PhysicalFit {
     PhysicalModel model;
     std::vector<TermTrial> trials;  ///< in the order of all_power_terms, the throttle last
-    std::vector<MotionlessFlight> without;
-    bool held_back_flights = true;  ///< false: a single flight, and blocks of its time were held back
+    std::vector<SkippedFlight> skipped;
+    bool folds_are_flights = true;  ///< false: a single flight, and blocks of its time were held back
     bool phases_decided = true;     ///< false: trials have the error of bins, not of whole phases
     std::size_t folds = 0;
 };
 
 /// So much less must the mean square error of what was held back be for a term to be kept.
-inline constexpr double least_gain_of_term = 0.05;
+inline constexpr double min_mse_reduction = 0.05;
 
 /// Fits power to the motion of flights of one aircraft (docs/methods.md, Power from airspeed and climb). Each flight is
 /// held back in turn (ten groups of more than ten), or each fifth of a single flight's time. Terms:
-///   first       the drag, or a constant where that predicts bins better by least_gain_of_term
+///   first       the drag, or a constant where that predicts bins better by min_mse_reduction
 ///   then        one by one, the term that lowers the error of the mean power of whole phases most, if that is by
-///               least_gain_of_term, in more than half of the flights (of two, in one), and bins are predicted no worse
+///               min_mse_reduction, in more than half of the flights (of two, in one), and bins are predicted no worse
 ///   not         one whose coefficients physics does not let be (none is negative; a descent gives back at most what the
 ///               climb took); more terms than the phases that each fit rests on
-/// Bins decide throughout for a single flight, and where a flight has bins of one phase only. Throws NoAnswerError where
-/// no flight has bins, or they do not tell a single term.
-PhysicalFit fit_physical_model(std::span<const FlightMotion> flights);
+/// Bins decide throughout for a single flight, and where a flight has bins of one phase only. Throws NoResultError
+/// where no flight has bins, or they do not tell a single term.
+PhysicalFit fit_physical_model(std::span<const BinnedFlight> flights);
 
 /// The same with these terms alone.
-PhysicalModel fit_power_terms(std::span<const FlightMotion> flights, const std::vector<PowerTerm>& terms);
+PhysicalModel fit_power_terms(std::span<const BinnedFlight> flights, const std::vector<PowerTerm>& terms);
 
 }  // namespace flightwatt::mechanical

@@ -1,6 +1,6 @@
 #include "mechanical/physical_model.h"
 
-#include "mechanical/prediction/level_spread.h"
+#include "mechanical/prediction/variance_components.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ constexpr std::array<std::string_view, power_term_count> power_term_names{"drag"
 constexpr std::array<std::string_view, power_term_count> power_term_units{"W s^3/m^3", "W m/s", "W m/s",
                                                                           "W s/m",     "W s/m", "W"};
 
-bool is_within(const MotionRange& range, double value) { return range.low <= value && value <= range.high; }
+bool is_within(const FlownRange& range, double value) { return range.low <= value && value <= range.high; }
 
 /// Of the sum of the terms, in W^2.
 double coefficient_variance_w2(const PhysicalModel& model, const TermValues& values) {
@@ -41,7 +41,7 @@ std::optional<PowerTerm> power_term_from(std::string_view name) {
 
 std::string_view unit_of(PowerTerm term) { return power_term_units[static_cast<std::size_t>(term)]; }
 
-TermValues terms_of(const AirMotion& motion) {
+TermValues term_values(const FlightState& motion) {
     const double airspeed = motion.airspeed_m_per_s;
     const double load = motion.load_factor;
     if (!(airspeed > 0.0) || !std::isfinite(airspeed)) {
@@ -60,20 +60,20 @@ TermValues terms_of(const AirMotion& motion) {
     return values;
 }
 
-double power_of_terms_w(const PhysicalModel& model, const TermValues& values) {
+double sum_of_terms_w(const PhysicalModel& model, const TermValues& values) {
     double power = 0.0;
     for (const auto term : model.terms) power += model.coefficients[term] * values[term];
     return power;
 }
 
-double power_w(const PhysicalModel& model, const AirMotion& motion) {
-    return std::max(0.0, power_of_terms_w(model, terms_of(motion)));
+double power_w(const PhysicalModel& model, const FlightState& motion) {
+    return std::max(0.0, sum_of_terms_w(model, term_values(motion)));
 }
 
-std::optional<PowerUncertainty> uncertainty_of(const PhysicalModel& model, const TermValues& mean_values,
-                                               double duration_s) {
+std::optional<PowerUncertainty> prediction_uncertainty(const PhysicalModel& model, const TermValues& mean_values,
+                                                       double duration_s) {
     if (!model.level_sd) return std::nullopt;
-    const double level_w = *model.level_sd * power_of_terms_w(model, mean_values);
+    const double level_w = *model.level_sd * sum_of_terms_w(model, mean_values);
     const double between_w2 = level_w * level_w + coefficient_variance_w2(model, mean_values);
     const double drift_w2 = variance_of_mean_w2({model.drift_sd_w, model.correlation_s}, duration_s);
     const double sum_w2 = between_w2 + drift_w2;
@@ -83,7 +83,7 @@ std::optional<PowerUncertainty> uncertainty_of(const PhysicalModel& model, const
     return PowerUncertainty{std::sqrt(sum_w2), sum_w2 * sum_w2 / squares};
 }
 
-bool was_flown(const PhysicalModel& model, const AirMotion& motion) {
+bool is_within_flown_range(const PhysicalModel& model, const FlightState& motion) {
     return is_within(model.airspeed_m_per_s, motion.airspeed_m_per_s) &&
            is_within(model.climb_m_per_s, motion.climb_m_per_s);
 }

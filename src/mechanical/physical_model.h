@@ -10,7 +10,7 @@
 namespace flightwatt::mechanical {
 
 /// How an aircraft on wings moves through the air.
-struct AirMotion {
+struct FlightState {
     double airspeed_m_per_s = 0.0;
     double climb_m_per_s = 0.0;  ///< below 0 it descends
     double load_factor = 1.0;    ///< lift over weight: 1 / cos(bank) in a level turn
@@ -45,9 +45,9 @@ struct TermValues {
 };
 
 /// The terms' values. Throws std::invalid_argument unless the airspeed is positive and the load factor at least 0.
-TermValues terms_of(const AirMotion& motion);
+TermValues term_values(const FlightState& motion);
 
-struct MotionRange {
+struct FlownRange {
     double low = 0.0;
     double high = 0.0;
 };
@@ -74,17 +74,17 @@ struct PhysicalModel {
     std::size_t samples = 0;  ///< of power, in the bins
     std::vector<std::string> flights;
 
-    MotionRange airspeed_m_per_s;  ///< of the bins' means
-    MotionRange climb_m_per_s;
+    FlownRange airspeed_m_per_s;  ///< of the bins' means
+    FlownRange climb_m_per_s;
     double mean_airspeed_m_per_s = 0.0;  ///< of the flights' cruises, each counting the same
 };
 
 /// The power of a motion [W], 0 where the terms sum to less: in a steep descent the motor stands, and gives nothing
-/// back. What terms_of throws.
-double power_w(const PhysicalModel& model, const AirMotion& motion);
+/// back. What term_values throws.
+double power_w(const PhysicalModel& model, const FlightState& motion);
 
 /// The sum of the terms [W], which may be below 0: the means over a time of the terms give the mean power.
-double power_of_terms_w(const PhysicalModel& model, const TermValues& values);
+double sum_of_terms_w(const PhysicalModel& model, const TermValues& values);
 
 /// A standard deviation with the degrees of freedom of the Student's t that makes intervals of it.
 struct PowerUncertainty {
@@ -93,12 +93,12 @@ struct PowerUncertainty {
 };
 
 /// How far the mean power of a flight not seen may be from what the model says, over `duration_s` with these mean
-/// values of the terms: the flight's own level, its drift, and that the coefficients come from few flights (docs/methods.md,
-/// Power from airspeed and climb). std::nullopt for a model of a single flight.
-std::optional<PowerUncertainty> uncertainty_of(const PhysicalModel& model, const TermValues& mean_values,
-                                               double duration_s);
+/// values of the terms: the flight's own level, its drift, and that the coefficients come from few flights
+/// (docs/methods.md, Power from airspeed and climb). std::nullopt for a model of a single flight.
+std::optional<PowerUncertainty> prediction_uncertainty(const PhysicalModel& model, const TermValues& mean_values,
+                                                       double duration_s);
 
 /// Whether the model's flights flew so: what lies outside is extrapolated.
-bool was_flown(const PhysicalModel& model, const AirMotion& motion);
+bool is_within_flown_range(const PhysicalModel& model, const FlightState& motion);
 
 }  // namespace flightwatt::mechanical

@@ -20,30 +20,30 @@ struct Expectation {
     double level_sd_w = 0.0;
     double weight_square_sum = 1.0;
     double degrees_of_freedom = 1.0;  ///< of level_sd_w
-    double shape_flown_w = 0.0;       ///< what the curve says beyond `flown_w`, where its shape is not believed
+    double shape_flown_w = 0.0;       ///< what the curve says beyond `measured_w`, where its shape is not believed
     double shape_remaining_w = 0.0;
     double ahead_sd_w = 0.0;  ///< of what remains alone: an airspeed that is not known yet
 };
 
-Expectation expect_by_curve(const PhaseForecast& cruise, double flown_s, double remaining_s) {
+Expectation expect_by_curve(const WeightedPhase& cruise, double flown_s, double remaining_s) {
     const double duration_s = flown_s + remaining_s;
-    const auto curve = flown_model(cruise.model, duration_s, PhaseClock::stretched);
+    const auto curve = time_scaled_model(cruise.model, duration_s, PhaseTimeScaling::stretched);
     const double flown_j = energy_j(curve, flown_s);
     const auto& spread = *cruise.model.level_spread;
-    return {flown_j / flown_s, (energy_j(curve, duration_s) - flown_j) / remaining_s, spread.level_sd_w,
+    return {flown_j / flown_s, (energy_j(curve, duration_s) - flown_j) / remaining_s, spread.between_flight_sd_w,
             cruise.weight_square_sum, static_cast<double>(spread.flights - 1)};
 }
 
 /// Mean cube of the airspeed of the model's flights from a part of their cruise on; `otherwise` where the model does
 /// not say.
-double later_airspeed_cubed(const PhaseModel& model, double flown_part, double otherwise) {
+double later_airspeed_cubed(const PhaseModel& model, double flown_fraction, double otherwise) {
     const auto& parts = model.airspeed_cubed_parts_m3_per_s3;
     if (parts.empty()) return otherwise;
     const auto count = static_cast<double>(parts.size());
     double sum = 0.0;
     double weight = 0.0;
     for (std::size_t i = 0; i < parts.size(); ++i) {
-        const double ahead = std::clamp(static_cast<double>(i + 1) - flown_part * count, 0.0, 1.0);
+        const double ahead = std::clamp(static_cast<double>(i + 1) - flown_fraction * count, 0.0, 1.0);
         sum += ahead * parts[i];
         weight += ahead;
     }
@@ -53,43 +53,44 @@ double later_airspeed_cubed(const PhaseModel& model, double flown_part, double o
 /// By the airspeed so far, and in what remains by the mean of that and the other flights' later one: all tend to
 /// fly on as they do, and to end as flights end.
 void expect_by_airspeed(Expectation& expected, const PhaseModel& model, const FlightProgress& flown,
-                        double flown_part) {
+                        double flown_fraction) {
     if (!model.airspeed_law) {
-        throw NoAnswerError("the model has no airspeed law: fewer than 2 of its flights measured airspeed");
+        throw NoResultError("the model has no airspeed law: fewer than 2 of its flights measured airspeed");
     }
-    if (!flown.airspeed_cubed_m3_per_s3) throw NoAnswerError("the flight has not measured its airspeed");
-    constexpr double own_part = 0.5;
+    if (!flown.airspeed_cubed_m3_per_s3) throw NoResultError("the flight has not measured its airspeed");
+    constexpr double own_fraction = 0.5;
     const auto& law = *model.airspeed_law;
     const double so_far = *flown.airspeed_cubed_m3_per_s3;
-    const double ahead = own_part * so_far + (1.0 - own_part) * later_airspeed_cubed(model, flown_part, so_far);
-    const auto level = level_at(law, ahead);
-    expected.flown_w = level_at(law, so_far).power_w;
+    const double ahead =
+        own_fraction * so_far + (1.0 - own_fraction) * later_airspeed_cubed(model, flown_fraction, so_far);
+    const auto level = predict_mean_power(law, ahead);
+    expected.flown_w = predict_mean_power(law, so_far).power_w;
     expected.remaining_w = level.power_w;
     expected.level_sd_w = level.sd_w.value();
     expected.weight_square_sum = level.law_variance;
     expected.degrees_of_freedom = level.degrees_of_freedom;
-    expected.ahead_sd_w = own_part * law.slope_w;  // of the others' airspeed, one standard deviation off
+    expected.ahead_sd_w = own_fraction * law.slope_w;  // of the others' airspeed, one standard deviation off
 }
 
 /// What the model's level law lets expect of this flight.
-LawLevel level_by_law(const PhaseModel& model, const FlightProgress& flown) {
-    if (!model.level_law) throw NoAnswerError("the model has no level law: it was fitted without --level-covariate");
+RegressionPrediction level_by_law(const PhaseModel& model, const FlightProgress& flown) {
+    if (!model.level_law) throw NoResultError("the model has no level law: it was fitted without --level-covariate");
     const auto covariate = model.level_law->covariate;
-    if (const auto& value = flown.covariates[covariate]) return level_at(*model.level_law, *value);
-    throw NoAnswerError(
+    if (const auto& value = flown.covariates[covariate]) return predict_mean_power(*model.level_law, *value);
+    throw NoResultError(
         fmt::format("the flight does not tell its {}, which the model's level follows", to_string(covariate)));
 }
 
-Expectation expect(const PhaseForecast& cruise, const FlightProgress& flown, double remaining_s, LevelSource source) {
+Expectation expect(const WeightedPhase& cruise, const FlightProgress& flown, double remaining_s, CruisePrior source) {
     const double flown_s = flown.cruise_s();
     auto expected = expect_by_curve(cruise, flown_s, remaining_s);
-    if (source == LevelSource::curve) return expected;
+    if (source == CruisePrior::curve) return expected;
     const double mean_w = (expected.flown_w * flown_s + expected.remaining_w * remaining_s) / (flown_s + remaining_s);
     expected.shape_flown_w = expected.flown_w - mean_w;
     expected.shape_remaining_w = expected.remaining_w - mean_w;
     expected.flown_w = expected.remaining_w = mean_w;
-    if (source == LevelSource::constant) return expected;
-    if (source == LevelSource::airspeed) {
+    if (source == CruisePrior::constant) return expected;
+    if (source == CruisePrior::airspeed) {
         expect_by_airspeed(expected, cruise.model, flown, flown_s / (flown_s + remaining_s));
         return expected;
     }
@@ -119,8 +120,8 @@ double variance_of_gain(const Variances& of, double level_degrees_of_freedom, do
 }
 
 /// The variance of the error y - gain x, share by share (docs/methods.md, Eq. 20).
-void add_shares(RestPrediction& rest, const Expectation& expected, const Variances& of, double drift_degrees_of_freedom,
-                double remaining_s) {
+void add_shares(RemainingCruise& rest, const Expectation& expected, const Variances& of,
+                double drift_degrees_of_freedom, double remaining_s) {
     const double wh2_per_w2 = std::pow(units::wh_from_joule(remaining_s), 2);
     const double gain = rest.gain;
     auto& energy = rest.energy;
@@ -131,20 +132,20 @@ void add_shares(RestPrediction& rest, const Expectation& expected, const Varianc
     const double gain_w2 =
         (of.level_w2 + of.flown_drift_w2) * variance_of_gain(of, expected.degrees_of_freedom, drift_degrees_of_freedom);
     const double shape_w = expected.shape_remaining_w - gain * expected.shape_flown_w;
-    add_share(energy, {average * kept * kept * of.level_w2 * wh2_per_w2, expected.degrees_of_freedom});
-    add_share(energy, {average * drift_w2 * wh2_per_w2, drift_degrees_of_freedom});
-    add_share(energy, {shape_w * shape_w * wh2_per_w2, drift_degrees_of_freedom});
-    add_share(energy, {std::pow(expected.ahead_sd_w, 2) * wh2_per_w2, expected.degrees_of_freedom});
-    add_share(energy,
-              {average * gain_w2 * wh2_per_w2, std::min(expected.degrees_of_freedom, drift_degrees_of_freedom)});
+    add_variance(energy, {average * kept * kept * of.level_w2 * wh2_per_w2, expected.degrees_of_freedom});
+    add_variance(energy, {average * drift_w2 * wh2_per_w2, drift_degrees_of_freedom});
+    add_variance(energy, {shape_w * shape_w * wh2_per_w2, drift_degrees_of_freedom});
+    add_variance(energy, {std::pow(expected.ahead_sd_w, 2) * wh2_per_w2, expected.degrees_of_freedom});
+    add_variance(energy,
+                 {average * gain_w2 * wh2_per_w2, std::min(expected.degrees_of_freedom, drift_degrees_of_freedom)});
 }
 
 /// Half the 95 % interval of a phase's mean power, where it is known.
-std::optional<double> mean_power_half_width_w(const PhaseForecast& phase, std::size_t flights) {
+std::optional<double> mean_power_half_width_w(const WeightedPhase& phase, std::size_t flights) {
     const auto& model = phase.model;
     if (flights > 1 && model.level_spread)
         return student_t_half_width(static_cast<double>(model.level_spread->flights - 1)) *
-               model.level_spread->level_sd_w * std::sqrt(phase.weight_square_sum);
+               model.level_spread->between_flight_sd_w * std::sqrt(phase.weight_square_sum);
     if (flights != 1 || !model.errors || !model.rms_w || !(model.errors->effective_samples > 0.0)) return std::nullopt;
     return student_t_half_width(model.errors->degrees_of_freedom) * *model.rms_w /
            std::sqrt(model.errors->effective_samples);
@@ -152,33 +153,31 @@ std::optional<double> mean_power_half_width_w(const PhaseForecast& phase, std::s
 
 }  // namespace
 
-void add_share(EnergyEstimate& estimate, const VarianceShare& share) {
+void add_variance(EnergyEstimate& estimate, const VarianceTerm& share) {
     estimate.variance_wh2 += share.variance_wh2;
     if (share.variance_wh2 > 0.0) {
-        estimate.variance_square_per_degree_of_freedom +=
-            share.variance_wh2 * share.variance_wh2 / share.degrees_of_freedom;
+        estimate.satterthwaite_sum += share.variance_wh2 * share.variance_wh2 / share.degrees_of_freedom;
     }
 }
 
 EnergyEstimate sum_of(const EnergyEstimate& a, const EnergyEstimate& b) {
     return {a.energy_wh + b.energy_wh, a.uncertainty_known && b.uncertainty_known, a.variance_wh2 + b.variance_wh2,
-            a.variance_square_per_degree_of_freedom + b.variance_square_per_degree_of_freedom};
+            a.satterthwaite_sum + b.satterthwaite_sum};
 }
 
 std::optional<EnergyInterval> interval_95(const EnergyEstimate& estimate) {
     if (!estimate.uncertainty_known) return std::nullopt;
     double half_wh = 0.0;
     if (estimate.variance_wh2 > 0.0) {
-        const double degrees_of_freedom =
-            estimate.variance_wh2 * estimate.variance_wh2 / estimate.variance_square_per_degree_of_freedom;
+        const double degrees_of_freedom = estimate.variance_wh2 * estimate.variance_wh2 / estimate.satterthwaite_sum;
         half_wh = student_t_half_width(degrees_of_freedom) * std::sqrt(estimate.variance_wh2);
     }
     return EnergyInterval{std::max(estimate.energy_wh - half_wh, std::min(estimate.energy_wh, 0.0)),
                           estimate.energy_wh + half_wh};
 }
 
-PhaseForecast forecast_of(const MechanicalModel& model, flight::Phase phase) {
-    PhaseForecast forecast{model.phases[phase], 0.0};
+WeightedPhase forecast_of(const MechanicalModel& model, flight::Phase phase) {
+    WeightedPhase forecast{model.phases[phase], 0.0};
     for (const auto& flight : model.flights) {
         if (const auto& part = flight.phases[phase]) forecast.weight_square_sum += std::pow(part->weight, 2);
     }
@@ -205,41 +204,41 @@ std::optional<MeanPower> mean_power(const MechanicalModel& model, flight::Phase 
     return power;
 }
 
-EnergyEstimate predict_before_flight(const PhaseForecast& phase, double duration_s) {
-    return predict_rest_before_flight(phase, 0.0, duration_s);
+EnergyEstimate predict_before_flight(const WeightedPhase& phase, double duration_s) {
+    return predict_remaining_before_flight(phase, 0.0, duration_s);
 }
 
-EnergyEstimate predict_rest_before_flight(const PhaseForecast& phase, double flown_s, double remaining_s) {
+EnergyEstimate predict_remaining_before_flight(const WeightedPhase& phase, double flown_s, double remaining_s) {
     const double duration_s = flown_s + remaining_s;
-    const auto curve = flown_model(phase.model, duration_s, PhaseClock::stretched);
+    const auto curve = time_scaled_model(phase.model, duration_s, PhaseTimeScaling::stretched);
     const double rest_j = energy_j(curve, duration_s) - energy_j(curve, flown_s);
     EnergyEstimate estimate{units::wh_from_joule(rest_j), phase.model.level_spread.has_value(), 0.0, 0.0};
     if (!phase.model.level_spread) return estimate;
     const auto& spread = *phase.model.level_spread;
-    const double sd_wh = units::wh_from_joule(spread.level_sd_w * remaining_s);
-    add_share(estimate, {sd_wh * sd_wh * (1.0 + phase.weight_square_sum), static_cast<double>(spread.flights - 1)});
+    const double sd_wh = units::wh_from_joule(spread.between_flight_sd_w * remaining_s);
+    add_variance(estimate, {sd_wh * sd_wh * (1.0 + phase.weight_square_sum), static_cast<double>(spread.flights - 1)});
     return estimate;
 }
 
-RestPrediction predict_rest(const PhaseForecast& cruise, const FlightProgress& flown, double remaining_s,
-                            LevelSource source) {
+RemainingCruise predict_remaining_cruise(const WeightedPhase& cruise, const FlightProgress& flown, double remaining_s,
+                                         CruisePrior source) {
     if (!cruise.model.level_spread) {
-        throw NoAnswerError("the model does not say how flights differ: fit two flights or more");
+        throw NoResultError("the model does not say how flights differ: fit two flights or more");
     }
-    RestPrediction rest;
+    RemainingCruise rest;
     if (remaining_s == 0.0) return rest;
     const double flown_s = flown.cruise_s();
     const auto expected = expect(cruise, flown, remaining_s, source);
     const auto& spread = *cruise.model.level_spread;
-    const Drift drift{spread.drift_sd_w, spread.correlation_s};
+    const DriftProcess drift{spread.drift_sd_w, spread.correlation_s};
     const Variances of{expected.level_sd_w * expected.level_sd_w, variance_of_mean_w2(drift, flown_s),
                        variance_of_mean_w2(drift, remaining_s), covariance_of_means_w2(drift, flown_s, remaining_s)};
     const double flown_w2 = of.level_w2 + of.flown_drift_w2;
     // Flights that are all alike, without any drift: the model is right, whatever is measured.
     rest.gain = flown_w2 > 0.0 ? std::min((of.level_w2 + of.drift_covariance_w2) / flown_w2, 1.0) : 0.0;
     rest.expected_w = expected.flown_w;
-    rest.flown_w = units::joule_from_wh(flown.cruise_energy_wh) / flown_s;
-    rest.remaining_mean_w = expected.remaining_w + rest.gain * (rest.flown_w - rest.expected_w);
+    rest.measured_w = units::joule_from_wh(flown.cruise_energy_wh) / flown_s;
+    rest.remaining_mean_w = expected.remaining_w + rest.gain * (rest.measured_w - rest.expected_w);
     rest.energy.energy_wh = units::wh_from_joule(rest.remaining_mean_w * remaining_s);
     // How much a flight drifts differs from flight to flight, so many samples are no more than their flights;
     // and the curve, their average, takes one.
@@ -247,33 +246,33 @@ RestPrediction predict_rest(const PhaseForecast& cruise, const FlightProgress& f
     return rest;
 }
 
-EnergyEstimate predict_by_motion(const PhysicalModel& model, const TermValues& mean_values, double duration_s) {
-    const double mean_w = std::max(power_of_terms_w(model, mean_values), 0.0);
-    const auto uncertainty = uncertainty_of(model, mean_values, duration_s);
+EnergyEstimate predict_physical(const PhysicalModel& model, const TermValues& mean_values, double duration_s) {
+    const double mean_w = std::max(sum_of_terms_w(model, mean_values), 0.0);
+    const auto uncertainty = prediction_uncertainty(model, mean_values, duration_s);
     EnergyEstimate estimate{units::wh_from_joule(mean_w * duration_s), uncertainty.has_value(), 0.0, 0.0};
     if (!uncertainty) return estimate;
     const double sd_wh = units::wh_from_joule(uncertainty->sd_w * duration_s);
-    add_share(estimate, {sd_wh * sd_wh, uncertainty->degrees_of_freedom});
+    add_variance(estimate, {sd_wh * sd_wh, uncertainty->degrees_of_freedom});
     return estimate;
 }
 
-RestPrediction predict_rest_by_motion(const PhysicalModel& model, const FlightProgress& flown, const TermValues& ahead,
-                                      double remaining_s) {
-    if (!model.level_sd) throw NoAnswerError("the physical model does not say how flights differ: fit two or more");
-    RestPrediction rest;
+RemainingCruise predict_remaining_physical(const PhysicalModel& model, const FlightProgress& flown,
+                                           const TermValues& ahead, double remaining_s) {
+    if (!model.level_sd) throw NoResultError("the physical model does not say how flights differ: fit two or more");
+    RemainingCruise rest;
     if (remaining_s == 0.0) return rest;
-    const auto power = predict_path(model, flown.motion.bins, flown.until_s, ahead, remaining_s);
+    const auto power = predict_posterior_power(model, flown.motion.bins, flown.until_s, ahead, remaining_s);
     const double wh_per_w = units::wh_from_joule(remaining_s);
     rest.gain = power.level;
-    std::vector<MotionBin> cruise;
+    std::vector<FlightBin> cruise;
     for (const auto& bin : flown.motion.bins)
         if (bin.phase == flight::Phase::cruise) cruise.push_back(bin);
-    rest.expected_w = std::max(power_of_terms_w(model, mean_values(cruise)), 0.0);
-    rest.flown_w = units::joule_from_wh(flown.cruise_energy_wh) / flown.cruise_s();
+    rest.expected_w = std::max(sum_of_terms_w(model, mean_values(cruise)), 0.0);
+    rest.measured_w = units::joule_from_wh(flown.cruise_energy_wh) / flown.cruise_s();
     rest.remaining_mean_w = power.mean_w;
     rest.energy.energy_wh = power.mean_w * wh_per_w;
-    add_share(rest.energy, {std::pow(power.parameter_sd_w * wh_per_w, 2), power.parameter_degrees_of_freedom});
-    add_share(rest.energy, {std::pow(power.drift_sd_w * wh_per_w, 2), power.drift_degrees_of_freedom});
+    add_variance(rest.energy, {std::pow(power.parameter_sd_w * wh_per_w, 2), power.parameter_degrees_of_freedom});
+    add_variance(rest.energy, {std::pow(power.drift_sd_w * wh_per_w, 2), power.drift_degrees_of_freedom});
     return rest;
 }
 

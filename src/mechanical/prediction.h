@@ -3,7 +3,7 @@
 #include "mechanical/mechanical_model.h"
 #include "mechanical/physical_model.h"
 #include "mechanical/prediction/flight_progress.h"
-#include "mechanical/prediction/level_spread.h"
+#include "mechanical/prediction/variance_components.h"
 
 #include <cstddef>
 #include <optional>
@@ -11,7 +11,7 @@
 namespace flightwatt::mechanical {
 
 /// An independent cause of uncertainty: its variance and the degrees of freedom that the variance rests on.
-struct VarianceShare {
+struct VarianceTerm {
     double variance_wh2 = 0.0;
     double degrees_of_freedom = 0.0;
 };
@@ -23,10 +23,10 @@ struct EnergyEstimate {
     bool uncertainty_known = true;
     double variance_wh2 = 0.0;
     /// Sum over the shares of variance^2 / degrees_of_freedom.
-    double variance_square_per_degree_of_freedom = 0.0;
+    double satterthwaite_sum = 0.0;
 };
 
-void add_share(EnergyEstimate& estimate, const VarianceShare& share);
+void add_variance(EnergyEstimate& estimate, const VarianceTerm& share);
 
 /// Both together, as if they were independent.
 EnergyEstimate sum_of(const EnergyEstimate& a, const EnergyEstimate& b);
@@ -42,13 +42,13 @@ struct EnergyInterval {
 std::optional<EnergyInterval> interval_95(const EnergyEstimate& estimate);
 
 /// A phase of the model as a prediction needs it.
-struct PhaseForecast {
+struct WeightedPhase {
     PhaseModel model;
     double weight_square_sum = 1.0;  ///< of the flights' weights: the average's variance, in flights'
 };
 
 /// The phase of a model with the weights of its flights (all alike where it does not say).
-PhaseForecast forecast_of(const MechanicalModel& model, flight::Phase phase);
+WeightedPhase forecast_of(const MechanicalModel& model, flight::Phase phase);
 
 /// The mean power of a phase, over the flights that count.
 struct MeanPower {
@@ -59,21 +59,21 @@ struct MeanPower {
     std::size_t samples = 0;  ///< of all flights that have the phase
 };
 
-/// By Student's t: of two flights or more of how they differ (LevelSpread); of a single one of the residual of its curve
-/// over its effective samples, which only an analysis of errors tells. A low end below 0 is 0. std::nullopt for a model
-/// whose flights have no mean power.
+/// By Student's t: of two flights or more of how they differ (VarianceComponents); of a single one of the residual of
+/// its curve over its effective samples, which only an analysis of errors tells. A low end below 0 is 0. std::nullopt
+/// for a model whose flights have no mean power.
 std::optional<MeanPower> mean_power(const MechanicalModel& model, flight::Phase phase);
 
 /// Energy of a phase that will take `duration_s`, before the flight: the stretched curve's integral. Its
 /// interval holds the spread of the flights' mean powers (which contains what a flight drifts in a phase)
 /// and that of their average (docs/methods.md, Eq. 16).
-EnergyEstimate predict_before_flight(const PhaseForecast& phase, double duration_s);
+EnergyEstimate predict_before_flight(const WeightedPhase& phase, double duration_s);
 
 /// The same from `flown_s` on, without regard to what was measured until then.
-EnergyEstimate predict_rest_before_flight(const PhaseForecast& phase, double flown_s, double remaining_s);
+EnergyEstimate predict_remaining_before_flight(const WeightedPhase& phase, double flown_s, double remaining_s);
 
 /// Where the cruise level is expected before this flight's own power is looked at.
-enum class LevelSource {
+enum class CruisePrior {
     curve,     ///< the model's Fourier curve
     constant,  ///< the curve's mean, for flights whose power has no shape in common
     airspeed,  ///< the airspeed law at the airspeed so far; in what remains at the mean of that and the others' later
@@ -81,29 +81,30 @@ enum class LevelSource {
 };
 
 /// The rest of a cruise in flight.
-struct RestPrediction {
+struct RemainingCruise {
     EnergyEstimate energy;
     double gain = 0.0;        ///< 0: the model alone counts, 1: the difference seen so far goes on in full
-                              ///< (predict_rest_by_motion: the part of the flight's power by which it is off the model)
+                              /// < (predict_remaining_physical: the part of the flight's power by which it is off the
+                              /// model)
     double expected_w = 0.0;  ///< mean power so far, as the model expected it
-    double flown_w = 0.0;     ///< and as it was measured
+    double measured_w = 0.0;  ///< and as it was measured
     double remaining_mean_w = 0.0;
 };
 
 /// Shrinks between model and flight (docs/methods.md, Eqs. 19 and 20): the difference between measured and
 /// expected mean power so far goes on as far as the flights' levels differ more than power drifts within one.
-/// Throws NoAnswerError if the model has no spread or, for LevelSource::airspeed and covariate, no law, or the
+/// Throws NoResultError if the model has no spread or, for CruisePrior::airspeed and covariate, no law, or the
 /// flight did not measure what it asks for.
-RestPrediction predict_rest(const PhaseForecast& cruise, const FlightProgress& flown, double remaining_s,
-                            LevelSource source);
+RemainingCruise predict_remaining_cruise(const WeightedPhase& cruise, const FlightProgress& flown, double remaining_s,
+                                         CruisePrior source);
 
-/// Energy of `duration_s` whose motion is known (means of the terms), before the flight: power_of_terms_w, not below
-/// 0, and uncertainty_of it.
-EnergyEstimate predict_by_motion(const PhysicalModel& model, const TermValues& mean_values, double duration_s);
+/// Energy of `duration_s` whose motion is known (means of the terms), before the flight: sum_of_terms_w, not below
+/// 0, and prediction_uncertainty it.
+EnergyEstimate predict_physical(const PhysicalModel& model, const TermValues& mean_values, double duration_s);
 
-/// The rest of a cruise whose motion is known, in flight (predict_path): `ahead` are the means of the terms over it.
-/// Throws NoAnswerError if the model rests on a single flight.
-RestPrediction predict_rest_by_motion(const PhysicalModel& model, const FlightProgress& flown, const TermValues& ahead,
-                                      double remaining_s);
+/// The rest of a cruise whose motion is known, in flight (predict_posterior_power): `ahead` are the means of the terms
+/// over it. Throws NoResultError if the model rests on a single flight.
+RemainingCruise predict_remaining_physical(const PhysicalModel& model, const FlightProgress& flown,
+                                           const TermValues& ahead, double remaining_s);
 
 }  // namespace flightwatt::mechanical

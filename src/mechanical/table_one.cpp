@@ -20,7 +20,7 @@ std::string percent_of_change(double was, double is) {
     return was == 0.0 ? "-" : as_printed((is - was) / was * units::percent_per_whole);
 }
 
-std::size_t highest_order(const MechanicalModel& model) {
+std::size_t model_order(const MechanicalModel& model) {
     std::size_t order = 0;
     for (const auto phase : flight::all_phases) order = std::max(order, model.phases[phase].fourier.cos_w.size());
     return order;
@@ -69,7 +69,7 @@ std::vector<std::string> intervals_of(const PhaseModel& phase, std::size_t order
     }
     const auto xi = [&](double omega) { return units::table_one_xi_from_rad(omega * phase.duration_s); };
     const auto& [low, high] = intervals.omega_rad_per_s;
-    cells.push_back(phase.errors->frequency_is_given ? "-" : interval_text({xi(low), xi(high)}));
+    cells.push_back(phase.errors->frequency_is_fixed ? "-" : interval_text({xi(low), xi(high)}));
     return cells;
 }
 
@@ -113,7 +113,7 @@ std::string heading_cell(std::string_view heading) {
 }  // namespace
 
 TextTable table_one(const MechanicalModel& model, TableIntervals intervals) {
-    const auto order = highest_order(model);
+    const auto order = model_order(model);
     TextTable table;
     add_column(table, "coefficient", row_names(order));
     for (const auto phase : flight::all_phases) {
@@ -125,9 +125,9 @@ TextTable table_one(const MechanicalModel& model, TableIntervals intervals) {
     return table;
 }
 
-TextTable table_one_beside(const MechanicalModel& published, const MechanicalModel& regenerated,
-                           TableIntervals intervals) {
-    const auto order = std::max(highest_order(published), highest_order(regenerated));
+TextTable table_one_comparison(const MechanicalModel& published, const MechanicalModel& regenerated,
+                               TableIntervals intervals) {
+    const auto order = std::max(model_order(published), model_order(regenerated));
     TextTable table;
     auto names = row_names(order);
     names.insert(names.end(), {"duration_s", "curve RMS difference [W]", "a0 difference [%]"});
@@ -138,7 +138,7 @@ TextTable table_one_beside(const MechanicalModel& published, const MechanicalMod
         auto left = column_of(was, order);
         left.insert(left.end(), {as_printed(was.duration_s), "-", "-"});
         auto right = column_of(is, order);
-        right.insert(right.end(), {as_printed(is.duration_s), as_printed(curve_rms_difference_w(was, is)),
+        right.insert(right.end(), {as_printed(is.duration_s), as_printed(rms_difference_w(was, is)),
                                    percent_of_change(was.fourier.a0_w, is.fourier.a0_w)});
         add_column(table, fmt::format("{} published", column_names[phase]), left);
         add_column(table, fmt::format("{} regenerated", column_names[phase]), right);

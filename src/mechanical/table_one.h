@@ -18,8 +18,8 @@ TextTable table_one(const MechanicalModel& model, TableIntervals intervals = Tab
 
 /// Both models' Table I, phase by phase side by side, and below it the durations, the RMS difference of the
 /// curves over the phase [W] and by how many percent of the published a0 the regenerated one differs.
-TextTable table_one_beside(const MechanicalModel& published, const MechanicalModel& regenerated,
-                           TableIntervals intervals = TableIntervals::absent);
+TextTable table_one_comparison(const MechanicalModel& published, const MechanicalModel& regenerated,
+                               TableIntervals intervals = TableIntervals::absent);
 
 /// Table I as a LaTeX table environment like the paper's: its caption on top, coefficients as $a_0$ ...
 /// $\xi$, numbers in mathematical mode, 95 % intervals in brackets. Needs the package booktabs (a comment says so).

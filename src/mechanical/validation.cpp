@@ -23,7 +23,7 @@ struct Others {
     std::vector<FlightSamples> samples;
     flight::PerPhase<std::vector<PhaseSamples>> phases;
     std::optional<PhysicalModel> physical;
-    flight::PerPhase<std::optional<PhaseForecast>> forecasts;  ///< made where one is asked for
+    flight::PerPhase<std::optional<WeightedPhase>> forecasts;  ///< made where one is asked for
 };
 
 /// One phase of the excluded flight, and the others that have this phase.
@@ -36,7 +36,7 @@ struct Fold {
     const ModelFitOptions& options;
 };
 
-const PhaseForecast& forecast_of_others(const Fold& fold) {
+const WeightedPhase& forecast_of_others(const Fold& fold) {
     auto& forecast = fold.all.forecasts[fold.phase];
     if (!forecast) {
         const auto fitted = fit_phase_model(fold.phase, fold.others, fold.options);
@@ -66,11 +66,11 @@ void add_covariates(Estimates& estimates, const Fold& fold, std::span<const Cova
 /// By the motion that was flown.
 std::optional<EnergyEstimate> physical_estimate(const MeasuredFlight& flight, const Fold& fold) {
     if (!fold.all.physical || flight.motion.bins.empty()) return std::nullopt;
-    std::vector<MotionBin> bins;
+    std::vector<FlightBin> bins;
     for (const auto& bin : flight.motion.bins)
         if (bin.phase == fold.phase) bins.push_back(bin);
     if (bins.empty()) return energy_of(constant_mean(fold.others), fold.flown.duration_s);
-    return predict_by_motion(*fold.all.physical, mean_values(bins), fold.flown.duration_s);
+    return predict_physical(*fold.all.physical, mean_values(bins), fold.flown.duration_s);
 }
 
 Estimates predict_phase(const Fold& fold) {
@@ -78,7 +78,7 @@ Estimates predict_phase(const Fold& fold) {
     const auto mean = constant_mean(fold.others);
     Estimates estimates{{"fourier", predict_before_flight(forecast_of_others(fold), duration_s)},
                         {"constant_mean", energy_of(mean, duration_s)},
-                        {"nearest_flight", energy_of(power_of_flight(fold.others, fold.nearest), duration_s)}};
+                        {"nearest_flight", energy_of(single_flight_power(fold.others, fold.nearest), duration_s)}};
     if (fold.phase != flight::Phase::cruise) {
         estimates.emplace_back("airspeed_cubed", energy_of(mean, duration_s));
     } else if (const auto power =
@@ -102,24 +102,25 @@ Estimates predict_landing_in_flight(const Fold& fold) {
 
 Estimates predict_cruise_in_flight(const Fold& fold, const MeasuredFlight& excluded, double remaining_s) {
     const auto& flown = *excluded.flown;
-    const auto& ahead = excluded.cruise_ahead;
+    const auto& ahead = excluded.remaining_cruise;
     const auto& forecast = forecast_of_others(fold);
     const double known_wh = flown.cruise_energy_wh;
     Estimates estimates{
-        {"fourier", after(known_wh, predict_rest_before_flight(forecast, flown.cruise_s(), remaining_s))},
+        {"fourier", after(known_wh, predict_remaining_before_flight(forecast, flown.cruise_s(), remaining_s))},
         {"constant_mean", after(known_wh, energy_of(constant_mean(fold.others), remaining_s))},
-        {"nearest_flight", after(known_wh, energy_of(power_of_flight(fold.others, fold.nearest), remaining_s))}};
+        {"nearest_flight", after(known_wh, energy_of(single_flight_power(fold.others, fold.nearest), remaining_s))}};
     if (!forecast.model.level_spread) return estimates;
-    const auto update = [&](const char* name, LevelSource source) {
-        estimates.emplace_back(name, after(known_wh, predict_rest(forecast, flown, remaining_s, source).energy));
+    const auto update = [&](const char* name, CruisePrior source) {
+        estimates.emplace_back(name,
+                               after(known_wh, predict_remaining_cruise(forecast, flown, remaining_s, source).energy));
     };
-    update("in_flight", LevelSource::curve);
-    update("in_flight_constant", LevelSource::constant);
+    update("in_flight", CruisePrior::curve);
+    update("in_flight_constant", CruisePrior::constant);
     if (forecast.model.airspeed_law && flown.airspeed_cubed_m3_per_s3) {
-        update("in_flight_airspeed", LevelSource::airspeed);
+        update("in_flight_airspeed", CruisePrior::airspeed);
     }
     if (fold.all.physical && fold.all.physical->level_sd && !ahead.empty()) {
-        const auto rest = predict_rest_by_motion(*fold.all.physical, flown, mean_values(ahead), remaining_s);
+        const auto rest = predict_remaining_physical(*fold.all.physical, flown, mean_values(ahead), remaining_s);
         estimates.emplace_back("in_flight_path", after(known_wh, rest.energy));
     }
     return estimates;
@@ -146,10 +147,10 @@ FlightPrediction& prediction_of(ValidatedFlight& flight, const std::string& mode
 }
 
 /// std::nullopt where the flights' motion does not tell their power.
-std::optional<PhysicalModel> physical_model_of(std::span<const FlightMotion> flights) {
+std::optional<PhysicalModel> physical_model_of(std::span<const BinnedFlight> flights) {
     try {
         return fit_physical_model(flights).model;
-    } catch (const NoAnswerError&) {
+    } catch (const NoResultError&) {
         return std::nullopt;
     }
 }
@@ -158,7 +159,7 @@ std::optional<PhysicalModel> physical_model_of(std::span<const FlightMotion> fli
 Others others_of(std::span<const MeasuredFlight> flights, std::span<const FlightSamples> samples,
                  const std::vector<std::size_t>& excluded) {
     Others others;
-    std::vector<FlightMotion> motions;
+    std::vector<BinnedFlight> motions;
     for (std::size_t i = 0; i < flights.size(); ++i) {
         if (std::ranges::binary_search(excluded, i)) continue;
         others.samples.push_back(samples[i]);
@@ -203,9 +204,9 @@ bool was_predicted(const ValidatedFlight& flight, std::optional<flight::Phase> p
 std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights, const ModelFitOptions& options,
                                            std::span<const Covariate> covariates,
                                            const std::function<void(std::size_t, std::size_t)>& progress,
-                                           std::size_t most_folds) {
+                                           std::size_t max_folds) {
     if (flights.size() < 2) {
-        throw NoAnswerError(fmt::format("{} flight{}: leaving one out needs 2 or more, and 3 for an interval",
+        throw NoResultError(fmt::format("{} flight{}: leaving one out needs 2 or more, and 3 for an interval",
                                         flights.size(), flights.size() == 1 ? "" : "s"));
     }
     std::set<std::string> names;
@@ -215,8 +216,8 @@ std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> fligh
     }
     std::vector<FlightSamples> samples(flights.size());
     std::ranges::transform(flights, samples.begin(), &MeasuredFlight::samples);
-    keep_scans(samples, options);
-    const auto folds = folds_of(flights.size(), std::max<std::size_t>(2, most_folds));
+    cache_scans(samples, options);
+    const auto folds = make_folds(flights.size(), std::max<std::size_t>(2, max_folds));
     std::vector<ValidatedFlight> validated(flights.size());
     std::mutex mutex;  // guards what follows
     std::size_t done = 0;
@@ -258,7 +259,7 @@ std::optional<ModelScore> score_of(std::span<const ValidatedFlight> flights, con
         ++score.flights;
         score.mean_absolute_error_wh += std::abs(error_wh);
         score.bias_wh += error_wh;
-        percent += units::percent_of(std::abs(error_wh), energy->measured_wh);
+        percent += units::percentage(std::abs(error_wh), energy->measured_wh);
         if (const auto interval = interval_95(energy->estimate)) {
             ++with_interval;
             if (interval->contains(energy->measured_wh)) ++covered;

@@ -2,7 +2,7 @@
 
 #include "flight/phase_statistics.h"
 #include "mechanical/model_fit.h"
-#include "mechanical/physical/motion_bins.h"
+#include "mechanical/physical/flight_bins.h"
 #include "mechanical/prediction.h"
 
 #include <functional>
@@ -13,8 +13,8 @@
 
 namespace flightwatt::mechanical {
 
-/// The power measured over one phase, whatever is fitted of it: straight lines between the samples, as statistics and fit
-/// have them.
+/// The power measured over one phase, whatever is fitted of it: straight lines between the samples, as statistics and
+/// fit have them.
 struct PhasePower {
     std::vector<double> time_s;  ///< since the phase began: rises from 0 to the phase's duration
     std::vector<double> power_w;
@@ -27,8 +27,8 @@ struct MeasuredFlight {
     flight::PerPhase<std::optional<double>> energy_wh;          ///< integral of the measured power
     flight::PerPhase<std::optional<double>> counter_energy_wh;  ///< what the on-board counter said
     std::optional<FlightProgress> flown;                        ///< only for a validation in flight
-    FlightMotion motion = {};                                   ///< as it was flown
-    std::vector<MotionBin> cruise_ahead = {};                   ///< of `motion`'s kind, from `flown` to the landing
+    BinnedFlight motion = {};                                   ///< as it was flown
+    std::vector<FlightBin> remaining_cruise = {};               ///< of `motion`'s kind, from `flown` to the landing
     flight::PerPhase<std::optional<PhasePower>> power = {};     ///< of its complete phases
 };
 
@@ -46,30 +46,30 @@ struct ValidatedFlight {
 };
 
 /// Of more flights than this, groups are left out together (folds_of).
-inline constexpr std::size_t most_validation_folds = 40;
+inline constexpr std::size_t max_validation_folds = 40;
 
-/// Excludes each flight in turn (or each of `most_folds` groups), fits the others and predicts the energy of its phases
+/// Excludes each flight in turn (or each of `max_folds` groups), fits the others and predicts the energy of its phases
 /// from their durations alone. A phase that no other flight has is not predicted. Models:
 ///   fourier          the model of this project (fit_phase_model)
 ///   constant_mean    the mean power of the other flights
 ///   nearest_flight   the mean power of the flight with the nearest durations
-///   airspeed_cubed   cruise: the LevelLaw of airspeed_cubed at the airspeed that was flown, as if it had been
+///   airspeed_cubed   cruise: the CovariateRegression of airspeed_cubed at the airspeed that was flown, as if it had been
 ///                    known; other phases as constant_mean; only if the flight and two others measured airspeed
 ///   physical         fit_physical_model of the others at the motion that was flown, as if it had been known; a
 ///                    phase without bins as constant_mean; only if the flight and another have bins
 ///   by_NAME          cruise: power_by_covariate, for each of `covariates`; other phases as constant_mean
 /// Where a flight has `flown`, the take-off is past and not predicted; what the models above (without airspeed_cubed
 /// and covariates) say of the rest of the cruise is added to what was measured until then, and beside them
-///   in_flight            predict_rest by the curve
-///   in_flight_constant   predict_rest by the curve's mean
-///   in_flight_airspeed   predict_rest by the airspeed so far and the others' later airspeed
-///   in_flight_path       predict_path: the rest's airspeed and climb as flown, as if they had been known
+///   in_flight            predict_remaining_cruise by the curve
+///   in_flight_constant   predict_remaining_cruise by the curve's mean
+///   in_flight_airspeed   predict_remaining_cruise by the airspeed so far and the others' later airspeed
+///   in_flight_path       predict_posterior_power: the rest's airspeed and climb as flown, as if they had been known
 /// `progress` is told how many of how many folds are done, by one thread at a time.
-/// Throws NoAnswerError for fewer than 2 flights, and what fit_phase_model throws.
+/// Throws NoResultError for fewer than 2 flights, and what fit_phase_model throws.
 std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights, const ModelFitOptions& options = {},
                                            std::span<const Covariate> covariates = {},
                                            const std::function<void(std::size_t, std::size_t)>& progress = {},
-                                           std::size_t most_folds = most_validation_folds);
+                                           std::size_t max_folds = max_validation_folds);
 
 /// How one model did over the flights, in one phase or in the whole.
 struct ModelScore {
@@ -106,7 +106,7 @@ inline constexpr double least_gain_of_curve = 0.05;
 std::optional<ModelValidation> validation_of(std::vector<ValidatedFlight> flights);
 
 /// Adds to a fitted model its validation, and the physical model if that is not rejected. Of more than
-/// most_validation_folds flights so many are validated, evenly from all. Adds nothing where weights were given by hand,
+/// max_validation_folds flights so many are validated, evenly from all. Adds nothing where weights were given by hand,
 /// which are the curves', nor for fewer than 2 flights or folds that cannot be fitted.
 void add_best_power(MechanicalModel& model, std::span<const MeasuredFlight> flights, const ModelFitOptions& options,
                     const std::function<void(std::size_t, std::size_t)>& progress = {});

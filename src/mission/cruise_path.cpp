@@ -10,11 +10,11 @@
 namespace flightwatt::mission {
 namespace {
 
-constexpr double same_power_part = 1e-12;
+constexpr double same_power_fraction = 1e-12;
 
 /// Neighbours of the same power are one piece.
-PowerPieces power_pieces(const mechanical::PhysicalModel& model, const FlownPath& flown, double factor) {
-    PowerPieces pieces;
+PiecewisePower power_pieces(const mechanical::PhysicalModel& model, const PathTrajectory& flown, double factor) {
+    PiecewisePower pieces;
     for (const auto& [time_s, motion, element] : flown.pieces) {
         const double power_w = factor * mechanical::power_w(model, motion);
         if (pieces.empty()) {
@@ -23,7 +23,7 @@ PowerPieces power_pieces(const mechanical::PhysicalModel& model, const FlownPath
         }
         auto& last = pieces.back();
         const double end_s = last.end_s + time_s;
-        if (std::abs(power_w - last.power_w) <= same_power_part * std::abs(last.power_w)) {
+        if (std::abs(power_w - last.power_w) <= same_power_fraction * std::abs(last.power_w)) {
             last.end_s = end_s;
         } else {
             const double energy_j = last.energy_before_j + last.power_w * (last.end_s - last.start_s);
@@ -34,17 +34,18 @@ PowerPieces power_pieces(const mechanical::PhysicalModel& model, const FlownPath
 }
 
 /// "12.1 to 14.9 m/s".
-std::string range_text(const mechanical::MotionRange& range) {
+std::string range_text(const mechanical::FlownRange& range) {
     return fmt::format("{:.4g} to {:.4g} m/s", range.low, range.high);
 }
 
 }  // namespace
 
-CruisePath fly_cruise(std::shared_ptr<const PathPlan> plan, const Wind& wind, ForbiddenLeg forbidden, double factor) {
-    const auto flown = fly_path(plan->path, wind, forbidden);
+CruisePath compute_cruise(std::shared_ptr<const PlannedPath> plan, const Wind& wind, InfeasibleLegPolicy forbidden,
+                          double factor) {
+    const auto flown = compute_trajectory(plan->path, wind, forbidden);
     CruisePath cruise;
-    cruise.pieces = std::make_shared<const PowerPieces>(power_pieces(plan->power, flown, factor));
-    cruise.is_forbidden = flown.blown.has_value();
+    cruise.pieces = std::make_shared<const PiecewisePower>(power_pieces(plan->power, flown, factor));
+    cruise.is_infeasible = flown.infeasible_element.has_value();
     cruise.plan = std::move(plan);
     return cruise;
 }
@@ -55,23 +56,23 @@ double energy_j(const CruisePath& cruise) { return energy_until_j(*cruise.pieces
 
 double mean_power_w(const CruisePath& cruise) { return energy_j(cruise) / duration_s(cruise); }
 
-const PowerPiece& piece_at(const PowerPieces& pieces, double time_s) {
-    const auto after = std::ranges::upper_bound(pieces, time_s, {}, &PowerPiece::start_s);
+const PowerSegment& segment_at(const PiecewisePower& pieces, double time_s) {
+    const auto after = std::ranges::upper_bound(pieces, time_s, {}, &PowerSegment::start_s);
     return after == pieces.begin() ? pieces.front() : *(after - 1);
 }
 
-double energy_until_j(const PowerPieces& pieces, double time_s) {
-    const auto& piece = piece_at(pieces, time_s);
+double energy_until_j(const PiecewisePower& pieces, double time_s) {
+    const auto& piece = segment_at(pieces, time_s);
     return piece.energy_before_j + piece.power_w * (time_s - piece.start_s);
 }
 
-std::vector<FlownElement> flown_elements(const PathPlan& plan) {
-    const auto flown = fly_path(plan.path, plan.wind);
-    std::vector<FlownElement> elements;
+std::vector<PathElementResult> path_element_results(const PlannedPath& plan) {
+    const auto flown = compute_trajectory(plan.path, plan.wind);
+    std::vector<PathElementResult> elements;
     double start_s = 0.0;
     for (std::size_t i = 0; i < plan.path.elements.size(); ++i) {
         const auto& element = plan.path.elements[i];
-        FlownElement row;
+        PathElementResult row;
         row.name = element.name;
         row.kind = "hold";
         row.start_s = start_s;
@@ -102,17 +103,17 @@ std::vector<FlownElement> flown_elements(const PathPlan& plan) {
     return elements;
 }
 
-mechanical::TermValues mean_terms(const mechanical::PhysicalModel& model, const FlownPath& flown) {
+mechanical::TermValues mean_terms(const mechanical::PhysicalModel& model, const PathTrajectory& flown) {
     mechanical::TermValues sums;
     for (const auto& piece : flown.pieces) {
-        const auto terms = mechanical::terms_of(piece.motion);
-        if (power_of_terms_w(model, terms) < 0.0) continue;
+        const auto terms = mechanical::term_values(piece.motion);
+        if (sum_of_terms_w(model, terms) < 0.0) continue;
         for (const auto term : mechanical::all_power_terms) sums[term] += terms[term] * piece.time_s / flown.duration_s;
     }
     return sums;
 }
 
-mechanical::PhysicalModel model_of_law(const mechanical::LevelLaw& law) {
+mechanical::PhysicalModel physical_model_from_drag(const mechanical::CovariateRegression& law) {
     const double coefficient = law.mean_power_w / law.mean;
     mechanical::PhysicalModel model;
     model.terms = {mechanical::PowerTerm::drag};
@@ -130,41 +131,41 @@ mechanical::PhysicalModel model_of_law(const mechanical::LevelLaw& law) {
     return model;
 }
 
-std::vector<std::string> path_warnings(const PathPlan& plan, const FlownPath& flown) {
+std::vector<std::string> path_warnings(const PlannedPath& plan, const PathTrajectory& flown) {
     constexpr double steep_load_factor = 2.0;  // a bank of 60 degrees
     constexpr double felt_load_factor = 1.1;   // a tenth more lift is a fifth more drag of lift
-    constexpr std::size_t most_named = 3;
+    constexpr std::size_t max_named = 3;
     std::vector<std::string> warnings;
     std::size_t warned = plan.path.elements.size();
     std::size_t extrapolated = 0;
     bool is_steep = false;
-    double most_load_factor = 1.0;
+    double max_load_factor = 1.0;
     for (const auto& [time_s, motion, element] : flown.pieces) {
         const auto& name = plan.path.elements[element].name;
-        if (element != warned && !was_flown(plan.power, motion)) {
+        if (element != warned && !is_within_flown_range(plan.power, motion)) {
             warned = element;
-            if (++extrapolated > most_named) continue;
+            if (++extrapolated > max_named) continue;
             warnings.push_back(fmt::format(
                 "{}: {:.4g} m/s with a climb of {:.3g} m/s is beyond what the model's flights flew ({}, climb {}): its power "
                 "is extrapolated",
                 name, motion.airspeed_m_per_s, motion.climb_m_per_s, range_text(plan.power.airspeed_m_per_s),
                 range_text(plan.power.climb_m_per_s)));
         }
-        most_load_factor = std::max(most_load_factor, motion.load_factor);
+        max_load_factor = std::max(max_load_factor, motion.load_factor);
         if (motion.load_factor > steep_load_factor && !is_steep) {
             is_steep = true;
             const double bank_deg = std::acos(1.0 / motion.load_factor) * units::degree_per_rad;
             warnings.push_back(fmt::format("{}: such a circle takes a bank of {:.0f} degrees", name, bank_deg));
         }
     }
-    if (most_load_factor > felt_load_factor && !std::ranges::count(plan.power.terms, mechanical::PowerTerm::turn)) {
+    if (max_load_factor > felt_load_factor && !std::ranges::count(plan.power.terms, mechanical::PowerTerm::turn)) {
         warnings.push_back(fmt::format(
             "its circles take up to {:.2f} times the lift of straight flight, and the model has no term for "
             "turns: they are taken to cost nothing",
-            most_load_factor));
+            max_load_factor));
     }
-    if (extrapolated > most_named)
-        warnings.push_back(fmt::format("the power of {} more is extrapolated so", extrapolated - most_named));
+    if (extrapolated > max_named)
+        warnings.push_back(fmt::format("the power of {} more is extrapolated so", extrapolated - max_named));
     return warnings;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mechanical/level_law.h"
+#include "mechanical/covariate_regression.h"
 #include "mechanical/physical_model.h"
 #include "mission/path.h"
 
@@ -11,16 +11,16 @@
 namespace flightwatt::mission {
 
 /// A part of a phase with constant mechanical power.
-struct PowerPiece {
+struct PowerSegment {
     double start_s = 0.0;  ///< since the phase began; the first starts at 0, each other where the one before ends
     double end_s = 0.0;
     double power_w = 0.0;
     double energy_before_j = 0.0;  ///< of all pieces before
 };
-using PowerPieces = std::vector<PowerPiece>;
+using PiecewisePower = std::vector<PowerSegment>;
 
 /// Where a cruise is flown, in which wind, and what its motion takes.
-struct PathPlan {
+struct PlannedPath {
     FlightPath path;
     Wind wind;
     mechanical::PhysicalModel power;
@@ -28,27 +28,27 @@ struct PathPlan {
 
 /// A cruise whose power follows from a path, and not from a curve over time. Copies are cheap.
 struct CruisePath {
-    std::shared_ptr<const PathPlan> plan;
-    std::shared_ptr<const PowerPieces> pieces;  ///< never empty
-    bool is_forbidden = false;                  ///< by a wind that was drawn: the flight fails
+    std::shared_ptr<const PlannedPath> plan;
+    std::shared_ptr<const PiecewisePower> pieces;  ///< never empty
+    bool is_infeasible = false;                    ///< by a wind that was drawn: the flight fails
 };
 
-/// A cruise as it is flown in `wind`, its power times `factor`. Throws as fly_path.
-CruisePath fly_cruise(std::shared_ptr<const PathPlan> plan, const Wind& wind, ForbiddenLeg forbidden,
-                      double factor = 1.0);
+/// A cruise as it is flown in `wind`, its power times `factor`. Throws as compute_trajectory.
+CruisePath compute_cruise(std::shared_ptr<const PlannedPath> plan, const Wind& wind, InfeasibleLegPolicy forbidden,
+                          double factor = 1.0);
 
 double duration_s(const CruisePath& cruise);
 double energy_j(const CruisePath& cruise);
 double mean_power_w(const CruisePath& cruise);
 
 /// The piece at a time of the phase; at a jump the one that starts. Times outside have the nearest.
-const PowerPiece& piece_at(const PowerPieces& pieces, double time_s);
+const PowerSegment& segment_at(const PiecewisePower& pieces, double time_s);
 
 /// The energy [J] from the start of the phase to a time within it.
-double energy_until_j(const PowerPieces& pieces, double time_s);
+double energy_until_j(const PiecewisePower& pieces, double time_s);
 
 /// One element of a path as it is flown: means over its time.
-struct FlownElement {
+struct PathElementResult {
     std::string name;      ///< "leg 3"
     std::string kind;      ///< "leg", "circles" or "hold"
     double start_s = 0.0;  ///< since the cruise began
@@ -60,18 +60,18 @@ struct FlownElement {
     double load_factor = 1.0;  ///< the root of the mean square
     double mechanical_w = 0.0;
 };
-std::vector<FlownElement> flown_elements(const PathPlan& plan);
+std::vector<PathElementResult> path_element_results(const PlannedPath& plan);
 
-/// The mean of each term of the power over the cruise, weighted by time: what uncertainty_of wants. Where the motor
-/// stands (power_w is 0) the terms count as zeros, so that their power is the mean power. Zeros for a path that takes no
-/// time.
-mechanical::TermValues mean_terms(const mechanical::PhysicalModel& model, const FlownPath& flown);
+/// The mean of each term of the power over the cruise, weighted by time: what prediction_uncertainty wants. Where the
+/// motor stands (power_w is 0) the terms count as zeros, so that their power is the mean power. Zeros for a path that
+/// takes no time.
+mechanical::TermValues mean_terms(const mechanical::PhysicalModel& model, const PathTrajectory& flown);
 
 /// The model that a law of airspeed cubed makes, for level flight alone (docs/methods.md, Eq. 23).
-mechanical::PhysicalModel model_of_law(const mechanical::LevelLaw& law);
+mechanical::PhysicalModel physical_model_from_drag(const mechanical::CovariateRegression& law);
 
 /// For people: the elements that the model's flights did not fly so, and banks above 60 degrees; empty if there are
 /// none.
-std::vector<std::string> path_warnings(const PathPlan& plan, const FlownPath& flown);
+std::vector<std::string> path_warnings(const PlannedPath& plan, const PathTrajectory& flown);
 
 }  // namespace flightwatt::mission

@@ -108,7 +108,7 @@ void refuse_nothing(const TomlTable& entry) {
 
 }  // namespace
 
-battery::Battery disturbed(battery::Battery battery, const Disturbances& disturbances) {
+battery::Battery apply_disturbances(battery::Battery battery, const Disturbances& disturbances) {
     for (const auto& disturbance : disturbances) {
         battery.capacity_ah *= disturbance.capacity_factor;
         battery.resistance_ohm *= disturbance.resistance_factor;

@@ -25,7 +25,7 @@ struct Disturbance {
 using Disturbances = std::vector<Disturbance>;
 
 /// The pack as it really is.
-battery::Battery disturbed(battery::Battery battery, const Disturbances& disturbances);
+battery::Battery apply_disturbances(battery::Battery battery, const Disturbances& disturbances);
 
 /// The disturbances at the same part of the same phase when phases take other durations.
 Disturbances rescale_to_flown_durations(Disturbances disturbances, const PerPhase<double>& planned_s,

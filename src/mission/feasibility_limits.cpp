@@ -64,7 +64,7 @@ Mission with_capacity(Mission mission, double capacity_ah) {
 }
 
 /// Whether the schedule fits into a cruise; what else is wrong with a mission was seen when it was first read.
-std::optional<Mission> if_it_fits(const MissionOfCruise& mission_of, double cruise_s) {
+std::optional<Mission> if_it_fits(const MissionForCruise& mission_of, double cruise_s) {
     try {
         return with_minimum_energy_schedule(mission_of(cruise_s));
     } catch (const InputError&) {
@@ -73,7 +73,7 @@ std::optional<Mission> if_it_fits(const MissionOfCruise& mission_of, double crui
 }
 
 /// A schedule that was planned says what runs for as long as it was planned, and no longer.
-void require_fit(const MissionOfCruise& mission_of, double cruise_s) {
+void require_fit(const MissionForCruise& mission_of, double cruise_s) {
     try {
         with_minimum_energy_schedule(mission_of(cruise_s));
     } catch (const InputError& error) {
@@ -83,12 +83,12 @@ void require_fit(const MissionOfCruise& mission_of, double cruise_s) {
 }
 
 /// A cruise short enough to land with the reserve, below `too_long_s`.
-double short_enough_s(const MissionOfCruise& mission_of, double too_long_s) {
+double short_enough_s(const MissionForCruise& mission_of, double too_long_s) {
     double fits_s = too_long_s;
     double too_short_s = 0.0;
     for (double cruise_s = too_long_s / 2.0; cruise_s >= shortest_cruise_s;) {
         if (const auto mission = if_it_fits(mission_of, cruise_s)) {
-            if (spare_percent(*mission) >= 0.0) return cruise_s;
+            if (surplus_percent(*mission) >= 0.0) return cruise_s;
             fits_s = cruise_s;
         } else {
             too_short_s = cruise_s;
@@ -96,14 +96,14 @@ double short_enough_s(const MissionOfCruise& mission_of, double too_long_s) {
         cruise_s = (fits_s + too_short_s) / 2.0;
         if (too_short_s > 0.0 && fits_s - too_short_s < 1e-6 * fits_s) break;
     }
-    throw NoAnswerError(
+    throw NoResultError(
         fmt::format("even with a cruise of {:.6g} s, the shortest that fits the schedule, the "
                     "mission does not land with its reserve",
                     fits_s));
 }
 
 /// `problem` or mission with a reserve so much higher.
-AnyMission with_margin(AnyMission mission, double margin_percent) {
+MissionVariant with_margin(MissionVariant mission, double margin_percent) {
     std::visit([&](MissionSetup& setup) { setup.reserve_soc_percent += margin_percent; }, mission);
     return mission;
 }
@@ -124,40 +124,40 @@ struct AnswerWithMargin {
 /// the flight as stated. Where its flights fail from one value to the next, the last with which they do not.
 AnswerWithMargin answer_with_chance(const MarginQuestion& question, const std::optional<double>& probability) {
     constexpr int rounds = 40;
-    constexpr double close_part = 2e-4;  // of the flights' deviation
+    constexpr double close_fraction = 2e-4;  // of the flights' deviation
     if (!probability) return {question.answer(0.0), 0.0};
     MarginSearch search(0.0);
     std::optional<AnswerWithMargin> last;
-    std::optional<NoAnswerError> none;
-    std::optional<LandingChance> least_below;
-    for (int round = 0; round < rounds && !search.is_exhausted(); ++round) {
+    std::optional<NoResultError> none;
+    std::optional<FailureProbability> min_below;
+    for (int round = 0; round < rounds && !search.has_converged(); ++round) {
         const double margin_percent = search.margin_percent();
         try {
             const double value = question.answer(margin_percent);
             const auto mission = question.mission_of(value);
             require_known_spread(mission);
-            const auto landing = landing_chance(mission, find_spreads(mission), *probability);
-            if (!least_below || landing.below < least_below->below) least_below = landing;
+            const auto landing = failure_probability(mission, collect_uncertainty(mission), *probability);
+            if (!min_below || landing.below < min_below->below) min_below = landing;
             const double slack_percent = landing.spare_percent(*probability);
-            if (slack_percent < 0.0) search.learn_kept(landing.stated_spare_percent);
-            search.learn(slack_percent, 0.0);
-            const bool is_close = std::abs(slack_percent) <= close_part * landing.sd_percent ||
+            if (slack_percent < 0.0) search.raise_lower_bound(landing.stated_spare_percent);
+            search.add_result(slack_percent, 0.0);
+            const bool is_close = std::abs(slack_percent) <= close_fraction * landing.sd_percent ||
                                   std::abs(landing.below - (1.0 - *probability)) <= landing.resolution;
             if (slack_percent >= 0.0 || is_close)
                 last = {value, std::max(0.0, landing.stated_spare_percent - slack_percent)};
             if (is_close) break;
-        } catch (const NoAnswerError& error) {
+        } catch (const NoResultError& error) {
             none = error;
-            search.learn_too_much();
+            search.mark_infeasible();
         }
     }
     if (last) return *last;
-    if (!least_below) throw none.value_or(NoAnswerError("no answer lands with the reserve often enough"));
-    throw NoAnswerError(fmt::format(
+    if (!min_below) throw none.value_or(NoResultError("no answer lands with the reserve often enough"));
+    throw NoResultError(fmt::format(
         "no answer lands with the reserve in {:.4g} % of flights: with the one that came nearest {:.3g} % do "
         "not (standard error {:.2g} %)",
-        units::percent_of(*probability, 1.0), units::percent_of(least_below->below, 1.0),
-        units::percent_of(least_below->standard_error, 1.0)));
+        units::percentage(*probability, 1.0), units::percentage(min_below->below, 1.0),
+        units::percentage(min_below->standard_error, 1.0)));
 }
 
 }  // namespace
@@ -169,34 +169,34 @@ FeasibilityLimit limit_at(double value, double margin_percent, const Mission& at
     most.final_soc_percent = simulate(at).summary.final_soc_percent.value_or(0.0);
     most.residual_percent = most.final_soc_percent - margin_percent - at.reserve_soc_percent;
     const auto further = simulate(beyond).summary;
-    most.limited_by = further.undeliverable  ? FeasibilityBound::power
-                      : further.cut_off_at_s ? FeasibilityBound::cut_off
-                                             : FeasibilityBound::charge;
+    most.limited_by = further.undeliverable  ? LimitingFactor::power
+                      : further.cut_off_at_s ? LimitingFactor::cut_off
+                                             : LimitingFactor::charge;
     return most;
 }
 
-std::string to_string(FeasibilityBound bound) {
+std::string to_string(LimitingFactor bound) {
     constexpr std::array names{"charge", "power", "cut-off"};
     return names.at(static_cast<std::size_t>(bound));
 }
 
-double spare_percent(const Mission& mission) {
+double surplus_percent(const Mission& mission) {
     if (!mission.battery.thevenin) {
         const auto table = make_depletion_table(mission, configurations_of(mission.schedule));
-        if (const auto soc = soc_after(table, tabled(mission.schedule, table)))
+        if (const auto soc = soc_after_schedule(table, to_indexed(mission.schedule, table)))
             return *soc - mission.reserve_soc_percent;
     }
     const auto summary = simulate(mission).summary;
     if (summary.feasible) return *summary.final_soc_percent - mission.reserve_soc_percent;
     return -mission.reserve_soc_percent -
-           units::percent_of(summary.duration_s - powered_until_s(summary), summary.duration_s) - 1e-9;
+           units::percentage(summary.duration_s - powered_end_s(summary), summary.duration_s) - 1e-9;
 }
 
 namespace {
 
-double longest_cruise_s_of(const MissionOfCruise& mission_of) {
+double max_cruise_s_of(const MissionForCruise& mission_of) {
     const auto spare_of = [&](double cruise_s) {
-        return spare_percent(with_minimum_energy_schedule(mission_of(cruise_s)));
+        return surplus_percent(with_minimum_energy_schedule(mission_of(cruise_s)));
     };
     // From a length that fits: schedules may need so much, never so little.
     double fits_s = shortest_cruise_s;
@@ -208,21 +208,21 @@ double longest_cruise_s_of(const MissionOfCruise& mission_of) {
     else
         bracket = bracket_of(spare_of, {fits_s, 2.0 * fits_s}, 2.0, longest_cruise_s);
     if (!bracket.bad)
-        throw NoAnswerError(fmt::format("a cruise of {:.3g} s still lands with the reserve", bracket.good));
+        throw NoResultError(fmt::format("a cruise of {:.3g} s still lands with the reserve", bracket.good));
     return last_good(spare_of, bracket.good, *bracket.bad);
 }
 
 }  // namespace
 
-FeasibilityLimit longest_cruise(const MissionOfCruise& mission_of, const std::optional<double>& probability) {
+FeasibilityLimit longest_cruise(const MissionForCruise& mission_of, const std::optional<double>& probability) {
     const auto mission_at = [&](double cruise_s) { return with_minimum_energy_schedule(mission_of(cruise_s)); };
-    const auto longest_s = [&](double margin_percent) {
-        return longest_cruise_s_of([&](double cruise_s) { return with_margin(mission_of(cruise_s), margin_percent); });
+    const auto max_s = [&](double margin_percent) {
+        return max_cruise_s_of([&](double cruise_s) { return with_margin(mission_of(cruise_s), margin_percent); });
     };
-    const auto [cruise_s, margin_percent] = answer_with_chance({longest_s, mission_at}, probability);
+    const auto [cruise_s, margin_percent] = answer_with_chance({max_s, mission_at}, probability);
     const double beyond_s = std::nextafter(cruise_s, longest_cruise_s) * (1.0 + 1e-9);
     auto most = limit_at(cruise_s, margin_percent, mission_at(cruise_s), mission_at(beyond_s));
-    if (probability) most.sources = find_spreads(mission_at(cruise_s)).sources;
+    if (probability) most.sources = collect_uncertainty(mission_at(cruise_s)).sources;
     return most;
 }
 
@@ -239,36 +239,36 @@ Mission with_payload(const Mission& mission, double payload_w) {
 namespace {
 
 double largest_payload_w_of(const Mission& bare) {
-    const auto spare_of = [&](double payload_w) { return spare_percent(with_payload(bare, payload_w)); };
+    const auto spare_of = [&](double payload_w) { return surplus_percent(with_payload(bare, payload_w)); };
     if (const double spare = spare_of(0.0); spare < 0.0) {
         if (const auto summary = simulate(bare).summary; !summary.feasible)
-            throw NoAnswerError("without any payload already: " + describe(summary));
-        throw NoAnswerError(
+            throw NoResultError("without any payload already: " + describe(summary));
+        throw NoResultError(
             fmt::format("without any payload the mission misses its reserve by {:.4g} points already", -spare));
     }
     const auto bracket = bracket_of(spare_of, {0.0, 1.0}, 2.0, largest_payload_w);
     if (!bracket.bad)
-        throw NoAnswerError(fmt::format("a payload of {:.3g} W still lands with the reserve", bracket.good));
+        throw NoResultError(fmt::format("a payload of {:.3g} W still lands with the reserve", bracket.good));
     return last_good(spare_of, bracket.good, *bracket.bad);
 }
 
 /// None if no capacity is enough.
-std::optional<double> least_capacity_ah_of(const Mission& bare) {
-    constexpr double most_times = 1000.0;
-    const auto spare_of = [&](double capacity_ah) { return spare_percent(with_capacity(bare, capacity_ah)); };
+std::optional<double> min_capacity_ah_of(const Mission& bare) {
+    constexpr double max_times = 1000.0;
+    const auto spare_of = [&](double capacity_ah) { return surplus_percent(with_capacity(bare, capacity_ah)); };
     const double own_ah = bare.battery.capacity_ah;
     double good_ah = own_ah;
     while (spare_of(good_ah) < 0.0) {
         good_ah *= 2.0;
-        if (good_ah > most_times * own_ah) return std::nullopt;
+        if (good_ah > max_times * own_ah) return std::nullopt;
     }
-    const auto bracket = bracket_of(spare_of, {good_ah, good_ah / 2.0}, 0.5, own_ah / most_times);
+    const auto bracket = bracket_of(spare_of, {good_ah, good_ah / 2.0}, 0.5, own_ah / max_times);
     return bracket.bad ? last_good(spare_of, bracket.good, *bracket.bad) : bracket.good;
 }
 
 }  // namespace
 
-FeasibilityLimit largest_payload(const AnyMission& mission, const std::optional<double>& probability) {
+FeasibilityLimit largest_payload(const MissionVariant& mission, const std::optional<double>& probability) {
     const auto bare = with_minimum_energy_schedule(mission);
     const auto mission_at = [&](double payload_w) { return with_payload(bare, payload_w); };
     const auto largest_w = [&](double margin_percent) {
@@ -276,30 +276,30 @@ FeasibilityLimit largest_payload(const AnyMission& mission, const std::optional<
     };
     const auto [payload_w, margin_percent] = answer_with_chance({largest_w, mission_at}, probability);
     auto most = limit_at(payload_w, margin_percent, mission_at(payload_w), mission_at(payload_w * (1.0 + 1e-9) + 1e-9));
-    if (probability) most.sources = find_spreads(bare).sources;
+    if (probability) most.sources = collect_uncertainty(bare).sources;
     return most;
 }
 
-std::optional<double> least_capacity_ah(const AnyMission& mission, const std::optional<double>& probability) {
+std::optional<double> min_capacity_ah(const MissionVariant& mission, const std::optional<double>& probability) {
     const auto bare = with_minimum_energy_schedule(mission);
-    const auto least_ah = [&](double margin_percent) {
-        const auto capacity_ah = least_capacity_ah_of(std::get<Mission>(with_margin(bare, margin_percent)));
-        if (!capacity_ah) throw NoAnswerError("no capacity is enough");
+    const auto min_ah = [&](double margin_percent) {
+        const auto capacity_ah = min_capacity_ah_of(std::get<Mission>(with_margin(bare, margin_percent)));
+        if (!capacity_ah) throw NoResultError("no capacity is enough");
         return *capacity_ah;
     };
     try {
-        return answer_with_chance({least_ah, [&](double ah) { return with_capacity(bare, ah); }}, probability).value;
-    } catch (const NoAnswerError&) {
+        return answer_with_chance({min_ah, [&](double ah) { return with_capacity(bare, ah); }}, probability).value;
+    } catch (const NoResultError&) {
         return std::nullopt;
     }
 }
 
 namespace {
 
-std::optional<double> cruise_that_lands(const MissionOfCruise& mission_of, const std::optional<double>& probability) {
+std::optional<double> cruise_that_lands(const MissionForCruise& mission_of, const std::optional<double>& probability) {
     try {
         return longest_cruise(mission_of, probability).value;
-    } catch (const NoAnswerError&) {
+    } catch (const NoResultError&) {
         return std::nullopt;
     }
 }
@@ -308,21 +308,21 @@ std::optional<double> spare_without_fixed(PlanningProblem problem, const std::op
     if (problem.fixed.empty()) return std::nullopt;
     problem.fixed.clear();
     const auto least = with_minimum_energy_schedule(problem);
-    const double spare = probability
-                             ? landing_chance(least, find_spreads(least), *probability).spare_percent(*probability)
-                             : spare_percent(least);
+    const double spare =
+        probability ? failure_probability(least, collect_uncertainty(least), *probability).spare_percent(*probability)
+                    : surplus_percent(least);
     return spare < 0.0 ? std::nullopt : std::optional(spare);
 }
 
 }  // namespace
 
-bool cruise_differs(const MissionSetup& mission) {
+bool cruise_duration_varies(const MissionSetup& mission) {
     return !mission.duration_is_stated[Phase::cruise] && !mission.uncertainty.duration_sd_s[Phase::cruise] &&
-           find_spreads(mission).duration_sd_s[Phase::cruise] > 0.0;
+           collect_uncertainty(mission).duration_sd_s[Phase::cruise] > 0.0;
 }
 
-std::string describe_stated_cruise(double longest_s, double now_s) {
-    const double stated_s = std::floor(longest_s * 10.0) / 10.0;  // as it is printed, it has to do
+std::string describe_stated_cruise(double max_s, double now_s) {
+    const double stated_s = std::floor(max_s * 10.0) / 10.0;  // as it is printed, it has to do
     return fmt::format(
         "a stated cruise of at most {} (duration_s = {{ cruise = {:.1f} }}: the {} of the model's flights differ from "
         "flight to flight)",
@@ -330,17 +330,17 @@ std::string describe_stated_cruise(double longest_s, double now_s) {
 }
 
 InfeasibilityReport infeasibility_report(const PlanningProblem& problem, const MissionPlan& plan,
-                                         const MissionOfCruise& mission_of, const std::optional<double>& probability) {
+                                         const MissionForCruise& mission_of, const std::optional<double>& probability) {
     InfeasibilityReport report;
     const double possible = plan.plan.final_soc_percent - plan.margin_percent;
-    report.short_percent = problem.reserve_soc_percent - possible;
-    report.short_wh = units::part_of(full_energy_wh(problem.battery), report.short_percent);
+    report.shortfall_percent = problem.reserve_soc_percent - possible;
+    report.shortfall_wh = units::amount_from_percent(full_energy_wh(problem.battery), report.shortfall_percent);
     report.cut_off_at_s = plan.summary.cut_off_at_s;
     report.cruise_s = cruise_that_lands(mission_of, probability);
-    report.cruise_differs_now = probability && cruise_differs(problem);
-    report.fixed_spare_percent = spare_without_fixed(problem, probability);
+    report.cruise_differs_now = probability && cruise_duration_varies(problem);
+    report.min_fixed_surplus_percent = spare_without_fixed(problem, probability);
     if (possible >= 0.0 && plan.summary.feasible) report.reserve_soc_percent = possible;
-    report.capacity_ah = least_capacity_ah(problem, probability);
+    report.capacity_ah = min_capacity_ah(problem, probability);
     return report;
 }
 
@@ -360,9 +360,9 @@ std::string cruise_remedy(const MissionSetup& mission, const InfeasibilityReport
 std::string describe(const MissionSetup& mission, const InfeasibilityReport& report) {
     std::vector<std::string> remedies;
     if (report.cruise_s) remedies.push_back(cruise_remedy(mission, report));
-    if (report.fixed_spare_percent) {
+    if (report.min_fixed_surplus_percent) {
         remedies.push_back(fmt::format("lower quality where it is fixed (the least leaves {:.2f} points to spare)",
-                                       *report.fixed_spare_percent));
+                                       *report.min_fixed_surplus_percent));
     }
     if (report.reserve_soc_percent)
         remedies.push_back(fmt::format("a reserve of at most {:.2f} %", *report.reserve_soc_percent));
@@ -374,7 +374,7 @@ std::string describe(const MissionSetup& mission, const InfeasibilityReport& rep
         "no schedule lands with the reserve: the one that demands least energy is {}short by {:.2f} points "
         "({:.3f} Wh)",
         report.cut_off_at_s ? fmt::format("cut off after {}, ", duration_text(*report.cut_off_at_s)) : "",
-        report.short_percent, report.short_wh);
+        report.shortfall_percent, report.shortfall_wh);
     if (!remedies.empty()) text += fmt::format("; any one of these would do: {}", fmt::join(remedies, ", "));
     return text;
 }

@@ -8,7 +8,7 @@
 
 namespace flightwatt::mission {
 
-const MissionSetup& setup_of(const AnyMission& mission) {
+const MissionSetup& setup_of(const MissionVariant& mission) {
     return std::visit([](const MissionSetup& setup) -> const MissionSetup& { return setup; }, mission);
 }
 

@@ -47,12 +47,12 @@ struct MissionSetup {
     std::string file;
     std::string name;
     std::optional<mechanical::MechanicalModel> mechanical;  ///< none: computing alone
-    mechanical::PhaseClock phase_clock = mechanical::PhaseClock::stretched;
+    mechanical::PhaseTimeScaling phase_clock = mechanical::PhaseTimeScaling::stretched;
     /// The cruise's mean power under the stated conditions, or along its path; the cruise has this level then.
     std::optional<mechanical::ConstantPower> cruise_level = {};
     std::optional<CruisePath> cruise_path = {};  ///< what the cruise's power is then, instead of the model's curve
     /// Of a flight that was flown: the power of its phases as it was measured, instead of what model and path say.
-    PerPhase<std::shared_ptr<const PowerPieces>> measured = {};
+    PerPhase<std::shared_ptr<const PiecewisePower>> measured_power = {};
     PerPhase<double> duration_s;        ///< 0: the phase is not flown
     PerPhase<bool> duration_is_stated;  ///< by the mission, and not its model's: all flights take so long
     battery::Battery battery;
@@ -82,10 +82,10 @@ struct ComponentChoices {
 
 /// How a mission's schedule may be planned.
 struct PlanSettings {
-    double slot_s = 10.0;                         ///< QoS may change at its multiples, counted from each phase's start
-    double dwell_s = 0.0;                         ///< a configuration once chosen stays at least so long
-    std::vector<ComponentChoices> choices;        ///< one a component
-    PerPhase<double> slot_part{{1.0, 1.0, 1.0}};  ///< of slot_s, where a phase takes another time than was planned
+    double slot_s = 10.0;                          ///< QoS may change at its multiples, counted from each phase's start
+    double dwell_s = 0.0;                          ///< a configuration once chosen stays at least so long
+    std::vector<ComponentChoices> choices;         ///< one a component
+    PerPhase<double> slot_scale{{1.0, 1.0, 1.0}};  ///< of slot_s, where a phase takes another time than was planned
 };
 
 /// How a schedule is made in flight; mission/replanning/adaptive_flight.h says what the numbers do.
@@ -105,9 +105,9 @@ struct PlanningProblem : MissionSetup {
 };
 
 /// What a mission file may hold.
-using AnyMission = std::variant<Mission, PlanningProblem>;
+using MissionVariant = std::variant<Mission, PlanningProblem>;
 
-const MissionSetup& setup_of(const AnyMission& mission);
+const MissionSetup& setup_of(const MissionVariant& mission);
 
 double utility_per_s(const Utility& utility, const std::vector<double>& qos);
 

@@ -11,8 +11,8 @@
 namespace flightwatt::mission {
 
 /// What else than the file decides how a mission is read.
-struct MissionReading {
-    bool may_lack_schedule = false;       ///< accept a mission that is yet to be planned
+struct MissionReadOptions {
+    bool allow_unplanned = false;         ///< accept a mission that is yet to be planned
     std::optional<double> cruise_s = {};  ///< fly the cruise this long, whatever the file says
     // Of a path: fly the last circles of it so often; or turn back after so many metres of legs.
     std::optional<double> circles = {};
@@ -24,10 +24,11 @@ struct MissionReading {
 /// refused where `reading` does not accept it. Paths are relative to the mission file. Throws InputError, placed in
 /// the file that is wrong, for a missing file, a key missing, unknown or out of range, and whatever schedules and
 /// models refuse.
-AnyMission read_mission(const std::filesystem::path& path, const MissionReading& reading = {});
+MissionVariant read_mission(const std::filesystem::path& path, const MissionReadOptions& reading = {});
 
 /// The same from text; `path` names it and is where relative paths start.
-AnyMission parse_mission(std::string_view text, const std::filesystem::path& path, const MissionReading& reading = {});
+MissionVariant parse_mission(std::string_view text, const std::filesystem::path& path,
+                             const MissionReadOptions& reading = {});
 
 /// A mission file with another schedule.
 struct PlannedMissionText {

@@ -14,7 +14,7 @@ namespace {
 /// Greater is better: what lasts, by the charge left; then what ended early, by how long it lasted.
 std::pair<int, double> merit(const MissionSummary& summary) {
     if (!summary.final_soc_percent) return {0, 0.0};  // undeliverable
-    if (summary.depleted_at_s || summary.cut_off_at_s) return {1, powered_until_s(summary)};
+    if (summary.depleted_at_s || summary.cut_off_at_s) return {1, powered_end_s(summary)};
     return {2, *summary.final_soc_percent};
 }
 
@@ -29,15 +29,15 @@ std::string to_string(ScheduleOrigin origin) {
     return names.at(static_cast<std::size_t>(origin));
 }
 
-double powered_until_s(const MissionSummary& summary) {
+double powered_end_s(const MissionSummary& summary) {
     if (summary.undeliverable) return summary.undeliverable->time_s;
     return summary.depleted_at_s.value_or(summary.cut_off_at_s.value_or(summary.duration_s));
 }
 
-std::string describe(const DrawnSources& sources) {
-    auto text =
-        fmt::format("drawn: {}", sources.drawn.empty() ? "nothing" : fmt::format("{}", fmt::join(sources.drawn, ", ")));
-    if (!sources.not_drawn.empty()) text += fmt::format("; not drawn: {}", fmt::join(sources.not_drawn, ", "));
+std::string describe(const UncertaintySources& sources) {
+    auto text = fmt::format("drawn: {}",
+                            sources.varied.empty() ? "nothing" : fmt::format("{}", fmt::join(sources.varied, ", ")));
+    if (!sources.fixed.empty()) text += fmt::format("; not drawn: {}", fmt::join(sources.fixed, ", "));
     return text;
 }
 

@@ -42,19 +42,19 @@ struct SocBand {
 
 /// What differs between flights that are drawn, and what it rests on; and what is the same in all for want of a spread,
 /// or because the mission states it.
-struct DrawnSources {
-    std::vector<std::string> drawn;
-    std::vector<std::string> not_drawn;
+struct UncertaintySources {
+    std::vector<std::string> varied;
+    std::vector<std::string> fixed;
 };
 
 /// "drawn: ...; not drawn: ...", wherever a chance is told.
-std::string describe(const DrawnSources& sources);
+std::string describe(const UncertaintySources& sources);
 
 inline constexpr std::array<int, 5> shown_quantiles_percent{5, 25, 50, 75, 95};
 
 /// How flights that were drawn end. Those that run empty, are cut off or ask for more than the battery can deliver have
 /// the state of charge of that moment, and land below the reserve even if that is 0.
-struct SampledFlights {
+struct MonteCarloResult {
     std::string mission;
     std::size_t samples = 0;
     std::uint64_t seed = 0;
@@ -67,7 +67,7 @@ struct SampledFlights {
     double probability_below_reserve = 0.0;                 ///< the share of the flights
     double probability_below_reserve_standard_error = 0.0;  ///< sqrt(p (1 - p) / samples)
     battery::Interval probability_below_reserve_95;         ///< Wilson's score interval (1927)
-    DrawnSources sources;
+    UncertaintySources sources;
     std::vector<SocBand> bands;
 };
 
@@ -102,7 +102,7 @@ struct MissionSummary {
     double reserve_soc_percent = 0.0;  ///< what the mission asks to be left
     bool keeps_reserve = false;        ///< feasible, and the reserve is left
     std::optional<AdaptiveDecisions> decisions = std::nullopt;  ///< of an adaptive policy
-    std::optional<SampledFlights> samples = std::nullopt;       ///< if flights were drawn
+    std::optional<MonteCarloResult> samples = std::nullopt;     ///< if flights were drawn
     std::optional<EstimatedLanding> by_flights = std::nullopt;
     std::optional<mechanical::HeldOutScore> power_model = {};  ///< as in MissionSetup
 };
@@ -112,7 +112,7 @@ struct MissionSummary {
 std::string describe(const mechanical::HeldOutScore& power_model);
 
 /// When the battery ended or failed, or the mission's end if it lasts.
-double powered_until_s(const MissionSummary& summary);
+double powered_end_s(const MissionSummary& summary);
 
 /// One line for people: what is left, or when and why the battery failed.
 std::string describe(const MissionSummary& summary);

@@ -13,8 +13,8 @@
 namespace flightwatt::mission {
 namespace {
 
-constexpr double crawling_part = 0.02;  // of the airspeed, over ground, where a drawn wind forbids an element
-constexpr double longest_path_s = 1e7;
+constexpr double crawling_fraction = 0.02;  // of the airspeed, over ground, where a drawn wind forbids an element
+constexpr double max_path_s = 1e7;
 constexpr double nearly = 1.0 - 1e-9;
 
 /// A part of a track with one climb rate.
@@ -40,17 +40,17 @@ double rising_root(const Function& function, double low, double high) {
 /// Flies the elements one after the other.
 class PathFlight {
   public:
-    PathFlight(const FlightPath& path, const Wind& wind, ForbiddenLeg forbidden)
-        : path_(path), wind_(wind), crawls_(forbidden == ForbiddenLeg::crawl) {}
+    PathFlight(const FlightPath& path, const Wind& wind, InfeasibleLegPolicy forbidden)
+        : path_(path), wind_(wind), crawls_(forbidden == InfeasibleLegPolicy::crawl) {}
 
-    FlownPath fly() {
+    PathTrajectory fly() {
         for (std::size_t i = 0; i < path_.elements.size(); ++i) {
             index_ = i;
             element_ = &path_.elements[i];
             const double before_s = flown_.duration_s;
             std::visit([&](const auto& shape) { fly_shape(shape); }, element_->shape);
             flown_.element_s.push_back(flown_.duration_s - before_s);
-            if (!crawls_ && !(flown_.duration_s <= longest_path_s)) refuse_length();
+            if (!crawls_ && !(flown_.duration_s <= max_path_s)) refuse_length();
         }
         return std::move(flown_);
     }
@@ -64,9 +64,8 @@ class PathFlight {
         throw InputError(element_->where, element_->name + ": " + message, hint);
     }
     [[noreturn]] void refuse_length() const {
-        refuse(
-            fmt::format("up to its end the path takes {:.3g} s, more than {:.0e}", flown_.duration_s, longest_path_s),
-            "is a length or a speed in another unit?");
+        refuse(fmt::format("up to its end the path takes {:.3g} s, more than {:.0e}", flown_.duration_s, max_path_s),
+               "is a length or a speed in another unit?");
     }
 
     void add(double time_s, double climb_m_per_s, double load_factor = 1.0) {
@@ -91,12 +90,12 @@ class PathFlight {
     template <typename Shape>
     void fly_shape(const Shape& shape) {
         const GroundTrack track(shape, wind_);
-        const double least = track.least_horizontal_m_per_s();
-        const double crawl_s = track.length_m() / (crawling_part * airspeed());
+        const double least = track.min_horizontal_m_per_s();
+        const double crawl_s = track.length_m() / (crawling_fraction * airspeed());
         const bool is_forbidden = airspeed() <= least * (1.0 + 1e-12);
         if (is_forbidden && !crawls_) refuse_wind(shape);
         if (crawls_ && (is_forbidden || track.time_s(0.0, track.length_m(), airspeed()) > crawl_s)) {
-            if (!flown_.blown) flown_.blown = index_;
+            if (!flown_.infeasible_element) flown_.infeasible_element = index_;
             add(crawl_s, 0.0);
             return;
         }
@@ -109,9 +108,9 @@ class PathFlight {
     void fly_stretch(const GroundTrack& track, const Stretch& stretch) {
         const double horizontal = horizontal_of(airspeed(), stretch.climb_m_per_s);
         const double tolerance_m = 1e-9 * track.length_m();
-        const double piece_m = track.piece_m();
-        const auto period = track.pieces_a_period();
-        std::vector<PathPiece> whole;  // of the first turn: the others are the same
+        const double piece_m = track.segment_length_m();
+        const auto period = track.segments_per_turn();
+        std::vector<TrajectorySegment> whole;  // of the first turn: the others are the same
         for (std::size_t k = 0;; ++k) {
             const double from_m = stretch.from_m + piece_m * static_cast<double>(k);
             if (from_m >= stretch.to_m - tolerance_m) break;
@@ -202,7 +201,7 @@ class PathFlight {
     const FlightPath& path_;
     const Wind& wind_;
     bool crawls_;
-    FlownPath flown_;
+    PathTrajectory flown_;
     std::size_t index_ = 0;
     const PathElement* element_ = nullptr;
 };
@@ -219,17 +218,17 @@ PathElement reversed(PathElement element, const ClimbRates& back) {
 
 }  // namespace
 
-FlownPath fly_path(const FlightPath& path, const Wind& wind, ForbiddenLeg forbidden) {
+PathTrajectory compute_trajectory(const FlightPath& path, const Wind& wind, InfeasibleLegPolicy forbidden) {
     return PathFlight(path, wind, forbidden).fly();
 }
 
-FlightPath there_and_back(const FlightPath& path, double return_after_m, const ClimbRates& back) {
+FlightPath out_and_back(const FlightPath& path, double return_after_m, const ClimbRates& back) {
     FlightPath result;
     std::vector<PathElement> way_back;
     double left_m = return_after_m;
     const double rounding_m = 1e-9 * return_after_m;  // of the sum of the legs
     for (auto element : path.elements) {
-        if ((left_m <= rounding_m && !result.elements.empty()) || element.is_way_home) break;
+        if ((left_m <= rounding_m && !result.elements.empty()) || element.is_return_leg) break;
         if (auto* leg = std::get_if<Leg>(&element.shape)) {
             const double part = std::min(1.0, left_m / leg->length_m);
             leg->length_m *= part;
@@ -249,7 +248,8 @@ FlightPath there_and_back(const FlightPath& path, double return_after_m, const C
 double length_of_legs_m(const FlightPath& path) {
     double length_m = 0.0;
     for (const auto& element : path.elements)
-        if (const auto* leg = std::get_if<Leg>(&element.shape); leg && !element.is_way_home) length_m += leg->length_m;
+        if (const auto* leg = std::get_if<Leg>(&element.shape); leg && !element.is_return_leg)
+            length_m += leg->length_m;
     return length_m;
 }
 

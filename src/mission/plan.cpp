@@ -17,8 +17,8 @@ namespace {
 constexpr int max_reserve_rounds = 20;
 constexpr int max_search_rounds = 5;
 constexpr int max_margin_rounds = 8;
-constexpr int most_rounds_to_any = 24;  ///< until a plan is better than the one of least energy demand
-constexpr double slack_part = 2e-3;     // of the flights' deviation: 0.0002 of a chance of 0.05
+constexpr int max_rounds_to_any = 24;    ///< until a plan is better than the one of least energy demand
+constexpr double slack_fraction = 2e-3;  // of the flights' deviation: 0.0002 of a chance of 0.05
 
 /// How far below `wanted_percent` a simulated mission ends [points], counting what it demanded after the
 /// battery ended as a part of what a full one holds. Negative if there is more.
@@ -27,7 +27,7 @@ double reserve_deficit_percent(const MissionSetup& mission, const MissionSummary
     if (summary.feasible) return deficit;
     // What is left after a cut-off cannot be drawn: it does not make up for what was demanded later.
     return std::max(deficit, 0.0) +
-           units::percent_of(summary.energy_wh - summary.delivered_energy_wh, full_energy_wh(mission.battery));
+           units::percentage(summary.energy_wh - summary.delivered_energy_wh, full_energy_wh(mission.battery));
 }
 
 /// A schedule, simulated.
@@ -61,13 +61,13 @@ void make_stricter(const Trial& trial, double part, PlanningProblem& problem) {
 }
 
 /// The best schedule found by the search that lands, and into `plan` the bound of the problem as stated.
-Trial searched(const PlanningProblem& problem, const Planner& planner, const Trial& least, Plan& plan) {
+Trial searched(const PlanningProblem& problem, const PlanningTables& planner, const Trial& least, Plan& plan) {
     auto stricter = problem;
     double part = 1e-8;
     for (int round = 0; round < max_search_rounds; ++round) {
-        const auto found = plan_rest(stricter, planner, start_of(problem), stricter.reserve_soc_percent);
+        const auto found = plan_remaining(stricter, planner, start_of(problem), stricter.reserve_soc_percent);
         if (round == 0) {
-            plan.bound = found.bound;
+            plan.utility_bound = found.utility_bound;
             plan.bound_is_proven = found.bound_is_proven;
         }
         if (!found.feasible) break;
@@ -82,7 +82,7 @@ Trial searched(const PlanningProblem& problem, const Planner& planner, const Tri
 /// ran before it. If the schedule of least energy demand does not land, none does, as it keeps the most charge and the
 /// highest voltage at any time.
 MissionPlan plan_by_search(const PlanningProblem& problem) {
-    const auto planner = make_planner(problem);
+    const auto planner = make_planning_tables(problem);
     MissionPlan result;
     auto& plan = result.plan;
     auto found = fly(problem, minimum_energy_schedule(problem));
@@ -91,28 +91,28 @@ MissionPlan plan_by_search(const PlanningProblem& problem) {
     if (plan.feasible) {
         found = searched(problem, planner, found, plan);
         plan.utility = found.summary.utility.value_or(0.0);
-        plan.bound = std::max(plan.bound, plan.utility);
+        plan.utility_bound = std::max(plan.utility_bound, plan.utility);
     }
     plan.schedule = std::move(found.schedule);
     plan.final_soc_percent = problem.reserve_soc_percent - found.deficit_percent;
     result.summary = std::move(found.summary);
-    result.flown = {problem, plan.schedule};
+    result.mission = {problem, plan.schedule};
     return result;
 }
 
 /// Plans by tables, anew with more to spare where the simulation ends below the reserve.
 MissionPlan plan_by_tables(const PlanningProblem& problem) {
     MissionPlan result;
-    const auto planner = make_planner(problem);
+    const auto planner = make_planning_tables(problem);
     const auto start = start_of(problem);
     double planned_percent = problem.reserve_soc_percent;
     std::optional<double> bound;
     Schedule schedule;
     bool lands = false;
     for (int round = 0; round < max_reserve_rounds && !lands; ++round) {
-        result.plan = plan_rest(problem, planner, start, planned_percent);
-        if (!bound) bound = result.plan.bound;
-        result.plan.bound = result.plan.feasible ? *bound : 0.0;
+        result.plan = plan_remaining(problem, planner, start, planned_percent);
+        if (!bound) bound = result.plan.utility_bound;
+        result.plan.utility_bound = result.plan.feasible ? *bound : 0.0;
         schedule = result.plan.deliverable ? result.plan.schedule : minimum_energy_schedule(problem);
         result.summary = simulate(problem, schedule).summary;
         if (!result.plan.feasible) break;
@@ -121,7 +121,7 @@ MissionPlan plan_by_tables(const PlanningProblem& problem) {
         planned_percent += std::max(deficit_percent, 0.0) + 1e-12;
     }
     result.plan.feasible = lands;  // where it is not: none was found, which is not to say that there is none
-    result.flown = {problem, std::move(schedule)};
+    result.mission = {problem, std::move(schedule)};
     return result;
 }
 
@@ -132,63 +132,63 @@ MissionPlan plan_certain(const PlanningProblem& problem) {
 }
 
 /// The schedule of least energy demand as a plan.
-MissionPlan least_plan(const PlanningProblem& problem, const FlightSpreads& spreads, double probability) {
+MissionPlan least_plan(const PlanningProblem& problem, const FlightUncertainty& spreads, double probability) {
     MissionPlan plan;
-    plan.flown = with_minimum_energy_schedule(problem);
-    plan.summary = simulate(plan.flown).summary;
-    plan.plan.schedule = plan.flown.schedule;
+    plan.mission = with_minimum_energy_schedule(problem);
+    plan.summary = simulate(plan.mission).summary;
+    plan.plan.schedule = plan.mission.schedule;
     plan.plan.deliverable = !plan.summary.undeliverable;
-    const auto quantile = landing_quantile(plan.flown, spreads, probability);
+    const auto quantile = landing_quantile(plan.mission, spreads, probability);
     plan.margin_percent = quantile.margin_percent;
     plan.plan.final_soc_percent = quantile.left_percent + quantile.margin_percent;
-    plan.plan.feasible =
-        plan.summary.keeps_reserve && landing_chance(plan.flown, spreads, probability).below <= 1.0 - probability;
-    plan.plan.utility = plan.plan.bound = plan.summary.utility.value_or(0.0);
+    plan.plan.feasible = plan.summary.keeps_reserve &&
+                         failure_probability(plan.mission, spreads, probability).below <= 1.0 - probability;
+    plan.plan.utility = plan.plan.utility_bound = plan.summary.utility.value_or(0.0);
     return plan;
 }
 
 /// Plans with a margin above the reserve, and looks for the least with which enough of the plan's flights keep it.
 MissionPlan plan_with_chance(const PlanningProblem& problem, double probability) {
     require_known_spread(problem);
-    const auto spreads = find_spreads(problem);
+    const auto spreads = collect_uncertainty(problem);
     auto best = least_plan(problem, spreads, probability);
     best.sources = spreads.sources;
     if (!best.plan.feasible) {
-        best.plan.bound = 0.0;
+        best.plan.utility_bound = 0.0;
         return best;
     }
     MarginSearch search(best.margin_percent);
     bool is_least = true;
-    LandingChance landing;
+    FailureProbability landing;
     Schedule last;
-    for (int round = 0; round < (is_least ? most_rounds_to_any : max_margin_rounds) && !search.is_exhausted();
+    for (int round = 0; round < (is_least ? max_rounds_to_any : max_margin_rounds) && !search.has_converged();
          ++round) {
         const double planned_percent = std::max(search.margin_percent(), 0.0);  // as stated, it keeps the reserve too
         auto stricter = problem;
         stricter.reserve_soc_percent += planned_percent;
         auto plan = plan_certain(stricter);
         if (!plan.plan.feasible) {
-            search.learn_too_much();
+            search.mark_infeasible();
             continue;
         }
-        plan.flown.reserve_soc_percent = problem.reserve_soc_percent;
-        if (plan.flown.schedule != last) landing = landing_chance(plan.flown, spreads, probability);
-        last = plan.flown.schedule;
+        plan.mission.reserve_soc_percent = problem.reserve_soc_percent;
+        if (plan.mission.schedule != last) landing = failure_probability(plan.mission, spreads, probability);
+        last = plan.mission.schedule;
         const double slack_percent = landing.spare_percent(probability);
-        const double close_percent = slack_part * landing.sd_percent;
-        search.learn(slack_percent, close_percent / 2.0);
+        const double close_percent = slack_fraction * landing.sd_percent;
+        search.add_result(slack_percent, close_percent / 2.0);
         if (slack_percent < 0.0) continue;
-        const bool is_same = plan.flown.schedule == best.flown.schedule;
+        const bool is_same = plan.mission.schedule == best.mission.schedule;
         if (is_least || *plan.summary.utility >= *best.summary.utility) {
             plan.sources = spreads.sources;
-            plan.chance_standard_error = landing.standard_error;
+            plan.probability_standard_error = landing.standard_error;
             best = std::move(plan);
         }
         if (slack_percent <= close_percent || planned_percent == 0.0 || (is_same && !is_least)) break;
         is_least = false;
     }
-    best.summary = simulate(best.flown).summary;
-    best.margin_percent = std::max(landing_quantile(best.flown, spreads, probability).margin_percent, 0.0);
+    best.summary = simulate(best.mission).summary;
+    best.margin_percent = std::max(landing_quantile(best.mission, spreads, probability).margin_percent, 0.0);
     return best;
 }
 
@@ -196,20 +196,21 @@ MissionPlan plan_with_chance(const PlanningProblem& problem, double probability)
 
 void require_known_spread(const MissionSetup& mission) {
     if (mission.mechanical)
-        require_known_levels(mission);
+        require_flight_variability(mission);
     else
-        require_spread(mission);
+        require_uncertainty(mission);
 }
 
 MissionPlan plan_mission(const PlanningProblem& problem, const std::optional<double>& probability) {
     return probability ? plan_with_chance(problem, *probability) : plan_certain(problem);
 }
 
-MissionSummary labelled_summary(const MissionPlan& plan) {
+MissionSummary summary_with_origin(const MissionPlan& plan) {
     constexpr double as_good_as_optimal = 1e-3;
     auto summary = plan.summary;
     const double utility = summary.utility.value_or(0.0);
-    const bool optimal = plan.plan.bound_is_proven && plan.plan.bound - utility <= as_good_as_optimal * plan.plan.bound;
+    const bool optimal =
+        plan.plan.bound_is_proven && plan.plan.utility_bound - utility <= as_good_as_optimal * plan.plan.utility_bound;
     summary.feasible = summary.feasible && plan.plan.feasible;
     summary.schedule = !plan.plan.feasible ? ScheduleOrigin::infeasible
                        : optimal           ? ScheduleOrigin::optimal

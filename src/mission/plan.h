@@ -13,19 +13,19 @@ struct Plan {
     /// From the start to the mission's end; if infeasible, the one of least energy demand.
     Schedule schedule;
     double utility = 0.0;            ///< mean utility a second of the rest of the mission
-    double bound = 0.0;              ///< no schedule that keeps the reserve has more; 0 if infeasible
+    double utility_bound = 0.0;      ///< no schedule that keeps the reserve has more; 0 if infeasible
     bool bound_is_proven = true;     ///< false: something charges a battery whose state counts
     double final_soc_percent = 0.0;  ///< as if the battery went on below empty
 };
 
 /// A plan of a whole mission that Runge-Kutta has flown.
 struct MissionPlan {
-    Plan plan;                           ///< its bound is of the mission as stated, whatever Runge-Kutta says
-    Mission flown;                       ///< the mission with the plan's schedule
-    MissionSummary summary;              ///< of that, simulated
-    double margin_percent = 0.0;         ///< kept above the reserve for the sake of the probability
-    double chance_standard_error = 0.0;  ///< of the chance to keep the reserve, as it is computed
-    std::optional<DrawnSources> sources = std::nullopt;  ///< what may differ with that probability
+    Plan plan;                                ///< its bound is of the mission as stated, whatever Runge-Kutta says
+    Mission mission;                          ///< the mission with the plan's schedule
+    MissionSummary summary;                   ///< of that, simulated
+    double margin_percent = 0.0;              ///< kept above the reserve for the sake of the probability
+    double probability_standard_error = 0.0;  ///< of the chance to keep the reserve, as it is computed
+    std::optional<UncertaintySources> sources = std::nullopt;  ///< what may differ with that probability
 };
 
 /// Plans a mission and simulates the result; where that ends below the reserve (by rounding, or because a full battery
@@ -39,11 +39,11 @@ struct MissionPlan {
 /// too many choices; with `probability` also as require_known_spread does.
 MissionPlan plan_mission(const PlanningProblem& problem, const std::optional<double>& probability = std::nullopt);
 
-/// Throws InputError where a mission does not say how its flights differ: the level of each phase that is flown; without
-/// a mechanical model anything.
+/// Throws InputError where a mission does not say how its flights differ: the level of each phase that is flown;
+/// without a mechanical model anything.
 void require_known_spread(const MissionSetup& mission);
 
 /// What the flown mission comes to, labelled as optimal (its bound is within 0.1 %) or planned.
-MissionSummary labelled_summary(const MissionPlan& plan);
+MissionSummary summary_with_origin(const MissionPlan& plan);
 
 }  // namespace flightwatt::mission

@@ -4,7 +4,7 @@
 
 namespace flightwatt::mission {
 
-PreparedMission prepare(const AnyMission& mission) {
+PreparedMission prepare_mission(const MissionVariant& mission) {
     PreparedMission prepared{setup_of(mission), {}, std::nullopt, ScheduleOrigin::given};
     if (const auto* scheduled = std::get_if<Mission>(&mission)) {
         prepared.schedule = scheduled->schedule;
@@ -16,17 +16,18 @@ PreparedMission prepare(const AnyMission& mission) {
         prepared.origin = ScheduleOrigin::replanned;
     } else {
         auto plan = plan_mission(problem);
-        prepared.schedule = std::move(plan.flown.schedule);
-        prepared.origin = labelled_summary(plan).schedule;
+        prepared.schedule = std::move(plan.mission.schedule);
+        prepared.origin = summary_with_origin(plan).schedule;
     }
     return prepared;
 }
 
-FlownMission fly(const PreparedMission& prepared, const SimulationSteps& steps, const Disturbances& disturbances) {
-    FlownMission flown;
+SimulatedFlight simulate_prepared(const PreparedMission& prepared, const SimulationOptions& steps,
+                                  const Disturbances& disturbances) {
+    SimulatedFlight flown;
     std::optional<AdaptiveDecisions> decisions;
     if (prepared.adaptive) {
-        auto flight = fly_adaptively(*prepared.adaptive, prepared.setup, disturbances);
+        auto flight = simulate_adaptive(*prepared.adaptive, prepared.setup, disturbances);
         flown.schedule = std::move(flight.schedule);
         decisions = flight.decisions;
     } else {

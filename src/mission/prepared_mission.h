@@ -16,16 +16,16 @@ struct PreparedMission {
 };
 
 /// Plans a mission that is yet to be planned; of an adaptive one, prepares the plans. Throws as plan_mission.
-PreparedMission prepare(const AnyMission& mission);
+PreparedMission prepare_mission(const MissionVariant& mission);
 
 /// The schedule that was flown, and what came of it.
-struct FlownMission {
+struct SimulatedFlight {
     Schedule schedule;
     Simulation simulation;
 };
 
 /// Flies a mission, under disturbances that nobody knew of beforehand.
-FlownMission fly(const PreparedMission& prepared, const SimulationSteps& steps = {},
-                 const Disturbances& disturbances = {});
+SimulatedFlight simulate_prepared(const PreparedMission& prepared, const SimulationOptions& steps = {},
+                                  const Disturbances& disturbances = {});
 
 }  // namespace flightwatt::mission

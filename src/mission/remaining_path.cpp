@@ -12,7 +12,7 @@
 
 namespace flightwatt::mission {
 
-PathPlace place_at(const FlownPath& flown, double time_s) {
+PathPosition position_at(const PathTrajectory& flown, double time_s) {
     double start_s = 0.0;
     for (std::size_t i = 0; i < flown.element_s.size(); ++i) {
         const double element_s = flown.element_s[i];
@@ -22,10 +22,10 @@ PathPlace place_at(const FlownPath& flown, double time_s) {
     return {flown.element_s.size(), 0.0};
 }
 
-FlownPath rest_from(const FlownPath& flown, const PathPlace& place) {
-    FlownPath rest;
+PathTrajectory remaining_trajectory(const PathTrajectory& flown, const PathPosition& place) {
+    PathTrajectory rest;
     rest.element_s = flown.element_s;
-    rest.blown = flown.blown;
+    rest.infeasible_element = flown.infeasible_element;
     double skipped_s = 0.0;
     for (std::size_t i = 0; i < flown.element_s.size(); ++i) {
         const double part = i < place.element ? 1.0 : i == place.element ? place.part : 0.0;
@@ -75,27 +75,27 @@ void add(mechanical::TermValues& sums, const mechanical::TermValues& terms, doub
 
 }  // namespace
 
-PathForecast::PathForecast(PathPlan plan) : plan_(std::move(plan)) {
+PathForecast::PathForecast(PlannedPath plan) : plan_(std::move(plan)) {
     for (const auto& wind : likely_winds(plan_.wind)) {
         PathInWind path;
         for (const auto& element : plan_.path.elements) path.push_back(fly_element(element, wind));
         in_likely_winds_.push_back(std::move(path));
     }
-    flown_ = fly_path(plan_.path, plan_.wind, ForbiddenLeg::crawl);
+    flown_ = compute_trajectory(plan_.path, plan_.wind, InfeasibleLegPolicy::crawl);
 }
 
-const FlownPath& PathForecast::flown() const {
-    if (flown_.blown) fly_path(plan_.path, plan_.wind);  // says what is wrong
+const PathTrajectory& PathForecast::flown() const {
+    if (flown_.infeasible_element) compute_trajectory(plan_.path, plan_.wind);  // says what is wrong
     return flown_;
 }
 
 PathForecast::FlownElementInWind PathForecast::fly_element(const PathElement& element, const Wind& wind) const {
-    const auto flown = fly_path({{element}}, wind, ForbiddenLeg::crawl);
+    const auto flown = compute_trajectory({{element}}, wind, InfeasibleLegPolicy::crawl);
     FlownElementInWind result;
-    result.is_forbidden = flown.blown.has_value();
+    result.is_forbidden = flown.infeasible_element.has_value();
     for (const auto& piece : flown.pieces) {
         SummedPiece summed{result.duration_s, piece.time_s, {}, result.sums};
-        if (const auto terms = mechanical::terms_of(piece.motion); !(power_of_terms_w(plan_.power, terms) < 0.0))
+        if (const auto terms = mechanical::term_values(piece.motion); !(sum_of_terms_w(plan_.power, terms) < 0.0))
             summed.terms = terms;
         result.duration_s += piece.time_s;
         add(result.sums, summed.terms, piece.time_s);
@@ -104,7 +104,7 @@ PathForecast::FlownElementInWind PathForecast::fly_element(const PathElement& el
     return result;
 }
 
-PathForecast::Rest PathForecast::rest_of(const PathInWind& path, const PathPlace& place) {
+PathForecast::Rest PathForecast::rest_of(const PathInWind& path, const PathPosition& place) {
     Rest rest;
     mechanical::TermValues sums;
     for (std::size_t i = place.element; i < path.size(); ++i) {
@@ -125,35 +125,35 @@ PathForecast::Rest PathForecast::rest_of(const PathInWind& path, const PathPlace
     return rest;
 }
 
-RemainingPath PathForecast::predict(const mechanical::FlightProgress& flown, const PathPlace& place) const {
+RemainingPath PathForecast::predict(const mechanical::FlightProgress& flown, const PathPosition& place) const {
     std::vector<double> energies_wh;
     RemainingPath rest;
     for (const auto& path : in_likely_winds_) {
         const auto ahead = rest_of(path, place);
         if (ahead.is_forbidden) continue;
-        const auto cruise = predict_rest_by_motion(plan_.power, flown, ahead.mean_terms, ahead.duration_s);
+        const auto cruise = predict_remaining_physical(plan_.power, flown, ahead.mean_terms, ahead.duration_s);
         energies_wh.push_back(cruise.energy.energy_wh);
         rest.duration_s += ahead.duration_s;
     }
     const auto count = static_cast<double>(energies_wh.size());
-    rest.forbidden_part = 1.0 - count / static_cast<double>(in_likely_winds_.size());
-    if (rest.forbidden_part > 0.5)
-        throw NoAnswerError("most of the winds that [wind] makes likely forbid the rest of the path");
+    rest.infeasible_fraction = 1.0 - count / static_cast<double>(in_likely_winds_.size());
+    if (rest.infeasible_fraction > 0.5)
+        throw NoResultError("most of the winds that [wind] makes likely forbid the rest of the path");
     rest.duration_s /= count;
-    const auto ahead = rest_from(flown_, place);
+    const auto ahead = remaining_trajectory(flown_, place);
     for (const auto& piece : ahead.pieces) rest.power.push_back({power_w(plan_.power, piece.motion), piece.time_s});
-    rest.cruise = predict_rest_by_motion(plan_.power, flown, mean_terms(plan_.power, ahead), ahead.duration_s);
+    rest.cruise = predict_remaining_physical(plan_.power, flown, mean_terms(plan_.power, ahead), ahead.duration_s);
     rest.cruise.energy.energy_wh = mean(energies_wh);
     if (rest.duration_s > 0.0)
         rest.cruise.remaining_mean_w = units::joule_from_wh(rest.cruise.energy.energy_wh) / rest.duration_s;
     if (energies_wh.size() > 1)
-        add_share(rest.cruise.energy,
-                  {sample_variance(energies_wh) * (count - 1.0) / count, std::numeric_limits<double>::infinity()});
+        add_variance(rest.cruise.energy,
+                     {sample_variance(energies_wh) * (count - 1.0) / count, std::numeric_limits<double>::infinity()});
     return rest;
 }
 
-RemainingPath predict_rest_of_path(const PathPlan& plan, const mechanical::FlightProgress& flown,
-                                   const PathPlace& place) {
+RemainingPath predict_remaining_path(const PlannedPath& plan, const mechanical::FlightProgress& flown,
+                                     const PathPosition& place) {
     return PathForecast(plan).predict(flown, place);
 }
 

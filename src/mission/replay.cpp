@@ -17,7 +17,7 @@ namespace flightwatt::mission {
 namespace {
 
 /// One mission on one flight: as it is known before, and as it was.
-struct Folded {
+struct LeaveOneOutMission {
     MissionSetup known;
     MissionSetup actual;
 };
@@ -28,9 +28,9 @@ std::vector<std::string> flights_of(const mechanical::MechanicalModel& model) {
     return names;
 }
 
-ModelSawFlight saw(const std::vector<std::string>& model_flights, const std::string& flight) {
-    if (model_flights.empty()) return ModelSawFlight::unknown;
-    return std::ranges::count(model_flights, flight) > 0 ? ModelSawFlight::yes : ModelSawFlight::no;
+TrainingOverlap saw(const std::vector<std::string>& model_flights, const std::string& flight) {
+    if (model_flights.empty()) return TrainingOverlap::unknown;
+    return std::ranges::count(model_flights, flight) > 0 ? TrainingOverlap::yes : TrainingOverlap::no;
 }
 
 /// Why a mission cannot be flown on a flight; empty if it can.
@@ -55,7 +55,7 @@ void note_what_differs(const MissionSetup& mission, const mechanical::MeasuredFl
 }
 
 /// Energies, durations and gaps of what is flown.
-void describe_flight(const Folded& folded, const mechanical::MeasuredFlight& flight, Replay& replay) {
+void describe_flight(const LeaveOneOutMission& folded, const mechanical::MeasuredFlight& flight, Replay& replay) {
     replay.planned_s = folded.known.duration_s;
     replay.flown_s = folded.actual.duration_s;
     replay.counter_energy_wh = 0.0;
@@ -63,14 +63,15 @@ void describe_flight(const Folded& folded, const mechanical::MeasuredFlight& fli
     for (const auto phase : all_phases) {
         const double planned_s = folded.known.duration_s[phase];
         if (planned_s == 0.0) continue;
-        const auto curve = flown_model(folded.known.mechanical->phases[phase], planned_s, folded.known.phase_clock);
+        const auto curve =
+            time_scaled_model(folded.known.mechanical->phases[phase], planned_s, folded.known.phase_clock);
         replay.expected_mechanical_wh += units::wh_from_joule(energy_j(curve, planned_s));
-        const auto& pieces = *folded.actual.measured[phase];
+        const auto& pieces = *folded.actual.measured_power[phase];
         replay.measured_mechanical_wh += units::wh_from_joule(energy_until_j(pieces, pieces.back().end_s));
         const auto& statistics = flight.power[phase]->statistics;
         measured_wh += statistics.energy_wh;
         replay.gaps += statistics.gaps;
-        replay.longest_gap_s = std::max(replay.longest_gap_s, statistics.longest_gap_s);
+        replay.max_gap_s = std::max(replay.max_gap_s, statistics.max_gap_s);
         if (statistics.counter_energy_wh && replay.counter_energy_wh)
             *replay.counter_energy_wh += *statistics.counter_energy_wh;
         else
@@ -82,7 +83,7 @@ void describe_flight(const Folded& folded, const mechanical::MeasuredFlight& fli
 }
 
 /// A schedule that was made beforehand, flown.
-ReplayedSchedule flown_schedule(const Folded& folded, ReplayedWay way, const Schedule& schedule,
+ReplayedSchedule flown_schedule(const LeaveOneOutMission& folded, ScheduleMethod way, const Schedule& schedule,
                                 ScheduleOrigin origin) {
     ReplayedSchedule replayed;
     replayed.way = way;
@@ -93,15 +94,16 @@ ReplayedSchedule flown_schedule(const Folded& folded, ReplayedWay way, const Sch
     return replayed;
 }
 
-ReplayedSchedule planned_before(const Folded& folded, const PlanningProblem& problem, ReplayedWay way,
+ReplayedSchedule planned_before(const LeaveOneOutMission& folded, const PlanningProblem& problem, ScheduleMethod way,
                                 const std::optional<double>& probability = std::nullopt) {
     const auto plan = plan_mission(problem, probability);
-    return flown_schedule(folded, way, plan.flown.schedule, labelled_summary(plan).schedule);
+    return flown_schedule(folded, way, plan.mission.schedule, summary_with_origin(plan).schedule);
 }
 
 /// The best configuration that, run wherever nothing is fixed, keeps the reserve; else the one of least power.
-ReplayedSchedule invariant(const Folded& folded, const PlanningProblem& problem, const Planner& planner) {
-    const auto slots = slots_of(problem);
+ReplayedSchedule invariant(const LeaveOneOutMission& folded, const PlanningProblem& problem,
+                           const PlanningTables& planner) {
+    const auto slots = make_slots(problem);
     const auto schedule_with = [&](std::size_t choice) {
         Schedule schedule;
         for (const auto& slot : slots)
@@ -121,20 +123,20 @@ ReplayedSchedule invariant(const Folded& folded, const PlanningProblem& problem,
     }
     for (std::size_t choice = 0; choice < low; ++choice)
         if (planner.utility_per_s[choice] > planner.utility_per_s[best]) best = choice;
-    return flown_schedule(folded, ReplayedWay::invariant, schedule_with(best),
+    return flown_schedule(folded, ScheduleMethod::invariant, schedule_with(best),
                           any ? ScheduleOrigin::planned : ScheduleOrigin::infeasible);
 }
 
-ReplayedSchedule phased(const Folded& folded, PlanningProblem problem) {
+ReplayedSchedule phased(const LeaveOneOutMission& folded, PlanningProblem problem) {
     problem.plan.slot_s = std::ranges::max(problem.duration_s.values);
     problem.plan.dwell_s = 0.0;
-    return planned_before(folded, problem, ReplayedWay::phased);
+    return planned_before(folded, problem, ScheduleMethod::phased);
 }
 
-ReplayedSchedule replanned(const Folded& folded, const AdaptivePlanner& planner) {
+ReplayedSchedule replanned(const LeaveOneOutMission& folded, const AdaptivePlanner& planner) {
     ReplayedSchedule replayed;
-    replayed.way = ReplayedWay::replanned;
-    auto flight = fly_adaptively(planner, folded.actual, {});
+    replayed.way = ScheduleMethod::replanned;
+    auto flight = simulate_adaptive(planner, folded.actual, {});
     replayed.schedule = std::move(flight.schedule);
     replayed.summary = simulate(folded.actual, replayed.schedule).summary;
     replayed.summary.schedule = ScheduleOrigin::replanned;
@@ -144,19 +146,19 @@ ReplayedSchedule replanned(const Folded& folded, const AdaptivePlanner& planner)
 
 /// The best that is known afterwards: the plan by the measured power, or one of the schedules if that is better still
 /// (it may change between the plan's slots).
-void add_hindsight(const Folded& folded, PlanningProblem problem, Replay& replay) {
+void add_hindsight(const LeaveOneOutMission& folded, PlanningProblem problem, Replay& replay) {
     for (const auto phase : all_phases) {
         if (folded.known.duration_s[phase] == 0.0) continue;
-        problem.plan.slot_part[phase] *= folded.actual.duration_s[phase] / folded.known.duration_s[phase];
+        problem.plan.slot_scale[phase] *= folded.actual.duration_s[phase] / folded.known.duration_s[phase];
     }
     problem.fixed =
         rescale_to_flown_durations(std::move(problem.fixed), folded.known.duration_s, folded.actual.duration_s);
     static_cast<MissionSetup&>(problem) = folded.actual;
     const auto plan = plan_mission(problem);
     ReplayedSchedule best;
-    best.way = ReplayedWay::hindsight;
-    best.schedule = plan.flown.schedule;
-    best.summary = labelled_summary(plan);
+    best.way = ScheduleMethod::hindsight;
+    best.schedule = plan.mission.schedule;
+    best.summary = summary_with_origin(plan);
     for (const auto& other : replay.schedules) {
         if (!other.summary.keeps_reserve) continue;
         if (best.summary.keeps_reserve && *other.summary.utility <= *best.summary.utility) continue;
@@ -166,7 +168,7 @@ void add_hindsight(const Folded& folded, PlanningProblem problem, Replay& replay
         best.summary.schedule = ScheduleOrigin::planned;
     }
     if (plan.plan.feasible) {
-        replay.bound = plan.plan.bound;
+        replay.bound = plan.plan.utility_bound;
         replay.bound_is_proven = plan.plan.bound_is_proven;
     }
     if (best.summary.keeps_reserve) {
@@ -202,16 +204,16 @@ bool has_utility(const MissionSetup& mission) {
     return std::ranges::any_of(mission.utilities, [](const auto& utility) { return utility.has_value(); });
 }
 
-void replay_given(const Mission& mission, const Folded& folded, Replay& replay) {
+void replay_given(const Mission& mission, const LeaveOneOutMission& folded, Replay& replay) {
     const auto known = rescale_to_flown_durations(mission.schedule, mission.duration_s, folded.known.duration_s);
-    replay.schedules.push_back(flown_schedule(folded, ReplayedWay::given, known, ScheduleOrigin::given));
+    replay.schedules.push_back(flown_schedule(folded, ScheduleMethod::given, known, ScheduleOrigin::given));
     if (has_utility(mission))
         add_hindsight(folded, choices_in_hindsight(mission, folded.known), replay);
     else
         replay.notes.emplace_back("the mission states no utility: hindsight has nothing to choose by");
 }
 
-void replay_planned(const PlanningProblem& stated, const Folded& folded, Replay& replay) {
+void replay_planned(const PlanningProblem& stated, const LeaveOneOutMission& folded, Replay& replay) {
     auto problem = stated;
     static_cast<MissionSetup&>(problem) = folded.known;
     problem.fixed = rescale_to_flown_durations(std::move(problem.fixed), stated.duration_s, folded.known.duration_s);
@@ -223,11 +225,11 @@ void replay_planned(const PlanningProblem& stated, const Folded& folded, Replay&
     auto& schedules = replay.schedules;
     schedules.push_back(invariant(folded, problem, planner.planner));
     schedules.push_back(phased(folded, problem));
-    schedules.push_back(planned_before(folded, problem, ReplayedWay::planned));
+    schedules.push_back(planned_before(folded, problem, ScheduleMethod::planned));
     try {
         require_known_spread(problem);
         schedules.push_back(
-            planned_before(folded, problem, ReplayedWay::planned_with_margin, problem.adaptive->probability));
+            planned_before(folded, problem, ScheduleMethod::planned_with_margin, problem.adaptive->probability));
     } catch (const InputError& error) {
         replay.notes.push_back(fmt::format("no plan with a margin: {}", error.what()));
     }
@@ -250,7 +252,7 @@ mechanical::MechanicalModel model_for(const mechanical::MeasuredFlight& flight,
 
 void require_flights(std::span<const mechanical::MeasuredFlight> flights, const ReplayOptions& options) {
     if (flights.size() < 2 && !options.model) {
-        throw NoAnswerError(fmt::format("{} flight{}: a model of the other flights needs 2 or more; or give a model",
+        throw NoResultError(fmt::format("{} flight{}: a model of the other flights needs 2 or more; or give a model",
                                         flights.size(), flights.size() == 1 ? "" : "s"));
     }
     std::set<std::string> names;
@@ -267,15 +269,15 @@ void require_flies(const MissionSetup& mission) {
                      "replay a mission with a mechanical model, or `flightwatt simulate` this one");
 }
 
-Replay replay_one(const AnyMission& mission, const mechanical::MeasuredFlight& flight,
+Replay replay_one(const MissionVariant& mission, const mechanical::MeasuredFlight& flight,
                   const mechanical::MechanicalModel& model, const ReplayOptions& options) {
     const auto& stated = setup_of(mission);
     PerPhase<double> flown_s;
     for (const auto phase : all_phases)
         if (flight.power[phase]) flown_s[phase] = flight.power[phase]->time_s.back();
-    auto known = known_mission(stated, model, options.durations_are_known ? std::optional(flown_s) : std::nullopt);
-    auto actual = flown_mission(known, flight);
-    const Folded folded{std::move(known), std::move(actual)};
+    auto known = nominal_mission(stated, model, options.durations_are_known ? std::optional(flown_s) : std::nullopt);
+    auto actual = measured_mission(known, flight);
+    const LeaveOneOutMission folded{std::move(known), std::move(actual)};
     Replay replay;
     replay.flight = flight.samples.flight;
     replay.mission = stated.name;
@@ -291,38 +293,39 @@ Replay replay_one(const AnyMission& mission, const mechanical::MeasuredFlight& f
     return replay;
 }
 
-const ReplayedSchedule* schedule_by(const Replay& replay, ReplayedWay way) {
+const ReplayedSchedule* schedule_by(const Replay& replay, ScheduleMethod way) {
     const auto found = std::ranges::find(replay.schedules, way, &ReplayedSchedule::way);
     return found == replay.schedules.end() ? nullptr : &*found;
 }
 
-Verdict verdict_of(const MissionSummary& ours, const MissionSummary& theirs) {
-    if (ours.keeps_reserve != theirs.keeps_reserve) return ours.keeps_reserve ? Verdict::better : Verdict::worse;
+ComparisonOutcome verdict_of(const MissionSummary& ours, const MissionSummary& theirs) {
+    if (ours.keeps_reserve != theirs.keeps_reserve)
+        return ours.keeps_reserve ? ComparisonOutcome::better : ComparisonOutcome::worse;
     double more = 0.0;
     double rounding = 0.0;
     if (ours.keeps_reserve) {
         more = ours.utility.value_or(0.0) - theirs.utility.value_or(0.0);
-        rounding = tie_part * std::max(ours.utility.value_or(0.0), theirs.utility.value_or(0.0));
+        rounding = tie_tolerance * std::max(ours.utility.value_or(0.0), theirs.utility.value_or(0.0));
     } else if (ours.feasible && theirs.feasible) {
         more = *ours.final_soc_percent - *theirs.final_soc_percent;
         rounding = 1e-6;
     } else {
-        more = powered_until_s(ours) - powered_until_s(theirs);
+        more = powered_end_s(ours) - powered_end_s(theirs);
         rounding = 1e-3;
     }
-    if (std::abs(more) <= rounding) return Verdict::tie;
-    return more > 0.0 ? Verdict::better : Verdict::worse;
+    if (std::abs(more) <= rounding) return ComparisonOutcome::tie;
+    return more > 0.0 ? ComparisonOutcome::better : ComparisonOutcome::worse;
 }
 
 }  // namespace
 
-std::string to_string(ReplayedWay way) {
+std::string to_string(ScheduleMethod way) {
     constexpr std::array names{"given",     "invariant", "phased", "planned", "planned_with_margin",
                                "replanned", "hindsight"};
     return names.at(static_cast<std::size_t>(way));
 }
 
-Replays replay_flights(std::span<const AnyMission> missions, std::span<const mechanical::MeasuredFlight> flights,
+Replays replay_flights(std::span<const MissionVariant> missions, std::span<const mechanical::MeasuredFlight> flights,
                        const ReplayOptions& options) {
     require_flights(flights, options);
     for (const auto& mission : missions) require_flies(setup_of(mission));
@@ -331,7 +334,7 @@ Replays replay_flights(std::span<const AnyMission> missions, std::span<const mec
     for (std::size_t i = 0; i < flights.size(); ++i) {
         try {
             models[i] = model_for(flights[i], flights, options);
-        } catch (const NoAnswerError& error) {
+        } catch (const NoResultError& error) {
             why_no_model[i] = fmt::format("there is no model of the other flights: {}", error.what());
         }
     }
@@ -350,11 +353,11 @@ Replays replay_flights(std::span<const AnyMission> missions, std::span<const mec
 }
 
 std::vector<Comparison> compare_replanned(std::span<const Replay> replays, const std::string& mission,
-                                          ReplayedWay baseline) {
+                                          ScheduleMethod baseline) {
     std::vector<Comparison> comparisons;
     for (const auto& replay : replays) {
         if (replay.mission != mission) continue;
-        const auto* replanned = schedule_by(replay, ReplayedWay::replanned);
+        const auto* replanned = schedule_by(replay, ScheduleMethod::replanned);
         const auto* other = schedule_by(replay, baseline);
         if (!replanned || !other) continue;
         const auto& ours = replanned->summary;

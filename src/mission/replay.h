@@ -12,7 +12,7 @@
 namespace flightwatt::mission {
 
 /// Who made a schedule, and what was known then.
-enum class ReplayedWay {
+enum class ScheduleMethod {
     given,                ///< by the mission file
     invariant,            ///< one configuration all the way: the best that the model says keeps the reserve
     phased,               ///< one a phase: the plan whose slots are whole phases
@@ -23,11 +23,11 @@ enum class ReplayedWay {
 };
 
 /// "given", "planned_with_margin", ...
-std::string to_string(ReplayedWay way);
+std::string to_string(ScheduleMethod way);
 
 /// What one schedule came to on one flight's measured power.
 struct ReplayedSchedule {
-    ReplayedWay way = ReplayedWay::given;
+    ScheduleMethod way = ScheduleMethod::given;
     MissionSummary
         summary;  ///< its origin is what the model said: infeasible where that saw no way to keep the reserve
     std::optional<double> expected_soc_percent = {};  ///< at the end, by what was known beforehand
@@ -37,7 +37,7 @@ struct ReplayedSchedule {
 };
 
 /// Whether the model was fitted to the flight itself.
-enum class ModelSawFlight { no, yes, unknown };
+enum class TrainingOverlap { no, yes, unknown };
 
 /// One mission on one flight.
 struct Replay {
@@ -45,14 +45,14 @@ struct Replay {
     std::string mission;
     std::string model;
     std::vector<std::string> model_flights;  ///< that it was fitted to
-    ModelSawFlight model_saw_flight = ModelSawFlight::no;
+    TrainingOverlap model_saw_flight = TrainingOverlap::no;
     PerPhase<double> planned_s;  ///< that the schedules were made for
     PerPhase<double> flown_s;
     double expected_mechanical_wh = 0.0;      ///< by the model, over the durations planned for
     double measured_mechanical_wh = 0.0;      ///< of the phases that the mission flies
     std::optional<double> counter_energy_wh;  ///< the same by the counter on board
     std::size_t gaps = 0;                     ///< in the measured power, bridged by straight lines
-    double longest_gap_s = 0.0;
+    double max_gap_s = 0.0;
     std::optional<double> bound;  ///< of the utility: no schedule on the plan's slots that keeps the reserve has more
     bool bound_is_proven = true;
     std::vector<ReplayedSchedule> schedules;  ///< hindsight last; it is absent where the mission states no utility
@@ -60,7 +60,7 @@ struct Replay {
 };
 
 /// A mission that could not be flown on a flight, and why.
-struct NotReplayed {
+struct SkippedReplay {
     std::string flight;
     std::string mission;
     std::string reason;
@@ -74,26 +74,27 @@ struct ReplayOptions {
 
 struct Replays {
     std::vector<Replay> replays;  ///< of each mission, every flight
-    std::vector<NotReplayed> not_replayed;
+    std::vector<SkippedReplay> not_replayed;
 };
 
 /// Flies each flight's measured power, with each schedule's computing power on top, on each mission's battery
 /// (docs/methods.md, Replay). The model that schedules are made with is fitted to the other flights alone. Of a mission
-/// with a schedule that schedule is flown; of one to be planned all the other ways are. Throws NoAnswerError for a
+/// with a schedule that schedule is flown; of one to be planned all the other ways are. Throws NoResultError for a
 /// single flight without options.model, UsageError for a flight given twice, InputError for a mission without a flight
 /// (mechanical = "none"), and what plan_mission throws.
-Replays replay_flights(std::span<const AnyMission> missions, std::span<const mechanical::MeasuredFlight> flights,
+Replays replay_flights(std::span<const MissionVariant> missions, std::span<const mechanical::MeasuredFlight> flights,
                        const ReplayOptions& options = {});
 
-/// What a schedule that was made in flight was against one made before it: one that keeps the reserve is better than one
-/// that does not; of two that keep it, the one of more utility; of two that do not, the one that lasts longer, or leaves
-/// more. It is a tie where utilities are within tie_part of the better one, or charges and times within rounding.
-enum class Verdict { better, tie, worse };
-inline constexpr double tie_part = 1e-3;
+/// What a schedule that was made in flight was against one made before it: one that keeps the reserve is better than
+/// one that does not; of two that keep it, the one of more utility; of two that do not, the one that lasts longer, or
+/// leaves more. It is a tie where utilities are within tie_tolerance of the better one, or charges and times within
+/// rounding.
+enum class ComparisonOutcome { better, tie, worse };
+inline constexpr double tie_tolerance = 1e-3;
 
 struct Comparison {
     std::string flight;
-    Verdict verdict = Verdict::tie;
+    ComparisonOutcome verdict = ComparisonOutcome::tie;
     bool replanned_keeps_reserve = false;
     bool baseline_keeps_reserve = false;
     double more_utility = 0.0;               ///< replanned less baseline
@@ -102,6 +103,6 @@ struct Comparison {
 
 /// The replays of one mission, replanned against `baseline`; those that have both.
 std::vector<Comparison> compare_replanned(std::span<const Replay> replays, const std::string& mission,
-                                          ReplayedWay baseline);
+                                          ScheduleMethod baseline);
 
 }  // namespace flightwatt::mission

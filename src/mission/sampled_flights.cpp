@@ -6,7 +6,7 @@
 #include "base/units.h"
 #include "mission/sampling/flight_draws.h"
 #include "mission/sampling/flight_lanes.h"
-#include "mission/sampling/flown_landing.h"
+#include "mission/sampling/flight_outcome.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,38 +17,39 @@
 namespace flightwatt::mission {
 namespace {
 
-constexpr double most_samples = 1e7;
+constexpr double max_samples = 1e7;
 
 /// A drawn flight with its schedule, under disturbances that are given for the flight as planned.
-DrawnFlight scheduled(const PreparedMission& prepared, const MissionSetup& drawn, const Disturbances& as_planned) {
+SampledFlight scheduled(const PreparedMission& prepared, const MissionSetup& drawn, const Disturbances& as_planned) {
     const auto& planned_s = prepared.setup.duration_s;
     const auto disturbances = rescale_to_flown_durations(as_planned, planned_s, drawn.duration_s);
     const auto schedule = prepared.adaptive
-                              ? fly_adaptively(*prepared.adaptive, drawn, disturbances).schedule
+                              ? simulate_adaptive(*prepared.adaptive, drawn, disturbances).schedule
                               : rescale_to_flown_durations(prepared.schedule, planned_s, drawn.duration_s);
-    return {drawn, disturbed(drawn.battery, disturbances), disturbed(load_segments(drawn, schedule), disturbances)};
+    return {drawn, apply_disturbances(drawn.battery, disturbances),
+            disturbed(load_segments(drawn, schedule), disturbances)};
 }
 
 /// Draws and flies flights, and hands each to the place of its number.
 class Sampler {
   public:
-    Sampler(const PreparedMission& prepared, const Disturbances& disturbances, const FlightSpreads& spreads,
+    Sampler(const PreparedMission& prepared, const Disturbances& disturbances, const FlightUncertainty& spreads,
             const SamplingOptions& options)
         : prepared_(prepared),
-          setup_(without_evidence(prepared.setup)),
+          setup_(without_model_metadata(prepared.setup)),
           disturbances_(disturbances),
           spreads_(spreads),
           options_(options) {
         const double duration_s = timeline_of(prepared.setup.duration_s).duration_s;
-        for (std::size_t i = 0; i < options.band_times; ++i) {
-            times_s_.push_back(duration_s * static_cast<double>(i) / static_cast<double>(options.band_times - 1));
+        for (std::size_t i = 0; i < options.band_points; ++i) {
+            times_s_.push_back(duration_s * static_cast<double>(i) / static_cast<double>(options.band_points - 1));
         }
     }
 
     const std::vector<double>& times_s() const { return times_s_; }
 
-    std::vector<Landing> fly_all() const {
-        std::vector<Landing> landings(options_.samples);
+    std::vector<FlightOutcome> fly_all() const {
+        std::vector<FlightOutcome> landings(options_.samples);
         if (prepared_.adaptive || !disturbances_.empty())
             for_each_in_parallel(landings.size(), [&](std::size_t i) { landings[i] = fly_one(i); });
         else
@@ -57,9 +58,9 @@ class Sampler {
     }
 
   private:
-    void fly_side_by_side(std::vector<Landing>& landings) const {
+    void fly_side_by_side(std::vector<FlightOutcome>& landings) const {
         constexpr std::size_t at_once = 256;
-        const FlightLanes lanes(setup_, spreads_, prepared_.schedule, times_s_);
+        const SimdFlightSimulator lanes(setup_, spreads_, prepared_.schedule, times_s_);
         const auto normal_count = count_normals(setup_);
         for_each_in_parallel((landings.size() + at_once - 1) / at_once, [&](std::size_t block) {
             const auto own = std::span(landings)
@@ -68,22 +69,22 @@ class Sampler {
             std::vector<std::vector<double>> normals;
             for (std::size_t i = 0; i < own.size(); ++i)
                 normals.push_back(draw_normals(normal_count, options_.seed, block * at_once + i));
-            lanes.fly(normals, own);
+            lanes.simulate(normals, own);
         });
     }
 
-    Landing fly_one(std::size_t index) const {
+    FlightOutcome fly_one(std::size_t index) const {
         const auto& planned_s = setup_.duration_s;
         const auto setup = draw_flight(setup_, spreads_, options_.seed, index);
         auto times_s = times_s_;
         for (auto& time_s : times_s) time_s = rescale_to_flown_durations_s(time_s, planned_s, setup.duration_s);
-        return land(scheduled(prepared_, setup, disturbances_), times_s);
+        return simulate_flight(scheduled(prepared_, setup, disturbances_), times_s);
     }
 
     const PreparedMission& prepared_;
     MissionSetup setup_;
     const Disturbances& disturbances_;
-    const FlightSpreads& spreads_;
+    const FlightUncertainty& spreads_;
     const SamplingOptions& options_;
     std::vector<double> times_s_;
 };
@@ -98,25 +99,27 @@ battery::Interval wilson_interval(double p, double n) {
     return {p == 0.0 ? 0.0 : std::max(0.0, middle - reach), p == 1.0 ? 1.0 : std::min(1.0, middle + reach)};
 }
 
-void count_landings(const std::vector<Landing>& landings, SampledFlights& flights) {
+void count_landings(const std::vector<FlightOutcome>& landings, MonteCarloResult& flights) {
     const auto n = static_cast<double>(landings.size());
     const auto share_of = [&](const auto& counts) {
         return static_cast<double>(std::ranges::count_if(landings, counts)) / n;
     };
-    const double p = share_of([&](const Landing& landing) { return is_below(landing, flights.reserve_soc_percent); });
-    flights.probability_depleted = share_of([](const Landing& landing) { return landing.depleted; });
-    flights.probability_battery_failure = share_of([](const Landing& landing) { return landing.battery_failure; });
+    const double p =
+        share_of([&](const FlightOutcome& landing) { return misses_reserve(landing, flights.reserve_soc_percent); });
+    flights.probability_depleted = share_of([](const FlightOutcome& landing) { return landing.depleted; });
+    flights.probability_battery_failure =
+        share_of([](const FlightOutcome& landing) { return landing.battery_failure; });
     flights.probability_below_reserve = p;
     flights.probability_below_reserve_standard_error = std::sqrt(p * (1.0 - p) / n);
     flights.probability_below_reserve_95 = wilson_interval(p, n);
 }
 
-std::vector<SocBand> bands_of(const std::vector<Landing>& landings, const std::vector<double>& times_s) {
+std::vector<SocBand> bands_of(const std::vector<FlightOutcome>& landings, const std::vector<double>& times_s) {
     std::vector<SocBand> bands;
     std::vector<double> soc_percent(landings.size());
     for (std::size_t i = 0; i < times_s.size(); ++i) {
         std::transform(landings.begin(), landings.end(), soc_percent.begin(),
-                       [&](const Landing& landing) { return landing.soc_percent[i]; });
+                       [&](const FlightOutcome& landing) { return landing.soc_percent[i]; });
         std::ranges::sort(soc_percent);
         bands.push_back(
             {times_s[i], quantile(soc_percent, 0.05), quantile(soc_percent, 0.5), quantile(soc_percent, 0.95)});
@@ -125,9 +128,9 @@ std::vector<SocBand> bands_of(const std::vector<Landing>& landings, const std::v
 }
 
 void require_samples(const SamplingOptions& options) {
-    if (options.samples >= 2 && static_cast<double>(options.samples) <= most_samples) return;
+    if (options.samples >= 2 && static_cast<double>(options.samples) <= max_samples) return;
     throw UsageError(
-        fmt::format("{} samples make no distribution; expected 2 to {:.0f}", options.samples, most_samples));
+        fmt::format("{} samples make no distribution; expected 2 to {:.0f}", options.samples, max_samples));
 }
 
 /// What two missions are compared by, of one drawn flight.
@@ -148,7 +151,7 @@ FlownQuantities flown_quantities(const PreparedMission& prepared, const MissionS
     }
     flown.duration_s = timeline_of(drawn.duration_s).duration_s;
     flown.energy_wh = flown.mechanical_energy_wh + flown.compute_energy_wh;
-    const auto landing = land(flight);
+    const auto landing = simulate_flight(flight);
     flown.final_soc_percent = landing.battery_failure ? 0.0 : landing.final_soc_percent;
     return flown;
 }
@@ -175,7 +178,7 @@ DrawnIntervals intervals_of(const std::vector<FlownQuantities>& of_a, const std:
 void name_sources(const MissionSetup& a, const MissionSetup& b, const CommonSources& common,
                   SampledDifference& difference) {
     const auto add = [&](bool alike, const std::string& name) {
-        (alike ? difference.in_common : difference.apart).push_back(name);
+        (alike ? difference.shared_sources : difference.independent_sources).push_back(name);
     };
     if (a.mechanical || b.mechanical) add(common.mechanical, "mechanical model");
     add(common.battery, "battery");
@@ -186,10 +189,10 @@ void name_sources(const MissionSetup& a, const MissionSetup& b, const CommonSour
 
 }  // namespace
 
-bool has_spread(const MissionSetup& mission) { return !find_spreads(mission).sources.drawn.empty(); }
+bool has_uncertainty(const MissionSetup& mission) { return !collect_uncertainty(mission).sources.varied.empty(); }
 
-void require_spread(const MissionSetup& mission) {
-    if (has_spread(mission)) return;
+void require_uncertainty(const MissionSetup& mission) {
+    if (has_uncertainty(mission)) return;
     throw InputError({mission.file},
                      "there is nothing to draw flights from: neither the mechanical model, nor the profiles, "
                      "nor the battery say how they differ",
@@ -198,14 +201,14 @@ void require_spread(const MissionSetup& mission) {
                      "compute_sd_percent or capacity_sd_percent");
 }
 
-SampledFlights sample_flights(const PreparedMission& prepared, const Disturbances& disturbances,
-                              const SamplingOptions& options) {
+MonteCarloResult sample_flights(const PreparedMission& prepared, const Disturbances& disturbances,
+                                const SamplingOptions& options) {
     require_samples(options);
-    require_spread(prepared.setup);
-    const auto spreads = find_spreads(prepared.setup);
+    require_uncertainty(prepared.setup);
+    const auto spreads = collect_uncertainty(prepared.setup);
     const Sampler sampler(prepared, disturbances, spreads, options);
     const auto landings = sampler.fly_all();
-    SampledFlights flights;
+    MonteCarloResult flights;
     flights.mission = prepared.setup.name;
     flights.reserve_soc_percent = prepared.setup.reserve_soc_percent;
     flights.samples = options.samples;
@@ -221,7 +224,7 @@ SampledFlights sample_flights(const PreparedMission& prepared, const Disturbance
     std::ranges::sort(final_percent);
     for (std::size_t i = 0; i < shown_quantiles_percent.size(); ++i)
         flights.final_soc_quantiles_percent[i] =
-            quantile(final_percent, units::part_of(1.0, shown_quantiles_percent[i]));
+            quantile(final_percent, units::amount_from_percent(1.0, shown_quantiles_percent[i]));
     count_landings(landings, flights);
     flights.bands = bands_of(landings, sampler.times_s());
     return flights;
@@ -230,21 +233,21 @@ SampledFlights sample_flights(const PreparedMission& prepared, const Disturbance
 std::optional<SampledDifference> sample_difference(const PreparedMission& a, const PreparedMission& b,
                                                    const SamplingOptions& options) {
     require_samples(options);
-    const auto spreads_a = find_spreads(a.setup);
-    const auto spreads_b = find_spreads(b.setup);
-    if (spreads_a.sources.drawn.empty() || spreads_b.sources.drawn.empty()) return std::nullopt;
+    const auto spreads_a = collect_uncertainty(a.setup);
+    const auto spreads_b = collect_uncertainty(b.setup);
+    if (spreads_a.sources.varied.empty() || spreads_b.sources.varied.empty()) return std::nullopt;
     const auto common = common_sources(a.setup, b.setup);
-    const auto setup_a = without_evidence(a.setup);
-    const auto setup_b = without_evidence(b.setup);
+    const auto setup_a = without_model_metadata(a.setup);
+    const auto setup_b = without_model_metadata(b.setup);
     const auto other_seed = ~options.seed;  // of what is not in common
     std::vector<FlownQuantities> of_a(options.samples);
     std::vector<FlownQuantities> of_b(options.samples);
     for_each_in_parallel(options.samples, [&](std::size_t i) {
         const auto normals_a = draw_normals(count_normals(setup_a), options.seed, i);
-        const auto normals_b =
-            normals_beside(setup_a, setup_b, common, normals_a, draw_normals(count_normals(setup_b), other_seed, i));
-        of_a[i] = flown_quantities(a, flight_of(setup_a, spreads_a, normals_a));
-        of_b[i] = flown_quantities(b, flight_of(setup_b, spreads_b, normals_b));
+        const auto normals_b = correlated_normals(setup_a, setup_b, common, normals_a,
+                                                  draw_normals(count_normals(setup_b), other_seed, i));
+        of_a[i] = flown_quantities(a, apply_draw(setup_a, spreads_a, normals_a));
+        of_b[i] = flown_quantities(b, apply_draw(setup_b, spreads_b, normals_b));
     });
     SampledDifference difference;
     difference.samples = options.samples;
@@ -266,12 +269,12 @@ std::string describe(const SampledDifference& difference) {
     const auto a = describe(difference.sources_a);
     const auto b = describe(difference.sources_b);
     return fmt::format("intervals hold 95 in 100 of {} flights drawn for both{}{}; {}", difference.samples,
-                       list("deviating alike in both", difference.in_common),
-                       list("deviating on its own in each", difference.apart),
+                       list("deviating alike in both", difference.shared_sources),
+                       list("deviating on its own in each", difference.independent_sources),
                        a == b ? a : fmt::format("a: {}; b: {}", a, b));
 }
 
-std::string describe(const SampledFlights& flights) {
+std::string describe(const MonteCarloResult& flights) {
     const auto& q = flights.final_soc_quantiles_percent;
     const double cut_off = flights.probability_battery_failure - flights.probability_depleted;
     auto text = fmt::format(

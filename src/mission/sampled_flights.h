@@ -13,14 +13,14 @@ namespace flightwatt::mission {
 struct SamplingOptions {
     std::size_t samples = 1000;
     std::uint64_t seed = 1;
-    std::size_t band_times = 0;  ///< at which the state of charge is kept of every flight; 0, or 2 and more
+    std::size_t band_points = 0;  ///< at which the state of charge is kept of every flight; 0, or 2 and more
 };
 
 /// Whether something says how a mission's flights differ.
-bool has_spread(const MissionSetup& mission);
+bool has_uncertainty(const MissionSetup& mission);
 
 /// Throws InputError, which says what is missing and how to get it, where nothing does.
-void require_spread(const MissionSetup& mission);
+void require_uncertainty(const MissionSetup& mission);
 
 /// How much the battery holds in 95 of 100 flights: as [uncertainty] states it, else as the battery's file has it. None
 /// where the mission states the capacity alone, or nothing says.
@@ -30,8 +30,8 @@ std::optional<battery::Interval> capacity_interval_ah(const MissionSetup& missio
 /// happen at the same part of each flight. Flights depend on the seed and their own number alone, so the
 /// answer is the same for any number of threads. Throws as require_spread does, and UsageError for fewer than 2
 /// samples or more than 10 million.
-SampledFlights sample_flights(const PreparedMission& prepared, const Disturbances& disturbances,
-                              const SamplingOptions& options);
+MonteCarloResult sample_flights(const PreparedMission& prepared, const Disturbances& disturbances,
+                                const SamplingOptions& options);
 
 /// What 95 of 100 flights of two missions, and their difference b - a, lie between.
 struct DrawnIntervals {
@@ -43,18 +43,18 @@ struct DrawnIntervals {
 struct SampledDifference {
     std::size_t samples = 0;
     DrawnIntervals duration_s, mechanical_energy_wh, compute_energy_wh, energy_wh, final_soc_percent;
-    DrawnSources sources_a, sources_b;
-    std::vector<std::string> in_common;  ///< "mechanical model", "battery" ...
-    std::vector<std::string> apart;
+    UncertaintySources sources_a, sources_b;
+    std::vector<std::string> shared_sources;  ///< "mechanical model", "battery" ...
+    std::vector<std::string> independent_sources;
 };
 
-/// Flies both with common random numbers (docs/methods.md, Two missions); a battery that failed has 0 % left. None where
-/// nothing says how flights of one of them differ. Throws as sample_flights for a number of samples.
+/// Flies both with common random numbers (docs/methods.md, Two missions); a battery that failed has 0 % left. None
+/// where nothing says how flights of one of them differ. Throws as sample_flights for a number of samples.
 std::optional<SampledDifference> sample_difference(const PreparedMission& a, const PreparedMission& b,
                                                    const SamplingOptions& options = {});
 
 /// For people.
-std::string describe(const SampledFlights& flights);
+std::string describe(const MonteCarloResult& flights);
 std::string describe(const SampledDifference& difference);
 
 /// time_s,soc_p05_percent,soc_p50_percent,soc_p95_percent

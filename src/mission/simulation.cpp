@@ -65,7 +65,7 @@ struct Supply {
 };
 
 /// Follows the battery from `state` through one demand and adds its rows.
-battery::Discharge run_segment(const Supply& supply, const LoadSegment& segment, const SimulationSteps& steps,
+battery::Discharge run_segment(const Supply& supply, const LoadSegment& segment, const SimulationOptions& steps,
                                battery::Discharge state, SocCurve& curve) {
     const auto& battery = supply.battery;
     const battery::DischargeOptions options{steps.integration_s, supply.cutoff_voltage_v};
@@ -73,7 +73,7 @@ battery::Discharge run_segment(const Supply& supply, const LoadSegment& segment,
     const auto times = output_times(segment, steps.output_s);
     if (segment.soc_drop_percent > 0.0 && !state.ended_at_s()) {
         add_row(curve, battery, segment, times.front(), state);
-        state = after_drop(state, segment);
+        state = apply_charge_drop(state, segment);
     }
     add_row(curve, battery, segment, times.front(), state);
     for (std::size_t i = 1; i < times.size(); ++i) {
@@ -95,7 +95,7 @@ battery::Discharge run_segment(const Supply& supply, const LoadSegment& segment,
 }
 
 void add_energies(const std::vector<LoadSegment>& segments, MissionSummary& summary) {
-    const double powered_s = powered_until_s(summary);
+    const double powered_s = powered_end_s(summary);
     for (const auto& segment : segments) {
         summary.mechanical_energy_wh += units::wh_from_joule(mechanical_energy_j(segment, segment.end_s));
         summary.compute_energy_wh += units::wh_from_joule(compute_energy_j(segment, segment.end_s));
@@ -115,7 +115,7 @@ MissionSummary summarize(const MissionSetup& mission, const std::vector<LoadSegm
     summary.duration_s = segments.back().end_s;
     summary.undeliverable = end.undeliverable;
     const auto ended_early_at_s = [&](const std::optional<double>& time_s) {
-        return time_s && *time_s < summary.duration_s - lasting_tolerance_s ? time_s : std::nullopt;
+        return time_s && *time_s < summary.duration_s - end_tolerance_s ? time_s : std::nullopt;
     };
     summary.depleted_at_s = ended_early_at_s(end.empty_at_s);
     summary.cut_off_at_s = ended_early_at_s(end.cut_off_at_s);
@@ -130,14 +130,15 @@ MissionSummary summarize(const MissionSetup& mission, const std::vector<LoadSegm
 
 }  // namespace
 
-Simulation simulate(const MissionSetup& mission, const Schedule& schedule, const SimulationSteps& steps,
+Simulation simulate(const MissionSetup& mission, const Schedule& schedule, const SimulationOptions& steps,
                     const Disturbances& disturbances) {
     const auto stated = load_segments(mission, schedule);
     if (stated.empty()) throw std::invalid_argument("simulate: the mission has no schedule");
     refuse_charging(mission, stated);
     const auto segments = disturbed(stated, disturbances);
     require_output_step(steps.output_s, segments.back().end_s);
-    const Supply supply{disturbed(mission.battery, disturbances), steps.cuts_off ? mission.cutoff_voltage_v : 0.0};
+    const Supply supply{apply_disturbances(mission.battery, disturbances),
+                        steps.apply_cutoff ? mission.cutoff_voltage_v : 0.0};
     SocCurve curve;
     battery::Discharge state{{mission.initial_soc_percent}};
     for (const auto& segment : segments) {
@@ -145,11 +146,11 @@ Simulation simulate(const MissionSetup& mission, const Schedule& schedule, const
         if (state.undeliverable) break;
     }
     auto summary = summarize(mission, segments, state);
-    summary.utility = mean_utility(mission, schedule, powered_until_s(summary));
+    summary.utility = mean_utility(mission, schedule, powered_end_s(summary));
     return {std::move(curve), std::move(summary)};
 }
 
-Simulation simulate(const Mission& mission, const SimulationSteps& steps, const Disturbances& disturbances) {
+Simulation simulate(const Mission& mission, const SimulationOptions& steps, const Disturbances& disturbances) {
     return simulate(mission, mission.schedule, steps, disturbances);
 }
 
@@ -159,11 +160,11 @@ std::optional<EstimatedLanding> landing_by_flights(const MissionSetup& mission, 
     if (!estimated) return std::nullopt;
     auto setup = mission;
     setup.battery = std::move(*estimated);
-    SimulationSteps steps;
+    SimulationOptions steps;
     steps.output_s = timeline_of(mission.duration_s).duration_s;
     const auto summary = simulate(setup, schedule, steps, disturbances).summary;
     EstimatedLanding landing{setup.battery.capacity_ah, summary.final_soc_percent, std::nullopt, summary.keeps_reserve};
-    if (!summary.feasible) landing.fails_at_s = powered_until_s(summary);
+    if (!summary.feasible) landing.fails_at_s = powered_end_s(summary);
     return landing;
 }
 

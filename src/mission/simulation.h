@@ -34,10 +34,10 @@ struct Simulation {
     MissionSummary summary;
 };
 
-struct SimulationSteps {
+struct SimulationOptions {
     double output_s = 1.0;       ///< the curve has a row at every multiple, and at every jump
     double integration_s = 0.1;  ///< the Runge-Kutta step, at most
-    bool cuts_off = true;        ///< false: the battery goes on below the mission's cut-off voltage
+    bool apply_cutoff = true;    ///< false: the battery goes on below the mission's cut-off voltage
 };
 
 /// Runs a mission with a schedule: mechanical and computing power, added, deplete the battery (Eqs. 8-10). Energies are
@@ -45,11 +45,11 @@ struct SimulationSteps {
 /// a voltage that recovers after a cut-off revives it. `disturbances` happen in its course. Throws InputError for a
 /// mission that, undisturbed, charges its battery and may not; UsageError for an output step that is not positive or
 /// makes too many rows; and std::invalid_argument for an empty schedule.
-Simulation simulate(const MissionSetup& mission, const Schedule& schedule, const SimulationSteps& steps = {},
+Simulation simulate(const MissionSetup& mission, const Schedule& schedule, const SimulationOptions& steps = {},
                     const Disturbances& disturbances = {});
 
 /// The same with the mission's own schedule.
-Simulation simulate(const Mission& mission, const SimulationSteps& steps = {}, const Disturbances& disturbances = {});
+Simulation simulate(const Mission& mission, const SimulationOptions& steps = {}, const Disturbances& disturbances = {});
 
 /// How the schedule lands with the capacity that the flights of the mission's pack indicate; none where the mission's
 /// capacity agrees with them, or the pack is of no flights.

@@ -23,7 +23,7 @@ struct ReportFlight {
     flight::FlightPhases phases;  ///< with the evidence at their edges
     std::vector<std::string> warnings;
     std::vector<std::string> exclusions;  ///< what the model was not fitted to, and why
-    std::vector<batch::RecordedVerdict> verdicts = {};
+    std::vector<batch::RecordedEdgeCheck> verdicts = {};
     std::string unusable_power = {};        ///< why its power record is used for nothing; empty if it is
     std::size_t batch = 0;                  ///< the place of its folder among those of the page
     std::vector<std::string> folders = {};  ///< that hold it, where the page shows several
@@ -52,10 +52,10 @@ struct BatchContents {
     std::vector<std::string> notes;  ///< what a reader must know of folders that stand side by side
 };
 
-/// The folders, in their order, under their names or, where these do not differ, their paths. A flight that several hold is shown under
-/// the first one; flights of one name that are not one flight are renamed "NAME (FOLDER)". Notes tell both, and where the
-/// folders' aircraft or the options of their fits differ. Throws UsageError for a folder that is given twice, and as
-/// read_batch_content.
+/// The folders, in their order, under their names or, where these do not differ, their paths. A flight that several
+/// hold is shown under the first one; flights of one name that are not one flight are renamed "NAME (FOLDER)". Notes
+/// tell both, and where the folders' aircraft or the options of their fits differ. Throws UsageError for a folder that
+/// is given twice, and as read_batch_content.
 BatchContents read_batch_contents(std::span<const std::filesystem::path> outs);
 
 /// Takes out the flights that are to be shown, those with a usable power record first.

@@ -45,14 +45,14 @@ void refuse_one_folder_twice(std::span<const std::filesystem::path> outs) {
 
 /// Marks flights that an earlier folder holds too; says which.
 Names share_flights(std::vector<BatchContent>& batches) {
-    flight::KnownFlights known;
+    flight::SketchIndex known;
     std::vector<ReportFlight*> places;
     Names shared;
     for (auto& batch : batches) {
         for (auto& flight : batch.flights) {
             flight.folders = {batch.folder};
             if (!flight.rejected.empty()) continue;
-            auto content = content_of(flight.series);
+            auto content = make_sketch(flight.series);
             const auto alike = known.find(content);
             const auto same = std::ranges::find_if(alike, [&](const auto& like) {
                 return like.likeness.is_same && places[like.number]->batch != flight.batch;
@@ -115,8 +115,8 @@ std::vector<std::pair<std::string, std::string>> told_options(const batch::Batch
     for (const auto& weight : options.weights.by_hand)
         by_hand.push_back(fmt::format("{} {:.6g}", weight.flight, weight.weight));
     return {{"order", fmt::format("{}", options.phases.order)},
-            {"lowest frequency", fmt::format("{:.6g} rad a phase", options.phases.low_rad)},
-            {"most periods", fmt::format("{:.6g} a phase", options.phases.high_periods)},
+            {"lowest frequency", fmt::format("{:.6g} rad a phase", options.phases.min_theta_rad)},
+            {"most periods", fmt::format("{:.6g} a phase", options.phases.max_periods)},
             {"weights", std::string(to_string(options.weights.weighting))},
             {"weights by hand", by_hand.empty() ? "none" : fmt::format("{}", fmt::join(by_hand, " and "))}};
 }

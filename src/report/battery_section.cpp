@@ -103,7 +103,7 @@ TextTable excluded_table(const ReportBattery& battery) {
 constexpr auto parameters_caption = "Parameters of the battery";
 constexpr auto flights_caption = "Flights in the fit of the battery";
 
-void add_identified(Section& section, const ReportBattery& battery, const SectionOf& of) {
+void add_identified(Section& section, const ReportBattery& battery, const SectionScope& of) {
     const auto& identified = *battery.identified;
     section.html += paragraph(rests_on(battery));
     if (identified.capacity.origin == battery::CapacityOrigin::given) {
@@ -150,21 +150,21 @@ ReportBattery identify_with(std::span<const ReportFlight> flights, const battery
     battery.usable = battery.records.size();
     battery.records = spread_evenly(std::move(battery.records), most);
     if (battery.records.empty()) {
-        battery.no_answer = battery.usable == 0 ? "no flight has a voltage and a current to identify it from"
-                                                : "--max-battery-flights is 0";
+        battery.no_result_reason = battery.usable == 0 ? "no flight has a voltage and a current to identify it from"
+                                                       : "--max-battery-flights is 0";
         return battery;
     }
     try {
         battery.identified = identify_battery(battery.records, options);
-        battery.leave_one_out = leave_each_out(battery.records, options);
-    } catch (const NoAnswerError& error) {
-        battery.no_answer = error.what();
+        battery.leave_one_out = leave_one_out(battery.records, options);
+    } catch (const NoResultError& error) {
+        battery.no_result_reason = error.what();
     }
     return battery;
 }
 
 /// The packs of the missions that `flightwatt battery` identified from any of the flights: each capacity once.
-std::vector<battery::Battery> packs_of_flights(std::span<const mission::AnyMission> missions,
+std::vector<battery::Battery> packs_of_flights(std::span<const mission::MissionVariant> missions,
                                                std::span<const ReportFlight> flights) {
     std::set<std::string> names;
     for (const auto& flight : flights) names.insert(flight.series.flight);
@@ -184,7 +184,7 @@ std::vector<battery::Battery> packs_of_flights(std::span<const mission::AnyMissi
 }  // namespace
 
 ReportBattery identify_for_report(std::span<const ReportFlight> flights, const battery::IdentificationOptions& options,
-                                  std::size_t most, std::span<const mission::AnyMission> missions) {
+                                  std::size_t most, std::span<const mission::MissionVariant> missions) {
     const auto packs = packs_of_flights(missions, flights);
     if (packs.size() != 1) {
         auto battery = identify_with(flights, options, most);
@@ -226,18 +226,18 @@ std::vector<CaptionedTable> battery_tables(const ReportBattery& battery) {
     return tables;
 }
 
-Section battery_section(const ReportBattery& battery, const SectionOf& of) {
+Section battery_section(const ReportBattery& battery, const SectionScope& of) {
     Section section{of.id("battery"), of.title("Battery")};
     if (battery.identified) {
         add_identified(section, battery, of);
         if (battery.leave_one_out.empty()) {
-            section.html += paragraph(battery.no_answer.empty()
+            section.html += paragraph(battery.no_result_reason.empty()
                                           ? "A single flight: there is no other one to check the battery with."
-                                          : "The battery was not checked by leave-one-out: " + battery.no_answer,
+                                          : "The battery was not checked by leave-one-out: " + battery.no_result_reason,
                                       "soft");
         }
     } else {
-        section.html += paragraph("The battery was not identified: " + battery.no_answer + ".", "warning");
+        section.html += paragraph("The battery was not identified: " + battery.no_result_reason + ".", "warning");
     }
     if (!battery.notes.empty()) section.html += list_html(battery.notes);
     if (!battery.excluded.empty())

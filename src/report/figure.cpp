@@ -66,7 +66,7 @@ void FigureData::add(std::initializer_list<double> numbers, std::initializer_lis
             if (decimals_.empty()) {
                 fmt::format_to(std::back_inserter(row), "{:.6g}", number);
             } else {
-                std::array<char, longest_number> text{};
+                std::array<char, number_buffer_size> text{};
                 row.append(text.data(), write_number(text.data(), rounded(number, decimals_.at(column))));
             }
         }
@@ -89,8 +89,8 @@ VegaJson FigureData::json() const { return {{"values", csv_}, {"format", format(
 
 VegaJson FigureData::reference(std::string_view name) const { return {{"name", name}, {"format", format()}}; }
 
-std::vector<std::size_t> visible_rows(const std::vector<double>& time_s, const std::vector<double>& values,
-                                      std::size_t columns) {
+std::vector<std::size_t> downsample_m4(const std::vector<double>& time_s, const std::vector<double>& values,
+                                       std::size_t columns) {
     constexpr std::size_t rows_per_column = 4;
     std::vector<std::size_t> rows(time_s.size());
     std::iota(rows.begin(), rows.end(), std::size_t{0});
@@ -124,28 +124,28 @@ VegaJson layer(std::string_view mark, const VegaJson& encoding) {
     return {{"mark", vega(mark)}, {"encoding", encoding}};
 }
 
-VegaJson quantity(std::string_view field, std::string_view title, const VegaJson& more) {
+VegaJson numeric_channel(std::string_view field, std::string_view title, const VegaJson& more) {
     return channel_of(field, "quantitative", title, more);
 }
 
-VegaJson category(std::string_view field, std::string_view title, const VegaJson& more) {
+VegaJson nominal_channel(std::string_view field, std::string_view title, const VegaJson& more) {
     return channel_of(field, "nominal", title, more);
 }
 
-VegaJson shown(std::string_view field, std::string_view title, std::string_view format) {
-    return quantity(field, title, {{"format", format}});
+VegaJson tooltip_number(std::string_view field, std::string_view title, std::string_view format) {
+    return numeric_channel(field, title, {{"format", format}});
 }
 
 void add_measured_and_model(VegaJson& encoding, double measured_px, double model_px) {
     const auto legend = vega(R"({"symbolType": "stroke"})");
     auto scale = vega(R"({"domain": ["measured", "model"], "range": "measured_and_model"})");
-    encoding["color"] = category("curve", "", {{"scale", scale}, {"legend", legend}});
+    encoding["color"] = nominal_channel("curve", "", {{"scale", scale}, {"legend", legend}});
     scale["range"] = {measured_px, model_px};
     encoding["strokeWidth"] = channel_of("curve", "ordinal", "", {{"scale", scale}, {"legend", legend}});
 }
 
 VegaJson power_ramp(std::string_view field, std::string_view title) {
-    return quantity(field, title, vega(R"({"scale": {"range": "ramp"},
+    return numeric_channel(field, title, vega(R"({"scale": {"range": "ramp"},
         "legend": {"orient": "bottom", "gradientLength": 160}})"));
 }
 
@@ -187,7 +187,7 @@ VegaJson shown_by_legend() { return vega(R"({"filter": {"param": "shown"}})"); }
 
 VegaJson phase_names(const VegaJson& data, std::string_view time_title) {
     return layer(data, R"({"type": "text", "style": "note", "baseline": "bottom", "dy": -3, "y": 0, "clip": false})",
-                 {{"x", quantity("middle_s", time_title)}, {"text", category("word", "phase")}});
+                 {{"x", numeric_channel("middle_s", time_title)}, {"text", nominal_channel("word", "phase")}});
 }
 
 std::string valid_utf8(std::string_view text) {

@@ -59,8 +59,8 @@ int decimals_for(std::span<const double> values, double steps, int least);
 /// The rows of a line that a screen of so many pixel columns can tell from all rows: of each column the
 /// first, the last, the least and the greatest value (M4: Jugel et al., VLDB 2014). Indices, rising. All of
 /// them where there are no more than four a column.
-std::vector<std::size_t> visible_rows(const std::vector<double>& time_s, const std::vector<double>& values,
-                                      std::size_t columns);
+std::vector<std::size_t> downsample_m4(const std::vector<double>& time_s, const std::vector<double>& values,
+                                       std::size_t columns);
 
 /// JSON as the documents of Vega-Lite write it.
 VegaJson vega(std::string_view text);
@@ -70,11 +70,11 @@ VegaJson layer(const VegaJson& data, std::string_view mark, const VegaJson& enco
 VegaJson layer(std::string_view mark, const VegaJson& encoding);
 
 /// A channel of numbers: {"field", "type", "title"} and whatever `more` adds.
-VegaJson quantity(std::string_view field, std::string_view title, const VegaJson& more = VegaJson::object());
+VegaJson numeric_channel(std::string_view field, std::string_view title, const VegaJson& more = VegaJson::object());
 /// A channel of names.
-VegaJson category(std::string_view field, std::string_view title, const VegaJson& more = VegaJson::object());
+VegaJson nominal_channel(std::string_view field, std::string_view title, const VegaJson& more = VegaJson::object());
 /// A number in a tooltip, in the format of d3: ".2f".
-VegaJson shown(std::string_view field, std::string_view title, std::string_view format);
+VegaJson tooltip_number(std::string_view field, std::string_view title, std::string_view format);
 
 /// The channels "color" and "strokeWidth" [px] of the lines "measured" and "model" in the column "curve".
 void add_measured_and_model(VegaJson& encoding, double measured_px, double model_px);

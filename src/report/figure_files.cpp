@@ -2,8 +2,8 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/file_use.h"
 #include "base/number.h"
+#include "base/overwrite_guard.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -79,7 +79,7 @@ FigureFiles write_figures(const std::vector<Section>& sections, const WebFiles& 
                           const std::filesystem::path& folder, const std::optional<double>& width_pt) {
     for (const auto& section : sections) {
         for (const auto& figure : section.figures) {
-            for (const auto* ending : {".vl.json", ".svg", ".pdf"}) declare_output(folder / (figure.id + ending));
+            for (const auto* ending : {".vl.json", ".svg", ".pdf"}) register_output(folder / (figure.id + ending));
         }
     }
     make_directories(folder);
@@ -114,8 +114,8 @@ FigureFiles write_figures(const std::vector<Section>& sections, const WebFiles& 
 double parse_figure_width_pt(const std::string& text) {
     static const std::map<std::string, double> points_of{
         {"in", 72.0}, {"cm", 72.0 / 2.54}, {"mm", 7.2 / 2.54}, {"pt", 1.0}};
-    constexpr double least_pt = 1.5 * 72.0;
-    constexpr double most_pt = 20.0 * 72.0;
+    constexpr double min_pt = 1.5 * 72.0;
+    constexpr double max_pt = 20.0 * 72.0;
     const auto unit_at = std::min(text.find_first_not_of("0123456789."), text.size());
     const auto unit = points_of.find(text.substr(unit_at));
     const auto number = parse_number(std::string_view(text).substr(0, unit_at));
@@ -123,7 +123,7 @@ double parse_figure_width_pt(const std::string& text) {
         throw UsageError(
             fmt::format("--figure-width {}: expected a width with its unit: 3.5in, 89mm, 9cm or 252pt", text));
     const double width_pt = *number * unit->second;
-    if (!(width_pt >= least_pt && width_pt <= most_pt))
+    if (!(width_pt >= min_pt && width_pt <= max_pt))
         throw UsageError(fmt::format("--figure-width {}: expected 1.5in to 20in", text));
     return width_pt;
 }

@@ -16,9 +16,9 @@ struct FigureFiles {
     bool has_pdf = false;
 };
 
-/// Writes every figure's specification to FOLDER/ID.vl.json, renders them to ID.svg with node, and to ID.pdf
-/// with rsvg-convert; what of both programs is not there makes no files. With `width_pt` (points of 1/72 inch) they are
-/// so wide, and their type is set at 8 points. Throws OutputError where the folder cannot be written or a program that is
+/// Writes every figure's specification to FOLDER/ID.vl.json, renders them to ID.svg with node, and to ID.pdf with
+/// rsvg-convert; what of both programs is not there makes no files. With `width_pt` (points of 1/72 inch) they are so
+/// wide, and their type is set at 8 points. Throws OutputError where the folder cannot be written or a program that is
 /// there fails.
 FigureFiles write_figures(const std::vector<Section>& sections, const WebFiles& web,
                           const std::filesystem::path& folder, const std::optional<double>& width_pt = std::nullopt);

@@ -1,9 +1,9 @@
 #include "report/flight_facts.h"
 
 #include "base/units.h"
-#include "flight/chosen_track.h"
 #include "flight/log_name.h"
 #include "flight/phase_statistics.h"
+#include "flight/selected_track.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,9 +32,9 @@ using Place = boost::geometry::model::point<double, 2, boost::geometry::cs::geog
 
 /// Over ground between two times, from the track's metres or else its degrees; none where it has neither.
 std::optional<double> flown_m(const flight::FlightSeries& series, double start_s, double end_s) {
-    const bool in_metres = !chosen_track(series, "east_m").empty();
-    const auto east = chosen_track(series, in_metres ? "east_m" : "longitude_deg");
-    const auto north = chosen_at(series, in_metres ? "north_m" : "latitude_deg", east.time_s);
+    const bool in_metres = !select_track(series, "east_m").empty();
+    const auto east = select_track(series, in_metres ? "east_m" : "longitude_deg");
+    const auto north = sample_selected_track(series, in_metres ? "north_m" : "latitude_deg", east.time_s);
     if (north.empty()) return std::nullopt;
     double length_m = 0.0;
     for (std::size_t i = 1; i < east.time_s.size(); ++i) {
@@ -46,14 +46,13 @@ std::optional<double> flown_m(const flight::FlightSeries& series, double start_s
     return length_m;
 }
 
-std::optional<double> highest_m(const flight::Track& altitude, double start_s, double end_s) {
+std::optional<double> max_m(const flight::Track& altitude, double start_s, double end_s) {
     if (altitude.empty()) return std::nullopt;
-    double highest_m = value_at(altitude, start_s);
+    double max_m = value_at(altitude, start_s);
     for (std::size_t i = 0; i < altitude.time_s.size(); ++i) {
-        if (altitude.time_s[i] >= start_s && altitude.time_s[i] <= end_s)
-            highest_m = std::max(highest_m, altitude.value[i]);
+        if (altitude.time_s[i] >= start_s && altitude.time_s[i] <= end_s) max_m = std::max(max_m, altitude.value[i]);
     }
-    return highest_m - value_at(altitude, start_s);
+    return max_m - value_at(altitude, start_s);
 }
 
 /// All that were flown in one log.
@@ -70,12 +69,12 @@ void add(std::optional<double>& sum, const std::optional<double>& more) {
 
 }  // namespace
 
-FlightFacts facts_of(const ReportFlight& flight, std::optional<std::size_t> sortie) {
+FlightSummary summarize_flight(const ReportFlight& flight, std::optional<std::size_t> sortie) {
     const auto& series = flight.series;
     const flight::PowerStatistics power(series);
-    const auto altitude = chosen_track(series, "altitude_m");
-    const auto airspeed = chosen_track(series, "airspeed_m_per_s");
-    FlightFacts facts;
+    const auto altitude = select_track(series, "altitude_m");
+    const auto airspeed = select_track(series, "airspeed_m_per_s");
+    FlightSummary facts;
     facts.start_clock_s = start_clock_s(flight);
     facts.date = date_of(facts.start_clock_s);
     facts.distance_m = 0.0;
@@ -88,7 +87,7 @@ FlightFacts facts_of(const ReportFlight& flight, std::optional<std::size_t> sort
         const double end_s = flight.phases.sorties[s].phases.back().end.time_s;
         facts.in_air_s += end_s - start_s;
         add(facts.distance_m, flown_m(series, start_s, end_s));
-        if (const auto height_m = highest_m(altitude, start_s, end_s))
+        if (const auto height_m = max_m(altitude, start_s, end_s))
             facts.height_m = std::max(*height_m, facts.height_m.value_or(*height_m));
         if (facts.air_distance_m)
             *facts.air_distance_m += flight::integrated(airspeed.time_s, airspeed.value, start_s, end_s);

@@ -8,7 +8,7 @@
 namespace flightwatt::report {
 
 /// What people know a flight by.
-struct FlightFacts {
+struct FlightSummary {
     std::optional<double> start_clock_s;  ///< Unix time, UTC where the .log has its clock, else as its name has it
     std::string date;                     ///< the same as "2020-07-03 12:17"; empty if unknown
     double in_air_s = 0.0;
@@ -20,6 +20,6 @@ struct FlightFacts {
 };
 
 /// `flight` was not rejected. Only the sortie counted from 0, or all of them.
-FlightFacts facts_of(const ReportFlight& flight, std::optional<std::size_t> sortie = std::nullopt);
+FlightSummary summarize_flight(const ReportFlight& flight, std::optional<std::size_t> sortie = std::nullopt);
 
 }  // namespace flightwatt::report

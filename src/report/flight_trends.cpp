@@ -20,18 +20,20 @@ constexpr double metres_per_km = 1000.0;
 
 constexpr std::array<TrendQuantity, 6> quantities{{
     {"energy_wh_per_min", "energy [Wh/min]",
-     [](const FlownFlight& f) { return per(f.facts.energy_wh, units::minute_from_second(f.facts.in_air_s)); }},
+     [](const FlightTrendData& f) { return per(f.facts.energy_wh, units::minute_from_second(f.facts.in_air_s)); }},
     {"energy_wh_per_km", "ground [Wh/km]",
-     [](const FlownFlight& f) { return per(f.facts.energy_wh, f.facts.distance_m.value_or(0.0) / metres_per_km); }},
+     [](const FlightTrendData& f) { return per(f.facts.energy_wh, f.facts.distance_m.value_or(0.0) / metres_per_km); }},
     {"energy_wh_per_air_km", "air [Wh/km]",
-     [](const FlownFlight& f) { return per(f.facts.energy_wh, f.facts.air_distance_m.value_or(0.0) / metres_per_km); }},
-    {"cruise_power_w", "cruise [W]", [](const FlownFlight& f) { return f.facts.cruise_power_w; }},
+     [](const FlightTrendData& f) {
+         return per(f.facts.energy_wh, f.facts.air_distance_m.value_or(0.0) / metres_per_km);
+     }},
+    {"cruise_power_w", "cruise [W]", [](const FlightTrendData& f) { return f.facts.cruise_power_w; }},
     {"resistance_ohm", "pack [ohm]",
-     [](const FlownFlight& f) { return f.resistance ? std::optional(f.resistance->value_ohm) : std::nullopt; }},
-    {"capacity_ah", "pack [Ah]", [](const FlownFlight& f) { return f.capacity_ah; }},
+     [](const FlightTrendData& f) { return f.resistance ? std::optional(f.resistance->value_ohm) : std::nullopt; }},
+    {"capacity_ah", "pack [Ah]", [](const FlightTrendData& f) { return f.capacity_ah; }},
 }};
 
-std::vector<std::string> aircraft_names(std::span<const FlownFlight> flights) {
+std::vector<std::string> aircraft_names(std::span<const FlightTrendData> flights) {
     std::vector<std::string> names;
     names.reserve(flights.size());
     for (const auto& flight : flights) names.push_back(flight.aircraft);
@@ -41,7 +43,7 @@ std::vector<std::string> aircraft_names(std::span<const FlownFlight> flights) {
 }
 
 /// Of one aircraft's flights; what is not known of them and why, or empty.
-std::string add_wear_of(std::span<FlownFlight* const> flown, std::size_t most,
+std::string add_wear_of(std::span<FlightTrendData* const> flown, std::size_t most,
                         const std::optional<double>& capacity_ah) {
     if (flown.empty()) return "";
     constexpr auto single = "no capacity of a single flight: it is told by how flights differ";
@@ -54,7 +56,7 @@ std::string add_wear_of(std::span<FlownFlight* const> flown, std::size_t most,
     try {
         identified =
             identify_battery(records, {.capacity_ah = capacity_ah, .cells = {}, .name = "", .with_capacities = true});
-    } catch (const NoAnswerError& error) {
+    } catch (const NoResultError& error) {
         return fmt::format("no resistances and no capacities: {}", error.what());
     }
     const bool is_guess = identified.capacity.origin == battery::CapacityOrigin::chart;
@@ -86,11 +88,11 @@ std::string add_wear_of(std::span<FlownFlight* const> flown, std::size_t most,
 
 std::span<const TrendQuantity> trend_quantities() { return quantities; }
 
-FlownFlight flown_flight(const ReportFlight& flight) {
-    FlownFlight flown;
+FlightTrendData extract_trend_data(const ReportFlight& flight) {
+    FlightTrendData flown;
     flown.name = flight.name;
     flown.aircraft = flight::describe_aircraft(flight.series.aircraft_id, flight.series.aircraft_name);
-    flown.facts = facts_of(flight);
+    flown.facts = summarize_flight(flight);
     try {
         flown.records = battery::discharge_records(flight.series).records;
     } catch (const InputError& error) {
@@ -100,11 +102,11 @@ FlownFlight flown_flight(const ReportFlight& flight) {
     return flown;
 }
 
-std::vector<std::string> add_pack_wear(std::vector<FlownFlight>& flights, std::size_t most,
-                                       std::optional<double> capacity_ah) {
+std::vector<std::string> add_state_of_health(std::vector<FlightTrendData>& flights, std::size_t most,
+                                             std::optional<double> capacity_ah) {
     std::vector<std::string> notes;
     for (const auto& aircraft : aircraft_names(flights)) {
-        std::vector<FlownFlight*> flown;
+        std::vector<FlightTrendData*> flown;
         for (auto& flight : flights)
             if (flight.aircraft == aircraft && !flight.records.empty()) flown.push_back(&flight);
         const auto note = add_wear_of(flown, most, capacity_ah);
@@ -113,7 +115,7 @@ std::vector<std::string> add_pack_wear(std::vector<FlownFlight>& flights, std::s
     return notes;
 }
 
-std::vector<AircraftTrend> trends_of(std::span<const FlownFlight> flights) {
+std::vector<AircraftTrend> trends_of(std::span<const FlightTrendData> flights) {
     constexpr double seconds_per_day = 86400.0;
     std::vector<AircraftTrend> trends;
     for (const auto& aircraft : aircraft_names(flights)) {
@@ -127,17 +129,17 @@ std::vector<AircraftTrend> trends_of(std::span<const FlownFlight> flights) {
                 trend.level_is_guess = trend.level_is_guess ||
                                        (is_capacity && flight.aircraft == aircraft && flight.capacity_level_is_guess);
             }
-            trend.answer = trend_over(trend.values);
-            if (trend.values.empty()) trend.answer.why_not = "of no flight with a date is it known";
+            trend.answer = estimate_trend(trend.values);
+            if (trend.values.empty()) trend.answer.no_trend_reason = "of no flight with a date is it known";
             trends.push_back(std::move(trend));
         }
     }
     return trends;
 }
 
-std::string trend_verdict(const AircraftTrend& trend) {
+std::string trend_direction(const AircraftTrend& trend) {
     const auto& told = trend.answer.trend;
-    if (!told) return "none: " + trend.answer.why_not;
+    if (!told) return "none: " + trend.answer.no_trend_reason;
     if (!is_significant(*told)) return "none to be seen";
     return told->per_day > 0.0 ? "rises" : "falls";
 }
@@ -163,7 +165,7 @@ TextTable trend_table(std::span<const AircraftTrend> trends) {
         } else {
             cells.insert(cells.end(), 5, "-");
         }
-        cells.push_back(trend_verdict(row));
+        cells.push_back(trend_direction(row));
         table.rows.push_back(std::move(cells));
     }
     return table;

@@ -3,9 +3,9 @@
 #include "base/duration_text.h"
 #include "base/parallel.h"
 #include "base/units.h"
-#include "flight/chosen_track.h"
 #include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
+#include "flight/selected_track.h"
 #include "report/blocks/compressed_block.h"
 #include "report/blocks/packed_tables.h"
 #include "report/figures/flight_figures.h"
@@ -57,7 +57,7 @@ SortieSums sums_of(const flight::PowerStatistics& power, const flight::Sortie& s
 
 std::string closure_percent(const SortieSums& sums) {
     if (!sums.energy_wh || !sums.counter_wh || *sums.counter_wh <= 0.0) return "-";
-    return fmt::format("{:+.2f}", units::percent_of(*sums.energy_wh - *sums.counter_wh, *sums.counter_wh));
+    return fmt::format("{:+.2f}", units::percentage(*sums.energy_wh - *sums.counter_wh, *sums.counter_wh));
 }
 
 std::string folders_of(const ReportFlight& flight) { return fmt::format("{}", fmt::join(flight.folders, ", ")); }
@@ -68,7 +68,7 @@ bool are_of_folders(std::span<const ReportFlight> flights) {
 
 std::vector<std::string> cells_of(const ReportFlight& flight, std::size_t sortie) {
     const auto sums = sums_of(flight::PowerStatistics(flight.series), flight.phases.sorties[sortie]);
-    const auto facts = facts_of(flight, sortie);
+    const auto facts = summarize_flight(flight, sortie);
     // Few flights have several sorties: no column for them.
     const auto name =
         flight.phases.sorties.size() > 1 ? fmt::format("{}, sortie {}", flight.name, sortie + 1) : flight.name;
@@ -156,7 +156,7 @@ std::string edges_html(const ReportFlight& flight) {
 
 /// "20 Faulty, 2020-07-03 12:17, 23 min 55 s in the air, 19.52 km, up to 118 m".
 std::string summary_of(const ReportFlight& flight) {
-    const auto facts = facts_of(flight);
+    const auto facts = summarize_flight(flight);
     auto text = flight::describe_aircraft(flight.series.aircraft_id, flight.series.aircraft_name);
     if (!facts.date.empty()) text += ", " + facts.date;
     text += ", " + duration_text(facts.in_air_s) + " in the air";
@@ -168,7 +168,7 @@ std::string summary_of(const ReportFlight& flight) {
 
 /// So many flights stand in the page as they are: text to search, and tables without JavaScript. More are opened one by
 /// one, and are compressed until then.
-constexpr std::size_t most_plain_flights = 20;
+constexpr std::size_t max_plain_flights = 20;
 
 struct PartOptions {
     std::string id;
@@ -207,7 +207,7 @@ Section flight_part(const ReportFlight& flight, const std::optional<mechanical::
         part.html = "<script type=\"text/plain\" class=\"block\">" + compressed_block(part.html) + "</script>\n";
     part.html = fmt::format(
         "<details class=\"flight\" id=\"{}\"{}><summary>{} <span>{}</span></summary>\n{}</details>\n", options.id,
-        options.is_open ? " open" : "", escaped(flight.name), escaped(summary_of(flight)), part.html);
+        options.is_open ? " open" : "", html_escaped(flight.name), html_escaped(summary_of(flight)), part.html);
     return part;
 }
 
@@ -219,7 +219,7 @@ std::vector<Section> flight_parts(std::span<const ReportFlight> flights,
     std::vector<Section> parts(flights.size());
     const auto is_shown = [](const ReportFlight& flight) { return flight.rejected.empty(); };
     const auto first = static_cast<std::size_t>(std::ranges::find_if(flights, is_shown) - flights.begin());
-    const bool are_many = flights.size() > most_plain_flights;
+    const bool are_many = flights.size() > max_plain_flights;
     std::atomic<std::size_t> done = 0;
     const std::optional<mechanical::MechanicalModel> no_model;
     for_each_in_parallel(flights.size(), [&](std::size_t f) {
@@ -277,7 +277,7 @@ Section flights_section(std::span<const ReportFlight> flights,
     section.html += flights_table_html(flights, ids);
     section.html += excluded_html(flights);
     section.html += "<h3>Each flight</h3>\n";
-    if (flights.size() > most_plain_flights)
+    if (flights.size() > max_plain_flights)
         section.html +=
             "<noscript><p class=\"warning\">The flights below are compressed: they open with JavaScript "
             "only.</p></noscript>\n";

@@ -44,7 +44,7 @@ std::vector<std::string> column_classes(const TextTable& table) {
 
 }  // namespace
 
-std::string escaped(std::string_view text) {
+std::string html_escaped(std::string_view text) {
     static const std::map<char, std::string_view> entities{
         {'<', "&lt;"}, {'>', "&gt;"}, {'&', "&amp;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
     std::string html;
@@ -63,20 +63,20 @@ std::string table_html(const TextTable& table, const HtmlTableOptions& options) 
     auto html = fmt::format(
         "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\"><table{1} "
         "aria-label=\"{0}\"{2}>\n<thead><tr>",
-        escaped(options.caption), options.sortable ? " class=\"sortable\"" : "",
+        html_escaped(options.caption), options.sortable ? " class=\"sortable\"" : "",
         options.minor.empty()
             ? ""
-            : fmt::format(" data-minor=\"{}\"", escaped(fmt::format("{}", fmt::join(options.minor, "|")))));
+            : fmt::format(" data-minor=\"{}\"", html_escaped(fmt::format("{}", fmt::join(options.minor, "|")))));
     for (std::size_t c = 0; c < table.header.size(); ++c) {
-        html += fmt::format("<th scope=\"col\"{}>{}</th>", classes[c], escaped(table.header[c]));
+        html += fmt::format("<th scope=\"col\"{}>{}</th>", classes[c], html_escaped(table.header[c]));
     }
     html += "</tr></thead>\n<tbody>\n";
     for (std::size_t r = 0; r < table.rows.size(); ++r) {
         html += "<tr>";
         for (std::size_t c = 0; c < table.rows[r].size(); ++c) {
-            auto cell = escaped(table.rows[r][c]);
+            auto cell = html_escaped(table.rows[r][c]);
             if (c == 0 && r < options.links.size() && !options.links[r].empty()) {
-                cell = fmt::format("<a href=\"#{}\">{}</a>", escaped(options.links[r]), cell);
+                cell = fmt::format("<a href=\"#{}\">{}</a>", html_escaped(options.links[r]), cell);
             }
             html += fmt::format("<td{}>{}</td>", classes[c], cell);
         }
@@ -97,7 +97,7 @@ std::string figure_html(const Figure& figure, const VegaJson& spec) {
         "data-name=\"{1}\"{2}></div>\n"
         "<script type=\"application/json\" id=\"spec-{1}\">{3}</script>\n"
         "<figcaption>{4}</figcaption>\n</figure>\n",
-        escaped(figure.description), figure.id, keys, script_json(spec), escaped(figure.caption));
+        html_escaped(figure.description), figure.id, keys, script_json(spec), html_escaped(figure.caption));
 }
 
 void add_figure(Section& section, Figure figure) {
@@ -106,14 +106,14 @@ void add_figure(Section& section, Figure figure) {
 }
 
 std::string paragraph(std::string_view text, std::string_view css_class) {
-    if (css_class.empty()) return fmt::format("<p>{}</p>\n", escaped(text));
-    return fmt::format("<p class=\"{}\">{}</p>\n", css_class, escaped(text));
+    if (css_class.empty()) return fmt::format("<p>{}</p>\n", html_escaped(text));
+    return fmt::format("<p class=\"{}\">{}</p>\n", css_class, html_escaped(text));
 }
 
 std::string list_html(const std::vector<std::string>& lines) {
     if (lines.empty()) return "";
     std::string html = "<ul>\n";
-    for (const auto& line : lines) html += fmt::format("<li>{}</li>\n", escaped(line));
+    for (const auto& line : lines) html += fmt::format("<li>{}</li>\n", html_escaped(line));
     return html + "</ul>\n";
 }
 

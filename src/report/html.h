@@ -12,13 +12,14 @@
 namespace flightwatt::report {
 
 /// `text` as HTML text or attribute value: valid UTF-8, without markup or control characters.
-std::string escaped(std::string_view text);
+std::string html_escaped(std::string_view text);
 
 struct HtmlTableOptions {
     std::string caption;  ///< said to those who do not see the table
     bool sortable = false;
     std::vector<std::string> links = {};  ///< of the rows' first cells; none where empty
-    /// Columns that a screen without room for all leaves out first, in this order, and names; then others from the right.
+    /// Columns that a screen without room for all leaves out first, in this order, and names; then others from the
+    /// right.
     std::vector<std::string> minor = {};
 };
 
@@ -30,7 +31,7 @@ std::string figure_html(const Figure& figure);
 std::string figure_html(const Figure& figure, const VegaJson& spec);
 
 /// What tells a section and its figures from those of the page's other folders; empty where it shows one folder.
-struct SectionOf {
+struct SectionScope {
     std::string folder = {};
     std::string id_ending = {};  ///< "-2"
 

@@ -23,30 +23,30 @@ std::optional<mechanical::MechanicalModel> model_of_others(const BatchContent& c
         for (const auto phase : {flight::Phase::cruise, flight::Phase::landing})
             if (!model.phases[phase].level_spread) return std::nullopt;
         return model;
-    } catch (const NoAnswerError&) {
+    } catch (const NoResultError&) {
         return std::nullopt;
     }
 }
 
 /// Where the moment does not allow a prediction there is none.
-std::optional<PredictedMoment> predict_at(const live::PredictionBasis& basis, const flight::FlightSeries& series,
+std::optional<PredictedMoment> predict_at(const live::PredictionInput& basis, const flight::FlightSeries& series,
                                           double until_s) {
     try {
-        const auto flown = mechanical::progress_at(cut_series(series, until_s), until_s);
-        live::Remarks remarks;
+        const auto flown = mechanical::progress_at(truncate_series(series, until_s), until_s);
+        live::Diagnostics remarks;
         const auto prediction = live::predict_energy(basis, flown, std::nullopt, remarks);
         return PredictedMoment{
             until_s - flown.lift_off_s,
-            flown.energy_wh + prediction.rest.energy_wh,
+            flown.energy_wh + prediction.remaining_energy.energy_wh,
             {flown.energy_wh + prediction.interval.low_wh, flown.energy_wh + prediction.interval.high_wh}};
-    } catch (const NoAnswerError&) {
+    } catch (const NoResultError&) {
         return std::nullopt;
     } catch (const InputError&) {
         return std::nullopt;
     }
 }
 
-PredictedFlight predicted(const ReportFlight& flight, live::PredictionBasis basis) {
+PredictedFlight predicted(const ReportFlight& flight, live::PredictionInput basis) {
     const auto& phases = flight.phases.sorties.front().phases;
     const auto& cruise = *std::ranges::find(phases, flight::Phase::cruise, &flight::PhaseSpan::phase);
     basis.cruise_s = cruise.duration_s();
@@ -69,17 +69,16 @@ bool is_one_sortie(const ReportFlight& flight) {
 
 }  // namespace
 
-std::map<std::string, PredictedFlight> predict_each_minute(const BatchContent& content, std::size_t most_flights) {
+std::map<std::string, PredictedFlight> predict_each_minute(const BatchContent& content, std::size_t max_flights) {
     std::map<std::string, PredictedFlight> flights;
-    constexpr std::size_t least_flights = 3;
-    if (!content.fit || content.measured.size() < least_flights || content.measured.size() > most_flights)
-        return flights;
+    constexpr std::size_t min_flights = 3;
+    if (!content.fit || content.measured.size() < min_flights || content.measured.size() > max_flights) return flights;
     for (const auto& flight : content.flights) {
         const auto is_this = [&](const auto& measured) { return measured.samples.flight == flight.name; };
         if (!is_one_sortie(flight) || std::ranges::none_of(content.measured, is_this)) continue;
         auto model = model_of_others(content, flight.name);
         if (!model) continue;
-        live::PredictionBasis basis;
+        live::PredictionInput basis;
         basis.model = std::move(*model);
         auto result = predicted(flight, std::move(basis));
         result.others = content.measured.size() - 1;
@@ -102,7 +101,7 @@ TextTable predictions_table(const std::map<std::string, PredictedFlight>& flight
             row.push_back(fixed(moment->energy_wh, 2));
             row.push_back(fmt::format("{:.2f} to {:.2f}", moment->interval.low_wh, moment->interval.high_wh));
         }
-        row.push_back(fixed(units::percent_of(static_cast<double>(held), static_cast<double>(moments.size())), 0));
+        row.push_back(fixed(units::percentage(static_cast<double>(held), static_cast<double>(moments.size())), 0));
         table.rows.push_back(std::move(row));
     }
     return table;

@@ -26,10 +26,10 @@ struct PredictedFlight {
     std::size_t others = 0;                ///< flights that the model was fitted to
 };
 
-/// Each flight of one complete sortie, predicted by a model of the other flights, from nothing that was logged later but
-/// the durations of cruise and landing, taken as known. By the flights' names; flights without a prediction are not in
-/// it, and none is where there are less than 3 flights or more than `most_flights`.
-std::map<std::string, PredictedFlight> predict_each_minute(const BatchContent& content, std::size_t most_flights);
+/// Each flight of one complete sortie, predicted by a model of the other flights, from nothing that was logged later
+/// but the durations of cruise and landing, taken as known. By the flights' names; flights without a prediction are not
+/// in it, and none is where there are less than 3 flights or more than `max_flights`.
+std::map<std::string, PredictedFlight> predict_each_minute(const BatchContent& content, std::size_t max_flights);
 
 /// A row a flight: the energy [Wh] that was predicted in the first, the middle and the last of these moments, with its
 /// 95 % interval, beside the measured one, and the percentage of all moments' intervals that hold it.

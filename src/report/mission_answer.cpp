@@ -20,7 +20,7 @@ template <typename Question>
 auto ask(const Question& question, std::string* why = nullptr) -> std::optional<decltype(question())> {
     try {
         return question();
-    } catch (const NoAnswerError& error) {
+    } catch (const NoResultError& error) {
         if (why != nullptr) *why = error.what();
     } catch (const InputError&) {
         if (why != nullptr) *why = "its schedule does not say what runs in a longer cruise";
@@ -72,8 +72,8 @@ std::string reserve_line(const SimulatedMission& simulated) {
     const auto& below = samples.probability_below_reserve_95;
     return fmt::format("{} with a chance of {:.1f} % ({} flights drawn: 95 % interval {:.1f} to {:.1f})",
                        asks ? "Keeps " + reserve : "The battery lasts",
-                       units::percent_of(1.0 - samples.probability_below_reserve, 1.0), samples.samples,
-                       units::percent_of(1.0 - below.high, 1.0), units::percent_of(1.0 - below.low, 1.0));
+                       units::percentage(1.0 - samples.probability_below_reserve, 1.0), samples.samples,
+                       units::percentage(1.0 - below.high, 1.0), units::percentage(1.0 - below.low, 1.0));
 }
 
 std::string now_flown(const SimulatedMission& simulated, const mission::Reach& reach) {
@@ -81,12 +81,13 @@ std::string now_flown(const SimulatedMission& simulated, const mission::Reach& r
     return fmt::format(" (now {})", duration_text(simulated.mission.duration_s[flight::Phase::cruise]));
 }
 
-std::string reach_line(const SimulatedMission& simulated, const MissionAnswer& answer) {
+std::string reach_line(const SimulatedMission& simulated, const MissionAssessment& answer) {
     if (!answer.reach) return "How long it could fly is not known: " + answer.no_reach;
     auto line = fmt::format("At most {}{} as modelled", in_words(*answer.reach), now_flown(simulated, *answer.reach));
-    if (answer.likely_reach)
-        line += fmt::format(", {} with a chance of {:.0f} %{}", in_words(*answer.likely_reach),
-                            units::percent_of(likely, 1.0), answer.cruise_differs_now ? " if that is stated" : "");
+    if (answer.reach_at_95_percent)
+        line += fmt::format(", {} with a chance of {:.0f} %{}", in_words(*answer.reach_at_95_percent),
+                            units::percentage(reach_probability, 1.0),
+                            answer.cruise_differs_now ? " if that is stated" : "");
     if (answer.is_unplanned) line += ", with as little software as it may run";
     return line;
 }
@@ -110,37 +111,39 @@ bool shorter_helps(const SimulatedMission& simulated, const mission::Reach& reac
            reach.limit.value < simulated.mission.duration_s[flight::Phase::cruise];
 }
 
-/// "fly 24 min of cruise at most". Such a length has to be stated: where nothing states that of the mission, flights differ
-/// in it, and a longer one on average may land as well.
-std::string shorter_way(const SimulatedMission& simulated, const MissionAnswer& answer, const mission::Reach& reach) {
+/// "fly 24 min of cruise at most". Such a length has to be stated: where nothing states that of the mission, flights
+/// differ in it, and a longer one on average may land as well.
+std::string shorter_way(const SimulatedMission& simulated, const MissionAssessment& answer,
+                        const mission::Reach& reach) {
     if (!answer.cruise_differs_now) return fmt::format("fly {} at most", in_words(reach));
     const double now_s = simulated.mission.duration_s[flight::Phase::cruise];
     return "fly " + mission::describe_stated_cruise(reach.limit.value, now_s);
 }
 
 /// What would make the mission keep its reserve; empty where nothing is known that would.
-std::string remedy_line(const SimulatedMission& simulated, const MissionAnswer& answer) {
-    const auto& reach = answer.likely_reach ? answer.likely_reach : answer.reach;
+std::string remedy_line(const SimulatedMission& simulated, const MissionAssessment& answer) {
+    const auto& reach = answer.reach_at_95_percent ? answer.reach_at_95_percent : answer.reach;
     const double capacity_ah = simulated.mission.battery.capacity_ah;
     std::vector<std::string> ways;
     const bool shorter = reach && shorter_helps(simulated, *reach);
     // Beyond what the least software reaches, no plan does.
-    const bool is_in_reach = answer.likely_reach && (!shorter || reach->unit != mission::ReachUnit::cruise_s);
+    const bool is_in_reach = answer.reach_at_95_percent && (!shorter || reach->unit != mission::ReachUnit::cruise_s);
     if (simulated.planned && is_in_reach) ways.emplace_back("plan it with --probability 0.95");
     if (shorter) ways.push_back(shorter_way(simulated, answer, *reach));
     if (answer.capacity_ah)
         ways.push_back(fmt::format("take a battery of {:.2f} Ah (it has {:.4g})", *answer.capacity_ah, capacity_ah));
     if (ways.empty()) return "";
-    const auto aim = answer.likely_reach ? fmt::format("For a chance of {:.0f} %", units::percent_of(likely, 1.0))
-                                         : std::string("To keep it");
+    const auto aim = answer.reach_at_95_percent
+                         ? fmt::format("For a chance of {:.0f} %", units::percentage(reach_probability, 1.0))
+                         : std::string("To keep it");
     return fmt::format("{}: {}", aim, fmt::join(ways, ", or "));
 }
 
 /// By the capacity that the mission has.
-Verdict verdict_as_modelled(const mission::MissionSummary& summary) {
-    if (!summary.keeps_reserve) return Verdict::fails;
-    const bool is_likely = !summary.samples || summary.samples->probability_below_reserve <= 1.0 - likely;
-    return is_likely ? Verdict::keeps : Verdict::may_keep;
+ReserveStatus verdict_as_modelled(const mission::MissionSummary& summary) {
+    if (!summary.keeps_reserve) return ReserveStatus::fails;
+    const bool is_likely = !summary.samples || summary.samples->probability_below_reserve <= 1.0 - reach_probability;
+    return is_likely ? ReserveStatus::keeps : ReserveStatus::may_keep;
 }
 
 nlohmann::ordered_json to_json(const std::optional<mission::Reach>& reach) {
@@ -158,46 +161,48 @@ nlohmann::ordered_json to_json(const std::optional<mission::Reach>& reach) {
 
 }  // namespace
 
-MissionAnswer answer_for(const SimulatedMission& simulated, const mission::MissionOfReading& mission_of) {
-    MissionAnswer answer;
-    const auto mission = ask([&] { return mission_of({.may_lack_schedule = true}); });
+MissionAssessment assess_mission(const SimulatedMission& simulated, const mission::MissionLoader& mission_of) {
+    MissionAssessment answer;
+    const auto mission = ask([&] { return mission_of({.allow_unplanned = true}); });
     if (!mission) {
         answer.no_reach = "its file cannot be read again";
         return answer;
     }
     answer.is_unplanned = std::holds_alternative<mission::PlanningProblem>(*mission);
-    answer.reach = ask([&] { return longest_reach(mission_of); }, &answer.no_reach);
+    answer.reach = ask([&] { return find_reach(mission_of); }, &answer.no_reach);
     const bool knows_chance = simulated.simulation.summary.samples.has_value();
-    if (answer.reach && knows_chance) answer.likely_reach = ask([&] { return longest_reach(mission_of, likely); });
-    answer.cruise_differs_now = answer.likely_reach && answer.likely_reach->unit == mission::ReachUnit::cruise_s &&
-                                mission::cruise_differs(setup_of(*mission));
-    if (verdict_as_modelled(simulated.simulation.summary) == Verdict::keeps) return answer;
-    const auto chance = answer.likely_reach ? std::optional(likely) : std::nullopt;
-    const auto capacity_ah = ask([&] { return least_capacity_ah(*mission, chance); }).value_or(std::nullopt);
+    if (answer.reach && knows_chance)
+        answer.reach_at_95_percent = ask([&] { return find_reach(mission_of, reach_probability); });
+    answer.cruise_differs_now = answer.reach_at_95_percent &&
+                                answer.reach_at_95_percent->unit == mission::ReachUnit::cruise_s &&
+                                mission::cruise_duration_varies(setup_of(*mission));
+    if (verdict_as_modelled(simulated.simulation.summary) == ReserveStatus::keeps) return answer;
+    const auto chance = answer.reach_at_95_percent ? std::optional(reach_probability) : std::nullopt;
+    const auto capacity_ah = ask([&] { return min_capacity_ah(*mission, chance); }).value_or(std::nullopt);
     // Of the least software, which may land with the pack as it is where what was planned may not.
     if (capacity_ah && *capacity_ah > simulated.mission.battery.capacity_ah) answer.capacity_ah = capacity_ah;
     return answer;
 }
 
-Verdict verdict_of(const SimulatedMission& simulated) {
+ReserveStatus verdict_of(const SimulatedMission& simulated) {
     const auto& summary = simulated.simulation.summary;
     const auto verdict = verdict_as_modelled(summary);
     const bool keeps_by_flights = !summary.by_flights || summary.by_flights->keeps_reserve;
-    return verdict == Verdict::keeps && !keeps_by_flights ? Verdict::may_keep : verdict;
+    return verdict == ReserveStatus::keeps && !keeps_by_flights ? ReserveStatus::may_keep : verdict;
 }
 
-std::vector<std::string> card_lines(const SimulatedMission& simulated, const MissionAnswer& answer) {
+std::vector<std::string> card_lines(const SimulatedMission& simulated, const MissionAssessment& answer) {
     std::vector<std::string> lines{landing_line(simulated), reserve_line(simulated), reach_line(simulated, answer)};
     if (auto warning = capacity_warning(simulated.mission.battery); !warning.empty())
         lines.insert(lines.begin() + 1, "Warning: " + warning);
     if (simulated.simulation.summary.utility) lines.push_back(utility_line(simulated));
     if (const auto& model = simulated.mission.power_model) lines.push_back(as_sentence(mission::describe(*model)));
-    if (verdict_as_modelled(simulated.simulation.summary) == Verdict::keeps) return lines;
+    if (verdict_as_modelled(simulated.simulation.summary) == ReserveStatus::keeps) return lines;
     if (auto remedy = remedy_line(simulated, answer); !remedy.empty()) lines.push_back(std::move(remedy));
     return lines;
 }
 
-nlohmann::ordered_json to_json(const SimulatedMission& simulated, const MissionAnswer& answer) {
+nlohmann::ordered_json to_json(const SimulatedMission& simulated, const MissionAssessment& answer) {
     const auto& summary = simulated.simulation.summary;
     const auto or_null = [](const auto& value) { return value ? nlohmann::ordered_json(*value) : nullptr; };
     nlohmann::ordered_json json{{"mission", simulated.title},
@@ -207,7 +212,7 @@ nlohmann::ordered_json to_json(const SimulatedMission& simulated, const MissionA
                                 {"probability_below_reserve", nullptr},
                                 {"utility", or_null(summary.utility)},
                                 {"reach", to_json(answer.reach)},
-                                {"reach_with_95_percent", to_json(answer.likely_reach)},
+                                {"reach_with_95_percent", to_json(answer.reach_at_95_percent)},
                                 {"least_capacity_ah", or_null(answer.capacity_ah)},
                                 {"card", card_lines(simulated, answer)}};
     if (summary.samples) json["probability_below_reserve"] = summary.samples->probability_below_reserve;

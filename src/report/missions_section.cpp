@@ -71,7 +71,7 @@ Section profile_section(Missions missions) {
 
 std::optional<double> chance_below_percent(const mission::MissionSummary& summary) {
     if (!summary.samples) return std::nullopt;
-    return units::percent_of(summary.samples->probability_below_reserve, 1.0);
+    return units::percentage(summary.samples->probability_below_reserve, 1.0);
 }
 
 /// What people look for first stands to the left; columns that no mission has are left out.
@@ -149,7 +149,7 @@ Section map_section(Missions missions, const PublishedFigures& published) {
                              [&](const auto& other) { return have_same_map(mission, other.mission); });
         section.html +=
             fmt::format("<h3>{}: {}</h3>\n", mission.mechanical ? "Flight and computing" : "Computing alone",
-                        escaped(titles_of(alike)));
+                        html_escaped(titles_of(alike)));
         const bool is_published = !mission.mechanical;  // the paper's Fig. 4 is without the flight
         add_figure(section,
                    qos_map_figure(*map, alike, is_published ? published.soc_cells : std::vector<PublishedCell>{},
@@ -164,7 +164,7 @@ std::vector<UtilityPoint> utility_points(const SimulatedMission& planned, Missio
     for (const auto& other : missions) {
         const auto& summary = other.simulation.summary;
         if (!have_same_map(planned.mission, other.mission) || !summary.final_soc_percent) continue;
-        const auto utility = mean_utility(planned.mission, other.mission.schedule, powered_until_s(summary));
+        const auto utility = mean_utility(planned.mission, other.mission.schedule, powered_end_s(summary));
         if (!utility) continue;
         points.push_back({other.title, *summary.final_soc_percent, *utility, other.planned.has_value()});
     }
@@ -176,12 +176,12 @@ std::optional<double> gap_percent(const SimulatedMission& simulated) {
     const auto& planned = *simulated.planned;
     const auto& utility = simulated.simulation.summary.utility;
     if (!planned.feasible || !utility || planned.bound <= 0.0) return std::nullopt;
-    return std::max(0.0, units::percent_of(planned.bound - *utility, planned.bound));
+    return std::max(0.0, units::percentage(planned.bound - *utility, planned.bound));
 }
 
 TextTable running_table(const mission::Mission& mission) {
     TextTable table{{"from [s]", "to [s]", "component", "runs", "power [W]"}, {}};
-    for (const auto& running : running_times(mission)) {
+    for (const auto& running : run_intervals(mission)) {
         const auto& component = mission.compute.components[running.component];
         table.rows.push_back({fixed(running.start_s, 0), fixed(running.end_s, 0), component.name,
                               describe_qos(component, running.qos), fixed(power_w(component.profile, running.qos), 2)});
@@ -201,7 +201,7 @@ TextTable utility_table(std::vector<UtilityPoint> points) {
 }
 
 void add_plan(Section& section, const SimulatedMission& planned, Missions missions, std::size_t number) {
-    section.html += "<h3>" + escaped(planned.title) + "</h3>\n";
+    section.html += "<h3>" + html_escaped(planned.title) + "</h3>\n";
     if (!planned.planned->feasible) {
         section.html += paragraph(
             "No schedule that keeps the reserve was found: what is shown demands least energy. flightwatt plan "

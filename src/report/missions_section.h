@@ -18,8 +18,8 @@ TextTable ranking_table(std::span<const SimulatedMission> missions);
 TextTable plans_table(std::span<const SimulatedMission> missions);
 
 /// The missions' mechanical models and profiled software, each once, the model of the flights that the page shows
-/// already (`shown`, one a folder) not again; their schedules as Fig. 3 with the ranking; and the map over the quality of service as
-/// Fig. 4 of each flight and software with two parameters or more. `missions` is not empty.
+/// already (`shown`, one a folder) not again; their schedules as Fig. 3 with the ranking; and the map over the quality
+/// of service as Fig. 4 of each flight and software with two parameters or more. `missions` is not empty.
 std::vector<Section> mission_sections(std::span<const SimulatedMission> missions, const PublishedFigures& published,
                                       std::span<const mechanical::MechanicalModel> shown = {});
 

@@ -37,7 +37,7 @@ Section model_section(const ReportModel& model, const PublishedFigures& publishe
 }
 
 Section validation_section(const std::vector<mechanical::ValidatedFlight>& flights, bool synthetic,
-                           const SectionOf& of) {
+                           const SectionScope& of) {
     Section section{of.id("validation"), of.title("Validation against the baselines") +
                                              std::string(synthetic ? " (SYNTHETIC flights)" : "")};
     if (synthetic) {
@@ -55,7 +55,7 @@ Section validation_section(const std::vector<mechanical::ValidatedFlight>& fligh
     if (flights.size() < few) {
         section.html +=
             paragraph(fmt::format("Coverage over {} flights means little: each counts for {:.0f} points.",
-                                  flights.size(), units::percent_of(1.0, static_cast<double>(flights.size()))),
+                                  flights.size(), units::percentage(1.0, static_cast<double>(flights.size()))),
                       "soft");
     }
     return section;

@@ -31,11 +31,12 @@ Section model_section(const ReportModel& model, const PublishedFigures& publishe
 /// How well flights that it has not seen are predicted, beside the baselines. `flights` is not empty;
 /// of `synthetic` ones it says so.
 Section validation_section(const std::vector<mechanical::ValidatedFlight>& flights, bool synthetic = false,
-                           const SectionOf& of = {});
+                           const SectionScope& of = {});
 
 /// Power from airspeed and climb, fitted to the flights: figure, constants, and what was tried. std::nullopt where no
 /// flight measured its motion, or it does not tell their power.
-std::optional<Section> physical_section(std::span<const mechanical::MeasuredFlight> flights, const SectionOf& of = {});
+std::optional<Section> physical_section(std::span<const mechanical::MeasuredFlight> flights,
+                                        const SectionScope& of = {});
 
 /// Its tables; none where there is no such section.
 std::vector<CaptionedTable> physical_tables(std::span<const mechanical::MeasuredFlight> flights);

@@ -26,7 +26,7 @@ std::string head_html(const PageHead& head, const WebFiles& web) {
         "script-src 'unsafe-inline' 'unsafe-eval'; style-src 'unsafe-inline'; img-src data: blob:\">\n"
         "<meta name=\"generator\" content=\"flightwatt " FLIGHTWATT_VERSION
         "\">\n<link rel=\"icon\" href=\"data:,\">\n<title>{}</title>\n<style>\n{}</style>\n</head>\n",
-        escaped(head.title), web.style);
+        html_escaped(head.title), web.style);
 }
 
 std::vector<std::filesystem::path> library_paths(const std::filesystem::path& folder) {
@@ -39,7 +39,7 @@ std::vector<std::filesystem::path> library_paths(const std::filesystem::path& fo
 /// The first that is not there.
 std::optional<std::filesystem::path> missing_library(const std::filesystem::path& folder) {
     for (const auto& path : library_paths(folder)) {
-        if (reading_error(path)) return path;
+        if (open_error(path)) return path;
     }
     return std::nullopt;
 }
@@ -58,13 +58,13 @@ WebFiles read_drawing_files(const std::filesystem::path& folder) {
 std::string contents_html(const std::vector<Section>& sections) {
     std::string html = "<nav aria-label=\"Contents\"><ul>\n";
     for (const auto& section : sections) {
-        html += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", section.id, escaped(section.title));
+        html += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", section.id, html_escaped(section.title));
     }
     return html + "</ul></nav>\n";
 }
 
 std::string opening_html(const PageHead& head, const std::vector<Section>& sections) {
-    return fmt::format("<header>\n<h1>{}</h1>\n", escaped(head.title)) + contents_html(sections) +
+    return fmt::format("<header>\n<h1>{}</h1>\n", html_escaped(head.title)) + contents_html(sections) +
            "<noscript><p class=\"warning\">The figures need JavaScript; the tables do not.</p></noscript>\n"
            "</header>\n";
 }
@@ -72,7 +72,7 @@ std::string opening_html(const PageHead& head, const std::vector<Section>& secti
 std::string closing_html(const PageHead& head) {
     std::string html = "<footer>\n<h2>About this page</h2>\n<dl>\n";
     for (const auto& [name, value] : head.facts)
-        html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escaped(name), escaped(value));
+        html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", html_escaped(name), html_escaped(value));
     html += "</dl>\n";
     return html +
            "<p class=\"soft keys\">In figures over time: drag to move, Ctrl and wheel to zoom, double-click for "
@@ -82,7 +82,7 @@ std::string closing_html(const PageHead& head) {
 
 }  // namespace
 
-std::filesystem::path web_folder() { return program_files("web", "FLIGHTWATT_WEB", "the report's web files"); }
+std::filesystem::path web_folder() { return data_folder("web", "FLIGHTWATT_WEB", "the report's web files"); }
 
 WebFiles read_web_files(const std::filesystem::path& folder) {
     if (const auto missing = missing_library(folder)) {
@@ -104,7 +104,7 @@ std::string page_html(const PageHead& head, const std::vector<Section>& sections
     auto html = head_html(head, web) + "<body>\n" + opening_html(head, sections) + "<main>\n";
     for (const auto& section : sections) {
         html += fmt::format("<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n<h2 id=\"{0}-title\">{1}</h2>\n",
-                            section.id, escaped(section.title));
+                            section.id, html_escaped(section.title));
         html += section.html + "</section>\n";
     }
     html += "</main>\n" + closing_html(head) + "<script type=\"application/json\" id=\"theme\">" +

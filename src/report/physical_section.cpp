@@ -11,16 +11,16 @@
 namespace flightwatt::report {
 namespace {
 
-std::optional<mechanical::PhysicalFit> fitted_motion(std::span<const mechanical::FlightMotion> flights) {
+std::optional<mechanical::PhysicalFit> fitted_motion(std::span<const mechanical::BinnedFlight> flights) {
     try {
         return mechanical::fit_physical_model(flights);
-    } catch (const NoAnswerError&) {
+    } catch (const NoResultError&) {
         return std::nullopt;
     }
 }
 
-std::vector<mechanical::FlightMotion> motions_of(std::span<const mechanical::MeasuredFlight> flights) {
-    std::vector<mechanical::FlightMotion> motions;
+std::vector<mechanical::BinnedFlight> motions_of(std::span<const mechanical::MeasuredFlight> flights) {
+    std::vector<mechanical::BinnedFlight> motions;
     for (const auto& flight : flights)
         if (!flight.motion.bins.empty()) motions.push_back(flight.motion);
     return motions;
@@ -38,7 +38,7 @@ std::vector<CaptionedTable> physical_tables(std::span<const mechanical::Measured
             {cli::trials_table(*fit), trials_caption, "tab:physical-terms"}};
 }
 
-std::optional<Section> physical_section(std::span<const mechanical::MeasuredFlight> flights, const SectionOf& of) {
+std::optional<Section> physical_section(std::span<const mechanical::MeasuredFlight> flights, const SectionScope& of) {
     const auto motions = motions_of(flights);
     const auto fit = fitted_motion(motions);
     if (!fit) return std::nullopt;

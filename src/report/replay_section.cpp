@@ -35,16 +35,17 @@ Figure replay_figure(const std::vector<const mission::Replay*>& replays, const s
                              description);
     figure.spec["width"] = replay_width;
     figure.spec["height"] = replay_height;
-    const VegaJson encoding{{"x", quantity("soc", "final state of charge [%]")},
-                            {"y", quantity("utility", "utility")},
-                            {"color", category("schedule", "schedule")},
-                            {"shape", category("flight", "flight")},
-                            {"tooltip",
-                             {category("flight", "flight"), category("schedule", "schedule"),
-                              shown("utility", "utility", ".4f"), shown("soc", "final state of charge [%]", ".2f")}}};
+    const VegaJson encoding{
+        {"x", numeric_channel("soc", "final state of charge [%]")},
+        {"y", numeric_channel("utility", "utility")},
+        {"color", nominal_channel("schedule", "schedule")},
+        {"shape", nominal_channel("flight", "flight")},
+        {"tooltip",
+         {nominal_channel("flight", "flight"), nominal_channel("schedule", "schedule"),
+          tooltip_number("utility", "utility", ".4f"), tooltip_number("soc", "final state of charge [%]", ".2f")}}};
     const VegaJson reserve{{"values", {{{"reserve", reserve_percent}}}}};
     figure.spec["layer"] = {
-        layer(reserve, R"({"type": "rule", "strokeDash": [4, 3]})", {{"x", quantity("reserve", "")}}),
+        layer(reserve, R"({"type": "rule", "strokeDash": [4, 3]})", {{"x", numeric_channel("reserve", "")}}),
         layer(data.json(), R"({"type": "point", "size": 70})", encoding)};
     figure.spec["layer"][0]["encoding"]["x"]["title"] = "final state of charge [%]";
     return figure;
@@ -72,7 +73,7 @@ Section replay_section(std::span<const mission::Replay> replays) {
         std::vector<const mission::Replay*> of_mission;
         for (const auto& other : replays)
             if (other.mission == replay.mission) of_mission.push_back(&other);
-        section.html += "<h3>" + escaped(replay.mission) + "</h3>\n";
+        section.html += "<h3>" + html_escaped(replay.mission) + "</h3>\n";
         add_figure(section, replay_figure(of_mission, fmt::format("replay-{}", drawn.size())));
     }
     section.html += list_html(cli::replay_sentences(replays));

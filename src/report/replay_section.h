@@ -9,8 +9,8 @@
 
 namespace flightwatt::report {
 
-/// What the missions' schedules came to on the flights' measured power: tables, sentences, and a figure a mission that is
-/// yet to be planned. `replays` is not empty.
+/// What the missions' schedules came to on the flights' measured power: tables, sentences, and a figure a mission that
+/// is yet to be planned. `replays` is not empty.
 Section replay_section(std::span<const mission::Replay> replays);
 
 /// Its tables.

@@ -26,7 +26,7 @@ struct SimulatedMission {
 
 /// Runs the missions, planned first where they are yet to be, with as many rows a curve as a screen shows. The curve of
 /// a mission whose power the battery cannot deliver ends there. The report flies missions nowhere else.
-std::vector<SimulatedMission> simulate_for_report(const std::vector<mission::AnyMission>& missions,
+std::vector<SimulatedMission> simulate_for_report(const std::vector<mission::MissionVariant>& missions,
                                                   const Progress& progress = {});
 
 /// What a configuration runs: "detection fps 10, encryption key_bits 240", or "nothing".

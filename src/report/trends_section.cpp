@@ -46,14 +46,14 @@ VegaJson trend_panel(const AircraftTrend& trend) {
     add_line(told.per_day, "median slope");
     add_line(told.low_per_day, "low, 95 %");
     add_line(told.high_per_day, "high, 95 %");
-    const VegaJson y = quantity("value", "", {{"scale", {{"zero", false}}}});
+    const VegaJson y = numeric_channel("value", "", {{"scale", {{"zero", false}}}});
     const VegaJson points = layer(
         flights.json(), R"({"type": "point", "size": 40, "filled": true, "opacity": 1})",
         {{"x", date_axis()},
          {"y", y},
          {"tooltip",
           {{{"field", "date"}, {"type", "temporal"}, {"title", "date"}, {"formatType", "utc"}, {"format", "%Y-%m-%d"}},
-           shown("value", title, ".4g")}}});
+           tooltip_number("value", title, ".4g")}}});
     const VegaJson dash{
         {"field", "slope"},
         {"type", "nominal"},
@@ -74,7 +74,7 @@ Figure trend_figure(std::span<const AircraftTrend> trends, const std::string& ai
         const auto [slope, low, high, unit] = shown_slope(trend);
         description +=
             fmt::format(" {}: {:.3g}, {:+.3g}{} in 30 days ({:+.3g}{} to {:+.3g}{}), {}.", title_of(trend),
-                        trend.answer.trend->median, slope, unit, low, unit, high, unit, trend_verdict(trend));
+                        trend.answer.trend->median, slope, unit, low, unit, high, unit, trend_direction(trend));
         panels.push_back(trend_panel(trend));
     }
     auto figure = new_figure(
@@ -100,7 +100,7 @@ std::optional<Section> trends_section(std::span<const AircraftTrend> trends) {
         "How aircraft and packs go over the dates of their flights. A trend is told by an interval without 0; one in 20 "
         "shows by chance, and wind, season and the pack that was flown go into it like age.");
     for (const auto& name : aircraft) {
-        if (aircraft.size() > 1) section.html += "<h3>" + escaped(name) + "</h3>\n";
+        if (aircraft.size() > 1) section.html += "<h3>" + html_escaped(name) + "</h3>\n";
         add_figure(section, trend_figure(trends, name, fmt::format("trends-{}", section.figures.size() + 1)));
     }
     section.html += table_html(trend_table(trends), {"Trends over the dates of flights", true, {}});

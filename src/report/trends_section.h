@@ -17,10 +17,10 @@
 namespace flightwatt::report {
 
 /// One flight, with all that may change with age.
-struct FlownFlight {
+struct FlightTrendData {
     std::string name;
     std::string aircraft;
-    FlightFacts facts;
+    FlightSummary facts;
     std::vector<battery::DischargeRecord> records;
     std::string no_record;  ///< why there are none of these
     std::optional<battery::FlightResistance> resistance;
@@ -31,20 +31,20 @@ struct FlownFlight {
 };
 
 /// `flight` was not rejected.
-FlownFlight flown_flight(const ReportFlight& flight);
+FlightTrendData extract_trend_data(const ReportFlight& flight);
 
 /// Resistance and capacity of each flight, by the pack that all flights of an aircraft tell together: the charge that
-/// each draws for its way down their common curve of voltage (battery/identification/flight_wear.h). What is not known
-/// and why, an aircraft a line. The work grows with the square of an aircraft's flights, so that `most` are taken.
-/// `capacity_ah` is the mean over the flights, where it is known; else it may be a guess. Throws UsageError where flights
-/// draw more.
-std::vector<std::string> add_pack_wear(std::vector<FlownFlight>& flights, std::size_t most,
-                                       std::optional<double> capacity_ah = {});
+/// each draws for its way down their common curve of voltage (battery/identification/state_of_health.h). What is not
+/// known and why, an aircraft a line. The work grows with the square of an aircraft's flights, so that `most` are
+/// taken. `capacity_ah` is the mean over the flights, where it is known; else it may be a guess. Throws UsageError
+/// where flights draw more.
+std::vector<std::string> add_state_of_health(std::vector<FlightTrendData>& flights, std::size_t most,
+                                             std::optional<double> capacity_ah = {});
 
 struct TrendQuantity {
     const char* name;   ///< with its unit, as in files
     const char* title;  ///< as in figures, short
-    std::optional<double> (*of)(const FlownFlight&);
+    std::optional<double> (*value)(const FlightTrendData&);
 };
 
 /// What has a trend. The charge that was drawn has none: it says how long the flight was.
@@ -55,17 +55,18 @@ struct AircraftTrend {
     std::string aircraft;
     std::string quantity;
     std::vector<batch::DatedValue> values;  ///< days since 1970
-    batch::TrendAnswer answer;
+    batch::TrendResult answer;
     bool level_is_guess = false;  ///< the slope is known in percent of the level, not in the quantity's unit
 };
 
 /// Of each aircraft, all quantities.
-std::vector<AircraftTrend> trends_of(std::span<const FlownFlight> flights);
+std::vector<AircraftTrend> trends_of(std::span<const FlightTrendData> flights);
 
 /// Slopes are told of this many days.
 inline constexpr double trend_days = 30.0;
 
-/// The slope and its 95 % interval over trend_days: in the quantity's unit, or where the level is a guess in percent of it.
+/// The slope and its 95 % interval over trend_days: in the quantity's unit, or where the level is a guess in percent of
+/// it.
 struct ShownSlope {
     double slope = 0.0;
     double low = 0.0;
@@ -77,7 +78,7 @@ struct ShownSlope {
 ShownSlope shown_slope(const AircraftTrend& trend);
 
 /// "rises", "falls" or "none to be seen"; of one that has no trend "none" and why.
-std::string trend_verdict(const AircraftTrend& trend);
+std::string trend_direction(const AircraftTrend& trend);
 
 /// A row an aircraft and quantity.
 TextTable trend_table(std::span<const AircraftTrend> trends);

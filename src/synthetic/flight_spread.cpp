@@ -26,8 +26,8 @@ mechanical::FourierModel deviation_series(flight::Phase phase, const mechanical:
         tau[i] = (static_cast<double>(i) + 0.5) / static_cast<double>(points);
         power_w[i] = band_w(phase, tau[i]) * (deviation.level + deviation.tilt * (2.0 * tau[i] - 1.0));
     }
-    auto series = mechanical::nearest_series(model, tau, power_w);
-    if (!series) throw NoAnswerError("the model's frequency is too low to spread flights about it");
+    auto series = mechanical::fit_series(model, tau, power_w);
+    if (!series) throw NoResultError("the model's frequency is too low to spread flights about it");
     return *std::move(series);
 }
 
@@ -70,7 +70,7 @@ std::vector<flight::PerPhase<mechanical::PhaseModel>> draw_flights(const mechani
         flight::PerPhase<mechanical::PhaseModel> one;
         flight::PerPhase<mechanical::PhaseModel> opposite;
         for (const auto phase : flight::all_phases) {
-            const Deviation deviation{options.bands * normal(random), options.bands * 0.5 * normal(random),
+            const Deviation deviation{options.band_scale * normal(random), options.band_scale * 0.5 * normal(random),
                                       uniform(random)};
             one[phase] = deviated(phase, model.phases[phase], deviation, 1.0);
             opposite[phase] = deviated(phase, model.phases[phase], deviation, -1.0);

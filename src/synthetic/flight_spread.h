@@ -15,7 +15,7 @@ double band_w(flight::Phase phase, double tau);
 
 /// How synthetic flights differ from the model and from each other.
 struct SpreadOptions {
-    double bands = 1.0;             ///< standard deviation of a flight, in half widths of the band
+    double band_scale = 1.0;        ///< standard deviation of a flight, in half widths of the band
     double duration_spread = 0.06;  ///< durations are uniform within +- this part of the model's
 };
 

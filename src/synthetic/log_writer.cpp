@@ -58,66 +58,69 @@ std::string tenths(double value) { return ocaml_float(std::round(value * 10.0) /
 std::string hundredths(double value) { return ocaml_float(std::round(value * 100.0) / 100.0); }
 
 /// Counts up from 0 with every message, and begins anew at `count`.
-int turn_of(const Moment& m, double period_s, int count) { return static_cast<int>(m.time_s / period_s) % count; }
-int channel_of(const Moment& m) { return turn_of(m, 0.6, 12); }
-int waypoint_of(const Moment& m) { return turn_of(m, 1.2, 10); }
+int turn_of(const SensorReadings& m, double period_s, int count) {
+    return static_cast<int>(m.time_s / period_s) % count;
+}
+int channel_of(const SensorReadings& m) { return turn_of(m, 0.6, 12); }
+int waypoint_of(const SensorReadings& m) { return turn_of(m, 1.2, 10); }
 
 /// What a field tells, as Paparazzi writes it.
 struct NamedValue {
     std::string_view name;
-    std::string (*text)(const Moment& m);
+    std::string (*text)(const SensorReadings& m);
 };
 
 constexpr NamedValue named_values[] = {
-    {"throttle_percent", [](const Moment& m) { return whole(m.state.throttle_percent); }},
-    {"voltage_v", [](const Moment& m) { return ocaml_float(m.voltage_v); }},
-    {"current_a", [](const Moment& m) { return ocaml_float(m.current_a); }},
-    {"power_w", [](const Moment& m) { return ocaml_float(m.voltage_v * m.current_a); }},
-    {"charge_ah", [](const Moment& m) { return ocaml_float(m.charge_ah); }},
-    {"energy_wh", [](const Moment& m) { return ocaml_float(m.energy_wh); }},
-    {"altitude_m", [](const Moment& m) { return ocaml_float(m.altitude_m); }},
-    {"altitude_mm", [](const Moment& m) { return whole(m.altitude_m * 1000.0); }},
-    {"true_altitude_m", [](const Moment& m) { return whole(m.state.altitude_m); }},
-    {"climb_m_per_s", [](const Moment& m) { return hundredths(m.state.climb_m_per_s); }},
-    {"climb_cm_per_s", [](const Moment& m) { return whole(m.state.climb_m_per_s * 100.0); }},
-    {"pitch_rad", [](const Moment& m) { return ocaml_float(m.state.climb_m_per_s / 20.0); }},
-    {"block", [](const Moment& m) { return std::to_string(m.state.block); }},
-    {"east_m", [](const Moment& m) { return whole(m.state.east_m); }},
-    {"north_m", [](const Moment& m) { return whole(m.state.north_m); }},
-    {"east_tenths", [](const Moment& m) { return tenths(m.state.east_m); }},
-    {"north_tenths", [](const Moment& m) { return tenths(m.state.north_m); }},
-    {"utm_east_cm", [](const Moment& m) { return whole((reference_east_m + m.state.east_m) * 100.0); }},
-    {"utm_north_cm", [](const Moment& m) { return whole((reference_north_m + m.state.north_m) * 100.0); }},
-    {"home_tenths", [](const Moment& m) { return tenths(std::hypot(m.state.east_m, m.state.north_m)); }},
-    {"flight_time_s", [](const Moment& m) { return whole(m.flight_time_s); }},
-    {"motor_off", [](const Moment& m) { return std::string(m.state.power_w > 0.0 ? "0" : "1"); }},
-    {"mode", [](const Moment& m) { return std::to_string(m.state.mode); }},
-    {"automatic", [](const Moment& m) { return std::string(m.state.mode == 2 ? "3" : "0"); }},
-    {"roll_rad", [](const Moment& m) { return ocaml_float(m.state.airborne ? -0.21 : 0.0); }},
-    {"wanted_roll_rad", [](const Moment& m) { return ocaml_float(m.state.airborne ? -0.2 : 0.0); }},
-    {"turn_rad_per_s", [](const Moment& m) { return ocaml_float(m.state.airborne ? -0.16 : 0.0); }},
+    {"throttle_percent", [](const SensorReadings& m) { return whole(m.state.throttle_percent); }},
+    {"voltage_v", [](const SensorReadings& m) { return ocaml_float(m.voltage_v); }},
+    {"current_a", [](const SensorReadings& m) { return ocaml_float(m.current_a); }},
+    {"power_w", [](const SensorReadings& m) { return ocaml_float(m.voltage_v * m.current_a); }},
+    {"charge_ah", [](const SensorReadings& m) { return ocaml_float(m.charge_ah); }},
+    {"energy_wh", [](const SensorReadings& m) { return ocaml_float(m.energy_wh); }},
+    {"altitude_m", [](const SensorReadings& m) { return ocaml_float(m.altitude_m); }},
+    {"altitude_mm", [](const SensorReadings& m) { return whole(m.altitude_m * 1000.0); }},
+    {"true_altitude_m", [](const SensorReadings& m) { return whole(m.state.altitude_m); }},
+    {"climb_m_per_s", [](const SensorReadings& m) { return hundredths(m.state.climb_m_per_s); }},
+    {"climb_cm_per_s", [](const SensorReadings& m) { return whole(m.state.climb_m_per_s * 100.0); }},
+    {"pitch_rad", [](const SensorReadings& m) { return ocaml_float(m.state.climb_m_per_s / 20.0); }},
+    {"block", [](const SensorReadings& m) { return std::to_string(m.state.block); }},
+    {"east_m", [](const SensorReadings& m) { return whole(m.state.east_m); }},
+    {"north_m", [](const SensorReadings& m) { return whole(m.state.north_m); }},
+    {"east_tenths", [](const SensorReadings& m) { return tenths(m.state.east_m); }},
+    {"north_tenths", [](const SensorReadings& m) { return tenths(m.state.north_m); }},
+    {"utm_east_cm", [](const SensorReadings& m) { return whole((reference_east_m + m.state.east_m) * 100.0); }},
+    {"utm_north_cm", [](const SensorReadings& m) { return whole((reference_north_m + m.state.north_m) * 100.0); }},
+    {"home_tenths", [](const SensorReadings& m) { return tenths(std::hypot(m.state.east_m, m.state.north_m)); }},
+    {"flight_time_s", [](const SensorReadings& m) { return whole(m.flight_time_s); }},
+    {"motor_off", [](const SensorReadings& m) { return std::string(m.state.power_w > 0.0 ? "0" : "1"); }},
+    {"mode", [](const SensorReadings& m) { return std::to_string(m.state.mode); }},
+    {"automatic", [](const SensorReadings& m) { return std::string(m.state.mode == 2 ? "3" : "0"); }},
+    {"roll_rad", [](const SensorReadings& m) { return ocaml_float(m.state.airborne ? -0.21 : 0.0); }},
+    {"wanted_roll_rad", [](const SensorReadings& m) { return ocaml_float(m.state.airborne ? -0.2 : 0.0); }},
+    {"turn_rad_per_s", [](const SensorReadings& m) { return ocaml_float(m.state.airborne ? -0.16 : 0.0); }},
     {"heading_rad",
-     [](const Moment& m) { return ocaml_float(std::remainder(m.state.course_rad, 2.0 * std::numbers::pi)); }},
-    {"course_rad", [](const Moment& m) { return hundredths(m.state.course_rad); }},
-    {"course_decideg", [](const Moment& m) { return whole(m.state.course_rad * 1800.0 / std::numbers::pi); }},
-    {"speed_cm_per_s", [](const Moment& m) { return whole(m.state.ground_speed_m_per_s * 100.0); }},
-    {"airspeed", [](const Moment& m) { return ocaml_float(m.state.airborne ? m.state.airspeed_m_per_s : 0.0); }},
-    {"wind_east", [](const Moment& m) { return hundredths(m.state.wind_east_m_per_s); }},
-    {"wind_north", [](const Moment& m) { return hundredths(m.state.wind_north_m_per_s); }},
-    {"week_ms", [](const Moment& m) { return whole(378000000.0 + m.time_s * 1000.0); }},
-    {"channel", [](const Moment& m) { return std::to_string(channel_of(m)); }},
-    {"satellite", [](const Moment& m) { return std::to_string(channel_of(m) + 3); }},
-    {"elevation", [](const Moment& m) { return std::to_string(7 * channel_of(m)); }},
-    {"azimuth", [](const Moment& m) { return std::to_string(29 * channel_of(m)); }},
-    {"waypoint", [](const Moment& m) { return std::to_string(waypoint_of(m)); }},
-    {"waypoint_east", [](const Moment& m) { return ocaml_float(reference_east_m + 20.5 * waypoint_of(m)); }},
-    {"waypoint_north", [](const Moment& m) { return ocaml_float(reference_north_m + 13.25 * waypoint_of(m)); }},
+     [](const SensorReadings& m) { return ocaml_float(std::remainder(m.state.course_rad, 2.0 * std::numbers::pi)); }},
+    {"course_rad", [](const SensorReadings& m) { return hundredths(m.state.course_rad); }},
+    {"course_decideg", [](const SensorReadings& m) { return whole(m.state.course_rad * 1800.0 / std::numbers::pi); }},
+    {"speed_cm_per_s", [](const SensorReadings& m) { return whole(m.state.ground_speed_m_per_s * 100.0); }},
+    {"airspeed",
+     [](const SensorReadings& m) { return ocaml_float(m.state.airborne ? m.state.airspeed_m_per_s : 0.0); }},
+    {"wind_east", [](const SensorReadings& m) { return hundredths(m.state.wind_east_m_per_s); }},
+    {"wind_north", [](const SensorReadings& m) { return hundredths(m.state.wind_north_m_per_s); }},
+    {"week_ms", [](const SensorReadings& m) { return whole(378000000.0 + m.time_s * 1000.0); }},
+    {"channel", [](const SensorReadings& m) { return std::to_string(channel_of(m)); }},
+    {"satellite", [](const SensorReadings& m) { return std::to_string(channel_of(m) + 3); }},
+    {"elevation", [](const SensorReadings& m) { return std::to_string(7 * channel_of(m)); }},
+    {"azimuth", [](const SensorReadings& m) { return std::to_string(29 * channel_of(m)); }},
+    {"waypoint", [](const SensorReadings& m) { return std::to_string(waypoint_of(m)); }},
+    {"waypoint_east", [](const SensorReadings& m) { return ocaml_float(reference_east_m + 20.5 * waypoint_of(m)); }},
+    {"waypoint_north", [](const SensorReadings& m) { return ocaml_float(reference_north_m + 13.25 * waypoint_of(m)); }},
     {"commands",
-     [](const Moment& m) {
+     [](const SensorReadings& m) {
          return fmt::format("{:.0f},-240,1030", units::pprz_from_percent(m.state.throttle_percent));
      }},
-    {"logged_bytes", [](const Moment& m) { return whole(m.time_s * 512.0); }},
-    {"log_file", [](const Moment&) { return std::string(", FLIGHT_RECORDER\\fr_0001.LOG"); }},
+    {"logged_bytes", [](const SensorReadings& m) { return whole(m.time_s * 512.0); }},
+    {"log_file", [](const SensorReadings&) { return std::string(", FLIGHT_RECORDER\\fr_0001.LOG"); }},
 };
 
 /// A message: its fields as "name:type:unit" or "name:type", and as many values: a word that names one of
@@ -175,18 +178,18 @@ std::vector<std::string> split(const std::string& text, char separator) {
     return parts;
 }
 
-std::string value_of(const std::string& word, const Moment& moment) {
+std::string value_of(const std::string& word, const SensorReadings& moment) {
     const auto* named = std::ranges::find(named_values, word, &NamedValue::name);
     return named == std::end(named_values) ? word : named->text(moment);
 }
 
-Report report_of(const MessageRow& row) {
+PeriodicMessage report_of(const MessageRow& row) {
     telemetry::MessageDefinition definition{row.name, {}, ".log"};
     for (const auto& field : split(row.fields, ' ')) {
         const auto parts = split(field, ':');
         definition.fields.push_back({parts[0], parts[1], parts.size() > 2 ? parts[2] : "", "", {}});
     }
-    const auto fields = [words = split(row.values, ' ')](const Moment& moment) {
+    const auto fields = [words = split(row.values, ' ')](const SensorReadings& moment) {
         std::vector<std::string> values(words.size());
         std::ranges::transform(words, values.begin(), [&](const auto& word) { return value_of(word, moment); });
         return values;
@@ -226,8 +229,8 @@ std::string to_log_xml(const LogDocument& document) {
     return std::move(text).str();
 }
 
-std::vector<Report> telemetry_reports() {
-    std::vector<Report> reports;
+std::vector<PeriodicMessage> periodic_messages() {
+    std::vector<PeriodicMessage> reports;
     for (const auto& row : message_rows) reports.push_back(report_of(row));
     return reports;
 }

@@ -31,7 +31,7 @@ struct LogDocument {
 std::string to_log_xml(const LogDocument& document);
 
 /// Everything that a message can tell at one moment.
-struct Moment {
+struct SensorReadings {
     double time_s = 0.0;
     SyntheticState state;
     double voltage_v = 0.0;
@@ -43,14 +43,14 @@ struct Moment {
 };
 
 /// A periodic telemetry message: its definition and how its fields are written.
-struct Report {
+struct PeriodicMessage {
     double period_s;
     telemetry::MessageDefinition definition;
-    std::function<std::vector<std::string>(const Moment&)> fields;
+    std::function<std::vector<std::string>(const SensorReadings&)> fields;
 };
 
 /// The telemetry of a synthetic fixed-wing aircraft: the messages that flights are read from, and those that
 /// fill a real log beside them, about as often.
-std::vector<Report> telemetry_reports();
+std::vector<PeriodicMessage> periodic_messages();
 
 }  // namespace flightwatt::synthetic

@@ -16,7 +16,7 @@ constexpr double flare_s = 2.0;       // from touchdown height to standing
 constexpr double motor_off_after_s = 3.0;
 constexpr double hand_over_s = 1.5;  // from one phase's power to the next one's
 constexpr double full_power_w = 95.0;
-constexpr double dive_part = 0.7;  // of the height
+constexpr double dive_fraction = 0.7;  // of the height
 constexpr double dive_down_s = 8.0;
 constexpr double dive_low_s = 5.0;
 constexpr double dive_up_s = 20.0;
@@ -35,17 +35,17 @@ double dive_depth(const SyntheticFlight& flight, double time_s) {
     for (const double start_s : flight.dives_s) {
         const double since_s = time_s - start_s;
         if (since_s < 0.0 || since_s > dive_down_s + dive_low_s + dive_up_s) continue;
-        return dive_part *
+        return dive_fraction *
                std::min({since_s / dive_down_s, 1.0, (dive_down_s + dive_low_s + dive_up_s - since_s) / dive_up_s});
     }
     return 0.0;
 }
 
 /// What part of its height the aircraft holds at `time_s` until it lands.
-double stage_part(const SyntheticFlight& flight, double time_s) {
+double stage_fraction(const SyntheticFlight& flight, double time_s) {
     if (flight.low_stage_s <= 0.0) return 1.0;
     const double begin_s = flight.start_s(flight::Phase::landing) - flight.low_stage_s;
-    return std::lerp(1.0, low_stage_part, std::clamp((time_s - begin_s) / stage_change_s + 1.0, 0.0, 1.0));
+    return std::lerp(1.0, low_stage_fraction, std::clamp((time_s - begin_s) / stage_change_s + 1.0, 0.0, 1.0));
 }
 
 /// The fraction of the height at `part` (0 to 1) of the landing, from `from` down to `ground`.
@@ -53,8 +53,8 @@ double landing_fraction(const SyntheticFlight& flight, double part, double from,
     const double step = flight.landing_step_s / flight.duration_s[flight::Phase::landing];
     if (step <= 0.0) return std::lerp(from, ground, part);
     const double descent = 0.5 * (1.0 - step);  // before and after the step
-    if (part < descent) return std::lerp(from, landing_step_part, part / descent);
-    return std::lerp(landing_step_part, ground, std::max(part - descent - step, 0.0) / descent);
+    if (part < descent) return std::lerp(from, landing_step_fraction, part / descent);
+    return std::lerp(landing_step_fraction, ground, std::max(part - descent - step, 0.0) / descent);
 }
 
 /// Height above the ground. Phases begin and end where the segmentation's definitions put them: take-off at
@@ -77,10 +77,10 @@ double height_m(const SyntheticFlight& flight, double time_s) {
         const double fall = std::exp(-(descent - time_s) / settling_s);
         const double held =
             1.0 + oscillation * std::sin(2.0 * std::numbers::pi * (time_s - climbed) / oscillation_period_s);
-        fraction = stage_part(flight, time_s) * (held - (held - reached) * (rise + fall));
+        fraction = stage_fraction(flight, time_s) * (held - (held - reached) * (rise + fall));
     } else if (time_s < touchdown) {
         fraction = landing_fraction(flight, (time_s - descent) / (touchdown - descent),
-                                    stage_part(flight, descent) * reached, ground);
+                                    stage_fraction(flight, descent) * reached, ground);
     } else {
         fraction = ground * std::clamp(1.0 - (time_s - touchdown) / flare_s, 0.0, 1.0);
     }
@@ -147,8 +147,8 @@ SyntheticState state_at(const SyntheticFlight& flight, double time_s) {
     state.altitude_m = flight.ground_altitude_m + height;
     state.climb_m_per_s =
         (height_m(flight, time_s + half_step_s) - height_m(flight, time_s - half_step_s)) / (2.0 * half_step_s);
-    const double usual_w = power_w_at(flight, time_s);
-    const auto motor = unusual_motor(flight, time_s).value_or(Motor{usual_w, throttle_for(usual_w)});
+    const double nominal_w = power_w_at(flight, time_s);
+    const auto motor = unusual_motor(flight, time_s).value_or(Motor{nominal_w, throttle_for(nominal_w)});
     state.power_w = motor.power_w;
     state.throttle_percent = motor.throttle_percent;
     const double fixed = std::clamp((time_s - flight.estimator_fix_s) / estimator_climb_s, 0.0, 1.0);
@@ -186,47 +186,47 @@ SyntheticState state_at(const SyntheticFlight& flight, double time_s) {
 
 SyntheticScenario plain_scenario(const SyntheticFlight& flight) { return {{flight}, 8.0, flight.log_end_s()}; }
 
-const std::vector<std::pair<std::string, Hazard>>& hazards() {
-    static const std::vector<std::pair<std::string, Hazard>> all{
-        {"estimator-starts-at-zero", Hazard::estimator_starts_at_zero},
-        {"dives-in-cruise", Hazard::dives_in_cruise},
-        {"run-up", Hazard::run_up},
-        {"power-burst-after-landing", Hazard::power_burst_after_landing},
-        {"throttle-burst-before-touchdown", Hazard::throttle_burst_before_touchdown},
-        {"two-sorties", Hazard::two_sorties},
-        {"begins-in-the-air", Hazard::begins_in_the_air},
-        {"ends-in-the-air", Hazard::ends_in_the_air},
-        {"landing-in-steps", Hazard::landing_in_steps},
-        {"works-low", Hazard::works_low},
+const std::vector<std::pair<std::string, LogAnomaly>>& anomaly_names() {
+    static const std::vector<std::pair<std::string, LogAnomaly>> all{
+        {"estimator-starts-at-zero", LogAnomaly::estimator_starts_at_zero},
+        {"dives-in-cruise", LogAnomaly::dives_in_cruise},
+        {"run-up", LogAnomaly::run_up},
+        {"power-burst-after-landing", LogAnomaly::power_burst_after_landing},
+        {"throttle-burst-before-touchdown", LogAnomaly::throttle_burst_before_touchdown},
+        {"two-sorties", LogAnomaly::two_sorties},
+        {"begins-in-the-air", LogAnomaly::begins_in_the_air},
+        {"ends-in-the-air", LogAnomaly::ends_in_the_air},
+        {"landing-in-steps", LogAnomaly::landing_in_steps},
+        {"works-low", LogAnomaly::low_survey_stage},
     };
     return all;
 }
 
-SyntheticScenario scenario_with(SyntheticFlight flight, Hazard hazard) {
+SyntheticScenario scenario_with_anomaly(SyntheticFlight flight, LogAnomaly hazard) {
     const double cruise_s = flight.duration_s[flight::Phase::cruise];
-    if (hazard == Hazard::estimator_starts_at_zero) flight.estimator_fix_s = 12.0;
-    if (hazard == Hazard::power_burst_after_landing) flight.power_burst_after_landing = true;
-    if (hazard == Hazard::throttle_burst_before_touchdown) flight.throttle_burst_before_touchdown = true;
-    if (hazard == Hazard::dives_in_cruise) {
+    if (hazard == LogAnomaly::estimator_starts_at_zero) flight.estimator_fix_s = 12.0;
+    if (hazard == LogAnomaly::power_burst_after_landing) flight.power_burst_after_landing = true;
+    if (hazard == LogAnomaly::throttle_burst_before_touchdown) flight.throttle_burst_before_touchdown = true;
+    if (hazard == LogAnomaly::dives_in_cruise) {
         const double cruise_start_s = flight.start_s(flight::Phase::cruise);
         flight.dives_s = {cruise_start_s + 0.2 * cruise_s, cruise_start_s + 0.5 * cruise_s,
                           cruise_start_s + 0.5 * cruise_s + close_dives_s, cruise_start_s + 0.8 * cruise_s};
     }
-    if (hazard == Hazard::works_low) flight.low_stage_s = 120.0;
-    if (hazard == Hazard::landing_in_steps) {
+    if (hazard == LogAnomaly::low_survey_stage) flight.low_stage_s = 120.0;
+    if (hazard == LogAnomaly::landing_in_steps) {
         flight.landing_step_s = 40.0;
         flight.duration_s[flight::Phase::landing] += flight.landing_step_s;
     }
-    if (hazard == Hazard::run_up) {  // as long and as hard as a take-off
+    if (hazard == LogAnomaly::run_up) {  // as long and as hard as a take-off
         flight.motor_run_up_length_s = 28.0;
         flight.motor_run_up_power_w = full_power_w;
         flight.lift_off_s += flight.motor_run_up_length_s;
     }
     auto scenario = plain_scenario(flight);
     const double middle_s = flight.start_s(flight::Phase::cruise) + 0.5 * cruise_s;
-    if (hazard == Hazard::begins_in_the_air) scenario.begin_s = middle_s;
-    if (hazard == Hazard::ends_in_the_air) scenario.end_s = middle_s;
-    if (hazard == Hazard::two_sorties) {
+    if (hazard == LogAnomaly::begins_in_the_air) scenario.begin_s = middle_s;
+    if (hazard == LogAnomaly::ends_in_the_air) scenario.end_s = middle_s;
+    if (hazard == LogAnomaly::two_sorties) {
         const double later_s = scenario.end_s + 20.0;
         flight.motor_run_up_s += later_s;
         flight.lift_off_s += later_s;

@@ -23,8 +23,8 @@ struct SyntheticFlight {
     double wind_east_m_per_s = 2.0;
     double wind_north_m_per_s = -1.0;
     std::vector<double> dives_s;                   ///< in cruise: down to a third of the height and up again
-    double low_stage_s = 0.0;                      ///< so long before the landing it works at low_stage_part
-    double landing_step_s = 0.0;                   ///< so long within the landing it circles at landing_step_part
+    double low_stage_s = 0.0;                      ///< so long before the landing it works at low_stage_fraction
+    double landing_step_s = 0.0;                   ///< so long within the landing it circles at landing_step_fraction
     double estimator_fix_s = 0.0;                  ///< until then the estimator reads 0, then it climbs to the truth
     bool power_burst_after_landing = false;        ///< without throttle
     bool throttle_burst_before_touchdown = false;  ///< at the end of a glide with the motor off
@@ -38,8 +38,8 @@ struct SyntheticFlight {
 };
 
 /// Of the height: where it works before the landing, and where it circles within it.
-inline constexpr double low_stage_part = 0.6;
-inline constexpr double landing_step_part = 0.55;
+inline constexpr double low_stage_fraction = 0.6;
+inline constexpr double landing_step_fraction = 0.55;
 
 /// What the aircraft does at one moment.
 struct SyntheticState {
@@ -73,7 +73,7 @@ struct SyntheticScenario {
 SyntheticScenario plain_scenario(const SyntheticFlight& flight);
 
 /// Things that real logs do and that must not fool the segmentation.
-enum class Hazard {
+enum class LogAnomaly {
     none,
     estimator_starts_at_zero,
     dives_in_cruise,
@@ -84,13 +84,13 @@ enum class Hazard {
     begins_in_the_air,
     ends_in_the_air,
     landing_in_steps,
-    works_low,
+    low_survey_stage,
 };
 
 /// All but none, with their names on the command line.
-const std::vector<std::pair<std::string, Hazard>>& hazards();
+const std::vector<std::pair<std::string, LogAnomaly>>& anomaly_names();
 
 /// The scenario of a flight with a hazard.
-SyntheticScenario scenario_with(SyntheticFlight flight, Hazard hazard);
+SyntheticScenario scenario_with_anomaly(SyntheticFlight flight, LogAnomaly hazard);
 
 }  // namespace flightwatt::synthetic

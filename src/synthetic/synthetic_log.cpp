@@ -32,8 +32,8 @@ class Simulation {
   public:
     Simulation(const SyntheticSensors& sensors, std::mt19937_64& random) : sensors_(sensors), random_(random) {}
 
-    Moment step(const SyntheticFlight& flight, double time_s) {
-        Moment moment;
+    SensorReadings step(const SyntheticFlight& flight, double time_s) {
+        SensorReadings moment;
         moment.time_s = time_s;
         moment.state = state_at(flight, time_s);
         const double rest_v = rest_voltage_v(charge_ah_, sensors_.pack_capacity_ah);
@@ -88,8 +88,8 @@ class LossyLink {
     double burst_end_s_ = 0.0;
 };
 
-std::string log_document(const SyntheticFlight& flight, const std::vector<Report>& reports, const std::string& name,
-                         const std::string& made_by) {
+std::string log_document(const SyntheticFlight& flight, const std::vector<PeriodicMessage>& reports,
+                         const std::string& name, const std::string& made_by) {
     LogDocument document;
     document.comment = fmt::format(" SYNTHETIC: no aircraft flew this. {} ", made_by);
     document.time_of_day_s = 1577872800.0;
@@ -106,11 +106,11 @@ std::string log_document(const SyntheticFlight& flight, const std::vector<Report
     return to_log_xml(document);
 }
 
-std::vector<Report> reports_of(const SyntheticSensors& sensors) {
-    auto reports = telemetry_reports();
+std::vector<PeriodicMessage> reports_of(const SyntheticSensors& sensors) {
+    auto reports = periodic_messages();
     if (sensors.sends_other_messages) return reports;
     const auto read = flight::flight_messages();
-    std::erase_if(reports, [&](const Report& report) {
+    std::erase_if(reports, [&](const PeriodicMessage& report) {
         return std::none_of(read.begin(), read.end(), [&](const telemetry::MessageRequest& request) {
             return request.message == report.definition.name &&
                    request.message != "COMMANDS";  // ENERGY has the throttle

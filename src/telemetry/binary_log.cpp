@@ -25,8 +25,8 @@ namespace {
 
 /// Whether it begins as a .data does: TIME SENDER NAME.
 bool begins_with_telemetry(std::string_view bytes) {
-    constexpr std::size_t longest_beginning = 200;
-    auto line = bytes.substr(0, std::min(longest_beginning, bytes.find('\n')));
+    constexpr std::size_t max_beginning = 200;
+    auto line = bytes.substr(0, std::min(max_beginning, bytes.find('\n')));
     std::array<std::string_view, 3> words;
     for (auto& word : words) {
         word = line.substr(0, line.find(' '));
@@ -53,7 +53,7 @@ class FrameReader {
         : log_(log), binary_(binary), skips_({}), tables_(log, wanted.size()), link_time_(*binary.messages) {
         plan_of_.fill(none);
         places_.fill(none);
-        for (const auto& request : wanted) plans_.push_back(plan_of(request, log.configuration));
+        for (const auto& request : wanted) plans_.push_back(make_decode_plan(request, log.configuration));
         for (const auto& message : binary.messages->messages()) {
             const auto found = std::ranges::find(wanted, message.definition.name, &MessageRequest::message);
             if (found == wanted.end()) continue;
@@ -66,13 +66,13 @@ class FrameReader {
     void read() {
         FrameScanner<framing> scanner(*binary_.messages, link_version(binary_));
         scanner.scan(
-            binary_.bytes, Behind::end,
+            binary_.bytes, InputContinuation::end,
             [&](const FoundFrame& found, const Frame& frame) {
                 count(found);
                 const auto time_s = framing == Framing::card ? clock_.time_s(frame.time_100us) : link_time_s(found);
                 if (std::isnan(time_s)) return;
                 if (gap_.bytes > 0) note_gap(time_s);
-                if (found.fits) {
+                if (found.length_matches) {
                     const auto plan = plan_of_[number_of(found.class_id, found.id)];
                     if (plan != none) read_message(frame_plans_[plan], found, time_s);
                 } else if (found.carries_message) {
@@ -102,24 +102,24 @@ class FrameReader {
   private:
     static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
     /// So many ids are told one by one.
-    static constexpr std::size_t most_ids = 20;
+    static constexpr std::size_t max_ids = 20;
 
     void count(const FoundFrame& found) {
         ++counts_.frames;
-        if (found.fits) {
+        if (found.length_matches) {
             ++counts_.messages;
         } else if (!found.carries_message) {
-            ++counts_.other_frames;
+            ++counts_.non_message_frames;
         } else if (found.message == nullptr) {
             ++counts_.unknown;
         } else {
-            ++counts_.other_lengths;
+            ++counts_.length_mismatches;
         }
     }
 
     /// NaN before the first TIMESTAMP: such frames are counted, and told of at the end.
     double link_time_s(const FoundFrame& found) {
-        const auto time_s = found.fits ? link_time_.time_s(found) : link_time_.last_s();
+        const auto time_s = found.length_matches ? link_time_.time_s(found) : link_time_.last_s();
         if (time_s) {
             if (!has_times_ && untimed_ > 0) skips_.add({SkipReason::no_time, 0}, *time_s, 1, untimed_);
             has_times_ = true;
@@ -130,7 +130,7 @@ class FrameReader {
     }
 
     void note_gap(double time_s) {
-        const auto zeros = gap_.zeros >= fewest_zeros_of_room ? gap_.zeros : 0;
+        const auto zeros = gap_.zeros >= min_padding_zeros ? gap_.zeros : 0;
         const bool is_cut_off = gap_.is_cut_off && std::isinf(time_s);
         if (gap_.bytes > zeros)
             skips_.add({SkipReason::damage, is_cut_off ? 1U : 0U}, time_s, gap_.offset + 1, gap_.bytes - zeros);
@@ -141,7 +141,7 @@ class FrameReader {
         const auto reason =
             found.message == nullptr ? SkipReason::undefined_frame : SkipReason::frame_of_another_length;
         auto number = number_of(found.class_id, found.id);
-        if (told_.size() >= most_ids && !told_.contains(number)) {
+        if (told_.size() >= max_ids && !told_.contains(number)) {
             number = none;
         } else {
             told_.insert(number);
@@ -160,7 +160,7 @@ class FrameReader {
             find_offsets(plan, found, frame_plan.offsets);
         frame_plan.decimals.resize(plan.targets.size());
         auto& table = table_of(found.sender, frame_plan.plan, plan, found.offset);
-        if (table.time_s.size() == table.time_s.capacity()) make_room(table, found.offset + 1, binary_.bytes.size());
+        if (table.time_s.size() == table.time_s.capacity()) reserve_rows(table, found.offset + 1, binary_.bytes.size());
         table.time_s.push_back(time_s);
         for (std::size_t i = 0; i < plan.targets.size(); ++i) {
             const auto& target = plan.targets[i];
@@ -178,7 +178,7 @@ class FrameReader {
     }
 
     /// Where the plan's targets stand in the frame; none for what is no single number.
-    static void find_offsets(const MessagePlan& plan, const FoundFrame& found, std::vector<std::size_t>& offsets) {
+    static void find_offsets(const DecodePlan& plan, const FoundFrame& found, std::vector<std::size_t>& offsets) {
         offsets.clear();
         for (const auto& target : plan.targets) {
             std::size_t at = 0;
@@ -196,9 +196,9 @@ class FrameReader {
         }
     }
 
-    MessageTable& table_of(std::uint8_t sender, std::size_t plan_index, const MessagePlan& plan, std::size_t offset) {
+    MessageTable& table_of(std::uint8_t sender, std::size_t plan_index, const DecodePlan& plan, std::size_t offset) {
         auto& place = places_[sender];
-        if (place == none) place = tables_.place_of(std::to_string(sender), offset);
+        if (place == none) place = tables_.sender_index(std::to_string(sender), offset);
         return tables_.table_of(place, plan_index, plan);
     }
 
@@ -232,7 +232,7 @@ class FrameReader {
 
     TelemetryLog& log_;
     const BinaryLog& binary_;
-    std::vector<MessagePlan> plans_;
+    std::vector<DecodePlan> plans_;
     std::vector<FramePlan> frame_plans_;
     std::array<std::size_t, std::size_t{16} * 256> plan_of_{};  ///< by class and id: place in frame_plans_
     std::array<std::size_t, 256> places_{};                     ///< of senders
@@ -271,12 +271,12 @@ constexpr auto name_others = "name the messages.xml or .log of the aircraft and 
 
 }  // namespace
 
-std::optional<Framing> binary_framing(std::string_view bytes) {
-    return begins_with_telemetry(bytes) ? std::nullopt : framing_in(bytes, true);
+std::optional<Framing> detect_binary_framing(std::string_view bytes) {
+    return begins_with_telemetry(bytes) ? std::nullopt : detect_framing(bytes, true);
 }
 
 LinkVersion link_version(const BinaryLog& log) {
-    const auto version = version_in(log.bytes, log.framing, *log.messages);
+    const auto version = detect_version(log.bytes, log.framing, *log.messages);
     if (version) return *version;
     throw InputError({log.file.string()},
                      fmt::format("holds {} frames, none of whose messages {} defines with their length",
@@ -287,11 +287,11 @@ LinkVersion link_version(const BinaryLog& log) {
 void require_fitting(const LinkCounts& counts, const BinaryLog& log) {
     // Definitions of a neighbouring build misfit a ninth of a real log's frames, those of another decade 40 to 64 %.
     constexpr std::size_t of_which_one = 4;
-    const auto defined = counts.messages + counts.other_lengths;
-    if (counts.other_lengths * of_which_one < std::max<std::size_t>(1, defined)) return;
+    const auto defined = counts.messages + counts.length_mismatches;
+    if (counts.length_mismatches * of_which_one < std::max<std::size_t>(1, defined)) return;
     throw InputError({log.file.string()},
                      fmt::format("{} of {} messages have other lengths than {} defines: it belongs to another build",
-                                 counts.other_lengths, defined, log.definitions.string()),
+                                 counts.length_mismatches, defined, log.definitions.string()),
                      name_others);
 }
 
@@ -318,9 +318,9 @@ std::vector<std::pair<std::string, std::size_t>> census_of_binary_messages(const
     with_framing(log.framing, [&]<Framing framing>() {
         FrameScanner<framing> scanner(*log.messages, version);
         scanner.scan(
-            log.bytes, Behind::end,
+            log.bytes, InputContinuation::end,
             [&](const FoundFrame& found, const Frame& /*frame*/) {
-                if (found.fits) ++names[found.message->definition.name];
+                if (found.length_matches) ++names[found.message->definition.name];
             },
             [](const Gap& /*gap*/) {});
     });

@@ -26,7 +26,8 @@ void refuse_what_is_no_file(const std::filesystem::path& path) {
     if (!std::filesystem::is_regular_file(status)) throw InputError({path.string()}, "is not a regular file");
 }
 
-/// Bytes of the file that were never written and read as zeros, as far as its file system tells: those between its parts.
+/// Bytes of the file that were never written and read as zeros, as far as its file system tells: those between its
+/// parts.
 std::size_t unwritten_bytes(const InputFile& file) {
     constexpr int max_parts = 1000;  // of a file in more parts, those of the others
     std::size_t unwritten = 0;
@@ -59,20 +60,20 @@ void reject_unwritten(const InputFile& file, std::size_t max_bytes) {
 
 }  // namespace
 
-DataFile::DataFile(const std::filesystem::path& path, std::size_t most_bytes) {
+DataFile::DataFile(const std::filesystem::path& path, std::size_t max_bytes) {
     refuse_what_is_no_file(path);
     file_.emplace(path);
     if (file_->size() == 0) {
         throw InputError({path.string()}, "is empty, expected telemetry lines: TIME SENDER NAME FIELD ...");
     }
-    reject_unwritten(*file_, most_bytes);
+    reject_unwritten(*file_, max_bytes);
     mapped_.emplace(*file_);
     text_ = mapped_->text();
     if (text_.starts_with("PK\x03\x04"sv)) {
         throw InputError({path.string()}, "is a ZIP archive", "unpack it, or compress with gzip, xz or zstd");
     }
     try {
-        auto text = decompressed(text_, path, most_bytes);
+        auto text = decompressed(text_, path, max_bytes);
         if (!text) return;
         decompressed_ = std::move(*text);
     } catch (const InputError&) {
@@ -88,7 +89,7 @@ DataFile::DataFile(const std::filesystem::path& path, std::size_t most_bytes) {
 
 void DataFile::require_unchanged() const {
     if (!file_) return;
-    file_->require_uncut();
+    file_->require_not_truncated();
     if (mapped_->is_damaged()) {
         throw InputError({file_->path().string()},
                          "could not be read to its end: it was cut meanwhile, or the disk failed",

@@ -13,14 +13,14 @@ namespace flightwatt::telemetry {
 
 /// What a compressed log may unpack to, and a series hold, unless told: some ten hours of flight. More is refused, as
 /// reading takes up to nine times as much memory.
-inline constexpr std::size_t usual_most_log_bytes = 100'000'000;
+inline constexpr std::size_t default_max_log_bytes = 100'000'000;
 
 /// The text of a .data file: mapped, or decompressed into memory (.gz, .bz2, .xz, .zst, told by content).
 /// Throws InputError for a missing file, a folder, an empty file, a ZIP archive, broken compression, or one that
-/// unpacks to more than `most_bytes`.
+/// unpacks to more than `max_bytes`.
 class DataFile {
   public:
-    explicit DataFile(const std::filesystem::path& path, std::size_t most_bytes = usual_most_log_bytes);
+    explicit DataFile(const std::filesystem::path& path, std::size_t max_bytes = default_max_log_bytes);
     std::string_view text() const { return text_; }
     /// Throws InputError if the file was cut since: what was read of its text may then be zeros. To be asked after
     /// reading. A file that grows is read as it was.

@@ -17,7 +17,7 @@ namespace {
 /// So many bytes are looked at in one go.
 constexpr std::size_t step_bytes = 4096;
 /// So many may tell no framing before the first half of them is given up.
-constexpr std::size_t most_undecided_bytes = 8192;
+constexpr std::size_t max_undecided_bytes = 8192;
 
 std::uint16_t number_of(const FoundFrame& found) { return static_cast<std::uint16_t>(found.class_id * 256 + found.id); }
 
@@ -57,17 +57,17 @@ struct LinkDecoder::State {
     }
 
     /// Decides the framing by what has come; true once it is.
-    bool find_framing(Behind behind) {
+    bool find_framing(InputContinuation behind) {
         if (counts.framing) return true;
-        if (const auto found = framing_in(buffer, behind == Behind::end)) {
+        if (const auto found = detect_framing(buffer, behind == InputContinuation::end)) {
             use_framing(*found);
             return true;
         }
-        if (buffer.size() > most_undecided_bytes || behind == Behind::end) {
-            const auto given_up = behind == Behind::end ? buffer.size() : buffer.size() / 2;
+        if (buffer.size() > max_undecided_bytes || behind == InputContinuation::end) {
+            const auto given_up = behind == InputContinuation::end ? buffer.size() : buffer.size() / 2;
             buffer.erase(0, given_up);
             counts.skipped_bytes += given_up;
-            counts.skipped_parts += given_up > 0 ? 1 : 0;
+            counts.skipped_runs += given_up > 0 ? 1 : 0;
         }
         return false;
     }
@@ -75,12 +75,12 @@ struct LinkDecoder::State {
     void take(const FoundFrame& found, const Frame& frame, const Sink& sink) {
         ++counts.frames;
         if (!found.carries_message) {
-            ++counts.other_frames;
+            ++counts.non_message_frames;
         } else if (found.message == nullptr) {
             ++counts.unknown;
             ++counts.unknown_ids[number_of(found)];
-        } else if (!found.fits) {
-            ++counts.other_lengths;
+        } else if (!found.length_matches) {
+            ++counts.length_mismatches;
             ++counts.other_length_ids[number_of(found)];
         } else {
             ++counts.messages;
@@ -93,13 +93,13 @@ struct LinkDecoder::State {
     }
 
     void leave(const Gap& gap) {
-        const auto zeros = gap.zeros >= fewest_zeros_of_room ? gap.zeros : 0;
-        counts.zero_bytes += zeros;
+        const auto zeros = gap.zeros >= min_padding_zeros ? gap.zeros : 0;
+        counts.padding_bytes += zeros;
         counts.skipped_bytes += gap.bytes - zeros;
-        counts.skipped_parts += gap.bytes > zeros ? 1 : 0;
+        counts.skipped_runs += gap.bytes > zeros ? 1 : 0;
     }
 
-    void scan(Behind behind, const Sink& sink) {
+    void scan(InputContinuation behind, const Sink& sink) {
         if (!find_framing(behind)) return;
         std::visit(
             [&](auto& chosen) {
@@ -128,9 +128,9 @@ struct LinkDecoder::State {
 LinkDecoder::LinkDecoder(MessageDictionary dictionary, std::optional<Framing> framing,
                          std::optional<LinkVersion> version)
     : state_(std::make_unique<State>(std::move(dictionary), version)) {
-    constexpr std::size_t longest_text = 4096;
-    state_->buffer.reserve(step_bytes + most_undecided_bytes);
-    state_->text.reserve(longest_text);
+    constexpr std::size_t max_text = 4096;
+    state_->buffer.reserve(step_bytes + max_undecided_bytes);
+    state_->text.reserve(max_text);
     state_->counts.version = version;
     if (framing) state_->use_framing(*framing);
 }
@@ -145,11 +145,11 @@ void LinkDecoder::push(std::string_view bytes, const Sink& sink) {
         const auto part = bytes.substr(0, step_bytes);
         state_->buffer.append(part);
         bytes.remove_prefix(part.size());
-        state_->scan(bytes.empty() ? Behind::pause : Behind::more, sink);
+        state_->scan(bytes.empty() ? InputContinuation::pause : InputContinuation::more, sink);
     }
 }
 
-void LinkDecoder::flush(const Sink& sink) { state_->scan(Behind::end, sink); }
+void LinkDecoder::flush(const Sink& sink) { state_->scan(InputContinuation::end, sink); }
 
 const LinkCounts& LinkDecoder::counts() const { return state_->counts; }
 

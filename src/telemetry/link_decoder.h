@@ -40,11 +40,11 @@ struct LinkCounts {
     std::size_t frames = 0;              ///< with the right checksum
     std::size_t messages = 0;            ///< of them decoded
     std::size_t unknown = 0;             ///< of a message that is not defined
-    std::size_t other_lengths = 0;       ///< of a message that is defined with another length
-    std::size_t other_frames = 0;        ///< that carry no message: an XBee's status
+    std::size_t length_mismatches = 0;   ///< of a message that is defined with another length
+    std::size_t non_message_frames = 0;  ///< that carry no message: an XBee's status
     std::size_t skipped_bytes = 0;       ///< between frames: damage
-    std::size_t skipped_parts = 0;       ///< how often
-    std::size_t zero_bytes = 0;          ///< zeros alone between frames or at the end: room set aside
+    std::size_t skipped_runs = 0;        ///< how often
+    std::size_t padding_bytes = 0;       ///< zeros alone between frames or at the end: room set aside
     std::optional<LinkVersion> version;  ///< nothing: none decided yet
     std::optional<Framing> framing;
     /// Frames that are unknown or of other lengths, by 256 * class + id.
@@ -52,9 +52,9 @@ struct LinkCounts {
     std::map<std::uint16_t, std::size_t> other_length_ids = {};
 };
 
-/// Messages out of bytes as they arrive, in pieces of any size. Damage and garbage are skipped and counted and never end
-/// it; memory is constant, and nothing is allocated after the first message of each length. A message is handed out with
-/// the last byte of its frame.
+/// Messages out of bytes as they arrive, in pieces of any size. Damage and garbage are skipped and counted and never
+/// end it; memory is constant, and nothing is allocated after the first message of each length. A message is handed out
+/// with the last byte of its frame.
 class LinkDecoder {
   public:
     using Sink = std::function<void(const LinkMessage&)>;

@@ -15,9 +15,9 @@ class LinkEncoder {
   public:
     LinkEncoder(const MessageDictionary& dictionary, LinkVersion version);
 
-    /// Appends the frame of "20 ENERGY 57 11.62 ...". Where it cannot be one (another sender than an aircraft, a message
-    /// that telemetry does not define, fields that its definition does not have), nothing is appended; the reason is
-    /// returned, and empty else.
+    /// Appends the frame of "20 ENERGY 57 11.62 ...". Where it cannot be one (another sender than an aircraft, a
+    /// message that telemetry does not define, fields that its definition does not have), nothing is appended; the
+    /// reason is returned, and empty else.
     std::string_view append_frame(std::string_view text, std::string& frames);
 
   private:

@@ -29,9 +29,9 @@ void read_messages(std::vector<ProtocolMessage> protocol, LogConfiguration& conf
 /// The end of the tag that opens at `begin` (at its '>'), passing over quoted values and their escaped quotes. npos
 /// for one that another tag interrupts, or that is longer than any: then a quote is missing somewhere.
 std::size_t tag_end(std::string_view text, std::size_t begin) {
-    constexpr std::size_t longest_tag = 4096;
+    constexpr std::size_t max_tag = 4096;
     char quote = '\0';
-    for (std::size_t i = begin + 1; i < std::min(text.size(), begin + longest_tag); ++i) {
+    for (std::size_t i = begin + 1; i < std::min(text.size(), begin + max_tag); ++i) {
         const char c = text[i];
         if (quote != '\0') {
             if (c == '\\')
@@ -137,7 +137,7 @@ LogConfiguration parse_log_configuration(const std::string& text, const std::fil
 }
 
 LogConfiguration read_log_configuration(const std::filesystem::path& path) {
-    return parse_log_configuration(read_file(path, most_log_configuration_bytes), path);
+    return parse_log_configuration(read_file(path, max_log_configuration_bytes), path);
 }
 
 std::string flight_name(const std::filesystem::path& data_file) {

@@ -30,7 +30,7 @@ struct LogConfiguration {
 };
 
 /// What a .log may hold: an aircraft's whole configuration has about one MB.
-inline constexpr std::size_t most_log_configuration_bytes = 16'000'000;
+inline constexpr std::size_t max_log_configuration_bytes = 16'000'000;
 
 /// Reads a .log. Such files are often not well-formed XML ("&&", bare "<", escaped quotes in flight plans),
 /// so only the <protocol> element is read as XML; of the aircraft, single tags. Throws InputError where there
@@ -38,9 +38,9 @@ inline constexpr std::size_t most_log_configuration_bytes = 16'000'000;
 LogConfiguration read_log_configuration(const std::filesystem::path& path);
 LogConfiguration parse_log_configuration(const std::string& text, const std::filesystem::path& file);
 
-/// The .log that belongs to a log ("X.data", "X.data.gz", "X_SD.data", a card's "X.LOG"): "X.log" beside it, else an X.LOG
-/// that is XML; never the log itself. One that is there
-/// and cannot be read (a folder without permission, a link loop) counts: reading it says why.
+/// The .log that belongs to a log ("X.data", "X.data.gz", "X_SD.data", a card's "X.LOG"): "X.log" beside it, else an
+/// X.LOG that is XML; never the log itself. One that is there and cannot be read (a folder without permission, a link
+/// loop) counts: reading it says why.
 std::optional<std::filesystem::path> find_log_file(const std::filesystem::path& data_file);
 
 /// Whether a file begins as XML does: an X.LOG may be an SD card's log or what says how to read X.tlm.

@@ -18,8 +18,8 @@ enum class CurrentOrigin {
 /// "measured by a sensor", "computed from throttle" or "unknown".
 std::string_view to_string(CurrentOrigin origin);
 
-/// Lines or values that could not be used, by reason and time; of binary logs frames, or bytes between them. What has no
-/// time counts to the next message that has: what stands behind the last message of a log has an infinite time.
+/// Lines or values that could not be used, by reason and time; of binary logs frames, or bytes between them. What has
+/// no time counts to the next message that has: what stands behind the last message of a log has an infinite time.
 struct SkippedLines {
     enum class Unit { line, frame, byte };
     struct AtTime {

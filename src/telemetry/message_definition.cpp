@@ -83,7 +83,7 @@ std::map<std::string, std::vector<MessageDefinition>, std::less<>> all_definitio
 
 }  // namespace
 
-FieldConversion conversion_of(std::string_view message, const FieldDefinition& field) {
+FieldConversion find_conversion(std::string_view message, const FieldDefinition& field) {
     const bool centiamperes = message == "BAT" && field.name == "amps";
     if (const auto unit = units::parse_unit(field.unit)) {
         const bool really_hundredths = centiamperes && unit->factor == 1.0;

@@ -33,7 +33,7 @@ struct FieldConversion {
 
 /// By the declared unit, else by the alternative unit and its coefficient (ROTORCRAFT_FP.up: 2^-8 m).
 /// BAT.amps, an integer declared "A", counts 0.01 A in every version of Paparazzi.
-FieldConversion conversion_of(std::string_view message, const FieldDefinition& field);
+FieldConversion find_conversion(std::string_view message, const FieldDefinition& field);
 
 /// The unit that Paparazzi's own definitions give a field that `definition`, of a .log, gives none: those of its own
 /// POWER_DEVICE have none. Empty where it has one, where none is known, and where layouts that have the field differ

@@ -49,7 +49,7 @@ std::optional<std::uint8_t> byte_of(std::string_view text) {
 }
 
 /// What pprzlink numbers the classes, where a file does not say: those before 2014 do not.
-std::optional<std::uint8_t> usual_class_id(std::string_view name) {
+std::optional<std::uint8_t> default_class_id(std::string_view name) {
     static constexpr std::string_view names[] = {"telemetry", "datalink", "ground", "alert", "intermcu"};
     const auto* const found = std::ranges::find(names, name);
     if (found == std::end(names)) return std::nullopt;
@@ -92,9 +92,9 @@ bool WireMessage::fits_counted(std::string_view payload) const {
 
 void MessageDictionary::add(std::string_view class_id, std::string_view class_name, std::string_view message_id,
                             const MessageDefinition& definition) {
-    const auto group = class_id.empty() ? usual_class_id(class_name) : byte_of(class_id);
+    const auto group = class_id.empty() ? default_class_id(class_name) : byte_of(class_id);
     const auto id = byte_of(message_id);
-    if (!group || *group >= most_classes || !id) return;
+    if (!group || *group >= max_classes || !id) return;
     auto& place = places_[*group * std::size_t{256} + *id];
     if (place != 0) return;
     WireMessage message{definition, *group, *id, {}, 0, false};
@@ -117,7 +117,7 @@ MessageDictionary parse_message_dictionary(const std::string& text, const std::f
 }
 
 MessageDictionary read_message_dictionary(const std::filesystem::path& path) {
-    return parse_message_dictionary(read_file(path, most_log_configuration_bytes), path);
+    return parse_message_dictionary(read_file(path, max_log_configuration_bytes), path);
 }
 
 }  // namespace flightwatt::telemetry

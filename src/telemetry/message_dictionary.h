@@ -58,12 +58,13 @@ class MessageDictionary {
     static constexpr std::uint8_t telemetry_class = 1;
     static constexpr std::uint8_t datalink_class = 2;
 
-    /// A message whose numbers are taken, or over 255, or a type of whose fields is not known, is none that frames carry.
+    /// A message whose numbers are taken, or over 255, or a type of whose fields is not known, is none that frames
+    /// carry.
     void add(std::string_view class_id, std::string_view class_name, std::string_view message_id,
              const MessageDefinition& definition);
     /// The message; nullptr for one that is not defined.
     const WireMessage* find(std::uint8_t class_id, std::uint8_t message_id) const {
-        if (class_id >= most_classes) return nullptr;
+        if (class_id >= max_classes) return nullptr;
         const auto place = places_[std::size_t{class_id} * 256 + message_id];
         return place == 0 ? nullptr : &messages_[place - 1];
     }
@@ -71,10 +72,10 @@ class MessageDictionary {
     bool empty() const { return messages_.empty(); }
 
   private:
-    static constexpr std::size_t most_classes = 16;
+    static constexpr std::size_t max_classes = 16;
 
     std::vector<WireMessage> messages_;
-    std::array<std::uint16_t, most_classes * 256> places_{};  ///< of messages_, from 1 on; 0 without
+    std::array<std::uint16_t, max_classes * 256> places_{};  ///< of messages_, from 1 on; 0 without
 };
 
 /// The definitions of a messages.xml, or of the <protocol> of a .log. Throws InputError where there is none.

@@ -26,19 +26,19 @@ const MessageTable* SenderLog::table(std::string_view message) const {
 TelemetryLog read_telemetry(std::string_view text, const std::filesystem::path& data_file,
                             std::optional<LogConfiguration> configuration, const std::vector<MessageRequest>& wanted) {
     auto log = parse_telemetry(text, data_file, std::move(configuration), wanted);
-    if (log.senders.empty() && census_of_messages(text).empty()) {
+    if (log.senders.empty() && count_messages(text).empty()) {
         throw InputError({data_file.string(), 1}, fmt::format("holds no telemetry in its {} lines", log.lines),
                          "expected lines such as '335.149 20 ENERGY 69 11.7 3.1 36.6 0.03 0.31'");
     }
     return log;
 }
 
-std::vector<std::pair<std::string, std::size_t>> census_of_messages(std::string_view text) {
+std::vector<std::pair<std::string, std::size_t>> count_messages(std::string_view text) {
     const auto is_name = [](std::string_view word) {
         return !word.empty() && word.size() < 64 && std::isupper(static_cast<unsigned char>(word.front())) &&
                std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isalnum(c) || c == '_'; });
     };
-    constexpr std::size_t most_names = 1000;  // Paparazzi has some 300
+    constexpr std::size_t max_names = 1000;  // Paparazzi has some 300
     std::map<std::string, std::size_t, std::less<>> names;
     scan_lines(text, [&](const ScannedLine& line) {
         WordCursor words(line);
@@ -49,7 +49,7 @@ std::vector<std::pair<std::string, std::size_t>> census_of_messages(std::string_
         if (!parse_number(time) || !is_name(name)) return;
         if (const auto known = names.find(name); known != names.end()) {
             ++known->second;
-        } else if (names.size() < most_names) {
+        } else if (names.size() < max_names) {
             names.emplace(name, 1);
         }
     });

@@ -71,6 +71,6 @@ TelemetryLog parse_telemetry(std::string_view text, const std::filesystem::path&
 
 /// Names of the messages in a .data text, with their counts, most frequent first: for explaining what a log
 /// holds when it lacks what is wanted. Of more than a thousand names, the first thousand.
-std::vector<std::pair<std::string, std::size_t>> census_of_messages(std::string_view text);
+std::vector<std::pair<std::string, std::size_t>> count_messages(std::string_view text);
 
 }  // namespace flightwatt::telemetry

@@ -33,11 +33,11 @@ TEST(InputError, IsClippedWhateverAFilePutIntoIt) {
     EXPECT_LT(InputError({"a"}, "x", long_key).hint().size(), 2100U);
     std::string umlauts;
     for (int i = 0; i < 3000; ++i) umlauts += "\xC3\xBC";
-    const auto clipped_umlauts = clipped(umlauts);
+    const auto clipped_umlauts = truncated(umlauts);
     const auto gap = clipped_umlauts.find(" ... ");
     EXPECT_EQ(gap % 2, 0U) << "no character is cut in two";
     EXPECT_EQ((clipped_umlauts.size() - gap - 5) % 2, 0U);
-    EXPECT_EQ(clipped("short"), "short");
+    EXPECT_EQ(truncated("short"), "short");
 }
 
 TEST(ShortList, HasADozen) {
@@ -50,7 +50,7 @@ TEST(ShortList, HasADozen) {
 /// Each has an exit code of its own: catching one must not catch another.
 TEST(Errors, AreNotOfOneAnother) {
     EXPECT_FALSE((std::is_base_of_v<InputError, UsageError> || std::is_base_of_v<UsageError, InputError>));
-    EXPECT_FALSE((std::is_base_of_v<InputError, NoAnswerError> || std::is_base_of_v<NoAnswerError, InputError>));
+    EXPECT_FALSE((std::is_base_of_v<InputError, NoResultError> || std::is_base_of_v<NoResultError, InputError>));
     EXPECT_FALSE((std::is_base_of_v<OutputError, InputError> || std::is_base_of_v<InputError, OutputError>));
 }
 

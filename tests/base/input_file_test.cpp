@@ -22,8 +22,8 @@ class ReadFile : public testing::Test {
   protected:
     std::filesystem::path folder = test::scratch_dir();
 
-    std::string reading(const std::filesystem::path& path, std::size_t most_bytes = most_file_bytes) const {
-        return test::rejected([&] { read_file(path, most_bytes, "look again"); }, folder);
+    std::string reading(const std::filesystem::path& path, std::size_t max_bytes = max_file_bytes) const {
+        return test::rejected([&] { read_file(path, max_bytes, "look again"); }, folder);
     }
 };
 
@@ -69,7 +69,7 @@ TEST_F(ReadFile, SaysThatAFolderIsNotAllowed) {
         ASSERT_EQ(::seteuid(nobody), 0);
     }
     EXPECT_EQ(reading(folder / "closed" / "file"), "closed/file: cannot be read: Permission denied");
-    EXPECT_EQ(reading_error(folder / "closed" / "file"), std::errc::permission_denied);
+    EXPECT_EQ(open_error(folder / "closed" / "file"), std::errc::permission_denied);
     ASSERT_EQ(::seteuid(user), 0);
     std::filesystem::permissions(folder / "closed", std::filesystem::perms::owner_all);
 }
@@ -84,7 +84,7 @@ TEST(InputFile, TellsThatItWasCut) {
     const auto folder = test::scratch_dir();
     const InputFile file(test::write_text(folder / "file", "0123456789"));
     EXPECT_EQ(file.size(), 10U);
-    const auto check = [&] { return test::rejected([&] { file.require_uncut(); }, folder); };
+    const auto check = [&] { return test::rejected([&] { file.require_not_truncated(); }, folder); };
     EXPECT_EQ(check(), "");
     std::filesystem::resize_file(folder / "file", 20);
     EXPECT_EQ(check(), "") << "a log that grows is read as it was";
@@ -94,10 +94,10 @@ TEST(InputFile, TellsThatItWasCut) {
 
 TEST(ReadingError, IsTheSystems) {
     const auto folder = test::scratch_dir();
-    EXPECT_FALSE(reading_error(test::write_text(folder / "file", "")));
-    EXPECT_EQ(reading_error(folder / "missing"), std::errc::no_such_file_or_directory);
+    EXPECT_FALSE(open_error(test::write_text(folder / "file", "")));
+    EXPECT_EQ(open_error(folder / "missing"), std::errc::no_such_file_or_directory);
     std::filesystem::create_symlink("loop", folder / "loop");
-    EXPECT_EQ(reading_error(folder / "loop"), std::errc::too_many_symbolic_link_levels);
+    EXPECT_EQ(open_error(folder / "loop"), std::errc::too_many_symbolic_link_levels);
 }
 
 constexpr auto variable = "FLIGHTWATT_TEST_FILES";
@@ -105,19 +105,19 @@ constexpr auto variable = "FLIGHTWATT_TEST_FILES";
 TEST(ProgramFiles, AreWhereTheVariableSays) {
     const auto folder = test::scratch_dir();
     ::setenv(variable, folder.c_str(), 1);
-    EXPECT_EQ(program_files("web", variable, "the files"), folder);
+    EXPECT_EQ(data_folder("web", variable, "the files"), folder);
     ::unsetenv(variable);
 }
 
 TEST(ProgramFiles, StandInShareBesideTheFolderOfTheProgram) {
     // This test lies in tests/ of the build, whose share/ is that of the programs in bin/.
-    EXPECT_EQ(program_folder().filename(), "tests");
-    const auto folder = program_files("docs", variable, "the pages");
+    EXPECT_EQ(executable_folder().filename(), "tests");
+    const auto folder = data_folder("docs", variable, "the pages");
     EXPECT_TRUE(std::filesystem::equivalent(folder, test::source_dir() / "docs"));
 }
 
 TEST(ProgramFiles, AreMissedWithTheirNameAndTheWayOut) {
-    EXPECT_THAT(test::rejected([] { program_files("absent", variable, "the pages"); }),
+    EXPECT_THAT(test::rejected([] { data_folder("absent", variable, "the pages"); }),
                 testing::AllOf(testing::HasSubstr("share/flightwatt/absent"),
                                testing::HasSubstr("the pages are not there"), testing::HasSubstr(variable)));
 }

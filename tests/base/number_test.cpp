@@ -48,7 +48,7 @@ TEST(ParseNumber, IsCorrectlyRoundedOnBothPaths) {
 }
 
 std::string written(double value) {
-    std::array<char, longest_number> text{};
+    std::array<char, number_buffer_size> text{};
     return {text.data(), write_number(text.data(), value)};
 }
 

@@ -41,7 +41,7 @@ TEST(ForEachInParallel, ThrowsWhatTheLowestNumberThrew) {
 
 TEST(ForEachInParallel, HasOneThreadWithinALoopThatSeveralShare) {
     std::atomic<int> elsewhere = 0;
-    const auto inner = [&](std::size_t most_threads) {
+    const auto inner = [&](std::size_t max_threads) {
         for_each_in_parallel(
             2,
             [&](std::size_t) {
@@ -49,7 +49,7 @@ TEST(ForEachInParallel, HasOneThreadWithinALoopThatSeveralShare) {
                 for_each_in_parallel(
                     20, [&](std::size_t) { elsewhere += std::this_thread::get_id() != here; }, 4);
             },
-            most_threads);
+            max_threads);
     };
     inner(2);
     EXPECT_EQ(elsewhere, 0);

@@ -33,11 +33,11 @@ TEST(PiecewiseLinear, OneKnotIsAConstantWhereHeld) {
 }
 
 TEST(PiecewiseLinear, PlacesAmongKnots) {
-    EXPECT_EQ(place_among(knots, 2.0).lower, 1U);
-    EXPECT_DOUBLE_EQ(place_among(knots, 2.0).fraction, 0.5);
-    EXPECT_EQ(place_among(knots, 4.0).lower, 1U);
-    EXPECT_DOUBLE_EQ(place_among(knots, 4.0).fraction, 1.5);
-    EXPECT_DOUBLE_EQ(place_among(knots, -1.0).fraction, -1.0);
+    EXPECT_EQ(find_knot_interval(knots, 2.0).lower, 1U);
+    EXPECT_DOUBLE_EQ(find_knot_interval(knots, 2.0).fraction, 0.5);
+    EXPECT_EQ(find_knot_interval(knots, 4.0).lower, 1U);
+    EXPECT_DOUBLE_EQ(find_knot_interval(knots, 4.0).fraction, 1.5);
+    EXPECT_DOUBLE_EQ(find_knot_interval(knots, -1.0).fraction, -1.0);
 }
 
 }  // namespace

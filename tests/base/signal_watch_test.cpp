@@ -18,13 +18,13 @@ TEST(SignalWatch, KeepsSignalsUntilTheyAreAskedFor) {
         std::signal(signal, SIG_DFL);  // a background job of a shell ignores SIGINT, nohup SIGHUP
     }
     const SignalWatch watch;
-    EXPECT_FALSE(watch.caught());
-    EXPECT_FALSE(is_readable(watch.file()));
+    EXPECT_FALSE(watch.received());
+    EXPECT_FALSE(is_readable(watch.fd()));
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         std::raise(signal);
-        EXPECT_TRUE(is_readable(watch.file()));
-        EXPECT_EQ(watch.caught(), signal);
-        EXPECT_FALSE(watch.caught());
+        EXPECT_TRUE(is_readable(watch.fd()));
+        EXPECT_EQ(watch.received(), signal);
+        EXPECT_FALSE(watch.received());
     }
 }
 
@@ -33,7 +33,7 @@ TEST(SignalWatch, LeavesIgnoredSignalsIgnored) {
     {
         const SignalWatch watch;
         std::raise(SIGHUP);
-        EXPECT_FALSE(watch.caught());
+        EXPECT_FALSE(watch.received());
     }
     std::signal(SIGHUP, before);
 }

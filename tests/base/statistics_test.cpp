@@ -19,8 +19,8 @@ TEST(Statistics, TheMedianOfAnEvenNumberIsTheMeanOfTheMiddleTwo) {
     EXPECT_EQ(median({3.0}), 3.0);
     EXPECT_EQ(median({5.0, 1.0, 3.0}), 3.0);
     EXPECT_EQ(median({8.0, 1.0, 2.0, 4.0}), 3.0);
-    EXPECT_EQ(upper_median({8.0, 1.0, 2.0, 4.0}), 4.0);
-    EXPECT_EQ(upper_median({5.0, 1.0, 3.0}), 3.0);
+    EXPECT_EQ(median_high({8.0, 1.0, 2.0, 4.0}), 4.0);
+    EXPECT_EQ(median_high({5.0, 1.0, 3.0}), 3.0);
 }
 
 TEST(Statistics, QuantilesLieOnStraightLinesBetweenSortedValues) {
@@ -43,13 +43,13 @@ TEST(Statistics, HalfWidthsAsInAnyTable) {
 }
 
 TEST(Folds, AreOfOneEachAsLongAsTheyMayBe) {
-    EXPECT_THAT(folds_of(3, 3), ElementsAre(ElementsAre(0U), ElementsAre(1U), ElementsAre(2U)));
-    EXPECT_THAT(folds_of(2, 20), ElementsAre(ElementsAre(0U), ElementsAre(1U)));
-    EXPECT_TRUE(folds_of(0, 20).empty());
+    EXPECT_THAT(make_folds(3, 3), ElementsAre(ElementsAre(0U), ElementsAre(1U), ElementsAre(2U)));
+    EXPECT_THAT(make_folds(2, 20), ElementsAre(ElementsAre(0U), ElementsAre(1U)));
+    EXPECT_TRUE(make_folds(0, 20).empty());
 }
 
 TEST(Folds, OfMoreAreGroupsWithoutNeighbours) {
-    EXPECT_THAT(folds_of(7, 3), ElementsAre(ElementsAre(0U, 3U, 6U), ElementsAre(1U, 4U), ElementsAre(2U, 5U)));
+    EXPECT_THAT(make_folds(7, 3), ElementsAre(ElementsAre(0U, 3U, 6U), ElementsAre(1U, 4U), ElementsAre(2U, 5U)));
 }
 
 }  // namespace

@@ -172,7 +172,7 @@ std::string refusal(const std::string& text) {
 
 TEST(FileKinds, OneTakenForAnotherIsNamed) {
     const auto refused = [](const std::string& text, FileKind expected) {
-        return test::rejected([&] { refuse_other_kinds(parse_toml(text, "f.toml"), expected); });
+        return test::rejected([&] { require_kind(parse_toml(text, "f.toml"), expected); });
     };
     const std::string model = "name = \"m\"\n[takeoff]\n";
     const std::string pack = "capacity_ah = 5\nresistance_ohm = 0.1\n";

@@ -52,7 +52,7 @@ TEST(StoredFlights, AreNotBelievedOnceTheyWereChanged) {
     const auto log = test::copy_sample(1, scratch / "in");
     const auto out = scratch / "out";
     test::batch(scratch / "in", out);
-    for (const auto* ending : result_endings) {
+    for (const auto* ending : result_suffixes) {
         const auto file = out / "flights" / (std::string("opterra_synthetic_01") + ending);
         auto text = read_file(file);
         const auto whole = text;
@@ -62,11 +62,11 @@ TEST(StoredFlights, AreNotBelievedOnceTheyWereChanged) {
         const auto stored = read_stored_flights(out);
         ASSERT_EQ(stored.size(), 1U) << ending;
         EXPECT_FALSE(stored[0].record.accepted);
-        EXPECT_THAT(stored[0].damage, HasSubstr("its log is gone"));
+        EXPECT_THAT(stored[0].damage_reason, HasSubstr("its log is gone"));
         std::filesystem::rename(scratch / "away", log);
         EXPECT_THAT(test::rejected([&] { read_stored_flights(out); }), HasSubstr("run flightwatt batch again"));
         write_file_atomically(file, whole);
-        EXPECT_EQ(read_stored_flights(out)[0].damage, "");
+        EXPECT_EQ(read_stored_flights(out)[0].damage_reason, "");
     }
 }
 

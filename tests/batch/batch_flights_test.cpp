@@ -35,15 +35,15 @@ BatchFlight flight_of(const std::string& name) {
     record.phases = {phase, {}};
     record.warnings = {"one", "", std::string("a\0b", 3)};
     record.power_faults = {"fault"};
-    record.lacks_power = "lacks";
-    record.why_not_fitted = "why";
+    record.no_power_reason = "lacks";
+    record.not_fitted_reason = "why";
     record.content.decimals = 1;
     record.content.has_definitions = false;
     record.content.samples = 77;
-    record.content.parts = 4;
+    record.content.hash_divisor = 4;
     flight.was_up_to_date = true;
     flight.is_of_this_run = false;
-    flight.is_kept = true;
+    flight.log_is_missing = true;
     SelectedSortie sortie{name + "#2", {}};
     sortie.phases[flight::Phase::cruise] = true;
     flight.selection.flights = {sortie};
@@ -60,7 +60,7 @@ TEST(BatchFlights, KeepsWhatBecameOfALog) {
     const auto& record = flight.record;
     EXPECT_THAT((std::vector{record.flight, record.log, record.fingerprint, record.results, record.error,
                              record.aircraft_id, record.aircraft_name, record.power_source, record.current_origin,
-                             record.lacks_power, record.why_not_fitted}),
+                             record.no_power_reason, record.not_fitted_reason}),
                 ElementsAre("b", "in/b", "f", "r", "none", "7", "x", "ENERGY.power", "measured", "lacks", "why"));
     EXPECT_TRUE(record.accepted && record.is_of_other_aircraft);
     EXPECT_THAT(record.warnings, ElementsAre("one", "", std::string("a\0b", 3)));
@@ -78,9 +78,9 @@ TEST(BatchFlights, KeepsWhatBecameOfALog) {
     EXPECT_EQ(phase.statistics.energy_wh, 0.0125);
     EXPECT_EQ(phase.statistics.counter_energy_wh, 0.5);
     EXPECT_EQ(phase.statistics.gaps, 3U);
-    EXPECT_EQ(phase.statistics.longest_gap_s, 1.75);
+    EXPECT_EQ(phase.statistics.max_gap_s, 1.75);
     EXPECT_EQ(record.phases[1].statistics.counter_energy_wh, std::nullopt);
-    EXPECT_TRUE(flight.was_up_to_date && !flight.is_of_this_run && flight.is_kept);
+    EXPECT_TRUE(flight.was_up_to_date && !flight.is_of_this_run && flight.log_is_missing);
     ASSERT_EQ(flight.selection.flights.size(), 1U);
     EXPECT_EQ(flight.selection.flights[0].flight, "b#2");
     EXPECT_THAT(flight.selection.flights[0].phases.values, ElementsAre(false, true, false));

@@ -123,7 +123,7 @@ TEST_F(BatchOfTwo, DoesDamagedResultsAgain) {
 }
 
 TEST_F(BatchOfTwo, RemovesWhatAKilledOneLeft) {
-    write_text(out / unfinished_folder / ".flightwatt-0123456789abcdef", "time_s,po");
+    write_text(out / temporary_folder / ".flightwatt-0123456789abcdef", "time_s,po");
     expect_redone({});
 }
 
@@ -182,7 +182,7 @@ TEST_F(BatchOfTwo, KeepsTheResultsOfALogThatIsGone) {
     std::filesystem::remove(in / "opterra_synthetic_01.data");
     const auto kept = batch(in, out);
     ASSERT_EQ(kept.size(), 2U);
-    EXPECT_TRUE(kept[0].is_kept);
+    EXPECT_TRUE(kept[0].log_is_missing);
     EXPECT_EQ(samples_of(kept, out).at(0).samples.phases[flight::Phase::cruise]->power_w,
               before.samples.phases[flight::Phase::cruise]->power_w);
     EXPECT_EQ(contents(out), whole);

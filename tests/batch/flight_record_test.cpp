@@ -33,7 +33,7 @@ FlightRecord full_record() {
     takeoff.statistics.mean_power_w = 83.1;
     takeoff.statistics.energy_wh = 0.1;
     takeoff.statistics.gaps = 2;
-    takeoff.statistics.longest_gap_s = 22.5;
+    takeoff.statistics.max_gap_s = 22.5;
     auto landing = takeoff;
     landing.sortie = 2;
     landing.phase = flight::Phase::landing;
@@ -148,7 +148,7 @@ TEST(FlightRecord, HoldsWhatAFitTakes) {
     EXPECT_TRUE(record.accepted);
     EXPECT_EQ(record.flight, "opterra_synthetic_01");
     EXPECT_EQ(record.aircraft_id, "7");
-    const auto measured = mechanical::measure_flights(loaded, 8);
+    const auto measured = mechanical::extract_flights(loaded, 8);
     const auto back = record_from_json(to_json_text(record)).value().measured;
     ASSERT_EQ(back.flights.size(), 1U);
     EXPECT_EQ(back.sorties, measured.sorties);

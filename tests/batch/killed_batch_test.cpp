@@ -58,8 +58,8 @@ class KilledBatch : public testing::Test {
         return count;
     }
 
-    /// Starts a batch and sends it a signal a little after it has `done` records. Returns its status, which is 0 where a
-    /// busy machine let the batch end first.
+    /// Starts a batch and sends it a signal a little after it has `done` records. Returns its status, which is 0 where
+    /// a busy machine let the batch end first.
     int stop_after(const std::string& out, int done, int signal) {
         const auto child = start(out, 1);
         for (int look = 0; records(out) < done && look < 600000; ++look) {
@@ -84,7 +84,7 @@ TEST_F(KilledBatch, EndsWithTheSameBytesAfterKills) {
     for (const int done : {2, 5, 8}) {
         killed += WIFSIGNALED(stop_after("out", done, SIGKILL)) ? 1 : 0;
         for (const auto& [name, content] : contents(folder / "out")) {
-            EXPECT_TRUE(whole.contains(name) || name.starts_with(unfinished_folder)) << name << " is in no list";
+            EXPECT_TRUE(whole.contains(name) || name.starts_with(temporary_folder)) << name << " is in no list";
         }
     }
     EXPECT_GE(killed, 1);  // a machine that looks away for long enough may let one finish

@@ -81,9 +81,9 @@ TEST(FindLogs, GivesEachLogANameOfItsOwn) {
 TEST(FindLogs, ShortensNamesThatFilesCannotHave) {
     const auto names_of_long = [](const std::string& name) {
         std::set<std::string> taken;
-        FreeNames names;
-        taken.insert(names.give(name + ".data"));
-        taken.insert(names.give(name + ".data"));
+        UniqueNames names;
+        taken.insert(names.assign(name + ".data"));
+        taken.insert(names.assign(name + ".data"));
         return std::vector<std::string>(taken.begin(), taken.end());
     };
     const auto shortened = names_of_long(std::string(245, 'x'));
@@ -145,10 +145,10 @@ TEST(FindLogs, TakesTheReasonWhyAFolderBelowIsNotFitted) {
 }
 
 TEST(ListedPaths, AreLinesAsTheyStand) {
-    EXPECT_THAT(listed_paths("", "list"), ElementsAre());
-    EXPECT_THAT(listed_paths("a.data\n\n b c.data\n#d.data", "list"), ElementsAre("a.data", " b c.data", "#d.data"));
+    EXPECT_THAT(parse_path_list("", "list"), ElementsAre());
+    EXPECT_THAT(parse_path_list("a.data\n\n b c.data\n#d.data", "list"), ElementsAre("a.data", " b c.data", "#d.data"));
     EXPECT_EQ(
-        rejected([] { listed_paths(std::string_view("a.data\nb\0c", 10), "list"); }),
+        rejected([] { parse_path_list(std::string_view("a.data\nb\0c", 10), "list"); }),
         "list:2: holds a NUL, which no path does; expected the path of a log in each line, as find -print writes them");
 }
 
@@ -162,13 +162,13 @@ TEST(FindLogs, TakesWhatIsListedAsItIs) {
 }
 
 TEST(FreeNames, AreTheNextOnesAlsoOfMany) {
-    FreeNames names;
-    names.take("x_3");
-    EXPECT_EQ(names.give("x.data"), "x");
-    EXPECT_EQ(names.give("1/x.data"), "x_2");
-    EXPECT_EQ(names.give("2/x.data"), "x_4");
-    for (int i = 5; i < 20'000; ++i) names.give("3/x.data");
-    EXPECT_EQ(names.give("4/x.data"), "x_20000");
+    UniqueNames names;
+    names.reserve("x_3");
+    EXPECT_EQ(names.assign("x.data"), "x");
+    EXPECT_EQ(names.assign("1/x.data"), "x_2");
+    EXPECT_EQ(names.assign("2/x.data"), "x_4");
+    for (int i = 5; i < 20'000; ++i) names.assign("3/x.data");
+    EXPECT_EQ(names.assign("4/x.data"), "x_20000");
 }
 
 }  // namespace

@@ -24,12 +24,12 @@ TEST(LogList, KeepsWhatALogIs) {
     EXPECT_THAT((std::vector{first.path, first.flight, first.why_not_fitted, first.problem, first.place}),
                 ElementsAre("in/b.data", "b", "rough", "", "/home/in/b.data"));
     EXPECT_FALSE(first.is_of_this_run);
-    EXPECT_TRUE(first.is_gone);
+    EXPECT_TRUE(first.is_missing);
     const auto second = logs[1];
     EXPECT_THAT((std::vector{second.path, second.flight, second.why_not_fitted, second.problem, second.place}),
                 ElementsAre("/home/a\n.data", "a", "", std::string("cannot\0be", 9), "/home/a\n.data"));
     EXPECT_TRUE(second.is_of_this_run);
-    EXPECT_FALSE(second.is_gone);
+    EXPECT_FALSE(second.is_missing);
     EXPECT_EQ(logs.place(1), "/home/a\n.data");
     EXPECT_EQ(logs[2].place, "");
     EXPECT_THAT(logs.by_flight(), ElementsAre(2, 1, 0));
@@ -51,7 +51,7 @@ TEST(LogList, OrdersPathsAsTheStandardLibraryDoes) {
         const auto one = path();
         const auto other = path();
         if (!one.has_filename() || !other.has_filename()) continue;  // no log
-        ASSERT_EQ(comes_before(one.string(), other.string()), one < other) << one << " and " << other;
+        ASSERT_EQ(path_less(one.string(), other.string()), one < other) << one << " and " << other;
         if ((one < other) != (one.string() < other.string())) ++differing;
     }
     EXPECT_GT(differing, 100) << "or letters would do";

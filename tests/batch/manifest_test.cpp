@@ -23,7 +23,7 @@ using testing::IsEmpty;
 
 std::string refusal(const BatchPlan& plan, const std::filesystem::path& out) {
     try {
-        refuse_files_of_others(plan, out);
+        refuse_foreign_files(plan, out);
     } catch (const UsageError& error) {
         return error.what();
     }
@@ -108,7 +108,7 @@ TEST(Manifest, IsMadeOfTheRecordsOfAnEarlierVersion) {
     EXPECT_TRUE(manifest.is_of_earlier_version);
     ASSERT_EQ(manifest.flights.size(), 1U);
     EXPECT_EQ(manifest.flights[0].flight, "a");
-    EXPECT_EQ(manifest.flights[0].place, place_of("in/a.data"));
+    EXPECT_EQ(manifest.flights[0].place, canonical_path("in/a.data"));
     EXPECT_TRUE(manifest.files.contains("model.toml"));
     write_text(out / "flights.csv", "my own list\n");
     EXPECT_THAT(read_manifest(out).files, IsEmpty());
@@ -159,10 +159,10 @@ TEST(BatchPlan, LeadsIntoNoOtherFolder) {
     test::copy_sample(1, in);
     test::batch(in, folder / "other");
     const auto plan = [&] { return plan_batch(find_logs({in.string()}), folder / "out", true); };
-    for (const auto* name : {"flights", manifest_name, unfinished_folder}) {
+    for (const auto* name : {"flights", manifest_name, temporary_folder}) {
         const auto link = folder / "out" / name;
         make_directories(folder / "out");
-        make_directories(folder / "other" / unfinished_folder);
+        make_directories(folder / "other" / temporary_folder);
         std::filesystem::create_symlink(folder / "other" / name, link);
         EXPECT_THAT(refusal(plan(), folder / "out"), HasSubstr(link.string())) << name;
         std::filesystem::remove(link);
@@ -175,9 +175,9 @@ TEST(BatchPlan, LeadsIntoNoOtherFolder) {
 
 TEST(BatchPlan, IsNotForAFolderThatAnotherRunMade) {
     const auto folder = test::scratch_dir();
-    refuse_new_batch(folder);
+    refuse_concurrent_batch(folder);
     write_manifest({}, folder);
-    EXPECT_THROW(refuse_new_batch(folder), OutputError);
+    EXPECT_THROW(refuse_concurrent_batch(folder), OutputError);
 }
 
 TEST(BatchPlan, KnowsLogsAgainInAFolderThatMoved) {

@@ -31,18 +31,18 @@ void batch_of(const Paths& logs, const std::filesystem::path& out, double rest_s
     const auto plan = plan_batch(find_logs({logs.begin(), logs.end()}), out, false);
     prepare_folder(plan, out);
     auto flights = run_batch(plan.logs, options, [](std::size_t, std::size_t, const BatchFlight&) {});
-    exclude_repeated(flights, find_repeated(flights, out));
+    exclude_duplicates(flights, find_duplicates(flights, out));
     write_file_atomically(out / catalogue_name, catalogue_csv(flights));
 }
 
 /// What `flightwatt merge` does.
 MergePlan merge(const Paths& batches, const std::filesystem::path& out, bool prune = false) {
     auto plan = plan_merge(batches, out, prune);
-    refuse_files_of_others(plan.folder, out);
+    refuse_foreign_files(plan.folder, out);
     prepare_folder(plan.folder, out);
     WriteGate gate;
     auto flights = merge_flights(plan, {out, 8, gate}, [](std::size_t, std::size_t, const BatchFlight&) {});
-    exclude_repeated(flights, find_repeated(flights, out));
+    exclude_duplicates(flights, find_duplicates(flights, out));
     write_file_atomically(out / catalogue_name, catalogue_csv(flights));
     return plan;
 }
@@ -112,7 +112,7 @@ TEST(Merge, AgainDoesNothingAndABatchGoesOnFromIt) {
     batch_of({logs[0], logs[1]}, scratch / "one");
     batch_of({logs[2], logs[4]}, scratch / "other");
     const auto out = scratch / "out";
-    EXPECT_EQ(merge({scratch / "one", scratch / "other"}, out).repeated, 0U);
+    EXPECT_EQ(merge({scratch / "one", scratch / "other"}, out).duplicate_logs, 0U);
     const auto series = out / "flights" / "opterra_synthetic_01.series.csv";
     EXPECT_EQ(std::filesystem::hard_link_count(series), 2U);
     const auto first = test::contents(out);
@@ -164,12 +164,12 @@ TEST(Merge, RefusesWhatCannotBeJoined) {
 TEST(Merge, RefusesARecordThatWasRenamed) {
     const auto scratch = test::scratch_dir();
     batch_of({make_logs(scratch / "logs")[0]}, scratch / "one");
-    for (const auto* ending : result_endings) {
+    for (const auto* ending : result_suffixes) {
         const auto flights = scratch / "one" / "flights";
         std::filesystem::copy_file(flights / (std::string("opterra_synthetic_01") + ending),
                                    flights / (std::string("x") + ending));
     }
-    EXPECT_THAT(test::rejected([&] { read_intact_record(scratch / "one", "x"); }),
+    EXPECT_THAT(test::rejected([&] { read_verified_record(scratch / "one", "x"); }),
                 HasSubstr("the record of opterra_synthetic_01"));
 }
 

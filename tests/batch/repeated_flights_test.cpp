@@ -21,10 +21,10 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 /// Finds and excludes them.
-std::vector<CopiedFlight> copies_of(BatchFlights& flights, const std::filesystem::path& out) {
-    const auto repeated = find_repeated(flights, out);
-    exclude_repeated(flights, repeated);
-    EXPECT_EQ(copies_among(flights), repeated.copies);
+std::vector<DuplicateFlight> copies_of(BatchFlights& flights, const std::filesystem::path& out) {
+    const auto repeated = find_duplicates(flights, out);
+    exclude_duplicates(flights, repeated);
+    EXPECT_EQ(excluded_duplicates(flights), repeated.copies);
     return repeated.copies;
 }
 
@@ -34,7 +34,7 @@ TEST(RepeatedFlights, UsesAFlightOnceUnderWhateverName) {
     copy_sample(1, folder / "in", "b");
     copy_sample(2, folder / "in", "c");
     auto flights = batch(folder / "in", folder / "out");
-    EXPECT_THAT(copies_of(flights, folder / "out"), ElementsAre(CopiedFlight{"b", "a", true}));
+    EXPECT_THAT(copies_of(flights, folder / "out"), ElementsAre(DuplicateFlight{"b", "a", true}));
     EXPECT_THAT(flights[1].selection.flights, IsEmpty());
     EXPECT_EQ(to_string(flights[1].selection.exclusions.back()),
               "b: it is excluded from the fit: it is the same flight as a, which is used");
@@ -42,7 +42,7 @@ TEST(RepeatedFlights, UsesAFlightOnceUnderWhateverName) {
     // Rather that of which the log is there.
     std::filesystem::remove(folder / "in" / "a.data");
     flights = batch(folder / "in", folder / "out");
-    EXPECT_THAT(copies_of(flights, folder / "out"), ElementsAre(CopiedFlight{"a", "b", true}));
+    EXPECT_THAT(copies_of(flights, folder / "out"), ElementsAre(DuplicateFlight{"a", "b", true}));
 }
 
 /// What another receiver made of a log: it lost every nth line.
@@ -59,11 +59,11 @@ TEST(RepeatedFlights, UsesTheBetterOfTwoRecordingsOfAFlight) {
     lose_lines(copy_sample(1, folder / "in", "a"), 4);
     lose_lines(copy_sample(1, folder / "in", "b"), 9);
     auto flights = batch(folder / "in", folder / "out");
-    EXPECT_THAT(copies_of(flights, folder / "out"), ElementsAre(CopiedFlight{"a", "b", true}));
+    EXPECT_THAT(copies_of(flights, folder / "out"), ElementsAre(DuplicateFlight{"a", "b", true}));
     // What has its definitions is used, however few its lines.
     std::filesystem::remove(folder / "in" / "b.log");
     flights = batch(folder / "in", folder / "out");
-    EXPECT_THAT(copies_of(flights, folder / "out"), ElementsAre(CopiedFlight{"b", "a", true}));
+    EXPECT_THAT(copies_of(flights, folder / "out"), ElementsAre(DuplicateFlight{"b", "a", true}));
 }
 
 TEST(RepeatedFlights, WarnsOfTwoRecordingsThatShareLittle) {
@@ -85,14 +85,14 @@ TEST(RepeatedFlights, KnowsThatFlightsAreOfSeveralAircraft) {
     const auto folder = test::scratch_dir();
     for (int number = 1; number <= 2; ++number) copy_sample(number, folder / "in");
     auto flights = batch(folder / "in", folder / "out");
-    EXPECT_EQ(mix_of(flights), "");
+    EXPECT_EQ(mixed_aircraft_reason(flights), "");
     auto first = flights[0];
     first.record.aircraft_id = "8";
     flights.put(0, first);
-    EXPECT_THAT(mix_of(flights), HasSubstr("; 8 Opterra_synthetic (SYNTHETIC): opterra_synthetic_01"));
+    EXPECT_THAT(mixed_aircraft_reason(flights), HasSubstr("; 8 Opterra_synthetic (SYNTHETIC): opterra_synthetic_01"));
     first.selection.flights.clear();
     flights.put(0, first);
-    EXPECT_EQ(mix_of(flights), "") << "what is not fitted does not count";
+    EXPECT_EQ(mixed_aircraft_reason(flights), "") << "what is not fitted does not count";
 }
 
 }  // namespace

@@ -4,9 +4,9 @@
 #include "helpers/sample_logs.h"
 
 #include "base/units.h"
-#include "flight/chosen_track.h"
 #include "flight/load_flight.h"
 #include "flight/phases_file.h"
+#include "flight/selected_track.h"
 #include "flight/series_file.h"
 #include "helpers/rejected.h"
 #include "mechanical/mechanical_model.h"
@@ -62,7 +62,7 @@ TEST(SampleLogs, GiveTableOneBack) {
     for (const auto phase : flight::all_phases) {
         const auto& is = model.phases[phase];
         const auto& should = published.phases[phase];
-        EXPECT_LE(curve_rms_difference_w(is, should), largest_rms_w[phase]) << to_string(phase);
+        EXPECT_LE(rms_difference_w(is, should), largest_rms_w[phase]) << to_string(phase);
         EXPECT_NEAR(is.fourier.a0_w / should.fourier.a0_w, 1.0, 0.01) << to_string(phase);
         EXPECT_NEAR(is.duration_s / should.duration_s, 1.0, 0.05) << to_string(phase);
         EXPECT_EQ(is.flights, 6U);
@@ -160,7 +160,7 @@ TEST(RealFlights, GoThroughTheWholeBatch) {
         // The other two measured no current, and one of them stands still.
         const bool measured = flight.record.flight.starts_with("20_07_");
         EXPECT_EQ(flight.record.accepted, measured || flight.record.flight.starts_with("17_07_"));
-        EXPECT_EQ(flight.record.accepted && flight.record.lacks_power.empty(), measured) << flight.record.flight;
+        EXPECT_EQ(flight.record.accepted && flight.record.no_power_reason.empty(), measured) << flight.record.flight;
         for (const auto& [name, lift_off_s, touchdown_s, cruise_w] : known) {
             if (flight.record.flight != name) continue;
             ++found;
@@ -182,7 +182,7 @@ TEST(RealFlights, WithoutPowerAreListedAndNotFitted) {
         EXPECT_FALSE(flight.record.phases.empty());
         EXPECT_TRUE(flight.selection.flights.empty());
         ASSERT_EQ(flight.selection.exclusions.size(), 1U);
-        EXPECT_EQ(flight.selection.exclusions[0].reason, flight.record.lacks_power);
+        EXPECT_EQ(flight.selection.exclusions[0].reason, flight.record.no_power_reason);
     }
 }
 
@@ -213,7 +213,7 @@ TEST(RealFlights, ConvergeToAModel) {
         // The weighted average of the flights' measured energy is what the model's curve needs.
         double measured_w = 0.0;
         for (const auto& flight : flights) {
-            if (!flight.record.lacks_power.empty()) continue;
+            if (!flight.record.no_power_reason.empty()) continue;
             for (const auto& recorded : flight.record.phases) {
                 if (recorded.phase != phase) continue;
                 measured_w += weight_of(model, flight.record.flight, phase) *

@@ -29,8 +29,8 @@ std::vector<DatedValue> scattered(std::size_t flights, double per_day, std::mt19
 TEST(Trend, OfAStraightLineIsItsSlope) {
     std::vector<DatedValue> values;
     for (const double day : {3.0, 0.0, 1.5, 7.0, 10.0, 4.0}) values.push_back({day, 5.0 - 0.25 * day});
-    const auto answer = trend_over(values);
-    ASSERT_TRUE(answer.trend) << answer.why_not;
+    const auto answer = estimate_trend(values);
+    ASSERT_TRUE(answer.trend) << answer.no_trend_reason;
     EXPECT_EQ(answer.trend->flights, 6u);
     EXPECT_DOUBLE_EQ(answer.trend->per_day, -0.25);
     EXPECT_DOUBLE_EQ(answer.trend->low_per_day, -0.25);
@@ -44,7 +44,7 @@ TEST(Trend, InPercentIsThatOfItsLevel) {
     const auto of = [&](double factor) {
         auto scaled = values;
         for (auto& value : scaled) value.value *= factor;
-        return relative_trend(*trend_over(scaled).trend);
+        return relative_trend(*estimate_trend(scaled).trend);
     };
     EXPECT_DOUBLE_EQ(of(1.0)->percent_per_day, -100.0 * 0.5 / 9.0);
     EXPECT_DOUBLE_EQ(of(1.0)->low_percent_per_day, -100.0 * 0.5 / 9.0);
@@ -58,7 +58,7 @@ TEST(Trend, InPercentIsThatOfItsLevel) {
 // interval goes from the least of the ten slopes to the greatest.
 TEST(Trend, OfFiveFlightsReachesToTheOutermostSlopes) {
     const std::vector<DatedValue> values{{0, 1}, {1, 3}, {2, 2}, {3, 5}, {4, 9}};
-    const auto answer = trend_over(values);
+    const auto answer = estimate_trend(values);
     ASSERT_TRUE(answer.trend);
     EXPECT_DOUBLE_EQ(answer.trend->low_per_day, -1.0);
     EXPECT_DOUBLE_EQ(answer.trend->high_per_day, 4.0);
@@ -69,9 +69,9 @@ TEST(Trend, OfFiveFlightsReachesToTheOutermostSlopes) {
 TEST(Trend, IsNotMovedByAnOddFlight) {
     std::mt19937 random(7);
     auto values = scattered(20, 0.3, random);
-    const auto sound = trend_over(values).trend.value();
+    const auto sound = estimate_trend(values).trend.value();
     values[18].value = 1e6;
-    const auto odd = trend_over(values).trend.value();
+    const auto odd = estimate_trend(values).trend.value();
     EXPECT_NEAR(odd.per_day, sound.per_day, 0.1);
     EXPECT_TRUE(is_significant(odd));
 }
@@ -83,9 +83,9 @@ TEST(Trend, HoldsTheTrueSlopeAsOftenAsItSays) {
         int held = 0;
         int alarms = 0;
         for (int i = 0; i < rounds; ++i) {
-            const auto rising = trend_over(scattered(flights, 0.3, random)).trend.value();
+            const auto rising = estimate_trend(scattered(flights, 0.3, random)).trend.value();
             if (rising.low_per_day <= 0.3 && 0.3 <= rising.high_per_day) ++held;
-            if (is_significant(trend_over(scattered(flights, 0.0, random)).trend.value())) ++alarms;
+            if (is_significant(estimate_trend(scattered(flights, 0.0, random)).trend.value())) ++alarms;
         }
         const double standard_error = std::sqrt(0.95 * 0.05 * rounds);
         EXPECT_GT(held, 0.95 * rounds - 3.0 * standard_error) << flights;
@@ -101,24 +101,24 @@ TEST(Trend, TakesFlightsAtOneTime) {
         values.push_back({static_cast<double>(day), 2.0 * day});
         values.push_back({static_cast<double>(day), 2.0 * day + 0.5});
     }
-    const auto answer = trend_over(values);
-    ASSERT_TRUE(answer.trend) << answer.why_not;
+    const auto answer = estimate_trend(values);
+    ASSERT_TRUE(answer.trend) << answer.no_trend_reason;
     EXPECT_NEAR(answer.trend->per_day, 2.0, 1e-12);
     EXPECT_TRUE(is_significant(*answer.trend));
 }
 
 TEST(Trend, IsNoneOfTooFewFlightsOrDays) {
-    EXPECT_THAT(trend_over({}).why_not, HasSubstr("0 flights, expected 5"));
+    EXPECT_THAT(estimate_trend({}).no_trend_reason, HasSubstr("0 flights, expected 5"));
     const std::vector<DatedValue> four{{0, 1}, {1, 2}, {2, 3}, {3, 4}};
-    EXPECT_FALSE(trend_over(four).trend);
-    EXPECT_THAT(trend_over(four).why_not, HasSubstr("4 flights"));
+    EXPECT_FALSE(estimate_trend(four).trend);
+    EXPECT_THAT(estimate_trend(four).no_trend_reason, HasSubstr("4 flights"));
     std::vector<DatedValue> values;
     for (int i = 0; i < 10; ++i) values.push_back({100.0 + 0.05 * i, static_cast<double>(i)});
-    EXPECT_THAT(trend_over(values).why_not, HasSubstr("one day"));
+    EXPECT_THAT(estimate_trend(values).no_trend_reason, HasSubstr("one day"));
     values.push_back({101.5, 3.0});
-    EXPECT_THAT(trend_over(values).why_not, HasSubstr("two days"));
+    EXPECT_THAT(estimate_trend(values).no_trend_reason, HasSubstr("two days"));
     values.push_back({102.5, 3.0});
-    EXPECT_TRUE(trend_over(values).trend);
+    EXPECT_TRUE(estimate_trend(values).trend);
 }
 
 }  // namespace

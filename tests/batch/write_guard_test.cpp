@@ -28,7 +28,7 @@ TEST(WriteGate, WaitsForThoseInside) {
     std::atomic<bool> left = false;
     std::atomic<bool> inside = false;
     std::jthread writer([&] {
-        const WriteGate::Pass pass(gate);
+        const WriteGate::WriterGuard pass(gate);
         inside = true;
         std::this_thread::sleep_for(50ms);
         left = true;
@@ -40,7 +40,7 @@ TEST(WriteGate, WaitsForThoseInside) {
 
 TEST(WriteGate, DoesNotWaitForever) {
     WriteGate gate;
-    const WriteGate::Pass pass(gate);
+    const WriteGate::WriterGuard pass(gate);
     EXPECT_FALSE(gate.close(10ms));
 }
 
@@ -83,7 +83,7 @@ TEST(Interruption, EndsAProgramThatComputes) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         const int status = end_by({signal}, [](const auto& ready) {
             WriteGate gate;
-            const Interruption interruption(gate, [](int) {});
+            const TerminationHandler interruption(gate, [](int) {});
             const std::jthread other([] { compute([] {}); });
             compute(ready);
         });
@@ -96,16 +96,16 @@ TEST(Interruption, LetsAFileBeWrittenFirstAndNoOther) {
     const int status = end_by({SIGINT}, [](const auto& ready) {
         WriteGate gate;
         std::atomic<bool> whole = false;
-        const Interruption interruption(gate, [&](int) {
+        const TerminationHandler interruption(gate, [&](int) {
             if (!whole) ::_exit(98);
         });
         {
-            const WriteGate::Pass pass(gate);
+            const WriteGate::WriterGuard pass(gate);
             ready();
             std::this_thread::sleep_for(50ms);  // much less than what a writer is given
             whole = true;
         }
-        const WriteGate::Pass pass(gate);
+        const WriteGate::WriterGuard pass(gate);
         ::_exit(97);
     });
     ASSERT_TRUE(WIFEXITED(status));
@@ -115,8 +115,8 @@ TEST(Interruption, LetsAFileBeWrittenFirstAndNoOther) {
 TEST(Interruption, EndsThoughAFileTakesForEver) {
     const int status = end_by({SIGINT}, [](const auto& ready) {
         WriteGate gate;
-        const Interruption interruption(gate, [](int) {});
-        const WriteGate::Pass pass(gate);
+        const TerminationHandler interruption(gate, [](int) {});
+        const WriteGate::WriterGuard pass(gate);
         compute(ready);
     });
     ASSERT_TRUE(WIFEXITED(status));
@@ -126,7 +126,7 @@ TEST(Interruption, EndsThoughAFileTakesForEver) {
 TEST(Interruption, EndsAtOnceAtTheSecondSignal) {
     const int status = end_by({SIGINT, SIGINT}, [](const auto& ready) {
         WriteGate gate;
-        const Interruption interruption(gate, [&](int) {
+        const TerminationHandler interruption(gate, [&](int) {
             ready();
             std::this_thread::sleep_for(50s);
         });
@@ -141,7 +141,7 @@ TEST(Interruption, LeavesIgnoredSignalsIgnored) {
         std::signal(SIGHUP, SIG_IGN);
         std::signal(SIGINT, SIG_IGN);
         WriteGate gate;
-        const Interruption interruption(gate, [](int) {});
+        const TerminationHandler interruption(gate, [](int) {});
         for (int signals = 0; signals < 2; ++signals) ready();
         compute(ready);
     });
@@ -153,7 +153,7 @@ TEST(Interruption, IsOverWithItsScope) {
     const int status = end_by({SIGTERM}, [](const auto& ready) {
         WriteGate gate;
         {
-            const Interruption interruption(gate, [](int) { ::_exit(98); });
+            const TerminationHandler interruption(gate, [](int) { ::_exit(98); });
         }
         compute(ready);
     });

@@ -46,7 +46,7 @@ TEST(Battery, CannotDeliverBeyondItsLimit) {
     try {
         internal_current_a(battery, 250.5);
         FAIL() << "a power beyond the limit was delivered";
-    } catch (const NoAnswerError& error) {
+    } catch (const NoResultError& error) {
         EXPECT_STREQ(error.what(), "the battery cannot deliver 250.5 W: its limit U^2 / (4 R) is 250 W");
     }
 }

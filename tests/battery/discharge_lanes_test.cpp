@@ -1,6 +1,6 @@
 #include "battery/discharge_lanes.h"
 
-#include "battery/quick_discharge.h"
+#include "battery/fast_discharge.h"
 
 #include <cmath>
 
@@ -26,14 +26,14 @@ struct Discharged {
 
 /// From `soc_percent` on; what is looked at closer ends.
 Discharged discharged(double soc_percent, double length_s, double cutoff_v) {
-    auto batteries = lanes_like(pack(0));
+    auto batteries = make_lanes(pack(0));
     for (int lane = 0; lane < lane_count; ++lane) set_lane(batteries, lane, pack(lane));
     LoadLanes load{Lanes::Constant(length_s), static_cast<std::size_t>(length_s / 20.0), {}};
     load.power_w = [&](std::size_t half_step, Lanes& power) {
         power.setConstant(power_w(static_cast<double>(half_step) * 10.0));
     };
     Discharged result;
-    result.state.is_on.set();
+    result.state.is_active.set();
     result.state.soc_percent.setConstant(soc_percent);
     const auto look_closer = [&](int, std::size_t, BatteryState&) {
         ++result.looked_at;
@@ -47,7 +47,7 @@ TEST(DischargeLanes, AreQuickDischargesSideBySide) {
     const auto [state, looked_at] = discharged(95.0, 1200.0, 9.0);
     EXPECT_EQ(looked_at, 0);
     for (int lane = 0; lane < lane_count; ++lane) {
-        const auto alone = quick_discharge(pack(lane), {power_w, 0.0, 1200.0}, {95.0}, {20.0, 9.0});
+        const auto alone = fast_discharge(pack(lane), {power_w, 0.0, 1200.0}, {95.0}, {20.0, 9.0});
         EXPECT_NEAR(state.soc_percent(lane), alone.soc_percent, 1e-9) << lane;
         EXPECT_NEAR(state.rc_voltage_v(lane), alone.rc_voltage_v, 1e-9) << lane;
     }
@@ -58,9 +58,9 @@ TEST(DischargeLanes, LookCloserAtWhatMayEnd) {
         const auto [state, looked_at] = discharged(60.0, 1600.0, cutoff_v);
         int ended = 0;
         for (int lane = 0; lane < lane_count; ++lane) {
-            const auto alone = quick_discharge(pack(lane), {power_w, 0.0, 1600.0}, {60.0}, {20.0, cutoff_v});
+            const auto alone = fast_discharge(pack(lane), {power_w, 0.0, 1600.0}, {60.0}, {20.0, cutoff_v});
             const bool has_ended = alone.ended_at_s() || alone.undeliverable;
-            EXPECT_NE(state.is_on[static_cast<std::size_t>(lane)], has_ended) << lane;
+            EXPECT_NE(state.is_active[static_cast<std::size_t>(lane)], has_ended) << lane;
             ended += has_ended ? 1 : 0;
         }
         EXPECT_EQ(looked_at, ended) << "once each";
@@ -69,7 +69,7 @@ TEST(DischargeLanes, LookCloserAtWhatMayEnd) {
 }
 
 TEST(DischargeLanes, NeedTheveninCircuits) {
-    EXPECT_THROW(lanes_like(Battery{"paper", 11.1, 0.01, 3.0}), std::invalid_argument);
+    EXPECT_THROW(make_lanes(Battery{"paper", 11.1, 0.01, 3.0}), std::invalid_argument);
 }
 
 }  // namespace

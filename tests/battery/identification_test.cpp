@@ -106,18 +106,18 @@ TEST(Identification, AlignsFlightsByTheirVoltage) {
                               test::discharge_record(synthetic_discharge(known_pack(), late, 2))};
     const auto found = identify_battery(records, {2.4, {}, ""});
     EXPECT_EQ(found.flights[0].initial_charge_interval_ah.low, 0.0);
-    EXPECT_NEAR(found.flights[1].initial_charge_ah - found.flights[0].initial_charge_ah, 0.4, 0.02);
+    EXPECT_NEAR(found.flights[1].initial_depletion_ah - found.flights[0].initial_depletion_ah, 0.4, 0.02);
     EXPECT_LT(found.flights[1].initial_charge_interval_ah.low, 0.4);
     EXPECT_GT(found.flights[1].initial_charge_interval_ah.high, 0.4);
     EXPECT_NEAR(found.fit.knots_ah.back(), 0.4 + found.flights[1].drawn_ah, 0.03);
     EXPECT_LT(found.fit.rms_v, 0.015);
     std::vector<std::size_t> done;
     const auto checks =
-        leave_each_out(records, {2.4, {}, ""}, [&](std::size_t so_many, std::size_t) { done.push_back(so_many); });
+        leave_one_out(records, {2.4, {}, ""}, [&](std::size_t so_many, std::size_t) { done.push_back(so_many); });
     EXPECT_EQ(done, (std::vector<std::size_t>{1, 2}));
     ASSERT_EQ(checks.size(), 2U);
     EXPECT_EQ(checks[0].flight, "synthetic_1");
-    EXPECT_GT(checks[1].beyond_percent, 20.0);  // its end was never flown before
+    EXPECT_GT(checks[1].extrapolated_percent, 20.0);  // its end was never flown before
 }
 
 /// Packs that begin at 40 to 100 %: capacity and initial charge lie within their intervals.
@@ -214,29 +214,29 @@ SlowPack flown_twice() {
 TEST(Identification, ChainsFlightsOfOnePack) {
     const auto slow = flown_twice();
     const auto found = identify_battery(slow.records, {2.4, 3, ""});
-    EXPECT_EQ(found.flights[0].pack_of, "");
-    EXPECT_EQ(found.flights[1].pack_of, "synthetic_8");
-    EXPECT_NEAR(found.flights[1].initial_charge_ah - found.flights[0].initial_charge_ah, slow.left_ah, 0.02);
-    const auto checks = leave_each_out(slow.records, {2.4, 3, ""});
+    EXPECT_EQ(found.flights[0].same_pack_as, "");
+    EXPECT_EQ(found.flights[1].same_pack_as, "synthetic_8");
+    EXPECT_NEAR(found.flights[1].initial_depletion_ah - found.flights[0].initial_depletion_ah, slow.left_ah, 0.02);
+    const auto checks = leave_one_out(slow.records, {2.4, 3, ""});
     EXPECT_EQ(checks[0].pack_of, "");
     EXPECT_EQ(checks[1].pack_of, "synthetic_8");
     IdentificationOptions own{2.4, 3, ""};
-    own.chain = false;
-    EXPECT_EQ(identify_battery(slow.records, own).flights[1].pack_of, "");
-    EXPECT_EQ(leave_each_out(slow.records, own)[1].pack_of, "");
+    own.link_packs = false;
+    EXPECT_EQ(identify_battery(slow.records, own).flights[1].same_pack_as, "");
+    EXPECT_EQ(leave_one_out(slow.records, own)[1].pack_of, "");
 }
 
 TEST(Identification, TellsHowMuchOfAnErrorTheInitialChargeMakes) {
     // The second one's rest has not relaxed: by it alone, less is missing than was.
     const auto slow = flown_twice();
     IdentificationOptions own{2.4, 3, ""};
-    own.chain = false;
-    const auto check = leave_each_out(slow.records, own)[1];
+    own.link_packs = false;
+    const auto check = leave_one_out(slow.records, own)[1];
     EXPECT_GT(std::abs(check.initial_charge_ah - slow.left_ah), 0.02);
-    EXPECT_LT(check.placed_load_rms_v, check.load_rms_v);
-    const auto chained = leave_each_out(slow.records, {2.4, 3, ""})[1];
+    EXPECT_LT(check.best_offset_load_rms_v, check.load_rms_v);
+    const auto chained = leave_one_out(slow.records, {2.4, 3, ""})[1];
     EXPECT_NEAR(chained.initial_charge_ah, slow.left_ah, 0.02);
-    EXPECT_LT(chained.placed_load_rms_v, chained.load_rms_v + 1e-12);
+    EXPECT_LT(chained.best_offset_load_rms_v, chained.load_rms_v + 1e-12);
     // Half of the samples or more are under load, and the others are predicted as well.
     EXPECT_GT(chained.voltage_rms_v, 0.6 * chained.load_rms_v);
     EXPECT_LT(chained.voltage_rms_v, 1.6 * chained.load_rms_v);
@@ -249,7 +249,7 @@ TEST(Identification, ChainsNoFlightOfAChargedPack) {
         records.push_back(test::discharge_record(synthetic_discharge(known_pack(), settings, seed)));
     records[0].start_clock_s = 1.6e9;
     records[1].start_clock_s = 1.6e9 + 3000.0;
-    for (const auto& flight : identify_battery(records, {2.4, 3, ""}).flights) EXPECT_EQ(flight.pack_of, "");
+    for (const auto& flight : identify_battery(records, {2.4, 3, ""}).flights) EXPECT_EQ(flight.same_pack_as, "");
 }
 
 TEST(Identification, ForetellsAFlightWithinItsNoise) {
@@ -258,11 +258,11 @@ TEST(Identification, ForetellsAFlightWithinItsNoise) {
         records.push_back(test::discharge_record(synthetic_discharge(known_pack(), {}, seed)));
     }
     const double noise_v = std::hypot(SyntheticDischarge{}.voltage_noise_v, 0.006 / std::sqrt(12.0));
-    for (const auto& check : leave_each_out(records, {2.4, {}, ""})) {
+    for (const auto& check : leave_one_out(records, {2.4, {}, ""})) {
         EXPECT_LT(check.voltage_rms_v, 1.3 * noise_v) << check.flight;
         EXPECT_GT(check.voltage_rms_v, 0.8 * noise_v) << check.flight;
     }
-    EXPECT_TRUE(leave_each_out(std::span(records).first(1), {2.4, {}, ""}).empty());
+    EXPECT_TRUE(leave_one_out(std::span(records).first(1), {2.4, {}, ""}).empty());
 }
 
 TEST(Identification, SaysWhereNoRcPairIsSeen) {
@@ -296,9 +296,9 @@ TEST(Identification, GivesBackWhatSynthesizedLogsWereMadeOf) {
     const double slope = (found.fit.open_circuit_v.front() - found.fit.open_circuit_v.back()) /
                          (found.fit.knots_ah.back() - found.fit.knots_ah.front());
     EXPECT_NEAR(slope, 1.4 / 3.2, 0.01 * 1.4 / 3.2);
-    for (const auto& check : leave_each_out(records, {3.2, {}, ""})) EXPECT_LT(check.voltage_rms_v, 0.001);
+    for (const auto& check : leave_one_out(records, {3.2, {}, ""})) EXPECT_LT(check.voltage_rms_v, 0.001);
     std::vector<std::size_t> done;
-    const auto in_groups = leave_each_out(
+    const auto in_groups = leave_one_out(
         records, {3.2, {}, ""}, [&](std::size_t so_many, std::size_t) { done.push_back(so_many); }, 3);
     EXPECT_EQ(done, (std::vector<std::size_t>{1, 2, 3}));
     ASSERT_EQ(in_groups.size(), records.size());
@@ -316,9 +316,9 @@ TEST(Identification, ForetellsRealFlights) {
             flight::read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"))));
         EXPECT_GT(records.back().resting_voltage_v, 12.3);  // a pack of 11.1 V that starts full
     }
-    for (const auto& check : leave_each_out(records, {})) {
+    for (const auto& check : leave_one_out(records, {})) {
         fmt::print("{} left out: {:.1f} mV RMS, {:.1f} under load, {:.0f} % of it beyond the others\n", check.flight,
-                   1e3 * check.voltage_rms_v, 1e3 * check.load_rms_v, check.beyond_percent);
+                   1e3 * check.voltage_rms_v, 1e3 * check.load_rms_v, check.extrapolated_percent);
         EXPECT_LT(check.voltage_rms_v, 0.090) << check.flight;
     }
     const auto found = identify_battery(records, {});

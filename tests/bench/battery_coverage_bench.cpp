@@ -1,6 +1,6 @@
-// How often the intervals of capacities and initial charges cover the truth, over synthetic packs. Exit code 1 where a row
-// covers less than the limits below, beyond three standard errors.
-// usage: battery_coverage_bench [PACKS [SEED]]: of each row, 100 if not said, from seed 1001 on
+// How often the intervals of capacities and initial charges cover the truth, over synthetic packs. Exit code 1 where a
+// row covers less than the limits below, beyond three standard errors. usage: battery_coverage_bench [PACKS [SEED]]: of
+// each row, 100 if not said, from seed 1001 on
 
 #include "base/number.h"
 #include "base/statistics.h"
@@ -19,15 +19,15 @@ using namespace flightwatt;
 
 double median_or_zero(const std::vector<double>& values) { return values.empty() ? 0.0 : median(values); }
 
-/// 70 % of capacities is what is known of packs with a straight curve, many of whose flights begin full; other rows have
-/// 90 % and more (docs/validation.md).
+/// 70 % of capacities is what is known of packs with a straight curve, many of whose flights begin full; other rows
+/// have 90 % and more (docs/validation.md).
 constexpr double least_share_of_capacities = 0.70;
 constexpr double least_share_of_initial_charges = 0.90;
 
 bool print_row(const test::BatteryCase& made, std::uint64_t seed, std::size_t packs) {
     const auto coverage = test::battery_coverage(made, seed, packs);
     const auto of = [](std::size_t part, std::size_t whole) {
-        return units::percent_of(static_cast<double>(part), static_cast<double>(std::max<std::size_t>(1, whole)));
+        return units::percentage(static_cast<double>(part), static_cast<double>(std::max<std::size_t>(1, whole)));
     };
     const auto capacities = coverage.capacity_width_percent.size();
     const auto capacity = capacities == 0 ? "-" : fmt::format("{:.0f}", of(coverage.capacities_held, capacities));

@@ -1,6 +1,6 @@
-// How often the 95 % interval of a prediction before flight and of one in flight covers the energy of a generated cruise,
-// and how wide it is. Exit code 1 where a row covers less than 92 % or more than 98 %, beyond three standard errors.
-// usage: in_flight_coverage_bench [FLIGHTS]: excluded in turn, or not seen, of each row, about (2000)
+// How often the 95 % interval of a prediction before flight and of one in flight covers the energy of a generated
+// cruise, and how wide it is. Exit code 1 where a row covers less than 92 % or more than 98 %, beyond three standard
+// errors. usage: in_flight_coverage_bench [FLIGHTS]: excluded in turn, or not seen, of each row, about (2000)
 
 #include "base/number.h"
 #include "base/units.h"
@@ -22,7 +22,7 @@ using namespace flightwatt;
 
 constexpr unsigned first_seed = 1001;  // the tests use those from 1 on
 
-constexpr double least_share = 0.92;
+constexpr double min_share = 0.92;
 constexpr double largest_share = 0.98;
 
 /// Sums over the flights of a row.
@@ -50,11 +50,11 @@ void add(Row& row, double measured_wh, const mechanical::EnergyEstimate& before,
 bool print(std::size_t flights_of_model, double part, const Row& row) {
     const auto count = static_cast<double>(row.flights);
     bool within = true;
-    fmt::print("{:>14}  {:>6.0f}  {:>8}", flights_of_model, units::percent_of(part, 1.0), row.flights);
+    fmt::print("{:>14}  {:>6.0f}  {:>8}", flights_of_model, units::percentage(part, 1.0), row.flights);
     for (const double share : {row.covered_before / count, row.covered / count}) {
-        fmt::print("  {:>6.1f} +- {:.1f}", units::percent_of(share, 1.0),
-                   units::percent_of(test::binomial_error(share, row.flights), 1.0));
-        within = within && test::is_at_least(share, least_share, row.flights) &&
+        fmt::print("  {:>6.1f} +- {:.1f}", units::percentage(share, 1.0),
+                   units::percentage(test::binomial_error(share, row.flights), 1.0));
+        within = within && test::is_at_least(share, min_share, row.flights) &&
                  test::is_at_least(1.0 - share, 1.0 - largest_share, row.flights);
     }
     fmt::print("  {:>13.3f}  {:>15.3f}  {:>15.3f}{}\n", row.half_width_wh / count, row.before_wh / count,
@@ -98,13 +98,13 @@ bool print_by_path(std::size_t flights, double part, std::size_t unseen) {
         mechanical::FlightProgress flown;
         flown.motion.bins.assign(flight.bins.begin(), flight.bins.begin() + now);
         flown.until_s = flight.bins[static_cast<std::size_t>(now)].start_s;
-        const std::vector<mechanical::MotionBin> ahead(flight.bins.begin() + now, flight.bins.end());
+        const std::vector<mechanical::FlightBin> ahead(flight.bins.begin() + now, flight.bins.end());
         double measured_wh = 0.0;
         for (const auto& bin : ahead) measured_wh += units::wh_from_joule(bin.power_w * bin.duration_s);
-        const double remaining_s = mechanical::usual_bin_s * static_cast<double>(ahead.size());
+        const double remaining_s = mechanical::default_bin_s * static_cast<double>(ahead.size());
         const auto values = mean_values(ahead);
-        const auto before = predict_by_motion(model, values, remaining_s);
-        add(row, measured_wh, before, predict_rest_by_motion(model, flown, values, remaining_s).energy);
+        const auto before = predict_physical(model, values, remaining_s);
+        add(row, measured_wh, before, predict_remaining_physical(model, flown, values, remaining_s).energy);
     }
     return print(flights, part, row);
 }

@@ -22,12 +22,12 @@ using namespace flightwatt;
 
 using test::binomial_error;
 
-constexpr double least_share = 0.90;
+constexpr double min_share = 0.90;
 
-/// Whether both shares are at least that. The points of one fit's curve are not independent: their part has the error of
-/// so many fits at most.
+/// Whether both shares are at least that. The points of one fit's curve are not independent: their part has the error
+/// of so many fits at most.
 bool print_row(flight::Phase phase, const test::CoverageCase& made, const test::Coverage& coverage) {
-    const auto percent = [](double part) { return units::percent_of(part, 1.0); };
+    const auto percent = [](double part) { return units::percentage(part, 1.0); };
     fmt::print(
         "| {} | {} | {:.2f} | {:.1f} | {:.1f} ± {:.1f} | {:.1f} ± {:.1f} "
         "| {:.2f} | {:.2f} | {:.2f} | {:.2f} | {} | {} |\n",
@@ -36,8 +36,8 @@ bool print_row(flight::Phase phase, const test::CoverageCase& made, const test::
         percent(binomial_error(coverage.a0_covered, coverage.fits)), coverage.half_width_w, coverage.a0_half_width_w,
         coverage.curve_error_w, coverage.worst_curve_error_w, coverage.mean_curves, coverage.without_answer);
     std::fflush(stdout);
-    return test::is_at_least(coverage.covered, least_share, coverage.fits) &&
-           test::is_at_least(coverage.a0_covered, least_share, coverage.fits);
+    return test::is_at_least(coverage.covered, min_share, coverage.fits) &&
+           test::is_at_least(coverage.a0_covered, min_share, coverage.fits);
 }
 
 /// Seeds are fixed; those of the tests are others.

@@ -1,8 +1,8 @@
 // A day of made-up telemetry through the live watch: how long a look takes, how much memory it needs.
 //   live_day_bench MISSION.toml [HOURS [LOOK_EVERY_S [--decide]]]
 // Ten messages a second: 40 minutes on the ground, 30 in the air, again and again; lost and doubled messages, gaps of
-// 22 s, another aircraft; where the mission has a path, positions along it, 20 m to its side. Times are of the processor; every 30 s a look judges the whole record, and with --decide one a
-// slot plans.
+// 22 s, another aircraft; where the mission has a path, positions along it, 20 m to its side. Times are of the
+// processor; every 30 s a look judges the whole record, and with --decide one a slot plans.
 
 #include "live/live_flight.h"
 #include "live/prediction_basis.h"
@@ -103,7 +103,7 @@ class MadeUpDay {
   private:
     std::string position_message(double in_air_s) {
         const double on_path_s = std::clamp(in_air_s - climb_s, 0.0, path_->flown().duration_s);
-        const auto at = live::displacement_at(path_->plan().path, place_at(path_->flown(), on_path_s));
+        const auto at = live::displacement_at(path_->plan().path, position_at(path_->flown(), on_path_s));
         const double side_m = on_path_s > 0.0 ? 20.0 : 0.0;
         return fmt::format("7 NAVIGATION 0 0 {:.1f} {:.1f} 0 0 0 0", at.east_m + side_m + 4.0 * noise_(random_),
                            at.north_m + side_m + 4.0 * noise_(random_));
@@ -134,11 +134,11 @@ int main(int argc, char** argv) {
     const double hours = argc > 2 ? std::atof(argv[2]) : 24.0;
     const long every = argc > 3 ? std::max(1L, std::atol(argv[3])) : 1;
     const bool decides = argc > 4;
-    mission::MissionReading reading;
-    reading.may_lack_schedule = true;
+    mission::MissionReadOptions reading;
+    reading.allow_unplanned = true;
     const auto mission = mission::read_mission(argv[1], reading);
     const auto& setup = setup_of(mission);
-    const auto basis = live::mission_basis(setup, argv[1]);
+    const auto basis = live::input_from_mission(setup, argv[1]);
     live::LiveFlight flight({}, basis, std::make_unique<live::LiveSchedule>(mission, decides));
     MadeUpDay day(basis.path.get());
     Times predicting;
@@ -150,10 +150,10 @@ int main(int argc, char** argv) {
         for (const auto& text : day.at(tick)) flight.receive({0.1 * static_cast<double>(tick), text}, 0.0);
         if (tick % (10 * every) == 0) {
             const double start_ms = processor_ms();
-            const auto state = flight.look();
+            const auto state = flight.update();
             const double took_ms = processor_ms() - start_ms;
             (state.prediction ? predicting : others).ms.push_back(took_ms);
-            sighted += state.prediction && state.prediction->is_sighted ? 1 : 0;
+            sighted += state.prediction && state.prediction->is_from_position ? 1 : 0;
             changes = state.decision ? state.decision->changes : changes;
             most_rows = std::max(most_rows, state.rows);
         }

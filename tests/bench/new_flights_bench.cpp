@@ -1,6 +1,6 @@
 // How many flights to come keep what is promised from few flights: aircraft that nobody knows, models of their flights.
-// Exit code 1 where a row keeps less than was promised, beyond three standard errors and half a point.
-// usage: new_flights_bench [MODELS [SEED]]: 2000 models a row (a tenth where that takes long) and seed 500001 if not said
+// Exit code 1 where a row keeps less than was promised, beyond three standard errors and half a point. usage:
+// new_flights_bench [MODELS [SEED]]: 2000 models a row (a tenth where that takes long) and seed 500001 if not said
 
 #include "base/number.h"
 #include "helpers/new_flights.h"

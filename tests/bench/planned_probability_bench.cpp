@@ -37,7 +37,7 @@ bool run(std::size_t missions, std::size_t flights, unsigned first_seed) {
         const auto generated = test::generated_mission(seed);
         const double probability = generated.probability;
         const auto plan = plan_mission(generated.problem, probability);
-        const double of_plan = plan.plan.feasible ? deviations(plan.flown, probability, flights) : std::nan("");
+        const double of_plan = plan.plan.feasible ? deviations(plan.mission, probability, flights) : std::nan("");
         const auto least = with_minimum_energy_schedule(generated.problem);
         const auto payload = largest_payload(least, probability);
         const double of_payload = deviations(with_payload(least, payload.value), probability, flights);

@@ -37,14 +37,14 @@ Compared compare(const mission::MissionPlan& plan, const std::optional<double>& 
     if (!compared.feasible || !best) return compared;
     const double utility = *plan.summary.utility;
     compared.shortfall = *best > 0.0 ? 1.0 - utility / *best : 0.0;
-    compared.gap = plan.plan.bound > 0.0 ? 1.0 - utility / plan.plan.bound : 0.0;
-    compared.bound_holds = plan.plan.bound_is_proven && plan.plan.bound >= *best * (1.0 - 1e-9);
+    compared.gap = plan.plan.utility_bound > 0.0 ? 1.0 - utility / plan.plan.utility_bound : 0.0;
+    compared.bound_holds = plan.plan.bound_is_proven && plan.plan.utility_bound >= *best * (1.0 - 1e-9);
     return compared;
 }
 
 std::optional<double> best_of(const mission::PlanningProblem& problem, const mission::MissionPlan& plan) {
-    return test::EverySchedule(problem, make_planner(problem))
-        .most_utility(plan.plan.feasible ? plan.summary.utility : std::nullopt);
+    return test::EverySchedule(problem, make_planning_tables(problem))
+        .max_utility(plan.plan.feasible ? plan.summary.utility : std::nullopt);
 }
 
 /// What came of many missions.
@@ -87,7 +87,7 @@ bool compare_small(std::size_t missions, unsigned first_seed) {
         add(compared, took_s, tally);
         if (compared.agrees && compared.bound_holds && compared.shortfall <= wanted && compared.gap <= wanted) continue;
         fmt::print("seed {} ({}): planned {:.6f}, bound {:.6f}, best {:.6f}\n", seed, kind,
-                   plan.plan.feasible ? *plan.summary.utility : 0.0, plan.plan.bound, best.value_or(0.0));
+                   plan.plan.feasible ? *plan.summary.utility : 0.0, plan.plan.utility_bound, best.value_or(0.0));
         std::fflush(stdout);
     }
     fmt::print("{} have a schedule that lands; plans say otherwise in {}\n", tally.feasible, tally.wrong);
@@ -114,10 +114,10 @@ void time_long(unsigned first_seed) {
                 const auto begin = std::clock();
                 const auto plan = plan_mission(made.problem);
                 const double took_s = seconds_since(begin);
-                const double gap = 1.0 - *plan.summary.utility / plan.plan.bound;
+                const double gap = 1.0 - *plan.summary.utility / plan.plan.utility_bound;
                 slowest_s = std::max(slowest_s, took_s);
                 worst_gap = std::max(worst_gap, gap);
-                slots = std::max(slots, slots_of(made.problem).size());
+                slots = std::max(slots, make_slots(made.problem).size());
                 kind = made.kind;
             }
             fmt::print("{:<40} {:>6} {:>10.2f} {:>12.1e}\n", kind, slots, slowest_s, worst_gap);

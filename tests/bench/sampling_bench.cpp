@@ -22,25 +22,25 @@ using namespace flightwatt::mission;
 struct Sampled {
     explicit Sampled(const char* path)
         : mission(std::get<Mission>(read_mission(std::filesystem::path(FLIGHTWATT_SOURCE_DIR) / path))),
-          spreads(find_spreads(mission)),
-          setup(without_evidence(mission)),
+          spreads(collect_uncertainty(mission)),
+          setup(without_model_metadata(mission)),
           lanes(setup, spreads, mission.schedule) {}
 
     Mission mission;
-    FlightSpreads spreads;
+    FlightUncertainty spreads;
     MissionSetup setup;
-    FlightLanes lanes;
+    SimdFlightSimulator lanes;
 };
 
 void side_by_side(benchmark::State& state, const char* path) {
     constexpr std::size_t at_once = 256;
     const Sampled sampled(path);
     std::vector<std::vector<double>> normals(at_once);
-    std::vector<Landing> landings(at_once);
+    std::vector<FlightOutcome> landings(at_once);
     std::size_t flights = 0;
     for (auto _ : state) {
         for (auto& numbers : normals) numbers = draw_normals(count_normals(sampled.setup), 1, flights++);
-        sampled.lanes.fly(normals, landings);
+        sampled.lanes.simulate(normals, landings);
         benchmark::DoNotOptimize(landings.data());
     }
     state.SetItemsProcessed(static_cast<std::int64_t>(flights));
@@ -51,7 +51,7 @@ void one_at_a_time(benchmark::State& state, const char* path) {
     std::size_t flights = 0;
     for (auto _ : state)
         benchmark::DoNotOptimize(
-            sampled.lanes.fly_alone(draw_normals(count_normals(sampled.setup), 1, flights++)).left_percent);
+            sampled.lanes.simulate_scalar(draw_normals(count_normals(sampled.setup), 1, flights++)).remaining_percent);
     state.SetItemsProcessed(static_cast<std::int64_t>(flights));
 }
 
@@ -60,13 +60,13 @@ void off_runge_kutta(benchmark::State& state, const char* path) {
     const Sampled sampled(path);
     std::vector<std::vector<double>> normals;
     for (std::size_t i = 0; i < 100; ++i) normals.push_back(draw_normals(count_normals(sampled.setup), 1, i));
-    std::vector<Landing> landings(normals.size());
-    for (auto _ : state) sampled.lanes.fly(normals, landings);
+    std::vector<FlightOutcome> landings(normals.size());
+    for (auto _ : state) sampled.lanes.simulate(normals, landings);
     double worst_percent = 0.0;
     std::size_t compared = 0;
     for (std::size_t i = 0; i < normals.size(); ++i) {
         if (landings[i].battery_failure) continue;
-        const auto flight = flight_of(sampled.setup, sampled.spreads, normals[i]);
+        const auto flight = apply_draw(sampled.setup, sampled.spreads, normals[i]);
         const auto schedule =
             rescale_to_flown_durations(sampled.mission.schedule, sampled.setup.duration_s, flight.duration_s);
         const auto reference = simulate(flight, schedule, {60.0, 0.25}).summary.final_soc_percent;

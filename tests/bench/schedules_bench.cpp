@@ -30,13 +30,13 @@ mission::PlanningProblem paper_mission() {
 /// The paper's mission with everything that a schedule needs looked up beforehand.
 struct Problem {
     mission::PlanningProblem mission = paper_mission();
-    mission::Planner planner = make_planner(mission);
-    std::vector<mission::MissionSlot> slots = slots_of(mission);
+    mission::PlanningTables planner = make_planning_tables(mission);
+    std::vector<mission::MissionSlot> slots = make_slots(mission);
     std::size_t fixed_choice = planner.utility_per_s.size() - 1;
 
     /// A free slot runs any of the choices, or the one of least power: how often, differs between schedules, so that
     /// some last the mission. Segments that run the same are not joined.
-    void draw(std::mt19937& random, std::vector<mission::TabledSegment>& schedule) const {
+    void draw(std::mt19937& random, std::vector<mission::IndexedSegment>& schedule) const {
         std::uniform_real_distribution<double> uniform(0.0, 1.0);
         const double part = uniform(random);
         schedule.clear();
@@ -47,9 +47,9 @@ struct Problem {
     }
 };
 
-std::vector<std::vector<mission::TabledSegment>> draw_schedules(const Problem& problem, std::size_t count) {
+std::vector<std::vector<mission::IndexedSegment>> draw_schedules(const Problem& problem, std::size_t count) {
     std::mt19937 random(1);
-    std::vector<std::vector<mission::TabledSegment>> schedules(count);
+    std::vector<std::vector<mission::IndexedSegment>> schedules(count);
     for (auto& schedule : schedules) problem.draw(random, schedule);
     return schedules;
 }
@@ -65,7 +65,7 @@ class ScheduleRate {
         }
     }
 
-    void take(const std::vector<mission::TabledSegment>& schedule) {
+    void take(const std::vector<mission::IndexedSegment>& schedule) {
         schedule_ = &schedule;
         now_ = 0;
     }
@@ -77,13 +77,13 @@ class ScheduleRate {
         const double load_w = power_w(curves_[segment.phase], time_s - timeline_.start_s[segment.phase]) +
                               choice_w_[segment.configuration];
         percent_per_s =
-            -units::percent_of(internal_current_a(battery_, load_w), units::coulomb_from_ah(battery_.capacity_ah));
+            -units::percentage(internal_current_a(battery_, load_w), units::coulomb_from_ah(battery_.capacity_ah));
     }
 
     double end_s() const { return timeline_.duration_s; }
 
   private:
-    double start_s(const mission::TabledSegment& segment) const {
+    double start_s(const mission::IndexedSegment& segment) const {
         return timeline_.start_s[segment.phase] + segment.start_s;
     }
 
@@ -91,11 +91,11 @@ class ScheduleRate {
     flight::PerPhase<mechanical::FourierModel> curves_;
     mission::MissionTimeline timeline_;
     std::vector<double> choice_w_;
-    const std::vector<mission::TabledSegment>* schedule_ = nullptr;
+    const std::vector<mission::IndexedSegment>* schedule_ = nullptr;
     std::size_t now_ = 0;
 };
 
-double soc_by_odeint(ScheduleRate& rate, const std::vector<mission::TabledSegment>& schedule, double initial_percent) {
+double soc_by_odeint(ScheduleRate& rate, const std::vector<mission::IndexedSegment>& schedule, double initial_percent) {
     namespace odeint = boost::numeric::odeint;
     odeint::runge_kutta4<double, double, double, double, odeint::vector_space_algebra> stepper;
     rate.take(schedule);
@@ -106,7 +106,7 @@ double soc_by_odeint(ScheduleRate& rate, const std::vector<mission::TabledSegmen
 
 /// The greatest difference to the simulation (Runge-Kutta from jump to jump, 0.1 s), over some of the
 /// schedules.
-double worst_difference(const Problem& problem, const std::vector<std::vector<mission::TabledSegment>>& schedules,
+double worst_difference(const Problem& problem, const std::vector<std::vector<mission::IndexedSegment>>& schedules,
                         const std::vector<double>& soc) {
     double worst = 0.0;
     std::size_t lasting = 0;
@@ -129,7 +129,7 @@ void final_soc_by_tables(benchmark::State& state) {
     std::vector<double> soc(schedules.size());
     for (auto _ : state) {
         for (std::size_t i = 0; i < schedules.size(); ++i) {
-            soc[i] = *soc_after(problem.planner.depletions, schedules[i]);
+            soc[i] = *soc_after_schedule(problem.planner.depletions, schedules[i]);
         }
         benchmark::DoNotOptimize(soc.data());
     }
@@ -144,7 +144,7 @@ struct SlotDepletions {
     std::vector<double> percent;  ///< slots x choices
 };
 
-SlotDepletions make_slot_depletions(const mission::DepletionTable& table, std::vector<mission::TabledSegment> slots) {
+SlotDepletions make_slot_depletions(const mission::DepletionTable& table, std::vector<mission::IndexedSegment> slots) {
     SlotDepletions depletions{slots.size(), table.configurations.size(), {}};
     for (auto& slot : slots) {
         for (slot.configuration = 0; slot.configuration < depletions.choices; ++slot.configuration) {

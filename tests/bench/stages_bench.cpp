@@ -1,6 +1,6 @@
-#include "flight/chosen_track.h"
 #include "flight/load_flight.h"
 #include "flight/segmentation.h"
+#include "flight/selected_track.h"
 #include "log_passes.h"
 #include "mechanical/fit/phase_fit.h"
 #include "mechanical/mechanical_model.h"

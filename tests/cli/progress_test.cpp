@@ -156,7 +156,7 @@ TEST(TerminalProgress, SaysNothingWhereTheStandardErrorIsNoTerminal) {
     testing::internal::CaptureStderr();
     {
         TerminalProgress progress("logs");
-        const auto show = progress.shown();
+        const auto show = progress.callback();
         std::this_thread::sleep_for(beyond_interval);
         show(1, 2);
         progress.hide();

@@ -1,5 +1,5 @@
-// What real logs did to the programs, on synthetic logs that are made here in the same way. The numbers are those of the
-// cases as they were found; of files and lists are golden cases: 08 file_size_limit, 09 bad_geojson_number, 10
+// What real logs did to the programs, on synthetic logs that are made here in the same way. The numbers are those of
+// the cases as they were found; of files and lists are golden cases: 08 file_size_limit, 09 bad_geojson_number, 10
 // unwritten_file, 11 batch_of_a_windows_list, 12 pipe_as_file.
 
 #include "base/csv.h"
@@ -230,8 +230,8 @@ TEST_F(Robustness, Case06WarnsOfAGainThatDriftsAwayFromTheCounter) {
     EXPECT_THAT(read_file(test::source_dir() / "docs" / "validation.md"), HasSubstr("a gain of the current sensor"));
 }
 
-/// One sample in 22 s of a sensor that reads 3 % too little, and a take-off of three times the power: it is 23 % off its
-/// counter, the sortie 5 %.
+/// One sample in 22 s of a sensor that reads 3 % too little, and a take-off of three times the power: it is 23 % off
+/// its counter, the sortie 5 %.
 TEST_F(Robustness, Case07WarnsOfAPhaseThatIsNotAsItsCounter) {
     constexpr double takeoff_end_s = 92.0;
     int number = 0;

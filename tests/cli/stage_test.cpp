@@ -82,7 +82,7 @@ TEST(RunStage, HandsOverWhatTheUserGave) {
     const auto result = run({"a", "--count", "7", "-o", "result.csv", "--json", "b"}, [](const StageCall& call) {
         print(call.program + " " + call.inputs.at(0) + call.inputs.at(1) + " " +
               std::to_string(call.get<int>("count")) + " " + call.output.value() + (call.json ? " json" : "") +
-              (call.maybe<std::string>("name") ? " named" : " nameless"));
+              (call.get_optional<std::string>("name") ? " named" : " nameless"));
         return ok;
     });
     EXPECT_EQ(result.code, 0);
@@ -144,7 +144,7 @@ TEST(RunStage, TurnsExceptionsIntoALineAndAnExitCode) {
     const auto nowhere = run({"a"}, failing_with(InputError({}, "is wrong")));
     EXPECT_EQ(nowhere.err, "flightwatt-trial: error: is wrong\n");
     EXPECT_EQ(run({"a"}, failing_with(UsageError("x"))).code, 2);
-    EXPECT_EQ(run({"a"}, failing_with(NoAnswerError("x"))).code, 4);
+    EXPECT_EQ(run({"a"}, failing_with(NoResultError("x"))).code, 4);
     EXPECT_EQ(run({"a"}, failing_with(OutputError("x"))).code, 1);
     EXPECT_EQ(run({"a"}, failing_with(OutputError("x"))).err, "flightwatt-trial: error: x\n");
     const auto no_memory = run({"a"}, failing_with(std::bad_alloc()));
@@ -178,10 +178,10 @@ TEST(RunStage, KeepsDiagnosticsOnOneLine) {
 }
 
 TEST(TypedInShell, QuotesWhatAShellWouldTakeApart) {
-    EXPECT_EQ(typed_in_shell("fits/model-1.toml"), "fits/model-1.toml");
-    EXPECT_EQ(typed_in_shell("a b$c"), "'a b$c'");
-    EXPECT_EQ(typed_in_shell("it's"), R"('it'\''s')");
-    EXPECT_EQ(typed_in_shell(""), "''");
+    EXPECT_EQ(shell_quoted("fits/model-1.toml"), "fits/model-1.toml");
+    EXPECT_EQ(shell_quoted("a b$c"), "'a b$c'");
+    EXPECT_EQ(shell_quoted("it's"), R"('it'\''s')");
+    EXPECT_EQ(shell_quoted(""), "''");
 }
 
 TEST(RunStage, FailsWhereTheStandardOutputCannotBeWritten) {

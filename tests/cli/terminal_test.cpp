@@ -14,8 +14,8 @@
 namespace flightwatt::cli {
 namespace {
 
-TerminalAbility with(const std::map<std::string, std::string>& variables, bool is_terminal = true) {
-    return ability_of(is_terminal, 120, [&](const char* name) -> const char* {
+TerminalCapabilities with(const std::map<std::string, std::string>& variables, bool is_terminal = true) {
+    return detect_capabilities(is_terminal, 120, [&](const char* name) -> const char* {
         const auto found = variables.find(name);
         return found == variables.end() ? nullptr : found->second.c_str();
     });

@@ -1,5 +1,5 @@
-// A whole real flight through each source of flightwatt watch, many times as fast as it was: the last prediction is that
-// of flightwatt predict on the log.
+// A whole real flight through each source of flightwatt watch, many times as fast as it was: the last prediction is
+// that of flightwatt predict on the log.
 
 #include "base/atomic_file.h"
 #include "helpers/binary_frames.h"

@@ -1,5 +1,5 @@
-// flightwatt watch at the end of a link over which flightwatt play sends a flight: its last prediction is that of flightwatt
-// predict on the log.
+// flightwatt watch at the end of a link over which flightwatt play sends a flight: its last prediction is that of
+// flightwatt predict on the log.
 
 #include "base/atomic_file.h"
 #include "helpers/free_port.h"
@@ -105,8 +105,8 @@ TEST_F(WatchLinks, OverUdpItIsTheSameButForTimesOfArrival) {
     const auto port = test::free_udp_port();
     const auto source =
         fmt::format("--udp {} --messages flown.log --clock-factor 100 --serve {}", port, test::free_udp_port());
-    // Arrivals are late by milliseconds, on a busy machine by tenths of a second, which are tens of seconds at this speed.
-    // Values and times without arrivals are compared exactly over the Ivy bus.
+    // Arrivals are late by milliseconds, on a busy machine by tenths of a second, which are tens of seconds at this
+    // speed. Values and times without arrivals are compared exactly over the Ivy bus.
     constexpr double of_arrivals = 0.15;
     expect_near(watch(source, fmt::format("udp:127.0.0.1:{}", port), 100, [&] { return test::is_taken(port); }),
                 of_arrivals);

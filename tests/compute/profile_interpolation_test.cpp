@@ -107,7 +107,7 @@ TEST(ThinPlate, SaysNothingFromTooFewNodes) {
     EXPECT_FALSE(choose_scale(grid({0, 1}, {0}), {1, 2}));
     EXPECT_FALSE(choose_scale({{0, 0}, {1, 0}, {0, 1}}, {1, 2, 3}));
     EXPECT_TRUE(choose_scale(grid({0, 1}, {0, 1}), {1, 2, 3, 4}));
-    EXPECT_THROW(interpolate_thin_plate(AxisScale::value, {{0, 0}, {1, 1}}, {1, 2}, {{1, 0}}), NoAnswerError);
+    EXPECT_THROW(interpolate_thin_plate(AxisScale::value, {{0, 0}, {1, 1}}, {1, 2}, {{1, 0}}), NoResultError);
 }
 
 /// Of the real grid of 25 some are taken as trials: the error at the others, known here, beside its estimate.
@@ -122,7 +122,7 @@ TEST(ThinPlate, ErrorOnTheRealGridIsWhatWasEstimated) {
         Points others;
         std::vector<double> known_w;
         std::vector<double> others_w;
-        const auto chosen = spread_nodes(points, trials);
+        const auto chosen = select_maximin(points, trials);
         for (std::size_t k = 0; k < points.size(); ++k) {
             const bool is_chosen = std::find(chosen.begin(), chosen.end(), k) != chosen.end();
             (is_chosen ? known : others).push_back(points[k]);

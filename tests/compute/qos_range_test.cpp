@@ -14,35 +14,35 @@ namespace {
 using Values = std::vector<double>;
 
 TEST(EvenlySpaced, EndsAtTheLastWholeStep) {
-    EXPECT_EQ(evenly_spaced(1.0, 4.0, 1.0), (Values{1, 2, 3, 4}));
-    EXPECT_EQ(evenly_spaced(1.0, 4.9, 1.5), (Values{1, 2.5, 4}));
-    EXPECT_EQ(evenly_spaced(2.0, 2.0, 1.0), Values{2});
+    EXPECT_EQ(linear_range(1.0, 4.0, 1.0), (Values{1, 2, 3, 4}));
+    EXPECT_EQ(linear_range(1.0, 4.9, 1.5), (Values{1, 2.5, 4}));
+    EXPECT_EQ(linear_range(2.0, 2.0, 1.0), Values{2});
 }
 
 TEST(EvenlySpaced, IsSpelledWithoutRoundingErrors) {
-    EXPECT_EQ(evenly_spaced(0.1, 0.3, 0.1), (Values{0.1, 0.2, 0.3}));
-    EXPECT_EQ(evenly_spaced(0.0, 1.0, 0.1).size(), 11U);
+    EXPECT_EQ(linear_range(0.1, 0.3, 0.1), (Values{0.1, 0.2, 0.3}));
+    EXPECT_EQ(linear_range(0.0, 1.0, 0.1).size(), 11U);
 }
 
 TEST(Multiplied, EndsAtOrBelowTheLimit) {
-    EXPECT_EQ(multiplied(32.0, 448.0, 2.0), (Values{32, 64, 128, 256}));
-    EXPECT_EQ(multiplied(1.0, 8.0, 2.0), (Values{1, 2, 4, 8}));
-    EXPECT_EQ(multiplied(0.0, 9.0, 3.0), (Values{0, 3, 9})) << "0 is followed by the factor";
+    EXPECT_EQ(geometric_range(32.0, 448.0, 2.0), (Values{32, 64, 128, 256}));
+    EXPECT_EQ(geometric_range(1.0, 8.0, 2.0), (Values{1, 2, 4, 8}));
+    EXPECT_EQ(geometric_range(0.0, 9.0, 3.0), (Values{0, 3, 9})) << "0 is followed by the factor";
 }
 
 TEST(CombinationsOf, RunTheLastParameterFastest) {
-    EXPECT_EQ(combinations_of({{"fps", {5, 10}}, {"bits", {32, 64, 128}}}),
+    EXPECT_EQ(cartesian_product({{"fps", {5, 10}}, {"bits", {32, 64, 128}}}),
               (std::vector<Values>{{5, 32}, {5, 64}, {5, 128}, {10, 32}, {10, 64}, {10, 128}}));
-    EXPECT_EQ(combinations_of({}), std::vector<Values>{{}});
+    EXPECT_EQ(cartesian_product({}), std::vector<Values>{{}});
 }
 
 TEST(WithQos, ReplacesTheParametersAlone) {
     const std::vector<std::string> parameters{"fps", "key_bits"};
-    EXPECT_EQ(spell_qos(parameters, {5.8, 32.0}), "fps=5.8 key_bits=32");
-    EXPECT_EQ(spell_qos(parameters, {5.8, 32.0}, " = ", ", "), "fps = 5.8, key_bits = 32");
-    EXPECT_EQ(spell_qos({}, {}), "");
-    EXPECT_EQ(with_qos("run-{fps} {key_bits} {fps}", parameters, {5.8, 32.0}), "run-5.8 32 5.8");
-    EXPECT_EQ(with_qos("awk '{print $1}' {fsp}", parameters, {5.8, 32.0}), "awk '{print $1}' {fsp}");
+    EXPECT_EQ(format_qos(parameters, {5.8, 32.0}), "fps=5.8 key_bits=32");
+    EXPECT_EQ(format_qos(parameters, {5.8, 32.0}, " = ", ", "), "fps = 5.8, key_bits = 32");
+    EXPECT_EQ(format_qos({}, {}), "");
+    EXPECT_EQ(substitute_qos("run-{fps} {key_bits} {fps}", parameters, {5.8, 32.0}), "run-5.8 32 5.8");
+    EXPECT_EQ(substitute_qos("awk '{print $1}' {fsp}", parameters, {5.8, 32.0}), "awk '{print $1}' {fsp}");
 }
 
 using test::grid;
@@ -50,13 +50,13 @@ using test::Points;
 
 TEST(SpreadNodes, TakesCornersFirstThenTheFarthest) {
     const auto points = grid({1, 2, 4, 8, 16}, {0, 1, 2, 3, 4});
-    const auto four = spread_nodes(points, 4);
+    const auto four = select_maximin(points, 4);
     EXPECT_THAT(four, testing::UnorderedElementsAre(0U, 4U, 20U, 24U));
-    EXPECT_EQ(four[1], 24U);                         // opposite to the first
-    EXPECT_EQ(spread_nodes(points, 5).back(), 12U);  // the middle, by rank
-    EXPECT_EQ(spread_nodes(points, 99).size(), 25U);
-    EXPECT_THAT(spread_nodes({{7.0}}, 3), testing::ElementsAre(0U));
-    EXPECT_THAT(spread_nodes({{}}, 3), testing::ElementsAre(0U));
+    EXPECT_EQ(four[1], 24U);                           // opposite to the first
+    EXPECT_EQ(select_maximin(points, 5).back(), 12U);  // the middle, by rank
+    EXPECT_EQ(select_maximin(points, 99).size(), 25U);
+    EXPECT_THAT(select_maximin({{7.0}}, 3), testing::ElementsAre(0U));
+    EXPECT_THAT(select_maximin({{}}, 3), testing::ElementsAre(0U));
 }
 
 TEST(UnitPoints, ScaleByValueOrByRank) {

@@ -56,8 +56,8 @@ class NewMissions : public testing::Test {
 
     std::string why_refused(const std::string& text, bool may_lack_schedule) const {
         try {
-            mission::MissionReading reading;
-            reading.may_lack_schedule = may_lack_schedule;
+            mission::MissionReadOptions reading;
+            reading.allow_unplanned = may_lack_schedule;
             mission::parse_mission(text, folder / "mission.toml", reading);
             return "";
         } catch (const InputError& error) {

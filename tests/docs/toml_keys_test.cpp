@@ -34,7 +34,7 @@ const std::map<std::string, std::string> sections{
     {"battery", "Battery"},        {"specification", "Profile specification"}};
 
 void read_as(const std::string& kind, const std::filesystem::path& file) {
-    if (kind == "mission") mission::read_mission(file, {.may_lack_schedule = true, .cruise_s = {}});
+    if (kind == "mission") mission::read_mission(file, {.allow_unplanned = true, .cruise_s = {}});
     if (kind == "disturbance") mission::read_disturbances(file, flight::PerPhase<double>{{28.0, 600.0, 60.0}});
     if (kind == "model") mechanical::read_mechanical_model(file);
     if (kind == "series") flight::read_series_csv(file);
@@ -86,7 +86,7 @@ std::vector<std::filesystem::path> write_examples(const std::filesystem::path& f
 }
 
 /// A mission's battery = { ... } has the keys of a battery file.
-DocumentedKey as_documented(const AskedKey& asked) {
+DocumentedKey as_documented(const RequestedKey& asked) {
     const std::string inline_battery = "battery";
     auto kind = kind_of(asked.file);
     auto table = asked.table;
@@ -119,16 +119,16 @@ std::vector<DocumentedKey> documented_keys() {
 }
 
 /// Every key that the readers ask for while they read all examples and all files of the project.
-std::set<AskedKey> asked_keys(const std::filesystem::path& folder) {
-    std::set<AskedKey> asked;
+std::set<RequestedKey> asked_keys(const std::filesystem::path& folder) {
+    std::set<RequestedKey> asked;
     const auto examples = write_examples(folder);
-    record_asked_keys(&asked);
+    record_requested_keys(&asked);
     for (const auto& file : examples) read_as(kind_of(file.string()), file);
     for (const auto* kind : {"paper", "synthetic"}) {
         for (const auto& entry : std::filesystem::directory_iterator(source_dir() / "missions" / kind))
             if (entry.path().extension() == ".toml") read_as("mission", entry.path());
     }
-    record_asked_keys(nullptr);
+    record_requested_keys(nullptr);
     return asked;
 }
 

@@ -3,7 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/error.h"
-#include "flight/chosen_track.h"
+#include "flight/selected_track.h"
 #include "helpers/sample_logs.h"
 
 #include <gmock/gmock.h>

@@ -1,8 +1,8 @@
 #include "flight/flight_identity.h"
 
 #include "base/atomic_file.h"
-#include "flight/chosen_track.h"
 #include "flight/load_flight.h"
+#include "flight/selected_track.h"
 #include "flight/series_file.h"
 #include "helpers/test_paths.h"
 
@@ -25,7 +25,7 @@ FlightSeries sample(int number) {
     return read_flight(test::source_dir() / "logs" / ("opterra_synthetic_0" + std::to_string(number) + ".data"));
 }
 
-FlightContent content_of_sample(int number) { return content_of(sample(number)); }
+FlightSketch content_of_sample(int number) { return make_sketch(sample(number)); }
 
 /// The series as it was recorded by a clock that began later and runs slower.
 FlightSeries with_clock(FlightSeries series, double later_s, double slower = 0.0) {
@@ -56,9 +56,9 @@ FlightSeries with_decimals(FlightSeries series, int decimals) {
     return series;
 }
 
-FlightSeries with_jitter(FlightSeries series, double most_s) {
+FlightSeries with_jitter(FlightSeries series, double max_s) {
     std::mt19937_64 random(1);
-    std::uniform_real_distribution<double> jitter(-most_s, most_s);
+    std::uniform_real_distribution<double> jitter(-max_s, max_s);
     for (auto& track : series.tracks)
         for (auto& time_s : track.time_s) time_s += jitter(random);
     return series;
@@ -74,8 +74,8 @@ FlightSeries without_begin(FlightSeries series, double until_s) {
 }
 
 bool is_same(const FlightSeries& one, const FlightSeries& other) {
-    const auto there = likeness_of(content_of(one), content_of(other)).is_same;
-    EXPECT_EQ(likeness_of(content_of(other), content_of(one)).is_same, there);
+    const auto there = compare_sketches(make_sketch(one), make_sketch(other)).is_same;
+    EXPECT_EQ(compare_sketches(make_sketch(other), make_sketch(one)).is_same, there);
     return there;
 }
 
@@ -94,7 +94,7 @@ TEST(FlightIdentity, IsThatOfTheSamples) {
     EXPECT_TRUE(is_same(series, with_clock(series, 84.264)));
     EXPECT_TRUE(is_same(series, parse_series_csv(to_csv(series), "other.csv")));
     for (const double until_s : {100.0, 150.0, 400.0, 750.0}) {
-        EXPECT_TRUE(is_same(series, cut_series(series, until_s))) << until_s;
+        EXPECT_TRUE(is_same(series, truncate_series(series, until_s))) << until_s;
     }
     auto more = series;
     for (auto& track : more.tracks) {
@@ -126,11 +126,11 @@ TEST(FlightIdentity, OutlivesLossesRoundingAndAnotherClock) {
 
 TEST(FlightIdentity, IsAnotherOfEveryOtherFlight) {
     for (const int decimals : {0, 1, 2, 15}) {
-        std::vector<FlightContent> contents;
-        for (const auto& flight : different_flights()) contents.push_back(content_of(with_decimals(flight, decimals)));
+        std::vector<FlightSketch> contents;
+        for (const auto& flight : different_flights()) contents.push_back(make_sketch(with_decimals(flight, decimals)));
         for (std::size_t i = 0; i < contents.size(); ++i)
             for (std::size_t j = 0; j < i; ++j)
-                EXPECT_FALSE(likeness_of(contents[i], contents[j]).is_same) << i << " " << j << " " << decimals;
+                EXPECT_FALSE(compare_sketches(contents[i], contents[j]).is_same) << i << " " << j << " " << decimals;
     }
 }
 
@@ -138,25 +138,25 @@ TEST(FlightIdentity, IsAnotherOfEveryOtherFlight) {
 TEST(FlightIdentity, IsNotThatOfAnotherWithTheSamePower) {
     const auto series = sample(1);
     auto other = sample(2);
-    for (const auto* name : {"power_w", "current_a", "voltage_v"}) replace_track(other, chosen_track(series, name));
+    for (const auto* name : {"power_w", "current_a", "voltage_v"}) replace_track(other, select_track(series, name));
     EXPECT_FALSE(is_same(series, other));
 }
 
 TEST(FlightIdentity, OfLessThanHalfIsNotThatOfTheFlight) {
     const auto series = sample(1);
-    const auto first = content_of(cut_series(series, 450.0));
-    const auto rest = content_of(without_begin(series, 350.0));
-    const auto likeness = likeness_of(first, rest);
+    const auto first = make_sketch(truncate_series(series, 450.0));
+    const auto rest = make_sketch(without_begin(series, 350.0));
+    const auto likeness = compare_sketches(first, rest);
     EXPECT_FALSE(likeness.is_same);
     EXPECT_NEAR(likeness.shared_s, 100.0, 40.0);
-    EXPECT_TRUE(likeness_of(first, content_of(without_begin(series, 150.0))).is_same);
-    EXPECT_EQ(likeness_of(first, content_of(without_begin(series, 460.0))).shared_s, 0.0);
+    EXPECT_TRUE(compare_sketches(first, make_sketch(without_begin(series, 150.0))).is_same);
+    EXPECT_EQ(compare_sketches(first, make_sketch(without_begin(series, 460.0))).shared_s, 0.0);
 }
 
 TEST(FlightIdentity, IsFoundAmongMany) {
-    KnownFlights known;
+    SketchIndex known;
     for (int number = 1; number <= 5; ++number) known.add(content_of_sample(number));
-    const auto found = known.find(content_of(cut_series(sample(3), 400.0)));
+    const auto found = known.find(make_sketch(truncate_series(sample(3), 400.0)));
     ASSERT_EQ(found.size(), 1U);
     EXPECT_EQ(found[0].number, 2U);
     EXPECT_TRUE(found[0].likeness.is_same);
@@ -165,13 +165,13 @@ TEST(FlightIdentity, IsFoundAmongMany) {
 }
 
 TEST(FlightIdentity, PrefersTheCopyWithDefinitionsAndSamples) {
-    const FlightContent without{{}, 2, false, 900, 1};
-    const FlightContent with{{}, 2, true, 500, 1};
-    const FlightContent with_more{{}, 2, true, 600, 1};
-    EXPECT_TRUE(is_better_copy(with, without));
-    EXPECT_TRUE(is_better_copy(with_more, with));
-    EXPECT_FALSE(is_better_copy(with, with));
-    EXPECT_FALSE(is_better_copy(without, with));
+    const FlightSketch without{{}, 2, false, 900, 1};
+    const FlightSketch with{{}, 2, true, 500, 1};
+    const FlightSketch with_more{{}, 2, true, 600, 1};
+    EXPECT_TRUE(is_preferred_duplicate(with, without));
+    EXPECT_TRUE(is_preferred_duplicate(with_more, with));
+    EXPECT_FALSE(is_preferred_duplicate(with, with));
+    EXPECT_FALSE(is_preferred_duplicate(without, with));
     EXPECT_EQ(content_of_sample(1).samples, power_track(sample(1)).time_s.size());
 }
 
@@ -183,7 +183,7 @@ TEST(FlightIdentity, OfWhatDoesNotVaryIsUnknown) {
         altitude.value.push_back(i % 5);
     }
     series.tracks = {altitude};
-    for (const auto& marks : content_of(series).marks) EXPECT_TRUE(marks.empty());
+    for (const auto& marks : make_sketch(series).hashes) EXPECT_TRUE(marks.empty());
     EXPECT_FALSE(is_same(series, series));
 }
 
@@ -203,7 +203,7 @@ TEST(FlightIdentity, OfALogThatWasRecordedTwice) {
 }
 
 TEST(Aircraft, AreOneUnlessIdNameOrTheirBeingRealTellsThemApart) {
-    const auto mix = [](const std::vector<FlownBy>& flights) { return describe_mix(flights); };
+    const auto mix = [](const std::vector<FlightAircraft>& flights) { return describe_mixed_aircraft(flights); };
     EXPECT_EQ(mix({}), "");
     EXPECT_EQ(mix({{"a", "20", "Twinstar"}, {"b", "20", "Twinstar"}, {"c", "20", ""}, {"d", "", ""}}), "");
     EXPECT_EQ(mix({{"a", "7", "Opterra_synthetic"}, {"b", "7", unnamed_synthetic}}), "");

@@ -1,6 +1,6 @@
 #include "flight/flight_series.h"
 
-#include "flight/chosen_track.h"
+#include "flight/selected_track.h"
 #include "helpers/cut_logs.h"
 
 #include <limits>
@@ -59,8 +59,8 @@ void expect_no_hindsight(const std::string& text, const std::optional<telemetry:
         }
         const auto other = test::all_series(changed, configuration, ids);
         for (std::size_t i = 0; i < ids.size(); ++i) {
-            EXPECT_EQ(difference(cut_series(whole[i], until_s), ended[i]), "") << "aircraft " << ids[i];
-            EXPECT_EQ(difference(cut_series(other[i], until_s), ended[i]), "") << "aircraft " << ids[i];
+            EXPECT_EQ(difference(truncate_series(whole[i], until_s), ended[i]), "") << "aircraft " << ids[i];
+            EXPECT_EQ(difference(truncate_series(other[i], until_s), ended[i]), "") << "aircraft " << ids[i];
         }
     }
 }
@@ -101,9 +101,9 @@ TEST(CutSeries, ForgetsWhatWasChosenByWhatCameLater) {
     text += "rubbish at the end\n199.9 20 ENE";
     expect_no_hindsight(text, std::nullopt);
     const auto series = test::all_series(text, std::nullopt).at(0);
-    EXPECT_EQ(chosen_track(series, "altitude_m").source, "ESTIMATOR.z");
-    EXPECT_EQ(chosen_track(cut_series(series, 100.0), "altitude_m").source, "GPS.alt");
-    EXPECT_FALSE(warnings_of(series) == warnings_of(cut_series(series, 50.0)));
+    EXPECT_EQ(select_track(series, "altitude_m").source, "ESTIMATOR.z");
+    EXPECT_EQ(select_track(truncate_series(series, 100.0), "altitude_m").source, "GPS.alt");
+    EXPECT_FALSE(warnings_of(series) == warnings_of(truncate_series(series, 50.0)));
 }
 
 TEST(CutSeries, ForgetsAClockThatBeginsAnewLater) {
@@ -112,8 +112,8 @@ TEST(CutSeries, ForgetsAClockThatBeginsAnewLater) {
     text += "500 20 ENERGY 0 12. 1. 12. 0. 0.\n400 20 ENERGY 0 12. 1. 12. 0. 0.\n";
     const auto series = test::all_series(text, std::nullopt).at(0);
     ASSERT_TRUE(series.clock_restart);
-    EXPECT_EQ(series.clock_restart->known_s, 500.0);
-    EXPECT_FALSE(cut_series(series, 499.0).clock_restart);
+    EXPECT_EQ(series.clock_restart->visible_from_s, 500.0);
+    EXPECT_FALSE(truncate_series(series, 499.0).clock_restart);
     expect_no_hindsight(text.substr(0, text.find("500 20")), std::nullopt);
 }
 

@@ -1,6 +1,6 @@
 #include "flight/flown_path.h"
 
-#include "flight/chosen_track.h"
+#include "flight/selected_track.h"
 #include "helpers/rejected.h"
 
 #include <cmath>
@@ -41,20 +41,20 @@ FlightSeries eastward() {
 TEST(FlownPath, HasAPlaceEveryThirtySeconds) {
     const auto path = flown_path(eastward(), cruise(20.0, 200.0));
     EXPECT_FALSE(path.is_geographic);
-    ASSERT_EQ(path.places.size(), 7U);
-    EXPECT_DOUBLE_EQ(path.places.front().east_m, 0.0);
-    EXPECT_DOUBLE_EQ(path.places.front().duration_s, 0.0);
-    EXPECT_DOUBLE_EQ(path.places.front().altitude_m, 110.0);
+    ASSERT_EQ(path.waypoints.size(), 7U);
+    EXPECT_DOUBLE_EQ(path.waypoints.front().east_m, 0.0);
+    EXPECT_DOUBLE_EQ(path.waypoints.front().duration_s, 0.0);
+    EXPECT_DOUBLE_EQ(path.waypoints.front().altitude_m, 110.0);
     double duration_s = 0.0;
-    for (const auto& place : path.places) duration_s += place.duration_s;
+    for (const auto& place : path.waypoints) duration_s += place.duration_s;
     EXPECT_NEAR(duration_s, 180.0, 1e-9);
-    EXPECT_NEAR(path.places[2].east_m, 600.0, 1e-9);
-    EXPECT_NEAR(path.places[2].altitude_m, 140.0, 1e-9);
-    EXPECT_NEAR(path.places[2].airspeed_m_per_s, 12.0, 1e-9);
+    EXPECT_NEAR(path.waypoints[2].east_m, 600.0, 1e-9);
+    EXPECT_NEAR(path.waypoints[2].altitude_m, 140.0, 1e-9);
+    EXPECT_NEAR(path.waypoints[2].airspeed_m_per_s, 12.0, 1e-9);
     // From 80 to 110 s: two thirds at 12 m/s, a third at 14 m/s, by their cubes.
-    EXPECT_NEAR(path.places[3].airspeed_m_per_s, std::cbrt((2.0 * 1728.0 + 2744.0) / 3.0), 1e-3);
+    EXPECT_NEAR(path.waypoints[3].airspeed_m_per_s, std::cbrt((2.0 * 1728.0 + 2744.0) / 3.0), 1e-3);
     // One that is short has its ends.
-    EXPECT_EQ(flown_path(eastward(), cruise(20.0, 30.0)).places.size(), 2U);
+    EXPECT_EQ(flown_path(eastward(), cruise(20.0, 30.0)).waypoints.size(), 2U);
 }
 
 TEST(FlownPath, FollowsBends) {
@@ -72,14 +72,14 @@ TEST(FlownPath, FollowsBends) {
     series.tracks[2] = track("north_m", times_s, north_m);
     const auto path = flown_path(series, cruise(0.0, 200.0));
     double length_m = 0.0;
-    for (std::size_t i = 1; i < path.places.size(); ++i) {
-        const auto& a = path.places[i - 1];
-        const auto& b = path.places[i];
+    for (std::size_t i = 1; i < path.waypoints.size(); ++i) {
+        const auto& a = path.waypoints[i - 1];
+        const auto& b = path.waypoints[i];
         length_m += std::hypot(b.east_m - a.east_m, b.north_m - a.north_m);
         EXPECT_NEAR(b.altitude_m - a.altitude_m, 0.5 * b.duration_s, 1e-9);
     }
     EXPECT_NEAR(length_m, 2400.0, 0.03 * 2400.0);
-    EXPECT_LT(path.places.size(), 120U) << "fewer than one a second";
+    EXPECT_LT(path.waypoints.size(), 120U) << "fewer than one a second";
 }
 
 TEST(FlownPath, IsInDegreesWhereTheLogIs) {
@@ -88,7 +88,7 @@ TEST(FlownPath, IsInDegreesWhereTheLogIs) {
     series.tracks[2].name = "longitude_deg";
     const auto path = flown_path(series, cruise(0.0, 60.0));
     EXPECT_TRUE(path.is_geographic);
-    EXPECT_DOUBLE_EQ(path.places.front().east_m, 1000.0);
+    EXPECT_DOUBLE_EQ(path.waypoints.front().east_m, 1000.0);
 }
 
 TEST(FlownPath, NeedsAirspeedAltitudeAndPosition) {

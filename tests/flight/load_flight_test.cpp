@@ -3,8 +3,8 @@
 #include "base/atomic_file.h"
 #include "base/number.h"
 #include "base/parallel.h"
-#include "flight/chosen_track.h"
 #include "flight/phases_file.h"
+#include "flight/selected_track.h"
 #include "flight/series_file.h"
 #include "flight/telemetry_series.h"
 #include "helpers/binary_frames.h"
@@ -47,7 +47,7 @@ LoadOptions without_power() {
 
 TEST(LoadFlight, SegmentsAFlightWithoutPowerWhereNoneIsRequired) {
     const auto plain = segment(test::series_of(test::sortie(100)));
-    const auto flight = examine_flight(unmeasured_flight(), without_power());
+    const auto flight = segment_and_check(unmeasured_flight(), without_power());
     ASSERT_EQ(flight.phases.sorties.size(), 1u);
     EXPECT_NEAR(flight.phases.sorties[0].start_s(), plain.sorties[0].start_s(), 1.0);
     EXPECT_NEAR(flight.phases.sorties[0].end_s(), plain.sorties[0].end_s(), 1.0);
@@ -56,15 +56,16 @@ TEST(LoadFlight, SegmentsAFlightWithoutPowerWhereNoneIsRequired) {
     EXPECT_THAT(flight.warnings, testing::Contains(HasSubstr(": the energy of its phases is not known")));
     EXPECT_THAT(phases_csv(flight.series, flight.phases), HasSubstr("\n1,takeoff,"));
     EXPECT_THAT(phases_csv(flight.series, flight.phases), HasSubstr(",,,,,,,true,")) << "empty, not 0";
-    EXPECT_THAT(test::rejected([] { examine_flight(unmeasured_flight(), {}); }), HasSubstr("holds no measured power"));
+    EXPECT_THAT(test::rejected([] { segment_and_check(unmeasured_flight(), {}); }),
+                HasSubstr("holds no measured power"));
 }
 
 TEST(LoadFlight, OfASeriesFileWithoutPowerIsTheSame) {
     const auto series = unmeasured_flight();
     const auto again = parse_series_csv(to_csv(series), series.file);
     EXPECT_TRUE(again == series);
-    const auto flight = examine_flight(series, without_power());
-    const auto reread = examine_flight(again, without_power());
+    const auto flight = segment_and_check(series, without_power());
+    const auto reread = segment_and_check(again, without_power());
     EXPECT_EQ(phases_csv(reread.series, reread.phases), phases_csv(flight.series, flight.phases));
     EXPECT_EQ(reread.warnings, flight.warnings);
 }
@@ -75,7 +76,7 @@ TEST(LoadFlight, ReadsACsvOfAltitudeAlone) {
     for (std::size_t i = 0; i < columns.time_s.size(); ++i) {
         text += fmt::format("{},{}\n", columns.time_s[i], columns.altitude_m[i]);
     }
-    const auto flight = examine_flight(parse_series_csv(text, "mine.csv"), without_power());
+    const auto flight = segment_and_check(parse_series_csv(text, "mine.csv"), without_power());
     ASSERT_EQ(flight.phases.sorties.size(), 1u);
     EXPECT_EQ(flight.phases.sorties[0].phases.size(), 3u);
     EXPECT_EQ(flight.lacks_power, "no measured power");
@@ -224,9 +225,9 @@ TEST(LoadFlight, OfManyFlightsIsTheSameOnOneThread) {
     const auto load = [&] {
         auto log = telemetry::parse_telemetry(text, "x.data", std::nullopt, flight_messages());
         const auto copied = flight_series(log, "7");
-        auto series = take_flight_series(log, "7");
+        auto series = extract_flight_series(log, "7");
         EXPECT_TRUE(series == copied);
-        return examine_flight(std::move(series), {});
+        return segment_and_check(std::move(series), {});
     };
     const auto on_all = load();
     LoadedFlight on_one;
@@ -236,10 +237,10 @@ TEST(LoadFlight, OfManyFlightsIsTheSameOnOneThread) {
     EXPECT_TRUE(on_all.series == on_one.series);
     EXPECT_EQ(on_all.warnings, on_one.warnings);
     EXPECT_EQ(on_all.sources, on_one.sources);
-    EXPECT_EQ(on_all.sources, sources_of(on_all.series));
-    const ChosenTracks tracks(on_all.series);
-    tracks.make_all();
-    for (const auto& name : track_names()) EXPECT_TRUE(tracks[name] == chosen_track(on_all.series, name)) << name;
+    EXPECT_EQ(on_all.sources, track_sources(on_all.series));
+    const SelectedTracks tracks(on_all.series);
+    tracks.compute_all();
+    for (const auto& name : track_names()) EXPECT_TRUE(tracks[name] == select_track(on_all.series, name)) << name;
 }
 
 }  // namespace

@@ -33,9 +33,9 @@ TEST(PhaseStatistics, CountsSamplesAndGaps) {
     const auto statistics = phase_statistics(ramp(), 30, 60);
     EXPECT_EQ(statistics.samples, 22u);
     EXPECT_EQ(statistics.gaps, 1u);
-    EXPECT_EQ(statistics.longest_gap_s, 10.0);
+    EXPECT_EQ(statistics.max_gap_s, 10.0);
     EXPECT_FALSE(statistics.counter_energy_wh.has_value());
-    EXPECT_EQ(usual_interval_s(power_track(ramp()).time_s), 1.0);
+    EXPECT_EQ(median_interval_s(power_track(ramp()).time_s), 1.0);
     EXPECT_EQ(phase_statistics(ramp(), 43, 45).samples, 0u);
 }
 

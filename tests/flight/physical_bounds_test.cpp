@@ -1,6 +1,6 @@
 #include "flight/physical_bounds.h"
 
-#include "flight/chosen_track.h"
+#include "flight/selected_track.h"
 
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ TEST(PhysicalBounds, AreKeptByTheChosenTrack) {
     std::vector<double> heights;
     for (int i = 0; i < 100; ++i) heights.push_back(i == 7 ? 1e7 : i);
     series.tracks.push_back(altitude(heights));
-    EXPECT_EQ(chosen_track(series, "altitude_m").value.size(), 99U);
+    EXPECT_EQ(select_track(series, "altitude_m").value.size(), 99U);
     EXPECT_EQ(warnings_of(series).at(0),
               "1 of 100 samples of altitude_m (ESTIMATOR.z) are left out: 1 beyond what can be");
 }

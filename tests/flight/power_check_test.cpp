@@ -35,7 +35,7 @@ TEST(PowerReport, FindsASoundRecordSound) {
     EXPECT_EQ(report.origin, CurrentOrigin::sensor);
     ASSERT_TRUE(report.idle.has_value());
     EXPECT_NEAR(report.idle->mean_a, synthetic::SyntheticSensors{}.idle_current_a, 0.001);
-    EXPECT_NEAR(report.idle->deviation_a, synthetic::SyntheticSensors{}.current_noise_a, 0.0005);
+    EXPECT_NEAR(report.idle->sd_a, synthetic::SyntheticSensors{}.current_noise_a, 0.0005);
     ASSERT_TRUE(report.energy_closure_percent && report.charge_closure_percent);
     EXPECT_NEAR(*report.energy_closure_percent, 0.0, 0.2);
     EXPECT_NEAR(*report.charge_closure_percent, 0.0, 0.2);

@@ -338,7 +338,7 @@ TEST(Segmentation, IsATotalFunctionOfAnyCutsOrdersAndGaps) {
                     last_s = span.end.time_s;
                 }
             }
-            judge(ChosenTracks(disturbed), phases);
+            assess_flight(SelectedTracks(disturbed), phases);
         } catch (const InputError& error) {
             ASSERT_THAT(error.what(), testing::HasSubstr("has no altitude")) << round;
         }

@@ -1,8 +1,8 @@
 #include "flight/series_file.h"
 
 #include "base/error.h"
-#include "flight/chosen_track.h"
 #include "flight/power_check.h"
+#include "flight/selected_track.h"
 #include "flight/telemetry_series.h"
 #include "helpers/cut_logs.h"
 #include "helpers/rejected.h"
@@ -29,7 +29,7 @@ TEST(SeriesFile, LosesNothingOfAnyLog) {
         SCOPED_TRACE(log.string());
         const telemetry::DataFile data(log);
         for (const auto& series : test::all_series(data.text(), test::configuration_of(log))) {
-            if (power_track(series).empty() && chosen_track(series, "altitude_m").time_s.size() < 2) continue;
+            if (power_track(series).empty() && select_track(series, "altitude_m").time_s.size() < 2) continue;
             const auto text = to_csv(series);
             const auto again = parse_series_csv(text, series.file);
             EXPECT_TRUE(again == series) << "aircraft " << series.aircraft_id;
@@ -124,7 +124,7 @@ TEST(SeriesFile, IsReadWithoutFrontMatterAndWithEmptyCells) {
     const auto series = parse_series_csv("# mine\ntime_s,power_w,altitude_m\n1,2,\n2,3,10\n3,,11\n", "out/mine.csv");
     EXPECT_EQ(series.flight, "mine");
     EXPECT_THAT(power_track(series).time_s, ElementsAre(1, 2));
-    EXPECT_THAT(chosen_track(series, "altitude_m").time_s, ElementsAre(2, 3));
+    EXPECT_THAT(select_track(series, "altitude_m").time_s, ElementsAre(2, 3));
     EXPECT_EQ(power_track(series).source, "series CSV");
     EXPECT_TRUE(warnings_of(series).empty());
 }

@@ -1,8 +1,8 @@
 #include "flight/telemetry_series.h"
 
 #include "base/error.h"
-#include "flight/chosen_track.h"
 #include "flight/load_flight.h"
+#include "flight/selected_track.h"
 #include "flight/series_file.h"
 #include "helpers/test_paths.h"
 
@@ -27,10 +27,10 @@ FlightSeries series_of(const std::string& text, const std::string& id = "20") {
 }
 
 std::vector<double> on_power_clock(const FlightSeries& series, const std::string& name) {
-    return chosen_at(series, name, power_track(series).time_s);
+    return sample_selected_track(series, name, power_track(series).time_s);
 }
 
-std::string source_of(const FlightSeries& series, const std::string& name) { return chosen_track(series, name).source; }
+std::string source_of(const FlightSeries& series, const std::string& name) { return select_track(series, name).source; }
 
 TEST(TelemetrySeries, TakesPowerFromEnergyAndEverythingElseOntoItsClock) {
     const auto series = series_of(
@@ -57,10 +57,10 @@ TEST(TelemetrySeries, KnowsTheAirTemperatureAndTheClock) {
         flight_series(parse_telemetry("1. 20 AIR_DATA 100000. 20.5\n2. 20 AIR_DATA 100000. 21.5\n", "x.data",
                                       telemetry::parse_log_configuration(log, "x.log"), flight_messages()),
                       "20");
-    EXPECT_THAT(chosen_track(series, "air_temperature_c").value, ElementsAre(20.5, 21.5));
+    EXPECT_THAT(select_track(series, "air_temperature_c").value, ElementsAre(20.5, 21.5));
     EXPECT_EQ(series.start_clock_s, 1594356783.16);
-    EXPECT_EQ(cut_series(series, 1.5).start_clock_s, series.start_clock_s);
-    EXPECT_THAT(chosen_track(cut_series(series, 1.5), "air_temperature_c").value, ElementsAre(20.5));
+    EXPECT_EQ(truncate_series(series, 1.5).start_clock_s, series.start_clock_s);
+    EXPECT_THAT(select_track(truncate_series(series, 1.5), "air_temperature_c").value, ElementsAre(20.5));
 }
 
 /// The series of a log whose .log defines POWER_DEVICE with these attributes of current and voltage.
@@ -80,18 +80,18 @@ TEST(TelemetrySeries, AssumesTheUnitsThatPaparazziLeavesOutAndSaysSo) {
     const auto assumed =
         "units in the .log: POWER_DEVICE: current has none: A is assumed, voltage has none: V is assumed";
     EXPECT_THAT(warnings_of(series), Contains(assumed));
-    EXPECT_THAT(warnings_of(cut_series(series, 0.5)), testing::IsEmpty());
+    EXPECT_THAT(warnings_of(truncate_series(series, 0.5)), testing::IsEmpty());
     EXPECT_THAT(power_track(with_power_device("name=\"current\" unit=\"mA\"", "name=\"voltage\"")).value,
                 ElementsAre(0.022, 0.033));
 }
 
 TEST(TelemetrySeries, SaysWhyAMessageTellsNoPower) {
     const auto strange = with_power_device("name=\"current\" unit=\"furlong\"", "name=\"voltage\" unit=\"V\"");
-    EXPECT_EQ(why_no_power(strange),
+    EXPECT_EQ(no_power_reason(strange),
               "POWER_DEVICE has no power in W, nor current in A with voltage; the .log: POWER_DEVICE: current "
               "has 'furlong', which is none that is known");
     const auto renamed = with_power_device("name=\"current_2\"", "name=\"voltage\" unit=\"V\"");
-    EXPECT_THAT(why_no_power(renamed), HasSubstr("POWER_DEVICE has no power in W"));
+    EXPECT_THAT(no_power_reason(renamed), HasSubstr("POWER_DEVICE has no power in W"));
 }
 
 TEST(TelemetrySeries, FallsBackToVoltageTimesCurrent) {
@@ -255,7 +255,7 @@ FlightSeries with_commands(double manual_s, const std::string& commands, int unt
 
 TEST(TelemetrySeries, TakesTheCommandsWhereTheThrottleIdlesInManualMode) {
     const auto lowest = [](const FlightSeries& series) {
-        const auto throttle = chosen_track(series, "throttle_percent");
+        const auto throttle = select_track(series, "throttle_percent");
         return *std::ranges::min_element(throttle.value);
     };
     const auto manual = with_commands(40.0, "4800,-20,30");
@@ -275,7 +275,7 @@ TEST(TelemetrySeries, TakesTheFirstCommandForAThrottleWhereItIsNeverNegative) {
         return flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), "20");
     };
     EXPECT_EQ(source_of(series_with(0), "throttle_percent"), "COMMANDS.throttle");
-    EXPECT_EQ(chosen_track(series_with(0), "throttle_percent").value.back(), 20.0);
+    EXPECT_EQ(select_track(series_with(0), "throttle_percent").value.back(), 20.0);
     EXPECT_EQ(source_of(series_with(-1), "throttle_percent"), "") << "a roll command";
 }
 

@@ -4,8 +4,8 @@
 #include "telemetry/binary_log.h"
 
 #include "base/error.h"
-#include "flight/chosen_track.h"
 #include "flight/segmentation.h"
+#include "flight/selected_track.h"
 #include "flight/telemetry_series.h"
 #include "fuzz/fuzz_target.h"
 #include "helpers/binary_definitions.h"

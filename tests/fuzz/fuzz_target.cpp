@@ -50,7 +50,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         fuzz::run({reinterpret_cast<const char*>(data), size});
     } catch (const InputError&) {
     } catch (const UsageError&) {
-    } catch (const NoAnswerError&) {
+    } catch (const NoResultError&) {
     }
     return 0;
 }

@@ -1,7 +1,7 @@
 // A series CSV with its front matter, to its phases.
 
-#include "flight/chosen_track.h"
 #include "flight/segmentation.h"
+#include "flight/selected_track.h"
 #include "flight/series_file.h"
 #include "fuzz/fuzz_target.h"
 

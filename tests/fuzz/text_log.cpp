@@ -1,7 +1,7 @@
 // A .data text without its .log, to the phases of every aircraft.
 
-#include "flight/chosen_track.h"
 #include "flight/segmentation.h"
+#include "flight/selected_track.h"
 #include "flight/telemetry_series.h"
 #include "fuzz/fuzz_target.h"
 #include "telemetry/telemetry_log.h"

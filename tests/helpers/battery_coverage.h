@@ -128,7 +128,7 @@ inline BatteryCoverage battery_coverage(const BatteryCase& made, std::uint64_t f
                 ++coverage.flights;
             }
             coverage.all_initial_charges_held += all ? 1 : 0;
-        } catch (const NoAnswerError&) {
+        } catch (const NoResultError&) {
             ++coverage.without_answer;
         }
     }

@@ -36,7 +36,7 @@ inline std::string damaged_sample(const std::function<void(Words&)>& damage, int
 inline flight::LoadedFlight examined(const std::string& text) {
     const auto log = sample(1, ".log");
     auto configuration = telemetry::parse_log_configuration(read_file(log), log);
-    return flight::examine_flight(
+    return flight::segment_and_check(
         flight::flight_series(
             parse_telemetry(text, "damaged.data", std::move(configuration), flight::flight_messages()), "7"),
         {});

@@ -11,7 +11,7 @@
 namespace flightwatt::test {
 namespace {
 
-constexpr std::size_t longest_line = 120;
+constexpr std::size_t max_line = 120;
 
 std::vector<std::string> matches_of(const std::string& text, const std::regex& pattern) {
     std::vector<std::string> found;
@@ -75,7 +75,7 @@ class Reader {
         for (const auto& target : matches_of(line, link_)) document_.links.push_back({target, line_});
         if (line.starts_with("|")) return row(line);
         in_key_table_ = false;
-        if (characters_of(line) > longest_line && !line.starts_with("<!--") && !line.starts_with("!["))
+        if (characters_of(line) > max_line && !line.starts_with("<!--") && !line.starts_with("!["))
             document_.long_lines.push_back(line);
     }
 

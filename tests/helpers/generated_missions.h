@@ -67,7 +67,8 @@ class MissionGenerator {
             problem.duration_s[phase] = lasts_s[phase];
             if (of_flights) {
                 part.flights = flights;
-                part.level_spread = mechanical::LevelSpread{flights, between(0.02, 0.12) * mean_w[phase], 0.1, 20.0};
+                part.level_spread =
+                    mechanical::VarianceComponents{flights, between(0.02, 0.12) * mean_w[phase], 0.1, 20.0};
                 for (auto& flight : model.flights) {
                     const double flown_s = lasts_s[phase] * between(0.85, 1.15);
                     flight.phases[phase] =
@@ -82,7 +83,7 @@ class MissionGenerator {
             problem.duration_is_stated[Phase::cruise] = true;
         }
         if (maybe(0.4)) problem.uncertainty.duration_sd_s[Phase::cruise] = between(5.0, 60.0);
-        if (maybe(0.3)) problem.phase_clock = mechanical::PhaseClock::absolute;
+        if (maybe(0.3)) problem.phase_clock = mechanical::PhaseTimeScaling::absolute;
         kind_ = of_flights ? "model's flights, " : "stated, ";
     }
 
@@ -142,7 +143,7 @@ class MissionGenerator {
         auto& problem = made.problem;
         auto flown = with_minimum_energy_schedule(problem);
         const auto left_percent = [&] {
-            return landing_quantile(flown, find_spreads(flown), made.probability).left_percent;
+            return landing_quantile(flown, collect_uncertainty(flown), made.probability).left_percent;
         };
         double least_percent = left_percent();
         while (least_percent < 10.0) {  // too many fail
@@ -150,8 +151,8 @@ class MissionGenerator {
             least_percent = left_percent();
         }
         for (auto& segment : flown.schedule) segment.run.front().qos = {fps_.back()};
-        const double most_percent = std::max(left_percent(), 0.0);
-        problem.reserve_soc_percent = most_percent + between(0.3, 0.7) * (least_percent - most_percent);
+        const double max_percent = std::max(left_percent(), 0.0);
+        problem.reserve_soc_percent = max_percent + between(0.3, 0.7) * (least_percent - max_percent);
     }
 
     const std::vector<double> fps_{5.0, 10.0, 16.0, 25.0, 32.0};

@@ -21,31 +21,31 @@ struct MotionTruth {
 };
 
 struct MadeUpMotion {
-    mechanical::FlightMotion motion;
+    mechanical::BinnedFlight motion;
     double level = 0.0;
 };
 
-/// A flight of so many bins of 30 s: the first climbs at 3 m/s, the last descends; between, the airspeed wanders about a
-/// mean of its own.
+/// A flight of so many bins of 30 s: the first climbs at 3 m/s, the last descends; between, the airspeed wanders about
+/// a mean of its own.
 inline MadeUpMotion made_up_motion(const std::string& name, std::size_t bins, const MotionTruth& truth,
                                    std::mt19937& random) {
     std::normal_distribution<double> normal;
     MadeUpMotion made{{name, {}, true, ""}, truth.level_sd * normal(random)};
     const double own_speed = 13.0 + 1.2 * normal(random);
-    const double kept = std::exp(-mechanical::usual_bin_s / truth.correlation_s);
+    const double kept = std::exp(-mechanical::default_bin_s / truth.correlation_s);
     double drift = truth.drift_sd_w * normal(random);
     double gust = normal(random);
     for (std::size_t i = 0; i < bins; ++i) {
-        mechanical::MotionBin bin;
+        mechanical::FlightBin bin;
         const bool first = i == 0;
         const bool last = i + 1 == bins;
         bin.phase = first ? flight::Phase::takeoff : last ? flight::Phase::landing : flight::Phase::cruise;
-        bin.start_s = mechanical::usual_bin_s * static_cast<double>(i);
-        bin.duration_s = mechanical::usual_bin_s;
+        bin.start_s = mechanical::default_bin_s * static_cast<double>(i);
+        bin.duration_s = mechanical::default_bin_s;
         bin.samples = 27;
         bin.airspeed_m_per_s = own_speed + gust;
         const double climb = first ? 3.0 : last ? -2.5 : 0.4 * normal(random);
-        bin.values = mechanical::terms_of({bin.airspeed_m_per_s, climb, 1.0 + 0.1 * std::abs(normal(random))});
+        bin.values = mechanical::term_values({bin.airspeed_m_per_s, climb, 1.0 + 0.1 * std::abs(normal(random))});
         const double model_w = truth.drag * bin.values[mechanical::PowerTerm::drag] +
                                truth.climb * bin.values[mechanical::PowerTerm::climb] +
                                truth.descent * bin.values[mechanical::PowerTerm::descent];
@@ -75,10 +75,10 @@ inline mechanical::PhysicalModel drag_and_climb_model() {
     return model;
 }
 
-inline std::vector<mechanical::FlightMotion> made_up_motions(std::size_t flights, std::size_t bins,
+inline std::vector<mechanical::BinnedFlight> made_up_motions(std::size_t flights, std::size_t bins,
                                                              const MotionTruth& truth, unsigned seed) {
     std::mt19937 random(seed);
-    std::vector<mechanical::FlightMotion> motions;
+    std::vector<mechanical::BinnedFlight> motions;
     for (std::size_t i = 0; i < flights; ++i)
         motions.push_back(made_up_motion("flight" + std::to_string(i), bins, truth, random).motion);
     return motions;

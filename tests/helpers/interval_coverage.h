@@ -77,7 +77,7 @@ inline Coverage coverage_of(flight::Phase phase, const CoverageCase& made, unsig
         mechanical::PhaseFit fit;
         try {
             fit = fit_phase(phase, flights, {.loss = made.loss});
-        } catch (const NoAnswerError&) {
+        } catch (const NoResultError&) {
             ++coverage.without_answer;
             continue;
         }
@@ -99,7 +99,7 @@ inline Coverage coverage_of(flight::Phase phase, const CoverageCase& made, unsig
         half_widths_w.push_back(width_w / 2.0);
         a0_half_widths_w.push_back((a0.high - a0.low) / 2.0);
         curve_errors_w.push_back(std::sqrt(square_w2));
-        coverage.mean_curves += fit.mean_curve ? 1 : 0;
+        coverage.mean_curves += fit.is_frequency_averaged ? 1 : 0;
         ++coverage.fits;
     }
     const auto fits = static_cast<double>(coverage.fits);
@@ -133,7 +133,7 @@ inline RegularSeries coverage_of_regular(flight::Phase phase, std::size_t fits, 
             double square_w2 = 0.0;
             for (std::size_t i = 0; i < points; ++i) square_w2 += std::pow(fitted_w[i] - true_w[i], 2) / points;
             found.worst_curve_error_w = std::max(found.worst_curve_error_w, std::sqrt(square_w2));
-        } catch (const NoAnswerError&) {
+        } catch (const NoResultError&) {
             ++found.without_answer;
         }
     }

@@ -29,7 +29,7 @@ inline mechanical::PhaseSamples record(const mechanical::PhaseModel& phase, cons
                                        std::mt19937& random, const std::string& flight = "flight") {
     std::normal_distribution<double> noise(0.0, 1.0);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
-    const auto model = flown_model(phase, recording.duration_s, mechanical::PhaseClock::stretched);
+    const auto model = time_scaled_model(phase, recording.duration_s, mechanical::PhaseTimeScaling::stretched);
     mechanical::PhaseSamples samples{flight, recording.duration_s, {}, {}};
     for (int i = 0; (i + 0.5) * recording.interval_s <= recording.duration_s; ++i) {
         const double time_s = (i + 0.5) * recording.interval_s;

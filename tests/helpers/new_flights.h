@@ -4,7 +4,7 @@
 #include "base/units.h"
 #include "mechanical/model_fit.h"
 #include "mission/plan.h"
-#include "mission/sampling/flown_landing.h"
+#include "mission/sampling/flight_outcome.h"
 #include "mission/sampling/landing_quantile.h"
 #include "mission/simulation.h"
 
@@ -50,16 +50,16 @@ class UnknownAircraft {
             problem.reserve_soc_percent = least_percent = reserve_percent();
             auto plan = plan_mission(problem, trial.probability);
             if (!plan.plan.feasible) return std::nullopt;
-            promised = plan.flown;
+            promised = plan.mission;
         } else {
             promised = with_highest_quality(problem);
-            auto spreads = find_spreads(promised);
+            auto spreads = collect_uncertainty(promised);
             if (trial.as_if_known) spreads.of_flights.clear();
             least_percent = landing_quantile(promised, spreads, trial.probability).left_percent;
         }
         std::size_t kept = 0;
         for (std::size_t i = 0; i < trial.new_flights; ++i)
-            if (land_next(promised).left_percent >= least_percent) ++kept;
+            if (land_next(promised).remaining_percent >= least_percent) ++kept;
         return static_cast<double>(kept) / static_cast<double>(trial.new_flights);
     }
 
@@ -109,7 +109,7 @@ class UnknownAircraft {
             }
             const auto weights = flight_weights(fit, phase, {});
             model.phases[phase] = average_phase(fit, weights);
-            model.phases[phase].level_spread = mechanical::LevelSpread{flights, sample_sd(levels_w), 0.1, 20.0};
+            model.phases[phase].level_spread = mechanical::VarianceComponents{flights, sample_sd(levels_w), 0.1, 20.0};
             for (std::size_t i = 0; i < flights; ++i)
                 model.flights[i].phases[phase] = {weights[i], flown[i].duration_s[phase], 0.1, 100, levels_w[i]};
         }
@@ -185,19 +185,19 @@ class UnknownAircraft {
         }
         const auto mission = with_highest_quality(problem_of(std::move(model)));
         return *simulate(mission).summary.final_soc_percent +
-               3.0 * units::percent_of(units::wh_from_joule(std::sqrt(variance_j2)), full_energy_wh(mission.battery));
+               3.0 * units::percentage(units::wh_from_joule(std::sqrt(variance_j2)), full_energy_wh(mission.battery));
     }
 
-    mission::Landing land_next(const mission::Mission& promised) {
+    mission::FlightOutcome land_next(const mission::Mission& promised) {
         const auto flown = fly();
-        auto flight = mission::without_evidence(promised);
+        auto flight = mission::without_model_metadata(promised);
         flight.duration_s = flown.duration_s;
         for (const auto phase : flight::all_phases) {
             flight.mechanical->phases[phase].fourier = curve_of(phase, flown);
             flight.mechanical->phases[phase].duration_s = flown.duration_s[phase];
         }
         const auto schedule = rescale_to_flown_durations(promised.schedule, promised.duration_s, flown.duration_s);
-        return mission::land({flight, flight.battery, load_segments(flight, schedule)});
+        return mission::simulate_flight({flight, flight.battery, load_segments(flight, schedule)});
     }
 
     std::mt19937 random_;

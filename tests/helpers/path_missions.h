@@ -39,8 +39,9 @@ inline mission::PathElement path_element(std::variant<mission::Leg, mission::Cir
 inline mission::Mission path_mission(mission::FlightPath path, const mission::Wind& wind = {}) {
     auto mission = steady_mission();
     mission.mechanical->physical = made_up_wing();
-    auto plan = std::make_shared<const mission::PathPlan>(mission::PathPlan{std::move(path), wind, made_up_wing()});
-    mission.cruise_path = fly_cruise(plan, wind, mission::ForbiddenLeg::refuse);
+    auto plan =
+        std::make_shared<const mission::PlannedPath>(mission::PlannedPath{std::move(path), wind, made_up_wing()});
+    mission.cruise_path = compute_cruise(plan, wind, mission::InfeasibleLegPolicy::refuse);
     mission.cruise_level = mechanical::ConstantPower{mean_power_w(*mission.cruise_path), std::nullopt, 0.0};
     const double cruise_s = duration_s(*mission.cruise_path);
     mission.duration_s[flight::Phase::cruise] = cruise_s;

@@ -48,7 +48,8 @@ inline mechanical::MeasuredFlight flight_of_model(const std::string& name, const
     return flight_with_power(
         name, flown_s,
         [&](flight::Phase phase, double time_s) {
-            const auto curve = flown_model(mission.mechanical->phases[phase], flown_s[phase], mission.phase_clock);
+            const auto curve =
+                time_scaled_model(mission.mechanical->phases[phase], flown_s[phase], mission.phase_clock);
             return factor * power_w(curve, time_s);
         },
         step_s);

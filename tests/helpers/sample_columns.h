@@ -1,7 +1,7 @@
 #pragma once
 
-#include "flight/chosen_track.h"
 #include "flight/flight_series.h"
+#include "flight/selected_track.h"
 #include "flight/series_file.h"
 
 #include <string>
@@ -54,7 +54,7 @@ inline SampleColumns columns_of(const flight::FlightSeries& series) {
     SampleColumns columns;
     columns.time_s = power_track(series).time_s;
     for (const auto& [column, values] : named_columns()) {
-        columns.*values = chosen_at(series, column, columns.time_s);
+        columns.*values = sample_selected_track(series, column, columns.time_s);
     }
     return columns;
 }

@@ -44,7 +44,7 @@ inline batch::BatchFlights batch(const std::filesystem::path& input, const std::
     options.out = out;
     options.jobs = jobs;
     const auto plan = batch::plan_batch(batch::find_logs({input.string()}), out, prune);
-    refuse_files_of_others(plan, out);
+    refuse_foreign_files(plan, out);
     prepare_folder(plan, out);
     auto flights = run_batch(plan.logs, options, [](std::size_t, std::size_t, const batch::BatchFlight&) {});
     write_file_atomically(out / "flights.csv", batch::catalogue_csv(flights));

@@ -22,8 +22,8 @@ struct SmallMission {
     std::string kind;  ///< for people
 };
 
-/// Missions of four to nine slots with two or three components, on Thévenin batteries of all sorts: with and without dwell
-/// times, cut-off voltages, fixed stretches, reserves and a full pack.
+/// Missions of four to nine slots with two or three components, on Thévenin batteries of all sorts: with and without
+/// dwell times, cut-off voltages, fixed stretches, reserves and a full pack.
 class SmallMissionGenerator {
   public:
     explicit SmallMissionGenerator(unsigned seed) : random_(seed) {}
@@ -148,11 +148,11 @@ class SmallMissionGenerator {
     }
 
     static double least_voltage_v(const mission::PlanningProblem& problem) {
-        double least_v = std::numeric_limits<double>::infinity();
+        double min_v = std::numeric_limits<double>::infinity();
         for (const auto& row : simulated_least(problem).curve.rows) {
-            if (row.current_a > 0.0) least_v = std::min(least_v, row.terminal_voltage_v);
+            if (row.current_a > 0.0) min_v = std::min(min_v, row.terminal_voltage_v);
         }
-        return least_v;
+        return min_v;
     }
 
     std::mt19937 random_;
@@ -160,21 +160,21 @@ class SmallMissionGenerator {
 
 inline SmallMission small_mission(unsigned seed) { return SmallMissionGenerator(seed).make(); }
 
-/// Every schedule of a mission of few slots, as the discharge of the battery has it. Left out is only what something else
-/// that may go on alike has more charge, less RC voltage and more utility than.
+/// Every schedule of a mission of few slots, as the discharge of the battery has it. Left out is only what something
+/// else that may go on alike has more charge, less RC voltage and more utility than.
 class EverySchedule {
   public:
-    EverySchedule(const mission::PlanningProblem& problem, const mission::Planner& planner)
-        : problem_(problem), slots_(mission::slots_of(problem)), load_(mission::load_of(problem)) {
+    EverySchedule(const mission::PlanningProblem& problem, const mission::PlanningTables& planner)
+        : problem_(problem), slots_(mission::make_slots(problem)), load_(mission::make_mission_load(problem)) {
         const auto& runs = planner.depletions.configurations;
         for (std::size_t c = 0; c < runs.size(); ++c) choices_.push_back({runs[c], planner.utility_per_s[c]});
         free_choices_ = planner.free_choices;
         fly_least();
     }
 
-    /// The most utility a second of those that land with the reserve; none if none does. Only what has more than `known`
-    /// is looked for, if that is the utility of one that does.
-    std::optional<double> most_utility(std::optional<double> known = std::nullopt) const {
+    /// The most utility a second of those that land with the reserve; none if none does. Only what has more than
+    /// `known` is looked for, if that is the utility of one that does.
+    std::optional<double> max_utility(std::optional<double> known = std::nullopt) const {
         std::map<Run, std::vector<State>> now{{Run{}, {State{problem_.initial_soc_percent, 0.0, 0.0}}}};
         double duration_s = 0.0;
         for (std::size_t i = 0; i < slots_.size(); ++i) {

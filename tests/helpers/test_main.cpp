@@ -1,5 +1,5 @@
-// The main of every test program. `--file=mission/plan_test.cpp` runs the tests of one source file; suites that are named
-// ...Study take minutes and run with `--studies` only. Exit code 77 where a test was skipped and none failed.
+// The main of every test program. `--file=mission/plan_test.cpp` runs the tests of one source file; suites that are
+// named ...Study take minutes and run with `--studies` only. Exit code 77 where a test was skipped and none failed.
 
 #include <string>
 #include <string_view>

@@ -16,8 +16,8 @@
 /// Logs through the live watch.
 namespace flightwatt::test {
 
-inline live::PredictionBasis wing_basis(double remaining_s = 300.0) {
-    live::PredictionBasis basis;
+inline live::PredictionInput wing_basis(double remaining_s = 300.0) {
+    live::PredictionInput basis;
     basis.model = mechanical::read_mechanical_model(source_dir() / "fits/mechanical/synthetic-wing.toml");
     basis.landing_s = basis.model.phases[flight::Phase::landing].duration_s;
     basis.remaining_s = remaining_s;
@@ -52,9 +52,9 @@ inline void receive_all(live::LiveFlight& flight, const std::vector<live::Incomi
 
 /// What predict says of the log at a moment.
 inline live::Prediction predicted(const std::filesystem::path& log, double until_s,
-                                  const live::PredictionBasis& basis) {
-    const auto series = cut_series(flight::read_flight(log), until_s);
-    live::Remarks remarks;
+                                  const live::PredictionInput& basis) {
+    const auto series = truncate_series(flight::read_flight(log), until_s);
+    live::Diagnostics remarks;
     return predict_flight(basis, mechanical::progress_at(series, until_s), series, remarks);
 }
 
@@ -62,7 +62,7 @@ inline void expect_same(const live::Prediction& watched, const live::Prediction&
     EXPECT_EQ(watched.flown.lift_off_s, expected.flown.lift_off_s);
     EXPECT_EQ(watched.flown.cruise_start_s, expected.flown.cruise_start_s);
     EXPECT_EQ(watched.flown.energy_wh, expected.flown.energy_wh);
-    EXPECT_EQ(watched.rest.energy_wh, expected.rest.energy_wh);
+    EXPECT_EQ(watched.remaining_energy.energy_wh, expected.remaining_energy.energy_wh);
     EXPECT_EQ(watched.interval.low_wh, expected.interval.low_wh);
     EXPECT_EQ(watched.interval.high_wh, expected.interval.high_wh);
     ASSERT_EQ(watched.battery.has_value(), expected.battery.has_value());

@@ -80,7 +80,7 @@ PredictorSetup setup_of(int argc, char** argv) {
         setup.battery_file = argv[4];
     } else {
         setup.mission_file = argv[2];
-        setup.decides = argc == 4;
+        setup.replan = argc == 4;
     }
     return setup;
 }
@@ -103,18 +103,18 @@ void print(const std::vector<Look>& looks, bool predicts) {
     std::size_t most = 0;
     std::size_t sum = 0;
     double sum_ms = 0.0;
-    double most_ms = 0.0;
+    double max_ms = 0.0;
     for (const auto& look : looks) {
         if (look.predicts != predicts) continue;
         ++count;
         sum += look.allocations;
         most = std::max(most, look.allocations);
         sum_ms += look.ms;
-        most_ms = std::max(most_ms, look.ms);
+        max_ms = std::max(max_ms, look.ms);
     }
     if (count == 0) return;
     std::printf("looks %s a prediction: %zu, allocations mean %zu, most %zu, processor mean %.2f, most %.2f ms\n",
-                predicts ? "with" : "without", count, sum / count, most, sum_ms / static_cast<double>(count), most_ms);
+                predicts ? "with" : "without", count, sum / count, most, sum_ms / static_cast<double>(count), max_ms);
 }
 
 }  // namespace
@@ -149,7 +149,7 @@ int main(int argc, char** argv) {
         looked_at_s = time_s;
         const auto before_look = allocations.count;
         const double start_ms = processor_ms();
-        const bool predicts = predictor.look().landing.has_value();
+        const bool predicts = predictor.update().landing.has_value();
         looks.push_back({allocations.count - before_look, processor_ms() - start_ms, predicts});
         if (i < lines.size() / 2) settled_bytes = allocations.live_bytes;
         most_left_bytes = std::max(most_left_bytes, allocations.live_bytes);

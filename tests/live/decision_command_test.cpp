@@ -17,7 +17,7 @@ TEST(DecisionCommand, RunsWithTheDecisionInItsEnvironment) {
     command.run({{"FLIGHTWATT_RUN", "first"}});
     EXPECT_TRUE(command.wait(long_ms));
     EXPECT_EQ(read_file(out), "first");
-    EXPECT_FALSE(command.look());
+    EXPECT_FALSE(command.poll());
 }
 
 TEST(DecisionCommand, RunsOneAtATimeAndThenTheLatest) {
@@ -35,11 +35,11 @@ TEST(DecisionCommand, SaysHowItEnded) {
     DecisionCommand fails("exit 3");
     fails.run({});
     EXPECT_TRUE(fails.wait(long_ms));
-    EXPECT_EQ(fails.look(), "exit code 3");
+    EXPECT_EQ(fails.poll(), "exit code 3");
     DecisionCommand killed("kill -KILL $$");
     killed.run({});
     EXPECT_TRUE(killed.wait(long_ms));
-    EXPECT_EQ(killed.look(), "ended by SIGKILL");
+    EXPECT_EQ(killed.poll(), "ended by SIGKILL");
 }
 
 }  // namespace

@@ -23,17 +23,17 @@ TEST(DisturbedLiveFlight, AStartInMidFlightPredictsWithWhatIsKnown) {
     const auto state_from = [&](double from_s) {
         LiveFlight flight(test::options_of(log), basis, nullptr);
         test::receive_all(flight, test::messages_of(log, 500.0, from_s));
-        return flight.look();
+        return flight.update();
     };
     const auto whole = state_from(0.0);
     const auto state = state_from(200.0);
     EXPECT_TRUE(state.began_in_air);
     EXPECT_FALSE(state.lift_off_s);
-    ASSERT_TRUE(state.prediction) << state.waits_for;
+    ASSERT_TRUE(state.prediction) << state.no_prediction_reason;
     const auto width = [](const LiveState& of) {
         return of.prediction->interval.high_wh - of.prediction->interval.low_wh;
     };
-    EXPECT_TRUE(state.prediction->interval.contains(whole.prediction->rest.energy_wh));
+    EXPECT_TRUE(state.prediction->interval.contains(whole.prediction->remaining_energy.energy_wh));
     EXPECT_GT(width(state), 0.8 * width(whole)) << "the time that is left is told";
     EXPECT_FALSE(state.battery->soc_percent) << "its charge at the start is not known";
     EXPECT_NEAR(state.prediction->battery->expected.soc_now_percent, state.battery->soc_by_voltage_percent.value(),
@@ -43,7 +43,7 @@ TEST(DisturbedLiveFlight, AStartInMidFlightPredictsWithWhatIsKnown) {
     const auto counted = state_from(200.0);
     EXPECT_NEAR(counted.battery->soc_percent.value(), state_from(0.0).battery->soc_percent.value(), 0.5)
         << "by the autopilot's counter";
-    EXPECT_THAT(state_from(480.0).waits_for, testing::HasSubstr("seen from the air on"));
+    EXPECT_THAT(state_from(480.0).no_prediction_reason, testing::HasSubstr("seen from the air on"));
 }
 
 TEST(DisturbedLiveFlight, AStartInMidFlightDoesNotKnowHowFarTheMissionIs) {
@@ -54,10 +54,10 @@ TEST(DisturbedLiveFlight, AStartInMidFlightDoesNotKnowHowFarTheMissionIs) {
     const auto state_from = [&](double from_s) {
         LiveFlight flight(test::options_of(log), basis, nullptr);
         test::receive_all(flight, test::messages_of(log, 400.0, from_s));
-        return flight.look();
+        return flight.update();
     };
     const auto state = state_from(200.0);
-    ASSERT_TRUE(state.prediction) << state.waits_for;
+    ASSERT_TRUE(state.prediction) << state.no_prediction_reason;
     EXPECT_NEAR(state.prediction->remaining_s, 200.0, 1.0) << "half of 600 less the 200 that were seen";
     const double power_w = state.prediction->cruise.remaining_mean_w;
     const double landing_wh = state.prediction->landing.energy_wh;
@@ -65,8 +65,8 @@ TEST(DisturbedLiveFlight, AStartInMidFlightDoesNotKnowHowFarTheMissionIs) {
     EXPECT_GE(state.prediction->interval.high_wh, landing_wh + power_w * 400.0 / 3600.0);
     EXPECT_THAT(state.warnings, testing::Contains(testing::HasSubstr("how far the cruise had come is not known")));
     const auto climbing = state_from(75.0);
-    ASSERT_TRUE(climbing.prediction) << climbing.waits_for;
-    EXPECT_TRUE(climbing.prediction->interval.contains(state_from(0.0).prediction->rest.energy_wh));
+    ASSERT_TRUE(climbing.prediction) << climbing.no_prediction_reason;
+    EXPECT_TRUE(climbing.prediction->interval.contains(state_from(0.0).prediction->remaining_energy.energy_wh));
 }
 
 /// Everything that a bus brings beside the messages of the aircraft.
@@ -112,13 +112,13 @@ TEST(DisturbedLiveFlight, GarbageOtherAircraftAndDamageChangeNothing) {
                 break;
         }
     }
-    const auto expected = clean.look();
-    const auto state = disturbed.look();
+    const auto expected = clean.update();
+    const auto state = disturbed.update();
     EXPECT_EQ(state.aircraft_id, expected.aircraft_id);
-    ASSERT_TRUE(state.prediction && expected.prediction) << state.waits_for;
-    EXPECT_EQ(state.prediction->rest.energy_wh, expected.prediction->rest.energy_wh);
+    ASSERT_TRUE(state.prediction && expected.prediction) << state.no_prediction_reason;
+    EXPECT_EQ(state.prediction->remaining_energy.energy_wh, expected.prediction->remaining_energy.energy_wh);
     EXPECT_EQ(state.prediction->flown.energy_wh, expected.prediction->flown.energy_wh);
-    EXPECT_GT(state.others.at("99"), 0U);
+    EXPECT_GT(state.other_senders.at("99"), 0U);
     EXPECT_FALSE(state.unusable.empty());
     EXPECT_EQ(state.restarts, 0U);
 }
@@ -135,12 +135,12 @@ TEST(DisturbedLiveFlight, AnotherAircraftsClockChangesNothing) {
         const double step_s = ++i / 50 % 2 == 0 ? 300.0 : 0.0;
         disturbed.receive({0.01 * static_cast<double>(i % 3000) + step_s, "99 ENERGY 90 9.1 30 270 1 10"}, 0.0);
     }
-    const auto expected = clean.look();
-    const auto state = disturbed.look();
+    const auto expected = clean.update();
+    const auto state = disturbed.update();
     EXPECT_EQ(state.restarts, 0U);
     EXPECT_NEAR(state.time_s, expected.time_s, 0.1);
-    ASSERT_TRUE(state.prediction && expected.prediction) << state.waits_for;
-    EXPECT_EQ(state.prediction->rest.energy_wh, expected.prediction->rest.energy_wh);
+    ASSERT_TRUE(state.prediction && expected.prediction) << state.no_prediction_reason;
+    EXPECT_EQ(state.prediction->remaining_energy.energy_wh, expected.prediction->remaining_energy.energy_wh);
     EXPECT_EQ(state.prediction->battery->expected.soc_percent, expected.prediction->battery->expected.soc_percent);
 }
 
@@ -148,14 +148,14 @@ TEST(DisturbedLiveFlight, AnAircraftIsSilentThoughOthersTalk) {
     const auto log = test::sample(1);
     LiveFlight flight(test::options_of(log), test::wing_basis(), nullptr);
     test::receive_all(flight, test::messages_of(log, 300.0));
-    EXPECT_EQ(flight.look().alarms.size(), 0U);
+    EXPECT_EQ(flight.update().alarms.size(), 0U);
     for (int i = 0; i <= 40; ++i) flight.receive({300.0 + i, "ground DATALINK_REPORT 7 0 0 0 0 0 0"}, 0.0);
-    const auto state = flight.look();
+    const auto state = flight.update();
     EXPECT_NEAR(state.time_s, 340.0, 4.5) << "less the five lines that a gap takes to be believed";
     ASSERT_EQ(state.alarms.size(), 1U);
     EXPECT_EQ(state.alarms.front().kind, "silence");
     test::receive_all(flight, test::messages_of(log, 350.0, 340.0));
-    EXPECT_EQ(flight.look().alarms.size(), 0U);
+    EXPECT_EQ(flight.update().alarms.size(), 0U);
 }
 
 TEST(DisturbedLiveFlight, GapsAndLostMessagesDoNotEndIt) {
@@ -167,8 +167,8 @@ TEST(DisturbedLiveFlight, GapsAndLostMessagesDoNotEndIt) {
         const bool in_gap = time_s > 250.0 && time_s < 272.0;
         if (!in_gap && random() % 2 == 0) flight.receive(message, 0.0);
     }
-    const auto state = flight.look();
-    ASSERT_TRUE(state.prediction) << state.waits_for;
+    const auto state = flight.update();
+    ASSERT_TRUE(state.prediction) << state.no_prediction_reason;
     const auto whole = test::predicted(log, 399.0, test::wing_basis());
     EXPECT_NEAR(state.prediction->flown.energy_wh, whole.flown.energy_wh, 0.05 * whole.flown.energy_wh);
 }
@@ -182,11 +182,11 @@ TEST(DisturbedLiveFlight, AClockThatIsSetAheadAddsNoEnergy) {
         if (arrival_s > 250.0) *message.time_s += 3600.0;
         flight.receive(message, arrival_s);
     }
-    const auto state = flight.look();
-    ASSERT_TRUE(state.prediction) << state.waits_for;
+    const auto state = flight.update();
+    ASSERT_TRUE(state.prediction) << state.no_prediction_reason;
     const auto whole = test::predicted(log, state.prediction->flown.until_s, test::wing_basis());
     EXPECT_NEAR(state.prediction->flown.energy_wh, whole.flown.energy_wh, 0.01 * whole.flown.energy_wh);
-    EXPECT_TRUE(whole.interval.contains(state.prediction->rest.energy_wh));
+    EXPECT_TRUE(whole.interval.contains(state.prediction->remaining_energy.energy_wh));
     EXPECT_THAT(state.warnings, testing::Contains(testing::HasSubstr("set ahead by 3600 s")));
     EXPECT_EQ(state.restarts, 0U);
 }
@@ -200,13 +200,13 @@ TEST(DisturbedLiveFlight, ALogThatBeginsAnewIsAnotherFlight) {
     };
     LiveFlight flight(std::move(options), test::wing_basis(), nullptr);
     test::receive_all(flight, test::messages_of(log, 1000.0));
-    EXPECT_TRUE(flight.look().landed);
+    EXPECT_TRUE(flight.update().landed);
     test::receive_all(flight, test::messages_of(log, 300.0));
-    const auto state = flight.look();
+    const auto state = flight.update();
     EXPECT_EQ(state.restarts, 1U);
     EXPECT_EQ(state.sortie, 2U);
     EXPECT_EQ(anew.size(), 1U);
-    ASSERT_TRUE(state.prediction) << state.waits_for;
+    ASSERT_TRUE(state.prediction) << state.no_prediction_reason;
     test::expect_same(*state.prediction, test::predicted(log, state.prediction->flown.until_s, test::wing_basis()));
 }
 
@@ -220,7 +220,8 @@ TEST(DisturbedLiveFlight, WhatArrivesWithoutATimeGetsItsArrivals) {
         message.time_s.reset();
         untimed.receive(message, arrival_s);
     }
-    EXPECT_EQ(timed.look().prediction->rest.energy_wh, untimed.look().prediction->rest.energy_wh);
+    EXPECT_EQ(timed.update().prediction->remaining_energy.energy_wh,
+              untimed.update().prediction->remaining_energy.energy_wh);
 }
 
 /// Of a clean stream: some lost, some doubled, some a little late, and lines of any bytes between them.
@@ -249,14 +250,14 @@ TEST(DisturbedLiveFlight, ADamagedStreamNeitherEndsItNorInventsAnything) {
         std::mt19937 random(seed);
         LiveFlight flight(test::options_of(log), test::wing_basis(), nullptr);
         test::receive_all(flight, damaged_stream(clean, random));
-        const auto state = flight.look();
-        ASSERT_TRUE(state.prediction) << seed << ": " << state.waits_for;
+        const auto state = flight.update();
+        ASSERT_TRUE(state.prediction) << seed << ": " << state.no_prediction_reason;
         EXPECT_EQ(state.aircraft_id, "7");
         EXPECT_EQ(state.sortie, 1U) << seed;
         EXPECT_EQ(state.restarts, 0U) << seed;
         EXPECT_NEAR(state.prediction->flown.lift_off_s, whole.flown.lift_off_s, 2.0) << seed;
         EXPECT_NEAR(state.prediction->flown.energy_wh, whole.flown.energy_wh, 0.03 * whole.flown.energy_wh) << seed;
-        EXPECT_TRUE(whole.interval.contains(state.prediction->rest.energy_wh)) << seed;
+        EXPECT_TRUE(whole.interval.contains(state.prediction->remaining_energy.energy_wh)) << seed;
     }
 }
 
@@ -268,14 +269,14 @@ TEST(DisturbedLiveFlight, GarbageAloneIsNoFlight) {
             std::string text(random() % 80, ' ');
             for (auto& c : text) c = static_cast<char>(random() % 256);
             flight.receive({0.1 * i, std::move(text)}, 0.1 * i);
-            if (i % 500 == 0) flight.look();
+            if (i % 500 == 0) flight.update();
         }
-        const auto state = flight.look();
+        const auto state = flight.update();
         EXPECT_FALSE(state.prediction);
         EXPECT_FALSE(state.phase);
         EXPECT_FALSE(state.energy_wh);
         EXPECT_EQ(state.sortie, 0U);
-        EXPECT_FALSE(state.waits_for.empty());
+        EXPECT_FALSE(state.no_prediction_reason.empty());
     }
 }
 

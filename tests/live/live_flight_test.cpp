@@ -1,6 +1,6 @@
 #include "live/live_flight.h"
 
-#include "flight/chosen_track.h"
+#include "flight/selected_track.h"
 #include "helpers/path_missions.h"
 #include "helpers/sample_logs.h"
 #include "helpers/watched_logs.h"
@@ -32,13 +32,13 @@ TEST(LiveFlight, SaysWhatPredictSaysOfTheLogAtThatMoment) {
         const auto messages = test::messages_of(log, 400.0);
         for (std::size_t i = 0; i < messages.size(); ++i) {
             flight.receive(messages[i], 0.0);
-            if (i % 2000 == 0) flight.look();
+            if (i % 2000 == 0) flight.update();
         }
-        const auto state = flight.look();
-        ASSERT_TRUE(state.prediction) << state.waits_for;
+        const auto state = flight.update();
+        ASSERT_TRUE(state.prediction) << state.no_prediction_reason;
         EXPECT_EQ(state.phase, Phase::cruise);
         test::expect_same(*state.prediction, test::predicted(log, state.prediction->flown.until_s, basis));
-        EXPECT_GT(state.battery->reserve_in_s.value(), 0.0);
+        EXPECT_GT(state.battery->time_to_reserve_s.value(), 0.0);
     }
 }
 
@@ -51,7 +51,7 @@ TEST(LiveFlight, WarnsOfACapacityThatContradictsTheFlights) {
             std::make_shared<battery::FlightEstimate>(battery::FlightEstimate{2.0, {1.8, high_ah}});
         LiveFlight flight(test::options_of(log), basis, nullptr);
         test::receive_all(flight, test::messages_of(log, 100.0));
-        return flight.look().warnings;
+        return flight.update().warnings;
     };
     EXPECT_THAT(
         warnings_with(2.4),
@@ -62,8 +62,8 @@ TEST(LiveFlight, WarnsOfACapacityThatContradictsTheFlights) {
 /// A path of legs where the flight was every 10 s.
 std::shared_ptr<const mission::PathForecast> path_of(const std::filesystem::path& log, double from_s, double to_s) {
     const auto series = flight::read_flight(log);
-    const auto east = chosen_track(series, "east_m");
-    const auto north = chosen_track(series, "north_m");
+    const auto east = select_track(series, "east_m");
+    const auto north = select_track(series, "north_m");
     mission::FlightPath path;
     constexpr double leg_s = 10.0;
     for (double time_s = from_s; time_s < to_s; time_s += leg_s) {
@@ -72,7 +72,7 @@ std::shared_ptr<const mission::PathForecast> path_of(const std::filesystem::path
         const double course_deg = std::atan2(east_m, north_m) * 180.0 / 3.14159265358979;
         path.elements.push_back(test::path_element(mission::Leg{std::hypot(east_m, north_m), course_deg}, 10.0));
     }
-    return std::make_shared<const mission::PathForecast>(mission::PathPlan{path, {}, test::made_up_wing()});
+    return std::make_shared<const mission::PathForecast>(mission::PlannedPath{path, {}, test::made_up_wing()});
 }
 
 TEST(LiveFlight, SaysWhatPredictSaysAlongAPath) {
@@ -84,11 +84,11 @@ TEST(LiveFlight, SaysWhatPredictSaysAlongAPath) {
     basis.path = path_of(log, cruise_s, cruise_s + 400.0);
     LiveFlight flight(test::options_of(log), basis, nullptr);
     test::receive_all(flight, test::messages_of(log, 300.0));
-    const auto state = flight.look();
-    ASSERT_TRUE(state.prediction) << state.waits_for;
+    const auto state = flight.update();
+    ASSERT_TRUE(state.prediction) << state.no_prediction_reason;
     const auto expected = test::predicted(log, state.prediction->flown.until_s, basis);
     test::expect_same(*state.prediction, expected);
-    EXPECT_TRUE(expected.is_sighted);
+    EXPECT_TRUE(expected.is_from_position);
     EXPECT_EQ(state.prediction->on_path_s, expected.on_path_s);
     double planned_s = 0.0;
     for (int leg = 0; leg < static_cast<int>((300.0 - cruise_s) / 10.0); ++leg)
@@ -103,8 +103,8 @@ TEST(LiveFlight, SaysWhatPredictSaysOfRealFlights) {
         const auto basis = test::wing_basis();
         LiveFlight flight(test::options_of(log), basis, nullptr);
         test::receive_all(flight, test::messages_of(log, 900.0));
-        const auto state = flight.look();
-        ASSERT_TRUE(state.prediction) << name << ": " << state.waits_for;
+        const auto state = flight.update();
+        ASSERT_TRUE(state.prediction) << name << ": " << state.no_prediction_reason;
         test::expect_same(*state.prediction, test::predicted(log, state.prediction->flown.until_s, basis));
     }
 }
@@ -114,27 +114,27 @@ TEST(LiveFlight, KnowsPhasesAndSaysWhatItWaitsFor) {
     LiveFlight flight(test::options_of(log), test::wing_basis(), nullptr);
     const auto state_at = [&](double from_s, double until_s) {
         test::receive_all(flight, test::messages_of(log, until_s, from_s));
-        return flight.look();
+        return flight.update();
     };
-    auto state = flight.look();
+    auto state = flight.update();
     EXPECT_TRUE(state.aircraft_id.empty());
-    EXPECT_FALSE(state.waits_for.empty());
+    EXPECT_FALSE(state.no_prediction_reason.empty());
     state = state_at(0.0, 50.0);
     EXPECT_FALSE(state.phase);
     EXPECT_EQ(state.sortie, 0U);
-    EXPECT_THAT(state.waits_for, testing::HasSubstr("has not taken off"));
+    EXPECT_THAT(state.no_prediction_reason, testing::HasSubstr("has not taken off"));
     state = state_at(50.001, 85.0);
     EXPECT_EQ(state.phase, Phase::takeoff);
-    EXPECT_THAT(state.waits_for, testing::HasSubstr("has not held its height"));
+    EXPECT_THAT(state.no_prediction_reason, testing::HasSubstr("has not held its height"));
     state = state_at(85.001, 300.0);
     EXPECT_EQ(state.phase, Phase::cruise);
-    EXPECT_NEAR(state.flight_s, 235.5, 2.0);
-    EXPECT_TRUE(state.waits_for.empty());
+    EXPECT_NEAR(state.flight_time_s, 235.5, 2.0);
+    EXPECT_TRUE(state.no_prediction_reason.empty());
     state = state_at(300.001, 1000.0);
     EXPECT_TRUE(state.landed);
     EXPECT_FALSE(state.phase);
     EXPECT_EQ(state.sortie, 1U);
-    EXPECT_THAT(state.waits_for, testing::HasSubstr("has landed"));
+    EXPECT_THAT(state.no_prediction_reason, testing::HasSubstr("has landed"));
     EXPECT_TRUE(flight.last_predicted().has_value());
 }
 
@@ -169,7 +169,7 @@ TEST(LiveFlight, ATouchAndGoIsNoLanding) {
             flight.receive(message, 0.0);
             if (*message.time_s < looked_s + 0.5) continue;
             looked_s = *message.time_s;
-            const auto state = flight.look();
+            const auto state = flight.update();
             EXPECT_GE(state.energy_wh.value_or(0.0), energy_wh - 0.05) << looked_s << " s, " << ground_s;
             energy_wh = state.energy_wh.value_or(0.0);
             EXPECT_LE(state.sortie, 1U);
@@ -184,11 +184,11 @@ TEST(LiveFlight, ALogThatEndsOrFallsSilentOnTheGroundHasLanded) {
     LiveFlight flight({}, std::nullopt, nullptr);
     for (const auto& message : touch_and_go(1.0, 0.0))
         if (*message.time_s < 605.0) flight.receive(message, 0.0);
-    EXPECT_FALSE(flight.look().landed);
-    EXPECT_FALSE(flight.look(20.0).landed);
-    EXPECT_TRUE(flight.look(31.0).landed) << "switched off";
+    EXPECT_FALSE(flight.update().landed);
+    EXPECT_FALSE(flight.update(20.0).landed);
+    EXPECT_TRUE(flight.update(31.0).landed) << "switched off";
     flight.end();
-    EXPECT_TRUE(flight.look().landed);
+    EXPECT_TRUE(flight.update().landed);
 }
 
 TEST(LiveFlight, ACruiseThatTakesLongerThanPlannedHasNoEndThatIsKnown) {
@@ -198,13 +198,13 @@ TEST(LiveFlight, ACruiseThatTakesLongerThanPlannedHasNoEndThatIsKnown) {
     basis.cruise_s = 150.0;
     LiveFlight flight(test::options_of(log), basis, nullptr);
     test::receive_all(flight, test::messages_of(log, 200.0));
-    ASSERT_TRUE(flight.look().prediction);
+    ASSERT_TRUE(flight.update().prediction);
     test::receive_all(flight, test::messages_of(log, 400.0, 200.001));
-    const auto state = flight.look();
+    const auto state = flight.update();
     EXPECT_FALSE(state.prediction);
-    EXPECT_THAT(state.waits_for, testing::HasSubstr("longer than the mission's 150 s"));
-    EXPECT_GT(state.battery->reserve_in_s.value(), 100.0);
-    EXPECT_FALSE(state.battery->chance_below);
+    EXPECT_THAT(state.no_prediction_reason, testing::HasSubstr("longer than the mission's 150 s"));
+    EXPECT_GT(state.battery->time_to_reserve_s.value(), 100.0);
+    EXPECT_FALSE(state.battery->probability_below_reserve);
     EXPECT_GT(state.expected_power_w.value(), 10.0);
 }
 
@@ -223,10 +223,10 @@ TEST(LiveFlight, MemoryIsBoundedAndSeveralSortiesAreCounted) {
             flight.receive(message, 0.0);
             if (*message.time_s < looked_s + 20.0) continue;
             looked_s = *message.time_s;
-            state = flight.look();
+            state = flight.update();
             EXPECT_LE(state.rows, 6000U);
         }
-        EXPECT_EQ(flight.look().sortie, static_cast<std::size_t>(sortie) + 1);
+        EXPECT_EQ(flight.update().sortie, static_cast<std::size_t>(sortie) + 1);
     }
     ASSERT_TRUE(flight.last_predicted());
     const auto& last = flight.last_predicted()->prediction.value();
@@ -239,7 +239,7 @@ TEST(LiveFlight, MemoryIsBoundedAndSeveralSortiesAreCounted) {
 
 TEST(LiveFlight, RaisesAlarms) {
     const auto log = test::sample(1);
-    const auto kinds_of = [&](PredictionBasis basis, double silent_s, double volts_less) {
+    const auto kinds_of = [&](PredictionInput basis, double silent_s, double volts_less) {
         LiveFlight flight(test::options_of(log), std::move(basis), nullptr);
         for (auto message : test::messages_of(log, 400.0)) {
             const auto at = message.text.find(" ENERGY ");
@@ -253,7 +253,7 @@ TEST(LiveFlight, RaisesAlarms) {
             flight.receive(message, 0.0);
         }
         std::vector<std::string> kinds;
-        for (const auto& alarm : flight.look(silent_s).alarms) kinds.push_back(alarm.kind);
+        for (const auto& alarm : flight.update(silent_s).alarms) kinds.push_back(alarm.kind);
         return kinds;
     };
     auto sound = test::wing_basis();
@@ -277,16 +277,17 @@ TEST(LiveFlight, TheChanceOfLandingBelowTheReserveFollowsTheInterval) {
         basis.limits.reserve_soc_percent = reserve_percent;
         LiveFlight flight(test::options_of(log), basis, nullptr);
         test::receive_all(flight, test::messages_of(log, 400.0));
-        return flight.look();
+        return flight.update();
     };
     const auto state = state_with(0.0);
     const double expected = state.prediction->battery->expected.soc_percent;
-    EXPECT_NEAR(state.battery->chance_below.value(), 0.0, 1e-9);
-    EXPECT_NEAR(state_with(expected).battery->chance_below.value(), 0.5, 0.02);
-    EXPECT_NEAR(state_with(state.prediction->battery->worst.soc_percent + 1e-6).battery->chance_below.value(), 0.025,
-                0.006)
+    EXPECT_NEAR(state.battery->probability_below_reserve.value(), 0.0, 1e-9);
+    EXPECT_NEAR(state_with(expected).battery->probability_below_reserve.value(), 0.5, 0.02);
+    EXPECT_NEAR(
+        state_with(state.prediction->battery->worst.soc_percent + 1e-6).battery->probability_below_reserve.value(),
+        0.025, 0.006)
         << "of the interval's high end, where the battery's capacity has no interval";
-    EXPECT_NEAR(state_with(99.0).battery->chance_below.value(), 1.0, 1e-9);
+    EXPECT_NEAR(state_with(99.0).battery->probability_below_reserve.value(), 1.0, 1e-9);
 }
 
 /// Against the sum over capacities of the chances with each.
@@ -303,7 +304,7 @@ TEST(LiveFlight, TheChanceOfLandingBelowTheReserveHoldsTheCapacitysSpread) {
         basis.battery->capacity_ah *= capacity_part;
         LiveFlight flight(test::options_of(test::sample(1)), basis, nullptr);
         test::receive_all(flight, messages);
-        return flight.look();
+        return flight.update();
     };
     const double expected = battery_with(0.0, 1.0, 0.0).prediction->battery->expected.soc_percent;
     for (const double sd_part : {0.01, 0.06}) {
@@ -316,10 +317,11 @@ TEST(LiveFlight, TheChanceOfLandingBelowTheReserveHoldsTheCapacitysSpread) {
                 const double weight = std::exp(-0.5 * z * z);
                 const auto state = battery_with(reserve_percent, 1.0 + z * sd_part, 0.0);
                 weights += weight;
-                chance += weight * state.battery->chance_below.value();
+                chance += weight * state.battery->probability_below_reserve.value();
             }
             const auto state = battery_with(reserve_percent, 1.0, sd_part);
-            EXPECT_NEAR(state.battery->chance_below.value(), chance / weights, 0.02) << sd_part << " " << above_percent;
+            EXPECT_NEAR(state.battery->probability_below_reserve.value(), chance / weights, 0.02)
+                << sd_part << " " << above_percent;
         }
     }
 }

@@ -12,9 +12,9 @@ namespace {
 
 using flight::Phase;
 
-mission::AnyMission read(const char* name) {
-    mission::MissionReading reading;
-    reading.may_lack_schedule = true;
+mission::MissionVariant read(const char* name) {
+    mission::MissionReadOptions reading;
+    reading.allow_unplanned = true;
     return mission::read_mission(test::source_dir() / "missions" / name, reading);
 }
 
@@ -40,7 +40,7 @@ TEST(LiveSchedule, CannotDecideWhereNothingMayBeChosen) {
 /// slots gets the better quality is often a tie.)
 TEST(LiveSchedule, DecidesAsTheAdaptivePolicyDoes) {
     const auto mission = read("paper/adaptive-replanned.toml");
-    const auto simulated = fly(mission::prepare(mission), {.output_s = 1.0});
+    const auto simulated = simulate_prepared(mission::prepare_mission(mission), {.output_s = 1.0});
     const auto timeline = mission::timeline_of(setup_of(mission).duration_s);
     LiveSchedule schedule(mission, true);
     double utility = 0.0;
@@ -63,7 +63,7 @@ TEST(LiveSchedule, DecidesAfterWhatIsLeft) {
     const auto with_much = full.at({Phase::cruise, 200.0}, 0.0, battery::BatteryState{80.0});
     const auto with_little = nearly_empty.at({Phase::cruise, 200.0}, 0.0, battery::BatteryState{10.0});
     ASSERT_TRUE(with_much && with_little);
-    EXPECT_GT(with_much->rest_utility.value(), with_little->rest_utility.value());
+    EXPECT_GT(with_much->remaining_utility_per_s.value(), with_little->remaining_utility_per_s.value());
     EXPECT_TRUE(with_much->keeps_reserve);
     EXPECT_FALSE(with_little->keeps_reserve);
     EXPECT_FALSE(LiveSchedule(mission, true).at({Phase::cruise, 0.0}, 0.0, std::nullopt)) << "of an unknown battery";

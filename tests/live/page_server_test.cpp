@@ -119,28 +119,27 @@ TEST_F(PageServerTest, KeepsAWholeFlightInBoundedMemory) {
     visitor.ask("GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n");
     const auto begin = visitor.hear_until("event: state");
     const auto kept = static_cast<std::size_t>(std::count(begin.begin(), begin.end(), '['));
-    EXPECT_LE(kept, PageServer::most_points + 1);
-    EXPECT_GE(kept, PageServer::most_points / 2);
+    EXPECT_LE(kept, PageServer::max_points + 1);
+    EXPECT_GE(kept, PageServer::max_points / 2);
     EXPECT_THAT(begin, HasSubstr("\"points\":[[0],"));
     EXPECT_THAT(begin, HasSubstr("[3999]]}"));
 }
 
 TEST_F(PageServerTest, BoundsItsConnectionsAndLosesThoseThatTakeNothing) {
     std::vector<std::unique_ptr<Visitor>> many;
-    for (std::size_t i = 0; i < PageServer::most_connections + 8; ++i) {
+    for (std::size_t i = 0; i < PageServer::max_connections + 8; ++i) {
         many.push_back(std::make_unique<Visitor>(port));
         many.back()->ask("GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n");
     }
     const auto refused = many.back()->hear_all();
     EXPECT_THAT(refused, StartsWith("HTTP/1.1 503 Service Unavailable\r\n"));
     EXPECT_THAT(refused, HasSubstr("Retry-After: "));
-    EXPECT_THAT(many[PageServer::most_connections - 1]->hear_until("event: state"), HasSubstr("200 OK"));
+    EXPECT_THAT(many[PageServer::max_connections - 1]->hear_until("event: state"), HasSubstr("200 OK"));
     server.publish("{\"t\":1}", "");
     EXPECT_THAT(many.front()->hear_until("{\"t\":1}"), HasSubstr("200 OK")) << "those that are open stay";
     EXPECT_THAT(answer_to("GET /state"), testing::EndsWith("{\"t\":1}\n"));
     std::vector<std::unique_ptr<Visitor>> silent;  // who never ask do not keep others out
-    for (std::size_t i = 0; i < 2 * PageServer::most_connections; ++i)
-        silent.push_back(std::make_unique<Visitor>(port));
+    for (std::size_t i = 0; i < 2 * PageServer::max_connections; ++i) silent.push_back(std::make_unique<Visitor>(port));
     EXPECT_THAT(answer_to("GET /"), StartsWith("HTTP/1.1 200"));
     // Nobody reads: what waits is bounded, and the last page is answered all the same.
     const std::string large(100'000, 'x');

@@ -13,28 +13,28 @@ namespace {
 using testing::HasSubstr;
 
 mission::MissionSetup setup_in(const std::string& file) {
-    mission::MissionReading reading;
-    reading.may_lack_schedule = true;
+    mission::MissionReadOptions reading;
+    reading.allow_unplanned = true;
     return setup_of(mission::read_mission(test::source_dir() / file, reading));
 }
 
 TEST(PredictionBasis, HoldsWhatAMissionSays) {
     const auto setup = setup_in("missions/synthetic/survey-path.toml");
-    const auto basis = mission_basis(setup, "survey-path.toml");
-    EXPECT_EQ(basis.cannot_predict, "");
+    const auto basis = input_from_mission(setup, "survey-path.toml");
+    EXPECT_EQ(basis.no_prediction_reason, "");
     ASSERT_NE(basis.path, nullptr);
     EXPECT_FALSE(basis.cruise_s);
     EXPECT_EQ(basis.landing_s, setup.duration_s[flight::Phase::landing]);
     EXPECT_EQ(basis.limits.reserve_soc_percent, setup.reserve_soc_percent);
     ASSERT_TRUE(basis.battery);
     EXPECT_EQ(basis.battery->capacity_ah, setup.battery.capacity_ah);
-    EXPECT_FALSE(path_basis(setup, "survey-path.toml").battery);
+    EXPECT_FALSE(path_input_from_mission(setup, "survey-path.toml").battery);
 }
 
 /// As in drawn flights: what the mission states is known, unless it says how far it is not.
 TEST(PredictionBasis, TheCapacityIsAsUncertainAsTheMissionSays) {
     auto setup = setup_in("missions/synthetic/survey-path.toml");
-    const auto interval_of = [&] { return mission_basis(setup, "m.toml").battery->intervals.capacity_ah; };
+    const auto interval_of = [&] { return input_from_mission(setup, "m.toml").battery->intervals.capacity_ah; };
     setup.capacity_is_stated = false;
     setup.battery.intervals.capacity_ah = battery::Interval{0.9, 1.2};
     EXPECT_EQ(interval_of()->low, 0.9);
@@ -47,20 +47,20 @@ TEST(PredictionBasis, TheCapacityIsAsUncertainAsTheMissionSays) {
 
 TEST(PredictionBasis, SaysWhyAPublishedModelPredictsNothing) {
     const auto setup = setup_in("missions/paper/phased.toml");
-    const auto basis = mission_basis(setup, "phased.toml");
-    EXPECT_THAT(basis.cannot_predict, HasSubstr("has no spread"));
+    const auto basis = input_from_mission(setup, "phased.toml");
+    EXPECT_THAT(basis.no_prediction_reason, HasSubstr("has no spread"));
     EXPECT_EQ(basis.cruise_s, setup.duration_s[flight::Phase::cruise]);
-    EXPECT_THROW(path_basis(setup, "phased.toml"), InputError);
+    EXPECT_THROW(path_input_from_mission(setup, "phased.toml"), InputError);
 }
 
 TEST(PredictionBasis, TakesTheModelsLanding) {
     const std::string file = "fits/mechanical/synthetic-wing.toml";
     auto model = mechanical::read_mechanical_model(test::source_dir() / file);
-    const auto basis = model_basis(model, file, 300.0);
+    const auto basis = input_from_model(model, file, 300.0);
     EXPECT_EQ(basis.remaining_s, 300.0);
     EXPECT_EQ(basis.landing_s, model.phases[flight::Phase::landing].duration_s);
     model.phases[flight::Phase::landing].level_spread.reset();
-    EXPECT_THROW(model_basis(model, file, 300.0), InputError);
+    EXPECT_THROW(input_from_model(model, file, 300.0), InputError);
 }
 
 }  // namespace

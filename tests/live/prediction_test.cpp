@@ -14,7 +14,7 @@ Prediction made_up() {
     prediction.cruise.energy.energy_wh = 2.0;
     prediction.landing.energy_wh = 0.5;
     prediction.landing_s = 90.0;
-    prediction.rest.energy_wh = 2.5;
+    prediction.remaining_energy.energy_wh = 2.5;
     prediction.interval = {2.0, 3.0};
     return prediction;
 }
@@ -29,20 +29,20 @@ TEST(Prediction, FliesTheBatteryThroughTheRest) {
     auto prediction = made_up();
     BatteryPrediction of;
     of.initial_soc_percent = 100.0;
-    land(battery, flown, prediction, of);
+    forecast_battery(battery, flown, prediction, of);
     EXPECT_NEAR(of.expected.soc_now_percent, 90.0, 1e-9);
     EXPECT_NEAR(of.expected.soc_percent, 65.0, 1e-6) << "2.5 Wh of 10 Wh";
     EXPECT_NEAR(of.worst.soc_percent, 60.0, 1e-6) << "3 Wh at the high end";
     prediction.landing_s = 0.0;  // a mission without one
-    land(battery, flown, prediction, of);
+    forecast_battery(battery, flown, prediction, of);
     EXPECT_NEAR(of.expected.soc_percent, 70.0, 1e-6);
 }
 
 TEST(Prediction, ThePowerAheadKeepsItsCourseAlongAPath) {
     auto prediction = made_up();
-    prediction.power_ahead = {{30.0, 120.0}, {15.0, 240.0}};  // 2 Wh
+    prediction.remaining_power = {{30.0, 120.0}, {15.0, 240.0}};  // 2 Wh
     prediction.cruise.energy.energy_wh = 2.2;
-    const auto ahead = power_ahead(prediction, 0.5);
+    const auto ahead = remaining_power(prediction, 0.5);
     ASSERT_EQ(ahead.size(), 3U);
     EXPECT_NEAR(ahead[0].power_w, 16.5, 1e-9);
     EXPECT_NEAR(ahead[1].power_w, 8.25, 1e-9);
@@ -51,12 +51,12 @@ TEST(Prediction, ThePowerAheadKeepsItsCourseAlongAPath) {
 
 TEST(Prediction, RefusesAModelThatDoesNotSayHowFlightsDiffer) {
     const mechanical::MechanicalModel model;
-    EXPECT_THROW(require_spread(model, flight::Phase::cruise, "model.toml"), InputError);
+    EXPECT_THROW(require_interval(model, flight::Phase::cruise, "model.toml"), InputError);
     EXPECT_THROW(require_physical(model, "model.toml", "--airspeed"), InputError);
 }
 
 TEST(Prediction, ABatteryOfConstantVoltageNeedsItsStateOfCharge) {
-    PredictionBasis basis;
+    PredictionInput basis;
     basis.battery = battery::Battery{};
     EXPECT_THROW(initial_soc_percent(basis, {}), InputError);
     basis.initial_soc_percent = 80.0;

@@ -52,37 +52,37 @@ std::vector<std::string> lines_until(double until_s) {
 }
 
 /// What the watch knows after the same lines.
-LiveState watched(const std::vector<std::string>& lines, std::optional<PredictionBasis> basis,
+LiveState watched(const std::vector<std::string>& lines, std::optional<PredictionInput> basis,
                   std::unique_ptr<LiveSchedule> schedule = nullptr) {
     LiveOptions options;
     options.configuration = telemetry::read_log_configuration(test::sample(1, ".log"));
     LiveFlight flight(std::move(options), std::move(basis), std::move(schedule));
     for (const auto& line : lines) flight.receive(message_of_line(line).value(), 0.0);
     flight.end();
-    return flight.look();
+    return flight.update();
 }
 
-PredictionBasis wing_basis() {
+PredictionInput wing_basis() {
     const auto setup = wing_setup();
-    auto basis = model_basis(mechanical::read_mechanical_model(setup.model_file), setup.model_file, 300.0);
+    auto basis = input_from_model(mechanical::read_mechanical_model(setup.model_file), setup.model_file, 300.0);
     basis.battery = battery::read_battery(setup.battery_file);
     return basis;
 }
 
-void expect_same(const Outlook& outlook, const LiveState& state) {
+void expect_same(const PredictorState& outlook, const LiveState& state) {
     ASSERT_TRUE(state.prediction);
     ASSERT_TRUE(outlook.landing) << outlook.waits_for;
     const auto& landing = *outlook.landing;
     EXPECT_EQ(outlook.time_s, state.time_s);
     EXPECT_EQ(outlook.phase, FlightPhase::cruise);
     EXPECT_EQ(outlook.energy_wh, state.energy_wh);
-    EXPECT_EQ(landing.energy_wh, state.prediction->rest.energy_wh);
+    EXPECT_EQ(landing.energy_wh, state.prediction->remaining_energy.energy_wh);
     EXPECT_EQ(landing.energy_low_wh, state.prediction->interval.low_wh);
     EXPECT_EQ(landing.energy_high_wh, state.prediction->interval.high_wh);
     EXPECT_EQ(landing.soc_percent, state.prediction->battery->expected.soc_percent);
     EXPECT_EQ(landing.worst_soc_percent, state.prediction->battery->worst.soc_percent);
-    EXPECT_EQ(landing.chance_below_reserve, state.battery->chance_below);
-    EXPECT_EQ(landing.reserve_in_s, state.battery->reserve_in_s);
+    EXPECT_EQ(landing.chance_below_reserve, state.battery->probability_below_reserve);
+    EXPECT_EQ(landing.reserve_in_s, state.battery->time_to_reserve_s);
     EXPECT_EQ(outlook.rows, state.rows);
 }
 
@@ -92,7 +92,7 @@ TEST(Predictor, SaysOfLinesWhatTheWatchSays) {
     ASSERT_TRUE(made.predictor) << made.error;
     for (const auto& line : lines) EXPECT_TRUE(made.predictor->push_line(line));
     expect_same(made.predictor->end(), watched(lines, wing_basis()));
-    EXPECT_EQ(made.predictor->outlook().unusable, 0U);
+    EXPECT_EQ(made.predictor->state().unusable, 0U);
 }
 
 TEST(Predictor, StartsInFlightAsTheWatchDoes) {
@@ -103,7 +103,7 @@ TEST(Predictor, StartsInFlightAsTheWatchDoes) {
         for (auto i = first; i < std::min(first + 1500, lines.size()); ++i) {
             made.predictor->push_line(lines[i]);
             if (i % 100 != 0) continue;
-            const auto& now = made.predictor->look();
+            const auto& now = made.predictor->update();
             ASSERT_TRUE(now.landing || !now.waits_for.empty()) << first;
             ASSERT_TRUE(now.failure.empty()) << now.failure;
         }
@@ -119,10 +119,10 @@ TEST(Predictor, SaysOfAMissionWhatTheWatchSays) {
     const auto made = make_predictor(setup);
     ASSERT_TRUE(made.predictor) << made.error;
     for (const auto& line : lines) made.predictor->push_line(line);
-    mission::MissionReading reading;
-    reading.may_lack_schedule = true;
+    mission::MissionReadOptions reading;
+    reading.allow_unplanned = true;
     const auto mission = mission::read_mission(setup.mission_file, reading);
-    auto basis = mission_basis(setup_of(mission), setup.mission_file);
+    auto basis = input_from_mission(setup_of(mission), setup.mission_file);
     basis.remaining_s = 300.0;
     const auto state = watched(lines, basis, std::make_unique<LiveSchedule>(mission, false));
     const auto& outlook = made.predictor->end();
@@ -130,9 +130,9 @@ TEST(Predictor, SaysOfAMissionWhatTheWatchSays) {
     ASSERT_TRUE(state.decision);
     ASSERT_TRUE(outlook.decision);
     EXPECT_EQ(outlook.decision->utility_per_s, state.decision->utility_per_s);
-    EXPECT_EQ(outlook.decision->rest_utility, state.decision->rest_utility);
+    EXPECT_EQ(outlook.decision->rest_utility, state.decision->remaining_utility_per_s);
     const auto& components = setup_of(mission).compute.components;
-    const auto runs = made.predictor->runs();
+    const auto runs = made.predictor->component_states();
     ASSERT_EQ(runs.size(), components.size());
     std::size_t running = 0;
     for (std::size_t c = 0; c < runs.size(); ++c) {
@@ -158,7 +158,7 @@ TEST(Predictor, TakesFramesOfALink) {
     const auto& outlook = made.predictor->end();
     const auto state = watched(lines, wing_basis());
     ASSERT_TRUE(outlook.landing) << outlook.waits_for;
-    EXPECT_NEAR(outlook.landing->energy_wh, state.prediction->rest.energy_wh, 1e-3);
+    EXPECT_NEAR(outlook.landing->energy_wh, state.prediction->remaining_energy.energy_wh, 1e-3);
 }
 
 TEST(Predictor, SaysOfSamplesWhatItSaysOfTheirMessages) {
@@ -185,7 +185,7 @@ TEST(Predictor, SaysOfSamplesWhatItSaysOfTheirMessages) {
     const auto& outlook = made.predictor->end();
     const auto state = watched(kept, wing_basis());
     ASSERT_TRUE(outlook.landing) << outlook.waits_for;
-    EXPECT_NEAR(outlook.landing->energy_wh, state.prediction->rest.energy_wh, 1e-9);
+    EXPECT_NEAR(outlook.landing->energy_wh, state.prediction->remaining_energy.energy_wh, 1e-9);
     EXPECT_NEAR(outlook.landing->soc_percent.value(), state.prediction->battery->expected.soc_percent, 1e-9);
 }
 
@@ -200,7 +200,7 @@ TEST(Predictor, TakesSamplesThatLackSomething) {
         sample.altitude_m = 200.0 + height_m;
         ASSERT_TRUE(made.predictor->push_sample(sample));
     }
-    const auto& outlook = made.predictor->look();
+    const auto& outlook = made.predictor->update();
     EXPECT_EQ(outlook.phase, FlightPhase::cruise);
     ASSERT_TRUE(outlook.power_w);
     EXPECT_NEAR(*outlook.power_w, 24.0, 1e-9);
@@ -220,7 +220,7 @@ TEST(Predictor, SaysWhatIsWrongInsteadOfThrowing) {
     setup.initial_soc_percent = 101.0;
     EXPECT_THAT(make_predictor(setup).error, HasSubstr("initial_soc_percent"));
     setup = wing_setup();
-    setup.decides = true;
+    setup.replan = true;
     EXPECT_THAT(make_predictor(setup).error, HasSubstr("mission_file"));
     setup.mission_file = source("missions/synthetic/survey-path.toml");
     EXPECT_THAT(make_predictor(setup).error, HasSubstr("exclude"));
@@ -238,7 +238,7 @@ TEST(Predictor, IncludesTheStandardLibraryAlone) {
 
 TEST(Predictor, CountsWhatItDoesNotTake) {
     auto setup = wing_setup();
-    setup.most_waiting_bytes = 200;
+    setup.max_pending_bytes = 200;
     const auto made = make_predictor(setup);
     ASSERT_TRUE(made.predictor) << made.error;
     auto& predictor = *made.predictor;
@@ -249,9 +249,9 @@ TEST(Predictor, CountsWhatItDoesNotTake) {
     while (predictor.push_message(static_cast<double>(pushed), "7 ENERGY 0 12 0 0 0 0")) ++pushed;
     EXPECT_GT(pushed, 1U);
     EXPECT_LT(pushed, 10U);
-    EXPECT_EQ(predictor.look().dropped, 3U);
-    EXPECT_EQ(predictor.outlook().unusable, 1U);
-    EXPECT_EQ(predictor.outlook().rows, pushed);
+    EXPECT_EQ(predictor.update().dropped, 3U);
+    EXPECT_EQ(predictor.state().unusable, 1U);
+    EXPECT_EQ(predictor.state().rows, pushed);
     EXPECT_TRUE(predictor.push_message(9.0, "7 ENERGY 0 12 0 0 0 0"));  // there is room again
 }
 

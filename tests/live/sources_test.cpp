@@ -187,8 +187,8 @@ TEST(BinaryLogSource, FollowsACardThroughItsRoomAndAnotherThatTakesItsName) {
     write_file_atomically(log, frames);
     const auto again = messages_of(*source, lines.size());
     ASSERT_EQ(again.size(), lines.size());
-    EXPECT_TRUE(again.front().after_restart);
-    EXPECT_FALSE(again.back().after_restart);
+    EXPECT_TRUE(again.front().is_after_restart);
+    EXPECT_FALSE(again.back().is_after_restart);
     EXPECT_EQ(source->report().restarts, 1U);
     EXPECT_EQ(source->report().messages, 2 * lines.size());
     EXPECT_THROW(follow_binary_log(log.parent_path(), {}), InputError);

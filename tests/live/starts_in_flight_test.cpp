@@ -44,10 +44,10 @@ void fly(LiveFlight& flight, const std::vector<IncomingMessage>& messages, std::
         const double now_s = messages[i].time_s.value_or(updated_s);
         if (std::abs(now_s - updated_s) < 1.0) continue;
         updated_s = now_s;
-        const auto state = flight.look();
-        ASSERT_TRUE(state.prediction || !state.waits_for.empty()) << where << ", line " << i;
+        const auto state = flight.update();
+        ASSERT_TRUE(state.prediction || !state.no_prediction_reason.empty()) << where << ", line " << i;
         if (!state.prediction) continue;
-        ASSERT_TRUE(std::isfinite(state.prediction->rest.energy_wh)) << where << ", line " << i;
+        ASSERT_TRUE(std::isfinite(state.prediction->remaining_energy.energy_wh)) << where << ", line " << i;
     }
 }
 
@@ -73,7 +73,7 @@ std::size_t start_everywhere(std::size_t stride) {
             auto flight = flight_of(log);
             fly(flight, messages, first, first + lines_of_start, log.filename().string());
             flight.end();
-            flight.look();
+            flight.update();
         }
     }
     return starts;
@@ -117,7 +117,7 @@ TEST(StartsInFlight, WaitAfterThreeLines) {
     for (const auto* line : {"100.0 20 ENERGY 94 10.9 5.2 56.6 0.86 9.8", "100.2 20 ESTIMATOR 289.5 0.5",
                              "100.7 20 ESTIMATOR 289.8 0.74"}) {
         flight.receive(message_of_line(line).value(), 0.0);
-        EXPECT_FALSE(flight.look().waits_for.empty());
+        EXPECT_FALSE(flight.update().no_prediction_reason.empty());
     }
 }
 
@@ -134,12 +134,12 @@ LiveState restarted(double until_s, double again_s, double last_s, const std::fu
             flight.receive(message, 0.0);
             if (time_s - updated_s < 1.0) continue;
             updated_s = time_s;
-            flight.look();
+            flight.update();
         }
     };
     feed(0.0, until_s, 0.0);
     feed(again_s, last_s, 240.0);
-    return flight.look();
+    return flight.update();
 }
 
 TEST(StartsInFlight, ContinueEnergyAndChargeByTheCountersAfterARestart) {
@@ -147,7 +147,7 @@ TEST(StartsInFlight, ContinueEnergyAndChargeByTheCountersAfterARestart) {
         const auto log = test::sample(1);
         auto flight = flight_of(log);
         test::receive_all(flight, test::messages_of(log, 400.0));
-        return flight.look();
+        return flight.update();
     }();
     const auto again = restarted(300.0, 310.0, 400.0, [](std::string&) {});
     ASSERT_EQ(again.restarts, 1U);
@@ -185,12 +185,12 @@ TEST(StartsInFlight, PredictNothingWhileThePowerRecordIsRejected) {
             }
             flight.receive(message, 0.0);
         }
-        return flight.look();
+        return flight.update();
     };
     EXPECT_TRUE(state_at(1.08).prediction);
     const auto rejected = state_at(1.2);
     EXPECT_FALSE(rejected.prediction);
-    EXPECT_THAT(rejected.waits_for, testing::HasSubstr("away from the on-board energy counter"));
+    EXPECT_THAT(rejected.no_prediction_reason, testing::HasSubstr("away from the on-board energy counter"));
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ TEST(TextSources, AFileIsReadFromItsBeginningAndAsItGrows) {
     auto messages = received(*source);
     ASSERT_EQ(messages.size(), 1U);
     EXPECT_EQ(messages[0].time_s, 1.0);
-    EXPECT_FALSE(messages[0].after_restart);
+    EXPECT_FALSE(messages[0].is_after_restart);
     EXPECT_TRUE(received(*source).empty());
     append(path, "NG\nrubbish\n3.0 20 PONG\n");
     messages = received(*source);
@@ -53,12 +53,12 @@ TEST(TextSources, AFileThatIsCutOrReplacedBeginsAnew) {
     append(path, "1.0 20 PONG\n");
     auto messages = received(*source);
     ASSERT_EQ(messages.size(), 1U);
-    EXPECT_TRUE(messages[0].after_restart);
+    EXPECT_TRUE(messages[0].is_after_restart);
     append(folder / "b.data", "0.5 20 ALIVE 1\n");
     std::filesystem::rename(folder / "b.data", path);
     messages = received(*source);
     ASSERT_EQ(messages.size(), 1U);
-    EXPECT_TRUE(messages[0].after_restart);
+    EXPECT_TRUE(messages[0].is_after_restart);
     EXPECT_EQ(messages[0].text, "20 ALIVE 1");
     EXPECT_EQ(source->report().restarts, 2U);
 }

@@ -33,8 +33,8 @@ TEST(TurnHome, KnowsWhereAPlaceLies) {
 
 /// 10 W wherever it flies, on an ideal battery of 1 Wh.
 struct Trial {
-    mission::PathPlan plan{out_and_on(), {}, test::made_up_wing()};
-    TurnBudget budget;
+    mission::PlannedPath plan{out_and_on(), {}, test::made_up_wing()};
+    ReturnFlightInput budget;
 
     Trial() {
         plan.power.coefficients = {};
@@ -44,7 +44,9 @@ struct Trial {
         budget.battery.capacity_ah = 0.1;
         budget.cruise_ahead = {{10.0, 200.0}};
     }
-    TurnHome turn(double on_path_s) const { return latest_turn_home(mission::PathForecast(plan), on_path_s, budget); }
+    ReturnDeadline turn(double on_path_s) const {
+        return latest_return(mission::PathForecast(plan), on_path_s, budget);
+    }
     void charge_for(double time_s) { budget.now = {time_s * 10.0 / 3600.0 * 100.0, 0.0}; }
 };
 
@@ -72,7 +74,7 @@ TEST(TurnHome, SaysWhereThePathCanBeFlownAndWhereItIsTooLate) {
     EXPECT_FALSE(trial.turn(100.0).latest_in_s) << "100 s from home";
     trial.charge_for(110.0);
     EXPECT_TRUE(trial.turn(100.0).latest_in_s);
-    trial.budget.landing = battery::PowerStretch{10.0, 20.0};
+    trial.budget.landing = battery::ConstantLoad{10.0, 20.0};
     EXPECT_FALSE(trial.turn(100.0).latest_in_s) << "the landing counts";
 }
 

@@ -1,7 +1,7 @@
 #include "mechanical/covariates.h"
 
-#include "flight/chosen_track.h"
 #include "flight/segmentation.h"
+#include "flight/selected_track.h"
 #include "helpers/sample_columns.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ TEST(CovariatesOf, TakesWhatWasKnownBeforeTheCruiseAndEarlyInIt) {
     sortie.phases[1].phase = flight::Phase::cruise;
     sortie.phases[1].start.time_s = 130.0;
     const auto flown = test::series_of(series);
-    const auto covariates = covariates_of(flight::ChosenTracks(flown), sortie);
+    const auto covariates = covariates_of(flight::SelectedTracks(flown), sortie);
     EXPECT_EQ(covariates[Covariate::height], 85.0);
     EXPECT_EQ(covariates[Covariate::initial_voltage], 12.5);
     EXPECT_EQ(covariates[Covariate::wind], 3.0);

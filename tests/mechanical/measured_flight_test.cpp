@@ -53,7 +53,7 @@ Selection select(const std::vector<flight::Sortie>& sorties) {
     flight::FlightPhases phases;
     phases.sorties = sorties;
     for (std::size_t s = 0; s < sorties.size(); ++s) phases.sorties[s].number = s + 1;
-    auto measured = measure_flights(series_of_300_s(), phases, needed);
+    auto measured = extract_flights(series_of_300_s(), phases, needed);
     Selection selection{{}, std::move(measured.exclusions)};
     for (auto& flight : measured.flights) selection.flights.push_back(std::move(flight.samples));
     return selection;
@@ -103,7 +103,7 @@ TEST(MeasuredFlights, EndWithASampleAtTheirVeryEnd) {
     std::ranges::sort(columns.time_s);
     flight::FlightPhases phases;
     phases.sorties.emplace_back().phases = {span(flight::Phase::takeoff, 64.86, 92.7)};
-    const auto flights = measure_flights(test::series_of(columns), phases, needed).flights;
+    const auto flights = extract_flights(test::series_of(columns), phases, needed).flights;
     EXPECT_EQ(flights.at(0).samples.phases[flight::Phase::takeoff].value().tau.back(), 1.0);
 }
 

@@ -69,10 +69,10 @@ TEST(MechanicalModel, PublishedPhasesTakeTheirKnownEnergies) {
 
 TEST(MechanicalModel, AStretchedPhaseEndsWhereTheModelEnds) {
     const auto phase = test::published_model().phases[flight::Phase::landing];
-    const auto stretched = flown_model(phase, 2.0 * phase.duration_s, PhaseClock::stretched);
+    const auto stretched = time_scaled_model(phase, 2.0 * phase.duration_s, PhaseTimeScaling::stretched);
     EXPECT_NEAR(power_w(stretched, 2.0 * phase.duration_s), power_w(phase.fourier, phase.duration_s), 1e-12);
     EXPECT_NEAR(energy_j(stretched, 2.0 * phase.duration_s), 2.0 * energy_j(phase.fourier, phase.duration_s), 1e-9);
-    const auto absolute = flown_model(phase, 2.0 * phase.duration_s, PhaseClock::absolute);
+    const auto absolute = time_scaled_model(phase, 2.0 * phase.duration_s, PhaseTimeScaling::absolute);
     EXPECT_EQ(absolute.omega_rad_per_s, phase.fourier.omega_rad_per_s);
 }
 
@@ -86,22 +86,22 @@ TEST(PhaseCurve, IsTheSeriesAtTheMiddlesOfEqualParts) {
 
 TEST(PhaseCurve, DifferenceIsThatOfTheCurvesWhateverTheSeconds) {
     const auto phase = test::published_model().phases[flight::Phase::takeoff];
-    EXPECT_EQ(curve_rms_difference_w(phase, phase), 0.0);
+    EXPECT_EQ(rms_difference_w(phase, phase), 0.0);
     auto slower = phase;
     slower.duration_s *= 3.0;
     slower.fourier.omega_rad_per_s /= 3.0;
-    EXPECT_NEAR(curve_rms_difference_w(phase, slower), 0.0, 1e-12);
+    EXPECT_NEAR(rms_difference_w(phase, slower), 0.0, 1e-12);
     auto higher = phase;
     higher.fourier.a0_w += 0.25;
-    EXPECT_NEAR(curve_rms_difference_w(phase, higher), 0.25, 1e-12);
+    EXPECT_NEAR(rms_difference_w(phase, higher), 0.25, 1e-12);
 }
 
 TEST(PhaseCurve, ResolvesTheFastestHarmonic) {
     // 250 periods, the third harmonic only: an RMS of 2 / sqrt 2, and no point for it to hide between.
     auto flat = test::cruise_of(250.0, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0});
     auto wave = test::cruise_of(250.0, {0.0, 0.0, 2.0}, {0.0, 0.0, 0.0});
-    EXPECT_GE(points_of_curve(wave.fourier, wave.duration_s), 12000U);
-    EXPECT_NEAR(curve_rms_difference_w(flat, wave), std::numbers::sqrt2, 1e-9);
+    EXPECT_GE(curve_point_count(wave.fourier, wave.duration_s), 12000U);
+    EXPECT_NEAR(rms_difference_w(flat, wave), std::numbers::sqrt2, 1e-9);
 }
 
 /// Take-offs of three flights, of which one has no weight, and a cruise without flights.

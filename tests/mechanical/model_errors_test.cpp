@@ -128,9 +128,9 @@ TEST(TableOne, CanHaveIntervals) {
     EXPECT_EQ(table.rows[0][4], "27.12 to 27.32");    // of a file of 0.2: 1.96 standard errors
     EXPECT_EQ(table.rows[7][4], "0.1795 to 0.1803");  // of xi = omega * 600 / 28
     EXPECT_EQ(table.rows[0][2], "-");                 // no errors known
-    model.phases[flight::Phase::cruise].errors->frequency_is_given = true;
+    model.phases[flight::Phase::cruise].errors->frequency_is_fixed = true;
     EXPECT_EQ(table_one(model, TableIntervals::present).rows[7][4], "-");
-    const auto beside = table_one_beside(test::published_model(), model, TableIntervals::present);
+    const auto beside = table_one_comparison(test::published_model(), model, TableIntervals::present);
     EXPECT_EQ(beside.header.size(), 10U);
     for (const auto& row : beside.rows) EXPECT_EQ(row.size(), 10U);
 }
@@ -191,7 +191,7 @@ PhaseFit flights_of(const std::vector<double>& powers_w) {
 }
 
 TEST(FlightEnvelope, OfEqualWeightsIsTheUsualStandardDeviation) {
-    const auto spread = flight_envelope(flights_of({20.0, 22.0, 24.0, 30.0}), std::vector(4, 0.25), 5);
+    const auto spread = compute_envelope(flights_of({20.0, 22.0, 24.0, 30.0}), std::vector(4, 0.25), 5);
     ASSERT_TRUE(spread);
     ASSERT_EQ(spread->low_w.size(), 5U);
     const double standard_deviation_w = std::sqrt((16.0 + 4.0 + 0.0 + 36.0) / 3.0);
@@ -201,16 +201,16 @@ TEST(FlightEnvelope, OfEqualWeightsIsTheUsualStandardDeviation) {
         EXPECT_NEAR(spread->standard_deviation_w[i], standard_deviation_w, 1e-12);
         EXPECT_NEAR(population_standard_error_w(*spread, i), standard_deviation_w / 2.0, 1e-12);
     }
-    EXPECT_DOUBLE_EQ(spread->counted_flights, 4.0);
+    EXPECT_DOUBLE_EQ(spread->effective_flights, 4.0);
 }
 
 TEST(FlightEnvelope, AFlightWithoutWeightIsNotInIt) {
-    const auto spread = flight_envelope(flights_of({20.0, 22.0, 90.0}), std::vector{0.5, 0.5, 0.0});
+    const auto spread = compute_envelope(flights_of({20.0, 22.0, 90.0}), std::vector{0.5, 0.5, 0.0});
     ASSERT_TRUE(spread);
-    EXPECT_EQ(spread->low_w.size(), points_of_spread);
+    EXPECT_EQ(spread->low_w.size(), envelope_points);
     EXPECT_DOUBLE_EQ(spread->high_w[0], 22.0);
     EXPECT_NEAR(spread->standard_deviation_w[0], std::sqrt(2.0), 1e-12);
-    EXPECT_FALSE(flight_envelope(flights_of({20.0, 22.0}), std::vector{1.0, 0.0}));
+    EXPECT_FALSE(compute_envelope(flights_of({20.0, 22.0}), std::vector{1.0, 0.0}));
 }
 
 TEST(FlightEnvelope, ComparesFlightsAtEqualPartsOfThePhase) {
@@ -219,7 +219,7 @@ TEST(FlightEnvelope, ComparesFlightsAtEqualPartsOfThePhase) {
     for (const double duration_s : {80.0, 120.0}) {
         fit.flights.push_back({"flight", duration_s, {4.0 / duration_s, 25.0, {2.0}, {-1.0}}, 0.1, 50});
     }
-    const auto spread = flight_envelope(fit, std::vector{0.5, 0.5});
+    const auto spread = compute_envelope(fit, std::vector{0.5, 0.5});
     for (const double deviation_w : spread->standard_deviation_w) EXPECT_NEAR(deviation_w, 0.0, 1e-12);
     EXPECT_NEAR(spread->high_w.front(), 27.0, 1e-12);
 }

@@ -45,14 +45,11 @@ TEST(ModelFit, RegeneratesThePublishedModel) {
     const auto published = test::published_model();
     for (unsigned seed = 1; seed <= 10; ++seed) {
         const auto model = fit_model(made_up_flights(6, 0.2, seed)).model;
-        EXPECT_LE(
-            curve_rms_difference_w(model.phases[flight::Phase::takeoff], published.phases[flight::Phase::takeoff]),
-            0.10);
-        EXPECT_LE(curve_rms_difference_w(model.phases[flight::Phase::cruise], published.phases[flight::Phase::cruise]),
+        EXPECT_LE(rms_difference_w(model.phases[flight::Phase::takeoff], published.phases[flight::Phase::takeoff]),
                   0.10);
-        EXPECT_LE(
-            curve_rms_difference_w(model.phases[flight::Phase::landing], published.phases[flight::Phase::landing]),
-            0.30);
+        EXPECT_LE(rms_difference_w(model.phases[flight::Phase::cruise], published.phases[flight::Phase::cruise]), 0.10);
+        EXPECT_LE(rms_difference_w(model.phases[flight::Phase::landing], published.phases[flight::Phase::landing]),
+                  0.30);
         // Noise of 0.2 W leaves the level of a series of less than a period open in the shorter phases.
         EXPECT_NEAR(model.phases[flight::Phase::cruise].fourier.a0_w,
                     published.phases[flight::Phase::cruise].fourier.a0_w, 0.27);
@@ -135,7 +132,7 @@ TEST(ModelFit, TheOrderOfTheFlightsDoesNotMatter) {
     std::reverse(flights.begin(), flights.end());
     const auto turned = fit_model(flights).model;
     for (const auto phase : flight::all_phases) {
-        EXPECT_NEAR(curve_rms_difference_w(model.phases[phase], turned.phases[phase]), 0.0, 1e-6);
+        EXPECT_NEAR(rms_difference_w(model.phases[phase], turned.phases[phase]), 0.0, 1e-6);
         EXPECT_NEAR(model.flights[0].phases[phase]->weight, turned.flights[3].phases[phase]->weight, 1e-6);
     }
 }
@@ -143,7 +140,7 @@ TEST(ModelFit, TheOrderOfTheFlightsDoesNotMatter) {
 TEST(ModelFit, WeightsByHandReachTheAverage) {
     const auto flights = made_up_flights(2, 0.2, 6);
     ModelFitOptions options;
-    options.weights = {Weighting::by_hand,
+    options.weights = {Weighting::manual,
                        {{"flight1", {}, 1.0}, {"flight2", {}, 0.0}, {"flight2", flight::Phase::cruise, 3.0}}};
     const auto model = fit_model(flights, options).model;
     EXPECT_EQ(model.weighting, "by hand");
@@ -161,22 +158,22 @@ TEST(ModelFit, KeepsWhatItsSpreadIsOf) {
     for (const auto phase : flight::all_phases) {
         std::vector<double> levels_w;
         for (const auto& flight : model.flights) levels_w.push_back(flight.phases[phase]->mean_power_w.value());
-        EXPECT_NEAR(sample_sd(levels_w), model.phases[phase].level_spread->level_sd_w, 1e-9);
+        EXPECT_NEAR(sample_sd(levels_w), model.phases[phase].level_spread->between_flight_sd_w, 1e-9);
     }
 }
 
 TEST(ModelFit, RefusesWhatHasNoAnswer) {
     auto flights = made_up_flights(2, 0.2, 7);
-    EXPECT_THAT(message_of<NoAnswerError>({}), HasSubstr("no flight has a takeoff to fit"));
+    EXPECT_THAT(message_of<NoResultError>({}), HasSubstr("no flight has a takeoff to fit"));
     auto without = flights;
     for (auto& flight : without) flight.phases[flight::Phase::landing].reset();
-    EXPECT_THAT(message_of<NoAnswerError>(without), HasSubstr("no flight has a landing to fit"));
+    EXPECT_THAT(message_of<NoResultError>(without), HasSubstr("no flight has a landing to fit"));
     auto twice = flights;
     twice[1].flight = twice[0].flight;
     EXPECT_THAT(message_of<UsageError>(twice), HasSubstr("'flight1' is given twice"));
     flights[0].phases[flight::Phase::takeoff]->tau.resize(5);
     flights[0].phases[flight::Phase::takeoff]->power_w.resize(5);
-    EXPECT_THAT(message_of<NoAnswerError>(flights), HasSubstr("flight 'flight1' has 5 samples in takeoff"));
+    EXPECT_THAT(message_of<NoResultError>(flights), HasSubstr("flight 'flight1' has 5 samples in takeoff"));
 }
 
 /// Two cruises of 0.1 W noise; every 25th sample of the second, from the sixth on, is 8 W too high.

@@ -33,7 +33,7 @@ TEST(PhysicalFit, FindsTheTermsThatTheFlightsObey) {
     EXPECT_EQ(fit.model.flights.size(), 6u);
     EXPECT_EQ(fit.model.bins, 300u);
     EXPECT_EQ(fit.folds, 6u);
-    EXPECT_TRUE(fit.held_back_flights);
+    EXPECT_TRUE(fit.folds_are_flights);
     EXPECT_TRUE(fit.phases_decided);
     EXPECT_EQ(fit.trials.size(), power_term_count + 1);
 }
@@ -128,7 +128,7 @@ TEST(PhysicalFit, TakesAConstantWherePowerDoesNotFollowTheAirspeed) {
 TEST(PhysicalFit, HasNoIntervalFromASingleFlight) {
     const auto fit = fit_physical_model(made_up_motions(1, 50, {}, 1));
     EXPECT_FALSE(fit.model.level_sd.has_value());
-    EXPECT_FALSE(fit.held_back_flights);
+    EXPECT_FALSE(fit.folds_are_flights);
     EXPECT_FALSE(fit.phases_decided);
     EXPECT_EQ(fit.folds, 5u);
     EXPECT_TRUE(trial_of(fit, "climb").kept);
@@ -136,27 +136,27 @@ TEST(PhysicalFit, HasNoIntervalFromASingleFlight) {
 }
 
 TEST(PhysicalFit, RefusesFlightsThatDoNotTell) {
-    EXPECT_THROW(fit_physical_model({}), NoAnswerError);
-    const std::vector<FlightMotion> silent{{"a", {}, false, "its airspeed was not measured"}};
+    EXPECT_THROW(fit_physical_model({}), NoResultError);
+    const std::vector<BinnedFlight> silent{{"a", {}, false, "its airspeed was not measured"}};
     try {
         fit_physical_model(silent);
         FAIL();
-    } catch (const NoAnswerError& error) {
+    } catch (const NoResultError& error) {
         EXPECT_THAT(error.what(), testing::HasSubstr("a: its airspeed was not measured"));
     }
-    EXPECT_THROW(fit_physical_model(made_up_motions(2, 4, {}, 1)), NoAnswerError);
+    EXPECT_THROW(fit_physical_model(made_up_motions(2, 4, {}, 1)), NoResultError);
     auto reversed = made_up_motions(3, 30, {.drift_sd_w = 0.1}, 1);
     for (auto& flight : reversed)
         for (auto& bin : flight.bins) bin.power_w = -bin.power_w;
-    EXPECT_THROW(fit_physical_model(reversed), NoAnswerError);
+    EXPECT_THROW(fit_physical_model(reversed), NoResultError);
 }
 
 TEST(PhysicalFit, LeavesOutFlightsWithoutMotion) {
     auto flights = made_up_motions(3, 30, {}, 1);
     flights.push_back({"gap", {}, false, "its airspeed was not measured"});
     const auto fit = fit_physical_model(flights);
-    ASSERT_EQ(fit.without.size(), 1u);
-    EXPECT_EQ(fit.without.front().flight, "gap");
+    ASSERT_EQ(fit.skipped.size(), 1u);
+    EXPECT_EQ(fit.skipped.front().flight, "gap");
     EXPECT_EQ(fit.model.flights.size(), 3u);
 }
 
@@ -181,9 +181,8 @@ double coverage(std::size_t flights, const MotionTruth& truth, unsigned first_se
         double power_w = 0.0;
         for (const auto& bin : unseen.bins) power_w += bin.power_w / static_cast<double>(unseen.bins.size());
         const auto values = mean_values(unseen.bins);
-        const auto of = uncertainty_of(model, values, 1200.0).value();
-        if (std::abs(power_w - power_of_terms_w(model, values)) <=
-            student_t_half_width(of.degrees_of_freedom) * of.sd_w)
+        const auto of = prediction_uncertainty(model, values, 1200.0).value();
+        if (std::abs(power_w - sum_of_terms_w(model, values)) <= student_t_half_width(of.degrees_of_freedom) * of.sd_w)
             ++covered;
     }
     return static_cast<double>(covered) / sets;

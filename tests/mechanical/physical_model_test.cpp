@@ -27,27 +27,27 @@ TEST(PhysicalModel, SumsItsTerms) {
 }
 
 TEST(PhysicalModel, NeverTakesPowerBack) {
-    const AirMotion dive{.airspeed_m_per_s = 10.0, .climb_m_per_s = -5.0};
+    const FlightState dive{.airspeed_m_per_s = 10.0, .climb_m_per_s = -5.0};
     EXPECT_EQ(power_w(some_model(), dive), 0.0);
-    EXPECT_DOUBLE_EQ(power_of_terms_w(some_model(), terms_of(dive)), -50.0);
+    EXPECT_DOUBLE_EQ(sum_of_terms_w(some_model(), term_values(dive)), -50.0);
 }
 
 TEST(PhysicalModel, HasTheTermsOfPhysics) {
-    const auto values = terms_of({.airspeed_m_per_s = 20.0, .climb_m_per_s = -3.0, .load_factor = 2.0});
+    const auto values = term_values({.airspeed_m_per_s = 20.0, .climb_m_per_s = -3.0, .load_factor = 2.0});
     EXPECT_DOUBLE_EQ(values[PowerTerm::drag], 8000.0);
     EXPECT_DOUBLE_EQ(values[PowerTerm::induced], 0.05);
     EXPECT_DOUBLE_EQ(values[PowerTerm::turn], 0.15);
     EXPECT_DOUBLE_EQ(values[PowerTerm::climb], -3.0);
     EXPECT_DOUBLE_EQ(values[PowerTerm::descent], -3.0);
     EXPECT_DOUBLE_EQ(values[PowerTerm::constant], 1.0);
-    EXPECT_DOUBLE_EQ(terms_of({.airspeed_m_per_s = 20.0, .climb_m_per_s = 3.0})[PowerTerm::descent], 0.0);
+    EXPECT_DOUBLE_EQ(term_values({.airspeed_m_per_s = 20.0, .climb_m_per_s = 3.0})[PowerTerm::descent], 0.0);
 }
 
 TEST(PhysicalModel, RefusesAMotionThatIsNone) {
-    EXPECT_THROW(terms_of({.airspeed_m_per_s = 0.0}), std::invalid_argument);
-    EXPECT_THROW(terms_of({.airspeed_m_per_s = -1.0}), std::invalid_argument);
-    EXPECT_THROW(terms_of({.airspeed_m_per_s = std::nan("")}), std::invalid_argument);
-    EXPECT_THROW(terms_of({.airspeed_m_per_s = 10.0, .climb_m_per_s = 0.0, .load_factor = -1.0}),
+    EXPECT_THROW(term_values({.airspeed_m_per_s = 0.0}), std::invalid_argument);
+    EXPECT_THROW(term_values({.airspeed_m_per_s = -1.0}), std::invalid_argument);
+    EXPECT_THROW(term_values({.airspeed_m_per_s = std::nan("")}), std::invalid_argument);
+    EXPECT_THROW(term_values({.airspeed_m_per_s = 10.0, .climb_m_per_s = 0.0, .load_factor = -1.0}),
                  std::invalid_argument);
 }
 
@@ -63,8 +63,8 @@ TEST(PhysicalModel, NamesEachTermOnce) {
 }
 
 TEST(PhysicalModel, AddsTheCausesOfItsUncertainty) {
-    const auto values = terms_of({.airspeed_m_per_s = 10.0, .climb_m_per_s = 1.0});  // 22 W
-    const auto of = uncertainty_of(some_model(), values, 6000.0).value();
+    const auto values = term_values({.airspeed_m_per_s = 10.0, .climb_m_per_s = 1.0});  // 22 W
+    const auto of = prediction_uncertainty(some_model(), values, 6000.0).value();
     const double level_w2 = std::pow(0.05 * 22.0, 2);
     const double coefficients_w2 = 1e6 * 1e-8 + 2.0 * 1000.0 * 2e-5 + 0.25;
     // 100 correlation times: 2 sd^2 / 100, less a hundredth of that.
@@ -72,16 +72,16 @@ TEST(PhysicalModel, AddsTheCausesOfItsUncertainty) {
     EXPECT_NEAR(of.sd_w, std::sqrt(level_w2 + coefficients_w2 + drift_w2), 1e-6);
     EXPECT_GT(of.degrees_of_freedom, 4.0);
     EXPECT_LT(of.degrees_of_freedom, 10.0);
-    EXPECT_GT(uncertainty_of(some_model(), values, 60.0)->sd_w, of.sd_w);
+    EXPECT_GT(prediction_uncertainty(some_model(), values, 60.0)->sd_w, of.sd_w);
     auto single = some_model();
     single.level_sd.reset();
-    EXPECT_FALSE(uncertainty_of(single, values, 600.0).has_value());
+    EXPECT_FALSE(prediction_uncertainty(single, values, 600.0).has_value());
 }
 
 TEST(PhysicalModel, KnowsWhatWasFlown) {
-    EXPECT_TRUE(was_flown(some_model(), {.airspeed_m_per_s = 12.0, .climb_m_per_s = 1.0}));
-    EXPECT_FALSE(was_flown(some_model(), {.airspeed_m_per_s = 9.0}));
-    EXPECT_FALSE(was_flown(some_model(), {.airspeed_m_per_s = 12.0, .climb_m_per_s = 4.0}));
+    EXPECT_TRUE(is_within_flown_range(some_model(), {.airspeed_m_per_s = 12.0, .climb_m_per_s = 1.0}));
+    EXPECT_FALSE(is_within_flown_range(some_model(), {.airspeed_m_per_s = 9.0}));
+    EXPECT_FALSE(is_within_flown_range(some_model(), {.airspeed_m_per_s = 12.0, .climb_m_per_s = 4.0}));
 }
 
 }  // namespace

@@ -13,8 +13,8 @@
 namespace flightwatt::mechanical {
 namespace {
 
-PhaseForecast forecast(const LevelSpread& spread) {
-    PhaseForecast cruise{test::published_model().phases[flight::Phase::cruise], 0.25};
+WeightedPhase forecast(const VarianceComponents& spread) {
+    WeightedPhase cruise{test::published_model().phases[flight::Phase::cruise], 0.25};
     cruise.model.level_spread = spread;
     return cruise;
 }
@@ -33,7 +33,7 @@ MechanicalModel cruise_of(const std::vector<double>& means_w, const std::vector<
     auto& cruise = model.phases[flight::Phase::cruise];
     cruise = test::published_model().phases[flight::Phase::cruise];
     cruise.samples = 700;
-    if (means_w.size() > 1) cruise.level_spread = LevelSpread{means_w.size(), sample_sd(means_w), 1.0, 50.0};
+    if (means_w.size() > 1) cruise.level_spread = VarianceComponents{means_w.size(), sample_sd(means_w), 1.0, 50.0};
     for (std::size_t i = 0; i < means_w.size(); ++i) {
         FlightContribution flight;
         flight.phases[flight::Phase::cruise] = PhaseContribution{weights[i], 600.0, 1.0, 100, means_w[i]};
@@ -91,23 +91,23 @@ TEST(Prediction, BeforeTheFlightIsTheStretchedCurvesEnergyWithStudentsInterval) 
 TEST(Prediction, BeforeFlightOfTheRestMissesOnlyTheFlownPart) {
     const auto cruise = forecast({4, 2.0, 1.0, 50.0});
     const auto whole = predict_before_flight(cruise, 600.0);
-    const auto rest = predict_rest_before_flight(cruise, 200.0, 400.0);
+    const auto rest = predict_remaining_before_flight(cruise, 200.0, 400.0);
     EXPECT_NEAR(whole.energy_wh - rest.energy_wh, units::wh_from_joule(energy_j(cruise.model.fourier, 200.0)), 1e-9);
 }
 
 TEST(Prediction, KeepsTheModelWhereFlightsAreAllAlike) {
     const auto cruise = forecast({4, 0.0, 5.0, 1.0});
-    const auto rest = predict_rest(cruise, flown(300.0, 40.0), 3000.0, LevelSource::curve);
+    const auto rest = predict_remaining_cruise(cruise, flown(300.0, 40.0), 3000.0, CruisePrior::curve);
     EXPECT_LT(rest.gain, 0.01);
-    EXPECT_NEAR(rest.energy.energy_wh, predict_rest_before_flight(cruise, 300.0, 3000.0).energy_wh, 0.1);
+    EXPECT_NEAR(rest.energy.energy_wh, predict_remaining_before_flight(cruise, 300.0, 3000.0).energy_wh, 0.1);
 }
 
 TEST(Prediction, TakesTheFlightsOwnLevelWhereFlightsDifferAndDoNotDrift) {
     const auto cruise = forecast({4, 5.0, 1e-3, 1.0});
-    const auto rest = predict_rest(cruise, flown(300.0, 40.0), 300.0, LevelSource::curve);
+    const auto rest = predict_remaining_cruise(cruise, flown(300.0, 40.0), 300.0, CruisePrior::curve);
     EXPECT_NEAR(rest.gain, 1.0, 1e-6);
     EXPECT_NEAR(rest.remaining_mean_w - 40.0,
-                2.0 * units::joule_from_wh(predict_rest_before_flight(cruise, 300.0, 300.0).energy_wh) / 600.0 -
+                2.0 * units::joule_from_wh(predict_remaining_before_flight(cruise, 300.0, 300.0).energy_wh) / 600.0 -
                     rest.expected_w,
                 1e-3);
 }
@@ -117,7 +117,7 @@ TEST(Prediction, ShrinksByTheVariances) {
     const double correlation_s = 0.01;
     const double sd_w = 2.0 / std::sqrt(2.0 * correlation_s / 300.0);
     const auto cruise = forecast({4, 2.0, sd_w, correlation_s});
-    const auto rest = predict_rest(cruise, flown(300.0, 40.0), 900.0, LevelSource::curve);
+    const auto rest = predict_remaining_cruise(cruise, flown(300.0, 40.0), 900.0, CruisePrior::curve);
     EXPECT_NEAR(rest.gain, 0.5, 1e-4);
     const double hours = 900.0 / 3600.0;
     const double variance_w2 = rest.energy.variance_wh2 / hours / hours;
@@ -125,7 +125,7 @@ TEST(Prediction, ShrinksByTheVariances) {
     // (B^2 V / (B^2 + V)^2)^2 (2/3 + 2/3) on the variance 8 of what was seen.
     EXPECT_NEAR(variance_w2, 1.25 * (1.0 + 4.0 / 3.0 + 1.0 + 8.0 / 16.0 * 4.0 / 3.0), 1e-3);
     // Each of the three rests on 4 flights.
-    EXPECT_NEAR(rest.energy.variance_square_per_degree_of_freedom / std::pow(hours, 4),
+    EXPECT_NEAR(rest.energy.satterthwaite_sum / std::pow(hours, 4),
                 1.25 * 1.25 * (1.0 + std::pow(7.0 / 3.0, 2) + std::pow(2.0 / 3.0, 2)) / 3.0, 2e-3);
 }
 
@@ -133,7 +133,7 @@ TEST(Prediction, IntervalNarrowsAsTheFlightGoesOn) {
     const auto cruise = forecast({4, 5.0, 8.0, 60.0});
     double last_wh = 1e9;
     for (const double seconds : {10.0, 100.0, 300.0, 600.0, 890.0}) {
-        const auto rest = predict_rest(cruise, flown(seconds, 30.0), 900.0 - seconds, LevelSource::curve);
+        const auto rest = predict_remaining_cruise(cruise, flown(seconds, 30.0), 900.0 - seconds, CruisePrior::curve);
         const auto interval = interval_95(rest.energy).value();
         EXPECT_LT(interval.high_wh - interval.low_wh, last_wh) << seconds;
         last_wh = interval.high_wh - interval.low_wh;
@@ -142,7 +142,7 @@ TEST(Prediction, IntervalNarrowsAsTheFlightGoesOn) {
 
 TEST(Prediction, HoldsOneLevelWhereAsked) {
     const auto cruise = forecast({4, 5.0, 1e-3, 1.0});
-    const auto rest = predict_rest(cruise, flown(300.0, 40.0), 300.0, LevelSource::constant);
+    const auto rest = predict_remaining_cruise(cruise, flown(300.0, 40.0), 300.0, CruisePrior::constant);
     EXPECT_NEAR(rest.remaining_mean_w, 40.0, 1e-3);
     const double mean_w = energy_j(cruise.model.fourier, 600.0) / 600.0;
     EXPECT_NEAR(rest.expected_w, mean_w, 1e-9);
@@ -154,11 +154,12 @@ TEST(Prediction, HoldsOneLevelWhereAsked) {
 TEST(Prediction, FollowsTheAirspeedWhereAsked) {
     auto cruise = forecast({4, 5.0, 1e-3, 1.0});
     auto flight = flown(300.0, 20.0);
-    EXPECT_THROW(predict_rest(cruise, flight, 900.0, LevelSource::airspeed), NoAnswerError);
-    cruise.model.airspeed_law = LevelLaw{Covariate::airspeed_cubed, 3, 2000.0, 100.0, 1900.0, 2100.0, 20.0, 1.0, 0.0};
-    EXPECT_THROW(predict_rest(cruise, flight, 900.0, LevelSource::airspeed), NoAnswerError);
+    EXPECT_THROW(predict_remaining_cruise(cruise, flight, 900.0, CruisePrior::airspeed), NoResultError);
+    cruise.model.airspeed_law =
+        CovariateRegression{Covariate::airspeed_cubed, 3, 2000.0, 100.0, 1900.0, 2100.0, 20.0, 1.0, 0.0};
+    EXPECT_THROW(predict_remaining_cruise(cruise, flight, 900.0, CruisePrior::airspeed), NoResultError);
     flight.airspeed_cubed_m3_per_s3 = 2500.0;
-    const auto rest = predict_rest(cruise, flight, 900.0, LevelSource::airspeed);
+    const auto rest = predict_remaining_cruise(cruise, flight, 900.0, CruisePrior::airspeed);
     EXPECT_NEAR(rest.expected_w, 25.0, 1e-12);
     // All flights have obeyed the law exactly: it is trusted more than 300 s of power.
     EXPECT_NEAR(rest.remaining_mean_w, 25.0, 0.05);
@@ -167,31 +168,32 @@ TEST(Prediction, FollowsTheAirspeedWhereAsked) {
 TEST(Prediction, FollowsTheCovariateOfTheLevelLawWhereAsked) {
     auto cruise = forecast({4, 5.0, 1e-3, 1.0});
     auto flight = flown(300.0, 20.0);
-    EXPECT_THROW(predict_rest(cruise, flight, 900.0, LevelSource::covariate), NoAnswerError);
-    cruise.model.level_law = LevelLaw{Covariate::height, 4, 100.0, 10.0, 90.0, 110.0, 30.0, 4.0, 0.0};
-    EXPECT_THROW(predict_rest(cruise, flight, 900.0, LevelSource::covariate), NoAnswerError);
+    EXPECT_THROW(predict_remaining_cruise(cruise, flight, 900.0, CruisePrior::covariate), NoResultError);
+    cruise.model.level_law = CovariateRegression{Covariate::height, 4, 100.0, 10.0, 90.0, 110.0, 30.0, 4.0, 0.0};
+    EXPECT_THROW(predict_remaining_cruise(cruise, flight, 900.0, CruisePrior::covariate), NoResultError);
     flight.covariates[Covariate::height] = 105.0;
-    const auto rest = predict_rest(cruise, flight, 900.0, LevelSource::covariate);
+    const auto rest = predict_remaining_cruise(cruise, flight, 900.0, CruisePrior::covariate);
     EXPECT_NEAR(rest.expected_w, 32.0, 1e-12);
     // All flights have obeyed the law exactly: it is trusted more than 300 s of power.
     EXPECT_NEAR(rest.remaining_mean_w, 32.0, 0.05);
 }
 
 TEST(Prediction, SaysWhenTheModelHasNoSpread) {
-    const PhaseForecast cruise{test::published_model().phases[flight::Phase::cruise], 1.0};
-    EXPECT_THROW(predict_rest(cruise, flown(300.0, 20.0), 900.0, LevelSource::curve), NoAnswerError);
+    const WeightedPhase cruise{test::published_model().phases[flight::Phase::cruise], 1.0};
+    EXPECT_THROW(predict_remaining_cruise(cruise, flown(300.0, 20.0), 900.0, CruisePrior::curve), NoResultError);
     EXPECT_FALSE(interval_95(predict_before_flight(cruise, 600.0)).has_value());
 }
 
 TEST(Prediction, OfNothingLeftIsNothing) {
-    const auto rest = predict_rest(forecast({4, 2.0, 1.0, 50.0}), flown(300.0, 40.0), 0.0, LevelSource::curve);
+    const auto rest =
+        predict_remaining_cruise(forecast({4, 2.0, 1.0, 50.0}), flown(300.0, 40.0), 0.0, CruisePrior::curve);
     EXPECT_DOUBLE_EQ(rest.energy.energy_wh, 0.0);
     EXPECT_DOUBLE_EQ(rest.energy.variance_wh2, 0.0);
 }
 
 EnergyEstimate estimate(double energy_wh, double variance_wh2, double degrees_of_freedom) {
     EnergyEstimate result{energy_wh, true, 0.0, 0.0};
-    add_share(result, {variance_wh2, degrees_of_freedom});
+    add_variance(result, {variance_wh2, degrees_of_freedom});
     return result;
 }
 

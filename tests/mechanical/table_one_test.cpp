@@ -58,7 +58,7 @@ TEST(TableOne, StandsBesideTheRegenerated) {
     cruise.fourier.a0_w *= 1.01;
     cruise.duration_s = 500.0;
     cruise.fourier.omega_rad_per_s *= 600.0 / 500.0;
-    const auto table = table_one_beside(published, regenerated);
+    const auto table = table_one_comparison(published, regenerated);
     EXPECT_THAT(table.header,
                 ElementsAre("coefficient", "take-off published", "take-off regenerated", "cruise published",
                             "cruise regenerated", "landing published", "landing regenerated"));

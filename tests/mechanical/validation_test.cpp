@@ -86,7 +86,7 @@ TEST(Validation, SaysOfSharedScansWhatFitsWithoutThemSay) {
     for (const auto* name : {"a", "b", "c", "d"})
         flights.push_back(measured(name, published_model().phases, random).samples);
     auto sharing = flights;
-    keep_scans(sharing, {});
+    cache_scans(sharing, {});
     for (const auto phase : flight::all_phases) {
         auto some = samples_of_phase(flights, phase);
         auto some_sharing = samples_of_phase(sharing, phase);
@@ -103,7 +103,7 @@ TEST(Validation, SaysOfSharedScansWhatFitsWithoutThemSay) {
 TEST(Validation, NeedsTwoFlightsAndGivesIntervalsFromThree) {
     std::mt19937 random(1);
     std::vector flights{measured("a", published_model().phases, random)};
-    EXPECT_THROW(leave_one_out(flights), NoAnswerError);
+    EXPECT_THROW(leave_one_out(flights), NoResultError);
     flights.push_back(measured("b", published_model().phases, random));
     EXPECT_FALSE(score_of(leave_one_out(flights), "fourier", std::nullopt)->coverage_95.has_value());
     flights.push_back(measured("c", published_model().phases, random));
@@ -206,7 +206,7 @@ ValidatedFlight cruise(double measured_wh, double predicted_wh, std::optional<do
     EnergyEstimate estimate;
     estimate.energy_wh = predicted_wh;
     estimate.uncertainty_known = sd_wh.has_value();
-    if (sd_wh) add_share(estimate, {*sd_wh * *sd_wh, 30.0});
+    if (sd_wh) add_variance(estimate, {*sd_wh * *sd_wh, 30.0});
     FlightPrediction prediction;
     prediction.model = "fourier";
     prediction.phases[Phase::cruise] = estimate;

@@ -24,7 +24,7 @@ const FlightPath up_and_on{{path_element(Leg{1300.0, 0.0}), path_element(Hold{50
 TEST(CruisePath, ShowsTheWayOfLegsWhoseTimeWasMeasured) {
     const auto mission = path_mission(
         {{path_element(Hold{50.0, Leg{700.0, 45.0}}), path_element(Hold{20.0}), path_element(Leg{260.0, 0.0})}});
-    const auto rows = flown_elements(*mission.cruise_path->plan);
+    const auto rows = path_element_results(*mission.cruise_path->plan);
     ASSERT_EQ(rows.size(), 3U);
     EXPECT_EQ(rows[0].kind, "leg");
     EXPECT_EQ(rows[0].length_m, std::optional(700.0));
@@ -47,28 +47,28 @@ TEST(CruisePath, IsPiecesOfConstantPower) {
     const double sum_j = 100.0 * 21.97 + 50.0 * 29.97 + 150.0 * 27.44;
     EXPECT_NEAR(energy_j(*mission.cruise_path), sum_j, 1e-6);
     EXPECT_NEAR(energy_until_j(pieces, 120.0), 2197.0 + 20.0 * 29.97, 1e-6);
-    EXPECT_EQ(piece_at(pieces, pieces[1].start_s).power_w, pieces[1].power_w);
-    EXPECT_EQ(&piece_at(pieces, -1.0), &pieces.front());
-    EXPECT_EQ(&piece_at(pieces, 1e9), &pieces.back());
+    EXPECT_EQ(segment_at(pieces, pieces[1].start_s).power_w, pieces[1].power_w);
+    EXPECT_EQ(&segment_at(pieces, -1.0), &pieces.front());
+    EXPECT_EQ(&segment_at(pieces, 1e9), &pieces.back());
 }
 
 TEST(CruisePath, HasTheMeanOfItsTerms) {
-    const auto flown = fly_path(up_and_on, {3.0, 45.0});
+    const auto flown = compute_trajectory(up_and_on, {3.0, 45.0});
     const auto model = test::made_up_wing();
-    const auto plan = std::make_shared<const PathPlan>(PathPlan{up_and_on, {3.0, 45.0}, model});
-    EXPECT_NEAR(power_of_terms_w(model, mean_terms(model, flown)),
-                mean_power_w(fly_cruise(plan, plan->wind, ForbiddenLeg::refuse)), 1e-9);
+    const auto plan = std::make_shared<const PlannedPath>(PlannedPath{up_and_on, {3.0, 45.0}, model});
+    EXPECT_NEAR(sum_of_terms_w(model, mean_terms(model, flown)),
+                mean_power_w(compute_cruise(plan, plan->wind, InfeasibleLegPolicy::refuse)), 1e-9);
 }
 
 TEST(CruisePath, FollowsALawOfAirspeedAsTheLawDoes) {
-    const mechanical::LevelLaw law{
+    const mechanical::CovariateRegression law{
         mechanical::Covariate::airspeed_cubed, 4, 2200.0, 200.0, 1900.0, 2500.0, 24.0, 24.0 * 200.0 / 2200.0, 1.2};
-    const auto model = model_of_law(law);
+    const auto model = physical_model_from_drag(law);
     const double cubed = 13.2 * 13.2 * 13.2;
-    const auto level = level_at(law, cubed);
+    const auto level = predict_mean_power(law, cubed);
     EXPECT_NEAR(power_w(model, {13.2}), level.power_w, 1e-12);
     const auto constant = constant_power(level);
-    const auto uncertainty = uncertainty_of(model, mechanical::terms_of({13.2}), 600.0);
+    const auto uncertainty = prediction_uncertainty(model, mechanical::term_values({13.2}), 600.0);
     EXPECT_NEAR(uncertainty->sd_w, constant.sd_w.value(), 1e-12);
     EXPECT_NEAR(uncertainty->degrees_of_freedom, constant.degrees_of_freedom, 1e-9);
 }
@@ -76,8 +76,8 @@ TEST(CruisePath, FollowsALawOfAirspeedAsTheLawDoes) {
 TEST(CruisePath, WarnsOfWhatNobodyFlew) {
     const FlightPath path{
         {path_element(Leg{100.0, 0.0}), path_element(Leg{100.0, 0.0}, 18.0), path_element(Circles{9.0, 1.0})}};
-    const PathPlan plan{path, {}, test::made_up_wing()};
-    const auto warnings = path_warnings(plan, fly_path(path, {}));
+    const PlannedPath plan{path, {}, test::made_up_wing()};
+    const auto warnings = path_warnings(plan, compute_trajectory(path, {}));
     ASSERT_EQ(warnings.size(), 2U);
     EXPECT_EQ(
         warnings[0],
@@ -113,17 +113,17 @@ TEST(CruisePath, IsTabledAsItIsSimulated) {
     mission.reserve_soc_percent = 10.0;
     ASSERT_GT(mission.cruise_path->pieces->size(), 20U);
     const double simulated = *simulate(mission).summary.final_soc_percent;
-    EXPECT_NEAR(spare_percent(mission), simulated - 10.0, 1e-7);
+    EXPECT_NEAR(surplus_percent(mission), simulated - 10.0, 1e-7);
     battery::Discharge state{{mission.initial_soc_percent}};
     for (const auto& segment : load_segments(mission, mission.schedule))
-        state = after_segment(mission.battery, 0.0, segment, state);
+        state = advance_segment(mission.battery, 0.0, segment, state);
     EXPECT_NEAR(state.soc_percent, simulated, 1e-7);
-    const auto whole = load_segment(load_of(mission), mission.schedule.front());
+    const auto whole = load_segment(make_mission_load(mission), mission.schedule.front());
     EXPECT_NEAR(mechanical_energy_j(whole, whole.end_s), energy_j(*mission.cruise_path), 1e-9);
     EXPECT_EQ(mechanical_w(whole, 10.0), mission.cruise_path->pieces->front().power_w);
     // More than the battery can deliver in one piece alone.
     mission.battery.resistance_ohm = 100.0 / 4.0 / 25.0;
-    EXPECT_LT(spare_percent(mission), 0.0);
+    EXPECT_LT(surplus_percent(mission), 0.0);
 }
 
 TEST(CruisePath, DiffersWithTheWind) {
@@ -140,7 +140,7 @@ TEST(CruisePath, DiffersWithTheWind) {
     constexpr int flights = 4000;
     for (int i = 0; i < flights; ++i) {
         const Wind wind{std::max(0.0, 4.0 + 1.5 * normal(random)), 20.0 * normal(random)};
-        const auto flown = fly_cruise(mission.cruise_path->plan, wind, ForbiddenLeg::refuse);
+        const auto flown = compute_cruise(mission.cruise_path->plan, wind, InfeasibleLegPolicy::refuse);
         const double final_percent = 100.0 - energy_j(flown) / 3600.0 * 10.0;
         sum += final_percent;
         square_sum += final_percent * final_percent;
@@ -152,7 +152,7 @@ TEST(CruisePath, DiffersWithTheWind) {
     const std::vector<std::string> expected{"cruise duration (as the path and the wind make it)",
                                             "wind speed (sd 1.5 m/s, stated)",
                                             "wind direction (sd 20 degrees, stated)"};
-    EXPECT_EQ(drawn.sources.drawn, expected);
+    EXPECT_EQ(drawn.sources.varied, expected);
     // Where a drawn wind leaves less than 2 % of the airspeed (0.26 m/s) over ground, the flight fails.
     const auto windy = path_mission({{path_element(Leg{40.0, 0.0})}}, {12.0, 0.0, 2.0, 0.0});
     const auto stormy = sample_flights({windy, windy.schedule, std::nullopt, ScheduleOrigin::given}, {}, {4000, 7, 0});

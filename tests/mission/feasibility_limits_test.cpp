@@ -11,7 +11,7 @@ namespace flightwatt::mission {
 namespace {
 
 /// A mission of the paper's, with another battery and reserve, for any cruise.
-MissionOfCruise paper(const std::string& name, double resistance_ohm, double reserve_soc_percent) {
+MissionForCruise paper(const std::string& name, double resistance_ohm, double reserve_soc_percent) {
     const auto path = test::paper_mission_path(name);
     return [=](double cruise_s) {
         auto mission = read_mission(path, {true, cruise_s});
@@ -35,7 +35,7 @@ TEST(LongestCruise, EndsOnTheReserve) {
                 const auto most = longest_cruise(mission_of);
                 EXPECT_NEAR(final_soc(with_minimum_energy_schedule(mission_of(most.value))), reserve, 1e-6);
                 EXPECT_NEAR(most.residual_percent, 0.0, 1e-6) << name;
-                EXPECT_EQ(most.limited_by, FeasibilityBound::charge);
+                EXPECT_EQ(most.limited_by, LimitingFactor::charge);
                 EXPECT_LT(final_soc(with_minimum_energy_schedule(mission_of(most.value + 0.1))), reserve);
             }
         }
@@ -44,7 +44,7 @@ TEST(LongestCruise, EndsOnTheReserve) {
 
 TEST(LongestCruise, HasNoAnswerWhereTheScheduleDoesNotFit) {
     // The fixed two minutes and the other phases alone cost more than 80 points would leave.
-    EXPECT_THROW(longest_cruise(paper("plan", 0.0, 85.0)), NoAnswerError);
+    EXPECT_THROW(longest_cruise(paper("plan", 0.0, 85.0)), NoResultError);
 }
 
 TEST(LargestPayload, EndsOnTheReserve) {
@@ -65,18 +65,18 @@ TEST(LargestPayload, EndsWhereTheBatteryCannotDeliver) {
     auto mission = std::get<Mission>(paper("mechanical-only", 0.0, 0.0)(600.0));
     mission.battery = {"", 11.1, 0.5, 100.0};  // charge enough, but 61.605 W at most
     const auto most = largest_payload(mission);
-    EXPECT_EQ(most.limited_by, FeasibilityBound::power);
+    EXPECT_EQ(most.limited_by, LimitingFactor::power);
     EXPECT_GT(most.residual_percent, 10.0);
     EXPECT_FALSE(simulate(with_payload(mission, most.value - 1e-3)).summary.undeliverable);
     EXPECT_TRUE(simulate(with_payload(mission, most.value + 1e-3)).summary.undeliverable);
 }
 
 TEST(LargestPayload, HasNoAnswerWhereTheMissionDoesNotLandAsItIs) {
-    EXPECT_THROW(largest_payload(paper("phased", 0.0, 5.0)(600.0)), NoAnswerError);
+    EXPECT_THROW(largest_payload(paper("phased", 0.0, 5.0)(600.0)), NoResultError);
 }
 
 /// The paper's mission that is to be planned, with another reserve, for any cruise.
-MissionOfCruise paper_plan(double reserve_soc_percent) {
+MissionForCruise paper_plan(double reserve_soc_percent) {
     return [=](double cruise_s) {
         auto problem = std::get<PlanningProblem>(read_mission(test::paper_mission_path("plan"), {true, cruise_s}));
         problem.reserve_soc_percent = reserve_soc_percent;
@@ -90,15 +90,16 @@ TEST(InfeasibilityReport, NamesWhatWouldDo) {
     const auto plan = plan_mission(mission);
     ASSERT_FALSE(plan.plan.feasible);
     const auto report = infeasibility_report(mission, plan, mission_of);
-    EXPECT_NEAR(report.short_percent, 9.0 - 7.4306, 1e-4);
-    EXPECT_NEAR(report.short_wh, report.short_percent / 100.0 * 3.416 * 3.2, 1e-9);
+    EXPECT_NEAR(report.shortfall_percent, 9.0 - 7.4306, 1e-4);
+    EXPECT_NEAR(report.shortfall_wh, report.shortfall_percent / 100.0 * 3.416 * 3.2, 1e-9);
 
-    ASSERT_TRUE(report.cruise_s && report.fixed_spare_percent && report.reserve_soc_percent && report.capacity_ah);
+    ASSERT_TRUE(report.cruise_s && report.min_fixed_surplus_percent && report.reserve_soc_percent &&
+                report.capacity_ah);
     EXPECT_TRUE(plan_mission(std::get<PlanningProblem>(mission_of(*report.cruise_s))).plan.feasible);
     EXPECT_FALSE(plan_mission(std::get<PlanningProblem>(mission_of(*report.cruise_s + 0.1))).plan.feasible);
     auto other = mission;
     other.fixed.clear();
-    EXPECT_NEAR(final_soc(with_minimum_energy_schedule(other)), 9.0 + *report.fixed_spare_percent, 1e-6);
+    EXPECT_NEAR(final_soc(with_minimum_energy_schedule(other)), 9.0 + *report.min_fixed_surplus_percent, 1e-6);
     for (const double step : {-1e-6, 1e-6}) {
         other = mission;
         other.reserve_soc_percent = *report.reserve_soc_percent + step;
@@ -114,7 +115,7 @@ TEST(InfeasibilityReport, NamesNothingThatIsNotEnough) {
     const auto mission = std::get<PlanningProblem>(mission_of(600.0));
     const auto report = infeasibility_report(mission, plan_mission(mission), mission_of);
     EXPECT_FALSE(report.cruise_s);
-    EXPECT_FALSE(report.fixed_spare_percent);
+    EXPECT_FALSE(report.min_fixed_surplus_percent);
     EXPECT_TRUE(report.reserve_soc_percent);
 }
 

@@ -74,7 +74,7 @@ TEST(MissionFile, HasDefaults) {
     const auto mission = scheduled(text, mission_folder() / "flight.toml");
     EXPECT_EQ(mission.name, "flight");
     EXPECT_EQ(mission.duration_s.values, (std::array{28.0, 600.0, 60.0}));
-    EXPECT_EQ(mission.phase_clock, mechanical::PhaseClock::stretched);
+    EXPECT_EQ(mission.phase_clock, mechanical::PhaseTimeScaling::stretched);
     EXPECT_EQ(mission.initial_soc_percent, 100.0);
     ASSERT_EQ(mission.schedule.size(), 3U);
     EXPECT_TRUE(mission.schedule[1].run.empty());
@@ -116,7 +116,7 @@ TEST(MissionFile, TakesDurationsFromTheMissionFirst) {
         "battery = { voltage_v = 4, resistance_ohm = 0, capacity_ah = 1 }\n";
     const auto mission = scheduled(text, mission_folder() / "m.toml");
     EXPECT_EQ(mission.duration_s.values, (std::array{28.0, 900.0, 60.0}));
-    EXPECT_EQ(mission.phase_clock, mechanical::PhaseClock::absolute);
+    EXPECT_EQ(mission.phase_clock, mechanical::PhaseTimeScaling::absolute);
 }
 
 TEST(MissionFile, ReadsModelsRelativeToTheMissionFile) {

@@ -14,7 +14,7 @@ namespace {
 using test::path_element;
 using test::path_mission;
 
-AnyMission with_reserve(Mission mission, double reserve_percent) {
+MissionVariant with_reserve(Mission mission, double reserve_percent) {
     mission.reserve_soc_percent = reserve_percent;
     return mission;
 }
@@ -25,25 +25,25 @@ TEST(PathLimits, CountTheCirclesThatTheReserveAllows) {
                                            path_element(Leg{1300.0, 180.0})}}),
                             30.0);
     };
-    const auto most = most_circles(mission_of);
+    const auto most = max_circles(mission_of);
     const auto model = test::made_up_wing();
     const double tangent = 13.0 * 13.0 / (9.80665 * 100.0);
     const double circle_j = 2.0 * std::numbers::pi * 100.0 / 13.0 * (21.97 + 40.0 * tangent * tangent / 13.0);
     EXPECT_EQ(most.value, std::floor((0.7 * 36000.0 - 2.0 * 100.0 * 21.97) / circle_j));
-    EXPECT_EQ(most.limited_by, FeasibilityBound::charge);
+    EXPECT_EQ(most.limited_by, LimitingFactor::charge);
     EXPECT_NEAR(most.final_soc_percent,
                 simulate(std::get<Mission>(mission_of(most.value))).summary.final_soc_percent.value(), 1e-12);
-    EXPECT_EQ(question_of(std::get<Mission>(mission_of(3.0)).cruise_path->plan->path), PathQuestion::circles);
+    EXPECT_EQ(default_criterion(std::get<Mission>(mission_of(3.0)).cruise_path->plan->path), ReachCriterion::circles);
     const auto too_far = [&](double circles) { return with_reserve(std::get<Mission>(mission_of(circles)), 90.0); };
-    EXPECT_THROW(most_circles(too_far), NoAnswerError);
+    EXPECT_THROW(max_circles(too_far), NoResultError);
 }
 
 TEST(PathLimits, FindTheFarthestPlaceToReturnFrom) {
     const FlightPath path{{path_element(Leg{6000.0, 0.0}), path_element(Leg{9000.0, 90.0})}};
     const Wind wind{5.0, 0.0};
-    EXPECT_EQ(question_of(path), PathQuestion::way_back);
+    EXPECT_EQ(default_criterion(path), ReachCriterion::way_back);
     const auto mission_of = [&](double after_m) {
-        return with_reserve(path_mission(there_and_back(path, after_m, {}), wind), 20.0);
+        return with_reserve(path_mission(out_and_back(path, after_m, {}), wind), 20.0);
     };
     const auto most = farthest_return(mission_of, length_of_legs_m(path));
     // 8 m/s out, 18 back, and 12 across the wind, at 21.97 W.
@@ -53,12 +53,12 @@ TEST(PathLimits, FindTheFarthestPlaceToReturnFrom) {
     // From the end of a short path.
     const FlightPath near{{path_element(Leg{600.0, 0.0})}};
     const auto all = farthest_return(
-        [&](double after_m) { return with_reserve(path_mission(there_and_back(near, after_m, {})), 20.0); }, 600.0);
+        [&](double after_m) { return with_reserve(path_mission(out_and_back(near, after_m, {})), 20.0); }, 600.0);
     EXPECT_EQ(all.value, 600.0);
-    EXPECT_THROW(farthest_return(mission_of, 0.0), NoAnswerError);
+    EXPECT_THROW(farthest_return(mission_of, 0.0), NoResultError);
     // The wind forbids the way back.
     const auto downwind = [&](double after_m) {
-        return with_reserve(path_mission(there_and_back(near, after_m, {}), {14.0, 180.0}), 20.0);
+        return with_reserve(path_mission(out_and_back(near, after_m, {}), {14.0, 180.0}), 20.0);
     };
     EXPECT_THROW(farthest_return(downwind, 600.0), InputError);
 }
@@ -70,7 +70,7 @@ TEST(PathLimits, StopWhereTheWindForbidsTheWayBack) {
     const auto most = farthest_return(
         [&](double after_m) {
             return with_reserve(
-                path_mission(there_and_back(path, after_m, {}), after_m > 600.0 ? Wind{14.0, 180.0} : wind), 20.0);
+                path_mission(out_and_back(path, after_m, {}), after_m > 600.0 ? Wind{14.0, 180.0} : wind), 20.0);
         },
         length_of_legs_m(path));
     EXPECT_NEAR(most.value, 600.0, 1e-5);
@@ -83,15 +83,15 @@ TEST(PathLimits, KeepTheReserveWithAChance) {
         mission.uncertainty.level_sd_percent[flight::Phase::cruise] = 4.0;
         return with_reserve(std::move(mission), 30.0);
     };
-    const auto certain = most_circles(mission_of);
-    const auto likely = most_circles(mission_of, 0.95);
+    const auto certain = max_circles(mission_of);
+    const auto likely = max_circles(mission_of, 0.95);
     EXPECT_LT(likely.value, certain.value);
     ASSERT_TRUE(likely.sources);
     EXPECT_GT(likely.margin_percent, 0.0);
     EXPECT_GE(likely.residual_percent, -1e-6);
     const auto spare_percent = [&](double circles) {
         const auto mission = std::get<Mission>(mission_of(circles));
-        return landing_chance(mission, find_spreads(mission), 0.95).spare_percent(0.95);
+        return failure_probability(mission, collect_uncertainty(mission), 0.95).spare_percent(0.95);
     };
     EXPECT_GE(spare_percent(likely.value), 0.0);
     EXPECT_LT(spare_percent(likely.value + 1.0), 0.0);

@@ -31,9 +31,11 @@ PathElement climbing(PathElement element, double change_m, std::optional<double>
     return element;
 }
 
-double time_s(const PathElement& element, const Wind& wind = {}) { return fly_path({{element}}, wind).duration_s; }
+double time_s(const PathElement& element, const Wind& wind = {}) {
+    return compute_trajectory({{element}}, wind).duration_s;
+}
 
-double climbed_m(const FlownPath& flown) {
+double climbed_m(const PathTrajectory& flown) {
     double sum_m = 0.0;
     for (const auto& piece : flown.pieces) sum_m += piece.time_s * piece.motion.climb_m_per_s;
     return sum_m;
@@ -68,7 +70,7 @@ TEST(Path, GroundSpeedsAddUpAsVectors) {
 }
 
 TEST(Path, CirclesInCalmAirTakeTheirLength) {
-    const auto flown = fly_path({{element_of(Circles{75.0, 2.5})}}, {});
+    const auto flown = compute_trajectory({{element_of(Circles{75.0, 2.5})}}, {});
     ASSERT_EQ(flown.pieces.size(), 1U);
     EXPECT_NEAR(flown.duration_s, 2.5 * 2.0 * pi * 75.0 / 13.0, 1e-9);
     const double tangent = 13.0 * 13.0 / (gravity * 75.0);
@@ -94,7 +96,7 @@ TEST(Path, LoadFactorsInWindAreThoseOfTheTurn) {
     const double airspeed = 13.0;
     const double radius_m = 50.0;
     const double wind = 4.0;
-    const auto flown = fly_path({{element_of(Circles{radius_m, 1.0}, airspeed)}}, {wind, 180.0});
+    const auto flown = compute_trajectory({{element_of(Circles{radius_m, 1.0}, airspeed)}}, {wind, 180.0});
     double mean_square = 0.0;
     for (const auto& piece : flown.pieces)
         mean_square += std::pow(piece.motion.load_factor, 2) * piece.time_s / flown.duration_s;
@@ -125,7 +127,7 @@ TEST(Path, PartsOfCirclesAddUpToTheWhole) {
         sum_s += time_s(element_of(Circles{80.0, 0.2, true, 30.0 + 72.0 * part}), wind);
     EXPECT_NEAR(sum_s, whole_s, 1e-8);
     // Very many circles have longer pieces, and the same sums.
-    const auto many = fly_path({{element_of(Circles{80.0, 5000.5, true, 30.0})}}, wind);
+    const auto many = compute_trajectory({{element_of(Circles{80.0, 5000.5, true, 30.0})}}, wind);
     EXPECT_LT(many.pieces.size(), 300U);
     EXPECT_NEAR(many.duration_s, 5000.0 * whole_s + time_s(element_of(Circles{80.0, 0.5, true, 30.0}), wind), 1e-4);
 }
@@ -136,43 +138,44 @@ TEST(Path, AnyWindMakesARoundTripLonger) {
     std::uniform_real_distribution<double> speed(0.1, 11.0);
     const FlightPath square{{element_of(Leg{500.0, 0.0}), element_of(Leg{500.0, 90.0}), element_of(Leg{500.0, 180.0}),
                              element_of(Leg{500.0, 270.0}), element_of(Circles{60.0, 2.0})}};
-    const double calm_s = fly_path(square, {}).duration_s;
-    for (int i = 0; i < 50; ++i) EXPECT_GT(fly_path(square, {speed(random), angle(random)}).duration_s, calm_s);
+    const double calm_s = compute_trajectory(square, {}).duration_s;
+    for (int i = 0; i < 50; ++i)
+        EXPECT_GT(compute_trajectory(square, {speed(random), angle(random)}).duration_s, calm_s);
 }
 
 TEST(Path, ClimbsSpreadOverALegArriveAtItsEnd) {
     // Calm: along the slope.
     EXPECT_NEAR(time_s(climbing(element_of(Leg{400.0, 0.0}), 300.0)), 500.0 / 13.0, 1e-9);
     for (const Wind wind : {Wind{6.0, 10.0}, Wind{6.0, 100.0}, Wind{6.0, 190.0}}) {
-        const auto flown = fly_path({{climbing(element_of(Leg{900.0, 0.0}), -120.0)}}, wind);
+        const auto flown = compute_trajectory({{climbing(element_of(Leg{900.0, 0.0}), -120.0)}}, wind);
         ASSERT_EQ(flown.pieces.size(), 1U);
         const double climb = flown.pieces.front().motion.climb_m_per_s;
         const double horizontal = std::sqrt(13.0 * 13.0 - climb * climb);
         EXPECT_NEAR(climb * flown.duration_s, -120.0, 1e-7);
         EXPECT_NEAR(flown.duration_s, 900.0 / ground_speed_m_per_s(horizontal, 0.0, wind).value(), 1e-7);
     }
-    const auto circling = fly_path({{climbing(element_of(Circles{80.0, 4.0}), 60.0)}}, {5.0, 0.0});
+    const auto circling = compute_trajectory({{climbing(element_of(Circles{80.0, 4.0}), 60.0)}}, {5.0, 0.0});
     EXPECT_NEAR(climbed_m(circling), 60.0, 1e-6);
 }
 
 TEST(Path, ClimbsAtARateComeFirst) {
     const Wind wind{4.0, 0.0};
-    const auto flown = fly_path({{climbing(element_of(Leg{1000.0, 0.0}), 60.0, 2.0)}}, wind);
+    const auto flown = compute_trajectory({{climbing(element_of(Leg{1000.0, 0.0}), 60.0, 2.0)}}, wind);
     ASSERT_EQ(flown.pieces.size(), 2U);
     EXPECT_NEAR(flown.pieces[0].time_s, 30.0, 1e-9);
     const double climbed_over_m = 30.0 * (std::sqrt(13.0 * 13.0 - 4.0) - 4.0);
     EXPECT_NEAR(flown.pieces[1].time_s, (1000.0 - climbed_over_m) / 9.0, 1e-9);
     EXPECT_EQ(flown.pieces[1].motion.climb_m_per_s, 0.0);
-    const auto circling = fly_path({{climbing(element_of(Circles{80.0, 3.0}), -60.0, 1.5)}}, wind);
+    const auto circling = compute_trajectory({{climbing(element_of(Circles{80.0, 3.0}), -60.0, 1.5)}}, wind);
     EXPECT_NEAR(climbed_m(circling), -60.0, 1e-6);
-    const auto holding = fly_path({{climbing(element_of(Hold{100.0}), 60.0, 2.0)}}, wind);
+    const auto holding = compute_trajectory({{climbing(element_of(Hold{100.0}), 60.0, 2.0)}}, wind);
     EXPECT_NEAR(holding.duration_s, 100.0, 1e-12);
     EXPECT_NEAR(climbed_m(holding), 60.0, 1e-9);
 }
 
 TEST(Path, RefusesWhatCannotBeFlown) {
     const auto refusal = [](const PathElement& element, const Wind& wind = {}) {
-        return test::rejected([&] { fly_path({{element}}, wind); });
+        return test::rejected([&] { compute_trajectory({{element}}, wind); });
     };
     EXPECT_EQ(
         refusal(element_of(Leg{100.0, 0.0}), {14.0, 90.0}),
@@ -194,13 +197,13 @@ TEST(Path, RefusesWhatCannotBeFlown) {
 
 TEST(Path, CrawlsAgainstAWindThatWasDrawn) {
     const FlightPath path{{element_of(Leg{100.0, 180.0}), element_of(Leg{100.0, 0.0})}};
-    const auto flown = fly_path(path, {14.0, 0.0}, ForbiddenLeg::crawl);
-    EXPECT_EQ(flown.blown, std::optional<std::size_t>(1));
+    const auto flown = compute_trajectory(path, {14.0, 0.0}, InfeasibleLegPolicy::crawl);
+    EXPECT_EQ(flown.infeasible_element, std::optional<std::size_t>(1));
     EXPECT_NEAR(flown.element_s[1], 100.0 / (0.02 * 13.0), 1e-9);
     // A leg that a tailwind makes too short for its climb is climbed on the spot.
-    const auto climbed =
-        fly_path({{climbing(element_of(Leg{300.0, 0.0}), 40.0, 2.0)}}, {10.0, 180.0}, ForbiddenLeg::crawl);
-    EXPECT_FALSE(climbed.blown);
+    const auto climbed = compute_trajectory({{climbing(element_of(Leg{300.0, 0.0}), 40.0, 2.0)}}, {10.0, 180.0},
+                                            InfeasibleLegPolicy::crawl);
+    EXPECT_FALSE(climbed.infeasible_element);
     EXPECT_NEAR(climbed.duration_s, 20.0, 1e-9);
 }
 
@@ -208,7 +211,7 @@ TEST(Path, LeadsThereAndBack) {
     FlightPath path{
         {element_of(Leg{300.0, 90.0}), element_of(Circles{50.0, 1.0}), climbing(element_of(Leg{400.0, 0.0}), 40.0)}};
     EXPECT_DOUBLE_EQ(length_of_legs_m(path), 700.0);
-    const auto turned = there_and_back(path, 400.0, {});
+    const auto turned = out_and_back(path, 400.0, {});
     ASSERT_EQ(turned.elements.size(), 5U);
     const auto& back = turned.elements;
     EXPECT_DOUBLE_EQ(std::get<Leg>(back[2].shape).length_m, 100.0);
@@ -217,7 +220,7 @@ TEST(Path, LeadsThereAndBack) {
     EXPECT_DOUBLE_EQ(back[3].altitude_change_m, -10.0);
     EXPECT_DOUBLE_EQ(std::get<Leg>(back[4].shape).course_deg, 270.0);
     EXPECT_DOUBLE_EQ(std::get<Leg>(back[4].shape).length_m, 300.0);
-    EXPECT_EQ(there_and_back(path, 300.0, {}).elements.size(), 2U);
+    EXPECT_EQ(out_and_back(path, 300.0, {}).elements.size(), 2U);
 }
 
 TEST(Path, TurnsBackAtItsEndWhateverItsLengthsRoundTo) {
@@ -227,7 +230,7 @@ TEST(Path, TurnsBackAtItsEndWhateverItsLengthsRoundTo) {
         FlightPath path;
         for (int leg = 0; leg < 5; ++leg) path.elements.push_back(element_of(Leg{length_m(random), 10.0 * leg}));
         path.elements.push_back(element_of(Hold{60.0}));  // begins where the path turns back: is not flown
-        EXPECT_EQ(there_and_back(path, length_of_legs_m(path), {}).elements.size(), 10U) << i;
+        EXPECT_EQ(out_and_back(path, length_of_legs_m(path), {}).elements.size(), 10U) << i;
     }
 }
 

@@ -27,8 +27,8 @@ PlanningProblem paper_with_reserve(double reserve_soc_percent) {
 
 /// Every schedule of a mission of few slots, simulated.
 double best_simulated(const PlanningProblem& mission) {
-    const auto planner = make_planner(mission);
-    const auto slots = slots_of(mission);
+    const auto planner = make_planning_tables(mission);
+    const auto slots = make_slots(mission);
     std::vector<std::size_t> choices(slots.size(), 0);
     double best = -1.0;
     for (;;) {
@@ -54,7 +54,7 @@ TEST(Plan, ReachesThePapersAdaptiveScheduleWithItsReserve) {
     const auto plan = plan_mission(mission);
     ASSERT_TRUE(plan.plan.feasible);
     EXPECT_GE(*plan.summary.utility, *adaptive.utility - 1e-12);
-    EXPECT_LE(plan.plan.bound, *plan.summary.utility * 1.001);
+    EXPECT_LE(plan.plan.utility_bound, *plan.summary.utility * 1.001);
     EXPECT_GE(*plan.summary.final_soc_percent, mission.reserve_soc_percent);
 }
 
@@ -65,11 +65,11 @@ TEST(Plan, SpendsWhatTheReserveLeaves) {
         ASSERT_TRUE(plan.plan.feasible) << reserve;
         EXPECT_GE(*plan.summary.final_soc_percent, reserve);
         EXPECT_LE(*plan.summary.final_soc_percent, reserve + 0.05) << "what a slot could use is left";
-        EXPECT_LE(plan.plan.bound, *plan.summary.utility * 1.001) << reserve;
+        EXPECT_LE(plan.plan.utility_bound, *plan.summary.utility * 1.001) << reserve;
         EXPECT_NEAR(plan.plan.utility, *plan.summary.utility, 1e-9);
         EXPECT_GT(*plan.summary.utility, last);
         last = *plan.summary.utility;
-        for (const auto& segment : plan.flown.schedule) {
+        for (const auto& segment : plan.mission.schedule) {
             const bool middle = segment.phase == flight::Phase::cruise && segment.start_s == 240.0;
             EXPECT_EQ(segment.run == (compute::Configuration{{0, {32.0}}, {1, {448.0}}}), middle);
         }
@@ -101,7 +101,7 @@ TEST(Plan, IsTheBestOfAllSimulatedSchedules) {
         if (!plan.plan.feasible) continue;
         ++feasible;
         EXPECT_NEAR(*plan.summary.utility, best, 1e-5 * best);
-        EXPECT_GE(plan.plan.bound, best - 1e-9);
+        EXPECT_GE(plan.plan.utility_bound, best - 1e-9);
     }
     EXPECT_EQ(feasible, 12);
 }
@@ -113,8 +113,8 @@ TEST(Plan, KeepsTheDwellTime) {
     const auto plan = plan_mission(mission);
     ASSERT_TRUE(plan.plan.feasible);
     EXPECT_LE(*plan.summary.utility, without + 1e-9);
-    EXPECT_LE(plan.plan.bound, *plan.summary.utility * 1.001);
-    const auto& schedule = plan.flown.schedule;
+    EXPECT_LE(plan.plan.utility_bound, *plan.summary.utility * 1.001);
+    const auto& schedule = plan.mission.schedule;
     for (std::size_t i = 0; i < schedule.size();) {
         double lasts_s = 0.0;
         const auto& run = schedule[i].run;
@@ -125,16 +125,16 @@ TEST(Plan, KeepsTheDwellTime) {
 
 TEST(Plan, MayBeMadeAnewInFlight) {
     const auto mission = paper_with_reserve(2.0);
-    const auto planner = make_planner(mission);
-    const auto whole = plan_rest(mission, planner, {0.0, 100.0, {}, 0.0}, 2.0);
+    const auto planner = make_planning_tables(mission);
+    const auto whole = plan_remaining(mission, planner, {0.0, 100.0, {}, 0.0}, 2.0);
     // Half way, with what the plan itself has left by then, the rest is as good.
-    const auto flown = plan_mission(mission).flown;
+    const auto flown = plan_mission(mission).mission;
     const auto curve = simulate(flown, {300.0, 0.1}).curve;
     const auto at =
         std::find_if(curve.rows.begin(), curve.rows.end(), [](const auto& row) { return row.time_s == 300.0; });
     ASSERT_NE(at, curve.rows.end());
     const auto begin = std::chrono::steady_clock::now();
-    const auto rest = plan_rest(mission, planner, {300.0, at->soc_percent, {}, 0.0}, 2.0);
+    const auto rest = plan_remaining(mission, planner, {300.0, at->soc_percent, {}, 0.0}, 2.0);
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
     RecordProperty("milliseconds", std::to_string(took.count()));
     ASSERT_TRUE(rest.feasible);
@@ -150,8 +150,8 @@ TEST(Plan, MayBeMadeAnewInFlight) {
     }
     EXPECT_NEAR(utility_before + rest.utility * 388.0, whole.utility * 688.0, 1e-4 * whole.utility * 688.0);
     // With less, it does less; with too little, it does the least.
-    EXPECT_LT(plan_rest(mission, planner, {300.0, at->soc_percent - 1.0, {}, 0.0}, 2.0).utility, rest.utility);
-    const auto lost = plan_rest(mission, planner, {300.0, 20.0, {}, 0.0}, 2.0);
+    EXPECT_LT(plan_remaining(mission, planner, {300.0, at->soc_percent - 1.0, {}, 0.0}, 2.0).utility, rest.utility);
+    const auto lost = plan_remaining(mission, planner, {300.0, 20.0, {}, 0.0}, 2.0);
     EXPECT_FALSE(lost.feasible);
     EXPECT_EQ(lost.schedule.back().run.front().qos.front(), 5.8);
 }
@@ -159,9 +159,9 @@ TEST(Plan, MayBeMadeAnewInFlight) {
 TEST(Plan, ReplansWithWhatRuns) {
     auto mission = paper_with_reserve(2.0);
     mission.plan.dwell_s = 60.0;
-    const auto planner = make_planner(mission);
+    const auto planner = make_planning_tables(mission);
     const compute::Configuration strong{{0, {32.0}}, {1, {32.0}}};
-    const auto rest = plan_rest(mission, planner, {28.0, 95.0, strong, 20.0}, 2.0);
+    const auto rest = plan_remaining(mission, planner, {28.0, 95.0, strong, 20.0}, 2.0);
     ASSERT_FALSE(rest.schedule.empty());
     EXPECT_EQ(rest.schedule.front().run, strong);
     EXPECT_GE(rest.schedule.front().end_s, 40.0);
@@ -177,7 +177,7 @@ TEST(Plan, AnswersWhereTheBatteryIsCharged) {
     ASSERT_TRUE(plan.plan.feasible);
     EXPECT_GE(*plan.summary.final_soc_percent, 0.0);
     EXPECT_TRUE(plan.summary.feasible);
-    EXPECT_GE(plan.plan.bound, *plan.summary.utility);
+    EXPECT_GE(plan.plan.utility_bound, *plan.summary.utility);
 }
 
 TEST(Plan, SaysThatItIsInfeasible) {
@@ -210,7 +210,7 @@ TEST(Plan, KeepsAMarginForFlightsThatDiffer) {
     mission.uncertainty.capacity_sd_percent = 3.0;
     const auto wider = plan_mission(mission, 0.95);
     EXPECT_GT(wider.margin_percent, 1.5 * plan.margin_percent) << "what is drawn counts, whatever it is";
-    EXPECT_EQ(wider.sources->drawn.size(), plan.sources->drawn.size() + 1);
+    EXPECT_EQ(wider.sources->varied.size(), plan.sources->varied.size() + 1);
 }
 
 TEST(Plan, IsWrittenAsAMission) {
@@ -219,7 +219,8 @@ TEST(Plan, IsWrittenAsAMission) {
     mission.plan.choices[1].may_be_off = true;
     const auto plan = plan_mission(mission);
     const auto folder = test::scratch_dir();
-    const auto text = planned_mission_toml(read_file(path), path, plan.flown.compute, plan.flown.schedule, folder).text;
+    const auto text =
+        planned_mission_toml(read_file(path), path, plan.mission.compute, plan.mission.schedule, folder).text;
     const auto again = std::get<Mission>(parse_mission(text, folder / "planned.toml"));
     EXPECT_EQ(again.name, "plan");
     EXPECT_EQ(again.reserve_soc_percent, paper_problem("plan").reserve_soc_percent);
@@ -237,9 +238,10 @@ struct WrittenPlan {
 /// Plans a mission whose text stands in missions/paper, and writes it into the folder of the sources.
 WrittenPlan planned_and_written(const std::string& text) {
     const auto path = test::source_dir() / "missions" / "paper" / "plan.toml";
-    const auto problem = parse_mission(text, path, {.may_lack_schedule = true});
+    const auto problem = parse_mission(text, path, {.allow_unplanned = true});
     const auto plan = plan_mission(std::get<PlanningProblem>(problem));
-    const auto written = planned_mission_toml(text, path, plan.flown.compute, plan.flown.schedule, test::source_dir());
+    const auto written =
+        planned_mission_toml(text, path, plan.mission.compute, plan.mission.schedule, test::source_dir());
     return {plan, written.text, written.lost_comments};
 }
 
@@ -308,17 +310,17 @@ TEST(Plan, IsWrittenWhateverWayTheFileIsWritten) {
 
 TEST(Planner, DropsWhatIsDominated) {
     auto mission = paper_problem("plan");
-    EXPECT_EQ(make_planner(mission).free_choices, 4U);  // longer keys have no utility here
+    EXPECT_EQ(make_planning_tables(mission).free_choices, 4U);  // longer keys have no utility here
     mission.utilities[1]->weight = 0.01;
-    EXPECT_GT(make_planner(mission).free_choices, 4U);
+    EXPECT_GT(make_planning_tables(mission).free_choices, 4U);
     mission.utilities.assign(2, std::nullopt);
-    EXPECT_THROW(make_planner(mission), InputError);
+    EXPECT_THROW(make_planning_tables(mission), InputError);
 }
 
 TEST(Planner, CutsSlotsAtFixedSegmentsAndPhases) {
     auto mission = paper_problem("plan");
     mission.plan.slot_s = 50.0;
-    const auto slots = slots_of(mission);
+    const auto slots = make_slots(mission);
     std::vector<std::pair<double, double>> times;
     for (const auto& slot : slots) times.emplace_back(slot.start_s, slot.end_s);
     EXPECT_EQ(times, (std::vector<std::pair<double, double>>{{0, 28},
@@ -336,8 +338,8 @@ TEST(Planner, CutsSlotsAtFixedSegmentsAndPhases) {
                                                              {0, 50},
                                                              {50, 60}}));
     EXPECT_TRUE(slots[6].fixed);
-    EXPECT_EQ(slots_of(mission, 28.0 + 250.0).front().start_s, 250.0);
-    EXPECT_TRUE(slots_of(mission, 688.0).empty());
+    EXPECT_EQ(make_slots(mission, 28.0 + 250.0).front().start_s, 250.0);
+    EXPECT_TRUE(make_slots(mission, 688.0).empty());
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ using test::generated_mission;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-const ReplayedSchedule* by(const Replay& replay, ReplayedWay way) {
+const ReplayedSchedule* by(const Replay& replay, ScheduleMethod way) {
     for (const auto& replayed : replay.schedules)
         if (replayed.way == way) return &replayed;
     return nullptr;
@@ -36,7 +36,8 @@ ReplayOptions with_model_of(const MissionSetup& mission) {
     return options;
 }
 
-Replay only_replay(const AnyMission& mission, const mechanical::MeasuredFlight& flight, const ReplayOptions& options) {
+Replay only_replay(const MissionVariant& mission, const mechanical::MeasuredFlight& flight,
+                   const ReplayOptions& options) {
     const std::array missions{mission};
     const std::array flights{flight};
     auto replays = replay_flights(missions, flights, options);
@@ -83,7 +84,7 @@ PlanningProblem with_thevenin(PlanningProblem problem) {
 }
 
 /// One that keeps the reserve as it is known.
-Mission planned_mission(const PlanningProblem& problem) { return plan_mission(problem).flown; }
+Mission planned_mission(const PlanningProblem& problem) { return plan_mission(problem).mission; }
 
 TEST(Replay, OfTheModelsOwnPowerEndsAsSimulateEnds) {
     for (const bool has_circuit : {false, true}) {
@@ -92,7 +93,7 @@ TEST(Replay, OfTheModelsOwnPowerEndsAsSimulateEnds) {
         auto mission = with_minimum_energy_schedule(has_circuit ? with_thevenin(problem) : problem);
         if (mission.battery.thevenin) mission.utilities.clear();  // hindsight would take long
         const auto replay = only_replay(mission, flight_of_model("same", mission), with_model_of(mission));
-        const auto& given = *by(replay, ReplayedWay::given);
+        const auto& given = *by(replay, ScheduleMethod::given);
         const auto simulated = simulate(mission).summary;
         EXPECT_NEAR(*given.summary.final_soc_percent, *simulated.final_soc_percent, 1e-7);
         EXPECT_NEAR(*given.expected_soc_percent, *simulated.final_soc_percent, 1e-12);
@@ -112,7 +113,7 @@ TEST(Replay, OfSamplesOfACurveEndsAsTheCurve) {
         if (mission.battery.thevenin) mission.utilities.clear();  // hindsight would take long
         const auto replay =
             only_replay(mission, flight_of_model("same", mission, 1.0, 1.0, 0.05), with_model_of(mission));
-        EXPECT_NEAR(*by(replay, ReplayedWay::given)->summary.final_soc_percent,
+        EXPECT_NEAR(*by(replay, ScheduleMethod::given)->summary.final_soc_percent,
                     *simulate(mission).summary.final_soc_percent, 2e-4);
     }
 }
@@ -127,7 +128,8 @@ mechanical::MeasuredFlight any_flight(const MissionSetup& mission, std::mt19937&
     return flight_with_power(
         "any", flown_s,
         [&](flight::Phase phase, double time_s) {
-            const auto curve = flown_model(mission.mechanical->phases[phase], flown_s[phase], mission.phase_clock);
+            const auto curve =
+                time_scaled_model(mission.mechanical->phases[phase], flown_s[phase], mission.phase_clock);
             return std::max(0.0, factor * power_w(curve, time_s) + noise(random));
         },
         std::uniform_real_distribution<double>(0.4, 6.0)(random));
@@ -143,7 +145,7 @@ TEST(Replay, HindsightIsAtLeastAsGoodAsEverythingThatKeepsTheReserve) {
         auto problem = generated_mission(seed).problem;
         if (seed == 25U) problem = with_thevenin(problem);
         const auto replay = only_replay(problem, any_flight(problem, random), with_model_of(problem));
-        const auto& hindsight = *by(replay, ReplayedWay::hindsight);
+        const auto& hindsight = *by(replay, ScheduleMethod::hindsight);
         for (const auto& replayed : replay.schedules) {
             if (!replayed.summary.keeps_reserve) {
                 EXPECT_FALSE(replayed.regret);
@@ -177,29 +179,29 @@ TEST(Replay, HindsightComesCloseToItsBoundOnManySlots) {
         "many", {{35.0, 710.432, 34.0}}, [&](auto, double) { return std::max(0.0, power_w(random)); }, 1.7);
     const auto replay = only_replay(problem, flight, options);
     ASSERT_TRUE(replay.bound);
-    EXPECT_GE(*by(replay, ReplayedWay::hindsight)->summary.utility, (1.0 - 2e-3) * *replay.bound);
+    EXPECT_GE(*by(replay, ScheduleMethod::hindsight)->summary.utility, (1.0 - 2e-3) * *replay.bound);
 }
 
 /// More power than the model has, which a plan without a margin does not survive, and less.
 TEST(Replay, SaysWhatReplanningWasWorth) {
     const auto problem = constant_problem(1);
     const auto options = with_model_of(problem);
-    const std::array missions{AnyMission(problem)};
+    const std::array missions{MissionVariant(problem)};
     const std::array flights{flight_of_model("as the model", problem), flight_of_model("headwind", problem, 1.05),
                              flight_of_model("tailwind", problem, 0.9)};
     const auto replays = replay_flights(missions, flights, options).replays;
-    const auto comparisons = compare_replanned(replays, problem.name, ReplayedWay::planned);
+    const auto comparisons = compare_replanned(replays, problem.name, ScheduleMethod::planned);
     ASSERT_EQ(comparisons.size(), 3U);
-    EXPECT_NE(comparisons[0].verdict, Verdict::better) << "nothing was to be learned";
-    EXPECT_EQ(comparisons[1].verdict, Verdict::better);
+    EXPECT_NE(comparisons[0].verdict, ComparisonOutcome::better) << "nothing was to be learned";
+    EXPECT_EQ(comparisons[1].verdict, ComparisonOutcome::better);
     EXPECT_TRUE(comparisons[1].replanned_keeps_reserve);
     EXPECT_FALSE(comparisons[1].baseline_keeps_reserve);
-    EXPECT_EQ(comparisons[2].verdict, Verdict::better);
+    EXPECT_EQ(comparisons[2].verdict, ComparisonOutcome::better);
     EXPECT_GT(comparisons[2].more_utility, 0.0);
     EXPECT_LT(*comparisons[2].more_soc_percent, 0.0) << "what was saved was spent";
     for (const auto& replay : replays) {
-        EXPECT_GE(*by(replay, ReplayedWay::planned)->expected_soc_percent, problem.reserve_soc_percent);
-        EXPECT_FALSE(by(replay, ReplayedWay::replanned)->expected_soc_percent) << "nobody knew beforehand";
+        EXPECT_GE(*by(replay, ScheduleMethod::planned)->expected_soc_percent, problem.reserve_soc_percent);
+        EXPECT_FALSE(by(replay, ScheduleMethod::replanned)->expected_soc_percent) << "nobody knew beforehand";
     }
 }
 
@@ -207,13 +209,13 @@ TEST(Replay, InvariantAndPhasedRunOneConfigurationAllTheWayAndAPhase) {
     auto problem = constant_problem(3);
     problem.fixed.clear();
     const auto replay = only_replay(problem, flight_of_model("f", problem), with_model_of(problem));
-    const auto& invariant = *by(replay, ReplayedWay::invariant);
+    const auto& invariant = *by(replay, ScheduleMethod::invariant);
     EXPECT_EQ(configurations_of(invariant.schedule).size(), 1U);
     EXPECT_TRUE(invariant.summary.keeps_reserve);
-    const auto& phased = *by(replay, ReplayedWay::phased);
+    const auto& phased = *by(replay, ScheduleMethod::phased);
     EXPECT_EQ(phased.schedule.size(), 3U);
     EXPECT_GE(*phased.summary.utility, *invariant.summary.utility - 1e-9);
-    EXPECT_GE(*by(replay, ReplayedWay::planned)->summary.utility, *phased.summary.utility * (1.0 - 1e-3));
+    EXPECT_GE(*by(replay, ScheduleMethod::planned)->summary.utility, *phased.summary.utility * (1.0 - 1e-3));
     // The next better configuration would not have kept it.
     const auto& levels = problem.plan.choices.front().levels.front();
     const auto next = std::ranges::upper_bound(levels, invariant.schedule.front().run.front().qos.front());
@@ -234,9 +236,9 @@ TEST(Replay, SpendsWhatDurationsKnownBeforehandAllow) {
     const auto known = only_replay(problem, flight, options);
     EXPECT_NEAR(as_planned.planned_s[Phase::cruise] * 0.9, as_planned.flown_s[Phase::cruise], 1e-9);
     EXPECT_EQ(known.planned_s[Phase::cruise], known.flown_s[Phase::cruise]);
-    EXPECT_GT(*by(known, ReplayedWay::planned)->summary.utility,
-              *by(as_planned, ReplayedWay::planned)->summary.utility);
-    EXPECT_NEAR(*by(known, ReplayedWay::planned)->regret, 0.0, 1e-2);
+    EXPECT_GT(*by(known, ScheduleMethod::planned)->summary.utility,
+              *by(as_planned, ScheduleMethod::planned)->summary.utility);
+    EXPECT_NEAR(*by(known, ScheduleMethod::planned)->regret, 0.0, 1e-2);
 }
 
 TEST(Replay, ModelsAreOfTheOtherFlightsAlone) {
@@ -252,31 +254,32 @@ TEST(Replay, ModelsAreOfTheOtherFlightsAlone) {
     ReplayOptions options;
     options.fit.phases.order = 0;
     problem.adaptive.emplace().decide_every_s = problem.plan.slot_s * 4.0;
-    const std::array missions{AnyMission(problem)};
+    const std::array missions{MissionVariant(problem)};
     const auto replays = replay_flights(missions, flights, options).replays;
     ASSERT_EQ(replays.size(), 3U);
     const double hours = timeline_of(duration_s).duration_s / 3600.0;
     EXPECT_NEAR(replays[2].expected_mechanical_wh, 21.0 * hours, 1e-6);
     EXPECT_NEAR(replays[2].measured_mechanical_wh, 30.0 * hours, 1e-6);
     EXPECT_THAT(replays[2].model_flights, ElementsAre("flight 0", "flight 1"));
-    EXPECT_EQ(replays[2].model_saw_flight, ModelSawFlight::no);
+    EXPECT_EQ(replays[2].model_saw_flight, TrainingOverlap::no);
 }
 
 TEST(Replay, SaysWhetherAGivenModelSawTheFlight) {
     const auto mission = planned_mission(constant_problem(1));
     auto options = with_model_of(mission);
     options.model->flights = {{"one", {}}, {"two", {}}};
-    EXPECT_EQ(only_replay(mission, flight_of_model("two", mission), options).model_saw_flight, ModelSawFlight::yes);
-    EXPECT_EQ(only_replay(mission, flight_of_model("three", mission), options).model_saw_flight, ModelSawFlight::no);
+    EXPECT_EQ(only_replay(mission, flight_of_model("two", mission), options).model_saw_flight, TrainingOverlap::yes);
+    EXPECT_EQ(only_replay(mission, flight_of_model("three", mission), options).model_saw_flight, TrainingOverlap::no);
     options.model->flights.clear();
-    EXPECT_EQ(only_replay(mission, flight_of_model("two", mission), options).model_saw_flight, ModelSawFlight::unknown);
+    EXPECT_EQ(only_replay(mission, flight_of_model("two", mission), options).model_saw_flight,
+              TrainingOverlap::unknown);
 }
 
 TEST(Replay, LeavesOutWhatCannotBeFlown) {
     const auto mission = planned_mission(constant_problem(1));
     auto cut = flight_of_model("cut", mission);
     cut.power[Phase::landing].reset();
-    const std::array missions{AnyMission(mission)};
+    const std::array missions{MissionVariant(mission)};
     const std::array flights{cut, flight_of_model("whole", mission)};
     const auto replays = replay_flights(missions, flights, with_model_of(mission));
     ASSERT_EQ(replays.replays.size(), 1U);
@@ -289,14 +292,14 @@ TEST(Replay, LeavesOutWhatCannotBeFlown) {
 TEST(Replay, RefusesWhatHasNoAnswer) {
     const auto mission = planned_mission(constant_problem(1));
     const auto flight = flight_of_model("f", mission);
-    const std::array missions{AnyMission(mission)};
+    const std::array missions{MissionVariant(mission)};
     const std::array one{flight};
-    EXPECT_THROW(replay_flights(missions, one), NoAnswerError) << "no other flight";
+    EXPECT_THROW(replay_flights(missions, one), NoResultError) << "no other flight";
     const std::array twice{flight, flight};
     EXPECT_THROW(replay_flights(missions, twice, with_model_of(mission)), UsageError);
     auto grounded = mission;
     grounded.mechanical.reset();
-    const std::array nothing_flies{AnyMission(grounded)};
+    const std::array nothing_flies{MissionVariant(grounded)};
     EXPECT_THROW(replay_flights(nothing_flies, one, with_model_of(mission)), InputError);
 }
 

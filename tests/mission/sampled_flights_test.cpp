@@ -23,9 +23,9 @@ Mission gaussian_depletion(double reserve_soc_percent) {
     return mission;
 }
 
-SampledFlights sampled(const AnyMission& mission, std::size_t samples, std::uint64_t seed,
-                       const std::vector<Disturbance>& disturbances = {}, std::size_t band_times = 0) {
-    return sample_flights(prepare(mission), disturbances, {samples, seed, band_times});
+MonteCarloResult sampled(const MissionVariant& mission, std::size_t samples, std::uint64_t seed,
+                         const std::vector<Disturbance>& disturbances = {}, std::size_t band_times = 0) {
+    return sample_flights(prepare_mission(mission), disturbances, {samples, seed, band_times});
 }
 
 TEST(SampledFlights, AgreeWithTheClosedFormOfAGaussianDepletion) {
@@ -64,7 +64,7 @@ TEST(SampledFlights, AreTheSameForASeed) {
     EXPECT_EQ(first.final_soc_quantiles_percent, again.final_soc_quantiles_percent);
     EXPECT_NE(first.final_soc_mean_percent, sampled(mission, 500, 8).final_soc_mean_percent);
     // A flight depends on its number alone, not on how many there are or who flies it.
-    const auto spreads = find_spreads(mission);
+    const auto spreads = collect_uncertainty(mission);
     EXPECT_EQ(draw_flight(mission, spreads, 7, 3).duration_s.values,
               draw_flight(mission, spreads, 7, 3).duration_s.values);
     EXPECT_NE(draw_flight(mission, spreads, 7, 3).duration_s.values,
@@ -91,8 +91,8 @@ TEST(SampledFlights, GiveBandsOverTime) {
 
 TEST(SampledFlights, AreTheSameWithBandsOnATheveninPack) {
     const auto mission = mission::read_mission(test::source_dir() / "missions/synthetic/thevenin-pack.toml");
-    const auto alone = sample_flights(prepare(mission), {}, {50, 1, 0});
-    const auto banded = sample_flights(prepare(mission), {}, {50, 1, 12});
+    const auto alone = sample_flights(prepare_mission(mission), {}, {50, 1, 0});
+    const auto banded = sample_flights(prepare_mission(mission), {}, {50, 1, 12});
     EXPECT_EQ(banded.probability_below_reserve, alone.probability_below_reserve);
     EXPECT_NEAR(banded.final_soc_mean_percent, alone.final_soc_mean_percent, 1e-3) << "the steps end elsewhere";
     ASSERT_EQ(banded.bands.size(), 12U);
@@ -117,15 +117,15 @@ TEST(SampledFlights, LetAnAdaptivePolicyAnswerEachFlight) {
 TEST(SampledFlights, SayWhatIsDrawnAndWhatIsNot) {
     auto mission = paper_mission("phased");
     mission.uncertainty.level_sd_percent = {};
-    EXPECT_NE(test::rejected([&] { require_spread(mission); }).find("there is nothing to draw flights from"),
+    EXPECT_NE(test::rejected([&] { require_uncertainty(mission); }).find("there is nothing to draw flights from"),
               std::string::npos);
-    EXPECT_FALSE(has_spread(mission));
+    EXPECT_FALSE(has_uncertainty(mission));
     mission.uncertainty.compute_sd_percent[0] = 2.0;
-    EXPECT_TRUE(has_spread(mission));
+    EXPECT_TRUE(has_uncertainty(mission));
     mission.uncertainty.capacity_sd_percent = 0.0;
-    const auto spreads = find_spreads(mission);
-    EXPECT_EQ(spreads.sources.drawn, std::vector<std::string>{"power of detection (sd 2 %, stated)"});
-    EXPECT_EQ(spreads.sources.not_drawn.size(), 10U);
+    const auto spreads = collect_uncertainty(mission);
+    EXPECT_EQ(spreads.sources.varied, std::vector<std::string>{"power of detection (sd 2 %, stated)"});
+    EXPECT_EQ(spreads.sources.fixed.size(), 10U);
 }
 
 /// A cruise of so long at 20 W +- 5 %, that keeps 36 kJ.
@@ -137,10 +137,11 @@ Mission cruise_of(double duration_s) {
 }
 
 TEST(SampleDifference, OfOneAircraftIsThatOfTheDay) {
-    const auto drawn = sample_difference(prepare(cruise_of(1000.0)), prepare(cruise_of(1100.0)), {20000, 1});
+    const auto drawn =
+        sample_difference(prepare_mission(cruise_of(1000.0)), prepare_mission(cruise_of(1100.0)), {20000, 1});
     ASSERT_TRUE(drawn);
-    EXPECT_EQ(drawn->in_common, (std::vector<std::string>{"mechanical model", "battery"}));
-    EXPECT_TRUE(drawn->apart.empty());
+    EXPECT_EQ(drawn->shared_sources, (std::vector<std::string>{"mechanical model", "battery"}));
+    EXPECT_TRUE(drawn->independent_sources.empty());
     // 100 s at 20 W, and 5 % of that: the closed form; of 36 kJ.
     constexpr double more_percent = 2000.0 / 360.0;
     const auto& soc = drawn->final_soc_percent.difference;
@@ -156,10 +157,10 @@ TEST(SampleDifference, OfOneAircraftIsThatOfTheDay) {
 TEST(SampleDifference, OfTwoAircraftIsWider) {
     auto other = cruise_of(1000.0);
     other.mechanical->phases[flight::Phase::cruise].fourier.a0_w = 22.0;
-    const auto drawn = sample_difference(prepare(cruise_of(1000.0)), prepare(other), {20000, 1});
+    const auto drawn = sample_difference(prepare_mission(cruise_of(1000.0)), prepare_mission(other), {20000, 1});
     ASSERT_TRUE(drawn);
-    EXPECT_EQ(drawn->in_common, (std::vector<std::string>{"battery"}));
-    EXPECT_EQ(drawn->apart, (std::vector<std::string>{"mechanical model"}));
+    EXPECT_EQ(drawn->shared_sources, (std::vector<std::string>{"battery"}));
+    EXPECT_EQ(drawn->independent_sources, (std::vector<std::string>{"mechanical model"}));
     const double sd_wh = std::hypot(1.0, 1.1) / 3.6;
     EXPECT_NEAR(drawn->energy_wh.difference.low, 2.0 / 3.6 - 1.96 * sd_wh, 0.02);
     EXPECT_NEAR(drawn->energy_wh.difference.high, 2.0 / 3.6 + 1.96 * sd_wh, 0.02);
@@ -167,8 +168,8 @@ TEST(SampleDifference, OfTwoAircraftIsWider) {
 }
 
 TEST(SampleDifference, IsUnknownWhereOneDoesNotSayHowFlightsDiffer) {
-    EXPECT_FALSE(sample_difference(prepare(cruise_of(1000.0)), prepare(test::steady_mission())));
-    const auto prepared = prepare(test::steady_mission());
+    EXPECT_FALSE(sample_difference(prepare_mission(cruise_of(1000.0)), prepare_mission(test::steady_mission())));
+    const auto prepared = prepare_mission(test::steady_mission());
     EXPECT_THROW(sample_difference(prepared, prepared, {1, 1}), UsageError);
 }
 

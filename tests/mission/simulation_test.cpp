@@ -101,14 +101,14 @@ TEST(Simulation, DoesNotDependOnTheSteps) {
     mission.battery.resistance_ohm = 0.005;
     mission.battery.voltage_v = 3.6;
     const auto reference = simulate(mission, {1.0, 0.01}).summary;
-    for (const auto& steps : {SimulationSteps{1.0, 0.1}, {0.03, 0.1}, {7.77, 0.1}, {1e6, 0.1}, {1.0, 0.5}}) {
+    for (const auto& steps : {SimulationOptions{1.0, 0.1}, {0.03, 0.1}, {7.77, 0.1}, {1e6, 0.1}, {1.0, 0.5}}) {
         const auto summary = simulate(mission, steps).summary;
         EXPECT_NEAR(*summary.final_soc_percent, *reference.final_soc_percent, 1e-6) << steps.output_s;
         EXPECT_EQ(summary.energy_wh, reference.energy_wh);
     }
     mission = paper_mission("invariant-32fps-448bit");
     const double empty_s = *simulate(mission, {1.0, 0.01}).summary.depleted_at_s;
-    for (const auto& steps : {SimulationSteps{1.0, 0.1}, {7.77, 0.1}, {1e6, 0.5}}) {
+    for (const auto& steps : {SimulationOptions{1.0, 0.1}, {7.77, 0.1}, {1e6, 0.5}}) {
         EXPECT_NEAR(*simulate(mission, steps).summary.depleted_at_s, empty_s, 1e-6);
     }
 }
@@ -253,7 +253,7 @@ TEST(Simulation, EndsAtCutOff) {
     EXPECT_NEAR(curve.rows.back().terminal_voltage_v,
                 open_circuit_voltage_v(mission.battery, *summary.final_soc_percent), 1e-3);
     EXPECT_EQ(describe(summary).substr(0, 21), "flight: cut off after");
-    for (const auto& steps : {SimulationSteps{7.77, 0.1}, {1.0, 0.01}, {1e6, 0.05}}) {
+    for (const auto& steps : {SimulationOptions{7.77, 0.1}, {1.0, 0.01}, {1e6, 0.05}}) {
         EXPECT_NEAR(*simulate(mission, steps).summary.cut_off_at_s, *summary.cut_off_at_s, 1e-6);
     }
 }

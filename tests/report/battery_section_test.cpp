@@ -36,7 +36,7 @@ battery::IdentificationOptions with_capacity(const battery::Battery& pack) {
 TEST(BatterySection, ShowsVoltagesParametersAndTheCurve) {
     const auto pack = test::known_pack();
     const auto battery = identify_for_report(flights_on(pack, 2), with_capacity(pack), 12);
-    ASSERT_TRUE(battery.identified) << battery.no_answer;
+    ASSERT_TRUE(battery.identified) << battery.no_result_reason;
     EXPECT_EQ(battery.leave_one_out.size(), 2U);
     const auto section = battery_section(battery);
     ASSERT_EQ(section.figures.size(), 2U);
@@ -88,7 +88,7 @@ TEST(BatterySection, SaysWhyThereIsNone) {
 }
 
 /// A mission on the pack that was identified from flights, with the capacity that was given for it.
-mission::AnyMission mission_on(const std::vector<ReportFlight>& flights, double given_ah) {
+mission::MissionVariant mission_on(const std::vector<ReportFlight>& flights, double given_ah) {
     mission::Mission mission;
     battery::IdentificationOptions options;
     options.capacity_ah = given_ah;
@@ -122,7 +122,7 @@ TEST(BatterySection, IsNotAboutPacksOfOtherFlights) {
     EXPECT_TRUE(battery.notes.empty());
     auto stated = std::get<mission::Mission>(mission_on(flights, 10.0));
     stated.capacity_is_stated = true;
-    const auto by_flights = identify_for_report(flights, {}, 12, std::vector<mission::AnyMission>{stated});
+    const auto by_flights = identify_for_report(flights, {}, 12, std::vector<mission::MissionVariant>{stated});
     EXPECT_NE(by_flights.identified.value().battery.capacity_ah, 10.0) << "that is the mission's alone";
 }
 
@@ -138,7 +138,7 @@ TEST(BatterySection, GoesOnWhereNewFlightsDrewMoreThanThePackHas) {
     const auto flights = flights_on(test::known_pack(), 1);
     auto mission = std::get<mission::Mission>(mission_on(flights, 2.4));
     mission.battery.capacity_ah = 0.1;
-    const auto battery = identify_for_report(flights, {}, 12, std::vector<mission::AnyMission>{mission});
+    const auto battery = identify_for_report(flights, {}, 12, std::vector<mission::MissionVariant>{mission});
     EXPECT_TRUE(battery.identified);
     EXPECT_THAT(battery.notes, testing::ElementsAre(HasSubstr("is not used: --capacity is 0.1 Ah")));
 }

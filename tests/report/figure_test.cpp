@@ -64,7 +64,7 @@ TEST(ValidUtf8, ReplacesWhatIsNone) {
 
 TEST(VisibleRows, AreAllOfAShortLine) {
     const std::vector<double> time_s{0.0, 1.0, 5.0};
-    EXPECT_EQ(visible_rows(time_s, {3.0, 1.0, 2.0}, 1), (std::vector<std::size_t>{0, 1, 2}));
+    EXPECT_EQ(downsample_m4(time_s, {3.0, 1.0, 2.0}, 1), (std::vector<std::size_t>{0, 1, 2}));
 }
 
 /// Pixel columns look the same: each keeps its ends and extremes.
@@ -76,7 +76,7 @@ TEST(VisibleRows, KeepTheExtremesOfEveryColumn) {
         time_s.push_back(i);
         values.push_back(std::sin(0.7 * i) * i);
     }
-    const auto rows = visible_rows(time_s, values, columns);
+    const auto rows = downsample_m4(time_s, values, columns);
     EXPECT_TRUE(std::is_sorted(rows.begin(), rows.end()));
     EXPECT_LE(rows.size(), 4 * columns);
     EXPECT_EQ(rows.front(), 0U);

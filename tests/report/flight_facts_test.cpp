@@ -32,7 +32,7 @@ ReportFlight square_flight() {
 }
 
 TEST(FlightFacts, AreThoseOfTheTimeInTheAir) {
-    const auto facts = facts_of(square_flight());
+    const auto facts = summarize_flight(square_flight());
     EXPECT_EQ(facts.in_air_s, 20.0);
     ASSERT_TRUE(facts.distance_m && facts.height_m && facts.energy_wh);
     EXPECT_DOUBLE_EQ(*facts.distance_m, 400.0);
@@ -45,13 +45,13 @@ TEST(FlightFacts, AreThoseOfTheTimeInTheAir) {
 TEST(FlightFacts, MeasureTheWayThroughTheAirByAirspeed) {
     auto flight = square_flight();
     flight.series.tracks.push_back(track("airspeed_m_per_s", {0, 10, 20, 30, 40}, {50, 10, 12, 10, 50}));
-    EXPECT_DOUBLE_EQ(facts_of(flight).air_distance_m.value(), 220.0) << "11 m/s for 20 s";
+    EXPECT_DOUBLE_EQ(summarize_flight(flight).air_distance_m.value(), 220.0) << "11 m/s for 20 s";
 }
 
 TEST(FlightFacts, HaveNoCruisePowerWithoutACruise) {
     auto flight = square_flight();
     flight.phases.sorties[0].phases.erase(flight.phases.sorties[0].phases.begin() + 1);
-    EXPECT_FALSE(facts_of(flight).cruise_power_w);
+    EXPECT_FALSE(summarize_flight(flight).cruise_power_w);
 }
 
 TEST(FlightFacts, MeasureDegreesOnTheEarth) {
@@ -59,26 +59,26 @@ TEST(FlightFacts, MeasureDegreesOnTheEarth) {
     flight.series.tracks.resize(2);
     flight.series.tracks.push_back(track("latitude_deg", {10, 30}, {43.0, 43.01}));
     flight.series.tracks.push_back(track("longitude_deg", {10, 30}, {1.0, 1.0}));
-    const auto facts = facts_of(flight);
+    const auto facts = summarize_flight(flight);
     ASSERT_TRUE(facts.distance_m);
     EXPECT_NEAR(*facts.distance_m, 1111.1, 1.0) << "a hundredth of a degree of latitude";
 }
 
 TEST(FlightFacts, HaveTheDateOfTheClockOrElseOfTheName) {
     auto flight = square_flight();
-    EXPECT_EQ(facts_of(flight).date, "2020-07-03 12:17");
+    EXPECT_EQ(summarize_flight(flight).date, "2020-07-03 12:17");
     flight.series.start_clock_s = 1593771465.0;
-    EXPECT_EQ(facts_of(flight).date, "2020-07-03 10:17") << "UTC";
-    EXPECT_EQ(facts_of(flight).start_clock_s, 1593771465.0);
+    EXPECT_EQ(summarize_flight(flight).date, "2020-07-03 10:17") << "UTC";
+    EXPECT_EQ(summarize_flight(flight).start_clock_s, 1593771465.0);
     flight.series.start_clock_s.reset();
     flight.name = "survey";
-    EXPECT_EQ(facts_of(flight).date, "");
+    EXPECT_EQ(summarize_flight(flight).date, "");
 }
 
 TEST(FlightFacts, SayNothingOfWhatWasNotLogged) {
     auto flight = square_flight();
     flight.series.tracks.resize(1);
-    const auto facts = facts_of(flight);
+    const auto facts = summarize_flight(flight);
     EXPECT_FALSE(facts.distance_m);
     EXPECT_FALSE(facts.energy_wh);
     EXPECT_TRUE(facts.height_m);

@@ -6,7 +6,7 @@ namespace flightwatt::report {
 namespace {
 
 TEST(Escaped, LeavesNoMarkup) {
-    EXPECT_EQ(escaped("<script>\"a\" & 'b'\x01</script>"),
+    EXPECT_EQ(html_escaped("<script>\"a\" & 'b'\x01</script>"),
               "&lt;script&gt;&quot;a&quot; &amp; &#39;b&#39; &lt;/script&gt;");
 }
 

@@ -20,7 +20,7 @@ BatchContent content_of(int flights) {
             flight::read_flight(test::source_dir() / "logs" / ("opterra_synthetic_0" + std::to_string(i) + ".data"));
         flight.phases = segment(flight.series);
         flight.name = flight.series.flight;
-        for (auto& measured : mechanical::measure_flights(flight.series, flight.phases, 1).flights)
+        for (auto& measured : mechanical::extract_flights(flight.series, flight.phases, 1).flights)
             content.measured.push_back(std::move(measured));
         content.flights.push_back(std::move(flight));
     }
@@ -63,7 +63,7 @@ TEST(PredictEachMinute, LooksAtNothingThatComesLater) {
     auto& flight = content.flights.front();
     const double take_off_s = flight.phases.sorties.front().phases.front().start.time_s;
     const auto& moments = whole.at(flight.name).moments;
-    flight.series = cut_series(flight.series, take_off_s + moments[3].flown_s + 20.0);
+    flight.series = truncate_series(flight.series, take_off_s + moments[3].flown_s + 20.0);
     const auto cut = predict_each_minute(content, 30);
     const auto& fewer = cut.at(flight.name).moments;
     ASSERT_GE(fewer.size(), 4U);

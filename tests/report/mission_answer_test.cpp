@@ -16,32 +16,32 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-mission::MissionOfReading reading_of(const std::string& name) {
+mission::MissionLoader reading_of(const std::string& name) {
     const auto path = test::paper_mission_path(name);
-    return [path](const mission::MissionReading& reading) { return mission::read_mission(path, reading); };
+    return [path](const mission::MissionReadOptions& reading) { return mission::read_mission(path, reading); };
 }
 
 SimulatedMission flown(const std::string& name) {
-    return simulate_for_report({reading_of(name)({.may_lack_schedule = true})}).front();
+    return simulate_for_report({reading_of(name)({.allow_unplanned = true})}).front();
 }
 
 TEST(MissionAnswer, IsWhatPlanSaysOfTheLongestCruise) {
-    const auto answer = answer_for(flown("phased"), reading_of("phased"));
+    const auto answer = assess_mission(flown("phased"), reading_of("phased"));
     const auto of_cruise = [&](double cruise_s) {
-        return reading_of("phased")({.may_lack_schedule = true, .cruise_s = cruise_s});
+        return reading_of("phased")({.allow_unplanned = true, .cruise_s = cruise_s});
     };
-    ASSERT_TRUE(answer.reach && answer.likely_reach);
+    ASSERT_TRUE(answer.reach && answer.reach_at_95_percent);
     EXPECT_EQ(answer.reach->unit, mission::ReachUnit::cruise_s);
     EXPECT_EQ(answer.reach->limit.value, mission::longest_cruise(of_cruise).value);
-    EXPECT_EQ(answer.likely_reach->limit.value, mission::longest_cruise(of_cruise, likely).value);
-    EXPECT_LT(answer.likely_reach->limit.value, answer.reach->limit.value);
+    EXPECT_EQ(answer.reach_at_95_percent->limit.value, mission::longest_cruise(of_cruise, reach_probability).value);
+    EXPECT_LT(answer.reach_at_95_percent->limit.value, answer.reach->limit.value);
     EXPECT_FALSE(answer.is_unplanned);
 }
 
 TEST(MissionAnswer, SaysWhatWouldKeepTheReserve) {
     const auto simulated = flown("invariant-32fps-448bit");
-    EXPECT_EQ(verdict_of(simulated), Verdict::fails);
-    const auto answer = answer_for(simulated, reading_of("invariant-32fps-448bit"));
+    EXPECT_EQ(verdict_of(simulated), ReserveStatus::fails);
+    const auto answer = assess_mission(simulated, reading_of("invariant-32fps-448bit"));
     ASSERT_TRUE(answer.capacity_ah);
     EXPECT_GT(*answer.capacity_ah, simulated.mission.battery.capacity_ah);
     const auto lines = card_lines(simulated, answer);
@@ -52,9 +52,9 @@ TEST(MissionAnswer, SaysWhatWouldKeepTheReserve) {
 
 TEST(MissionAnswer, KnowsNoChanceWhereNothingSaysHowFlightsDiffer) {
     const auto simulated = flown("computing-only");
-    const auto answer = answer_for(simulated, reading_of("computing-only"));
-    EXPECT_FALSE(answer.likely_reach);
-    EXPECT_EQ(verdict_of(simulated), Verdict::keeps);
+    const auto answer = assess_mission(simulated, reading_of("computing-only"));
+    EXPECT_FALSE(answer.reach_at_95_percent);
+    EXPECT_EQ(verdict_of(simulated), ReserveStatus::keeps);
     EXPECT_THAT(card_lines(simulated, answer), Contains(HasSubstr("nobody knows the chance")));
     EXPECT_TRUE(to_json(simulated, answer)["probability_below_reserve"].is_null());
 }
@@ -70,7 +70,7 @@ mission::Mission on_pack_of_flights(double indicated_ah) {
 TEST(MissionAnswer, WarnsOfACapacityThatContradictsTheFlights) {
     const auto lines_of = [](double indicated_ah) {
         const auto simulated = simulate_for_report({on_pack_of_flights(indicated_ah)}).front();
-        return card_lines(simulated, answer_for(simulated, reading_of("computing-only")));
+        return card_lines(simulated, assess_mission(simulated, reading_of("computing-only")));
     };
     EXPECT_THAT(lines_of(3.2), testing::Each(testing::Not(HasSubstr("flights indicate"))));
     const auto lines = lines_of(6.4);
@@ -81,10 +81,10 @@ TEST(MissionAnswer, WarnsOfACapacityThatContradictsTheFlights) {
 
 TEST(MissionAnswer, IsNotSureOfALandingThatTheFlightsContradict) {
     const auto simulated = simulate_for_report({on_pack_of_flights(6.4)}).front();
-    EXPECT_EQ(verdict_of(simulated), Verdict::keeps) << "with their capacity too";
+    EXPECT_EQ(verdict_of(simulated), ReserveStatus::keeps) << "with their capacity too";
     const auto fails = simulate_for_report({on_pack_of_flights(0.8)}).front();
-    EXPECT_EQ(verdict_of(fails), Verdict::may_keep);
-    const auto answer = answer_for(fails, reading_of("computing-only"));
+    EXPECT_EQ(verdict_of(fails), ReserveStatus::may_keep);
+    const auto answer = assess_mission(fails, reading_of("computing-only"));
     EXPECT_THAT(card_lines(fails, answer).front(), HasSubstr("(the battery fails after "));
     const auto json = to_json(fails, answer);
     EXPECT_EQ(json["with_capacity_of_flights"]["keeps_reserve"], false);
@@ -92,17 +92,17 @@ TEST(MissionAnswer, IsNotSureOfALandingThatTheFlightsContradict) {
 }
 
 TEST(MissionAnswer, OffersAPlanWithAMarginWhereOneIsInReach) {
-    const auto reading_with = [](double reserve_percent) -> mission::MissionOfReading {
-        return [reserve_percent](const mission::MissionReading& how) {
+    const auto reading_with = [](double reserve_percent) -> mission::MissionLoader {
+        return [reserve_percent](const mission::MissionReadOptions& how) {
             auto problem = std::get<mission::PlanningProblem>(reading_of("plan")(how));
             problem.reserve_soc_percent = reserve_percent;
-            return mission::AnyMission(std::move(problem));
+            return mission::MissionVariant(std::move(problem));
         };
     };
-    const auto last_line = [](const mission::MissionOfReading& reading) {
-        const auto simulated = simulate_for_report({reading({.may_lack_schedule = true})}).front();
-        EXPECT_EQ(verdict_of(simulated), Verdict::may_keep);
-        const auto answer = answer_for(simulated, reading);
+    const auto last_line = [](const mission::MissionLoader& reading) {
+        const auto simulated = simulate_for_report({reading({.allow_unplanned = true})}).front();
+        EXPECT_EQ(verdict_of(simulated), ReserveStatus::may_keep);
+        const auto answer = assess_mission(simulated, reading);
         EXPECT_TRUE(answer.is_unplanned);
         return card_lines(simulated, answer).back();
     };
@@ -112,9 +112,9 @@ TEST(MissionAnswer, OffersAPlanWithAMarginWhereOneIsInReach) {
 }
 
 TEST(MissionAnswer, SaysThatALengthHasToBeStatedWhereFlightsDifferInIt) {
-    const auto simulated = simulate_for_report({reading_of("plan")({.may_lack_schedule = true})}).front();
-    auto answer = answer_for(simulated, reading_of("plan"));
-    ASSERT_TRUE(answer.likely_reach);
+    const auto simulated = simulate_for_report({reading_of("plan")({.allow_unplanned = true})}).front();
+    auto answer = assess_mission(simulated, reading_of("plan"));
+    ASSERT_TRUE(answer.reach_at_95_percent);
     answer.cruise_differs_now = false;
     EXPECT_THAT(card_lines(simulated, answer).back(), HasSubstr("fly 9 min 34 s of cruise at most"));
     answer.cruise_differs_now = true;
@@ -126,12 +126,12 @@ TEST(MissionAnswer, SaysThatALengthHasToBeStatedWhereFlightsDifferInIt) {
 
 TEST(MissionAnswer, CountsCirclesOfAPath) {
     const auto path = test::source_dir() / "missions/synthetic/survey-path.toml";
-    const mission::MissionOfReading reading = [&](const mission::MissionReading& how) {
+    const mission::MissionLoader reading = [&](const mission::MissionReadOptions& how) {
         return mission::read_mission(path, how);
     };
-    auto simulated = simulate_for_report({reading({.may_lack_schedule = true})}).front();
+    auto simulated = simulate_for_report({reading({.allow_unplanned = true})}).front();
     simulated.simulation.summary.samples.reset();  // its chance takes a second
-    const auto answer = answer_for(simulated, reading);
+    const auto answer = assess_mission(simulated, reading);
     ASSERT_TRUE(answer.reach);
     EXPECT_EQ(answer.reach->unit, mission::ReachUnit::circles);
     EXPECT_TRUE(to_json(simulated, answer)["reach"].contains("most_circles"));
@@ -140,7 +140,7 @@ TEST(MissionAnswer, CountsCirclesOfAPath) {
 
 TEST(MissionAnswer, SaysWhichModelIsUsedAndHowItPredicts) {
     auto simulated = flown("computing-only");
-    const auto answer = answer_for(simulated, reading_of("computing-only"));
+    const auto answer = assess_mission(simulated, reading_of("computing-only"));
     EXPECT_THAT(card_lines(simulated, answer), testing::Not(Contains(HasSubstr("left out of the fit"))));
     simulated.mission.power_model = mechanical::HeldOutScore{"constant_mean", 4, 18.6};
     EXPECT_THAT(card_lines(simulated, answer),
@@ -149,7 +149,7 @@ TEST(MissionAnswer, SaysWhichModelIsUsedAndHowItPredicts) {
 
 TEST(MissionAnswer, SaysWhyThereIsNone) {
     auto simulated = flown("phased");
-    const auto answer = answer_for(simulated, [](const mission::MissionReading&) -> mission::AnyMission {
+    const auto answer = assess_mission(simulated, [](const mission::MissionReadOptions&) -> mission::MissionVariant {
         throw InputError({"gone.toml"}, "it is gone", "look for it");
     });
     EXPECT_FALSE(answer.reach);

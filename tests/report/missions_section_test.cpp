@@ -17,7 +17,7 @@ using test::paper_mission;
 using testing::HasSubstr;
 
 std::vector<SimulatedMission> simulated(const std::vector<std::string>& names) {
-    std::vector<mission::AnyMission> missions;
+    std::vector<mission::MissionVariant> missions;
     for (const auto& name : names) missions.push_back(paper_mission(name));
     return simulate_for_report(missions);
 }
@@ -80,7 +80,7 @@ TEST(PublishedFigures, StandBesideOurs) {
 
 TEST(PublishedFigures, NameWhatIsMissing) { EXPECT_THROW(read_published_figures(test::scratch_dir()), InputError); }
 
-mission::AnyMission paper(const std::string& name) {
+mission::MissionVariant paper(const std::string& name) {
     return mission::read_mission(test::paper_mission_path(name), {true, std::nullopt});
 }
 
@@ -118,7 +118,7 @@ TEST(PlanSection, SaysWhereNoPlanKeepsTheReserve) {
 
 TEST(RunningTimes, JoinEqualNeighboursOverPhases) {
     const auto mission = test::paper_mission("adaptive");
-    const auto times = running_times(mission);
+    const auto times = run_intervals(mission);
     ASSERT_EQ(times.size(), 6U) << "two components: little, much, little";
     EXPECT_EQ(times[0].start_s, 0.0);
     EXPECT_NEAR(times[2].end_s - times[2].start_s, 120.0, 1e-9);

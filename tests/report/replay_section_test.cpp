@@ -9,7 +9,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-mission::ReplayedSchedule replayed(mission::ReplayedWay way, double soc_percent, double utility) {
+mission::ReplayedSchedule replayed(mission::ScheduleMethod way, double soc_percent, double utility) {
     mission::ReplayedSchedule schedule;
     schedule.way = way;
     schedule.summary.final_soc_percent = soc_percent;
@@ -24,9 +24,9 @@ mission::Replay planned_replay(const std::string& flight) {
     mission::Replay replay;
     replay.flight = flight;
     replay.mission = "survey";
-    replay.schedules = {replayed(mission::ReplayedWay::planned, 15.0, 30.0),
-                        replayed(mission::ReplayedWay::replanned, 21.0, 25.0),
-                        replayed(mission::ReplayedWay::hindsight, 20.0, 26.0)};
+    replay.schedules = {replayed(mission::ScheduleMethod::planned, 15.0, 30.0),
+                        replayed(mission::ScheduleMethod::replanned, 21.0, 25.0),
+                        replayed(mission::ScheduleMethod::hindsight, 20.0, 26.0)};
     replay.notes = {"power measured <below> 0"};
     return replay;
 }
@@ -45,7 +45,7 @@ TEST(ReplaySection, ShowsTablesSentencesAndAFigureOfEachMissionToBePlanned) {
 
 TEST(ReplaySection, DrawsNothingOfAGivenScheduleAlone) {
     auto replay = planned_replay("one");
-    replay.schedules = {replayed(mission::ReplayedWay::given, 15.0, 30.0)};
+    replay.schedules = {replayed(mission::ScheduleMethod::given, 15.0, 30.0)};
     const std::vector replays{replay};
     const auto section = replay_section(replays);
     EXPECT_TRUE(section.figures.empty());

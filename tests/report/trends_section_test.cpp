@@ -23,12 +23,12 @@ constexpr double seconds_per_day = 86400.0;
 constexpr double fresh_w = 40.0;
 
 /// Flights of a pack that ages, of an aircraft whose cruise takes `part_a_day` more power.
-std::vector<FlownFlight> flown(const test::AgedFlights& aged, double part_a_day, std::uint64_t seed) {
+std::vector<FlightTrendData> flown(const test::AgedFlights& aged, double part_a_day, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
-    std::vector<FlownFlight> flights;
+    std::vector<FlightTrendData> flights;
     for (std::size_t f = 0; f < aged.day.size(); ++f) {
-        FlownFlight flight;
+        FlightTrendData flight;
         flight.name = "f" + std::to_string(f);
         flight.aircraft = "7 Wing";
         flight.facts.start_clock_s = seconds_per_day * aged.day[f];
@@ -55,7 +55,7 @@ TEST(TrendsStudy, HoldTheAgeingThatIsThere) {
     std::map<std::string, std::size_t> found;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         auto flights = flown(test::aged_flights(ageing, seed), power_part_a_day, seed);
-        add_pack_wear(flights, 60);
+        add_state_of_health(flights, 60);
         for (const auto& flight : flights) EXPECT_TRUE(flight.capacity_ah) << flight.name << " of seed " << seed;
         // The capacity's level is the chart's guess: what the flights tell is the part of it a day.
         const double mean_part = 1.0 - ageing.part_a_day * ageing.days / 2.0;
@@ -87,7 +87,7 @@ TEST(TrendsStudy, AreNotFoundWhereNothingAges) {
     std::size_t found = 0;
     for (std::uint64_t seed = 11; seed < 11 + seeds; ++seed) {
         auto flights = flown(test::aged_flights({0.0, 0.0, 9}, seed), 0.0, seed);
-        add_pack_wear(flights, 60);
+        add_state_of_health(flights, 60);
         for (const auto& [quantity, trend] : told(trends_of(flights))) {
             ++judged;
             found += is_significant(trend) ? 1 : 0;
@@ -98,7 +98,7 @@ TEST(TrendsStudy, AreNotFoundWhereNothingAges) {
 }
 
 TEST(Trends, AreDrawnFromFiveFlightsOnThreeDaysOn) {
-    std::vector<FlownFlight> flights(4);
+    std::vector<FlightTrendData> flights(4);
     for (std::size_t f = 0; f < flights.size(); ++f) {
         flights[f].aircraft = "7 Wing";
         flights[f].facts.start_clock_s = seconds_per_day * static_cast<double>(f);
@@ -117,8 +117,8 @@ TEST(Trends, AreDrawnFromFiveFlightsOnThreeDaysOn) {
 }
 
 /// Five flights a day apart, whose capacity falls by 2 % of the middle one's a day.
-std::vector<FlownFlight> with_capacities(bool level_is_guess) {
-    std::vector<FlownFlight> flights(5);
+std::vector<FlightTrendData> with_capacities(bool level_is_guess) {
+    std::vector<FlightTrendData> flights(5);
     for (std::size_t f = 0; f < flights.size(); ++f) {
         flights[f].aircraft = "7 Wing";
         flights[f].facts.start_clock_s = seconds_per_day * static_cast<double>(f);
@@ -142,9 +142,9 @@ TEST(PackWear, TakesTheCapacityThatIsKnown) {
     auto aged = test::aged_flights({0.0001, 0.001, 5}, 3);
     auto guessed = flown(aged, 0.0, 3);
     auto known = guessed;
-    add_pack_wear(guessed, 60);
+    add_state_of_health(guessed, 60);
     constexpr double mean_ah = 2.3;
-    EXPECT_TRUE(add_pack_wear(known, 60, mean_ah).empty());
+    EXPECT_TRUE(add_state_of_health(known, 60, mean_ah).empty());
     double logarithms = 0.0;
     for (std::size_t f = 0; f < known.size(); ++f) {
         EXPECT_TRUE(guessed[f].capacity_level_is_guess);
@@ -152,16 +152,16 @@ TEST(PackWear, TakesTheCapacityThatIsKnown) {
         logarithms += std::log(known[f].capacity_ah.value() / mean_ah);
     }
     EXPECT_NEAR(logarithms, 0.0, 0.01);
-    EXPECT_THROW(add_pack_wear(known, 60, 0.2), UsageError);
+    EXPECT_THROW(add_state_of_health(known, 60, 0.2), UsageError);
 }
 
 TEST(PackWear, SaysWhatIsNotKnown) {
-    std::vector<FlownFlight> flights(2);
+    std::vector<FlightTrendData> flights(2);
     for (auto& flight : flights) {
         flight.aircraft = "7 Wing";
         flight.records.resize(1);
     }
-    EXPECT_EQ(add_pack_wear(flights, 1),
+    EXPECT_EQ(add_state_of_health(flights, 1),
               std::vector<std::string>{"7 Wing: no resistance and no capacity of 2 flights, expected 1 at most"});
 }
 

@@ -74,7 +74,7 @@ TEST(DrawFlights, DrawsOppositePairsWhoseMeanIsTheModel) {
         const auto drawn = phase_of(flights, phase);
         for (std::size_t i = 0; i < 6; i += 2) {
             expect_mean({drawn[i], drawn[i + 1]}, model.phases[phase], 1e-9);
-            EXPECT_GT(curve_rms_difference_w(drawn[i], drawn[i + 1]), 1e-3);
+            EXPECT_GT(rms_difference_w(drawn[i], drawn[i + 1]), 1e-3);
         }
         expect_mean(drawn, model.phases[phase], 1e-9);
     }
@@ -148,7 +148,7 @@ TEST(DrawFlights, StretchesTheModelWhereNothingElseDiffers) {
     for (const auto& flight : draw_flights(model, 4, 1, {0.0, 0.06})) {
         for (const auto phase : flight::all_phases) {
             EXPECT_NE(flight[phase].duration_s, model.phases[phase].duration_s);
-            EXPECT_LT(curve_rms_difference_w(flight[phase], model.phases[phase]), 1e-9);
+            EXPECT_LT(rms_difference_w(flight[phase], model.phases[phase]), 1e-9);
         }
     }
 }
@@ -156,7 +156,7 @@ TEST(DrawFlights, StretchesTheModelWhereNothingElseDiffers) {
 TEST(DrawFlights, HasNoAnswerForAFrequencyThatShowsNothing) {
     auto model = published_model();
     model.phases[flight::Phase::cruise].fourier.omega_rad_per_s = 1e-12;
-    EXPECT_THROW(draw_flights(model, 2, 1), NoAnswerError);
+    EXPECT_THROW(draw_flights(model, 2, 1), NoResultError);
 }
 
 }  // namespace

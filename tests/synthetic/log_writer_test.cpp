@@ -50,7 +50,7 @@ TEST(LogXml, IsReadAsItWasWritten) {
 }
 
 TEST(TelemetryReports, FillTheFieldsThatTheyDeclare) {
-    for (const auto& report : telemetry_reports()) {
+    for (const auto& report : periodic_messages()) {
         EXPECT_EQ(report.fields({}).size(), report.definition.fields.size()) << report.definition.name;
         EXPECT_GT(report.period_s, 0.0) << report.definition.name;
     }
@@ -58,7 +58,7 @@ TEST(TelemetryReports, FillTheFieldsThatTheyDeclare) {
 
 TEST(TelemetryReports, HoldWhatFlightsAreReadFrom) {
     std::set<std::string> names;
-    for (const auto& report : telemetry_reports()) {
+    for (const auto& report : periodic_messages()) {
         EXPECT_TRUE(names.insert(report.definition.name).second) << report.definition.name;
     }
     for (const auto* name : {"ENERGY", "ESTIMATOR", "NAVIGATION", "GPS", "PPRZ_MODE", "WIND_INFO"}) {
@@ -67,7 +67,7 @@ TEST(TelemetryReports, HoldWhatFlightsAreReadFrom) {
 }
 
 TEST(TelemetryReports, PowerIsVoltageTimesCurrent) {
-    const auto reports = telemetry_reports();
+    const auto reports = periodic_messages();
     const auto energy = std::find_if(reports.begin(), reports.end(),
                                      [](const auto& report) { return report.definition.name == "ENERGY"; });
     ASSERT_NE(energy, reports.end());

@@ -1,7 +1,7 @@
 #include "synthetic/synthetic_log.h"
 
-#include "flight/chosen_track.h"
 #include "flight/segmentation.h"
+#include "flight/selected_track.h"
 #include "flight/telemetry_series.h"
 
 #include <algorithm>
@@ -54,10 +54,10 @@ std::vector<std::vector<std::pair<double, double>>> truth_of(const SyntheticScen
 }
 
 TEST(SyntheticLog, HazardsDoNotFoolTheSegmentation) {
-    for (const auto& [name, hazard] : hazards()) {
+    for (const auto& [name, hazard] : anomaly_names()) {
         for (std::uint64_t seed = 1; seed <= 5; ++seed) {
             SCOPED_TRACE(name + ", seed " + std::to_string(seed));
-            const auto scenario = scenario_with(flight_at(27.0), hazard);
+            const auto scenario = scenario_with_anomaly(flight_at(27.0), hazard);
             const auto series = read_back(make_synthetic_log(scenario, {}, "x", "", seed));
             const auto phases = segment(series);
             const auto truth = truth_of(scenario);

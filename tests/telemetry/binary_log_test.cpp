@@ -43,7 +43,7 @@ LogConfiguration configuration() { return parse_log_configuration(test::binary_p
 
 TelemetryLog binary(const std::string& bytes, const std::vector<MessageRequest>& requests = wanted) {
     const auto dictionary = binary_dictionary();
-    const auto framing = binary_framing(bytes);
+    const auto framing = detect_binary_framing(bytes);
     if (!framing) throw std::runtime_error("is text");
     return read_binary_telemetry({bytes, *framing, "x.LOG", "messages.xml", &dictionary}, configuration(), requests);
 }
@@ -75,15 +75,15 @@ TEST(BinaryLog, ReadsIntoColumnsWhatItsTextDoes) {
 
 TEST(BinaryFraming, IsToldByContent) {
     const auto data = made_data(20);
-    EXPECT_EQ(binary_framing(data), std::nullopt);
-    EXPECT_EQ(binary_framing(""), std::nullopt);
-    EXPECT_EQ(binary_framing("no telemetry\n\x99\x7E at all"), std::nullopt);
+    EXPECT_EQ(detect_binary_framing(data), std::nullopt);
+    EXPECT_EQ(detect_binary_framing(""), std::nullopt);
+    EXPECT_EQ(detect_binary_framing("no telemetry\n\x99\x7E at all"), std::nullopt);
     const auto log = card_log(data, binary_dictionary(), LinkVersion::v2);
-    EXPECT_EQ(binary_framing(log), Framing::card);
-    EXPECT_EQ(binary_framing(std::string(3000, 'x') + log.substr(5)), Framing::card);
-    EXPECT_EQ(binary_framing(log.substr(0, 33) + std::string(3000, '\0')), Framing::card) << "one frame";
-    EXPECT_EQ(binary_framing(data + log), std::nullopt) << "text comes first";
-    EXPECT_EQ(binary_framing(std::string(10000, '\x99')), std::nullopt);
+    EXPECT_EQ(detect_binary_framing(log), Framing::card);
+    EXPECT_EQ(detect_binary_framing(std::string(3000, 'x') + log.substr(5)), Framing::card);
+    EXPECT_EQ(detect_binary_framing(log.substr(0, 33) + std::string(3000, '\0')), Framing::card) << "one frame";
+    EXPECT_EQ(detect_binary_framing(data + log), std::nullopt) << "text comes first";
+    EXPECT_EQ(detect_binary_framing(std::string(10000, '\x99')), std::nullopt);
 }
 
 TEST(BinaryLog, CountsWhatItSkips) {

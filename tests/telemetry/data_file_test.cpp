@@ -94,13 +94,13 @@ TEST_F(RefusedFile, IsCutOff) {
 
 /// A small file may unpack to any size: a few kB of zstd held 4 GB.
 TEST_F(RefusedFile, UnpacksToMoreThanTheLimit) {
-    constexpr std::size_t most_bytes = 1'000'000;
+    constexpr std::size_t max_bytes = 1'000'000;
     for (const std::string tool : {"gzip", "bzip2", "xz", "zstd"}) {
         ASSERT_EQ(test::run_shell("head -c 1000001 /dev/zero | " + tool + " -c > bomb.data", folder).code, 0) << tool;
-        const auto message = test::rejected([&] { DataFile(folder / "bomb.data", most_bytes); }, folder);
+        const auto message = test::rejected([&] { DataFile(folder / "bomb.data", max_bytes); }, folder);
         EXPECT_EQ(message,
                   "bomb.data: unpacks to more than 1 MB; if it is a log all the same, --max-log-mb raises the limit");
-        EXPECT_EQ(DataFile(folder / "bomb.data", most_bytes + 1).text().size(), most_bytes + 1) << tool;
+        EXPECT_EQ(DataFile(folder / "bomb.data", max_bytes + 1).text().size(), max_bytes + 1) << tool;
     }
 }
 

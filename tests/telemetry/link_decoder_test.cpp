@@ -193,7 +193,7 @@ TEST(LinkDecoder, FindsTheFramesBehindADamagedLength) {
             LinkDecoder decoder(binary_dictionary(), framing, LinkVersion::v1);
             EXPECT_EQ(pushed(decoder, bytes, all_at_once).size(), messages.size() - 1) << length;
             EXPECT_GT(decoder.counts().skipped_bytes, 0u);
-            EXPECT_EQ(decoder.counts().skipped_parts, 1u);
+            EXPECT_EQ(decoder.counts().skipped_runs, 1u);
         }
     }
 }
@@ -203,13 +203,13 @@ TEST(LinkDecoder, TellsRoomThatWasSetAsideFromDamage) {
     const auto size = bytes.size();
     LinkDecoder decoder(binary_dictionary());
     EXPECT_EQ(pushed(decoder, bytes + std::string(5000, '\0'), all_at_once).size(), messages.size());
-    EXPECT_EQ(decoder.counts().zero_bytes, 5000u);
+    EXPECT_EQ(decoder.counts().padding_bytes, 5000u);
     EXPECT_EQ(decoder.counts().skipped_bytes, 0u);
     LinkDecoder cut(binary_dictionary());
     EXPECT_EQ(pushed(cut, bytes.substr(0, size - 5) + std::string(5000, '\0'), all_at_once).size(),
               messages.size() - 1);
     EXPECT_GT(cut.counts().skipped_bytes, 10u);
-    EXPECT_GE(cut.counts().zero_bytes, 5000u);
+    EXPECT_GE(cut.counts().padding_bytes, 5000u);
 }
 
 TEST(LinkDecoder, SurvivesGarbageOfAnyKindAndCountsEveryByte) {

@@ -31,8 +31,8 @@ TEST(LogConfiguration, ReadsBothCasesFromAFileThatIsNotWellFormed) {
     ASSERT_EQ(bat.fields.size(), 2u) << "the telemetry class counts, not the datalink's message of that name";
     EXPECT_EQ(bat.fields[0].name, "voltage");
     EXPECT_EQ(bat.fields[1].name, "amps");
-    EXPECT_DOUBLE_EQ(conversion_of("BAT", bat.fields[0]).factor, 0.1);
-    EXPECT_DOUBLE_EQ(conversion_of("BAT", bat.fields[1]).factor, 0.01) << "declared A, really 0.01 A";
+    EXPECT_DOUBLE_EQ(find_conversion("BAT", bat.fields[0]).factor, 0.1);
+    EXPECT_DOUBLE_EQ(find_conversion("BAT", bat.fields[1]).factor, 0.01) << "declared A, really 0.01 A";
 
     const auto& zagi = configuration.aircraft.at("17");
     EXPECT_EQ(zagi.name, "Zagi");

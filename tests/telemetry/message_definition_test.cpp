@@ -10,7 +10,7 @@ namespace {
 using units::Quantity;
 
 void expect_conversion(const std::string& message, const FieldDefinition& field, Quantity quantity, double factor) {
-    const auto conversion = conversion_of(message, field);
+    const auto conversion = find_conversion(message, field);
     EXPECT_EQ(conversion.quantity, quantity) << message << "." << field.name;
     EXPECT_DOUBLE_EQ(conversion.factor, factor) << message << "." << field.name;
 }
@@ -25,9 +25,9 @@ TEST(ConversionOf, FollowsTheDeclaredUnit) {
 TEST(ConversionOf, TakesTheAlternativeUnitWhereTheDeclaredOneIsNone) {
     expect_conversion("ROTORCRAFT_FP", {"up", "int32", "", "m", 0.00390625}, Quantity::metre, 0.00390625);
     expect_conversion("X", {"up", "int32", "cm", "m", 0.5}, Quantity::metre, 0.01);
-    EXPECT_FALSE(conversion_of("X", {"up", "int32", "", "m", {}}).quantity) << "no coefficient";
-    EXPECT_FALSE(conversion_of("X", {"mode", "uint8", "", "", {}}).quantity);
-    EXPECT_EQ(conversion_of("X", {"mode", "uint8", "", "", {}}).factor, 1.0);
+    EXPECT_FALSE(find_conversion("X", {"up", "int32", "", "m", {}}).quantity) << "no coefficient";
+    EXPECT_FALSE(find_conversion("X", {"mode", "uint8", "", "", {}}).quantity);
+    EXPECT_EQ(find_conversion("X", {"mode", "uint8", "", "", {}}).factor, 1.0);
 }
 
 TEST(ConversionOf, TakesTheCurrentOfBatInHundredths) {
@@ -80,7 +80,7 @@ TEST(BuiltinDefinitions, HaveUnitsThatAreKnown) {
     for (const auto& layout : builtin_definitions("ENERGY")) {
         const auto power = field_index(layout, "power");
         ASSERT_TRUE(power);
-        EXPECT_EQ(conversion_of("ENERGY", layout.fields[*power]).quantity, Quantity::watt);
+        EXPECT_EQ(find_conversion("ENERGY", layout.fields[*power]).quantity, Quantity::watt);
     }
     const auto& old_gps = builtin_definitions("GPS").front();
     expect_conversion("GPS", old_gps.fields[*field_index(old_gps, "alt")], Quantity::metre, 0.01);

@@ -60,7 +60,7 @@ TEST(Census, StopsAtAThousandNames) {
     std::string text = "1 7 GPS 1\n";
     for (int i = 0; i < 5000; ++i) text += "1 7 N" + std::to_string(i) + " 1\n";
     text += "2 7 GPS 1\n";
-    const auto census = census_of_messages(text);
+    const auto census = count_messages(text);
     EXPECT_EQ(census.size(), 1000U);
     EXPECT_EQ(census.front(), (std::pair<std::string, std::size_t>("GPS", 2)));
 }

@@ -19,7 +19,7 @@ namespace flightwatt::battery {
 namespace {
 
 constexpr int first_segments = 6;
-constexpr int most_steps = 15;
+constexpr int max_steps = 15;
 constexpr int places_tried = 80;
 
 bool falls_throughout(const CircuitFit& fit) {
@@ -32,21 +32,21 @@ double effective_error_v(std::span<const AlignedRecord> records, const Eigen::Ve
     double squares = 0.0;
     Eigen::Index row = 0;
     for (const auto& aligned : records) {
-        const auto n = used_samples(*aligned.record);
+        const auto n = used_sample_count(*aligned.record);
         const auto part = residual_v.segment(row, n);
         if (n > 1) product += part.head(n - 1).dot(part.tail(n - 1));
         squares += part.squaredNorm();
         row += n;
     }
-    constexpr double most_alike = 0.99;
-    const double r = squares > 0.0 ? std::clamp(product / squares, 0.0, most_alike) : 0.0;
-    constexpr double least_v = 1e-6;
-    return std::max(least_v, std::sqrt(squares / static_cast<double>(residual_v.size()) * (1.0 + r) / (1.0 - r)));
+    constexpr double max_alike = 0.99;
+    const double r = squares > 0.0 ? std::clamp(product / squares, 0.0, max_alike) : 0.0;
+    constexpr double min_v = 1e-6;
+    return std::max(min_v, std::sqrt(squares / static_cast<double>(residual_v.size()) * (1.0 + r) / (1.0 - r)));
 }
 
 /// Mean square of what is left of a record's voltage if it begins at `initial_ah` of the curve.
 double misfit_v2(const DischargeRecord& record, const CircuitFit& fit, double initial_ah) {
-    const auto settled_a = fit.rc_resistance_ohm > 0.0 ? settled_current_a(record, fit.rc_time_constant_s)
+    const auto settled_a = fit.rc_resistance_ohm > 0.0 ? rc_branch_current_a(record, fit.rc_time_constant_s)
                                                        : std::vector<double>(record.time_s.size(), 0.0);
     double squares = 0.0;
     double count = 0.0;
@@ -66,19 +66,19 @@ double misfit_v2(const DischargeRecord& record, const CircuitFit& fit, double in
 double best_place_ah(const DischargeRecord& record, const CircuitFit& fit) {
     const double length_ah = fit.knots_ah.back() - fit.knots_ah.front();
     double best_ah = 0.0;
-    double least_v2 = std::numeric_limits<double>::infinity();
+    double min_v2 = std::numeric_limits<double>::infinity();
     for (int i = 0; i <= places_tried; ++i) {
         const double tried_ah = fit.knots_ah.front() + length_ah * (1.2 * i / places_tried - 0.1);
         const double left_v2 = misfit_v2(record, fit, tried_ah);
-        if (left_v2 >= least_v2) continue;
-        least_v2 = left_v2;
+        if (left_v2 >= min_v2) continue;
+        min_v2 = left_v2;
         best_ah = tried_ah;
     }
     return best_ah;
 }
 
 /// The sum of squares that the joint fit makes least.
-double objective_of(const AlignedFit& aligned) {
+double objective_of(const JointCircuitFit& aligned) {
     double sum = aligned.fit.objective;
     const double sample_v = aligned.fit.weights.sample_error_v;
     for (const auto& link : aligned.links) {
@@ -90,19 +90,19 @@ double objective_of(const AlignedFit& aligned) {
 }
 
 /// The fit anew, at the initial charges that stand there; with the time constant that it has if `keep_rc`.
-void refit(AlignedFit& aligned, int segments, bool keep_rc) {
+void refit(JointCircuitFit& aligned, int segments, bool keep_rc) {
     std::optional<double> tau_s;
     if (keep_rc) tau_s = aligned.fit.rc_time_constant_s;
-    aligned.fit = fit_circuit(aligned.records, equal_knots(aligned.records, segments), aligned.fit.weights, tau_s);
+    aligned.fit = fit_circuit(aligned.records, uniform_knots(aligned.records, segments), aligned.fit.weights, tau_s);
 }
 
 /// Steps until they no longer help.
-void step_to_optimum(AlignedFit& aligned, int segments) {
+void step_to_optimum(JointCircuitFit& aligned, int segments) {
     if (aligned.records.size() < 2) return;
     const auto flights = static_cast<Eigen::Index>(aligned.records.size());
-    for (int i = 0; i < most_steps; ++i) {
+    for (int i = 0; i < max_steps; ++i) {
         const double length_ah = aligned.fit.knots_ah.back() - aligned.fit.knots_ah.front();
-        const Eigen::VectorXd step = joint_step(aligned).tail(flights);
+        const Eigen::VectorXd step = gauss_newton_step(aligned).tail(flights);
         double part = std::min(1.0, 0.1 * length_ah / std::max(1e-12, step.cwiseAbs().maxCoeff()));
         const double before = objective_of(aligned);
         auto tried = aligned;
@@ -138,13 +138,13 @@ FitWeights first_weights(const DischargeRecord& fullest, int cells) {
 
 /// Initial charges of records that are laid onto each other one by one, the fullest first.
 std::vector<double> laid_one_by_one(std::span<const DischargeRecord> records, int cells,
-                                    std::span<const ChargeLink> links) {
+                                    std::span<const PackConstraint> links) {
     const auto order = fullest_first(records);
-    AlignedFit growing;
+    JointCircuitFit growing;
     growing.fit.weights = first_weights(records[order.front()], cells);
     std::vector<double> initial_ah(records.size(), 0.0);
     for (const auto at : order) {
-        const auto linked = std::ranges::find(links, at, &ChargeLink::later);
+        const auto linked = std::ranges::find(links, at, &PackConstraint::later);
         if (at == order.front()) {
             initial_ah[at] = 0.0;
         } else if (linked != links.end() &&
@@ -161,9 +161,9 @@ std::vector<double> laid_one_by_one(std::span<const DischargeRecord> records, in
 }
 
 /// With the initial charges that are about right.
-AlignedFit laid_out(std::span<const DischargeRecord> records, int cells, std::span<const ChargeLink> links,
-                    std::span<const double> initial_ah) {
-    AlignedFit aligned;
+JointCircuitFit laid_out(std::span<const DischargeRecord> records, int cells, std::span<const PackConstraint> links,
+                         std::span<const double> initial_ah) {
+    JointCircuitFit aligned;
     for (std::size_t i = 0; i < records.size(); ++i) aligned.records.push_back({&records[i], initial_ah[i]});
     aligned.links.assign(links.begin(), links.end());
     aligned.reference = fullest_first(records).front();
@@ -175,7 +175,7 @@ AlignedFit laid_out(std::span<const DischargeRecord> records, int cells, std::sp
 }
 
 /// Moves all so that the curve begins at charge 0.
-void begin_at_zero(AlignedFit& aligned) {
+void begin_at_zero(JointCircuitFit& aligned) {
     const double low_ah = aligned.fit.knots_ah.front();
     for (auto& knot : aligned.fit.knots_ah) knot -= low_ah;
     for (auto& record : aligned.records) record.initial_charge_ah -= low_ah;
@@ -183,7 +183,7 @@ void begin_at_zero(AlignedFit& aligned) {
 
 }  // namespace
 
-std::vector<double> equal_knots(std::span<const AlignedRecord> records, int segments) {
+std::vector<double> uniform_knots(std::span<const AlignedRecord> records, int segments) {
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
     for (const auto& [record, initial] : records) {
@@ -196,25 +196,25 @@ std::vector<double> equal_knots(std::span<const AlignedRecord> records, int segm
     return knots;
 }
 
-Eigen::Index joint_width(const AlignedFit& aligned) {
-    return columns_of(aligned.fit).width + static_cast<Eigen::Index>(aligned.records.size());
+Eigen::Index parameter_count(const JointCircuitFit& aligned) {
+    return fit_columns(aligned.fit).width + static_cast<Eigen::Index>(aligned.records.size());
 }
 
-std::vector<RecordDerivatives> joint_derivatives(const AlignedFit& aligned) {
-    const auto at = columns_of(aligned.fit);
-    const auto shared = shared_derivatives(aligned.records, aligned.fit);
-    std::vector<RecordDerivatives> records;
+std::vector<RecordJacobian> joint_jacobian(const JointCircuitFit& aligned) {
+    const auto at = fit_columns(aligned.fit);
+    const auto shared = shared_jacobian(aligned.records, aligned.fit);
+    std::vector<RecordJacobian> records;
     Eigen::Index first = 0;
     for (std::size_t f = 0; f < aligned.records.size(); ++f) {
         const auto& record = *aligned.records[f].record;
         const auto flight = static_cast<Eigen::Index>(f);
-        const auto rows = used_samples(record);
-        RecordDerivatives own{first, {}, Eigen::MatrixXd::Zero(rows, shared.cols() + 2)};
-        for (Eigen::Index c = 0; c < at.rest; ++c) own.places.push_back(c);
-        for (Eigen::Index c = at.rc; c < at.width; ++c) own.places.push_back(c);
-        own.places.insert(own.places.end(), {at.rest + flight, at.width + flight});
+        const auto rows = used_sample_count(record);
+        RecordJacobian own{first, {}, Eigen::MatrixXd::Zero(rows, shared.cols() + 2)};
+        for (Eigen::Index c = 0; c < at.rest; ++c) own.parameter_indices.push_back(c);
+        for (Eigen::Index c = at.rc; c < at.width; ++c) own.parameter_indices.push_back(c);
+        own.parameter_indices.insert(own.parameter_indices.end(), {at.rest + flight, at.width + flight});
         own.columns.leftCols(shared.cols()) = shared.middleRows(first, rows);
-        own.columns.col(shared.cols()).head(used_rests(record)).setOnes();
+        own.columns.col(shared.cols()).head(rest_sample_count(record)).setOnes();
         if (f != aligned.reference)
             own.columns.col(shared.cols() + 1) = slopes_v_per_ah(aligned.records[f], aligned.fit);
         first += rows;
@@ -223,13 +223,13 @@ std::vector<RecordDerivatives> joint_derivatives(const AlignedFit& aligned) {
     return records;
 }
 
-JointBelief joint_belief(const AlignedFit& aligned) {
+JointPrior joint_prior(const JointCircuitFit& aligned) {
     const auto& fit = aligned.fit;
-    const auto at = columns_of(fit);
-    const auto circuit = believed_rows(aligned.records, fit);
+    const auto at = fit_columns(fit);
+    const auto circuit = prior_rows(aligned.records, fit);
     const auto flights = static_cast<Eigen::Index>(aligned.records.size());
     const auto links = static_cast<Eigen::Index>(aligned.links.size());
-    JointBelief belief;
+    JointPrior belief;
     belief.rows = Eigen::MatrixXd::Zero(circuit.rows() + links, at.width + flights);
     belief.rows.topLeftCorner(circuit.rows(), at.width) = circuit;
     Eigen::VectorXd now = Eigen::VectorXd::Zero(at.width + flights);
@@ -251,18 +251,18 @@ JointBelief joint_belief(const AlignedFit& aligned) {
     return belief;
 }
 
-Eigen::MatrixXd joint_normal(std::span<const RecordDerivatives> records, const JointBelief& belief) {
+Eigen::MatrixXd normal_matrix(std::span<const RecordJacobian> records, const JointPrior& belief) {
     const Eigen::SparseMatrix<double> believed = belief.rows.sparseView();
     Eigen::MatrixXd normal = believed.transpose() * believed;
     for (const auto& record : records)
-        normal(record.places, record.places) += record.columns.transpose() * record.columns;
+        normal(record.parameter_indices, record.parameter_indices) += record.columns.transpose() * record.columns;
     return normal;
 }
 
-Eigen::VectorXd joint_step(const AlignedFit& aligned) {
-    const auto records = joint_derivatives(aligned);
-    const auto belief = joint_belief(aligned);
-    auto normal = joint_normal(records, belief);
+Eigen::VectorXd gauss_newton_step(const JointCircuitFit& aligned) {
+    const auto records = joint_jacobian(aligned);
+    const auto belief = joint_prior(aligned);
+    auto normal = normal_matrix(records, belief);
     Eigen::VectorXd pull = belief.rows.transpose() * belief.residual;
     for (const auto& [first, places, columns] : records)
         pull(places) += columns.transpose() * aligned.fit.residual_v.segment(first, columns.rows());
@@ -275,12 +275,12 @@ Eigen::VectorXd joint_step(const AlignedFit& aligned) {
     return scaled.cwiseQuotient(length);
 }
 
-AlignedFit aligned_fit(std::span<const DischargeRecord> records, int cells, std::span<const ChargeLink> links,
-                       std::span<const double> begin_ah) {
+JointCircuitFit fit_circuit_jointly(std::span<const DischargeRecord> records, int cells,
+                                    std::span<const PackConstraint> links, std::span<const double> begin_ah) {
     auto rough = begin_ah.empty() ? laid_out(records, cells, links, laid_one_by_one(records, cells, links))
                                   : laid_out(records, cells, links, begin_ah);
     step_to_optimum(rough, first_segments);
-    for (const int segments : segments_by_prediction(rough.records, rough.fit)) {
+    for (const int segments : rank_segment_counts(rough.records, rough.fit)) {
         auto aligned = rough;
         refit(aligned, segments, false);
         if (segments != first_segments) step_to_optimum(aligned, segments);
@@ -288,7 +288,7 @@ AlignedFit aligned_fit(std::span<const DischargeRecord> records, int cells, std:
         begin_at_zero(aligned);
         return aligned;
     }
-    throw NoAnswerError("the open-circuit voltage does not fall as charge is drawn");
+    throw NoResultError("the open-circuit voltage does not fall as charge is drawn");
 }
 
 }  // namespace flightwatt::battery

@@ -11,7 +11,7 @@
 namespace flightwatt::battery {
 
 /// Two records of one pack: the later one began with what the earlier one left.
-struct ChargeLink {
+struct PackConstraint {
     std::size_t later = 0;
     std::size_t earlier = 0;
     double charge_ah = 0.0;  ///< drawn in between
@@ -19,9 +19,9 @@ struct ChargeLink {
 };
 
 /// A circuit, and the initial charges that belong to it.
-struct AlignedFit {
+struct JointCircuitFit {
     std::vector<AlignedRecord> records;
-    std::vector<ChargeLink> links;
+    std::vector<PackConstraint> links;
     CircuitFit fit;
     std::size_t reference = 0;  ///< the record with the highest resting voltage: others are aligned with it
 };
@@ -29,39 +29,40 @@ struct AlignedFit {
 /// Circuit and initial charges in one least squares: what was missing from the pack is a parameter of each record but
 /// the reference's, told by the voltage under load, the resting voltage (as far as it can be believed, circuit_fit.h)
 /// and the links. Solved by Gauss-Newton steps from `begin_ah`, initial charges that are about right; without them from
-/// where each record's voltage lies best on the curve of the fuller ones. The curve has as many equal segments (12 at most) as predict best what was left out: each record in turn, or,
-/// of a single one, each twentieth of it. The curve begins at charge 0. Throws NoAnswerError where the records
-/// determine no circuit whose voltage falls as charge is drawn.
-AlignedFit aligned_fit(std::span<const DischargeRecord> records, int cells, std::span<const ChargeLink> links = {},
-                       std::span<const double> begin_ah = {});
+/// where each record's voltage lies best on the curve of the fuller ones. The curve has as many equal segments (12 at
+/// most) as predict best what was left out: each record in turn, or, of a single one, each twentieth of it. The curve
+/// begins at charge 0. Throws NoResultError where the records determine no circuit whose voltage falls as charge is
+/// drawn.
+JointCircuitFit fit_circuit_jointly(std::span<const DischargeRecord> records, int cells,
+                                    std::span<const PackConstraint> links = {}, std::span<const double> begin_ah = {});
 
 /// Derivatives of one record's fitted voltages, one row a used sample, and the parameters that they are by: places in
 /// the order of FitColumns, then of the records' initial charges (the reference's derivative is 0 throughout). By the
 /// other records' parameters they are 0.
-struct RecordDerivatives {
+struct RecordJacobian {
     Eigen::Index first = 0;  ///< its first row among all used samples
-    std::vector<Eigen::Index> places;
+    std::vector<Eigen::Index> parameter_indices;
     Eigen::MatrixXd columns;
 };
-std::vector<RecordDerivatives> joint_derivatives(const AlignedFit& aligned);
+std::vector<RecordJacobian> joint_jacobian(const JointCircuitFit& aligned);
 
 /// Shared parameters and those of all records: FitColumns, then the initial charges.
-Eigen::Index joint_width(const AlignedFit& aligned);
+Eigen::Index parameter_count(const JointCircuitFit& aligned);
 
 /// What is believed and what the links say, as rows of all parameters, and what they leave.
-struct JointBelief {
+struct JointPrior {
     Eigen::MatrixXd rows;
     Eigen::VectorXd residual;
 };
-JointBelief joint_belief(const AlignedFit& aligned);
+JointPrior joint_prior(const JointCircuitFit& aligned);
 
 /// The normal matrix of samples and of what is believed.
-Eigen::MatrixXd joint_normal(std::span<const RecordDerivatives> records, const JointBelief& belief);
+Eigen::MatrixXd normal_matrix(std::span<const RecordJacobian> records, const JointPrior& belief);
 
 /// What the joint fit would change of its parameters: of a linear problem, all that is left to do.
-Eigen::VectorXd joint_step(const AlignedFit& aligned);
+Eigen::VectorXd gauss_newton_step(const JointCircuitFit& aligned);
 
 /// Knots that part the charge of the records equally.
-std::vector<double> equal_knots(std::span<const AlignedRecord> records, int segments);
+std::vector<double> uniform_knots(std::span<const AlignedRecord> records, int segments);
 
 }  // namespace flightwatt::battery

@@ -22,15 +22,15 @@ namespace {
 constexpr int capacities_tried = 120;
 constexpr double missing_step = 0.0125;
 constexpr double full_step = 0.005;
-constexpr double most_times_shown = 50.0;
-constexpr double most_missing_part = 0.9;
+constexpr double max_times_shown = 50.0;
+constexpr double max_missing_part = 0.9;
 constexpr double full_probability = 0.5;
-constexpr double full_sd = 0.03;           // of the capacity
-constexpr double resting_sd_v = 0.02;      // a cell; what it leaves at rest
-constexpr Eigen::Index most_compared = 4;  // points of the curve, evenly spread
-constexpr double loaded_sd_v = 0.03;       // a cell; what slow relaxation takes under load throughout
+constexpr double full_sd = 0.03;          // of the capacity
+constexpr double resting_sd_v = 0.02;     // a cell; what it leaves at rest
+constexpr Eigen::Index max_compared = 4;  // points of the curve, evenly spread
+constexpr double loaded_sd_v = 0.03;      // a cell; what slow relaxation takes under load throughout
 constexpr double rounding_percent = 0.01;
-constexpr double most_beyond_percent = 10.0;
+constexpr double max_beyond_percent = 10.0;
 
 /// What of the pack is compared with the chart: the rest first, then the curve.
 struct Compared {
@@ -39,9 +39,9 @@ struct Compared {
     Eigen::MatrixXd covariance_v2;  ///< a cell, without the chart's error
 };
 
-Compared compared(const ShownCurve& shown) {
+Compared compared(const ObservedOcv& shown) {
     const auto knots = static_cast<Eigen::Index>(shown.charge_ah.size());
-    const auto points = std::min<Eigen::Index>(knots, most_compared);
+    const auto points = std::min<Eigen::Index>(knots, max_compared);
     Eigen::MatrixXd between = Eigen::MatrixXd::Zero(points, knots);
     Compared all;
     all.charge_ah.resize(points + 1);
@@ -49,7 +49,7 @@ Compared compared(const ShownCurve& shown) {
     for (Eigen::Index p = 0; p < points; ++p) {
         const double part = static_cast<double>(p) / static_cast<double>(points - 1);
         all.charge_ah[p + 1] = std::lerp(shown.charge_ah.front(), shown.charge_ah.back(), part);
-        const auto place = place_among(shown.charge_ah, all.charge_ah[p + 1]);
+        const auto place = find_knot_interval(shown.charge_ah, all.charge_ah[p + 1]);
         between(p, static_cast<Eigen::Index>(place.lower)) = 1.0 - place.fraction;
         between(p, static_cast<Eigen::Index>(place.lower) + 1) = place.fraction;
     }
@@ -61,7 +61,7 @@ Compared compared(const ShownCurve& shown) {
     all.covariance_v2.bottomRightCorner(points, points) =
         between * shown.covariance_v2 * between.transpose() / (shown.cells * shown.cells) +
         Eigen::MatrixXd::Constant(points, points, loaded_sd_v * loaded_sd_v);
-    all.covariance_v2.diagonal().array() += lipo_chart_kink_v * lipo_chart_kink_v;
+    all.covariance_v2.diagonal().array() += lipo_chart_local_sd_v * lipo_chart_local_sd_v;
     return all;
 }
 
@@ -82,7 +82,7 @@ std::vector<MissingPart> missing_parts() {
         sum += density;
     }
     for (auto& full : parts) full.probability *= full_probability / sum;
-    const auto cells = static_cast<int>(std::lround(most_missing_part / missing_step));
+    const auto cells = static_cast<int>(std::lround(max_missing_part / missing_step));
     for (int i = 0; i < cells; ++i)
         parts.push_back({missing_step * (i + 0.5), (1.0 - full_probability) / cells, false});
     return parts;
@@ -97,16 +97,16 @@ double log_likelihood(const Compared& shown, double capacity_ah, double missing_
     Eigen::VectorXd slope(n);
     for (Eigen::Index i = 0; i < n; ++i) {
         difference[i] = shown.cell_v[i] - lipo_chart_voltage_v(soc[i]);
-        const double low = std::clamp(soc[i] - lipo_chart_charge_percent, 0.0, units::percent_per_whole - 1.0);
-        const double high = std::clamp(soc[i] + lipo_chart_charge_percent, 1.0, units::percent_per_whole);
+        const double low = std::clamp(soc[i] - lipo_chart_soc_sd_percent, 0.0, units::percent_per_whole - 1.0);
+        const double high = std::clamp(soc[i] + lipo_chart_soc_sd_percent, 1.0, units::percent_per_whole);
         slope[i] = (lipo_chart_voltage_v(high) - lipo_chart_voltage_v(low)) / (high - low);
     }
     Eigen::MatrixXd covariance = shown.covariance_v2;
     for (Eigen::Index i = 0; i < n; ++i) {
         for (Eigen::Index j = 0; j < n; ++j) {
-            const double apart = (soc[i] - soc[j]) / lipo_chart_alike_percent;
-            const double variance = lipo_chart_uncertainty_v * lipo_chart_uncertainty_v +
-                                    slope[i] * slope[j] * lipo_chart_charge_percent * lipo_chart_charge_percent;
+            const double apart = (soc[i] - soc[j]) / lipo_chart_correlation_percent;
+            const double variance = lipo_chart_sd_v * lipo_chart_sd_v +
+                                    slope[i] * slope[j] * lipo_chart_soc_sd_percent * lipo_chart_soc_sd_percent;
             covariance(i, j) += variance * std::exp(-apart * apart / 2.0);
         }
     }
@@ -115,13 +115,13 @@ double log_likelihood(const Compared& shown, double capacity_ah, double missing_
     return -0.5 * whitened.squaredNorm() - root.matrixLLT().diagonal().array().log().sum();
 }
 
-std::vector<double> capacities(const ShownCurve& shown, std::optional<double> given_ah) {
+std::vector<double> capacities(const ObservedOcv& shown, std::optional<double> given_ah) {
     if (given_ah) return {*given_ah};
     std::vector<double> tried;
     tried.reserve(capacities_tried);
     for (int i = 0; i < capacities_tried; ++i)
         tried.push_back(shown.charge_ah.back() *
-                        std::pow(most_times_shown, static_cast<double>(i) / (capacities_tried - 1)));
+                        std::pow(max_times_shown, static_cast<double>(i) / (capacities_tried - 1)));
     return tried;
 }
 
@@ -136,8 +136,8 @@ double weighted_quantile(std::vector<std::pair<double, double>> values, double p
     return values.back().first;
 }
 
-/// The part of a normal distribution that lies below `limit`, both in standard deviations times the root of two from its
-/// mean. Beyond eight of these it is 0 or 1 to more digits than a sum keeps, and most of a posterior lies there.
+/// The part of a normal distribution that lies below `limit`, both in standard deviations times the root of two from
+/// its mean. Beyond eight of these it is 0 or 1 to more digits than a sum keeps, and most of a posterior lies there.
 double part_below(double limit) {
     constexpr double certain = 8.0;
     if (limit > certain) return 1.0;
@@ -147,20 +147,20 @@ double part_below(double limit) {
 
 }  // namespace
 
-std::vector<ChargeScale> match_chart(const ShownCurve& shown, std::optional<double> given_ah) {
+std::vector<CapacityHypothesis> capacity_posterior(const ObservedOcv& shown, std::optional<double> given_ah) {
     const auto all = compared(shown);
     // A capacity that is given holds, though initial charges that are not exact may add up to more.
-    const double beyond_percent = given_ah ? most_beyond_percent : rounding_percent;
-    std::vector<ChargeScale> posterior;
+    const double beyond_percent = given_ah ? max_beyond_percent : rounding_percent;
+    std::vector<CapacityHypothesis> posterior;
     double most = -std::numeric_limits<double>::infinity();
     const auto parts = missing_parts();
     for (const double capacity_ah : capacities(shown, given_ah)) {
         for (const auto& [part, prior, is_full] : parts) {
             const double missing_ah = part * capacity_ah;
             // Any part of what the pack held may have been drawn; the grid is one of logarithms.
-            const double drawn_part = std::min(1.0, shown.charge_ah.back() / (capacity_ah - missing_ah));
+            const double drawn_fraction = std::min(1.0, shown.charge_ah.back() / (capacity_ah - missing_ah));
             const double logarithm =
-                log_likelihood(all, capacity_ah, missing_ah, beyond_percent) + std::log(prior * drawn_part);
+                log_likelihood(all, capacity_ah, missing_ah, beyond_percent) + std::log(prior * drawn_fraction);
             if (!std::isfinite(logarithm)) continue;
             posterior.push_back({capacity_ah, missing_ah, logarithm, is_full});
             most = std::max(most, logarithm);
@@ -173,19 +173,19 @@ std::vector<ChargeScale> match_chart(const ShownCurve& shown, std::optional<doub
     constexpr double negligible = 1e-7;
     double sum = 0.0;
     for (auto& scale : posterior) scale.probability = std::exp(scale.probability - most);
-    std::erase_if(posterior, [](const ChargeScale& scale) { return scale.probability < negligible; });
+    std::erase_if(posterior, [](const CapacityHypothesis& scale) { return scale.probability < negligible; });
     for (const auto& scale : posterior) sum += scale.probability;
     for (auto& scale : posterior) scale.probability /= sum;
     return posterior;
 }
 
-double capacity_quantile_ah(std::span<const ChargeScale> posterior, double probability) {
+double capacity_quantile_ah(std::span<const CapacityHypothesis> posterior, double probability) {
     std::vector<std::pair<double, double>> values;
     for (const auto& scale : posterior) values.emplace_back(scale.capacity_ah, scale.probability);
     return weighted_quantile(std::move(values), probability);
 }
 
-double probable_missing_ah(std::span<const ChargeScale> posterior) {
+double estimate_depletion_ah(std::span<const CapacityHypothesis> posterior) {
     const double capacity_ah = capacity_quantile_ah(posterior, 0.5);
     std::vector<std::pair<double, double>> values;
     double sum = 0.0;
@@ -197,7 +197,8 @@ double probable_missing_ah(std::span<const ChargeScale> posterior) {
     return weighted_quantile(std::move(values), sum / 2.0);
 }
 
-Interval missing_interval_ah(std::span<const ChargeScale> posterior, double offset_ah, double standard_error_ah) {
+Interval depletion_interval_ah(std::span<const CapacityHypothesis> posterior, double offset_ah,
+                               double standard_error_ah) {
     constexpr int halvings = 40;
     const double error_ah = std::max(1e-6, standard_error_ah);
     const auto quantile = [&](double probability, bool full_is_full) {

@@ -12,7 +12,7 @@
 namespace flightwatt::battery {
 
 /// What flights show of a pack's open-circuit voltage, to be laid onto the LiPo chart.
-struct ShownCurve {
+struct ObservedOcv {
     std::vector<double> charge_ah;   ///< from where the curve begins, 0; rising
     std::vector<double> voltage_v;   ///< under load, falling
     Eigen::MatrixXd covariance_v2;   ///< of these voltages
@@ -22,16 +22,16 @@ struct ShownCurve {
 };
 
 /// How packs differ from the chart, a cell, as standard deviations: 80 mV, alike over 40 % of the charge, and 10 mV at
-/// each point that is compared. Chen's and Rincon-Mora's curve of a polymer cell (2006) differs from it by 55 mV, the two
-/// curves of the synthetic packs by 72 and 83 mV; the constants were chosen with these three in view. The 10 mV keep a
-/// curve's smoothness from telling the capacity: real curves are smoother than any model of their difference.
-inline constexpr double lipo_chart_uncertainty_v = 0.08;
-inline constexpr double lipo_chart_alike_percent = 40.0;
-inline constexpr double lipo_chart_kink_v = 0.01;
-inline constexpr double lipo_chart_charge_percent = 4.0;  ///< an error of its charge, which counts where it is steep
+/// each point that is compared. Chen's and Rincon-Mora's curve of a polymer cell (2006) differs from it by 55 mV, the
+/// two curves of the synthetic packs by 72 and 83 mV; the constants were chosen with these three in view. The 10 mV
+/// keep a curve's smoothness from telling the capacity: real curves are smoother than any model of their difference.
+inline constexpr double lipo_chart_sd_v = 0.08;
+inline constexpr double lipo_chart_correlation_percent = 40.0;
+inline constexpr double lipo_chart_local_sd_v = 0.01;
+inline constexpr double lipo_chart_soc_sd_percent = 4.0;  ///< an error of its charge, which counts where it is steep
 
 /// How probable a capacity is, with a charge missing where the curve begins.
-struct ChargeScale {
+struct CapacityHypothesis {
     double capacity_ah = 0.0;
     double missing_ah = 0.0;
     double probability = 0.0;
@@ -45,17 +45,18 @@ struct ChargeScale {
 /// from 0 to 90 % short in the others. With a flight of a pack that is not full alone, capacity and initial charge are
 /// told by the chart alone, and the posterior is wide. Throws UsageError where the curve shows more than the given
 /// capacity, by a tenth.
-std::vector<ChargeScale> match_chart(const ShownCurve& shown, std::optional<double> given_ah);
+std::vector<CapacityHypothesis> capacity_posterior(const ObservedOcv& shown, std::optional<double> given_ah);
 
 /// Quantile of the capacity.
-double capacity_quantile_ah(std::span<const ChargeScale> posterior, double probability);
+double capacity_quantile_ah(std::span<const CapacityHypothesis> posterior, double probability);
 
 /// What was probably missing where the curve begins, if the capacity is its median: 0 where that counts as full, else a
 /// median.
-double probable_missing_ah(std::span<const ChargeScale> posterior);
+double estimate_depletion_ah(std::span<const CapacityHypothesis> posterior);
 
 /// 95 % interval of the charge missing from a full pack where it began `offset_ah` behind the curve's beginning, with
 /// that standard error; not below 0.
-Interval missing_interval_ah(std::span<const ChargeScale> posterior, double offset_ah, double standard_error_ah);
+Interval depletion_interval_ah(std::span<const CapacityHypothesis> posterior, double offset_ah,
+                               double standard_error_ah);
 
 }  // namespace flightwatt::battery

@@ -64,7 +64,7 @@ std::vector<Block> blocks_of_records(std::span<const AlignedRecord> records) {
     std::vector<Block> blocks;
     Eigen::Index row = 0;
     for (std::size_t f = 0; f < records.size(); ++f) {
-        blocks.push_back({f, row, used_samples(*records[f].record), 0.0});
+        blocks.push_back({f, row, used_sample_count(*records[f].record), 0.0});
         row += blocks.back().count;
     }
     return blocks;
@@ -72,22 +72,22 @@ std::vector<Block> blocks_of_records(std::span<const AlignedRecord> records) {
 
 /// The joint problem, each parameter scaled to length 1.
 struct Scaled {
-    std::vector<RecordDerivatives> records;
+    std::vector<RecordJacobian> records;
     Eigen::MatrixXd normal;
     Eigen::VectorXd length;
 };
 
 /// Of the first `width` parameters; the others, the last of each record's, are held.
-Scaled scaled(const AlignedFit& aligned, Eigen::Index width) {
+Scaled scaled(const JointCircuitFit& aligned, Eigen::Index width) {
     Scaled problem;
-    problem.records = joint_derivatives(aligned);
-    auto belief = joint_belief(aligned);
+    problem.records = joint_jacobian(aligned);
+    auto belief = joint_prior(aligned);
     belief.rows.conservativeResize(Eigen::NoChange, width);
     for (auto& [first, places, columns] : problem.records) {
         std::erase_if(places, [&](Eigen::Index place) { return place >= width; });
         columns.conservativeResize(Eigen::NoChange, std::ssize(places));
     }
-    problem.normal = joint_normal(problem.records, belief);
+    problem.normal = normal_matrix(problem.records, belief);
     problem.length = problem.normal.diagonal().cwiseSqrt().cwiseMax(1e-12);
     const Eigen::VectorXd inverse = problem.length.cwiseInverse();
     problem.normal = inverse.asDiagonal() * problem.normal * inverse.asDiagonal();
@@ -131,12 +131,12 @@ Eigen::MatrixXd jackknife(const Scaled& problem, const Eigen::MatrixXd& inverse,
 }
 
 /// How far the parameters move, in the order of the joint derivatives, if the curve has twice the segments.
-Eigen::VectorXd moved_by_finer_curve(const AlignedFit& aligned) {
+Eigen::VectorXd moved_by_finer_curve(const JointCircuitFit& aligned) {
     const auto& fit = aligned.fit;
     const auto segments = static_cast<int>(fit.knots_ah.size()) - 1;
     auto finer = aligned;
-    finer.fit = fit_circuit(aligned.records, equal_knots(aligned.records, 2 * segments), fit.weights);
-    const auto at = columns_of(fit);
+    finer.fit = fit_circuit(aligned.records, uniform_knots(aligned.records, 2 * segments), fit.weights);
+    const auto at = fit_columns(fit);
     const auto flights = static_cast<Eigen::Index>(aligned.records.size());
     Eigen::VectorXd moved = Eigen::VectorXd::Zero(at.width + flights);
     for (Eigen::Index k = 0; k < at.resistance; ++k) {
@@ -150,7 +150,7 @@ Eigen::VectorXd moved_by_finer_curve(const AlignedFit& aligned) {
                                ? std::log(finer.fit.rc_time_constant_s / fit.rc_time_constant_s)
                                : tells_nothing;
     }
-    moved.tail(flights) = joint_step(finer).tail(flights);
+    moved.tail(flights) = gauss_newton_step(finer).tail(flights);
     return moved;
 }
 
@@ -164,9 +164,10 @@ void widen(Eigen::MatrixXd& covariance, Eigen::VectorXd& half_width, Eigen::Inde
 }
 
 /// Half widths of 95 % intervals, of all parameters.
-Eigen::VectorXd half_widths(const AlignedFit& aligned, const std::vector<Block>& in_time, Eigen::MatrixXd& covariance) {
-    const auto at = columns_of(aligned.fit);
-    const auto problem = scaled(aligned, joint_width(aligned));
+Eigen::VectorXd half_widths(const JointCircuitFit& aligned, const std::vector<Block>& in_time,
+                            Eigen::MatrixXd& covariance) {
+    const auto at = fit_columns(aligned.fit);
+    const auto problem = scaled(aligned, parameter_count(aligned));
     const auto inverse = inverse_of(problem);
     const auto& residual_v = aligned.fit.residual_v;
     const double degrees_of_freedom = static_cast<double>(in_time.size()) - static_cast<double>(inverse.cols());
@@ -197,7 +198,7 @@ Eigen::VectorXd half_widths(const AlignedFit& aligned, const std::vector<Block>&
 
 }  // namespace
 
-CircuitErrors circuit_errors(const AlignedFit& aligned) {
+CircuitErrors circuit_errors(const JointCircuitFit& aligned) {
     const auto& [records, fit] = std::tie(aligned.records, aligned.fit);
     double total_s = 0.0;
     for (const auto& [record, charge] : records) total_s += record->time_s.back() - record->time_s.front();
@@ -211,7 +212,7 @@ CircuitErrors circuit_errors(const AlignedFit& aligned) {
     const auto moved = moved_by_finer_curve(aligned);
     half_width += moved.cwiseAbs();
 
-    const auto at = columns_of(fit);
+    const auto at = fit_columns(fit);
     const auto knots = at.resistance;
     for (Eigen::Index i = 0; i < knots; ++i)
         errors.open_circuit_standard_error_v.push_back(half_width[i] / normal_half_width());

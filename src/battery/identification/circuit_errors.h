@@ -10,8 +10,8 @@
 
 namespace flightwatt::battery {
 
-/// 95 % intervals of a fitted circuit. A standard error is half the interval over 1.96: what a normal distribution of the
-/// same interval has.
+/// 95 % intervals of a fitted circuit. A standard error is half the interval over 1.96: what a normal distribution of
+/// the same interval has.
 struct CircuitErrors {
     Interval resistance_ohm;
     Interval rc_resistance_ohm;   ///< not below 0
@@ -24,10 +24,10 @@ struct CircuitErrors {
 };
 
 /// By the jackknife over blocks of time, initial charges among the parameters, and from three records on over whole
-/// records too, initial charges held (docs/methods.md). Initial charges and knots have at least the error that they would
-/// have if samples were independent, each with its effective error, and what is believed held. Errors that residuals do
-/// not show come on top: rounding of a voltage that stands still, and how far a curve of twice the segments moves the
-/// parameter.
-CircuitErrors circuit_errors(const AlignedFit& aligned);
+/// records too, initial charges held (docs/methods.md). Initial charges and knots have at least the error that they
+/// would have if samples were independent, each with its effective error, and what is believed held. Errors that
+/// residuals do not show come on top: rounding of a voltage that stands still, and how far a curve of twice the
+/// segments moves the parameter.
+CircuitErrors circuit_errors(const JointCircuitFit& aligned);
 
 }  // namespace flightwatt::battery

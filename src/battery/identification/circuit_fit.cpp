@@ -17,13 +17,13 @@ namespace flightwatt::battery {
 namespace {
 
 constexpr int grid_points = 48;
-constexpr double longest_part = 0.25;  // of a record: what is slower looks like the open-circuit voltage
+constexpr double max_part = 0.25;  // of a record: what is slower looks like the open-circuit voltage
 
 /// A channel of the used samples, one after the other.
 template <typename Channel>
 Eigen::VectorXd gathered(std::span<const AlignedRecord> records, const Channel& channel) {
     Eigen::Index samples = 0;
-    for (const auto& aligned : records) samples += used_samples(*aligned.record);
+    for (const auto& aligned : records) samples += used_sample_count(*aligned.record);
     Eigen::VectorXd values(samples);
     Eigen::Index row = 0;
     for (const auto& aligned : records) {
@@ -44,7 +44,7 @@ Eigen::MatrixXd curve_columns(std::span<const AlignedRecord> records, const std:
     });
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(charge.size(), knots + 1);
     for (Eigen::Index row = 0; row < charge.size(); ++row) {
-        const auto place = place_among(knots_ah, charge[row]);
+        const auto place = find_knot_interval(knots_ah, charge[row]);
         const auto lower = static_cast<Eigen::Index>(place.lower);
         columns(row, lower) = 1.0 - place.fraction;
         columns(row, lower + 1) = place.fraction;
@@ -55,7 +55,7 @@ Eigen::MatrixXd curve_columns(std::span<const AlignedRecord> records, const std:
 
 /// What is believed of the curve's bends, as rows of `width` columns that begin with the knots'.
 Eigen::MatrixXd bend_rows(Eigen::Index knots, Eigen::Index width, const FitWeights& weights) {
-    const double weight = weights.sample_error_v / (bend_sd_v * weights.cells);
+    const double weight = weights.sample_error_v / (slope_change_sd_v * weights.cells);
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(std::max<Eigen::Index>(0, knots - 2), width);
     for (Eigen::Index b = 0; b < rows.rows(); ++b) {
         rows(b, b) = weight;
@@ -69,8 +69,8 @@ double common_rest_weight(const FitWeights& weights) {
     return weights.sample_error_v / (common_rest_sd_v * weights.cells);
 }
 
-/// Takes the records' own rests out of a least squares. Each stands in its record's rest samples and in one row of what is
-/// believed, so one Householder reflection of these leaves it in that row alone; the other rows no longer know it.
+/// Takes the records' own rests out of a least squares. Each stands in its record's rest samples and in one row of what
+/// is believed, so one Householder reflection of these leaves it in that row alone; the other rows no longer know it.
 class WithoutRests {
   public:
     WithoutRests(std::span<const AlignedRecord> records, const FitWeights& weights) {
@@ -78,11 +78,11 @@ class WithoutRests {
         for (const auto& [record, initial_ah] : records) {
             Rest rest;
             rest.first = first;
-            rest.rows = used_rests(*record);
+            rest.rows = rest_sample_count(*record);
             rest.believed = weights.sample_error_v / rest_sd_v(*record, weights);
             rest.length = std::hypot(std::sqrt(static_cast<double>(rest.rows)), rest.believed);
             rests_.push_back(rest);
-            first += used_samples(*record);
+            first += used_sample_count(*record);
         }
     }
 
@@ -137,7 +137,7 @@ Eigen::VectorXd settled(std::span<const AlignedRecord> records, double time_cons
     Eigen::VectorXd settled_a(static_cast<Eigen::Index>(samples));
     Eigen::Index used = 0;
     for (const auto& [record, initial_ah] : records) {
-        settle_current_a(*record, time_constant_s, {settled_a.data() + used, record->time_s.size()});
+        compute_rc_branch_current(*record, time_constant_s, {settled_a.data() + used, record->time_s.size()});
         const Eigen::Index first = used;  // unused samples fall out by moving the others up
         for (std::size_t i = 0; i < record->used.size(); ++i)
             if (record->used[i]) settled_a[used++] = settled_a[first + static_cast<Eigen::Index>(i)];
@@ -148,15 +148,15 @@ Eigen::VectorXd settled(std::span<const AlignedRecord> records, double time_cons
 
 /// The time constants to search, as logarithms.
 std::pair<double, double> time_constant_range(std::span<const AlignedRecord> records) {
-    double longest_s = 0.0;
+    double max_s = 0.0;
     std::vector<double> intervals;
     for (const auto& [record, charge] : records) {
         const auto& time_s = record->time_s;
-        longest_s = std::max(longest_s, time_s.back() - time_s.front());
+        max_s = std::max(max_s, time_s.back() - time_s.front());
         for (std::size_t i = 1; i < time_s.size(); ++i) intervals.push_back(time_s[i] - time_s[i - 1]);
     }
     const double low_s = 2.0 * median(std::move(intervals));
-    return {std::log(low_s), std::log(std::max(2.0 * low_s, longest_part * longest_s))};
+    return {std::log(low_s), std::log(std::max(2.0 * low_s, max_part * max_s))};
 }
 
 /// What is linear whatever the time constant, without the records' own rests: columns of the knots, the resistance, the
@@ -255,7 +255,7 @@ double best_time_constant(const Projection& projection, std::pair<double, double
 Eigen::VectorXd solved(const Reduced& problem) {
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(problem.rows);
     if (qr.rank() < problem.rows.cols())
-        throw NoAnswerError("the flights do not determine the battery: charge and current vary too little");
+        throw NoResultError("the flights do not determine the battery: charge and current vary too little");
     return qr.solve(problem.target);
 }
 
@@ -263,10 +263,10 @@ Eigen::VectorXd solved(const Reduced& problem) {
 
 double rest_sd_v(const DischargeRecord& record, const FitWeights& weights) {
     const double lower_v = std::max(0.0, weights.fullest_rest_v - record.resting_voltage_v);
-    return std::hypot(charged_rest_sd_v * weights.cells, lower_rest_part * lower_v);
+    return std::hypot(charged_rest_sd_v * weights.cells, lower_rest_fraction * lower_v);
 }
 
-FitColumns columns_of(const CircuitFit& fit) {
+FitColumns fit_columns(const CircuitFit& fit) {
     FitColumns columns;
     columns.resistance = static_cast<Eigen::Index>(fit.knots_ah.size());
     columns.rest = columns.resistance + 1;
@@ -310,7 +310,7 @@ CircuitFit fit_circuit(std::span<const AlignedRecord> records, const std::vector
         fit.residual_v += solution[rc] * settled_a;
     }
     if (!(fit.resistance_ohm > 0.0))
-        throw NoAnswerError("the voltage does not fall with the current: no series resistance is seen");
+        throw NoResultError("the voltage does not fall with the current: no series resistance is seen");
     const Eigen::VectorXd left = problem.rest_target - problem.of_rests * solution;
     double believed = (problem.rows.bottomRows(problem.rows.rows() - voltage_v.size()) * solution).squaredNorm();
     for (Eigen::Index f = 0; f < flights; ++f) {
@@ -324,7 +324,7 @@ CircuitFit fit_circuit(std::span<const AlignedRecord> records, const std::vector
     return fit;
 }
 
-Eigen::MatrixXd shared_derivatives(std::span<const AlignedRecord> records, const CircuitFit& fit) {
+Eigen::MatrixXd shared_jacobian(std::span<const AlignedRecord> records, const CircuitFit& fit) {
     auto columns = curve_columns(records, fit.knots_ah);
     if (fit.rc_resistance_ohm == 0.0) return columns;
     const auto width = columns.cols();
@@ -338,8 +338,8 @@ Eigen::MatrixXd shared_derivatives(std::span<const AlignedRecord> records, const
     return columns;
 }
 
-Eigen::MatrixXd believed_rows(std::span<const AlignedRecord> records, const CircuitFit& fit) {
-    const auto at = columns_of(fit);
+Eigen::MatrixXd prior_rows(std::span<const AlignedRecord> records, const CircuitFit& fit) {
+    const auto at = fit_columns(fit);
     const auto flights = static_cast<Eigen::Index>(records.size());
     const auto bends = bend_rows(at.resistance, at.width, fit.weights);
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(flights + 1 + bends.rows(), at.width);
@@ -355,11 +355,11 @@ Eigen::MatrixXd believed_rows(std::span<const AlignedRecord> records, const Circ
 
 Eigen::VectorXd slopes_v_per_ah(const AlignedRecord& aligned, const CircuitFit& fit) {
     const auto& record = *aligned.record;
-    Eigen::VectorXd slopes(used_samples(record));
+    Eigen::VectorXd slopes(used_sample_count(record));
     Eigen::Index row = 0;
     for (std::size_t i = 0; i < record.used.size(); ++i) {
         if (!record.used[i]) continue;
-        const auto lower = place_among(fit.knots_ah, record.charge_ah[i] + aligned.initial_charge_ah).lower;
+        const auto lower = find_knot_interval(fit.knots_ah, record.charge_ah[i] + aligned.initial_charge_ah).lower;
         slopes[row++] = (fit.open_circuit_v[lower + 1] - fit.open_circuit_v[lower]) /
                         (fit.knots_ah[lower + 1] - fit.knots_ah[lower]);
     }

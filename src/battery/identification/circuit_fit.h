@@ -18,13 +18,13 @@ struct AlignedRecord {
 };
 
 /// What is believed of a pack before its voltages are looked at, as standard deviations. A resting voltage lies beside
-/// the curve that holds under load, because a pack goes on relaxing for an hour: in all flights alike (50 mV a cell), and
-/// in each: 10 mV a cell of packs that come from the charger, and 0.3 of what it rests lower than the fullest. The curve's
-/// slope does not jump by more than some 0.15 V a segment and cell.
+/// the curve that holds under load, because a pack goes on relaxing for an hour: in all flights alike (50 mV a cell),
+/// and in each: 10 mV a cell of packs that come from the charger, and 0.3 of what it rests lower than the fullest. The
+/// curve's slope does not jump by more than some 0.15 V a segment and cell.
 inline constexpr double common_rest_sd_v = 0.05;
 inline constexpr double charged_rest_sd_v = 0.01;
-inline constexpr double lower_rest_part = 0.3;
-inline constexpr double bend_sd_v = 0.15;
+inline constexpr double lower_rest_fraction = 0.3;
+inline constexpr double slope_change_sd_v = 0.15;
 
 /// How much that counts beside the samples.
 struct FitWeights {
@@ -54,7 +54,7 @@ struct CircuitFit {
 
 /// The fit of least squares with these knots. Given the time constant all else is linear (variable projection: Golub
 /// and Pereyra 1973), so that one alone is searched for: on a grid from two usual intervals to a quarter of the longest
-/// record, then by Brent's method; or it is given (0: no RC pair). Throws NoAnswerError where the records do not
+/// record, then by Brent's method; or it is given (0: no RC pair). Throws NoResultError where the records do not
 /// determine the resistance.
 CircuitFit fit_circuit(std::span<const AlignedRecord> records, const std::vector<double>& knots_ah,
                        const FitWeights& weights, std::optional<double> rc_time_constant_s = std::nullopt);
@@ -68,15 +68,16 @@ struct FitColumns {
     Eigen::Index rc = 0;          ///< rc_resistance, then the logarithm of rc_time_constant; absent without an RC pair
     Eigen::Index width = 0;
 };
-FitColumns columns_of(const CircuitFit& fit);
+FitColumns fit_columns(const CircuitFit& fit);
 
-/// Derivatives of the fitted voltages by what all records share, one row a used sample: the knots, the resistance and, with
-/// an RC pair, its resistance and the logarithm of its time constant. (By a record's rest they are 1 before its first load.)
-Eigen::MatrixXd shared_derivatives(std::span<const AlignedRecord> records, const CircuitFit& fit);
+/// Derivatives of the fitted voltages by what all records share, one row a used sample: the knots, the resistance and,
+/// with an RC pair, its resistance and the logarithm of its time constant. (By a record's rest they are 1 before its
+/// first load.)
+Eigen::MatrixXd shared_jacobian(std::span<const AlignedRecord> records, const CircuitFit& fit);
 
-/// What is believed, as rows of the columns of FitColumns: of each record its rest, then the common rest, then the bends
-/// of the curve.
-Eigen::MatrixXd believed_rows(std::span<const AlignedRecord> records, const CircuitFit& fit);
+/// What is believed, as rows of the columns of FitColumns: of each record its rest, then the common rest, then the
+/// bends of the curve.
+Eigen::MatrixXd prior_rows(std::span<const AlignedRecord> records, const CircuitFit& fit);
 
 /// [V/Ah] The curve's slope at the used samples of one record.
 Eigen::VectorXd slopes_v_per_ah(const AlignedRecord& aligned, const CircuitFit& fit);

@@ -20,19 +20,20 @@ constexpr double idle_throttle_percent = 5.0;
 constexpr double flight_throttle_percent = 20.0;
 constexpr double idle_current_a = 1.0;   // more than electronics draw
 constexpr double fine_counter_a = 0.05;  // error of a mean current by the counter's resolution
-constexpr std::size_t least_samples = 50;
+constexpr std::size_t min_samples = 50;
 
 constexpr auto needed = "a battery is identified from measured voltage and current";
 
-std::vector<double> chosen_on(const flight::ChosenTracks& tracks, const char* name, const std::vector<double>& time_s) {
+std::vector<double> chosen_on(const flight::SelectedTracks& tracks, const char* name,
+                              const std::vector<double>& time_s) {
     const auto& track = tracks[name];
     return track.empty() ? std::vector<double>{} : resample(track, time_s);
 }
 
 void require_samples(const flight::FlightSeries& series, std::size_t samples) {
-    if (samples >= least_samples) return;
+    if (samples >= min_samples) return;
     throw InputError({series.file},
-                     fmt::format("{}: has {} samples, expected at least {}", series.flight, samples, least_samples),
+                     fmt::format("{}: has {} samples, expected at least {}", series.flight, samples, min_samples),
                      needed);
 }
 
@@ -57,7 +58,7 @@ void require_channels(const flight::FlightSeries& series, const PackRecord& reco
 }
 
 /// The least difference between two of the values that is none of rounding.
-double least_difference(std::vector<double> values) {
+double min_difference(std::vector<double> values) {
     std::ranges::sort(values);
     double least = values.back() - values.front();
     constexpr double rounding = 1e-9;
@@ -75,8 +76,8 @@ void add_charge(const std::vector<double>& counter_ah, DischargeRecord& record) 
     record.charge_ah = counted ? counter_ah : integrated_charge_ah(record.time_s, record.current_a);
     for (auto& charge : record.charge_ah) charge -= counted ? counter_ah.front() : 0.0;
     // A counter in whole mAh says little of a single interval, but bridges gaps.
-    const bool fine = counted && units::coulomb_from_ah(least_difference(counter_ah)) <
-                                     fine_counter_a * flight::usual_interval_s(time_s);
+    const bool fine = counted && units::coulomb_from_ah(min_difference(counter_ah)) <
+                                     fine_counter_a * flight::median_interval_s(time_s);
     const double counted_from_s = fine ? 0.0 : flight::gap_threshold_s(time_s);
     record.mean_current_a = record.current_a;
     for (std::size_t i = 1; i < time_s.size(); ++i) {
@@ -107,10 +108,10 @@ double median_of(std::vector<double> values) {
 }
 
 void add_rest(const flight::FlightSeries& series, DischargeRecord& record) {
-    double greatest_a = 0.0;
+    double max_a = 0.0;
     for (std::size_t i = 0; i < record.used.size(); ++i)
-        if (record.used[i]) greatest_a = std::max(greatest_a, record.current_a[i]);
-    const double load_a = least_load_of(greatest_a);
+        if (record.used[i]) max_a = std::max(max_a, record.current_a[i]);
+    const double load_a = load_threshold_a(max_a);
     std::size_t end = 0;
     while (end < record.current_a.size() && record.current_a[end] < load_a) ++end;
     if (end == 0 || end == record.current_a.size()) {
@@ -130,7 +131,7 @@ void add_rest(const flight::FlightSeries& series, DischargeRecord& record) {
     record.resting_current_a = median_of(std::move(currents_a));
 }
 
-void fill_record(const flight::ChosenTracks& tracks, const PackRecord& part, DischargeRecord& record) {
+void fill_record(const flight::SelectedTracks& tracks, const PackRecord& part, DischargeRecord& record) {
     const auto& series = tracks.series();
     require_samples(series, part.time_s.size());
     record.time_s = part.time_s;
@@ -139,7 +140,7 @@ void fill_record(const flight::ChosenTracks& tracks, const PackRecord& part, Dis
     add_charge(part.counter_ah, record);
     mark_used(part.throttle_percent, record);
     add_rest(series, record);
-    record.resolution_v = least_difference(record.voltage_v);
+    record.resolution_v = min_difference(record.voltage_v);
     if (series.start_clock_s) record.start_clock_s = *series.start_clock_s + record.time_s.front();
     if (!part.counter_ah.empty()) record.counter_ah = Interval{part.counter_ah.front(), part.counter_ah.back()};
     const auto temperature_c = chosen_on(tracks, "air_temperature_c", record.time_s);
@@ -149,10 +150,10 @@ void fill_record(const flight::ChosenTracks& tracks, const PackRecord& part, Dis
 }  // namespace
 
 DischargeRecords discharge_records(const flight::FlightSeries& series) {
-    return discharge_records(flight::ChosenTracks(series));
+    return discharge_records(flight::SelectedTracks(series));
 }
 
-DischargeRecords discharge_records(const flight::ChosenTracks& tracks) {
+DischargeRecords discharge_records(const flight::SelectedTracks& tracks) {
     const auto& series = tracks.series();
     PackRecord whole;
     whole.time_s = tracks["power_w"].time_s;
@@ -179,14 +180,14 @@ DischargeRecords discharge_records(const flight::ChosenTracks& tracks) {
     return found;
 }
 
-std::ptrdiff_t used_samples(const DischargeRecord& record) { return std::ranges::count(record.used, true); }
+std::ptrdiff_t used_sample_count(const DischargeRecord& record) { return std::ranges::count(record.used, true); }
 
-std::ptrdiff_t used_rests(const DischargeRecord& record) {
+std::ptrdiff_t rest_sample_count(const DischargeRecord& record) {
     const auto rests = static_cast<std::ptrdiff_t>(std::min(record.rest_samples, record.used.size()));
     return std::count(record.used.begin(), record.used.begin() + rests, true);
 }
 
-void settle_current_a(const DischargeRecord& record, double time_constant_s, std::span<double> settled_a) {
+void compute_rc_branch_current(const DischargeRecord& record, double time_constant_s, std::span<double> settled_a) {
     settled_a.front() = record.resting_current_a;
     double step_s = 0.0;
     double decay = 1.0;
@@ -199,9 +200,9 @@ void settle_current_a(const DischargeRecord& record, double time_constant_s, std
     }
 }
 
-std::vector<double> settled_current_a(const DischargeRecord& record, double time_constant_s) {
+std::vector<double> rc_branch_current_a(const DischargeRecord& record, double time_constant_s) {
     std::vector<double> settled_a(record.time_s.size());
-    settle_current_a(record, time_constant_s, settled_a);
+    compute_rc_branch_current(record, time_constant_s, settled_a);
     return settled_a;
 }
 

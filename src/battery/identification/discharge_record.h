@@ -1,8 +1,8 @@
 #pragma once
 
 #include "battery/battery.h"
-#include "flight/chosen_track.h"
 #include "flight/flight_series.h"
+#include "flight/selected_track.h"
 
 #include <cstddef>
 #include <optional>
@@ -47,17 +47,17 @@ struct DischargeRecords {
 /// record begins at rest.
 DischargeRecords discharge_records(const flight::FlightSeries& series);
 /// The same of tracks that are asked for more.
-DischargeRecords discharge_records(const flight::ChosenTracks& tracks);
+DischargeRecords discharge_records(const flight::SelectedTracks& tracks);
 
-std::ptrdiff_t used_samples(const DischargeRecord& record);
+std::ptrdiff_t used_sample_count(const DischargeRecord& record);
 
 /// Used samples before the first load.
-std::ptrdiff_t used_rests(const DischargeRecord& record);
+std::ptrdiff_t rest_sample_count(const DischargeRecord& record);
 
 /// The current [A] that has settled in an RC pair of that time constant at every sample: the solution of
 /// tau dx/dt = I - x from the resting current on, exact for a current that is constant between samples.
-std::vector<double> settled_current_a(const DischargeRecord& record, double time_constant_s);
+std::vector<double> rc_branch_current_a(const DischargeRecord& record, double time_constant_s);
 /// Into a span of as many.
-void settle_current_a(const DischargeRecord& record, double time_constant_s, std::span<double> settled_a);
+void compute_rc_branch_current(const DischargeRecord& record, double time_constant_s, std::span<double> settled_a);
 
 }  // namespace flightwatt::battery

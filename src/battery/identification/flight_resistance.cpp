@@ -15,7 +15,7 @@ double resistance_scatter_ohm(std::span<const std::optional<FlightResistance>> r
         values_ohm.push_back(own->value_ohm);
         error_ohm2 += std::pow(own->standard_error_ohm, 2);
     }
-    double sum_ohm2 = std::pow(usual_scatter_part * fitted_ohm, 2);
+    double sum_ohm2 = std::pow(default_scatter_fraction * fitted_ohm, 2);
     if (values_ohm.size() < 2) return std::sqrt(sum_ohm2);
     const auto n = static_cast<double>(values_ohm.size());
     sum_ohm2 += (n - 1.0) * std::max(0.0, sample_variance(values_ohm) - error_ohm2 / n);
@@ -38,8 +38,8 @@ std::optional<ResistanceTrend> resistance_trend(std::span<const std::optional<Fl
         number.push_back(static_cast<double>(i));
         value_ohm.push_back(in_order[i]->value_ohm);
     }
-    constexpr std::size_t least_flights = 3;
-    if (number.size() < least_flights) return std::nullopt;
+    constexpr std::size_t min_flights = 3;
+    if (number.size() < min_flights) return std::nullopt;
     const double middle = mean(number);
     const double level_ohm = mean(value_ohm);
     double squares = 0.0;
@@ -51,10 +51,10 @@ std::optional<ResistanceTrend> resistance_trend(std::span<const std::optional<Fl
     ResistanceTrend trend{number.size(), products / squares, {}};
     double left = 0.0;
     for (std::size_t i = 0; i < number.size(); ++i)
-        left += std::pow(value_ohm[i] - level_ohm - trend.ohm_a_flight * (number[i] - middle), 2);
+        left += std::pow(value_ohm[i] - level_ohm - trend.ohm_per_flight * (number[i] - middle), 2);
     const double degrees_of_freedom = static_cast<double>(number.size()) - 2.0;
     const double half = student_t_half_width(degrees_of_freedom) * std::sqrt(left / degrees_of_freedom / squares);
-    trend.interval_ohm_a_flight = {trend.ohm_a_flight - half, trend.ohm_a_flight + half};
+    trend.interval_ohm_a_flight = {trend.ohm_per_flight - half, trend.ohm_per_flight + half};
     return trend;
 }
 

@@ -17,9 +17,9 @@ struct FlightResistance {
     double charge_ah_per_ohm = 0.0;  ///< how far an error of it moves the initial charge that its voltage tells
 };
 
-/// The standard deviation of resistances between flights: of what they differ by more than their errors say, and of 15 %,
-/// as packs differ within some 8 K, which counts as one further flight.
-inline constexpr double usual_scatter_part = 0.15;
+/// The standard deviation of resistances between flights: of what they differ by more than their errors say, and of 15
+/// %, as packs differ within some 8 K, which counts as one further flight.
+inline constexpr double default_scatter_fraction = 0.15;
 double resistance_scatter_ohm(std::span<const std::optional<FlightResistance>> resistances, double fitted_ohm);
 
 /// That with the number of resistances; none of fewer than two.
@@ -30,7 +30,7 @@ std::optional<ResistanceScatter> resistance_scatter(std::span<const std::optiona
 /// squares, with Student's t of what is left.
 struct ResistanceTrend {
     std::size_t flights = 0;
-    double ohm_a_flight = 0.0;
+    double ohm_per_flight = 0.0;
     Interval interval_ohm_a_flight;  ///< 95 %
 };
 

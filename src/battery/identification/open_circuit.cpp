@@ -14,14 +14,14 @@
 namespace flightwatt::battery {
 namespace {
 
-constexpr double greatest_cell_voltage_v = 4.25;
+constexpr double max_charged_cell_v = 4.25;
 constexpr double greatest_high_voltage_cell_v = 4.45;
 constexpr std::array chart_soc_percent{0.0,  5.0,  10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0,
                                        55.0, 60.0, 65.0, 70.0, 75.0, 80.0, 85.0, 90.0, 95.0, 100.0};
 constexpr std::array chart_cell_v{3.27, 3.61, 3.69, 3.71, 3.73, 3.75, 3.77, 3.79, 3.80, 3.82, 3.84,
                                   3.85, 3.87, 3.91, 3.95, 3.98, 4.02, 4.08, 4.11, 4.15, 4.20};
-constexpr double least_part = 0.03;  // of the charge: less tells no capacity
-constexpr double flown_part = 0.95;
+constexpr double min_part = 0.03;  // of the charge: less tells no capacity
+constexpr double flown_fraction = 0.95;
 constexpr double added_step_percent = 5.0;
 
 /// A knot that the chart adds, parallel to it from one that was flown.
@@ -36,7 +36,7 @@ void add_knot(ExtendedCurve& extended, const AddedKnots& flown, double percent) 
     const double above_v = flown.cells * (lipo_chart_voltage_v(percent) - lipo_chart_voltage_v(flown.from_percent));
     extended.curve.soc_percent.push_back(percent);
     extended.curve.voltage_v.push_back(std::max(flown.from_v + above_v, flown.from_v / 2.0));
-    extended.standard_error_v.push_back(std::hypot(flown.standard_error_v, flown.cells * lipo_chart_uncertainty_v));
+    extended.standard_error_v.push_back(std::hypot(flown.standard_error_v, flown.cells * lipo_chart_sd_v));
 }
 
 }  // namespace
@@ -50,7 +50,7 @@ double lipo_chart_soc_percent(double cell_voltage_v) {
 }
 
 int lipo_cells(double resting_voltage_v) {
-    return static_cast<int>(std::max(1.0, std::ceil(resting_voltage_v / greatest_cell_voltage_v)));
+    return static_cast<int>(std::max(1.0, std::ceil(resting_voltage_v / max_charged_cell_v)));
 }
 
 void require_possible_cells(double resting_voltage_v, int cells) {
@@ -72,7 +72,7 @@ std::string cells_warning(double resting_voltage_v, int cells, bool is_given) {
             "--cells",
             cells, cell_v, chart_cell_v.front());
     }
-    if (cell_v > greatest_cell_voltage_v) {
+    if (cell_v > max_charged_cell_v) {
         return fmt::format(
             "{} cells rest at {:.2f} V each, above a full LiPo cell ({:.2f} V): the chart, and the capacity by it, are "
             "less accurate for high-voltage cells",
@@ -90,23 +90,24 @@ std::string to_string(CapacityOrigin origin) {
     return names.at(static_cast<std::size_t>(origin));
 }
 
-Capacity capacity_of(double drawn_ah, std::span<const ChargeScale> posterior, std::optional<double> given_ah) {
+Capacity estimate_capacity(double drawn_ah, std::span<const CapacityHypothesis> posterior,
+                           std::optional<double> given_ah) {
     if (given_ah) return {*given_ah, CapacityOrigin::given, std::nullopt};
     constexpr double tail = (1.0 - confidence_level) / 2.0;
     Capacity capacity{capacity_quantile_ah(posterior, 0.5), CapacityOrigin::chart,
                       Interval{capacity_quantile_ah(posterior, tail), capacity_quantile_ah(posterior, 1.0 - tail)}};
-    if (drawn_ah < least_part * capacity.value_ah) {
-        throw NoAnswerError(fmt::format(
+    if (drawn_ah < min_part * capacity.value_ah) {
+        throw NoResultError(fmt::format(
             "the flights drew {:.3f} Ah: too little to tell the capacity; give it with --capacity", drawn_ah));
     }
-    if (drawn_ah >= flown_part * capacity.value_ah) capacity.origin = CapacityOrigin::flown;
+    if (drawn_ah >= flown_fraction * capacity.value_ah) capacity.origin = CapacityOrigin::measured;
     return capacity;
 }
 
-ExtendedCurve extended_curve(const CircuitFit& fit, const std::vector<double>& standard_error_v, double capacity_ah,
-                             double missing_ah) {
+ExtendedCurve extrapolate_curve(const CircuitFit& fit, const std::vector<double>& standard_error_v, double capacity_ah,
+                                double missing_ah) {
     const auto soc_at = [&](double charge_ah) {
-        return std::max(0.0, units::percent_per_whole - units::percent_of(missing_ah + charge_ah, capacity_ah));
+        return std::max(0.0, units::percent_per_whole - units::percentage(missing_ah + charge_ah, capacity_ah));
     };
     ExtendedCurve extended;
     auto& soc = extended.curve.soc_percent;

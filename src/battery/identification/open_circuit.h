@@ -37,9 +37,9 @@ std::string cells_warning(double resting_voltage_v, int cells, bool is_given);
 
 /// Where a capacity comes from.
 enum class CapacityOrigin {
-    given,  ///< by the user
-    flown,  ///< the flights drew nearly all of it
-    chart   ///< from the part of the LiPo chart that the open-circuit voltage went down
+    given,     ///< by the user
+    measured,  ///< the flights drew nearly all of it
+    chart      ///< from the part of the LiPo chart that the open-circuit voltage went down
 };
 
 std::string to_string(CapacityOrigin origin);
@@ -50,10 +50,11 @@ struct Capacity {
     std::optional<Interval> interval_ah;  ///< 95 %; none of one that is given
 };
 
-/// The capacity as the posterior of match_chart has it: its median and quantiles. It is `flown` where the flights leave
-/// at most 5 % of it. Throws UsageError if the given one is less than what was drawn from the pack, and NoAnswerError if
-/// none is given and the flights drew too little: less than 3 % of the median.
-Capacity capacity_of(double drawn_ah, std::span<const ChargeScale> posterior, std::optional<double> given_ah);
+/// The capacity as the posterior of capacity_posterior has it: its median and quantiles. It is `measured` where the
+/// flights leave at most 5 % of it. Throws UsageError if the given one is less than what was drawn from the pack, and
+/// NoResultError if none is given and the flights drew too little: less than 3 % of the median.
+Capacity estimate_capacity(double drawn_ah, std::span<const CapacityHypothesis> posterior,
+                           std::optional<double> given_ah);
 
 /// The fitted curve over state of charge; beyond its ends it goes on in parallel to the LiPo chart of that many cells.
 struct ExtendedCurve {
@@ -64,7 +65,7 @@ struct ExtendedCurve {
 };
 
 /// `missing_ah` is what was missing from the full pack where the curve begins.
-ExtendedCurve extended_curve(const CircuitFit& fit, const std::vector<double>& standard_error_v, double capacity_ah,
-                             double missing_ah);
+ExtendedCurve extrapolate_curve(const CircuitFit& fit, const std::vector<double>& standard_error_v, double capacity_ah,
+                                double missing_ah);
 
 }  // namespace flightwatt::battery

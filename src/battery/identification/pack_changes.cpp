@@ -17,8 +17,8 @@ constexpr double lesser_step = 0.01;  // later, or where the counter begins anew
 constexpr double recovery_s = 5.0;
 constexpr double settled_s = 15.0;  // after which no pack recovers the lesser step
 constexpr std::size_t compared_samples = 5;
-constexpr double anew_part = 0.2;  // a counter below this part of what it was began anew
-constexpr double least_counted_ah = 0.005;
+constexpr double anew_fraction = 0.2;  // a counter below this part of what it was began anew
+constexpr double min_counted_ah = 0.005;
 
 /// At rest or not, sample by sample.
 struct RestMask {
@@ -31,7 +31,7 @@ RestMask rests_of(const PackRecord& record) {
     RestMask mask;
     mask.resting.reserve(record.time_s.size());
     mask.since_load_s.reserve(record.time_s.size());
-    const double load_a = least_load_of(*std::ranges::max_element(record.current_a));
+    const double load_a = load_threshold_a(*std::ranges::max_element(record.current_a));
     double loaded_s = 0.0;
     for (std::size_t i = 0; i < record.time_s.size(); ++i) {
         mask.resting.push_back(record.current_a[i] < load_a);
@@ -55,13 +55,13 @@ double step_up(const PackRecord& record, const RestMask& mask, std::size_t at, d
     for (std::size_t i = at; i < mask.resting.size() && mask.resting[i] && after.size() < compared_samples; ++i)
         after.push_back(record.voltage_v[i]);
     if (before.empty() || after.empty()) return 0.0;
-    const double was_v = upper_median(std::move(before));
-    return (upper_median(std::move(after)) - was_v) / was_v;
+    const double was_v = median_high(std::move(before));
+    return (median_high(std::move(after)) - was_v) / was_v;
 }
 
 bool begins_anew(const std::vector<double>& counter_ah, std::size_t at) {
-    return !counter_ah.empty() && counter_ah[at - 1] > least_counted_ah &&
-           counter_ah[at] < anew_part * counter_ah[at - 1];
+    return !counter_ah.empty() && counter_ah[at - 1] > min_counted_ah &&
+           counter_ah[at] < anew_fraction * counter_ah[at - 1];
 }
 
 PackRecord part_of(const PackRecord& whole, std::size_t first, std::size_t last) {
@@ -95,8 +95,8 @@ std::vector<PackRecord> split_at_pack_changes(PackRecord record, std::vector<std
         const bool anew = begins_anew(logged_ah, i);
         const bool between_loads = mask.resting[i] && mask.since_load_s[i] > 0.0 && i < mask.last_load;
         const double rise = (record.voltage_v[i] - record.voltage_v[i - 1]) / record.voltage_v[i - 1];
-        // The step is seen from all the samples beside it: it lies where two neighbours differ by most of it, and is not
-        // looked for where they do not.
+        // The step is seen from all the samples beside it: it lies where two neighbours differ by most of it, and is
+        // not looked for where they do not.
         double step = 0.0;
         if (between_loads && rise > lesser_step / 2.0) {
             step = step_up(record, mask, i, anew ? 0.0 : settled_s);

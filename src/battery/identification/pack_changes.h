@@ -16,7 +16,7 @@ struct PackRecord {
 };
 
 /// [A] A current below is rest, with electronics on: 15 % of the greatest, and at least 0.2 A.
-inline double least_load_of(double greatest_a) { return std::max(0.2, 0.15 * greatest_a); }
+inline double load_threshold_a(double max_a) { return std::max(0.2, 0.15 * max_a); }
 
 /// [Ah] Charge drawn since the first sample, by the trapezoids of the current.
 std::vector<double> integrated_charge_ah(const std::vector<double>& time_s, const std::vector<double>& current_a);

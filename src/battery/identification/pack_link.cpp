@@ -13,12 +13,12 @@
 namespace flightwatt::battery {
 namespace {
 
-constexpr double longest_pause_s = 6.0 * units::seconds_per_hour;
+constexpr double max_pause_s = 6.0 * units::seconds_per_hour;
 constexpr double counter_error = 0.02;
-constexpr double least_error_ah = 0.005;
+constexpr double min_error_ah = 0.005;
 constexpr double counted_ah = 0.01;         // a counter that begins above did not begin anew
 constexpr double unreadable_cell_v = 0.01;  // a cell; a smaller fall tells nothing
-constexpr double most_deviations = 2.5;     // of a resting voltage
+constexpr double max_deviations = 2.5;      // of a resting voltage
 
 /// Of a name like "20_07_10__06_53_03": the wall clock where it was flown, as if that were UTC.
 std::optional<double> named_clock_s(std::string_view name) {
@@ -59,14 +59,14 @@ bool is_fallen_as_drawn(const DischargeRecord& later, const AlignedRecord& earli
     const double fallen_v = earlier.record->resting_voltage_v - later.resting_voltage_v;
     const double readable_v = std::max(unreadable_cell_v * fit.weights.cells, later.resolution_v);
     const double reach_v =
-        most_deviations * std::hypot(charged_rest_sd_v * fit.weights.cells, lower_rest_part * drawn_v);
+        max_deviations * std::hypot(charged_rest_sd_v * fit.weights.cells, lower_rest_fraction * drawn_v);
     return drawn_v > 2.0 * readable_v && fallen_v > drawn_v / 2.0 && fallen_v < drawn_v + reach_v;
 }
 
 }  // namespace
 
-std::optional<PackLink> pack_link(const DischargeRecord& later, std::span<const AlignedRecord> known,
-                                  const CircuitFit& fit) {
+std::optional<PackLink> find_pack_link(const DischargeRecord& later, std::span<const AlignedRecord> known,
+                                       const CircuitFit& fit) {
     if (later.is_other_pack) return std::nullopt;
     PackLink link;
     link.pause_s = std::numeric_limits<double>::infinity();
@@ -77,16 +77,16 @@ std::optional<PackLink> pack_link(const DischargeRecord& later, std::span<const 
         link.pause_s = *pause;
         link.earlier = i;
     }
-    if (!(link.pause_s <= longest_pause_s)) return std::nullopt;
+    if (!(link.pause_s <= max_pause_s)) return std::nullopt;
     const auto& earlier = known[link.earlier];
     if (earlier.record->counter_ah && later.counter_ah && later.counter_ah->low > counted_ah) {
         const double apart_ah = later.counter_ah->low - earlier.record->counter_ah->high;
         if (std::abs(apart_ah) > 2.0 * counted_ah) return std::nullopt;
-        link.counter_goes_on = true;
+        link.counter_continues = true;
     }
     if (!is_fallen_as_drawn(later, earlier, fit)) return std::nullopt;
     link.charge_ah = earlier.record->charge_ah.back();
-    link.error_ah = std::hypot(least_error_ah, counter_error * link.charge_ah);
+    link.error_ah = std::hypot(min_error_ah, counter_error * link.charge_ah);
     return link;
 }
 

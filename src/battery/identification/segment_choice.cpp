@@ -12,8 +12,8 @@
 namespace flightwatt::battery {
 namespace {
 
-constexpr int most_segments = 12;
-constexpr double least_sample_part = 20.0;  // samples a segment, at least
+constexpr int max_segments = 12;
+constexpr double min_sample_part = 20.0;  // samples a segment, at least
 constexpr std::size_t parts_of_one = 20;
 
 /// The rows of what is left out together.
@@ -51,10 +51,10 @@ struct LoadRows {
 };
 
 LoadRows load_rows(std::span<const AlignedRecord> records, const CircuitFit& like, int segments) {
-    auto fit = fit_circuit(records, equal_knots(records, segments), like.weights, like.rc_time_constant_s);
-    const auto at = columns_of(fit);
-    const auto all = shared_derivatives(records, fit);
-    const auto believed = believed_rows(records, fit);
+    auto fit = fit_circuit(records, uniform_knots(records, segments), like.weights, like.rc_time_constant_s);
+    const auto at = fit_columns(fit);
+    const auto all = shared_jacobian(records, fit);
+    const auto believed = prior_rows(records, fit);
     const Eigen::Index rc = fit.rc_resistance_ohm > 0.0 ? 1 : 0;
     LoadRows rows;
     rows.columns = all.leftCols(at.rest + rc);  // without the time constant's
@@ -81,7 +81,8 @@ double deepest_of_others_ah(const std::vector<Part>& parts, const Part& left_out
     return deepest_ah;
 }
 
-/// Mean square errors of predicting each part by the others, its own level free. None of a part too deep for the others.
+/// Mean square errors of predicting each part by the others, its own level free. None of a part too deep for the
+/// others.
 std::vector<std::optional<double>> prediction_errors_v2(const LoadRows& rows, const std::vector<Part>& parts) {
     const auto width = rows.columns.cols();
     std::vector<Eigen::MatrixXd> normals;
@@ -134,17 +135,17 @@ double mean_of(const std::vector<std::optional<double>>& errors_v2) {
 
 }  // namespace
 
-std::vector<int> segments_by_prediction(std::span<const AlignedRecord> records, const CircuitFit& fit) {
+std::vector<int> rank_segment_counts(std::span<const AlignedRecord> records, const CircuitFit& fit) {
     const auto parts = parts_of(records);
     std::vector<std::vector<std::optional<double>>> errors_v2;
     std::size_t best = 0;
-    for (int segments = 1; segments <= most_segments; ++segments) {
-        if (segments > 1 && static_cast<double>(fit.residual_v.size()) < least_sample_part * segments) break;
+    for (int segments = 1; segments <= max_segments; ++segments) {
+        if (segments > 1 && static_cast<double>(fit.residual_v.size()) < min_sample_part * segments) break;
         errors_v2.push_back(prediction_errors_v2(load_rows(records, fit, segments), parts));
         if (excess_of(errors_v2.back(), errors_v2[best]).mean_v2 < 0.0) best = errors_v2.size() - 1;
     }
-    // Of two records, where one does not tell more segments from fewer, the mean is the standard error but for rounding:
-    // which one is larger must not depend on the processor.
+    // Of two records, where one does not tell more segments from fewer, the mean is the standard error but for
+    // rounding: which one is larger must not depend on the processor.
     constexpr double no_difference = 1e-6;
     const double same_v2 = no_difference * mean_of(errors_v2[best]);
     std::size_t fewest = 0;

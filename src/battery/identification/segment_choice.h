@@ -13,6 +13,6 @@ namespace flightwatt::battery {
 /// record in turn; of a single one, each twentieth of its time. Initial charges and time constant are those of `fit`,
 /// and resting samples are not asked: all else is linear. A part's own level is free, as its initial charge is a
 /// parameter.
-std::vector<int> segments_by_prediction(std::span<const AlignedRecord> records, const CircuitFit& fit);
+std::vector<int> rank_segment_counts(std::span<const AlignedRecord> records, const CircuitFit& fit);
 
 }  // namespace flightwatt::battery

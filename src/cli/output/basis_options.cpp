@@ -16,7 +16,7 @@
 namespace flightwatt::cli {
 namespace {
 
-using live::PredictionBasis;
+using live::PredictionInput;
 
 /// The model that --model names.
 mechanical::MechanicalModel read_model(const StageCall& call) {
@@ -27,21 +27,21 @@ mechanical::MechanicalModel read_model(const StageCall& call) {
 }
 
 /// None: as the model and the flight allow.
-std::optional<mechanical::LevelSource> level_option(const StageCall& call) {
+std::optional<mechanical::CruisePrior> level_option(const StageCall& call) {
     const auto name = call.get<std::string>("level");
-    static const std::map<std::string, mechanical::LevelSource> sources{
-        {"curve", mechanical::LevelSource::curve},
-        {"constant", mechanical::LevelSource::constant},
-        {"airspeed", mechanical::LevelSource::airspeed},
-        {"covariate", mechanical::LevelSource::covariate}};
+    static const std::map<std::string, mechanical::CruisePrior> sources{
+        {"curve", mechanical::CruisePrior::curve},
+        {"constant", mechanical::CruisePrior::constant},
+        {"airspeed", mechanical::CruisePrior::airspeed},
+        {"covariate", mechanical::CruisePrior::covariate}};
     if (name == "auto") return std::nullopt;
     if (const auto found = sources.find(name); found != sources.end()) return found->second;
     throw UsageError(fmt::format("--level {}: expected auto, curve, constant, airspeed or covariate", name));
 }
 
 /// How the rest of the cruise is to be flown, where --airspeed says it.
-std::optional<mechanical::AirMotion> motion_ahead(const StageCall& call) {
-    constexpr double fastest_m_per_s = 200.0;
+std::optional<mechanical::FlightState> motion_ahead(const StageCall& call) {
+    constexpr double max_m_per_s = 200.0;
     const auto airspeed = positive_option(call, "airspeed", "m/s");
     if (!airspeed) {
         if (call.has("climb")) throw UsageError("--climb goes with --airspeed");
@@ -49,25 +49,25 @@ std::optional<mechanical::AirMotion> motion_ahead(const StageCall& call) {
     }
     if (!call.options["level"].defaulted())
         throw UsageError("--airspeed and --level exclude each other: give one of them");
-    mechanical::AirMotion motion{.airspeed_m_per_s = *airspeed};
-    if (call.has("climb")) motion.climb_m_per_s = number_option(call, "climb", -fastest_m_per_s, fastest_m_per_s);
+    mechanical::FlightState motion{.airspeed_m_per_s = *airspeed};
+    if (call.has("climb")) motion.climb_m_per_s = number_option(call, "climb", -max_m_per_s, max_m_per_s);
     return motion;
 }
 
 std::optional<double> remaining_option(const StageCall& call) {
-    constexpr double longest_s = 1e6;  // no battery flies for eleven days
+    constexpr double max_s = 1e6;  // no battery flies for eleven days
     if (!call.has("remaining")) return std::nullopt;
-    return number_option(call, "remaining", 0.0, longest_s);
+    return number_option(call, "remaining", 0.0, max_s);
 }
 
-PredictionBasis read_mission_basis(const StageCall& call, PathNeed need, std::optional<mission::AnyMission>* kept) {
+PredictionInput read_mission_basis(const StageCall& call, PathNeed need, std::optional<mission::MissionVariant>* kept) {
     if (call.has("model")) throw UsageError("--mission names its model: leave --model out");
     if (call.has("airspeed") || call.has("climb") || !call.options["level"].defaulted())
         throw UsageError("--mission says how the rest is flown: leave --airspeed, --climb and --level out");
     const auto remaining_s = remaining_option(call);
     const auto file = call.get<std::string>("mission");
-    mission::MissionReading reading;
-    reading.may_lack_schedule = true;
+    mission::MissionReadOptions reading;
+    reading.allow_unplanned = true;
     auto mission = mission::read_mission(file, reading);
     const auto& setup = setup_of(mission);
     if (!setup.cruise_path && need == PathNeed::required) {
@@ -77,18 +77,19 @@ PredictionBasis read_mission_basis(const StageCall& call, PathNeed need, std::op
     if (!setup.mechanical)
         throw InputError({file}, "the mission has no mechanical model", "name one: mechanical = FILE");
     warn_of_setup(call, setup);
-    auto basis = need == PathNeed::required ? live::path_basis(setup, file) : live::mission_basis(setup, file);
+    auto basis =
+        need == PathNeed::required ? live::path_input_from_mission(setup, file) : live::input_from_mission(setup, file);
     basis.remaining_s = remaining_s;
     if (kept != nullptr) *kept = std::move(mission);
     return basis;
 }
 
-PredictionBasis read_model_basis(const StageCall& call) {
+PredictionInput read_model_basis(const StageCall& call) {
     if (!call.has("model")) throw UsageError("no model given: expected --model MODEL.toml, or --mission MISSION.toml");
     if (!call.has("remaining")) throw UsageError("no time left given: expected --remaining SECONDS");
     const auto remaining_s = remaining_option(call);
     const auto motion = motion_ahead(call);
-    auto basis = live::model_basis(read_model(call), call.get<std::string>("model"), remaining_s.value());
+    auto basis = live::input_from_model(read_model(call), call.get<std::string>("model"), remaining_s.value());
     basis.motion = motion;
     basis.level = level_option(call);
     if (basis.motion) live::require_physical(basis.model, call.get<std::string>("model"), "--airspeed");
@@ -122,14 +123,14 @@ void add_basis_options(boost::program_options::options_description& options, Pat
         "the battery's state of charge when the log begins; else by its voltage at rest");
 }
 
-PredictionBasis read_basis(const StageCall& call, PathNeed need, std::optional<mission::AnyMission>* mission) {
+PredictionInput read_basis(const StageCall& call, PathNeed need, std::optional<mission::MissionVariant>* mission) {
     if (call.has("initial-soc") && !call.has("battery") && (need == PathNeed::required || !call.has("mission")))
         throw UsageError("--initial-soc goes with --battery");
     std::optional<double> initial_soc_percent;
     if (call.has("initial-soc"))
         initial_soc_percent = number_option(call, "initial-soc", 0.0, units::percent_per_whole);
     auto basis = call.has("mission") ? read_mission_basis(call, need, mission) : read_model_basis(call);
-    if (const auto file = call.maybe<std::string>("battery")) {
+    if (const auto file = call.get_optional<std::string>("battery")) {
         basis.battery = battery::read_battery(*file);
         basis.battery_file = *file;
     }

@@ -19,7 +19,7 @@ void add_basis_options(boost::program_options::options_description& options, Pat
 /// it says. Where the path is optional, battery and state of charge are the mission's unless they are given. `mission`
 /// becomes what --mission names. Throws UsageError for what does not fit together, and as live::require_spread and
 /// live::require_physical.
-live::PredictionBasis read_basis(const StageCall& call, PathNeed need,
-                                 std::optional<mission::AnyMission>* mission = nullptr);
+live::PredictionInput read_basis(const StageCall& call, PathNeed need,
+                                 std::optional<mission::MissionVariant>* mission = nullptr);
 
 }  // namespace flightwatt::cli

@@ -14,7 +14,7 @@ std::string describe(const battery::Capacity& capacity) {
     if (!capacity.interval_ah) return text;
     return text + fmt::format(", {:.3g} to {:.3g} Ah in 95 % if packs differ from the chart by {:.0f} mV a cell (1 sd)",
                               capacity.interval_ah->low, capacity.interval_ah->high,
-                              units::mv_from_v(battery::lipo_chart_uncertainty_v));
+                              units::mv_from_v(battery::lipo_chart_sd_v));
 }
 
 std::string describe_given_capacity(const battery::Battery& pack) {
@@ -34,14 +34,14 @@ std::string describe_link(const battery::IdentifiedFlight& flight) {
     return fmt::format(
         "{}: assumed to be flown on the pack of {}, as it begins {:.0f} min after that one ends, {}rests lower as far as "
         "was drawn, and its voltage under load agrees",
-        flight.flight, flight.pack_of, units::minute_from_second(flight.link->pause_s),
-        flight.link->counter_goes_on ? "its charge counter goes on, it " : "");
+        flight.flight, flight.same_pack_as, units::minute_from_second(flight.link->pause_s),
+        flight.link->counter_continues ? "its charge counter goes on, it " : "");
 }
 
 std::string describe(const battery::ResistanceTrend& trend) {
     const auto& [low, high] = trend.interval_ohm_a_flight;
     return fmt::format("series resistance over {} flights: {:+.2f} mohm a flight, {:+.2f} to {:+.2f} in 95 %{}",
-                       trend.flights, units::mohm_from_ohm(trend.ohm_a_flight), units::mohm_from_ohm(low),
+                       trend.flights, units::mohm_from_ohm(trend.ohm_per_flight), units::mohm_from_ohm(low),
                        units::mohm_from_ohm(high), low <= 0.0 && high >= 0.0 ? ": no trend is seen" : "");
 }
 
@@ -83,7 +83,7 @@ TextTable parameters_table(const battery::BatteryIdentification& identified) {
 }
 
 TextTable flights_table(const battery::BatteryIdentification& identified,
-                        const std::vector<battery::LeftOutCheck>& left_out) {
+                        const std::vector<battery::LeaveOneOutCheck>& left_out) {
     const auto& flights = identified.flights;
     const bool has_air = std::ranges::any_of(flights, [](const auto& f) { return f.air_temperature_c.has_value(); });
     const bool has_packs = std::ranges::any_of(flights, [](const auto& f) { return f.link.has_value(); });
@@ -103,19 +103,19 @@ TextTable flights_table(const battery::BatteryIdentification& identified,
             return resistance ? fixed(member(*resistance), 4) : fixed(std::nullopt, 4);
         };
         table.rows.push_back(
-            {flight.flight, fixed(flight.resting_voltage_v, 3), fixed(flight.initial_charge_ah, 3),
+            {flight.flight, fixed(flight.resting_voltage_v, 3), fixed(flight.initial_depletion_ah, 3),
              fixed(flight.initial_charge_interval_ah.low, 3), fixed(flight.initial_charge_interval_ah.high, 3),
              fixed(flight.drawn_ah, 3), ohm([](const auto& own) { return own.value_ohm; }),
              ohm([](const auto& own) { return own.interval_ohm.low; }),
              ohm([](const auto& own) { return own.interval_ohm.high; }), fmt::format("{}", flight.samples),
              fmt::format("{}", flight.unused), fixed(units::mv_from_v(flight.voltage_rms_v), 1)});
         if (has_air) table.rows.back().push_back(fixed(flight.air_temperature_c, 1));
-        if (has_packs) table.rows.back().push_back(flight.link ? flight.pack_of : "-");
+        if (has_packs) table.rows.back().push_back(flight.link ? flight.same_pack_as : "-");
         if (left_out.empty()) continue;
         table.rows.back().push_back(fixed(units::mv_from_v(left_out[i].voltage_rms_v), 1));
         table.rows.back().push_back(fixed(units::mv_from_v(left_out[i].load_rms_v), 1));
-        table.rows.back().push_back(fixed(units::mv_from_v(left_out[i].placed_load_rms_v), 1));
-        table.rows.back().push_back(fixed(left_out[i].beyond_percent, 0));
+        table.rows.back().push_back(fixed(units::mv_from_v(left_out[i].best_offset_load_rms_v), 1));
+        table.rows.back().push_back(fixed(left_out[i].extrapolated_percent, 0));
     }
     return table;
 }
@@ -127,15 +127,15 @@ std::string provenance(const battery::BatteryIdentification& identified) {
     for (const auto& warning : {capacity_warning(identified.battery), cells_warning(identified)})
         if (!warning.empty()) text += fmt::format("# Warning: {}.\n", warning);
     text += fmt::format("# Flights follow the open-circuit voltage down to {:.1f} % ({:.3f} Ah drawn)",
-                        identified.known_down_to_percent, identified.fit.knots_ah.back());
-    text += identified.known_down_to_percent > 0.0
+                        identified.observed_min_soc_percent, identified.fit.knots_ah.back());
+    text += identified.observed_min_soc_percent > 0.0
                 ? fmt::format(
                       "; below, it goes on in\n# parallel to the usual chart of LiPo cells, {:.0f} mV a cell unsure.\n",
-                      units::mv_from_v(battery::lipo_chart_uncertainty_v))
+                      units::mv_from_v(battery::lipo_chart_sd_v))
                 : ".\n";
-    if (identified.missing_ah > 0.0) {
+    if (identified.curve_start_depletion_ah > 0.0) {
         text += fmt::format("# No flight begins full: above {:.1f} % it is parallel to that chart, too.\n",
-                            identified.known_up_to_percent);
+                            identified.observed_max_soc_percent);
     }
     for (const auto& flight : identified.flights)
         if (flight.link) text += fmt::format("# {}.\n", describe_link(flight));
@@ -161,10 +161,10 @@ Json estimate(double value, const battery::Interval& range) {
 Json flight_json(const battery::IdentifiedFlight& flight) {
     Json json{{"flight", flight.flight},
               {"resting_voltage_v", flight.resting_voltage_v},
-              {"initial_charge_ah", flight.initial_charge_ah},
+              {"initial_charge_ah", flight.initial_depletion_ah},
               {"initial_charge_interval_ah", interval(flight.initial_charge_interval_ah)},
               {"drawn_ah", flight.drawn_ah},
-              {"pack_of", text_or_null(flight.pack_of)},
+              {"pack_of", text_or_null(flight.same_pack_as)},
               {"pause_s", flight.link ? Json(flight.link->pause_s) : Json()},
               {"resistance_ohm", Json()},
               {"air_temperature_c", flight.air_temperature_c ? Json(*flight.air_temperature_c) : Json()},
@@ -178,7 +178,7 @@ Json flight_json(const battery::IdentifiedFlight& flight) {
 }  // namespace
 
 nlohmann::ordered_json to_json(const battery::BatteryIdentification& identified,
-                               const std::vector<battery::LeftOutCheck>& left_out) {
+                               const std::vector<battery::LeaveOneOutCheck>& left_out) {
     const auto& [fit, errors] = std::tie(identified.fit, identified.errors);
     Json json;
     json["capacity_ah"] = identified.capacity.value_ah;
@@ -200,8 +200,8 @@ nlohmann::ordered_json to_json(const battery::BatteryIdentification& identified,
     json["open_circuit"] = {{"soc_percent", curve.soc_percent},
                             {"voltage_v", curve.voltage_v},
                             {"standard_error_v", identified.battery.intervals.open_circuit_standard_error_v},
-                            {"known_up_to_percent", identified.known_up_to_percent},
-                            {"known_down_to_percent", identified.known_down_to_percent},
+                            {"known_up_to_percent", identified.observed_max_soc_percent},
+                            {"known_down_to_percent", identified.observed_min_soc_percent},
                             {"known_down_to_ah", fit.knots_ah.back()}};
     json["voltage_rms_mv"] = units::mv_from_v(fit.rms_v);
     json["flights"] = Json::array();
@@ -209,7 +209,7 @@ nlohmann::ordered_json to_json(const battery::BatteryIdentification& identified,
     json["resistance_trend"] = Json();
     if (const auto& trend = identified.trend) {
         json["resistance_trend"] = {{"flights", trend->flights},
-                                    {"ohm_a_flight", estimate(trend->ohm_a_flight, trend->interval_ohm_a_flight)}};
+                                    {"ohm_a_flight", estimate(trend->ohm_per_flight, trend->interval_ohm_a_flight)}};
     }
     json["left_out"] = Json::array();
     for (const auto& check : left_out) {
@@ -218,15 +218,15 @@ nlohmann::ordered_json to_json(const battery::BatteryIdentification& identified,
                                     {"pack_of", text_or_null(check.pack_of)},
                                     {"voltage_rms_mv", units::mv_from_v(check.voltage_rms_v)},
                                     {"load_voltage_rms_mv", units::mv_from_v(check.load_rms_v)},
-                                    {"placed_charge_ah", check.placed_charge_ah},
-                                    {"placed_load_voltage_rms_mv", units::mv_from_v(check.placed_load_rms_v)},
-                                    {"beyond_others_percent", check.beyond_percent}});
+                                    {"placed_charge_ah", check.best_offset_ah},
+                                    {"placed_load_voltage_rms_mv", units::mv_from_v(check.best_offset_load_rms_v)},
+                                    {"beyond_others_percent", check.extrapolated_percent}});
     }
     return json;
 }
 
 std::optional<double> capacity_option(const StageCall& call) {
-    const auto capacity_ah = call.maybe<double>("capacity");
+    const auto capacity_ah = call.get_optional<double>("capacity");
     if (capacity_ah && !(*capacity_ah > 0.0 && *capacity_ah <= battery::max_capacity_ah))
         throw UsageError(fmt::format("--capacity {:g}: expected more than 0 and at most {:g} Ah; {}", *capacity_ah,
                                      battery::max_capacity_ah, battery::capacity_hint));

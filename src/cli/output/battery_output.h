@@ -24,7 +24,8 @@ std::string cells_warning(const battery::BatteryIdentification& identified);
 /// Why a flight is taken for one on the pack of another; empty if it is not.
 std::string describe_link(const battery::IdentifiedFlight& flight);
 
-/// How the resistance goes on over the flights: "series resistance over 6 flights in time order: +0.4 mohm a flight ...".
+/// How the resistance goes on over the flights: "series resistance over 6 flights in time order: +0.4 mohm a flight
+/// ...".
 std::string describe(const battery::ResistanceTrend& trend);
 
 /// Capacity, voltage and resistances of a battery file with their 95 % intervals.
@@ -35,14 +36,14 @@ TextTable parameters_table(const battery::BatteryIdentification& identified);
 
 /// One row a flight; `left_out` is empty or as long as the identified flights.
 TextTable flights_table(const battery::BatteryIdentification& identified,
-                        const std::vector<battery::LeftOutCheck>& left_out);
+                        const std::vector<battery::LeaveOneOutCheck>& left_out);
 
 /// The comment at the head of a battery file: flights, capacity and fit that the numbers rest on.
 std::string provenance(const battery::BatteryIdentification& identified);
 
 /// The stage's JSON: units are in the keys, null stands for what is not known.
 nlohmann::ordered_json to_json(const battery::BatteryIdentification& identified,
-                               const std::vector<battery::LeftOutCheck>& left_out);
+                               const std::vector<battery::LeaveOneOutCheck>& left_out);
 
 /// --capacity [Ah] of a pack, or std::nullopt where it was not given. Throws UsageError for one that no pack has.
 std::optional<double> capacity_option(const StageCall& call);

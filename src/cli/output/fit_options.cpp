@@ -13,11 +13,11 @@ namespace flightwatt::cli {
 namespace {
 
 /// "FLIGHT=0.4" or "FLIGHT:cruise=0.4".
-mechanical::HandWeight parse_hand_weight(const std::string& text) {
+mechanical::ManualWeight parse_hand_weight(const std::string& text) {
     const auto equals = text.rfind('=');
     const auto value = equals == std::string::npos ? std::nullopt : parse_number(text.substr(equals + 1));
     if (!value) throw UsageError(fmt::format("--weight {}: expected FLIGHT=NUMBER or FLIGHT:PHASE=NUMBER", text));
-    mechanical::HandWeight weight{text.substr(0, equals), std::nullopt, *value};
+    mechanical::ManualWeight weight{text.substr(0, equals), std::nullopt, *value};
     if (const auto colon = weight.flight.rfind(':'); colon != std::string::npos) {
         weight.phase = flight::phase_from(weight.flight.substr(colon + 1));
         if (!weight.phase) {
@@ -63,20 +63,20 @@ std::optional<int> read_order(const StageCall& call, AutoOrder automatic) {
 mechanical::ModelFitOptions read_fit_options(const StageCall& call, AutoOrder automatic) {
     mechanical::ModelFitOptions options;
     options.phases.order = read_order(call, automatic).value_or(options.phases.order);
-    options.phases.low_rad = units::rad_from_turns(call.get<double>("min-periods"));
-    options.phases.high_periods = call.get<double>("max-periods");
-    admissible_range({}, options.phases);  // refuses bad options before any log is read
+    options.phases.min_theta_rad = units::rad_from_turns(call.get<double>("min-periods"));
+    options.phases.max_periods = call.get<double>("max-periods");
+    admissible_frequencies({}, options.phases);  // refuses bad options before any log is read
     const auto name = call.get<std::string>("weights");
     const auto weighting = mechanical::weighting_from(name);
-    if (!weighting || *weighting == mechanical::Weighting::by_hand) {
+    if (!weighting || *weighting == mechanical::Weighting::manual) {
         throw UsageError(fmt::format("--weights {}: expected uniform, inverse-variance or agreement{}", name,
                                      weighting ? "; give weights by hand with --weight" : ""));
     }
     options.weights.weighting = *weighting;
-    if (const auto weights = call.maybe<std::vector<std::string>>("weight")) {
+    if (const auto weights = call.get_optional<std::vector<std::string>>("weight")) {
         if (!call.options["weights"].defaulted())
             throw UsageError("--weights and --weight exclude each other: give one of them");
-        options.weights.weighting = mechanical::Weighting::by_hand;
+        options.weights.weighting = mechanical::Weighting::manual;
         for (const auto& text : *weights) options.weights.by_hand.push_back(parse_hand_weight(text));
     }
     return options;

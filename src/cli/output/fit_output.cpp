@@ -36,7 +36,7 @@ nlohmann::ordered_json to_json(const mechanical::PhaseModel& phase, const mechan
               {"a0_w", interval_json(intervals.a0_w)},
               {"cos_w", interval_json(intervals.cos_w)},
               {"sin_w", interval_json(intervals.sin_w)}}},
-            {"frequency_is_given", errors.frequency_is_given},
+            {"frequency_is_given", errors.frequency_is_fixed},
             {"degrees_of_freedom", errors.degrees_of_freedom},
             {"r2", errors.r2},
             {"condition", errors.condition},
@@ -55,11 +55,11 @@ nlohmann::ordered_json to_json(const mechanical::FrequencyProfile& profile) {
               {"high_is_open", profile.high_is_open}}}};
 }
 
-nlohmann::ordered_json to_json(const mechanical::PhaseSpread& spread) {
+nlohmann::ordered_json to_json(const mechanical::FlightEnvelope& spread) {
     return {{"low_w", spread.low_w},
             {"high_w", spread.high_w},
             {"standard_deviation_w", spread.standard_deviation_w},
-            {"counted_flights", spread.counted_flights}};
+            {"counted_flights", spread.effective_flights}};
 }
 
 nlohmann::ordered_json validation_json(const mechanical::ModelValidation& validation) {
@@ -86,13 +86,13 @@ std::string describe(const mechanical::ModelValidation& validation, bool has_phy
 }  // namespace
 
 std::optional<mechanical::MechanicalModel> read_published(const StageCall& call) {
-    const auto file = call.maybe<std::string>("published");
+    const auto file = call.get_optional<std::string>("published");
     return file ? std::optional(mechanical::read_mechanical_model(*file)) : std::nullopt;
 }
 
 TextTable table_of(const mechanical::MechanicalModel& model,
                    const std::optional<mechanical::MechanicalModel>& published, mechanical::TableIntervals intervals) {
-    return published ? table_one_beside(*published, model, intervals) : table_one(model, intervals);
+    return published ? table_one_comparison(*published, model, intervals) : table_one(model, intervals);
 }
 
 TextTable mean_power_table(const mechanical::MechanicalModel& model) {
@@ -209,13 +209,13 @@ void add_loss_json(nlohmann::ordered_json& json, const mechanical::ModelFit& fit
     }
 }
 
-void add_order_json(nlohmann::ordered_json& json, flight::Phase phase, const mechanical::OrderChoice& choice) {
+void add_order_json(nlohmann::ordered_json& json, flight::Phase phase, const mechanical::OrderSelection& choice) {
     using Json = nlohmann::ordered_json;
     Json errors = Json::array();
     for (const auto& error : choice.errors) {
         errors.push_back({{"order", error.order},
                           {"rms_w", optional_json(error.rms_w)},
-                          {"behind_best_w2", optional_json(error.behind_best_w2)},
+                          {"behind_best_w2", optional_json(error.excess_mse_w2)},
                           {"standard_error_w2", optional_json(error.standard_error_w2)},
                           {"reason", error.reason}});
     }
@@ -226,7 +226,7 @@ void add_order_json(nlohmann::ordered_json& json, flight::Phase phase, const mec
                                                                      {"errors", errors}};
 }
 
-void note_order(const StageCall& call, flight::Phase phase, const mechanical::OrderChoice& choice) {
+void note_order(const StageCall& call, flight::Phase phase, const mechanical::OrderSelection& choice) {
     std::string curve;
     for (const auto& error : choice.errors) {
         const auto shown = error.rms_w ? fmt::format("{:.4g}", *error.rms_w) : "-";
@@ -243,7 +243,7 @@ void warn_of_given_frequencies(const StageCall& call, const mechanical::Mechanic
     for (const auto phase : flight::all_phases) {
         const auto& fitted = model.phases[phase];
         const bool constant = fitted.fourier.cos_w.empty();
-        if (constant || !fitted.errors || !fitted.errors->frequency_is_given) continue;
+        if (constant || !fitted.errors || !fitted.errors->frequency_is_fixed) continue;
         warn(call, fmt::format("{}: the errors are those at the frequency as given; the coefficients "
                                "alone may be further off, the curve is not",
                                to_string(phase)));

@@ -3,7 +3,7 @@
 #include "base/text_table.h"
 #include "cli/stage.h"
 #include "mechanical/model_errors.h"
-#include "mechanical/order_choice.h"
+#include "mechanical/order_selection.h"
 #include "mechanical/table_one.h"
 
 #include <filesystem>
@@ -43,10 +43,10 @@ void add_errors_json(nlohmann::ordered_json& json, const mechanical::MechanicalM
 void add_loss_json(nlohmann::ordered_json& json, const mechanical::ModelFit& fit);
 
 /// Adds the chosen order of a phase with the error of every order that was tried.
-void add_order_json(nlohmann::ordered_json& json, flight::Phase phase, const mechanical::OrderChoice& choice);
+void add_order_json(nlohmann::ordered_json& json, flight::Phase phase, const mechanical::OrderSelection& choice);
 
 /// Notes the chosen order and the prediction error of every order.
-void note_order(const StageCall& call, flight::Phase phase, const mechanical::OrderChoice& choice);
+void note_order(const StageCall& call, flight::Phase phase, const mechanical::OrderSelection& choice);
 
 /// Warns of intervals that are conditional on a given frequency.
 void warn_of_given_frequencies(const StageCall& call, const mechanical::MechanicalModel& model);

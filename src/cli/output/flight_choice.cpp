@@ -46,7 +46,7 @@ std::optional<Day> day_of_flight(const std::string& flight) {
 }
 
 std::optional<Day> day_option(const StageCall& call, const std::string& option) {
-    const auto text = call.maybe<std::string>(option);
+    const auto text = call.get_optional<std::string>(option);
     if (!text) return std::nullopt;
     static const std::regex date("([0-9]{4})-([0-9]{2})-([0-9]{2})");
     std::smatch match;
@@ -64,7 +64,7 @@ bool matches(const std::string& pattern, const std::string& name) {
 bool is_pattern(const std::string& text) { return text.find_first_of("*?[") != std::string::npos; }
 
 std::vector<std::string> texts_of(const StageCall& call, const std::string& option) {
-    return call.maybe<std::vector<std::string>>(option).value_or(std::vector<std::string>());
+    return call.get_optional<std::vector<std::string>>(option).value_or(std::vector<std::string>());
 }
 
 /// What the user chose.
@@ -97,7 +97,7 @@ std::string why_left_out(const FlightChoice& choice, const std::string& flight) 
 std::string why_batch_left_out(const std::optional<batch::BatchFit>& fit, const std::string& flight) {
     if (!fit) return "";
     if (fit->excluded.contains(flight)) return "its batch was told to --exclude it";
-    const auto* copy = batch::used_instead_of(flight, fit->repeated);
+    const auto* copy = batch::original_of(flight, fit->repeated);
     return copy == nullptr ? "" : "its batch found that it is " + *copy + " under another name";
 }
 
@@ -117,15 +117,15 @@ std::vector<SeriesFile> series_of_batch(const StageCall& call, const std::filesy
     for (const auto& stored : batch::read_stored_records(out)) {
         const auto& record = stored.record;
         const auto left_out = options.keep.contains(record.flight) ? "" : why_batch_left_out(fit, record.flight);
-        if (!stored.damage.empty()) {
-            warn(call, stored.damage);
+        if (!stored.damage_reason.empty()) {
+            warn(call, stored.damage_reason);
         } else if (const auto why = !record.accepted   ? record.error
-                                    : left_out.empty() ? batch::exclusion_of(record, own)
+                                    : left_out.empty() ? batch::exclusion_reason(record, own)
                                                        : left_out;
                    !why.empty() && !options.excluded.contains(record.flight)) {
             note(call, fmt::format("{} is left out: {}", record.flight, why));
         } else {
-            files.push_back({record.log, (out / "flights" / (record.flight + batch::series_ending)).string()});
+            files.push_back({record.log, (out / "flights" / (record.flight + batch::series_suffix)).string()});
         }
     }
     return files;
@@ -169,7 +169,7 @@ void add_choice_options(boost::program_options::options_description& options) {
         "flights whose name matches, '20_07_*'; may be given several times");
 }
 
-std::vector<bool> chosen_flights(const StageCall& call, const std::vector<std::string>& flights) {
+std::vector<bool> filter_flights(const StageCall& call, const std::vector<std::string>& flights) {
     const FlightChoice choice{day_option(call, "since"), day_option(call, "until"), texts_of(call, "glob")};
     std::ranges::for_each(choice.patterns, require_pattern);
     if (choice.since && choice.until && *choice.since > *choice.until)
@@ -225,7 +225,7 @@ StageCall with_chosen_flights(StageCall call, const flight::LoadOptions& options
     std::vector<std::string> names;
     names.reserve(files.size());
     for (const auto& file : files) names.push_back(flight_of_file(file));
-    const auto chosen = chosen_flights(call, names);
+    const auto chosen = filter_flights(call, names);
     call.inputs.clear();
     for (std::size_t i = 0; i < files.size(); ++i)
         if (chosen[i]) call.inputs.push_back(files[i]);
@@ -234,13 +234,13 @@ StageCall with_chosen_flights(StageCall call, const flight::LoadOptions& options
 
 std::string flight_of_file(const std::filesystem::path& file) {
     const auto name = file.filename().string();
-    const std::string_view series = batch::series_ending;
+    const std::string_view series = batch::series_suffix;
     if (name.ends_with(series)) return name.substr(0, name.size() - series.size());
     return telemetry::flight_name(file);
 }
 
-std::set<std::string> with_matching(const std::set<std::string>& names, const std::string& option,
-                                    const std::vector<std::string>& flights) {
+std::set<std::string> expand_patterns(const std::set<std::string>& names, const std::string& option,
+                                      const std::vector<std::string>& flights) {
     std::set<std::string> all;
     for (const auto& name : names) {
         const bool is_flight = std::ranges::find(flights, name) != flights.end();

@@ -20,7 +20,7 @@ namespace {
 namespace po = boost::program_options;
 
 std::set<std::string> names_of(const StageCall& call, const std::string& option) {
-    const auto names = call.maybe<std::vector<std::string>>(option).value_or(std::vector<std::string>{});
+    const auto names = call.get_optional<std::vector<std::string>>(option).value_or(std::vector<std::string>{});
     return {names.begin(), names.end()};
 }
 
@@ -42,12 +42,12 @@ class UsedFlights {
     /// Whether it is to be read: false for a copy of one that is as good.
     bool take(const flight::LoadedFlight& loaded) {
         const auto& series = loaded.series;
-        auto content = content_of(series);
+        auto content = make_sketch(series);
         auto alike = known_.find(content);
         std::erase_if(alike, [&](const auto& like) { return !is_used_[places_[like.number]]; });
         const auto name_of = [&](const auto& like) { return flown_[places_[like.number]].flight; };
         for (const auto& like : alike) {
-            if (!like.likeness.is_same || is_better_copy(content, known_[like.number])) continue;
+            if (!like.likeness.is_same || is_preferred_duplicate(content, known_[like.number])) continue;
             exclude(series.flight, name_of(like));
             return false;
         }
@@ -77,8 +77,8 @@ class UsedFlights {
     }
 
     /// Those whose power is sound.
-    std::vector<flight::FlownBy> flown() const {
-        std::vector<flight::FlownBy> flown;
+    std::vector<flight::FlightAircraft> flown() const {
+        std::vector<flight::FlightAircraft> flown;
         for (const auto i : counting())
             if (is_sound_[i]) flown.push_back(flown_[i]);
         return flown;
@@ -90,9 +90,9 @@ class UsedFlights {
     }
 
     const StageCall& call_;
-    flight::KnownFlights known_;
+    flight::SketchIndex known_;
     std::vector<std::size_t> places_;  ///< of the known ones in what follows
-    std::vector<flight::FlownBy> flown_;
+    std::vector<flight::FlightAircraft> flown_;
     std::vector<bool> is_used_;
     std::vector<bool> is_sound_;
 };
@@ -130,24 +130,24 @@ void add_flight_options(po::options_description& options) {
 }
 
 flight::LoadOptions read_flight_options(const StageCall& call) {
-    constexpr double longest_s = 24.0 * units::seconds_per_hour;
+    constexpr double max_s = 24.0 * units::seconds_per_hour;
     constexpr std::size_t bytes_per_mb = 1'000'000;
     flight::LoadOptions options;
     options.excluded = names_of(call, "exclude");
     options.keep = names_of(call, "keep");
-    options.aircraft_id = call.maybe<std::string>("aircraft");
+    options.aircraft_id = call.get_optional<std::string>("aircraft");
     if (call.has("sortie")) options.sortie = count_option(call, "sortie", 1);
     options.correct_idle_offset = call.has("correct-idle-offset");
     auto& segmentation = options.segmentation;
-    segmentation.rest_s = number_option(call, "rest", 1.0, longest_s);
-    segmentation.hold_s = positive_option(call, "hold", "s", longest_s).value();
+    segmentation.rest_s = number_option(call, "rest", 1.0, max_s);
+    segmentation.hold_s = positive_option(call, "hold", "s", max_s).value();
     segmentation.idle_throttle_percent = number_option(call, "idle-throttle", 0.0, 100.0);
     segmentation.cruise_fraction = call.get<double>("cruise-fraction");
     segmentation.ground_fraction = call.get<double>("ground-fraction");
     segmentation.flight_height_m = call.get<double>("flight-height");
     validate(segmentation);
-    if (const auto messages = call.maybe<std::string>("messages")) options.messages = *messages;
-    options.most_log_bytes = bytes_per_mb * count_option(call, "max-log-mb", 1, 1'000'000);
+    if (const auto messages = call.get_optional<std::string>("messages")) options.messages = *messages;
+    options.max_log_bytes = bytes_per_mb * count_option(call, "max-log-mb", 1, 1'000'000);
     return options;
 }
 
@@ -177,7 +177,7 @@ std::vector<std::size_t> for_each_flight(const StageCall& call, const flight::Lo
     std::vector<std::string> flights;
     flights.reserve(inputs.size());
     for (const auto& file : inputs) flights.push_back(flight_of_file(file));
-    options.excluded = with_matching(given.excluded, "exclude", flights);
+    options.excluded = expand_patterns(given.excluded, "exclude", flights);
     flights.clear();
     UsedFlights used(call);
     std::optional<flight::OtherAircraftError> other;
@@ -216,7 +216,7 @@ std::vector<std::size_t> for_each_flight(const StageCall& call, const flight::Lo
     if (other && used.counting().empty()) throw *other;
     if (unusable && used.counting().empty()) throw InputError({}, "no flight is left", "see the reasons above");
     if (call.has("mix-aircraft")) return used.counting();
-    if (const auto mix = describe_mix(used.flown()); !mix.empty()) {
+    if (const auto mix = describe_mixed_aircraft(used.flown()); !mix.empty()) {
         throw InputError({}, fmt::format("the flights are of several aircraft: {}", mix),
                          "use one aircraft's alone, or let all in with --mix-aircraft");
     }

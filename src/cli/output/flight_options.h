@@ -36,8 +36,8 @@ void add_mix_option(boost::program_options::options_description& options);
 
 /// Loads the flights of all inputs, one at a time, to make one result of them; returns which of the calls of `read`
 /// count. A flight that is there under two names counts once, with a warning: it would be counted twice, and predict
-/// itself. The one with its .log counts, then the one with more samples, then the first. Throws UsageError for two of one
-/// name, and for --exclude and --keep of a flight that is not there; InputError, when all are loaded, for those of
+/// itself. The one with its .log counts, then the one with more samples, then the first. Throws UsageError for two of
+/// one name, and for --exclude and --keep of a flight that is not there; InputError, when all are loaded, for those of
 /// several aircraft, or synthetic ones beside real ones, unless --mix-aircraft is given. One of several that cannot be
 /// used is skipped (skip_input); where none is left, InputError is thrown.
 std::vector<std::size_t> for_each_flight(
@@ -60,10 +60,10 @@ void add_choice_options(boost::program_options::options_description& options);
 
 /// Which of the flights of these names those options choose, one each; says which it leaves out and why. Throws
 /// InputError where none is left.
-std::vector<bool> chosen_flights(const StageCall& call, const std::vector<std::string>& flights);
+std::vector<bool> filter_flights(const StageCall& call, const std::vector<std::string>& flights);
 
-/// The call's inputs with the flights of its folders in place of them: those that flightwatt batch accepted, or the logs
-/// of another folder, searched to the bottom. Throws InputError for a folder without any.
+/// The call's inputs with the flights of its folders in place of them: those that flightwatt batch accepted, or the
+/// logs of another folder, searched to the bottom. Throws InputError for a folder without any.
 std::vector<std::string> files_of(const StageCall& call, const flight::LoadOptions& options);
 
 /// The call with those flights of its inputs and their folders that are chosen. Throws InputError where none is left.
@@ -74,8 +74,8 @@ std::string flight_of_file(const std::filesystem::path& file);
 
 /// The names with all flights that match in place of those that are patterns ('20_07_*'). Throws UsageError for one
 /// that matches none.
-std::set<std::string> with_matching(const std::set<std::string>& names, const std::string& option,
-                                    const std::vector<std::string>& flights);
+std::set<std::string> expand_patterns(const std::set<std::string>& names, const std::string& option,
+                                      const std::vector<std::string>& flights);
 
 /// Throws UsageError for --exclude and --keep of a flight that is none of `flights`.
 void refuse_unknown_flights(const flight::LoadOptions& options, const std::vector<std::string>& flights);

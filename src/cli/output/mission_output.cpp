@@ -23,7 +23,7 @@ void add_to_json(const std::optional<mechanical::HeldOutScore>& power_model, nlo
                            {"mean_absolute_error_percent", power_model->mean_absolute_error_percent}};
 }
 
-void add_to_json(const mission::SampledFlights& flights, nlohmann::ordered_json& json) {
+void add_to_json(const mission::MonteCarloResult& flights, nlohmann::ordered_json& json) {
     json["probability_below_reserve"] = flights.probability_below_reserve;
     json["probability_below_reserve_standard_error"] = flights.probability_below_reserve_standard_error;
     json["probability_below_reserve_low"] = flights.probability_below_reserve_95.low;
@@ -42,9 +42,9 @@ void add_to_json(const mission::SampledFlights& flights, nlohmann::ordered_json&
 
 }  // namespace
 
-void add_sources(const mission::DrawnSources& sources, nlohmann::ordered_json& json) {
-    json["drawn"] = sources.drawn;
-    json["not_drawn"] = sources.not_drawn;
+void add_sources(const mission::UncertaintySources& sources, nlohmann::ordered_json& json) {
+    json["drawn"] = sources.varied;
+    json["not_drawn"] = sources.fixed;
 }
 
 void add_sampling_options(StageDefinition& stage) {
@@ -64,12 +64,12 @@ std::optional<mission::SamplingOptions> sampling_options(const StageCall& call, 
     mission::SamplingOptions options;
     options.samples = count_option(call, "samples");
     if (call.has("seed")) options.seed = count_option(call, "seed");
-    if (with_bands) options.band_times = band_times;
+    if (with_bands) options.band_points = band_times;
     return options;
 }
 
 std::vector<mission::Disturbance> read_disturb_option(const StageCall& call, const mission::MissionSetup& mission) {
-    const auto file = call.maybe<std::string>("disturb");
+    const auto file = call.get_optional<std::string>("disturb");
     return file ? mission::read_disturbances(*file, mission.duration_s) : std::vector<mission::Disturbance>();
 }
 
@@ -150,7 +150,7 @@ nlohmann::ordered_json to_json(const mission::MissionPlan& plan, const mission::
     json["mission"] = mission.name;
     json["feasible"] = feasible;
     json["utility"] = feasible ? nlohmann::ordered_json(*plan.summary.utility) : nullptr;
-    json["bound"] = feasible && plan.plan.bound_is_proven ? nlohmann::ordered_json(plan.plan.bound) : nullptr;
+    json["bound"] = feasible && plan.plan.bound_is_proven ? nlohmann::ordered_json(plan.plan.utility_bound) : nullptr;
     json["final_soc_percent"] = optional_json(plan.summary.final_soc_percent);
     json["reserve_soc_percent"] = mission.reserve_soc_percent;
     json["margin_percent"] = plan.margin_percent;
@@ -162,11 +162,11 @@ nlohmann::ordered_json to_json(const mission::MissionPlan& plan, const mission::
 
 nlohmann::ordered_json to_json(const mission::InfeasibilityReport& report) {
     nlohmann::ordered_json json;
-    json["short_percent"] = report.short_percent;
-    json["short_wh"] = report.short_wh;
+    json["short_percent"] = report.shortfall_percent;
+    json["short_wh"] = report.shortfall_wh;
     json["cut_off_at_s"] = optional_json(report.cut_off_at_s);
     json["longest_cruise_s"] = optional_json(report.cruise_s);
-    json["least_fixed_spare_percent"] = optional_json(report.fixed_spare_percent);
+    json["least_fixed_spare_percent"] = optional_json(report.min_fixed_surplus_percent);
     json["largest_reserve_soc_percent"] = optional_json(report.reserve_soc_percent);
     json["smallest_capacity_ah"] = optional_json(report.capacity_ah);
     return json;

@@ -37,7 +37,7 @@ void note_power_model(const StageCall& call, const mission::MissionSetup& missio
 void warn_of_lost_comments(const StageCall& call, const mission::PlannedMissionText& written);
 
 /// What differs between flights and what does not, as "drawn" and "not_drawn".
-void add_sources(const mission::DrawnSources& sources, nlohmann::ordered_json& json);
+void add_sources(const mission::UncertaintySources& sources, nlohmann::ordered_json& json);
 
 /// The summary as simulate and compare print it; null stands for "never".
 nlohmann::ordered_json to_json(const mission::MissionSummary& summary);

@@ -13,7 +13,7 @@
 
 namespace flightwatt::cli {
 
-Moment moment_of(const StageCall& call) {
+RequestedTime read_requested_time(const StageCall& call) {
     const auto log_time_s = positive_option(call, "until-log-time", "s");
     if (log_time_s && !call.options["until"].defaulted()) {
         throw UsageError("--until and --until-log-time exclude each other: give one of them");
@@ -27,8 +27,8 @@ Moment moment_of(const StageCall& call) {
     return {since_s, std::nullopt};
 }
 
-double time_of(const Moment& moment, const std::vector<flight::FlightSeries>& candidates, std::size_t sortie,
-               const flight::SegmentationOptions& options) {
+double resolve_log_time(const RequestedTime& moment, const std::vector<flight::FlightSeries>& candidates,
+                        std::size_t sortie, const flight::SegmentationOptions& options) {
     if (moment.log_time_s) return *moment.log_time_s;
     if (!moment.since_lift_off_s) {
         double last_s = 0.0;
@@ -36,16 +36,17 @@ double time_of(const Moment& moment, const std::vector<flight::FlightSeries>& ca
         return last_s;
     }
     std::optional<double> first_s;
-    std::optional<NoAnswerError> refusal;
+    std::optional<NoResultError> refusal;
     for (const auto& series : candidates) {
         try {
-            const double time_s = mechanical::time_since_lift_off(series, *moment.since_lift_off_s, sortie, options);
+            const double time_s =
+                mechanical::log_time_after_lift_off(series, *moment.since_lift_off_s, sortie, options);
             first_s = std::min(first_s.value_or(time_s), time_s);
-        } catch (const NoAnswerError& error) {
+        } catch (const NoResultError& error) {
             if (!refusal) refusal = error;
         }
     }
-    if (!first_s) throw NoAnswerError(*refusal);
+    if (!first_s) throw NoResultError(*refusal);
     return *first_s;
 }
 

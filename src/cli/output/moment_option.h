@@ -12,17 +12,17 @@
 namespace flightwatt::cli {
 
 /// The moment that is asked for: since lift-off, on the log's clock, or (none of them) the end of the log.
-struct Moment {
+struct RequestedTime {
     std::optional<double> since_lift_off_s;
     std::optional<double> log_time_s;
 };
 
 /// Throws UsageError for both, or for what is no time.
-Moment moment_of(const StageCall& call);
+RequestedTime read_requested_time(const StageCall& call);
 
 /// When it is, in the log's own seconds: of several aircraft, when the first has flown so long. `sortie` counts from 0.
-/// Throws as mechanical::time_since_lift_off.
-double time_of(const Moment& moment, const std::vector<flight::FlightSeries>& candidates, std::size_t sortie,
-               const flight::SegmentationOptions& options);
+/// Throws as mechanical::log_time_after_lift_off.
+double resolve_log_time(const RequestedTime& moment, const std::vector<flight::FlightSeries>& candidates,
+                        std::size_t sortie, const flight::SegmentationOptions& options);
 
 }  // namespace flightwatt::cli

@@ -46,16 +46,16 @@ std::string four_digits(double value) { return fmt::format("{:.4g}", value); }
 /// How far a flight of an hour may be off at the model's own mean airspeed, level, as a part of its power.
 std::string accuracy(const mechanical::PhysicalModel& model) {
     if (!model.level_sd) return "a single flight does not tell how flights differ: no interval of an unseen one\n";
-    const mechanical::AirMotion level{.airspeed_m_per_s = model.mean_airspeed_m_per_s};
+    const mechanical::FlightState level{.airspeed_m_per_s = model.mean_airspeed_m_per_s};
     if (!(level.airspeed_m_per_s > 0.0)) return "";
     constexpr double hour_s = 3600.0;
     const double power = power_w(model, level);
-    const auto of = uncertainty_of(model, terms_of(level), hour_s).value();
+    const auto of = prediction_uncertainty(model, term_values(level), hour_s).value();
     return fmt::format(
         "an hour of level flight at {:.1f} m/s: {:.2f} W, of an unseen flight +- {:.2f} W (95 %); flights differ by "
         "{:.1f} % (1 sd), power drifts by {:.1f} W for {:.0f} s\n",
         level.airspeed_m_per_s, power, student_t_half_width(of.degrees_of_freedom) * of.sd_w,
-        units::percent_of(*model.level_sd, 1.0), model.drift_sd_w, model.correlation_s);
+        units::percentage(*model.level_sd, 1.0), model.drift_sd_w, model.correlation_s);
 }
 
 }  // namespace
@@ -92,7 +92,7 @@ std::string physical_text(const mechanical::PhysicalFit& fit, const Screen& scre
                model.climb_m_per_s.high) +
            fmt::format("RMS error of {} held back, {} in turn:\n",
                        fit.phases_decided ? "the mean power of phases" : "stretches",
-                       fit.held_back_flights ? "flights" : "fifths of the flight") +
+                       fit.folds_are_flights ? "flights" : "fifths of the flight") +
            screen_text(trials_table(fit), screen);
 }
 
@@ -132,7 +132,7 @@ nlohmann::ordered_json physical_json(const mechanical::PhysicalFit& fit) {
 }
 
 void warn_of_physical(const StageCall& call, const mechanical::PhysicalFit& fit) {
-    for (const auto& [flight, reason] : fit.without)
+    for (const auto& [flight, reason] : fit.skipped)
         warn(call, fmt::format("{} is not in the physical model: {}", flight, reason));
     if (fit.model.level_sd) return;
     warn(call,
@@ -159,12 +159,12 @@ ModelKind model_kind(const StageCall& call) {
 void add_best_power(std::span<const mechanical::MeasuredFlight> measured, const mechanical::ModelFitOptions& options,
                     mechanical::MechanicalModel& model) {
     TerminalProgress fitting("fits");
-    mechanical::add_best_power(model, measured, options, fitting.shown());
+    mechanical::add_best_power(model, measured, options, fitting.callback());
 }
 
 mechanical::PhysicalFit fit_motion(const StageCall& call, std::span<const mechanical::MeasuredFlight> measured,
                                    mechanical::MechanicalModel& model) {
-    std::vector<mechanical::FlightMotion> motions;
+    std::vector<mechanical::BinnedFlight> motions;
     motions.reserve(measured.size());
     for (const auto& flight : measured) motions.push_back(flight.motion);
     if (call.has("weight") || !call.options["weights"].defaulted())

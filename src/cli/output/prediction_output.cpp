@@ -19,7 +19,7 @@ std::string landing_text(const battery::LandingForecast& forecast, const battery
     auto text = fmt::format("{:.1f} % and {:.2f} V at landing, ", forecast.soc_percent, forecast.voltage_v);
     if (!forecast.keeps_reserve)
         return text + fmt::format("short of the reserve of {:g} %", limits.reserve_soc_percent);
-    text += fmt::format("{} of cruise left", duration_text(forecast.seconds_left));
+    text += fmt::format("{} of cruise left", duration_text(forecast.endurance_s));
     return limits.reserve_soc_percent > 0.0
                ? text + fmt::format(" to the reserve of {:g} %", limits.reserve_soc_percent)
                : text;
@@ -31,33 +31,34 @@ std::string battery_text(const std::optional<BatteryPrediction>& battery) {
         "battery    {:.1f} % now{}; {}\n"
         "           {}: {}\n",
         battery->expected.soc_now_percent,
-        battery->is_of_now ? ""
-                           : fmt::format(", from {:.1f} % {}", battery->initial_soc_percent,
-                                         battery->initial_is_measured ? "by its voltage at rest" : "as given"),
+        battery->initial_soc_is_current
+            ? ""
+            : fmt::format(", from {:.1f} % {}", battery->initial_soc_percent,
+                          battery->initial_is_measured ? "by its voltage at rest" : "as given"),
         landing_text(battery->expected, battery->limits),
-        battery->with_least_capacity ? "with the most energy and the least capacity of their 95 % intervals"
-                                     : "at the high end of the energy's interval",
+        battery->worst_uses_min_capacity ? "with the most energy and the least capacity of their 95 % intervals"
+                                         : "at the high end of the energy's interval",
         landing_text(battery->worst, battery->limits));
 }
 
 /// Whether the model says what was to be expected so far: by motion only where the flight's was measured.
 bool is_expected(const Prediction& prediction) {
-    return !prediction.by_motion || !prediction.flown.motion.bins.empty();
+    return !prediction.uses_physical_model || !prediction.flown.motion.bins.empty();
 }
 
 /// What was expected so far, and how the difference moves the rest.
 std::string expectation_text(const Prediction& prediction) {
     if (!is_expected(prediction)) return "this flight's own level is not known";
-    const double gain_percent = units::percent_of(prediction.cruise.gain, 1.0);
+    const double gain_percent = units::percentage(prediction.cruise.gain, 1.0);
     return fmt::format("expected {:.2f} W, ", prediction.cruise.expected_w) +
-           (prediction.by_motion ? fmt::format("this flight's own level {:+.1f} %", gain_percent)
-                                 : fmt::format("of the difference {:.0f} % goes on", gain_percent));
+           (prediction.uses_physical_model ? fmt::format("this flight's own level {:+.1f} %", gain_percent)
+                                           : fmt::format("of the difference {:.0f} % goes on", gain_percent));
 }
 
 nlohmann::ordered_json json_of(const battery::LandingForecast& forecast) {
     return {{"soc_percent", forecast.soc_percent},
             {"voltage_v", forecast.voltage_v},
-            {"seconds_left", forecast.seconds_left},
+            {"seconds_left", forecast.endurance_s},
             {"keeps_reserve", forecast.keeps_reserve},
             {"fails_after_s", optional_json(forecast.fails_after_s)}};
 }
@@ -75,7 +76,7 @@ std::string text_of(const Prediction& prediction) {
                "total      {:.3f} Wh\n",
                flown.energy_wh, began_in_air ? "the first message" : "lift-off", flown.lift_off_s, flown.until_s,
                duration_text(flown.until_s - flown.lift_off_s), cruise.energy.energy_wh, duration_text(remaining_s),
-               cruise.remaining_mean_w, cruise.flown_w, expectation_text(prediction), landing.energy_wh,
+               cruise.remaining_mean_w, cruise.measured_w, expectation_text(prediction), landing.energy_wh,
                duration_text(landing_s), rest.energy_wh, interval.low_wh, interval.high_wh,
                flown.energy_wh + rest.energy_wh) +
            battery_text(battery);
@@ -96,7 +97,7 @@ nlohmann::ordered_json json_of(const Prediction& prediction) {
         {"cruise",
          {{"remaining_s", remaining_s},
           {"energy_wh", cruise.energy.energy_wh},
-          {"flown_mean_w", cruise.flown_w},
+          {"flown_mean_w", cruise.measured_w},
           {"expected_mean_w", optional_json(expected_w)},
           {"remaining_mean_w", cruise.remaining_mean_w},
           {by_motion ? "own_level" : "gain", optional_json(gain)}}},
@@ -111,7 +112,7 @@ nlohmann::ordered_json json_of(const Prediction& prediction) {
     return json;
 }
 
-void warn_of(const StageCall& call, const live::Remarks& remarks) {
+void warn_of(const StageCall& call, const live::Diagnostics& remarks) {
     for (const auto& warning : remarks.warnings) warn(call, warning);
     for (const auto& text : remarks.notes) note(call, text);
 }

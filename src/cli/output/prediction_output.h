@@ -20,6 +20,6 @@ std::string text_of(const Prediction& prediction);
 nlohmann::ordered_json json_of(const Prediction& prediction);
 
 /// The remarks on a prediction, on the standard error.
-void warn_of(const StageCall& call, const live::Remarks& remarks);
+void warn_of(const StageCall& call, const live::Diagnostics& remarks);
 
 }  // namespace flightwatt::cli

@@ -66,7 +66,7 @@ nlohmann::ordered_json to_json(const compute::ComponentEstimate& component, cons
 
 }  // namespace
 
-nlohmann::ordered_json to_json(const compute::LeaveOneOut& error) {
+nlohmann::ordered_json to_json(const compute::LeaveOneOutErrors& error) {
     return {{"method", error.method},
             {"nodes", error.nodes},
             {"mean_absolute_error_w", error.mean_absolute_w},
@@ -117,7 +117,7 @@ nlohmann::ordered_json to_json(const compute::ProfileOutcome& outcome, bool abov
 }
 
 std::string interpolation_text(const std::string& file, std::size_t nodes,
-                               const std::vector<compute::LeaveOneOut>& errors, const Screen& screen) {
+                               const std::vector<compute::LeaveOneOutErrors>& errors, const Screen& screen) {
     TextTable table;
     table.header = {"each node from the others", "nodes", "mean |error| W", "mean |error| %", "RMS W", "largest W"};
     for (const auto& error : errors) {

@@ -20,10 +20,10 @@ std::string profile_text(const compute::ProfileOutcome& outcome, bool above_idle
 /// The same as JSON.
 nlohmann::ordered_json to_json(const compute::ProfileOutcome& outcome, bool above_idle);
 
-nlohmann::ordered_json to_json(const compute::LeaveOneOut& error);
+nlohmann::ordered_json to_json(const compute::LeaveOneOutErrors& error);
 
 /// The errors of interpolating a profile as a table under its name.
 std::string interpolation_text(const std::string& file, std::size_t nodes,
-                               const std::vector<compute::LeaveOneOut>& errors, const Screen& screen = {});
+                               const std::vector<compute::LeaveOneOutErrors>& errors, const Screen& screen = {});
 
 }  // namespace flightwatt::cli

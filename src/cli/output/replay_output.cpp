@@ -15,13 +15,13 @@
 namespace flightwatt::cli {
 namespace {
 
+using mission::ComparisonOutcome;
 using mission::Replay;
 using mission::ReplayedSchedule;
-using mission::ReplayedWay;
-using mission::Verdict;
+using mission::ScheduleMethod;
 using Replays = std::span<const Replay>;
 
-constexpr std::array baselines{ReplayedWay::planned, ReplayedWay::planned_with_margin};
+constexpr std::array baselines{ScheduleMethod::planned, ScheduleMethod::planned_with_margin};
 
 double total_s(const mission::PerPhase<double>& duration_s) {
     return std::accumulate(duration_s.values.begin(), duration_s.values.end(), 0.0);
@@ -29,11 +29,11 @@ double total_s(const mission::PerPhase<double>& duration_s) {
 
 std::string model_text(const Replay& replay) {
     switch (replay.model_saw_flight) {
-        case mission::ModelSawFlight::yes:
+        case mission::TrainingOverlap::yes:
             return fmt::format("{}, which saw this flight", replay.model);
-        case mission::ModelSawFlight::unknown:
+        case mission::TrainingOverlap::unknown:
             return fmt::format("{}, which does not name its flights", replay.model);
-        case mission::ModelSawFlight::no:
+        case mission::TrainingOverlap::no:
             break;
     }
     return fmt::format("{}, {} flight{}", replay.model, replay.model_flights.size(),
@@ -66,13 +66,13 @@ std::vector<std::string> missions_of(Replays replays) {
     return names;
 }
 
-std::string_view to_string(Verdict verdict) {
+std::string_view to_string(ComparisonOutcome verdict) {
     constexpr std::array<std::string_view, 3> names{"better", "tie", "worse"};
     return names.at(static_cast<std::size_t>(verdict));
 }
 
-std::string baseline_words(ReplayedWay baseline) {
-    return baseline == ReplayedWay::planned ? "planning beforehand" : "planning beforehand with the policy's margin";
+std::string baseline_words(ScheduleMethod baseline) {
+    return baseline == ScheduleMethod::planned ? "planning beforehand" : "planning beforehand with the policy's margin";
 }
 
 /// "F (kept, +0.12 utility, -1.30 points)".
@@ -87,16 +87,16 @@ std::string case_text(const mission::Comparison& comparison) {
                        comparison.more_soc_percent ? fmt::format("{:+.2f} points", *comparison.more_soc_percent) : "-");
 }
 
-std::string cases_text(const std::vector<mission::Comparison>& comparisons, Verdict verdict) {
+std::string cases_text(const std::vector<mission::Comparison>& comparisons, ComparisonOutcome verdict) {
     std::vector<std::string> cases;
     for (const auto& comparison : comparisons)
         if (comparison.verdict == verdict) cases.push_back(case_text(comparison));
-    const auto what = verdict == Verdict::tie ? std::string("a tie") : std::string(to_string(verdict));
+    const auto what = verdict == ComparisonOutcome::tie ? std::string("a tie") : std::string(to_string(verdict));
     if (cases.empty()) return fmt::format("{} on none", what);
     return fmt::format("{} on {}: {}", what, cases.size(), fmt::join(cases, ", "));
 }
 
-std::string sentence(const std::string& mission, ReplayedWay baseline,
+std::string sentence(const std::string& mission, ScheduleMethod baseline,
                      const std::vector<mission::Comparison>& comparisons) {
     const auto flights = comparisons.size();
     const auto count = [&](bool mission::Comparison::*keeps) {
@@ -114,10 +114,10 @@ std::string sentence(const std::string& mission, ReplayedWay baseline,
     auto text = fmt::format(
         "{}: replanning in flight against {}, on {} flight{}: {}; {}; {}. It keeps the reserve on {} of {}, the plan "
         "on {}; on average it has {:+.4g} of utility",
-        mission, baseline_words(baseline), flights, flights == 1 ? "" : "s", cases_text(comparisons, Verdict::better),
-        cases_text(comparisons, Verdict::tie), cases_text(comparisons, Verdict::worse),
-        count(&mission::Comparison::replanned_keeps_reserve), flights,
-        count(&mission::Comparison::baseline_keeps_reserve), utility / static_cast<double>(flights));
+        mission, baseline_words(baseline), flights, flights == 1 ? "" : "s",
+        cases_text(comparisons, ComparisonOutcome::better), cases_text(comparisons, ComparisonOutcome::tie),
+        cases_text(comparisons, ComparisonOutcome::worse), count(&mission::Comparison::replanned_keeps_reserve),
+        flights, count(&mission::Comparison::baseline_keeps_reserve), utility / static_cast<double>(flights));
     if (charged > 0)
         text += fmt::format(" and leaves {:+.2f} points of charge", soc_percent / static_cast<double>(charged));
     return text + ".";
@@ -153,7 +153,7 @@ nlohmann::ordered_json replay_json(const Replay& replay) {
                                 {"measured_mechanical_wh", replay.measured_mechanical_wh},
                                 {"counter_energy_wh", optional_json(replay.counter_energy_wh)},
                                 {"gaps", replay.gaps},
-                                {"longest_gap_s", replay.longest_gap_s},
+                                {"longest_gap_s", replay.max_gap_s},
                                 {"bound", replay.bound_is_proven ? optional_json(replay.bound) : nullptr},
                                 {"notes", replay.notes}};
     json["schedules"] = nlohmann::ordered_json::array();
@@ -161,7 +161,7 @@ nlohmann::ordered_json replay_json(const Replay& replay) {
     return json;
 }
 
-nlohmann::ordered_json comparison_json(const std::string& mission, ReplayedWay baseline,
+nlohmann::ordered_json comparison_json(const std::string& mission, ScheduleMethod baseline,
                                        const std::vector<mission::Comparison>& comparisons) {
     nlohmann::ordered_json json{{"mission", mission},
                                 {"baseline", mission::to_string(baseline)},
@@ -188,7 +188,7 @@ TextTable replay_basis_table(Replays replays) {
         table.rows.push_back({replay.flight, replay.mission, model_text(replay), fixed(total_s(replay.planned_s), 0),
                               fixed(total_s(replay.flown_s), 0), fixed(replay.expected_mechanical_wh, 3),
                               fixed(replay.measured_mechanical_wh, 3), fixed(replay.counter_energy_wh, 3),
-                              std::to_string(replay.gaps), fixed(replay.longest_gap_s, 1),
+                              std::to_string(replay.gaps), fixed(replay.max_gap_s, 1),
                               fixed(replay.bound_is_proven ? replay.bound : std::nullopt, 4)});
     }
     return table;

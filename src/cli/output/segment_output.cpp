@@ -2,9 +2,9 @@
 
 #include "base/duration_text.h"
 #include "cli/output/json_text.h"
-#include "flight/chosen_track.h"
 #include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
+#include "flight/selected_track.h"
 
 #include <algorithm>
 
@@ -36,29 +36,32 @@ Json to_json(const flight::PowerStatistics& power, const flight::PhaseSpan& span
             {"energy_wh", known(statistics.energy_wh)},
             {"counter_energy_wh", optional_json(statistics.counter_energy_wh)},
             {"gaps", known(statistics.gaps)},
-            {"longest_gap_s", known(statistics.longest_gap_s)},
+            {"longest_gap_s", known(statistics.max_gap_s)},
             {"complete", span.complete},
             {"evidence", {{"start", to_json(span.start)}, {"end", to_json(span.end)}}}};
 }
 
-Json to_json(const flight::ExplainedEdge& explained) {
-    const auto events_json = [](const std::vector<flight::EdgeWitness>& events) {
+Json to_json(const flight::EdgeReport& explained) {
+    const auto events_json = [](const std::vector<flight::EdgeEvent>& events) {
         Json json = Json::array();
         for (const auto& event : events) {
             json.push_back({{"what", event.what}, {"time_s", event.time_s}, {"after_s", event.after_s}});
         }
         return json;
     };
-    return {{"edge", to_string(explained.kind)},          {"time_s", explained.edge.time_s},
-            {"height_percent", explained.height_percent}, {"witnesses", events_json(explained.witnesses)},
-            {"nearby", events_json(explained.nearby)},    {"verdict", explained.verdict}};
+    return {{"edge", to_string(explained.kind)},
+            {"time_s", explained.edge.time_s},
+            {"height_percent", explained.height_percent},
+            {"witnesses", events_json(explained.matching_events)},
+            {"nearby", events_json(explained.other_events)},
+            {"verdict", explained.agreement}};
 }
 
-Json to_json(const flight::ChosenTracks& tracks, const flight::PowerStatistics& power, const flight::Sortie& sortie) {
+Json to_json(const flight::SelectedTracks& tracks, const flight::PowerStatistics& power, const flight::Sortie& sortie) {
     Json phases = Json::array();
     for (const auto& span : sortie.phases) phases.push_back(to_json(power, span));
     Json edges = Json::array();
-    for (const auto& edge : explain_edges(tracks, sortie)) edges.push_back(to_json(edge));
+    for (const auto& edge : compare_edges_with_events(tracks, sortie)) edges.push_back(to_json(edge));
     Json held = Json::array();
     for (const auto& hold : sortie.held) {
         held.push_back({{"height_m", hold.height_m},
@@ -80,9 +83,7 @@ Json to_json(const flight::PowerReport& report) {
     }
     Json idle;
     if (report.idle) {
-        idle = {{"mean_a", report.idle->mean_a},
-                {"deviation_a", report.idle->deviation_a},
-                {"samples", report.idle->samples}};
+        idle = {{"mean_a", report.idle->mean_a}, {"deviation_a", report.idle->sd_a}, {"samples", report.idle->samples}};
     }
     return {{"current_origin", to_string(report.origin)},
             {"idle_current", idle},
@@ -109,7 +110,7 @@ std::string power_text(const flight::FlightSeries& series, const flight::PowerRe
     std::string text = fmt::format("power: {}, current {}\n", power_track(series).source, to_string(power.origin));
     if (power.idle) {
         text += fmt::format("idle current on the ground: {:.4f} A, standard deviation {:.4f} A, {} samples\n",
-                            power.idle->mean_a, power.idle->deviation_a, power.idle->samples);
+                            power.idle->mean_a, power.idle->sd_a, power.idle->samples);
     }
     if (power.energy_closure_percent) {
         text += fmt::format("integral of power over the on-board energy counter: {:+.2f} %\n",
@@ -119,9 +120,9 @@ std::string power_text(const flight::FlightSeries& series, const flight::PowerRe
         text += fmt::format("integral of current over the on-board charge counter: {:+.2f} %\n",
                             *power.charge_closure_percent);
     }
-    double longest_s = 0.0;
-    for (const auto& gap : power.gaps) longest_s = std::max(longest_s, gap.duration_s);
-    text += fmt::format("gaps in flight: {}, the longest {:.1f} s\n", power.gaps.size(), longest_s);
+    double max_s = 0.0;
+    for (const auto& gap : power.gaps) max_s = std::max(max_s, gap.duration_s);
+    text += fmt::format("gaps in flight: {}, the longest {:.1f} s\n", power.gaps.size(), max_s);
     for (const auto& fault : power.power_faults) text += fmt::format("power fault: {}\n", fault);
     for (const auto& warning : power.warnings) text += fmt::format("doubtful: {}\n", warning);
     return text;
@@ -129,14 +130,14 @@ std::string power_text(const flight::FlightSeries& series, const flight::PowerRe
 
 }  // namespace
 
-std::string witness_text(const flight::ExplainedEdge& edge) {
+std::string witness_text(const flight::EdgeReport& edge) {
     std::string text;
-    const auto add = [&](const flight::EdgeWitness& event, const char* how) {
+    const auto add = [&](const flight::EdgeEvent& event, const char* how) {
         text += fmt::format("{}{}{} at {:.1f} s ({:+.1f} s)", text.empty() ? "" : "; ", how, event.what, event.time_s,
                             event.after_s);
     };
-    for (const auto& witness : edge.witnesses) add(witness, "");
-    for (const auto& event : edge.nearby) add(event, "nearby: ");
+    for (const auto& witness : edge.matching_events) add(witness, "");
+    for (const auto& event : edge.other_events) add(event, "nearby: ");
     return text.empty() ? "-" : text;
 }
 
@@ -150,13 +151,13 @@ std::string describe_flight(const flight::FlightSeries& series, const flight::Fl
 TextTable edges_table(const flight::FlightSeries& series, const flight::FlightPhases& phases) {
     TextTable table{
         {"sortie", "edge", "time s", "altitude m", "height %", "throttle %", "gap s", "verdict", "witnesses"}, {}};
-    const flight::ChosenTracks tracks(series);
+    const flight::SelectedTracks tracks(series);
     for (std::size_t s = 0; s < phases.sorties.size(); ++s) {
-        for (const auto& explained : explain_edges(tracks, phases.sorties[s])) {
+        for (const auto& explained : compare_edges_with_events(tracks, phases.sorties[s])) {
             const auto& edge = explained.edge;
             table.rows.push_back({fmt::format("{}", s + 1), std::string(to_string(explained.kind)),
                                   fixed(edge.time_s, 1), fixed(edge.altitude_m, 1), fixed(explained.height_percent, 1),
-                                  fixed(edge.throttle_percent, 0), fixed(edge.gap_s, 1), explained.verdict,
+                                  fixed(edge.throttle_percent, 0), fixed(edge.gap_s, 1), explained.agreement,
                                   witness_text(explained)});
         }
     }
@@ -172,14 +173,14 @@ std::string explanation(const flight::FlightSeries& series, const flight::Flight
     for (const auto& other : phases.ground_events) {
         text += fmt::format("no flight from {:.0f} to {:.0f} s: {}\n", other.start_s, other.end_s, other.what);
     }
-    if (!phases.motor_evidence.empty()) text += fmt::format("motor told by {}\n", phases.motor_evidence);
+    if (!phases.motor_source.empty()) text += fmt::format("motor told by {}\n", phases.motor_source);
     return text + power_text(series, power);
 }
 
 Json to_json(const flight::FlightSeries& series, const flight::FlightPhases& phases, const flight::PowerReport& power,
              const std::vector<std::string>& warnings) {
     Json sorties = Json::array();
-    const flight::ChosenTracks tracks(series);
+    const flight::SelectedTracks tracks(series);
     const flight::PowerStatistics statistics(series);
     for (const auto& sortie : phases.sorties) sorties.push_back(to_json(tracks, statistics, sortie));
     Json others = Json::array();
@@ -191,7 +192,7 @@ Json to_json(const flight::FlightSeries& series, const flight::FlightPhases& pha
             {"aircraft_name", series.aircraft_name},
             {"synthetic", flight::is_synthetic(series.aircraft_name)},
             {"power_source", power_track(series).source},
-            {"motor_evidence", phases.motor_evidence},
+            {"motor_evidence", phases.motor_source},
             {"sorties", sorties},
             {"not_flights", others},
             {"power", to_json(power)},
@@ -201,8 +202,8 @@ Json to_json(const flight::FlightSeries& series, const flight::FlightPhases& pha
 std::string altitude_profile(TerminalPlot plot, const flight::FlightSeries& series,
                              const flight::FlightPhases& phases) {
     auto time_s = power_track(series).time_s;
-    if (time_s.empty()) time_s = chosen_track(series, "altitude_m").time_s;
-    const auto altitude_m = chosen_at(series, "altitude_m", time_s);
+    if (time_s.empty()) time_s = select_track(series, "altitude_m").time_s;
+    const auto altitude_m = sample_selected_track(series, "altitude_m", time_s);
     if (altitude_m.empty()) return "";
     const auto [low, high] = std::ranges::minmax_element(altitude_m);
     if (*high - *low < 1.0) return "";

@@ -3,7 +3,7 @@
 #include "base/text_table.h"
 #include "cli/screen_table.h"
 #include "cli/terminal.h"
-#include "flight/edge_witness.h"
+#include "flight/edge_events.h"
 #include "flight/power_check.h"
 #include "flight/segmentation.h"
 
@@ -16,7 +16,7 @@
 namespace flightwatt::cli {
 
 /// What the autopilot says of an edge: its witnesses, then events nearby; '-' for nothing.
-std::string witness_text(const flight::ExplainedEdge& edge);
+std::string witness_text(const flight::EdgeReport& edge);
 
 /// The flight, its aircraft and how many sorties it holds: the title of its tables.
 std::string describe_flight(const flight::FlightSeries& series, const flight::FlightPhases& phases);

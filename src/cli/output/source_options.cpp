@@ -29,7 +29,7 @@ bool is_binary_log(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, file.gcount())));
-    if (!bytes.empty()) return telemetry::binary_framing(bytes).has_value();
+    if (!bytes.empty()) return telemetry::detect_binary_framing(bytes).has_value();
     const auto ending = path.extension().string();
     return ending == ".LOG" || ending == ".tlm" || ending == ".TLM" || ending == ".bin";
 }

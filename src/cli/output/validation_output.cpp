@@ -68,7 +68,7 @@ TextTable flights_table(const std::vector<mechanical::ValidatedFlight>& flights)
                                       fixed(estimate.energy_wh, 3), fmt::format("{:+.3f}", error_wh),
                                       part.phase == flight::Phase::landing
                                           ? "-"
-                                          : fmt::format("{:+.1f}", units::percent_of(error_wh, measured_wh)),
+                                          : fmt::format("{:+.1f}", units::percentage(error_wh, measured_wh)),
                                       interval ? fixed(interval->low_wh, 3) : "-",
                                       interval ? fixed(interval->high_wh, 3) : "-"});
             }
@@ -87,7 +87,7 @@ TextTable scores_table(const std::vector<mechanical::ValidatedFlight>& flights) 
             table.rows.push_back(
                 {part.name, model, fmt::format("{}", score->flights), fixed(score->mean_absolute_error_wh, 3),
                  fixed(score->mean_absolute_error_percent, 1), fmt::format("{:+.3f}", score->bias_wh),
-                 score->coverage_95 ? fmt::format("{:.0f} %", units::percent_of(*score->coverage_95, 1.0)) : "-"});
+                 score->coverage_95 ? fmt::format("{:.0f} %", units::percentage(*score->coverage_95, 1.0)) : "-"});
         }
     }
     return table;
@@ -119,7 +119,7 @@ std::string validation_text(const std::vector<mechanical::ValidatedFlight>& flig
     constexpr std::size_t few = 20;
     if (flights.size() < few) {
         text += fmt::format("coverage over {} flights means little: each counts for {:.0f} points\n", flights.size(),
-                            units::percent_of(1.0, static_cast<double>(flights.size())));
+                            units::percentage(1.0, static_cast<double>(flights.size())));
     }
     return text;
 }

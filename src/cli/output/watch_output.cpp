@@ -36,11 +36,11 @@ Json battery_json(const live::LiveBattery& battery) {
     return {{"soc_percent", optional_json(battery.soc_percent)},
             {"soc_by_voltage_percent", optional_json(battery.soc_by_voltage_percent)},
             {"initial_soc_percent", optional_json(known(battery.initial_soc_percent))},
-            {"initial_is_measured", battery.initial_is_measured},
+            {"initial_is_measured", battery.initial_is_from_voltage},
             {"drawn_ah", optional_json(battery.drawn_ah)},
-            {"voltage_off_v", optional_json(battery.voltage_off_v)},
-            {"reserve_in_s", optional_json(battery.reserve_in_s)},
-            {"chance_below_reserve", optional_json(battery.chance_below)}};
+            {"voltage_off_v", optional_json(battery.voltage_residual_v)},
+            {"reserve_in_s", optional_json(battery.time_to_reserve_s)},
+            {"chance_below_reserve", optional_json(battery.probability_below_reserve)}};
 }
 
 Json decision_json(const live::LiveDecision& decision, const compute::ComputeModel& compute) {
@@ -48,7 +48,7 @@ Json decision_json(const live::LiveDecision& decision, const compute::ComputeMod
               {"utility_per_s", decision.utility_per_s},
               {"next", nullptr},
               {"next_in_s", nullptr},
-              {"rest_utility_per_s", optional_json(decision.rest_utility)},
+              {"rest_utility_per_s", optional_json(decision.remaining_utility_per_s)},
               {"keeps_reserve", decision.keeps_reserve},
               {"final_soc_percent", optional_json(decision.final_soc_percent)},
               {"changes", decision.changes}};
@@ -65,9 +65,9 @@ std::string spare(const std::optional<double>& value, int decimals, const char* 
 
 /// "34.1 % and 10.92 V (30.2 % at the high end)"
 std::string landing_line(const live::LiveState& state) {
-    if (!state.prediction) return "waits for: " + state.waits_for;
+    if (!state.prediction) return "waits for: " + state.no_prediction_reason;
     const auto& prediction = *state.prediction;
-    auto text = fmt::format("{:.2f} Wh to the landing ({:.2f} to {:.2f})", prediction.rest.energy_wh,
+    auto text = fmt::format("{:.2f} Wh to the landing ({:.2f} to {:.2f})", prediction.remaining_energy.energy_wh,
                             prediction.interval.low_wh, prediction.interval.high_wh);
     if (!prediction.battery) return text;
     const auto& expected = prediction.battery->expected;
@@ -80,10 +80,10 @@ std::string landing_line(const live::LiveState& state) {
 }
 
 std::string reserve_line(const live::LiveState& state) {
-    if (!state.battery || !state.battery->reserve_in_s) return "";
-    auto text = fmt::format("reserve in {:.1f} min of cruise", *state.battery->reserve_in_s / 60.0);
-    if (const auto& chance = state.battery->chance_below)
-        text += fmt::format(", chance of landing below it {:.1f} %", units::percent_of(*chance, 1.0));
+    if (!state.battery || !state.battery->time_to_reserve_s) return "";
+    auto text = fmt::format("reserve in {:.1f} min of cruise", *state.battery->time_to_reserve_s / 60.0);
+    if (const auto& chance = state.battery->probability_below_reserve)
+        text += fmt::format(", chance of landing below it {:.1f} %", units::percentage(*chance, 1.0));
     if (const auto& turn = state.turn_home) {
         text += !turn->latest_in_s        ? ", too late to turn home with it"
                 : turn->path_can_be_flown ? ", home from anywhere on the path"
@@ -97,7 +97,8 @@ std::string schedule_line(const live::LiveState& state, const compute::ComputeMo
     const auto& decision = *state.decision;
     auto text = "runs " + run_text(decision.run, compute);
     if (decision.next) text += fmt::format(", in {:.0f} s {}", decision.next_in_s, run_text(*decision.next, compute));
-    if (decision.rest_utility) text += fmt::format("; utility {:.4g} a second to the end", *decision.rest_utility);
+    if (decision.remaining_utility_per_s)
+        text += fmt::format("; utility {:.4g} a second to the end", *decision.remaining_utility_per_s);
     if (!decision.keeps_reserve) text += "; no plan keeps the reserve";
     return text;
 }
@@ -136,7 +137,7 @@ Json json_of(const live::LiveState& state, const compute::ComputeModel& compute)
               {"sortie", state.sortie},
               {"began_in_air", state.began_in_air},
               {"lift_off_s", optional_json(state.lift_off_s)},
-              {"flight_s", state.flight_s},
+              {"flight_s", state.flight_time_s},
               {"energy_wh", optional_json(state.energy_wh)},
               {"power_w", optional_json(state.power_w)},
               {"expected_power_w", optional_json(state.expected_power_w)},
@@ -152,12 +153,12 @@ Json json_of(const live::LiveState& state, const compute::ComputeModel& compute)
               {"warnings", state.warnings},
               {"messages", state.messages},
               {"restarts", state.restarts},
-              {"silent_s", state.silent_s},
-              {"others", state.others},
+              {"silent_s", state.time_since_message_s},
+              {"others", state.other_senders},
               {"unusable", state.unusable}};
     if (state.battery) json["battery"] = battery_json(*state.battery);
     if (state.prediction) json["prediction"] = json_of(*state.prediction);
-    if (!state.prediction) json["waits_for"] = state.waits_for;
+    if (!state.prediction) json["waits_for"] = state.no_prediction_reason;
     if (const auto& turn = state.turn_home)
         json["turn_home"] = {{"latest_in_s", optional_json(turn->latest_in_s)},
                              {"path_can_be_flown", turn->path_can_be_flown}};
@@ -184,7 +185,7 @@ PageEvent page_event(const live::LiveState& state, const compute::ComputeModel& 
 }
 
 std::string line_of(const live::LiveState& state, const compute::ComputeModel& compute) {
-    auto line = fmt::format("{:.0f} s  {} {:.0f} s  {}  {}", state.time_s, phase_text(state), state.flight_s,
+    auto line = fmt::format("{:.0f} s  {} {:.0f} s  {}  {}", state.time_s, phase_text(state), state.flight_time_s,
                             spare(state.energy_wh, 3, "Wh"), spare(state.power_w, 1, "W"));
     for (const auto& text :
          {charge_text(state), landing_line(state), reserve_line(state), schedule_line(state, compute)})
@@ -197,9 +198,9 @@ std::vector<std::string> screen_of(const live::LiveState& state, const compute::
     const auto aircraft = state.aircraft_id.empty() ? std::string("no aircraft yet") : "aircraft " + state.aircraft_id;
     std::vector<std::string> lines{
         fmt::format("{}  {:.0f} s  {}{}", aircraft, state.time_s, phase_text(state),
-                    state.flight_s > 0.0 ? fmt::format(", {:.1f} min in the air{}", state.flight_s / 60.0,
-                                                       state.began_in_air ? " since the first message" : "")
-                                         : ""),
+                    state.flight_time_s > 0.0 ? fmt::format(", {:.1f} min in the air{}", state.flight_time_s / 60.0,
+                                                            state.began_in_air ? " since the first message" : "")
+                                              : ""),
         fmt::format("energy    {}, {} now{}, {}, {}", spare(state.energy_wh, 3, "Wh"), spare(state.power_w, 1, "W"),
                     state.expected_power_w ? fmt::format(" ({:.1f} W expected)", *state.expected_power_w) : "",
                     spare(state.voltage_v, 2, "V"), spare(state.altitude_m, 0, "m"))};

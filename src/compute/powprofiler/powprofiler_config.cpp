@@ -93,10 +93,10 @@ std::vector<double> range_of(std::string_view text, const Location& where) {
     }
     const double first = power && bounds[0] <= 0.0 ? 1.0 : bounds[0];
     const double steps = power ? std::log(bounds[1] / first) / std::log(by) : (bounds[1] - first) / by;
-    if (!(steps <= static_cast<double>(most_configurations))) {
+    if (!(steps <= static_cast<double>(max_configurations))) {
         throw InputError(where, fmt::format("range = {} makes too many values", text));
     }
-    return power ? multiplied(bounds[0], bounds[1], by) : evenly_spaced(bounds[0], bounds[1], by);
+    return power ? geometric_range(bounds[0], bounds[1], by) : linear_range(bounds[0], bounds[1], by);
 }
 
 void read_component(const Property& property, const Location& where, PowprofilerComponent& component) {
@@ -172,7 +172,7 @@ void require_recordings(const PowprofilerConfig& config, const std::filesystem::
                          "[components] say how to profile, not what came out");
     }
     for (const auto& combination : config.combinations) {
-        const auto error = reading_error(combination.recording);
+        const auto error = open_error(combination.recording);
         if (!error) continue;
         const auto reason =
             error == std::errc::no_such_file_or_directory ? "does not exist" : "cannot be read: " + error.message();

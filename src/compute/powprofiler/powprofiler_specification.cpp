@@ -44,11 +44,11 @@ ProfiledComponent profiled(const PowprofilerComponent& written) {
         component.parameters.push_back(fmt::format("qos_{}", ranges.size() + 1));
         ranges.push_back({component.parameters.back(), argument.values});
     }
-    if (count > static_cast<double>(most_configurations)) {
+    if (count > static_cast<double>(max_configurations)) {
         throw InputError(written.where, fmt::format("{} has {} configurations", written.name, count),
                          "profile fewer values");
     }
-    for (const auto& qos : combinations_of(ranges)) {
+    for (const auto& qos : cartesian_product(ranges)) {
         component.configurations.push_back({qos, {shell_words(line_of(written, qos))}, {}});
     }
     return component;

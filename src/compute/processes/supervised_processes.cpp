@@ -16,8 +16,8 @@
 namespace flightwatt::compute {
 namespace {
 
-std::optional<Event> next_event(int events) {
-    Event event;
+std::optional<SupervisorEvent> next_event(int events) {
+    SupervisorEvent event;
     while (true) {
         const auto count = ::read(events, &event, sizeof event);
         if (count == sizeof event) return event;
@@ -28,7 +28,7 @@ std::optional<Event> next_event(int events) {
 
 }  // namespace
 
-std::string to_string(const EndedCommand& ended) {
+std::string to_string(const FinishedCommand& ended) {
     if (ended.start_error != 0) {
         return fmt::format("cannot be started: {}", std::strerror(ended.start_error));
     }
@@ -64,22 +64,22 @@ SupervisedProcesses::~SupervisedProcesses() {
     ::close(events_);
 }
 
-std::vector<EndedCommand> SupervisedProcesses::ended() {
-    std::vector<EndedCommand> all;
+std::vector<FinishedCommand> SupervisedProcesses::ended() {
+    std::vector<FinishedCommand> all;
     while (const auto event = next_event(events_)) {
-        if (event->kind == Event::Kind::finished) {
+        if (event->kind == SupervisorEvent::Kind::finished) {
             report_ = event->report;
             continue;
         }
         const std::chrono::steady_clock::time_point time{std::chrono::nanoseconds(event->time_ns)};
-        const bool started = event->kind == Event::Kind::ended;
+        const bool started = event->kind == SupervisorEvent::Kind::ended;
         // Of one that cannot be started the exit code follows, and is of no interest.
         all.push_back({event->command, started ? 0 : event->status, started ? event->status : 0, time});
     }
     return all;
 }
 
-EndReport SupervisedProcesses::end() {
+ShutdownReport SupervisedProcesses::end() {
     if (supervisor_ < 0) return report_;
     ::kill(supervisor_, SIGTERM);
     while (::waitpid(supervisor_, nullptr, 0) < 0 && errno == EINTR) {

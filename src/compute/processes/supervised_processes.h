@@ -9,7 +9,7 @@
 namespace flightwatt::compute {
 
 /// A command that has ended, or that could not be started.
-struct EndedCommand {
+struct FinishedCommand {
     std::size_t command = 0;  ///< which of those given, from 0
     int start_error = 0;      ///< errno, if it could not be started
     int wait_status = 0;      ///< as waitpid() gives it
@@ -17,7 +17,7 @@ struct EndedCommand {
 };
 
 /// "exit code 3", "killed by SIGSEGV", "cannot be started: No such file or directory".
-std::string to_string(const EndedCommand& ended);
+std::string to_string(const FinishedCommand& ended);
 
 /// Commands (no shell) that run at the same time, each in a process group of its own, below a supervisor: a process of
 /// ours that adopts whatever they fork, also what takes itself away with setsid(). When this object goes, or the
@@ -31,16 +31,16 @@ class SupervisedProcesses {
     SupervisedProcesses& operator=(const SupervisedProcesses&) = delete;
 
     /// A file that poll() finds readable when a command has ended.
-    int file() const { return events_; }
+    int poll_fd() const { return events_; }
     /// The commands that have ended since the last call.
-    std::vector<EndedCommand> ended();
+    std::vector<FinishedCommand> ended();
     /// Ends everything that still runs and waits for that.
-    EndReport end();
+    ShutdownReport end();
 
   private:
     int events_ = -1;
     ::pid_t supervisor_ = -1;
-    EndReport report_;
+    ShutdownReport report_;
 };
 
 }  // namespace flightwatt::compute

@@ -62,7 +62,7 @@ std::vector<::pid_t> descendants_of(::pid_t root) {
 constexpr int cannot_execute = 127;               // what a shell exits with then
 constexpr std::chrono::seconds kill_patience(5);  // after SIGKILL only the kernel can delay an end
 
-void tell(int events, Event event) {
+void tell(int events, SupervisorEvent event) {
     event.time_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
     // Nobody listens any more if the profiler is gone; the ending goes on all the same.
     [[maybe_unused]] const auto ignored = ::write(events, &event, sizeof event);
@@ -83,7 +83,7 @@ void tell(int events, Event event) {
     std::vector<char*> arguments(words.size() + 1);  // and a null pointer
     std::ranges::transform(words, arguments.begin(), [](auto& word) { return const_cast<char*>(word.c_str()); });
     ::execvp(arguments.front(), arguments.data());
-    tell(events, {Event::Kind::not_started, command, errno, 0, {}});
+    tell(events, {SupervisorEvent::Kind::not_started, command, errno, 0, {}});
     ::_exit(cannot_execute);
 }
 
@@ -95,7 +95,7 @@ class Supervisor {
         const auto child = ::fork();
         const auto command = static_cast<std::uint32_t>(commands_.size());
         if (child == 0) become(words, command, options, events_);
-        if (child < 0) tell(events_, {Event::Kind::not_started, command, errno, 0, {}});
+        if (child < 0) tell(events_, {SupervisorEvent::Kind::not_started, command, errno, 0, {}});
         if (child > 0) ::setpgid(child, child);  // here too: it may be signalled before it runs
         commands_.push_back(child);
     }
@@ -111,14 +111,14 @@ class Supervisor {
             if (known == commands_.end()) continue;
             const auto command = static_cast<std::uint32_t>(known - commands_.begin());
             *known = -1;
-            tell(events_, {Event::Kind::ended, command, status, 0, {}});
+            tell(events_, {SupervisorEvent::Kind::ended, command, status, 0, {}});
         }
     }
 
-    EndReport end_all() {
-        EndReport report;
+    ShutdownReport end_all() {
+        ShutdownReport report;
         auto living = descendants_of(::getpid());
-        report.others = static_cast<std::size_t>(std::count_if(living.begin(), living.end(), [&](auto pid) {
+        report.orphans = static_cast<std::size_t>(std::count_if(living.begin(), living.end(), [&](auto pid) {
             return std::find(commands_.begin(), commands_.end(), pid) == commands_.end();
         }));
         for (const auto pid : living) ::kill(pid, SIGTERM);
@@ -132,7 +132,7 @@ class Supervisor {
             }
             wait_for_child(std::chrono::milliseconds(10));
         }
-        report.left = descendants_of(::getpid()).size();
+        report.survivors = descendants_of(::getpid()).size();
         return report;
     }
 
@@ -163,14 +163,14 @@ void supervise(const std::vector<std::vector<std::string>>& commands, const Supe
     ::prctl(PR_SET_CHILD_SUBREAPER, 1);
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (::getppid() != parent) ::_exit(0);  // it has died before the line above
-    Supervisor supervisor(events, options.patience);
+    Supervisor supervisor(events, options.kill_timeout);
     for (const auto& words : commands) supervisor.start(words, options);
     while (true) {
         int signal = 0;
         if (::sigwait(&awaited, &signal) != 0 || signal == SIGTERM) break;
         if (signal == SIGCHLD) supervisor.reap();
     }
-    Event last{Event::Kind::finished, 0, 0, 0, supervisor.end_all()};
+    SupervisorEvent last{SupervisorEvent::Kind::finished, 0, 0, 0, supervisor.end_all()};
     tell(events, last);
     ::_exit(0);
 }

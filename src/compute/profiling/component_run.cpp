@@ -1,7 +1,7 @@
 #include "compute/profiling/component_run.h"
 
 #include "base/error.h"
-#include "base/file_use.h"
+#include "base/overwrite_guard.h"
 #include "compute/processes/supervised_processes.h"
 #include "compute/profiling/run_statistics.h"
 
@@ -32,7 +32,7 @@ class OutputFile {
   public:
     explicit OutputFile(const std::filesystem::path& path) : path_(path) {
         if (path.empty()) return;
-        refuse_to_lose(path);
+        check_overwrite(path);
         file_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
         if (file_ < 0) {
             throw OutputError(fmt::format("cannot write {}: {}", path.string(), std::strerror(errno)));
@@ -55,7 +55,7 @@ class OutputFile {
 
 class Watch {
   public:
-    Watch(Clock::time_point start, SupervisedProcesses* processes, const ProfileTiming& timing, const RunFrame& frame)
+    Watch(Clock::time_point start, SupervisedProcesses* processes, const ProfileTiming& timing, const RunContext& frame)
         : processes_(processes), timing_(timing), frame_(frame), start_(start), next_(start_) {
         frame_.sampler->read();  // what came before the start is not of this run
     }
@@ -82,10 +82,10 @@ class Watch {
         const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
         pollfd files[3] = {{frame_.signals, POLLIN, 0},
                            {frame_.sampler->file(), POLLIN, 0},
-                           {processes_ == nullptr ? -1 : processes_->file(), POLLIN, 0}};
+                           {processes_ == nullptr ? -1 : processes_->poll_fd(), POLLIN, 0}};
         const auto wait_ms = std::clamp<long>(static_cast<long>(left.count()), 0, 60000);
         if (::poll(files, 3, static_cast<int>(wait_ms)) <= 0) return;
-        if (files[0].revents != 0) throw Interrupted(frame_.caught());
+        if (files[0].revents != 0) throw Interrupted(frame_.received_signal());
     }
 
     void take_ends() {
@@ -135,7 +135,7 @@ class Watch {
 
     SupervisedProcesses* processes_;
     const ProfileTiming& timing_;
-    const RunFrame& frame_;
+    const RunContext& frame_;
     Clock::time_point start_;
     Clock::time_point next_;                    ///< when the sensor is asked
     std::optional<Clock::time_point> over_at_;  ///< when the first command ended
@@ -144,12 +144,12 @@ class Watch {
 
 void note(ComponentRun& run, const std::string& text) { run.note += (run.note.empty() ? "" : "; ") + text; }
 
-void note_ending(const EndReport& report, bool ended_by_itself, ComponentRun& run) {
-    if (ended_by_itself && report.others > 0) {
-        note(run, fmt::format("left {} process{} behind, ended", report.others, report.others == 1 ? "" : "es"));
+void note_ending(const ShutdownReport& report, bool ended_by_itself, ComponentRun& run) {
+    if (ended_by_itself && report.orphans > 0) {
+        note(run, fmt::format("left {} process{} behind, ended", report.orphans, report.orphans == 1 ? "" : "es"));
     }
     if (report.killed) note(run, "did not answer SIGTERM, killed");
-    if (report.left > 0) note(run, fmt::format("{} processes cannot be ended", report.left));
+    if (report.survivors > 0) note(run, fmt::format("{} processes cannot be ended", report.survivors));
 }
 
 }  // namespace
@@ -161,10 +161,10 @@ std::string_view to_string(RunStatus status) {
 }
 
 ComponentRun run_component(const std::vector<std::vector<std::string>>& commands, const ProfileTiming& timing,
-                           const RunFrame& frame) {
+                           const RunContext& frame) {
     if (commands.empty()) return Watch(Clock::now(), nullptr, timing, frame).run();
     const OutputFile output(frame.output);
-    const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(ticks(frame.patience_s));
+    const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(ticks(frame.kill_timeout_s));
     const auto start = Clock::now();  // before, or a late start of ours would make theirs look short
     SupervisedProcesses processes(commands, {output.file(), output.file(), patience});
     auto run = Watch(start, &processes, timing, frame).run();

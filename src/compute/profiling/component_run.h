@@ -35,13 +35,13 @@ class Interrupted : public std::runtime_error {
 };
 
 /// How a run is done.
-struct RunFrame {
+struct RunContext {
     PowerSampler* sampler = nullptr;
-    double interval_s = 0.1;       ///< between questions to a sensor
-    std::filesystem::path output;  ///< what the commands print and say goes there; removed if nothing does
-    int signals = -1;              ///< a file that is readable once the program is to end (SignalWatch)
-    std::function<int()> caught;   ///< the signal then
-    double patience_s = 2.0;       ///< between SIGTERM and SIGKILL
+    double interval_s = 0.1;               ///< between questions to a sensor
+    std::filesystem::path output;          ///< what the commands print and say goes there; removed if nothing does
+    int signals = -1;                      ///< a file that is readable once the program is to end (SignalWatch)
+    std::function<int()> received_signal;  ///< the signal then
+    double kill_timeout_s = 2.0;           ///< between SIGTERM and SIGKILL
 };
 
 /// Runs the commands, samples power until the duration is over, or without one until the first of them ends,
@@ -49,7 +49,7 @@ struct RunFrame {
 /// function: the status tells. No commands: the idle computer, for the duration. Throws Interrupted, and what
 /// the sampler throws; nothing runs on then either.
 ComponentRun run_component(const std::vector<std::vector<std::string>>& commands, const ProfileTiming& timing,
-                           const RunFrame& frame);
+                           const RunContext& frame);
 
 /// The same from a recording: the samples after the warm-up, of the duration if there is one. Each sample
 /// stands for the mean interval, a single one for `interval_s`.

@@ -3,9 +3,9 @@
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/error.h"
-#include "base/file_use.h"
 #include "base/fingerprint.h"
 #include "base/number.h"
+#include "base/overwrite_guard.h"
 #include "compute/qos_range.h"
 
 #include <algorithm>
@@ -117,7 +117,7 @@ std::vector<ProfileRun> planned_runs(const ProfileSpecification& specification,
                 run.component = component.name;
                 run.index = index;
                 run.node = node;
-                run.configuration = spell_qos(component.parameters, configuration.qos);
+                run.configuration = format_qos(component.parameters, configuration.qos);
                 run.repeat = repeat;
                 run.fingerprint = fingerprint_of(specification.sampler, component.timing, configuration);
                 run.layer1 = layer1_name(component.name, run.configuration, repeat);
@@ -129,12 +129,12 @@ std::vector<ProfileRun> planned_runs(const ProfileSpecification& specification,
     return runs;
 }
 
-void claim_results(const ProfileSpecification& specification, const std::vector<ProfileRun>& runs,
-                   const std::filesystem::path& folder) {
-    const OwnFiles own;
+void check_result_files(const ProfileSpecification& specification, const std::vector<ProfileRun>& runs,
+                        const std::filesystem::path& folder) {
+    const OverwriteExemption own;
     const auto claim = [&](const std::string& name, std::string_view beginning) {
         const auto file = folder / name;
-        declare_output(file);
+        register_output(file);
         std::error_code none;
         if (!std::filesystem::exists(file, none) || read_file(file).starts_with(beginning)) return;
         throw UsageError(
@@ -148,11 +148,11 @@ void claim_results(const ProfileSpecification& specification, const std::vector<
     for (const auto& component : specification.components) {
         claim(component.name + ".csv", fmt::format("# Power of {}, profiled by flightwatt", component.name));
     }
-    for (const auto& run : runs) declare_output(folder / run.layer1);
+    for (const auto& run : runs) register_output(folder / run.layer1);
 }
 
-void recall_runs(std::vector<ProfileRun>& runs, const std::filesystem::path& folder) {
-    const OwnFiles own;
+void load_completed_runs(std::vector<ProfileRun>& runs, const std::filesystem::path& folder) {
+    const OverwriteExemption own;
     std::map<std::string, Record> records;
     try {
         records = read_records(folder);
@@ -163,7 +163,7 @@ void recall_runs(std::vector<ProfileRun>& runs, const std::filesystem::path& fol
         const auto found = records.find(key_of(run.component, run.configuration, std::to_string(run.repeat)));
         if (found == records.end()) continue;
         try {
-            run.is_done = run.was_done = recall(run, found->second, folder);
+            run.is_done = run.is_from_earlier_run = recall(run, found->second, folder);
         } catch (const InputError&) {
             run.trace = {};  // its layer 1 is gone or damaged
         }
@@ -188,7 +188,7 @@ void write_runs(const std::vector<ProfileRun>& runs, const std::filesystem::path
                    "fingerprint"});
     for (const auto& run : runs)
         if (run.is_done) add_row(csv, run);
-    const OwnFiles own;  // after each run anew
+    const OverwriteExemption own;  // after each run anew
     write_file_atomically(folder / runs_name, csv.text());
 }
 

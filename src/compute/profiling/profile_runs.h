@@ -17,15 +17,15 @@ inline constexpr const char* idle_component = "idle";
 
 /// One run of one configuration: to be done, or done.
 struct ProfileRun {
-    std::string component;      ///< or idle_component
-    std::size_t index = 0;      ///< of the component in its specification
-    std::size_t node = 0;       ///< of its configurations
-    std::string configuration;  ///< "fps=4 key_bits=32"
-    std::size_t repeat = 1;     ///< from 1
-    std::string fingerprint;    ///< of all that its result depends on in the specification
-    std::string layer1;         ///< its file, relative to the results
-    bool is_done = false;       ///< of the rest only what follows here is set by running
-    bool was_done = false;      ///< by an earlier call
+    std::string component;             ///< or idle_component
+    std::size_t index = 0;             ///< of the component in its specification
+    std::size_t node = 0;              ///< of its configurations
+    std::string configuration;         ///< "fps=4 key_bits=32"
+    std::size_t repeat = 1;            ///< from 1
+    std::string fingerprint;           ///< of all that its result depends on in the specification
+    std::string layer1;                ///< its file, relative to the results
+    bool is_done = false;              ///< of the rest only what follows here is set by running
+    bool is_from_earlier_run = false;  ///< by an earlier call
     RunStatus status = RunStatus::failed;
     std::string note;
     PowerTrace trace;
@@ -40,12 +40,12 @@ std::vector<ProfileRun> planned_runs(const ProfileSpecification& specification,
 
 /// Makes sure that the results replace nothing but those of an earlier profile. Throws UsageError where the folder has
 /// files of their names that no profile wrote, or where one of them is an input.
-void claim_results(const ProfileSpecification& specification, const std::vector<ProfileRun>& runs,
-                   const std::filesystem::path& folder);
+void check_result_files(const ProfileSpecification& specification, const std::vector<ProfileRun>& runs,
+                        const std::filesystem::path& folder);
 
 /// Marks the runs that an earlier call did with the same fingerprint, status ok, as done, with what they measured.
 /// Others, also those that failed, are to be done again. A runs.csv that cannot be read counts as none.
-void recall_runs(std::vector<ProfileRun>& runs, const std::filesystem::path& folder);
+void load_completed_runs(std::vector<ProfileRun>& runs, const std::filesystem::path& folder);
 
 /// The files of a run: its layer 1 if it has power.
 void write_layer1(const ProfileRun& run, const std::filesystem::path& folder);

@@ -17,21 +17,22 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-class Meter {
+class CommandSampler {
   public:
-    explicit Meter(const SamplerSettings& settings) : command_(settings.command), interval_s_(settings.interval_s) {
+    explicit CommandSampler(const SamplerSettings& settings)
+        : command_(settings.command), interval_s_(settings.interval_s) {
         start();
     }
-    ~Meter() { stop(); }
-    Meter(const Meter&) = delete;
-    Meter& operator=(const Meter&) = delete;
+    ~CommandSampler() { stop(); }
+    CommandSampler(const CommandSampler&) = delete;
+    CommandSampler& operator=(const CommandSampler&) = delete;
 
     int file() const { return output_; }
 
     std::vector<PowerReading> read() {
         std::vector<PowerReading> readings;
         take_output(readings);
-        const auto ended = running_ ? running_->ended() : std::vector<EndedCommand>();
+        const auto ended = running_ ? running_->ended() : std::vector<FinishedCommand>();
         if (!ended.empty()) {
             take_output(readings);  // what it printed before it ended
             require_success(ended.front());
@@ -67,9 +68,9 @@ class Meter {
         output_ = -1;
     }
 
-    void require_success(const EndedCommand& ended) const {
+    void require_success(const FinishedCommand& ended) const {
         if (ended.start_error == 0 && ended.wait_status == 0 && lines_ > 0) return;
-        throw NoAnswerError(
+        throw NoResultError(
             fmt::format("the sampler '{}' {}{}", name(), ended.start_error == 0 ? "ended: " : "", to_string(ended)) +
             (lines_ == 0 ? ", without a reading" : ""));
     }
@@ -117,7 +118,7 @@ class Meter {
 }  // namespace
 
 PowerSampler open_command_sampler(const SamplerSettings& settings) {
-    auto meter = std::make_shared<Meter>(settings);
+    auto meter = std::make_shared<CommandSampler>(settings);
     PowerSampler sampler;
     sampler.kind = SamplerKind::command;
     sampler.source = fmt::format("{}", fmt::join(settings.command, " "));

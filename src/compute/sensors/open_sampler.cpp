@@ -134,7 +134,7 @@ PowerSampler open_sampler(const SamplerSettings& settings) {
         sampler.found = lines_of(sensors);
         return sampler;
     }
-    throw NoAnswerError(fmt::format(
+    throw NoResultError(fmt::format(
         "there is no {} below {} that can be read; looked for INA238 and INA3221 (bus/i2c/drivers/ina*, bus/iio, "
         "class/hwmon), RAPL (class/powercap, often for root alone) and class/power_supply; a [sampler] of "
         "kind \"command\" reads any other meter",

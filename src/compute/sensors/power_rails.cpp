@@ -28,9 +28,9 @@ constexpr int channels = 3;  // of an INA3221
 
 /// The first line without its end; std::nullopt if it cannot be read.
 std::optional<std::string> sysfs_text(const path& file) {
-    constexpr std::size_t longest_line = 256;
+    constexpr std::size_t max_line = 256;
     std::ifstream stream(file);
-    std::array<char, longest_line> text{};
+    std::array<char, max_line> text{};
     if (!stream.getline(text.data(), text.size())) return std::nullopt;
     std::string line(text.data());
     while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
@@ -125,7 +125,7 @@ std::vector<std::size_t> rails_of_total(const std::vector<std::string>& names, c
     for (const auto& name : wanted) {
         const auto found = std::ranges::find(names, name);
         if (found == names.end()) {
-            throw NoAnswerError(fmt::format("there is no rail '{}'; there are {}", name, fmt::join(names, ", ")));
+            throw NoResultError(fmt::format("there is no rail '{}'; there are {}", name, fmt::join(names, ", ")));
         }
         chosen.push_back(static_cast<std::size_t>(found - names.begin()));
     }

@@ -25,7 +25,7 @@ struct EnergyCounter {
 
 /// Which of the rails (by name) add up to the power of the board: those `wanted`; else the one that is known
 /// to carry everything (VDD_IN, POM_5V_IN, ...); else all but those that are fed by another rail. Returns
-/// indices. Throws NoAnswerError for one wanted that is not there, listing those that are.
+/// indices. Throws NoResultError for one wanted that is not there, listing those that are.
 std::vector<std::size_t> rails_of_total(const std::vector<std::string>& names, const std::vector<std::string>& wanted);
 
 /// TI INA3221 through NVIDIA's IIO driver (Jetson Nano, TX2, Xavier under L4T up to 32):
@@ -39,8 +39,8 @@ std::vector<PowerRail> iio_rails(const std::filesystem::path& sysfs);
 std::vector<PowerRail> hwmon_rails(const std::filesystem::path& sysfs);
 
 /// TI INA238 through the kernel's hwmon driver (Jetson Thor, where it measures the input; Documentation/hwmon/ina238):
-/// class/hwmon/hwmon2 whose name is ina238, and bus/i2c/drivers/ina238/2-0044/hwmon/hwmon2, with power1_input [uW], else
-/// in1_input [mV] times curr1_input [mA]; in0 is the shunt's voltage.
+/// class/hwmon/hwmon2 whose name is ina238, and bus/i2c/drivers/ina238/2-0044/hwmon/hwmon2, with power1_input [uW],
+/// else in1_input [mV] times curr1_input [mA]; in0 is the shunt's voltage.
 std::vector<PowerRail> ina238_rails(const std::filesystem::path& sysfs);
 
 /// Batteries and supplies: class/power_supply/BAT0 with power_now [uW], else voltage_now [uV] times

@@ -41,7 +41,7 @@ struct PowerSampler {
     std::string source;              ///< what it reads, for people: "VDD_IN (/sys/...)"
     std::vector<std::string> found;  ///< what probing found, a line a sensor
     /// The readings since the last call: of a sensor the one that it shows now, of a program those that it
-    /// has printed meanwhile. Throws InputError for what is no reading, NoAnswerError if there is no more.
+    /// has printed meanwhile. Throws InputError for what is no reading, NoResultError if there is no more.
     std::function<std::vector<PowerReading>()> read;
     /// A file that poll() finds readable when readings come by themselves; -1: ask for them.
     std::function<int()> file = [] { return -1; };

@@ -11,7 +11,7 @@ namespace flightwatt::exchange {
 namespace {
 
 constexpr auto inav = "INAV";
-constexpr int most_inav_cells = 12;
+constexpr int max_inav_cells = 12;
 constexpr double cw_per_w = 100.0;     // INAV's powers are in 0.01 W,
 constexpr double mwh_per_wh = 1000.0;  // its energies in mWh,
 constexpr double cm_per_m = 100.0;     // its speeds in cm/s
@@ -29,10 +29,10 @@ long long whole(double value, const char* name) {
 }  // namespace
 
 ParameterText to_inav(const EstimatorInput& input) {
-    const auto pack = pack_facts(input, inav);
+    const auto pack = summarize_pack(input, inav);
     const auto& model = required_model(input, inav);
-    if (pack.cells > most_inav_cells) {
-        throw InputError({}, fmt::format("bat_cells would be {}: INAV takes up to {}", pack.cells, most_inav_cells),
+    if (pack.cells > max_inav_cells) {
+        throw InputError({}, fmt::format("bat_cells would be {}: INAV takes up to {}", pack.cells, max_inav_cells),
                          "is the number of cells right (--cells)?");
     }
     const double cruise_w = mean_power_w(input, flight::Phase::cruise);

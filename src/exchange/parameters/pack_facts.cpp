@@ -12,23 +12,23 @@ namespace flightwatt::exchange {
 namespace {
 
 constexpr double full_soc_percent = 100.0;
-constexpr double greatest_cell_voltage_v = 4.25;
+constexpr double max_charged_cell_v = 4.25;
 
 }  // namespace
 
-PackFacts pack_facts(const EstimatorInput& input, const std::string& reader) {
+PackSummary summarize_pack(const EstimatorInput& input, const std::string& reader) {
     if (!input.battery) {
         throw InputError({}, fmt::format("{} needs a battery, and none is given", reader),
                          "give a pack of `flightwatt battery`, or a mission");
     }
-    PackFacts facts;
+    PackSummary facts;
     facts.battery = *input.battery;
     if (facts.battery.thevenin) {
         facts.battery.resistance_ohm += facts.battery.thevenin->rc_resistance_ohm;
         facts.battery.thevenin->rc_resistance_ohm = 0.0;
     }
     const double full_v = open_circuit_voltage_v(facts.battery, full_soc_percent);
-    const auto fewest = static_cast<int>(std::max(1.0, std::ceil(full_v / greatest_cell_voltage_v)));
+    const auto fewest = static_cast<int>(std::max(1.0, std::ceil(full_v / max_charged_cell_v)));
     facts.cells = input.cells_in_series.value_or(facts.battery.cells.value_or(fewest));
     facts.capacity_mah = facts.battery.capacity_ah / units::milli;
     facts.energy_wh = full_energy_wh(facts.battery);

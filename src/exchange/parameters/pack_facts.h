@@ -5,7 +5,7 @@
 namespace flightwatt::exchange {
 
 /// The battery as estimators see it, that know one resistance: after the RC pair has settled.
-struct PackFacts {
+struct PackSummary {
     battery::Battery battery;  ///< with the RC pair's resistance in series
     int cells = 1;             ///< in series
     double capacity_mah = 0.0;
@@ -13,7 +13,7 @@ struct PackFacts {
 };
 
 /// Throws InputError without a battery.
-PackFacts pack_facts(const EstimatorInput& input, const std::string& reader);
+PackSummary summarize_pack(const EstimatorInput& input, const std::string& reader);
 
 /// Throws InputError without a model.
 const mechanical::MechanicalModel& required_model(const EstimatorInput& input, const std::string& reader);

@@ -44,9 +44,9 @@ double phase_energy_wh(const EstimatorInput& input, flight::Phase phase) {
     return units::wh_from_joule(mean_power_w(input, phase) * input.model->phases[phase].duration_s);
 }
 
-/// The charge drawn of a full pack, as a part, when its open-circuit voltage has fallen to `voltage_v`: 0 above the full
-/// one, 1 below the empty one.
-double drawn_part(const battery::OpenCircuitVoltage& curve, double voltage_v) {
+/// The charge drawn of a full pack, as a part, when its open-circuit voltage has fallen to `voltage_v`: 0 above the
+/// full one, 1 below the empty one.
+double drawn_fraction(const battery::OpenCircuitVoltage& curve, double voltage_v) {
     const auto& volts = curve.voltage_v;
     if (voltage_v >= volts.back()) return 0.0;
     if (voltage_v <= volts.front()) return 1.0;
@@ -60,7 +60,7 @@ double drawn_part(const battery::OpenCircuitVoltage& curve, double voltage_v) {
 }  // namespace
 
 ParameterText to_paparazzi(const EstimatorInput& input) {
-    const auto pack = pack_facts(input, energy_monitor);
+    const auto pack = summarize_pack(input, energy_monitor);
     const auto& model = required_model(input, energy_monitor);
     if (!model.physical) {
         throw InputError(
@@ -95,7 +95,7 @@ ParameterText to_paparazzi(const EstimatorInput& input) {
 }
 
 ParameterText to_paparazzi_map(const EstimatorInput& input) {
-    const auto pack = pack_facts(input, energy_monitor);
+    const auto pack = summarize_pack(input, energy_monitor);
     if (!pack.battery.thevenin) {
         throw InputError({}, "the battery has one voltage at all states of charge: there is no charge to tell by it",
                          "identify the open-circuit voltage with flightwatt battery");
@@ -108,7 +108,7 @@ ParameterText to_paparazzi_map(const EstimatorInput& input) {
             const double source_v =
                 pack.cells * cv / cv_per_v + cell_a * input.cells_in_parallel * pack.battery.resistance_ohm;
             result.text +=
-                fmt::format(", {:.6f}", cell_mah * drawn_part(pack.battery.thevenin->open_circuit, source_v));
+                fmt::format(", {:.6f}", cell_mah * drawn_fraction(pack.battery.thevenin->open_circuit, source_v));
         }
         result.text += '\n';
     }

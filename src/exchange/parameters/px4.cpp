@@ -10,10 +10,10 @@ namespace flightwatt::exchange {
 namespace {
 
 constexpr auto px4 = "PX4";
-constexpr int most_px4_cells = 16;
-constexpr double most_resistance_ohm = 0.2;  // of a cell
-constexpr double most_capacity_mah = 100'000.0;
-constexpr double most_current_a = 500.0;
+constexpr int max_px4_cells = 16;
+constexpr double max_resistance_ohm = 0.2;  // of a cell
+constexpr double max_capacity_mah = 100'000.0;
+constexpr double max_current_a = 500.0;
 constexpr double half_charged_percent = 50.0;
 
 /// PX4's state of charge by voltage is linear from V_EMPTY to V_CHARGED.
@@ -25,7 +25,7 @@ struct VoltageLine {
 
 /// The line of least squares through the open-circuit voltage of a cell from 10 to 100 % of charge: PX4 asks for a
 /// voltage before the steep drop.
-VoltageLine voltage_line(const PackFacts& pack) {
+VoltageLine voltage_line(const PackSummary& pack) {
     constexpr int points = 91;
     Eigen::MatrixXd basis(points, 2);
     Eigen::VectorXd volts(points);
@@ -57,11 +57,11 @@ std::string px4_line(const char* name, double value, ParameterType type) {
 }  // namespace
 
 ParameterText to_px4(const EstimatorInput& input) {
-    const auto pack = pack_facts(input, px4);
+    const auto pack = summarize_pack(input, px4);
     const double cell_ohm = pack.battery.resistance_ohm / pack.cells;
-    require_up_to(pack.cells, most_px4_cells, "BAT1_N_CELLS", "cells");
-    require_up_to(cell_ohm, most_resistance_ohm, "BAT1_R_INTERNAL", "ohm");
-    require_up_to(pack.capacity_mah, most_capacity_mah, "BAT1_CAPACITY", "mAh");
+    require_up_to(pack.cells, max_px4_cells, "BAT1_N_CELLS", "cells");
+    require_up_to(cell_ohm, max_resistance_ohm, "BAT1_R_INTERNAL", "ohm");
+    require_up_to(pack.capacity_mah, max_capacity_mah, "BAT1_CAPACITY", "mAh");
     ParameterText result;
     result.text = "# Written by flightwatt export " FLIGHTWATT_VERSION
                   ", for PX4 and QGroundControl\n"
@@ -87,7 +87,7 @@ ParameterText to_px4(const EstimatorInput& input) {
     if (input.model) {
         const double current_a =
             internal_current_a(pack.battery, mean_power_w(input, flight::Phase::cruise), {half_charged_percent, 0.0});
-        require_up_to(current_a, most_current_a, "BAT_AVRG_CURRENT", "A");
+        require_up_to(current_a, max_current_a, "BAT_AVRG_CURRENT", "A");
         result.text += px4_line("BAT_AVRG_CURRENT", current_a, ParameterType::real32);
     } else {
         result.notes.emplace_back("without a model BAT_AVRG_CURRENT is left out");

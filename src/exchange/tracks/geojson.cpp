@@ -18,7 +18,7 @@ Json coordinates(const TrackPoint& point) {
     return place;
 }
 
-Json feature(const FlownTrack& track, const TrackPart& part, TrackColour colour) {
+Json feature(const FlownTrack& track, const TrackSegment& part, TrackColour colour) {
     auto line = Json::array();
     auto times_s = Json::array();
     auto times = Json::array();
@@ -46,7 +46,7 @@ Json feature(const FlownTrack& track, const TrackPart& part, TrackColour colour)
 
 std::string to_geojson(const FlownTrack& track, TrackColour colour) {
     auto features = Json::array();
-    for (const auto& part : coloured_parts(track, colour)) features.push_back(feature(track, part, colour));
+    for (const auto& part : coloured_segments(track, colour)) features.push_back(feature(track, part, colour));
     const Json collection{{"type", "FeatureCollection"}, {"features", features}};
     return collection.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -33,7 +33,7 @@ std::string to_gpx(const FlownTrack& track, TrackColour colour) {
     add_text(metadata, "name", track.flight);
     add_text(metadata, "desc", track.aircraft);
     if (track.clock != TrackClock::none) add_text(metadata, "time", utc_text(track, track.points.front().time_s));
-    for (const auto& part : coloured_parts(track, colour)) {
+    for (const auto& part : coloured_segments(track, colour)) {
         auto line = gpx.append_child("trk");
         add_text(line, "name", part.name);
         add_style(line, part.colour);

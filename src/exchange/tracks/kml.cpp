@@ -16,7 +16,7 @@ std::string kml_colour(const std::string& colour) {
     return "ff" + colour.substr(5, 2) + colour.substr(3, 2) + colour.substr(1, 2);
 }
 
-void add_styles(pugi::xml_node& document, const std::vector<TrackPart>& parts) {
+void add_styles(pugi::xml_node& document, const std::vector<TrackSegment>& parts) {
     std::set<std::string> colours;
     for (const auto& part : parts) colours.insert(part.colour);
     for (const auto& colour : colours) {
@@ -32,7 +32,7 @@ const char* altitude_mode(const FlownTrack& track) {
     return track.points.front().altitude_m ? "absolute" : "clampToGround";
 }
 
-void add_track(pugi::xml_node& placemark, const FlownTrack& track, const TrackPart& part) {
+void add_track(pugi::xml_node& placemark, const FlownTrack& track, const TrackSegment& part) {
     auto line = placemark.append_child("gx:Track");
     add_text(line, "altitudeMode", altitude_mode(track));
     for (std::size_t i = part.first; i <= part.last; ++i)
@@ -45,7 +45,7 @@ void add_track(pugi::xml_node& placemark, const FlownTrack& track, const TrackPa
     }
 }
 
-void add_line(pugi::xml_node& placemark, const FlownTrack& track, const TrackPart& part) {
+void add_line(pugi::xml_node& placemark, const FlownTrack& track, const TrackSegment& part) {
     auto line = placemark.append_child("LineString");
     add_text(line, "altitudeMode", altitude_mode(track));
     std::string places;
@@ -58,7 +58,7 @@ void add_line(pugi::xml_node& placemark, const FlownTrack& track, const TrackPar
     add_text(line, "coordinates", places);
 }
 
-std::string description(const FlownTrack& track, const TrackPart& part) {
+std::string description(const FlownTrack& track, const TrackSegment& part) {
     auto text =
         fmt::format("{:.1f} to {:.1f} s of the log", track.points[part.first].time_s, track.points[part.last].time_s);
     if (part.mean_power_w) text += fmt::format(", {:.1f} W on average", *part.mean_power_w);
@@ -68,7 +68,7 @@ std::string description(const FlownTrack& track, const TrackPart& part) {
 }  // namespace
 
 std::string to_kml(const FlownTrack& track, TrackColour colour) {
-    const auto parts = coloured_parts(track, colour);
+    const auto parts = coloured_segments(track, colour);
     pugi::xml_document file;
     auto kml = file.append_child("kml");
     kml.append_attribute("xmlns") = "http://www.opengis.net/kml/2.2";

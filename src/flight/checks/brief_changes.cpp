@@ -12,16 +12,16 @@
 namespace flightwatt::flight {
 namespace {
 
-constexpr double doubtful_change_part = 0.02;  // of the energy
-constexpr double doubtful_beside_throttle_part = 0.04;
-constexpr std::size_t least_at_throttle = 10;
-constexpr std::size_t longest_change = 5;
-constexpr std::size_t longest_fall_without_throttle = 3;
+constexpr double doubtful_change_fraction = 0.02;  // of the energy
+constexpr double doubtful_beside_throttle_fraction = 0.04;
+constexpr std::size_t min_at_throttle = 10;
+constexpr std::size_t max_change = 5;
+constexpr std::size_t max_fall_without_throttle = 3;
 constexpr double change_factor = 0.65;
 constexpr double fall_factor_without_throttle = 0.3;
 constexpr double throttle_factor = 0.7;
 constexpr double running_throttle_percent = 30.0;
-constexpr double least_neighbour_part = 0.1;  // of what was held for three samples
+constexpr double min_neighbour_part = 0.1;  // of what was held for three samples
 
 /// The samples [first, last) and those beside them.
 struct BriefChange {
@@ -31,7 +31,7 @@ struct BriefChange {
     double higher_w;
 };
 
-struct Judge {
+struct BriefChangeDetector {
     const PowerRecord& record;
     double held_w = 0.0;
 
@@ -43,35 +43,35 @@ struct Judge {
 
     bool falls(const BriefChange& change) const {
         const auto& throttle = record.throttle_percent;
-        const auto most_w = least_and_most(record.power_w, change).second;
-        if (change.lower_w <= least_neighbour_part * held_w) return false;
+        const auto max_w = least_and_most(record.power_w, change).second;
+        if (change.lower_w <= min_neighbour_part * held_w) return false;
         const auto length = change.last - change.first;
-        if (length == 1 && most_w < 0.2 * change.lower_w) return true;
+        if (length == 1 && max_w < 0.2 * change.lower_w) return true;
         if (throttle.empty())
-            return length <= longest_fall_without_throttle && most_w < fall_factor_without_throttle * change.lower_w;
+            return length <= max_fall_without_throttle && max_w < fall_factor_without_throttle * change.lower_w;
         const double beside = std::min(throttle[change.first - 1], throttle[change.last]);
         const double least = least_and_most(throttle, change).first;
-        return most_w < change_factor * change.lower_w && least > running_throttle_percent &&
+        return max_w < change_factor * change.lower_w && least > running_throttle_percent &&
                least >= throttle_factor * beside;
     }
 
     bool rises(const BriefChange& change) const {
         const auto& throttle = record.throttle_percent;
-        const auto least_w = least_and_most(record.power_w, change).first;
-        if (change.last - change.first == 1 && least_w - change.higher_w > held_w / 2.0) return true;
-        if (throttle.empty() || least_w - change.higher_w <= least_neighbour_part * held_w) return false;
+        const auto min_w = least_and_most(record.power_w, change).first;
+        if (change.last - change.first == 1 && min_w - change.higher_w > held_w / 2.0) return true;
+        if (throttle.empty() || min_w - change.higher_w <= min_neighbour_part * held_w) return false;
         const double beside = std::max(throttle[change.first - 1], throttle[change.last]);
         constexpr double coarse_percent = 5.0;
-        return change_factor * least_w > change.higher_w &&
+        return change_factor * min_w > change.higher_w &&
                least_and_most(throttle, change).second <= beside / throttle_factor + coarse_percent;
     }
 
-    double carried_j(const BriefChange& change, double longest_s) const {
+    double carried_j(const BriefChange& change, double max_s) const {
         double energy_j = 0.0;
         for (auto i = change.first; i < change.last; ++i) {
             const double power_w = record.power_w[i];
             const double apart_w = power_w > change.higher_w ? power_w - change.higher_w : change.lower_w - power_w;
-            energy_j += apart_w * std::min(record.time_s[i + 1] - record.time_s[i - 1], longest_s) / 2.0;
+            energy_j += apart_w * std::min(record.time_s[i + 1] - record.time_s[i - 1], max_s) / 2.0;
         }
         return energy_j;
     }
@@ -81,61 +81,61 @@ struct Judge {
 std::map<int, std::vector<std::size_t>> samples_by_throttle(const PowerRecord& record) {
     constexpr double step_percent = 5.0;
     std::map<int, std::vector<std::size_t>> samples;
-    for_each_flown(record, [&](std::size_t i) {
+    for_each_in_flight(record, [&](std::size_t i) {
         const double percent = record.throttle_percent[i];
         if (percent > running_throttle_percent) samples[static_cast<int>(percent / step_percent)].push_back(i);
     });
-    std::erase_if(samples, [](const auto& step) { return step.second.size() < least_at_throttle; });
+    std::erase_if(samples, [](const auto& step) { return step.second.size() < min_at_throttle; });
     return samples;
 }
 
 }  // namespace
 
-void warn_of_power_beside_throttle(const FlownPower& flown, Warnings& warnings) {
+void warn_of_power_beside_throttle(const InFlightPower& flown, Warnings& warnings) {
     const auto& record = flown.record;
     if (record.throttle_percent.empty()) return;
     const auto by_throttle = samples_by_throttle(record);
     if (by_throttle.size() < 2) return;  // a switch, or a throttle that stands still
-    const double longest_s = gap_threshold_s(record.time_s);
+    const double max_s = gap_threshold_s(record.time_s);
     double lacking_j = 0.0;
     double beyond_j = 0.0;
     std::size_t samples = 0;
     for (const auto& [step, at_step] : by_throttle) {
         std::vector<double> powers;
         for (const auto i : at_step) powers.push_back(record.power_w[i]);
-        const double usual_w = upper_median(std::move(powers));
+        const double median_w = median_high(std::move(powers));
         for (const auto i : at_step) {
             const double power_w = record.power_w[i];
-            const bool is_usual = power_w >= change_factor * usual_w && change_factor * power_w <= usual_w;
+            const bool is_usual = power_w >= change_factor * median_w && change_factor * power_w <= median_w;
             if (is_usual || i == 0 || i + 1 == record.time_s.size()) continue;
-            const double lasts_s = std::min((record.time_s[i + 1] - record.time_s[i - 1]) / 2.0, longest_s);
-            (power_w < usual_w ? lacking_j : beyond_j) += std::abs(power_w - usual_w) * lasts_s;
+            const double lasts_s = std::min((record.time_s[i + 1] - record.time_s[i - 1]) / 2.0, max_s);
+            (power_w < median_w ? lacking_j : beyond_j) += std::abs(power_w - median_w) * lasts_s;
             ++samples;
         }
     }
-    if (lacking_j + beyond_j <= doubtful_beside_throttle_part * flown.energy_j) return;
+    if (lacking_j + beyond_j <= doubtful_beside_throttle_fraction * flown.energy_j) return;
     warnings.push_back(fmt::format(
         "power is far from what it usually is at the same throttle in {} samples in flight: {} % "
         "of the energy less, {} % more",
         samples, percent_of_whole(lacking_j / flown.energy_j), percent_of_whole(beyond_j / flown.energy_j)));
 }
 
-void warn_of_brief_changes(const FlownPower& flown, Warnings& warnings) {
+void warn_of_brief_changes(const InFlightPower& flown, Warnings& warnings) {
     const auto& record = flown.record;
     const auto& power_w = record.power_w;
-    const double longest_s = gap_threshold_s(record.time_s);
-    Judge judge{record};
+    const double max_s = gap_threshold_s(record.time_s);
+    BriefChangeDetector judge{record};
     for (std::size_t i = 2; i < power_w.size(); ++i)
         judge.held_w = std::max(judge.held_w, std::min({power_w[i - 2], power_w[i - 1], power_w[i]}));
     double carried_j = 0.0;
     std::size_t changes = 0;
-    for (const auto& [first, last] : record.flown) {
+    for (const auto& [first, last] : record.in_flight) {
         for (auto i = std::max<std::size_t>(first, 1); i < last; ++i) {
-            for (auto end = i + 1; end <= i + longest_change && end < power_w.size(); ++end) {
+            for (auto end = i + 1; end <= i + max_change && end < power_w.size(); ++end) {
                 const auto [lower_w, higher_w] = std::minmax(power_w[i - 1], power_w[end]);
                 const BriefChange change{i, end, lower_w, higher_w};
                 if (!judge.falls(change) && !judge.rises(change)) continue;
-                carried_j += judge.carried_j(change, longest_s);
+                carried_j += judge.carried_j(change, max_s);
                 ++changes;
                 i = end;
                 break;
@@ -143,9 +143,9 @@ void warn_of_brief_changes(const FlownPower& flown, Warnings& warnings) {
         }
     }
     const double part = carried_j / flown.energy_j;
-    if (part <= doubtful_change_part) return;
+    if (part <= doubtful_change_fraction) return;
     warnings.push_back(fmt::format("{} time{} the power rises or falls for up to {} samples{}: {} % of the energy",
-                                   changes, changes == 1 ? "" : "s", longest_change,
+                                   changes, changes == 1 ? "" : "s", max_change,
                                    record.throttle_percent.empty() ? "" : " and the throttle does not",
                                    percent_of_whole(part)));
 }

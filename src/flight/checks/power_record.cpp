@@ -27,7 +27,7 @@ double resolution_of(const Track& counter) {
 
 }  // namespace
 
-PowerRecord record_of(const ChosenTracks& tracks, const FlightPhases& phases) {
+PowerRecord make_power_record(const SelectedTracks& tracks, const FlightPhases& phases) {
     const auto& power = tracks["power_w"];
     const auto on_clock = [&](const char* name) {
         const auto& track = tracks[name];
@@ -51,7 +51,7 @@ PowerRecord record_of(const ChosenTracks& tracks, const FlightPhases& phases) {
     for (const auto& sortie : phases.sorties) {
         const auto first = std::lower_bound(time_s.begin(), time_s.end(), sortie.start_s());
         const auto last = std::upper_bound(first, time_s.end(), sortie.end_s());
-        record.flown.push_back(
+        record.in_flight.push_back(
             {static_cast<std::size_t>(first - time_s.begin()), static_cast<std::size_t>(last - time_s.begin())});
         if (!time_s.empty()) record.energy_j += integrated(time_s, record.power_w, sortie.start_s(), sortie.end_s());
         record.duration_s += sortie.end_s() - sortie.start_s();
@@ -65,7 +65,7 @@ std::vector<std::size_t> resting_samples(const PowerRecord& record, const std::v
     const bool motor_known = !record.throttle_percent.empty();
     const auto is_off = [&](std::size_t i) {
         if (motor_known) return record.throttle_percent[i] <= options.idle_throttle_percent;
-        return std::ranges::none_of(record.flown,
+        return std::ranges::none_of(record.in_flight,
                                     [&](const SampleRange& flown) { return i >= flown.first && i < flown.last; });
     };
     auto rest = rests.begin();

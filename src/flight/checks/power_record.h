@@ -1,9 +1,9 @@
 #pragma once
 
 #include "flight/checks/runs.h"
-#include "flight/chosen_track.h"
 #include "flight/flight_phases.h"
 #include "flight/segmentation.h"
+#include "flight/selected_track.h"
 
 #include <cstddef>
 #include <string>
@@ -26,12 +26,12 @@ struct PowerRecord {
     std::vector<double> altitude_time_s;  ///< the altitude's own clock
     bool is_sum_of_circuits = false;      ///< with voltages of their own
     std::string power_source;             ///< "ENERGY.power"
-    std::vector<SampleRange> flown;       ///< the samples of each sortie
+    std::vector<SampleRange> in_flight;   ///< the samples of each sortie
     double energy_j = 0.0;                ///< in flight
     double duration_s = 0.0;
 };
 
-PowerRecord record_of(const ChosenTracks& tracks, const FlightPhases& phases);
+PowerRecord make_power_record(const SelectedTracks& tracks, const FlightPhases& phases);
 
 /// Indices of the power samples at rest on the ground with the motor off; where no throttle tells that of the motor, at
 /// rest outside of the sorties.

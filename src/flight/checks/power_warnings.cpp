@@ -18,44 +18,44 @@ namespace flightwatt::flight {
 namespace {
 
 constexpr double doubtful_rest_a = 1.0;
-constexpr double doubtful_rest_part = 0.05;
+constexpr double doubtful_rest_fraction = 0.05;
 constexpr double doubtful_closure_percent = 3.0;
-constexpr double doubtful_phase_part = 0.10;       // of the phase's energy,
+constexpr double doubtful_phase_fraction = 0.10;   // of the phase's energy,
 constexpr double doubtful_phase_of_flight = 0.02;  // and of the flight's
 constexpr double doubtful_gain_drift = 0.10;
 constexpr double resolved_counts = 100.0;  // steps of the counter in a quarter of a flight
 constexpr double doubtful_product_part = 0.05;
-constexpr double told_gap_part = 0.02;  // links drop out for seconds all the time
-constexpr double doubtful_gap_part = 0.04;
-constexpr double doubtful_gaps_part = 0.05;  // all together, beyond usual intervals
-constexpr double doubtful_silence_part = 0.06;
-constexpr double greatest_pack_v = 60.0;     // 14 LiPo cells
-constexpr double least_pack_v = 2.5;         // one cell, empty
-constexpr double least_voltage_part = 0.55;  // 2.3 V of a cell that began full
-constexpr double least_mean_power_w = 3.0;
+constexpr double told_gap_fraction = 0.02;  // links drop out for seconds all the time
+constexpr double doubtful_gap_fraction = 0.04;
+constexpr double doubtful_gaps_fraction = 0.05;  // all together, beyond usual intervals
+constexpr double doubtful_silence_fraction = 0.06;
+constexpr double max_pack_v = 60.0;        // 14 LiPo cells
+constexpr double min_pack_v = 2.5;         // one cell, empty
+constexpr double min_voltage_part = 0.55;  // 2.3 V of a cell that began full
+constexpr double min_mean_power_w = 3.0;
 
-void warn_of_rest(const FlownPower& flown, Warnings& warnings) {
+void warn_of_rest(const InFlightPower& flown, Warnings& warnings) {
     const auto& idle = flown.evidence.at_rest;
     if (!idle || flown.record.current_a.empty()) return;
     std::vector<double> currents;
-    for_each_flown(flown.record, [&](std::size_t i) { currents.push_back(flown.record.current_a[i]); });
+    for_each_in_flight(flown.record, [&](std::size_t i) { currents.push_back(flown.record.current_a[i]); });
     if (currents.empty()) return;
     const double part = std::abs(idle->mean_a) / std::max(std::abs(mean(currents)), 1e-9);
-    if (std::abs(idle->mean_a) < doubtful_rest_a && part < doubtful_rest_part) return;
+    if (std::abs(idle->mean_a) < doubtful_rest_a && part < doubtful_rest_fraction) return;
     warnings.push_back(
         fmt::format("the current is {:.2f} A at rest on the ground, {} % of the mean in flight: what the electronics "
                     "draw, or an offset of the sensor that its counters share; --correct-idle-offset takes it out",
                     idle->mean_a, percent_of_whole(part)));
 }
 
-double counted(const FlownPower& flown, const std::vector<double>& counter, double start_s, double end_s) {
+double counted(const InFlightPower& flown, const std::vector<double>& counter, double start_s, double end_s) {
     const auto& time_s = flown.record.time_s;
     return interpolate_clamped(time_s, counter, end_s) - interpolate_clamped(time_s, counter, start_s);
 }
 
-void warn_of_closure(const FlownPower& flown, Warnings& warnings) {
+void warn_of_closure(const InFlightPower& flown, Warnings& warnings) {
     const auto compare = [&](const char* name, const std::optional<double>& closure, double rounding_percent) {
-        if (!closure || std::abs(*closure) > faulty_closure_percent + rounding_percent) return;  // a fault
+        if (!closure || std::abs(*closure) > max_closure_percent + rounding_percent) return;  // a fault
         if (std::abs(*closure) <= doubtful_closure_percent + rounding_percent) return;
         warnings.push_back(
             fmt::format("what was measured in flight is {:+.1f} % away from the on-board {} counter", *closure, name));
@@ -65,12 +65,12 @@ void warn_of_closure(const FlownPower& flown, Warnings& warnings) {
     compare("charge", report.charge_closure_percent, report.charge_rounding_percent);
 }
 
-double measured_wh(const FlownPower& flown, double start_s, double end_s) {
+double measured_wh(const InFlightPower& flown, double start_s, double end_s) {
     return units::wh_from_joule(integrated(flown.record.time_s, flown.record.power_w, start_s, end_s));
 }
 
 /// A sensor whose gain changes while the whole still agrees with the counter: by quarters of a sortie.
-void warn_of_gain_drift(const FlownPower& flown, Warnings& warnings) {
+void warn_of_gain_drift(const InFlightPower& flown, Warnings& warnings) {
     constexpr int quarters = 4;
     const auto& counter_wh = flown.record.energy_wh;
     for (const auto& sortie : flown.evidence.phases.sorties) {
@@ -80,7 +80,7 @@ void warn_of_gain_drift(const FlownPower& flown, Warnings& warnings) {
         for (int quarter = 0; quarter < quarters; ++quarter) {
             const double start_s = sortie.start_s() + quarter * quarter_s;
             const double count_wh = counted(flown, counter_wh, start_s, start_s + quarter_s);
-            if (count_wh < doubtful_phase_part * units::wh_from_joule(flown.energy_j) ||
+            if (count_wh < doubtful_phase_fraction * units::wh_from_joule(flown.energy_j) ||
                 count_wh < resolved_counts * flown.record.energy_resolution_wh)
                 continue;
             const double gain = measured_wh(flown, start_s, start_s + quarter_s) / count_wh;
@@ -95,16 +95,16 @@ void warn_of_gain_drift(const FlownPower& flown, Warnings& warnings) {
     }
 }
 
-void warn_of_phases(const FlownPower& flown, Warnings& warnings) {
+void warn_of_phases(const InFlightPower& flown, Warnings& warnings) {
     const auto& closure = flown.evidence.report.energy_closure_percent;
-    if (!closure || std::abs(*closure) > faulty_closure_percent) return;
+    if (!closure || std::abs(*closure) > max_closure_percent) return;
     const double resolved_wh = 2.0 * flown.record.energy_resolution_wh;
     for (const auto& sortie : flown.evidence.phases.sorties) {
         for (const auto& span : sortie.phases) {
             const double measured = measured_wh(flown, span.start.time_s, span.end.time_s);
             const double count_wh = counted(flown, flown.record.energy_wh, span.start.time_s, span.end.time_s);
             const double apart_wh = std::abs(measured - count_wh);
-            if (apart_wh <= doubtful_phase_part * std::abs(count_wh) + resolved_wh ||
+            if (apart_wh <= doubtful_phase_fraction * std::abs(count_wh) + resolved_wh ||
                 apart_wh <= doubtful_phase_of_flight * units::wh_from_joule(flown.energy_j)) {
                 continue;
             }
@@ -130,20 +130,20 @@ struct GapSum {
 };
 
 /// Where the altitude, which comes more often, pauses too, no message came, or the clock jumped.
-void warn_of_silence(const FlownPower& flown, Warnings& warnings) {
+void warn_of_silence(const InFlightPower& flown, Warnings& warnings) {
     const auto& time_s = flown.record.altitude_time_s;
-    const double usual_s = usual_interval_s(time_s);
+    const double median_s = median_interval_s(time_s);
     const double gap_s = gap_threshold_s(time_s);
     GapSum sum;
     for (const auto& sortie : flown.evidence.phases.sorties) {
         for (std::size_t i = 1; i < time_s.size(); ++i) {
             const double interval_s = time_s[i] - time_s[i - 1];
             if (interval_s <= gap_s || time_s[i - 1] < sortie.start_s() || time_s[i] > sortie.end_s()) continue;
-            sum.add(time_s[i - 1], interval_s, flown.energy_j / flown.duration_s * (interval_s - usual_s));
+            sum.add(time_s[i - 1], interval_s, flown.energy_j / flown.duration_s * (interval_s - median_s));
         }
     }
     const double part = sum.carried_j / flown.energy_j;
-    if (part <= doubtful_silence_part) return;
+    if (part <= doubtful_silence_fraction) return;
     warnings.push_back(fmt::format(
         "{} gaps in the altitude in flight, {:.0f} s in all: no message came, or the clock jumped; {} % of the "
         "energy lies in them, and no counter confirms it",
@@ -152,10 +152,10 @@ void warn_of_silence(const FlownPower& flown, Warnings& warnings) {
 
 /// A gap that begins or ends a sortie hides when that was: no counter helps. Many short ones add up: of these what is
 /// beyond a usual interval.
-void warn_of_gaps(const FlownPower& flown, Warnings& warnings) {
+void warn_of_gaps(const InFlightPower& flown, Warnings& warnings) {
     const auto& record = flown.record;
     const auto& time_s = record.time_s;
-    const double usual_s = usual_interval_s(time_s);
+    const double median_s = median_interval_s(time_s);
     const double gap_s = gap_threshold_s(time_s);
     const auto& report = flown.evidence.report;
     const bool is_counted = report.energy_closure_percent || report.charge_closure_percent;
@@ -169,14 +169,14 @@ void warn_of_gaps(const FlownPower& flown, Warnings& warnings) {
             const bool inside = time_s[i - 1] >= sortie.start_s() && time_s[i] <= sortie.end_s();
             if (inside && is_counted) continue;  // the closure tells
             const double mean_w = std::abs(record.power_w[i - 1] + record.power_w[i]) / 2.0;
-            all.add(time_s[i - 1], interval_s, mean_w * (interval_s - usual_s));
-            if (mean_w * interval_s >= told_gap_part * flown.energy_j)
+            all.add(time_s[i - 1], interval_s, mean_w * (interval_s - median_s));
+            if (mean_w * interval_s >= told_gap_fraction * flown.energy_j)
                 large.add(time_s[i - 1], interval_s, mean_w * interval_s);
         }
     }
     if (!is_counted) warn_of_silence(flown, warnings);
-    const bool many = all.carried_j > doubtful_gaps_part * flown.energy_j;
-    if (!many && large.carried_j <= doubtful_gap_part * flown.energy_j) return;
+    const bool many = all.carried_j > doubtful_gaps_fraction * flown.energy_j;
+    if (!many && large.carried_j <= doubtful_gap_fraction * flown.energy_j) return;
     const auto& told = many ? all : large;
     warnings.push_back(
         fmt::format("{} gap{} in the power, {:.0f} s in all, the longest {:.0f} s from {:.1f} s on: {} % "
@@ -186,7 +186,7 @@ void warn_of_gaps(const FlownPower& flown, Warnings& warnings) {
 }
 
 /// Devices that report a power of their own beside voltage and current.
-void warn_of_device_products(const FlownPower& flown, Warnings& warnings) {
+void warn_of_device_products(const InFlightPower& flown, Warnings& warnings) {
     const auto& record = flown.record;
     if (!record.power_source.starts_with("ESC") || record.voltage_v.empty() || record.current_a.empty()) return;
     std::vector<double> product_w(record.time_s.size());
@@ -198,31 +198,31 @@ void warn_of_device_products(const FlownPower& flown, Warnings& warnings) {
     warnings.push_back(fmt::format(
         "the power of {} makes {:.2f} Wh in flight, its voltage times current {:.2f} Wh ({:+.0f} %): one of them is wrong",
         record.power_source, units::wh_from_joule(flown.energy_j), units::wh_from_joule(product_j),
-        units::percent_of(flown.energy_j - product_j, product_j)));
+        units::percentage(flown.energy_j - product_j, product_j)));
 }
 
-void warn_of_voltage(const FlownPower& flown, Warnings& warnings) {
+void warn_of_voltage(const InFlightPower& flown, Warnings& warnings) {
     std::vector<double> voltages;
     if (flown.record.voltage_v.empty()) return;
-    for_each_flown(flown.record, [&](std::size_t i) { voltages.push_back(flown.record.voltage_v[i]); });
+    for_each_in_flight(flown.record, [&](std::size_t i) { voltages.push_back(flown.record.voltage_v[i]); });
     if (voltages.empty()) return;
     const auto [low, high] = std::ranges::minmax(voltages);
-    if (high > greatest_pack_v) {
+    if (high > max_pack_v) {
         warnings.push_back(
             fmt::format("a voltage of {:.4g} V is that of more than 14 LiPo cells: is its unit V?", high));
-    } else if (high < least_pack_v) {
+    } else if (high < min_pack_v) {
         warnings.push_back(fmt::format("a voltage of {:.4g} V is less than a LiPo cell's: is its unit V?", high));
-    } else if (low < least_voltage_part * high) {
+    } else if (low < min_voltage_part * high) {
         warnings.push_back(fmt::format("the voltage falls to {:.4g} V from {:.4g} V: no pack stands that", low, high));
     }
 }
 
 }  // namespace
 
-std::vector<std::string> power_warnings_of(const PowerEvidence& evidence) {
+std::vector<std::string> find_power_warnings(const PowerCheckInput& evidence) {
     Warnings warnings;
     if (evidence.record.time_s.empty()) return warnings;
-    const FlownPower flown{evidence, evidence.record, evidence.record.energy_j, evidence.record.duration_s};
+    const InFlightPower flown{evidence, evidence.record, evidence.record.energy_j, evidence.record.duration_s};
     warn_of_rest(flown, warnings);
     warn_of_drift(flown, warnings);
     warn_of_voltage(flown, warnings);
@@ -238,7 +238,7 @@ std::vector<std::string> power_warnings_of(const PowerEvidence& evidence) {
     warn_of_power_beside_throttle(flown, warnings);
     warnings.insert(warnings.end(), evidence.samples.warnings.begin(), evidence.samples.warnings.end());
     warn_of_powerless_climb(flown, warnings);
-    if (const double mean_w = flown.energy_j / flown.duration_s; mean_w < least_mean_power_w) {
+    if (const double mean_w = flown.energy_j / flown.duration_s; mean_w < min_mean_power_w) {
         warnings.push_back(
             fmt::format("a mean of {:.3g} W in flight: hardly anything flies on that; is its unit W?", mean_w));
     }

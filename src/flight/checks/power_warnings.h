@@ -12,7 +12,7 @@
 namespace flightwatt::flight {
 
 /// What the warnings of a power record are made from.
-struct PowerEvidence {
+struct PowerCheckInput {
     const PowerRecord& record;
     const FlightPhases& phases;
     const SampleFindings& samples;
@@ -25,6 +25,6 @@ struct PowerEvidence {
 /// the counter in the whole or in a phase, energy in gaps that nothing confirms, single samples or a value that stands
 /// still that carry much of the energy, negative power, throttle without power, a voltage of no usual pack, power too
 /// little to fly on. Every doubt that could hide 5 % of the energy is told.
-std::vector<std::string> power_warnings_of(const PowerEvidence& evidence);
+std::vector<std::string> find_power_warnings(const PowerCheckInput& evidence);
 
 }  // namespace flightwatt::flight

@@ -12,8 +12,8 @@ struct SampleRange {
     std::size_t size() const { return last - first; }
 };
 
-/// The runs of neighbouring samples of `within` for which joins(i) is true, where each also continues(i), which compares
-/// it with the one before it. In order; none is empty.
+/// The runs of neighbouring samples of `within` for which joins(i) is true, where each also continues(i), which
+/// compares it with the one before it. In order; none is empty.
 template <typename Joins, typename Continues>
 std::vector<SampleRange> runs_of(SampleRange within, const Joins& joins, const Continues& continues) {
     std::vector<SampleRange> runs;

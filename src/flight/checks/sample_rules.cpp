@@ -15,7 +15,7 @@ namespace {
 
 constexpr double open_throttle_percent = 30.0;
 constexpr double loaded_rest_a = 5.0;
-constexpr double powerless_part = 0.05;  // of the upper quartile of the power at an open throttle
+constexpr double powerless_fraction = 0.05;  // of the upper quartile of the power at an open throttle
 constexpr double gliding_sink_m_per_s = 0.5;
 
 enum class Where { flight, rest, neither };
@@ -26,7 +26,7 @@ struct Samples {
     std::vector<Where> where;
     std::vector<double> step_s;  ///< for which each sample counts: half of both intervals, a gap's length at most
     double powerless_w = 0.0;    ///< no more is hardly anything, with an open throttle
-    double highest_a = 0.0;      ///< in flight
+    double max_a = 0.0;          ///< in flight
 
     bool in_flight(std::size_t i) const { return where[i] == Where::flight; }
     bool is_at_rest(std::size_t i) const { return where[i] == Where::rest; }
@@ -53,15 +53,15 @@ enum class Consequence { warning, fault };
 
 /// Among the samples of which `applies` is true, those in runs of which `holds` is.
 struct SampleRule {
-    /// Of percent, samples, lasts_s, energy_wh, source, highest_a; from_s, to_s, power_w of the longest run.
+    /// Of percent, samples, lasts_s, energy_wh, source, max_a; from_s, to_s, power_w of the longest run.
     const char* text;
     Test applies = in_flight;
     Test holds;
     Test continues = always;     ///< a run ends where it is false of a sample and the one before it
     std::size_t least_run = 1;   ///< samples, from which a run counts
     double least_level_s = 0.0;  ///< from so long on a run counts, and if it does not sink
-    std::size_t least_samples = 0;
-    double least_s = 0.0;  ///< of all runs
+    std::size_t min_samples = 0;
+    double min_s = 0.0;  ///< of all runs
     Share share = Share::samples;
     double limit;  ///< of the share: reported above it
     Consequence consequence = Consequence::warning;
@@ -75,7 +75,7 @@ constexpr SampleRule rules[] = {
     {.text = "more than 5 A in {percent:.0f} % of the samples on the ground with the motor off",
      .applies = [](const Samples& s, std::size_t i) { return s.is_at_rest(i) && s.has_current(); },
      .holds = [](const Samples& s, std::size_t i) { return std::abs(s.record.current_a[i]) > loaded_rest_a; },
-     .least_samples = 10,
+     .min_samples = 10,
      .limit = 0.10,
      .consequence = Consequence::fault},
     {.text = "power stands still at {power_w:.2f} W from {from_s:.1f} to {to_s:.1f} s, {percent:.0f} % of the flight",
@@ -91,8 +91,8 @@ constexpr SampleRule rules[] = {
      .limit = 0.04},
     {.text = "the current is {highest_a:.4g} A, its highest, in {percent:.0f} % of the samples in flight: does its "
              "sensor reach further?",
-     .holds = [](const Samples& s, std::size_t i) { return s.has_current() && s.record.current_a[i] == s.highest_a; },
-     .least_samples = standing,
+     .holds = [](const Samples& s, std::size_t i) { return s.has_current() && s.record.current_a[i] == s.max_a; },
+     .min_samples = standing,
      .limit = 0.05,
      .unless_previous = true},
     {.text = "{source} is 0 for {lasts_s:.0f} s in flight without a descent, the longest from {from_s:.0f} s on: "
@@ -108,13 +108,13 @@ constexpr SampleRule rules[] = {
     {.text = "no power in {percent:.0f} % of the samples in flight with more than 30 % throttle",
      .applies = [](const Samples& s, std::size_t i) { return s.in_flight(i) && s.is_open(i); },
      .holds = [](const Samples& s, std::size_t i) { return std::abs(s.record.power_w[i]) <= s.powerless_w; },
-     .least_samples = 5,
+     .min_samples = 5,
      .limit = 0.15},
     {.text = "{energy_wh:.3f} Wh, {percent:.0f} % of the energy in flight, were drawn outside of it with more than "
              "30 % throttle: a long run-up, or is the altitude wrong?",
      .applies = [](const Samples& s, std::size_t i) { return !s.in_flight(i); },
      .holds = [](const Samples& s, std::size_t i) { return s.is_open(i); },
-     .least_s = 30.0,
+     .min_s = 30.0,
      .share = Share::energy,
      .limit = 0.05},
 };
@@ -169,12 +169,12 @@ Samples samples_of(const PowerRecord& record, const std::vector<std::size_t>& re
     const auto count = record.time_s.size();
     Samples samples{record, std::vector(count, Where::neither), std::vector<double>(count)};
     for (const auto i : resting) samples.where[i] = Where::rest;
-    for (const auto& [first, last] : record.flown)
+    for (const auto& [first, last] : record.in_flight)
         std::fill(samples.where.begin() + static_cast<std::ptrdiff_t>(first),
                   samples.where.begin() + static_cast<std::ptrdiff_t>(last), Where::flight);
-    const double longest_s = gap_threshold_s(record.time_s);
+    const double max_s = gap_threshold_s(record.time_s);
     for (std::size_t i = 1; i < count; ++i) {
-        const double half_s = 0.5 * std::min(record.time_s[i] - record.time_s[i - 1], longest_s);
+        const double half_s = 0.5 * std::min(record.time_s[i] - record.time_s[i - 1], max_s);
         samples.step_s[i - 1] += half_s;
         samples.step_s[i] += half_s;
     }
@@ -182,10 +182,10 @@ Samples samples_of(const PowerRecord& record, const std::vector<std::size_t>& re
     for (std::size_t i = 0; i < count; ++i) {
         if (!samples.in_flight(i)) continue;
         if (samples.is_open(i)) running_w.push_back(std::abs(record.power_w[i]));
-        if (samples.has_current()) samples.highest_a = std::max(samples.highest_a, record.current_a[i]);
+        if (samples.has_current()) samples.max_a = std::max(samples.max_a, record.current_a[i]);
     }
     std::ranges::sort(running_w);
-    if (!running_w.empty()) samples.powerless_w = powerless_part * quantile(running_w, 0.75);
+    if (!running_w.empty()) samples.powerless_w = powerless_fraction * quantile(running_w, 0.75);
     return samples;
 }
 
@@ -200,7 +200,7 @@ SampleFindings apply_sample_rules(const PowerRecord& record, const std::vector<s
         const auto found = scan(rule, samples);
         const double share = found.samples > 0 ? share_of(rule, found, record) : 0.0;
         const bool is_silent = rule.unless_previous && was_reported;
-        was_reported = share > rule.limit && found.samples >= rule.least_samples && found.lasts_s >= rule.least_s;
+        was_reported = share > rule.limit && found.samples >= rule.min_samples && found.lasts_s >= rule.min_s;
         if (!was_reported || is_silent) continue;
         auto& texts = rule.consequence == Consequence::fault ? findings.faults : findings.warnings;
         texts.push_back(fmt::format(
@@ -208,7 +208,7 @@ SampleFindings apply_sample_rules(const PowerRecord& record, const std::vector<s
             fmt::arg("samples", found.samples), fmt::arg("lasts_s", found.lasts_s),
             fmt::arg("from_s", record.time_s[found.longest.first]),
             fmt::arg("to_s", record.time_s[found.longest.last - 1]),
-            fmt::arg("power_w", record.power_w[found.longest.first]), fmt::arg("highest_a", samples.highest_a),
+            fmt::arg("power_w", record.power_w[found.longest.first]), fmt::arg("highest_a", samples.max_a),
             fmt::arg("energy_wh", units::wh_from_joule(found.energy_j)), fmt::arg("source", record.power_source)));
     }
     return findings;

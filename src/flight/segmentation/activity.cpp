@@ -10,7 +10,7 @@ namespace flightwatt::flight {
 namespace {
 
 /// The ground beside an activity: the last (or first) twenty seconds of the rest there.
-double ground_beside(const FlightGrid& grid, GridSpan rest, bool before) {
+double ground_beside(const ResampledFlight& grid, GridSpan rest, bool before) {
     const auto length = std::min(grid.steps(20.0) + 1, rest.end - rest.begin);
     return median_altitude_m(
         grid, before ? GridSpan{rest.end - length, rest.end} : GridSpan{rest.begin, rest.begin + length});
@@ -21,12 +21,12 @@ double median_of_upper_half(const std::vector<double>& heights, double highest) 
     upper.reserve(heights.size());
     std::copy_if(heights.begin(), heights.end(), std::back_inserter(upper),
                  [&](double h) { return h > 0.5 * highest; });
-    return upper.empty() ? highest : upper_median(std::move(upper));
+    return upper.empty() ? highest : median_high(std::move(upper));
 }
 
 }  // namespace
 
-std::vector<Activity> find_activities(const FlightGrid& grid, const std::vector<GridSpan>& rests,
+std::vector<Activity> find_activities(const ResampledFlight& grid, const std::vector<GridSpan>& rests,
                                       const SegmentationOptions& options) {
     const auto reach = grid.steps(options.rest_s);
     std::vector<Activity> activities;
@@ -56,7 +56,8 @@ std::vector<Activity> find_activities(const FlightGrid& grid, const std::vector<
     return activities;
 }
 
-Grounds grounds_of(const FlightGrid& grid, const Activity& activity, const std::optional<double>& planned_ground_m) {
+GroundLevels estimate_ground_levels(const ResampledFlight& grid, const Activity& activity,
+                                    const std::optional<double>& planned_ground_m) {
     const auto first = grid.altitude_m.begin() + static_cast<std::ptrdiff_t>(activity.span.begin);
     const auto last = grid.altitude_m.begin() + static_cast<std::ptrdiff_t>(activity.span.end);
     const auto [lowest, highest] = std::minmax_element(first, last);
@@ -71,7 +72,7 @@ Grounds grounds_of(const FlightGrid& grid, const Activity& activity, const std::
     return {disagree ? after_m : before_m, after_m, disagree};
 }
 
-Heights heights_of(const FlightGrid& grid, const Activity& activity, const Grounds& grounds) {
+Heights compute_heights(const ResampledFlight& grid, const Activity& activity, const GroundLevels& grounds) {
     Heights heights;
     const auto count = activity.span.end - activity.span.begin;
     heights.height_m.reserve(count);
@@ -81,8 +82,8 @@ Heights heights_of(const FlightGrid& grid, const Activity& activity, const Groun
         heights.height_m.push_back(grid.altitude_m[activity.span.begin + i] - ground_m);
     }
     heights.ground_m = grounds.before_m;
-    heights.highest_m = *std::max_element(heights.height_m.begin(), heights.height_m.end());
-    heights.top_m = median_of_upper_half(heights.height_m, heights.highest_m);
+    heights.max_m = *std::max_element(heights.height_m.begin(), heights.height_m.end());
+    heights.cruise_height_m = median_of_upper_half(heights.height_m, heights.max_m);
     return heights;
 }
 

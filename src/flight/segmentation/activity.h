@@ -17,28 +17,29 @@ struct Activity {
 };
 
 /// The activities of the grid, piece by piece, in order.
-std::vector<Activity> find_activities(const FlightGrid& grid, const std::vector<GridSpan>& rests,
+std::vector<Activity> find_activities(const ResampledFlight& grid, const std::vector<GridSpan>& rests,
                                       const SegmentationOptions& options);
 
 /// The ground on both sides. An estimator without a fix rests at any level: where the two differ by more than
 /// a third of the height flown, the later one counts.
-struct Grounds {
+struct GroundLevels {
     double before_m = 0.0;
     double after_m = 0.0;
     bool disagreed = false;
 };
 
 /// `planned_ground_m` counts where the activity has no rest on either side.
-Grounds grounds_of(const FlightGrid& grid, const Activity& activity, const std::optional<double>& planned_ground_m);
+GroundLevels estimate_ground_levels(const ResampledFlight& grid, const Activity& activity,
+                                    const std::optional<double>& planned_ground_m);
 
 /// The heights of one activity above its ground; the ground rises or falls evenly from before to after.
 struct Heights {
     std::vector<double> height_m;  ///< of activity.span
     double ground_m = 0.0;
-    double top_m = 0.0;  ///< median of the upper half: the flight's own height
-    double highest_m = 0.0;
+    double cruise_height_m = 0.0;  ///< median of the upper half: the flight's own height
+    double max_m = 0.0;
 };
 
-Heights heights_of(const FlightGrid& grid, const Activity& activity, const Grounds& grounds);
+Heights compute_heights(const ResampledFlight& grid, const Activity& activity, const GroundLevels& grounds);
 
 }  // namespace flightwatt::flight

@@ -82,8 +82,8 @@ std::size_t leave_out_excursions(Track& track) {
         for (std::size_t b = a + 1; b < std::min(jumps.size(), a + returns); ++b) {
             const auto back = jumps[b];
             const bool stands_still = b == a + 1 && stuck[first] && stuck[back - 1];
-            const double longest_s = stands_still ? fix_loss_s : excursion_s;
-            if (track.time_s[back] - track.time_s[first - 1] > longest_s) break;
+            const double max_s = stands_still ? fix_loss_s : excursion_s;
+            if (track.time_s[back] - track.time_s[first - 1] > max_s) break;
             if (is_beyond(track, first - 1, back, fix_jump_m, fix_jump_m_per_s)) continue;
             mark(out, first, back);
             after = back;
@@ -131,12 +131,12 @@ bool jumps_too_far(const Track& track) {
 
 }  // namespace
 
-AltitudeRecord clean_altitude(Track altitude) {
-    AltitudeRecord record;
+CleanedAltitude clean_altitude(Track altitude) {
+    CleanedAltitude record;
     const auto all = altitude.time_s.size();
     const auto [low, high] = std::minmax_element(altitude.value.begin(), altitude.value.end());
-    const double lowest_m = all > 0 ? *low : 0.0;
-    const double highest_m = all > 0 ? *high : 0.0;
+    const double min_m = all > 0 ? *low : 0.0;
+    const double max_m = all > 0 ? *high : 0.0;
     take_out_spikes(altitude.value);
     const auto before = jumps_of(altitude);
     const double first_jump_s = before.empty() ? 0.0 : altitude.time_s[before.front()];
@@ -155,11 +155,11 @@ AltitudeRecord clean_altitude(Track altitude) {
     const auto& left = record.altitude;
     for (const auto i : jumps) record.jumps_s.push_back(left.time_s[i]);
     const bool runs_away = 2 * left_out > all || left.time_s.size() < 2 || jumps_too_far(left);
-    if (runs_away || lasting > most_jumps) {
-        record.unusable = fmt::format(
+    if (runs_away || lasting > max_jumps) {
+        record.unusable_reason = fmt::format(
             "its altitude runs from {:.6g} to {:.6g} m{}: an estimator that ran away, or another "
             "unit than m",
-            lowest_m, highest_m, lasting > 0 ? fmt::format(" with {} jumps", lasting) : "");
+            min_m, max_m, lasting > 0 ? fmt::format(" with {} jumps", lasting) : "");
     }
     if (left_out > 0) {
         record.warnings.push_back(

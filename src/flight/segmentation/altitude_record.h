@@ -19,16 +19,16 @@ inline constexpr double excursion_s = 30.0;
 /// So did one that stood still meanwhile, as an estimator does that has lost its fix [s].
 inline constexpr double fix_loss_s = 120.0;
 /// With more jumps than this nothing can be concluded from an altitude.
-inline constexpr std::size_t most_jumps = 10;
+inline constexpr std::size_t max_jumps = 10;
 
 /// The altitude that phases are found by: without single spikes and excursions.
-struct AltitudeRecord {
+struct CleanedAltitude {
     Track altitude;
     std::vector<double> jumps_s;        ///< the first times after jumps: from there on its ground is another one
     std::vector<std::string> warnings;  ///< what was left out, and the jumps
-    std::string unusable;               ///< why nothing can be concluded from it; empty if something can
+    std::string unusable_reason;        ///< why nothing can be concluded from it; empty if something can
 };
 
-AltitudeRecord clean_altitude(Track altitude);
+CleanedAltitude clean_altitude(Track altitude);
 
 }  // namespace flightwatt::flight

@@ -3,8 +3,8 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "flight/chosen_track.h"
 #include "flight/segmentation/altitude_record.h"
+#include "flight/selected_track.h"
 
 #include <algorithm>
 #include <array>
@@ -34,7 +34,7 @@ std::vector<double> without_spikes(const std::vector<double>& values) {
 }
 
 /// The altitude at the grid's times, piece by piece: nothing is interpolated over a jump.
-void add_altitude(FlightGrid& grid, const AltitudeRecord& record, const std::vector<double>& time_s) {
+void add_altitude(ResampledFlight& grid, const CleanedAltitude& record, const std::vector<double>& time_s) {
     const auto& track = record.altitude;
     std::size_t begin = 0;
     std::size_t sample = 0;
@@ -62,9 +62,9 @@ void add_altitude(FlightGrid& grid, const AltitudeRecord& record, const std::vec
 }
 
 /// Points in a row whose heights differ by no more than `height_m`: it grows at its end and shrinks at its beginning.
-class StillStretch {
+class ConstantHeightWindow {
   public:
-    StillStretch(const std::vector<double>& altitude_m, double height_m)
+    ConstantHeightWindow(const std::vector<double>& altitude_m, double height_m)
         : altitude_m_(altitude_m), height_m_(height_m) {}
 
     /// Takes the next point; false, and without it, where the heights would differ by more.
@@ -104,27 +104,27 @@ class StillStretch {
     std::deque<std::size_t> high_;  ///< the highest; they fall
 };
 
-/// Where no speed tells rest from flight: the points from which it comes down by the height of a flight, or more, before
-/// the motor runs again. There it glides, though it may keep its height for a while.
-std::vector<bool> gliding_points(const FlightGrid& grid, double idle_percent, double height_m) {
+/// Where no speed tells rest from flight: the points from which it comes down by the height of a flight, or more,
+/// before the motor runs again. There it glides, though it may keep its height for a while.
+std::vector<bool> gliding_points(const ResampledFlight& grid, double idle_percent, double height_m) {
     std::vector<bool> gliding(grid.size(), false);
     if (grid.motor_percent.empty() || !grid.ground_speed_m_per_s.empty()) return gliding;
     for (const auto& piece : grid.pieces) {
-        double lowest_m = std::numeric_limits<double>::infinity();  // until the motor runs
+        double min_m = std::numeric_limits<double>::infinity();  // until the motor runs
         for (auto i = piece.end; i-- > piece.begin;) {
-            if (grid.motor_percent[i] > idle_percent) lowest_m = std::numeric_limits<double>::infinity();
-            lowest_m = std::min(lowest_m, grid.altitude_m[i]);
-            gliding[i] = lowest_m <= grid.altitude_m[i] - height_m;
+            if (grid.motor_percent[i] > idle_percent) min_m = std::numeric_limits<double>::infinity();
+            min_m = std::min(min_m, grid.altitude_m[i]);
+            gliding[i] = min_m <= grid.altitude_m[i] - height_m;
         }
     }
     return gliding;
 }
 
 /// How many points the grid has. Throws InputError where its times are none.
-std::size_t size_until(const FlightSeries& series, const FlightGrid& grid, double end_s) {
+std::size_t size_until(const FlightSeries& series, const ResampledFlight& grid, double end_s) {
     const double span_s = end_s - grid.start_s;
-    constexpr double longest_s = 30.0 * 24.0 * units::seconds_per_hour;
-    if (!(span_s <= longest_s)) {
+    constexpr double max_s = 30.0 * 24.0 * units::seconds_per_hour;
+    if (!(span_s <= max_s)) {
         throw InputError({series.file}, fmt::format("lasts {:.4g} s, more than a month", span_s),
                          "are its times in seconds?");
     }
@@ -142,23 +142,23 @@ void refuse_without_altitude(const FlightSeries& series, const Track& altitude) 
 
 }  // namespace
 
-std::vector<double> FlightGrid::times_s(GridSpan span) const {
+std::vector<double> ResampledFlight::times_s(GridSpan span) const {
     std::vector<double> times(span.end - span.begin);
     for (std::size_t i = 0; i < times.size(); ++i) times[i] = time_s(span.begin + i);
     return times;
 }
 
-FlightGrid make_grid(const ChosenTracks& tracks) {
+ResampledFlight make_grid(const SelectedTracks& tracks) {
     const auto& series = tracks.series();
     const auto& raw = tracks["altitude_m"];
     refuse_without_altitude(series, raw);
-    FlightGrid grid;
+    ResampledFlight grid;
     const auto& power = tracks["power_w"];
     const auto& clock = power.empty() ? raw : power;
     grid.start_s = clock.time_s.front();
     const auto time_s = grid.times_s({0, size_until(series, grid, clock.time_s.back())});
     auto altitude = clean_altitude(raw);  // on its own clock, before the grid's
-    grid.unusable = std::move(altitude.unusable);
+    grid.unusable = std::move(altitude.unusable_reason);
     grid.warnings = std::move(altitude.warnings);
     if (altitude.altitude.empty()) {
         grid.altitude_m.assign(time_s.size(), 0.0);
@@ -172,9 +172,9 @@ FlightGrid make_grid(const ChosenTracks& tracks) {
     grid.warnings.insert(grid.warnings.end(), motor.warnings.begin(), motor.warnings.end());
     if (!motor.percent.empty()) {
         grid.motor_percent = resample(motor.percent, time_s);
-        grid.least_motor_percent = *std::ranges::min_element(grid.motor_percent);
+        grid.min_motor_percent = *std::ranges::min_element(grid.motor_percent);
     }
-    if (motor.sign == MotorSign::throttle) grid.throttle_percent = grid.motor_percent;
+    if (motor.sign == MotorIndicator::throttle) grid.throttle_percent = grid.motor_percent;
     const auto& speed = tracks["ground_speed_m_per_s"];
     if (!speed.empty()) grid.ground_speed_m_per_s = without_spikes<5>(resample(speed, time_s));
     return grid;
@@ -182,17 +182,17 @@ FlightGrid make_grid(const ChosenTracks& tracks) {
 
 /// Some airframes never report less than a trimmed or armed idle. Where the speed tells rest from flight too, the least
 /// throttle of the log is taken for that.
-double idle_motor_percent(const FlightGrid& grid, const SegmentationOptions& options) {
-    if (grid.motor_sign == MotorSign::power) return idle_power_percent;
+double idle_motor_percent(const ResampledFlight& grid, const SegmentationOptions& options) {
+    if (grid.motor_sign == MotorIndicator::power) return idle_power_percent;
     if (grid.motor_percent.empty() || grid.ground_speed_m_per_s.empty()) return options.idle_throttle_percent;
-    return std::max(grid.least_motor_percent, 0.0) + options.idle_throttle_percent;
+    return std::max(grid.min_motor_percent, 0.0) + options.idle_throttle_percent;
 }
 
-double flight_motor_percent(const FlightGrid& grid, const SegmentationOptions& options) {
-    return grid.motor_sign == MotorSign::power ? flight_power_percent : options.flight_throttle_percent;
+double flight_motor_percent(const ResampledFlight& grid, const SegmentationOptions& options) {
+    return grid.motor_sign == MotorIndicator::power ? flight_power_percent : options.flight_throttle_percent;
 }
 
-std::vector<GridSpan> find_rests(const FlightGrid& grid, const SegmentationOptions& options) {
+std::vector<GridSpan> find_rests(const ResampledFlight& grid, const SegmentationOptions& options) {
     const double idle_percent = idle_motor_percent(grid, options);
     const auto within = [&](const std::vector<double>& channel, std::size_t i, double limit) {
         return channel.empty() || channel[i] <= limit;
@@ -202,14 +202,14 @@ std::vector<GridSpan> find_rests(const FlightGrid& grid, const SegmentationOptio
                within(grid.ground_speed_m_per_s, i, options.rest_speed_m_per_s);
     };
     const auto is_still = [&](std::size_t begin, std::size_t end, double height_m) {
-        StillStretch stretch(grid.altitude_m, height_m);
+        ConstantHeightWindow stretch(grid.altitude_m, height_m);
         for (auto i = begin; i < end; ++i)
             if (!is_idle(i) || !stretch.take(i)) return false;
         return true;
     };
     // Where neither motor nor speed is known, a height that is kept is that of a rest only near the ground.
     const bool by_altitude = grid.motor_percent.empty() && grid.ground_speed_m_per_s.empty();
-    const auto highest_rest_m = [&](const GridSpan& piece) {
+    const auto max_rest_m = [&](const GridSpan& piece) {
         const auto [low, high] = std::minmax_element(grid.altitude_m.begin() + static_cast<std::ptrdiff_t>(piece.begin),
                                                      grid.altitude_m.begin() + static_cast<std::ptrdiff_t>(piece.end));
         return by_altitude ? *low + std::max(options.flight_height_m, 0.25 * (*high - *low)) : *high;
@@ -222,8 +222,8 @@ std::vector<GridSpan> find_rests(const FlightGrid& grid, const SegmentationOptio
     const auto window = grid.steps(options.rest_s) + 1;
     const auto edge = grid.steps(0.3 * options.rest_s) + 1;
     for (const auto& piece : grid.pieces) {
-        const double highest_m = highest_rest_m(piece);
-        StillStretch stretch(grid.altitude_m, options.rest_height_m);
+        const double max_m = max_rest_m(piece);
+        ConstantHeightWindow stretch(grid.altitude_m, options.rest_height_m);
         auto marked = piece.begin;
         for (auto end = piece.begin; end < piece.end; ++end) {
             if (!is_idle(end)) {
@@ -232,17 +232,17 @@ std::vector<GridSpan> find_rests(const FlightGrid& grid, const SegmentationOptio
             }
             while (!stretch.take(end)) stretch.leave();
             if (stretch.size() > window) stretch.leave();
-            if (stretch.size() < window || grid.altitude_m[stretch.first()] > highest_m) continue;
+            if (stretch.size() < window || grid.altitude_m[stretch.first()] > max_m) continue;
             mark(std::max(marked, stretch.first()), end + 1);
             marked = end + 1;
         }
         if (piece.begin + edge > piece.end) continue;
         // The log may begin just before lift-off or end just after touchdown: there less time does, within less height.
-        if (grid.altitude_m[piece.begin] <= highest_m &&
+        if (grid.altitude_m[piece.begin] <= max_m &&
             is_still(piece.begin, piece.begin + edge, 0.3 * options.rest_height_m)) {
             mark(piece.begin, piece.begin + edge);
         }
-        if (grid.altitude_m[piece.end - 1] <= highest_m &&
+        if (grid.altitude_m[piece.end - 1] <= max_m &&
             is_still(piece.end - edge, piece.end, 0.3 * options.rest_height_m))
             mark(piece.end - edge, piece.end);
     }
@@ -258,10 +258,10 @@ std::vector<GridSpan> find_rests(const FlightGrid& grid, const SegmentationOptio
     return rests;
 }
 
-double median_altitude_m(const FlightGrid& grid, GridSpan span) {
+double median_altitude_m(const ResampledFlight& grid, GridSpan span) {
     std::vector<double> values(grid.altitude_m.begin() + static_cast<std::ptrdiff_t>(span.begin),
                                grid.altitude_m.begin() + static_cast<std::ptrdiff_t>(span.end));
-    return upper_median(std::move(values));
+    return median_high(std::move(values));
 }
 
 }  // namespace flightwatt::flight

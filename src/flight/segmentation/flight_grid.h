@@ -1,10 +1,10 @@
 #pragma once
 
-#include "flight/chosen_track.h"
 #include "flight/flight_phases.h"
 #include "flight/flight_series.h"
 #include "flight/segmentation/motor_record.h"
 #include "flight/segmentation_clock.h"
+#include "flight/selected_track.h"
 
 #include <cstddef>
 #include <string>
@@ -19,19 +19,19 @@ struct GridSpan {
 };
 
 /// A flight on an even clock, for the segmentation: spikes of single samples are gone.
-struct FlightGrid {
+struct ResampledFlight {
     double start_s = 0.0;
     double step_s = segmentation_step_s;
     std::vector<double> altitude_m;
     std::vector<double> throttle_percent;  ///< empty if unknown
     std::vector<double> motor_percent;     ///< see MotorRecord; empty if unknown
-    double least_motor_percent = 0.0;
+    double min_motor_percent = 0.0;
     std::vector<double> ground_speed_m_per_s;  ///< empty if unknown
     std::vector<GridSpan> pieces;              ///< between jumps of the altitude; together the whole grid
-    MotorSign motor_sign = MotorSign::unknown;
+    MotorIndicator motor_sign = MotorIndicator::unknown;
     std::string motor_evidence;         ///< see MotorRecord
     std::vector<std::string> warnings;  ///< what was left out, and what is used instead
-    std::string unusable;               ///< see AltitudeRecord
+    std::string unusable;               ///< see CleanedAltitude
 
     std::size_t size() const { return altitude_m.size(); }
     double time_s(std::size_t index) const { return start_s + step_s * static_cast<double>(index); }
@@ -42,16 +42,16 @@ struct FlightGrid {
 
 /// On the time of the power samples, or where there are none of the altitude. Throws InputError where the series has
 /// no altitude.
-FlightGrid make_grid(const ChosenTracks& tracks);
+ResampledFlight make_grid(const SelectedTracks& tracks);
 
 /// The spans in which the aircraft is at rest: see SegmentationOptions.
-std::vector<GridSpan> find_rests(const FlightGrid& grid, const SegmentationOptions& options);
+std::vector<GridSpan> find_rests(const ResampledFlight& grid, const SegmentationOptions& options);
 
 /// Up to this motor_percent the motor idles; what rises without ever getting to the other one is no flight.
-double idle_motor_percent(const FlightGrid& grid, const SegmentationOptions& options);
-double flight_motor_percent(const FlightGrid& grid, const SegmentationOptions& options);
+double idle_motor_percent(const ResampledFlight& grid, const SegmentationOptions& options);
+double flight_motor_percent(const ResampledFlight& grid, const SegmentationOptions& options);
 
 /// Median of grid.altitude_m over a span that is not empty.
-double median_altitude_m(const FlightGrid& grid, GridSpan span);
+double median_altitude_m(const ResampledFlight& grid, GridSpan span);
 
 }  // namespace flightwatt::flight

@@ -3,9 +3,9 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "flight/checks/runs.h"
-#include "flight/chosen_track.h"
 #include "flight/flight_phases.h"
 #include "flight/phase_statistics.h"
+#include "flight/selected_track.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +32,7 @@ double quantile_of(std::vector<double>& values, double probability) {
 struct PowerLevels {
     double idle_w;
     double running_w;
-    double percent(double power_w) const { return units::percent_of(power_w - idle_w, running_w - idle_w); }
+    double percent(double power_w) const { return units::percentage(power_w - idle_w, running_w - idle_w); }
 };
 
 /// Idle and running power of the record; std::nullopt if it does not tell one from the other.
@@ -50,13 +50,13 @@ std::optional<PowerLevels> power_levels(const Track& power, const Track& altitud
     if (on_ground_w.size() < enough / 2) return std::nullopt;
     auto all_w = power.value;
     const PowerLevels levels{quantile_of(on_ground_w, 0.25), quantile_of(all_w, 0.98)};
-    const bool apart = levels.running_w >= running_over_idle * levels.idle_w &&
-                       levels.running_w >= levels.idle_w + running_above_idle_w;
+    const bool apart = levels.running_w >= min_running_to_idle_ratio * levels.idle_w &&
+                       levels.running_w >= levels.idle_w + min_running_above_idle_w;
     return apart ? std::optional(levels) : std::nullopt;
 }
 
 /// The throttle on the clock of the power samples, on which it is asked for everywhere, or on its own.
-Track throttle_of(const ChosenTracks& tracks, const Track& power) {
+Track throttle_of(const SelectedTracks& tracks, const Track& power) {
     auto throttle = tracks["throttle_percent"];
     if (throttle.empty() || power.empty()) return throttle;
     throttle.value = resample(throttle, power.time_s);
@@ -83,7 +83,7 @@ std::size_t take_out_glitches(Track& throttle, const Track& power, const PowerLe
 
 /// A throttle that idles while the power is that of a running motor for half a minute in all (manual mode, which the
 /// field of some autopilots leaves out): the power's percent, where the aircraft moves. Says where.
-std::string follow_power(const ChosenTracks& tracks, Track& throttle, const Track& power, const PowerLevels& levels,
+std::string follow_power(const SelectedTracks& tracks, Track& throttle, const Track& power, const PowerLevels& levels,
                          double idle_percent) {
     const auto& time_s = throttle.time_s;
     const auto& speed = tracks["ground_speed_m_per_s"];
@@ -121,14 +121,14 @@ std::string follow_power(const ChosenTracks& tracks, Track& throttle, const Trac
 
 }  // namespace
 
-MotorRecord motor_record(const ChosenTracks& tracks, const Track& altitude_m) {
+MotorRecord motor_record(const SelectedTracks& tracks, const Track& altitude_m) {
     MotorRecord record;
     const auto& power = tracks["power_w"];
     auto throttle = throttle_of(tracks, power);
     const auto levels = altitude_m.empty() ? std::nullopt : power_levels(power, altitude_m);
     const bool stands_still = is_constant(throttle);  // as that of a log which has none
     if (!throttle.empty() && !(stands_still && levels)) {
-        record.sign = MotorSign::throttle;
+        record.sign = MotorIndicator::throttle;
         record.evidence = throttle.source;
         if (levels) {
             const double least = std::max(*std::ranges::min_element(throttle.value), 0.0);
@@ -152,7 +152,7 @@ MotorRecord motor_record(const ChosenTracks& tracks, const Track& altitude_m) {
         record.warnings.push_back(lack + ": segmented by altitude alone");
         return record;
     }
-    record.sign = MotorSign::power;
+    record.sign = MotorIndicator::power;
     record.evidence = fmt::format("power: idle {:.1f} W, running {:.1f} W", levels->idle_w, levels->running_w);
     record.warnings.push_back(fmt::format(
         "{}: the motor is taken to run above {:.1f} W ({})", lack,

@@ -6,11 +6,11 @@
 namespace flightwatt::flight {
 namespace {
 
-constexpr double airborne_part = 0.25;  // of the flight's height: there it is in the air, and no longer low
+constexpr double airborne_fraction = 0.25;  // of the flight's height: there it is in the air, and no longer low
 
 /// One sortie on the grid: where it is in the air, and what heights that means.
 struct Flown {
-    const FlightGrid& grid;
+    const ResampledFlight& grid;
     const Activity& activity;
     const Heights& heights;
     const SegmentationOptions& options;
@@ -19,8 +19,8 @@ struct Flown {
 
     double height(std::size_t i) const { return heights.height_m[i]; }
     double time_s(std::size_t i) const { return grid.time_s(activity.span.begin + i); }
-    double airborne_m() const { return airborne_part * heights.top_m; }
-    double ground_m() const { return options.ground_fraction * heights.top_m; }
+    double airborne_m() const { return airborne_fraction * heights.cruise_height_m; }
+    double ground_m() const { return options.ground_fraction * heights.cruise_height_m; }
 };
 
 /// Between two neighbouring points, where the height crosses `level`.
@@ -74,9 +74,9 @@ double height_after_takeoff(const Flown& flown) {
     }
     for (std::size_t i = 0; i < count; ++i) {
         const double later = highest[std::min(i + hold, count - 1)];
-        const bool holds = later - highest[i] <= flown.options.hold_fraction * flown.heights.top_m;
+        const bool holds = later - highest[i] <= flown.options.hold_fraction * flown.heights.cruise_height_m;
         // Lower down it trims after the launch.
-        if (holds && highest[i] > 0.5 * flown.heights.top_m) return later;
+        if (holds && highest[i] > 0.5 * flown.heights.cruise_height_m) return later;
     }
     return highest[count - 1];
 }
@@ -93,7 +93,7 @@ struct Hold {
 std::vector<Hold> holds_before_landing(const Flown& flown) {
     const auto count = flown.touchdown - flown.lift_off + 1;
     const auto hold = flown.grid.steps(flown.options.hold_s);
-    const double step_m = flown.options.hold_fraction * flown.heights.top_m;
+    const double step_m = flown.options.hold_fraction * flown.heights.cruise_height_m;
     std::vector<double> highest(count);  // of the steps before touchdown
     for (std::size_t i = 0; i < count; ++i) {
         const double height = flown.height(flown.touchdown - i);
@@ -119,13 +119,13 @@ std::vector<Hold> holds_before_landing(const Flown& flown) {
 
 /// Marks which of the holds are steps of the landing; returns the index of the first that is not: where that height is
 /// left, the landing begins.
-std::size_t mark_landing_steps(const Flown& flown, std::vector<HeldHeight>& held) {
+std::size_t mark_landing_steps(const Flown& flown, std::vector<HeldAltitude>& held) {
     for (std::size_t i = 0; i + 1 < held.size(); ++i) {
-        double longest_s = 0.0;
-        for (auto k = i + 1; k < held.size(); ++k) longest_s = std::max(longest_s, held[k].duration_s());
-        const bool is_high = held[i].height_m > 0.5 * flown.heights.top_m;
+        double max_s = 0.0;
+        for (auto k = i + 1; k < held.size(); ++k) max_s = std::max(max_s, held[k].duration_s());
+        const bool is_high = held[i].height_m > 0.5 * flown.heights.cruise_height_m;
         const double duration_s = held[i].duration_s();
-        if (duration_s >= working_hold_s || (is_high && duration_s >= working_hold_part * longest_s)) return i;
+        if (duration_s >= min_work_hold_s || (is_high && duration_s >= min_work_hold_fraction * max_s)) return i;
         held[i].of_landing = true;
     }
     return held.size() - 1;
@@ -133,7 +133,7 @@ std::size_t mark_landing_steps(const Flown& flown, std::vector<HeldHeight>& held
 
 }  // namespace
 
-SortieEdges find_edges(const FlightGrid& grid, const Activity& activity, const Heights& heights,
+SortieEdges find_edges(const ResampledFlight& grid, const Activity& activity, const Heights& heights,
                        const SegmentationOptions& options) {
     SortieEdges edges;
     Flown flown{grid, activity, heights, options};

@@ -46,7 +46,7 @@ telemetry::SkippedLines::Unit read_skip_unit(const std::string& text, const Loca
     using Unit = telemetry::SkippedLines::Unit;
     for (const auto unit : {Unit::line, Unit::frame, Unit::byte})
         if (to_string(unit) == text) return unit;
-    throw InputError(where, fmt::format("unit is '{}', expected line, frame or byte", clipped(text)));
+    throw InputError(where, fmt::format("unit is '{}', expected line, frame or byte", truncated(text)));
 }
 
 telemetry::SkippedLines read_skipped(const TomlTable& table) {
@@ -105,7 +105,7 @@ FrontMatter read_matter(const TomlTable& table) {
     series.current_origin = read_origin(table);
     series.planned_ground_altitude_m = table.optional_number("planned_ground_altitude_m");
     series.start_clock_s = table.optional_number("start_clock_s");
-    series.lacks_log = table.optional_boolean("lacks_log").value_or(false);
+    series.log_is_missing = table.optional_boolean("lacks_log").value_or(false);
     if (table.has("notes")) series.notes = table.strings("notes");
     if (const auto names = table.optional_table("block_names")) series.block_names = read_block_names(*names);
     for (const auto& assumed : table.tables("assumed_definition")) {
@@ -133,7 +133,7 @@ std::vector<std::string> column_names(const std::vector<Track>& tracks) {
     return names;
 }
 
-std::string front_matter(const FlightSeries& series) {
+std::string format_front_matter(const FlightSeries& series) {
     std::string toml = format_line();
     toml += fmt::format("flight = {}\naircraft_id = {}\naircraft_name = {}\n", toml_string(series.flight),
                         toml_string(series.aircraft_id), toml_string(series.aircraft_name));
@@ -143,7 +143,7 @@ std::string front_matter(const FlightSeries& series) {
         toml += fmt::format("planned_ground_altitude_m = {}\n", toml_real(*ground_m));
     }
     if (series.start_clock_s) toml += fmt::format("start_clock_s = {}\n", toml_real(*series.start_clock_s));
-    if (series.lacks_log) toml += "lacks_log = true\n";
+    if (series.log_is_missing) toml += "lacks_log = true\n";
     if (!series.notes.empty()) toml += fmt::format("notes = {}\n", strings(series.notes));
     if (!series.block_names.empty()) toml += "[block_names]\n";
     for (const auto& [number, name] : series.block_names) {

@@ -12,7 +12,7 @@ namespace flightwatt::flight {
 std::vector<std::string> column_names(const std::vector<Track>& tracks);
 
 /// What holds for the whole flight, as comment lines of TOML: `# format = 1` ...
-std::string front_matter(const FlightSeries& series);
+std::string format_front_matter(const FlightSeries& series);
 
 /// What the comment lines at the beginning of a series file say.
 struct FrontMatter {
@@ -21,7 +21,7 @@ struct FrontMatter {
     std::vector<std::string> columns;  ///< of each track
 };
 
-/// Throws InputError for a format that is newer, and for what is not as front_matter writes it.
+/// Throws InputError for a format that is newer, and for what is not as format_front_matter writes it.
 FrontMatter read_front_matter(std::string_view text, const std::string& file);
 
 }  // namespace flightwatt::flight

@@ -29,7 +29,7 @@ bool are_alike(const std::vector<double>& a, const std::vector<double>& b) {
 
 /// Comparing times takes as long as reading them: each track's are compared beside the others', with those of the first
 /// track that seems to have the same. Nearly always they are.
-std::vector<Clock> clocks_of(const std::vector<Track>& tracks, std::size_t most_threads) {
+std::vector<Clock> clocks_of(const std::vector<Track>& tracks, std::size_t max_threads) {
     std::vector<std::size_t> alike(tracks.size());
     std::vector<std::uint8_t> is_same(tracks.size());
     for_each_in_parallel(
@@ -38,7 +38,7 @@ std::vector<Clock> clocks_of(const std::vector<Track>& tracks, std::size_t most_
             while (!are_alike(tracks[alike[t]].time_s, tracks[t].time_s)) ++alike[t];
             is_same[t] = alike[t] == t || tracks[alike[t]].time_s == tracks[t].time_s ? 1 : 0;
         },
-        most_threads);
+        max_threads);
     std::vector<Clock> clocks;
     for (std::size_t t = 0; t < tracks.size(); ++t) {
         const auto* const first_s = &tracks[alike[t]].time_s;
@@ -71,10 +71,10 @@ std::size_t samples_in(const Rows& rows) {
 
 /// Cuts rows in two, again and again, until none of the pieces, which follow each other, has too many samples.
 void cut_rows(const std::vector<Clock>& clocks, Rows rows, std::vector<Rows>& pieces) {
-    constexpr std::size_t most_samples = 4096;
+    constexpr std::size_t max_samples = 4096;
     const auto densest = std::ranges::max_element(rows, {}, &Samples::size) - rows.begin();
     const auto& samples = rows[static_cast<std::size_t>(densest)];
-    if (samples_in(rows) <= most_samples || samples.size() < 2) return pieces.push_back(std::move(rows));
+    if (samples_in(rows) <= max_samples || samples.size() < 2) return pieces.push_back(std::move(rows));
     const double from_s = (*clocks[static_cast<std::size_t>(densest)].time_s)[samples.first + samples.size() / 2];
     auto later = rows;
     for (std::size_t c = 0; c < clocks.size(); ++c) {
@@ -139,8 +139,8 @@ class RowsText {
     void make_room(const Rows& rows) {
         std::size_t numbers = 0;
         for (std::size_t c = 0; c < rows.size(); ++c) numbers += rows[c].size() * (clocks_[c].tracks.size() + 1);
-        const auto room =
-            numbers * longest_number + samples_in(rows) * (tracks_.size() + 1) + commas_at_once + longest_number;
+        const auto room = numbers * number_buffer_size + samples_in(rows) * (tracks_.size() + 1) + commas_at_once +
+                          number_buffer_size;
         if (room <= room_) return;
         text_.reset(new char[room]);
         room_ = room;
@@ -191,7 +191,7 @@ class RowsText {
         auto& last = last_[track];
         const auto bits = std::bit_cast<std::uint64_t>(value);
         if (last.text != nullptr && last.bits == bits) {
-            std::memmove(to, last.text, longest_number_text);
+            std::memmove(to, last.text, max_number_chars);
         } else {
             last = {bits, to, static_cast<std::size_t>(write_number(to, value) - to)};
         }
@@ -213,17 +213,17 @@ class RowsText {
 
 }  // namespace
 
-void write_series_rows(const std::vector<Track>& tracks, const TextSink& sink, std::size_t most_threads) {
-    const auto clocks = clocks_of(tracks, most_threads);
+void write_series_rows(const std::vector<Track>& tracks, const TextSink& sink, std::size_t max_threads) {
+    const auto clocks = clocks_of(tracks, max_threads);
     Rows all;
     for (const auto& clock : clocks) all.push_back({0, clock.time_s->size()});
     std::vector<Rows> pieces;
     if (samples_in(all) > 0) cut_rows(clocks, std::move(all), pieces);
     std::vector<RowsText> texts;
-    for (std::size_t k = 0; k < threads_for(pieces.size(), most_threads); ++k) texts.emplace_back(tracks, clocks);
+    for (std::size_t k = 0; k < threads_for(pieces.size(), max_threads); ++k) texts.emplace_back(tracks, clocks);
     for_each_in_order(
         pieces.size(), [&](std::size_t i, std::size_t place) { texts[place].write(pieces[i]); },
-        [&](std::size_t, std::size_t place) { sink(texts[place].text()); }, most_threads);
+        [&](std::size_t, std::size_t place) { sink(texts[place].text()); }, max_threads);
 }
 
 }  // namespace flightwatt::flight

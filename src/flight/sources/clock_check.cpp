@@ -16,8 +16,8 @@ constexpr double restart_s = 60.0;
 constexpr double late_s = 2.0;
 constexpr std::size_t enough_late_rows = 10;
 constexpr double hole_intervals = 1.5;
-constexpr std::size_t least_intervals = 5;
-constexpr std::size_t most_intervals = 100;
+constexpr std::size_t min_intervals = 5;
+constexpr std::size_t max_intervals = 100;
 
 bool has_late_rows(const telemetry::MessageTable& table, double later_than_s) {
     double latest_s = -std::numeric_limits<double>::infinity();
@@ -35,7 +35,7 @@ std::optional<ClockRestart> restart_in(const telemetry::MessageTable& table) {
     std::set<double> seen_s;
     for (const double time_s : table.time_s) {
         const auto first = seen_s.upper_bound(time_s + restart_s);
-        if (first != seen_s.end() && (!restart || *first < restart->known_s)) {
+        if (first != seen_s.end() && (!restart || *first < restart->visible_from_s)) {
             restart = {*first, *seen_s.rbegin(), time_s, table.message};
         }
         seen_s.insert(time_s);
@@ -68,11 +68,11 @@ bool lies_over(const telemetry::MessageTable& table, std::size_t row, const Seen
     if (above == seen.end()) return false;
     if (above->first == time_s) return differ(table, row, above->second.row);
     std::vector<double> before_s;
-    for (auto at = seen.lower_bound(time_s); at != seen.begin() && before_s.size() <= most_intervals;) {
+    for (auto at = seen.lower_bound(time_s); at != seen.begin() && before_s.size() <= max_intervals;) {
         --at;
         if (counts(at)) before_s.push_back(at->first);
     }
-    if (before_s.size() <= least_intervals) return false;
+    if (before_s.size() <= min_intervals) return false;
     std::vector<double> intervals_s;
     for (std::size_t i = 1; i < before_s.size(); ++i) intervals_s.push_back(before_s[i - 1] - before_s[i]);
     const auto low = intervals_s.begin() + static_cast<std::ptrdiff_t>(intervals_s.size() / 10);
@@ -95,19 +95,20 @@ void add_overlaps(const telemetry::MessageTable& table, std::vector<ClockRestart
 
 }  // namespace
 
-std::optional<ClockRestart> clock_restart_in(const telemetry::SenderLog& sender) {
+std::optional<ClockRestart> find_clock_restart(const telemetry::SenderLog& sender) {
     std::optional<ClockRestart> first;
     std::vector<ClockRestart> overlaps;
     for (const auto& table : sender.tables) {
         const auto restart = restart_in(table);
-        if (restart && (!first || restart->known_s < first->known_s)) first = restart;
+        if (restart && (!first || restart->visible_from_s < first->visible_from_s)) first = restart;
         // Several devices report at one time and in any order.
         if (table.message != "ESC" && table.message != "POWER_DEVICE") add_overlaps(table, overlaps);
     }
     if (overlaps.size() < enough_late_rows) return first;
-    std::ranges::sort(overlaps, {}, [](const ClockRestart& at) { return std::tuple(at.known_s, at.to_s, at.message); });
+    std::ranges::sort(overlaps, {},
+                      [](const ClockRestart& at) { return std::tuple(at.visible_from_s, at.to_s, at.message); });
     const auto& shown = overlaps[enough_late_rows - 1];
-    return first && first->known_s <= shown.known_s ? first : shown;
+    return first && first->visible_from_s <= shown.visible_from_s ? first : shown;
 }
 
 }  // namespace flightwatt::flight

@@ -11,6 +11,6 @@ namespace flightwatt::flight {
 /// another recording; times that come more than 2 s late, ten of them, between neighbours that lack none (closer than
 /// one and a half times the lower decile of up to a hundred intervals before), are a second stretch over the first.
 /// Lines that are only out of order fill the holes that they left, and doubled lines are equal: neither counts.
-std::optional<ClockRestart> clock_restart_in(const telemetry::SenderLog& sender);
+std::optional<ClockRestart> find_clock_restart(const telemetry::SenderLog& sender);
 
 }  // namespace flightwatt::flight

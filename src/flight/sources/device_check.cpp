@@ -23,13 +23,13 @@ namespace flightwatt::flight {
 namespace {
 
 constexpr std::size_t alike_reports = 30;
-constexpr double doubtful_missing_part = 0.04;  // of the energy
-constexpr double next_to_nothing_part = 0.05;   // of the others' median
-constexpr double running_part = 0.2;            // of the others' upper quartile
-constexpr double small_load_part = 0.25;        // of the energy: electronics
-constexpr double telling_part = 0.1;            // of the others' energy, from which a circuit's part is known
-constexpr double alike_part = 0.05;             // of its energy, by which a device differs from the others' sum
-constexpr std::size_t most_judged = 32;
+constexpr double doubtful_missing_fraction = 0.04;  // of the energy
+constexpr double next_to_nothing_fraction = 0.05;   // of the others' median
+constexpr double running_fraction = 0.2;            // of the others' upper quartile
+constexpr double small_load_fraction = 0.25;        // of the energy: electronics
+constexpr double telling_fraction = 0.1;            // of the others' energy, from which a circuit's part is known
+constexpr double alike_fraction = 0.05;             // of its energy, by which a device differs from the others' sum
+constexpr std::size_t max_judged = 32;
 
 /// The devices' power on one clock.
 struct DeviceTable {
@@ -42,9 +42,9 @@ DeviceTable table_of(const std::vector<Device>& devices) {
     DeviceTable table;
     table.time_s = devices.front().track.time_s;
     const auto& time_s = table.time_s;
-    const double longest_s = gap_threshold_s(time_s);
+    const double max_s = gap_threshold_s(time_s);
     for (std::size_t i = 0; i < time_s.size(); ++i)
-        table.step_s.push_back(i == 0 ? 0.0 : std::min(time_s[i] - time_s[i - 1], longest_s));
+        table.step_s.push_back(i == 0 ? 0.0 : std::min(time_s[i] - time_s[i - 1], max_s));
     for (const auto& device : devices) table.power_w.push_back(resample(device.track, time_s));
     return table;
 }
@@ -54,28 +54,28 @@ double energy_j(const DeviceTable& table, const std::vector<double>& power_w, do
 }
 
 /// From `from_s` to `to_s` a device reported one value.
-struct Standstill {
+struct StuckInterval {
     double from_s;
     double to_s;
 };
 
-std::vector<Standstill> standstills_of(const Track& track) {
-    std::vector<Standstill> found;
+std::vector<StuckInterval> standstills_of(const Track& track) {
+    std::vector<StuckInterval> found;
     for (const auto& run : runs_of_equal(track.value, {0, track.value.size()}))
         if (run.size() >= alike_reports) found.push_back({track.time_s[run.first], track.time_s[run.last - 1]});
     return found;
 }
 
 /// What one device does beside the others, sample by sample.
-struct Beside {
+struct DeviceComparison {
     const std::vector<double>& own_w;
     std::vector<double> median_w;  ///< of the others
     std::vector<double> sum_w;     ///< of the others
     std::vector<bool> stands;
 };
 
-Beside beside_others(const DeviceTable& table, std::size_t device, const std::vector<Track>& reported) {
-    Beside beside{table.power_w[device], {}, {}, std::vector<bool>(table.time_s.size(), false)};
+DeviceComparison beside_others(const DeviceTable& table, std::size_t device, const std::vector<Track>& reported) {
+    DeviceComparison beside{table.power_w[device], {}, {}, std::vector<bool>(table.time_s.size(), false)};
     for (std::size_t i = 0; i < table.time_s.size(); ++i) {
         std::vector<double> others;
         for (std::size_t d = 0; d < table.power_w.size(); ++d)
@@ -94,7 +94,7 @@ Beside beside_others(const DeviceTable& table, std::size_t device, const std::ve
 }
 
 /// What part of the others' power the circuit draws where it moves; of that which hardly does, an equal one.
-double usual_part(const DeviceTable& table, const Beside& beside) {
+double median_fraction(const DeviceTable& table, const DeviceComparison& beside) {
     double own_j = 0.0;
     double others_j = 0.0;
     double all_others_j = 0.0;
@@ -104,12 +104,12 @@ double usual_part(const DeviceTable& table, const Beside& beside) {
         own_j += beside.own_w[i] * table.step_s[i];
         others_j += beside.sum_w[i] * table.step_s[i];
     }
-    if (others_j > telling_part * all_others_j) return own_j / others_j;
+    if (others_j > telling_fraction * all_others_j) return own_j / others_j;
     return 1.0 / static_cast<double>(table.power_w.size() - 1);
 }
 
 /// What is doubted of one device: from when to when, and the energy that would be missing.
-struct Doubt {
+struct SuspectInterval {
     double missing_j = 0.0;
     double own_j = 0.0;
     double expected_j = 0.0;
@@ -127,44 +127,44 @@ struct Doubt {
     }
 };
 
-Doubt doubt_of_motor(const DeviceTable& table, const Beside& beside) {
+SuspectInterval doubt_of_motor(const DeviceTable& table, const DeviceComparison& beside) {
     auto sorted = beside.median_w;
     std::ranges::sort(sorted);
-    const double running_w = running_part * quantile(sorted, 0.75);
-    Doubt doubt;
+    const double running_w = running_fraction * quantile(sorted, 0.75);
+    SuspectInterval doubt;
     for (std::size_t i = 0; i < table.time_s.size(); ++i) {
         const double others_w = beside.median_w[i];
-        const bool idles = others_w > running_w && beside.own_w[i] < next_to_nothing_part * others_w;
+        const bool idles = others_w > running_w && beside.own_w[i] < next_to_nothing_fraction * others_w;
         if (idles || beside.stands[i]) doubt.add(table.time_s[i], table.step_s[i], beside.own_w[i], others_w);
     }
     return doubt;
 }
 
-Doubt doubt_of_circuit(const DeviceTable& table, const Beside& beside, const std::vector<Track>& reported,
-                       double all_j) {
+SuspectInterval doubt_of_circuit(const DeviceTable& table, const DeviceComparison& beside,
+                                 const std::vector<Track>& reported, double all_j) {
     const bool is_steady_load = std::ranges::any_of(
         reported, [](const Track& track) { return is_constant(track) && track.value.front() != 0.0; });
-    if (is_steady_load && energy_j(table, beside.own_w) < small_load_part * all_j) return {};
-    const double part = usual_part(table, beside);
-    Doubt doubt;
+    if (is_steady_load && energy_j(table, beside.own_w) < small_load_fraction * all_j) return {};
+    const double part = median_fraction(table, beside);
+    SuspectInterval doubt;
     for (std::size_t i = 0; i < table.time_s.size(); ++i)
         if (beside.stands[i]) doubt.add(table.time_s[i], table.step_s[i], beside.own_w[i], part * beside.sum_w[i]);
     return doubt;
 }
 
 /// What is odd of a device's part in the sum: it is taken off, or it is the others' sum.
-std::string odd_part(const DeviceTable& table, const Beside& beside, double all_j) {
+std::string odd_part(const DeviceTable& table, const DeviceComparison& beside, double all_j) {
     const double own_j = energy_j(table, beside.own_w);
-    if (own_j < -doubtful_missing_part * std::abs(all_j)) {
+    if (own_j < -doubtful_missing_fraction * std::abs(all_j)) {
         return fmt::format("reports negative power, {:.0f} % of the sum: a source, or a sensor that is reversed?",
-                           units::percent_of(own_j, all_j));
+                           units::percentage(own_j, all_j));
     }
     std::vector<double> apart_w(beside.sum_w.size());
     std::ranges::transform(beside.own_w, beside.sum_w, apart_w.begin(),
                            [](double own_w, double others_w) { return std::abs(own_w - others_w); });
-    const auto is_part = [&](const auto& power_w) { return energy_j(table, power_w) > alike_part * own_j; };
+    const auto is_part = [&](const auto& power_w) { return energy_j(table, power_w) > alike_fraction * own_j; };
     const bool has_parts = std::ranges::count_if(table.power_w, is_part) > 2;  // itself, and two others
-    if (has_parts && energy_j(table, apart_w) < alike_part * own_j)
+    if (has_parts && energy_j(table, apart_w) < alike_fraction * own_j)
         return "reports what all others do together: if it is the pack's, the energy is counted twice";
     return "";
 }
@@ -188,28 +188,28 @@ std::string missing_ids(const std::vector<Device>& devices, std::string_view mes
                        missing.size() > 1 ? "they draw" : "it draws");
 }
 
-std::string said_of(const Doubt& doubt, std::string_view message, const std::string& id, double all_j) {
-    const bool nothing = doubt.own_j < next_to_nothing_part * doubt.expected_j;
+std::string said_of(const SuspectInterval& doubt, std::string_view message, const std::string& id, double all_j) {
+    const bool nothing = doubt.own_j < next_to_nothing_fraction * doubt.expected_j;
     const auto what = nothing ? fmt::format("next to nothing ({:.2f} W)", doubt.own_j / doubt.lasts_s)
                               : fmt::format("the same value again and again ({:.2f} W)", doubt.own_j / doubt.lasts_s);
     return fmt::format(
         "{} {} reports {} for {:.0f} s from {:.1f} to {:.1f} s, while the others go on: is it off, or its sensor dead? "
         "Drawing what they do, it would change the energy by {:+.0f} %",
         message, id, what, doubt.lasts_s, doubt.from_s, doubt.to_s,
-        units::percent_of(doubt.expected_j - doubt.own_j, all_j));
+        units::percentage(doubt.expected_j - doubt.own_j, all_j));
 }
 
 }  // namespace
 
-std::vector<std::string> device_doubts(const FlightSeries& series, std::string_view message) {
+std::vector<std::string> find_suspect_devices(const FlightSeries& series, std::string_view message) {
     std::vector<std::string> doubts;
     auto devices = devices_of(series, "power_w", message);
     if (devices.empty()) return doubts;
     if (auto missing = missing_ids(devices, message); !missing.empty()) doubts.push_back(std::move(missing));
     const auto most = devices.front().track.time_s.size();
-    std::erase_if(devices, [&](const Device& device) { return hardly_reports_at_all(device, most); });
+    std::erase_if(devices, [&](const Device& device) { return reports_rarely(device, most); });
     if (devices.size() < 2 || most < alike_reports) return doubts;
-    if (devices.size() > most_judged) {
+    if (devices.size() > max_judged) {
         doubts.push_back(fmt::format("{} {} devices: none is judged beside the others", devices.size(), message));
         return doubts;
     }
@@ -224,7 +224,7 @@ std::vector<std::string> device_doubts(const FlightSeries& series, std::string_v
         const auto beside = beside_others(table, d, reported);
         const auto doubt =
             message == "ESC" ? doubt_of_motor(table, beside) : doubt_of_circuit(table, beside, reported, all_j);
-        if (doubt.missing_j > doubtful_missing_part * std::abs(all_j))
+        if (doubt.missing_j > doubtful_missing_fraction * std::abs(all_j))
             doubts.push_back(said_of(doubt, message, devices[d].id, all_j));
         if (const auto odd = odd_part(table, beside, all_j); !odd.empty())
             doubts.push_back(fmt::format("{} {} {}", message, devices[d].id, odd));
@@ -232,8 +232,8 @@ std::vector<std::string> device_doubts(const FlightSeries& series, std::string_v
     return doubts;
 }
 
-std::string own_voltages(const FlightSeries& series) {
-    constexpr double most_apart = 1.1;
+std::string differing_voltages_reason(const FlightSeries& series) {
+    constexpr double max_apart = 1.1;
     const auto currents = devices_of(series, "current_a", "POWER_DEVICE");
     std::vector<double> voltages;
     for (const auto& device : devices_of(series, "power_w", "POWER_DEVICE")) {
@@ -245,7 +245,7 @@ std::string own_voltages(const FlightSeries& series) {
     }
     if (voltages.empty()) return "";
     const auto [low, high] = std::ranges::minmax(voltages);
-    if (high <= most_apart * low) return "";
+    if (high <= max_apart * low) return "";
     return fmt::format(
         "the circuits of POWER_DEVICE have {:.1f} to {:.1f} V: voltage and current of the pack are not known", low,
         high);

@@ -14,10 +14,10 @@ namespace flightwatt::flight {
 /// (POWER_DEVICE) the part of their power that it drew otherwise. A circuit that draws the same small power
 /// throughout is the electronics'; one that is 0 throughout is reported. So are devices of negative power, one that
 /// reports the sum of two or more others, and ids that are missing between others.
-std::vector<std::string> device_doubts(const FlightSeries& series, std::string_view message);
+std::vector<std::string> find_suspect_devices(const FlightSeries& series, std::string_view message);
 
 /// Why voltage and current of POWER_DEVICE are not the pack's: "its circuits have 5.0 to 12.3 V ...". Empty where their
 /// voltages (energy over charge) lie within 10 %.
-std::string own_voltages(const FlightSeries& series);
+std::string differing_voltages_reason(const FlightSeries& series);
 
 }  // namespace flightwatt::flight

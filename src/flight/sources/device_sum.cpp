@@ -17,10 +17,10 @@ constexpr double silent_intervals = 5.0;
 constexpr double outside_intervals = 3.0;
 constexpr double near_intervals = 0.9;
 constexpr std::size_t many_reports = 30;
-constexpr double repeated_part = 0.05;  // of a device's reports: less is damage
-constexpr double burst_part = 0.4;      // of the intervals, that are a fifth of the mean or less
+constexpr double repeated_fraction = 0.05;  // of a device's reports: less is damage
+constexpr double burst_fraction = 0.4;      // of the intervals, that are a fifth of the mean or less
 constexpr double short_interval = 0.2;
-constexpr double least_summed_part = 0.25;  // of the times: with less there is no power record
+constexpr double min_summed_part = 0.25;  // of the times: with less there is no power record
 
 /// How many reports came beside others of the same time, and how many of these differ from the first.
 struct Repetition {
@@ -45,16 +45,16 @@ bool comes_in_bursts(const Track& track) {
     std::size_t shorter = 0;
     for (std::size_t i = 1; i < track.time_s.size(); ++i)
         if (track.time_s[i] - track.time_s[i - 1] <= short_interval * mean_s) ++shorter;
-    return static_cast<double>(shorter) > burst_part * intervals;
+    return static_cast<double>(shorter) > burst_fraction * intervals;
 }
 
 /// Whether one id stands for several devices: says so, or what might be.
 void judge_ids(const std::vector<Device>& devices, std::string_view message, DeviceSum& sum) {
     for (const auto& device : devices) {
         const auto [reports, differing] = repetition_of(device);
-        if (static_cast<double>(reports) > repeated_part * static_cast<double>(device.track.time_s.size())) {
+        if (static_cast<double>(reports) > repeated_fraction * static_cast<double>(device.track.time_s.size())) {
             const auto often = static_cast<double>(device.repeated.back().time_s.size()) >
-                               repeated_part * static_cast<double>(device.track.time_s.size());
+                               repeated_fraction * static_cast<double>(device.track.time_s.size());
             if (2 * differing > reports || (often && device.repeated.size() > 1)) {
                 sum.ambiguity = fmt::format("{} {} reports {} times at one time{}: several devices under one id",
                                             message, device.id, device.repeated.size() + 1,
@@ -74,17 +74,17 @@ void judge_ids(const std::vector<Device>& devices, std::string_view message, Dev
 
 /// The device's value at t; std::nullopt where it is silent. Devices report one after the other, so the one before or
 /// after a gap of all is no further away than an interval: it counts.
-std::optional<double> report_at(const Track& track, double usual_s, double time_s) {
+std::optional<double> report_at(const Track& track, double median_s, double time_s) {
     const auto after = std::ranges::upper_bound(track.time_s, time_s);
     const bool begun = after != track.time_s.begin();
     const double since_s = begun ? time_s - *(after - 1) : 0.0;
     if (begun && since_s == 0.0) return value_at(track, time_s);
     if (after == track.time_s.end())
-        return since_s > outside_intervals * usual_s ? std::nullopt : std::optional(track.value.back());
+        return since_s > outside_intervals * median_s ? std::nullopt : std::optional(track.value.back());
     const double until_s = *after - time_s;
-    if (!begun) return until_s > outside_intervals * usual_s ? std::nullopt : std::optional(track.value.front());
-    if (since_s + until_s <= silent_intervals * usual_s) return value_at(track, time_s);
-    if (std::min(since_s, until_s) > near_intervals * usual_s) return std::nullopt;
+    if (!begun) return until_s > outside_intervals * median_s ? std::nullopt : std::optional(track.value.front());
+    if (since_s + until_s <= silent_intervals * median_s) return value_at(track, time_s);
+    if (std::min(since_s, until_s) > near_intervals * median_s) return std::nullopt;
     const auto nearest = after - track.time_s.begin() - (since_s < until_s ? 1 : 0);
     return track.value[static_cast<std::size_t>(nearest)];
 }
@@ -92,11 +92,11 @@ std::optional<double> report_at(const Track& track, double usual_s, double time_
 /// Adds a device where it reports, and leaves out the rest.
 void add_device(Track& sum, const Device& device, double clock_s, std::string_view message,
                 std::vector<std::string>& notes) {
-    const double usual_s = std::max(usual_interval_s(device.track.time_s), clock_s);
+    const double median_s = std::max(median_interval_s(device.track.time_s), clock_s);
     Track both{sum.name, sum.source, sum.device, sum.since_s, {}, {}};
     std::optional<double> silent_from_s;
     for (std::size_t i = 0; i < sum.time_s.size(); ++i) {
-        const auto more = report_at(device.track, usual_s, sum.time_s[i]);
+        const auto more = report_at(device.track, median_s, sum.time_s[i]);
         if (!more) {
             if (!silent_from_s) silent_from_s = sum.time_s[i];
             continue;
@@ -121,17 +121,17 @@ DeviceSum sum_over_devices(const FlightSeries& series, std::string_view name, st
     if (devices.empty()) return sum;
     const auto most = devices.front().track.time_s.size();
     for (const auto& device : devices) {
-        if (!hardly_reports_at_all(device, most)) continue;
+        if (!reports_rarely(device, most)) continue;
         sum.notes.push_back(fmt::format("{} {} reports only {} times: it is left out of the sum", message, device.id,
                                         device.track.time_s.size()));
     }
-    std::erase_if(devices, [&](const Device& device) { return hardly_reports_at_all(device, most); });
+    std::erase_if(devices, [&](const Device& device) { return reports_rarely(device, most); });
     judge_ids(devices, message, sum);
     if (!sum.ambiguity.empty()) return sum;
     sum.track = devices.front().track;
-    const double clock_s = usual_interval_s(sum.track.time_s);
+    const double clock_s = median_interval_s(sum.track.time_s);
     for (std::size_t d = 1; d < devices.size(); ++d) add_device(sum.track, devices[d], clock_s, message, sum.notes);
-    if (static_cast<double>(sum.track.time_s.size()) < least_summed_part * static_cast<double>(most)) {
+    if (static_cast<double>(sum.track.time_s.size()) < min_summed_part * static_cast<double>(most)) {
         sum.ambiguity = sum.notes.back();
         sum.track = {};
         return sum;

@@ -26,6 +26,6 @@ DeviceSum sum_over_devices(const FlightSeries& series, std::string_view name, st
 bool is_sum_over_devices(const Track& track);
 
 /// Several reports of one device at one time are tracks of their own: "0", "0~2" for the second, "0~3" ...
-inline constexpr char report_mark = '~';
+inline constexpr char report_separator = '~';
 
 }  // namespace flightwatt::flight

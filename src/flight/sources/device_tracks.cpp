@@ -14,7 +14,7 @@ std::vector<Device> devices_of(const FlightSeries& series, std::string_view name
         const bool is_device = track.name == name && !track.device.empty() && !track.empty() &&
                                track.source.substr(0, track.source.find('.')) == message;
         if (!is_device) continue;
-        const auto id = track.device.substr(0, track.device.find(report_mark));
+        const auto id = track.device.substr(0, track.device.find(report_separator));
         const auto known = std::ranges::find(devices, id, &Device::id);
         if (known != devices.end()) {
             known->repeated.push_back(track);
@@ -26,12 +26,12 @@ std::vector<Device> devices_of(const FlightSeries& series, std::string_view name
     return devices;
 }
 
-bool hardly_reports_at_all(const Device& device, std::size_t most) {
-    constexpr double hardly_part = 0.01;
+bool reports_rarely(const Device& device, std::size_t most) {
+    constexpr double hardly_fraction = 0.01;
     constexpr std::size_t hardly_reports = 3;
     constexpr std::size_t enough_to_tell = 30;
     const auto reports = device.track.time_s.size();
-    return static_cast<double>(reports) < hardly_part * static_cast<double>(most) ||
+    return static_cast<double>(reports) < hardly_fraction * static_cast<double>(most) ||
            (reports < hardly_reports && most >= enough_to_tell);
 }
 

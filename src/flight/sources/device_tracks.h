@@ -20,6 +20,6 @@ struct Device {
 std::vector<Device> devices_of(const FlightSeries& series, std::string_view name, std::string_view message);
 
 /// True of what is no device, beside one of `most` reports: less than 1 % as many, or fewer than 3 of 30.
-bool hardly_reports_at_all(const Device& device, std::size_t most);
+bool reports_rarely(const Device& device, std::size_t most);
 
 }  // namespace flightwatt::flight

@@ -1,9 +1,9 @@
 #include "flight/sources/power_source.h"
 
 #include "flight/physical_bounds.h"
+#include "flight/sources/derived_tracks.h"
 #include "flight/sources/device_sum.h"
-#include "flight/sources/made_tracks.h"
-#include "flight/sources/wild_samples.h"
+#include "flight/sources/outliers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -93,16 +93,16 @@ bool measures_something(const Track& power) {
 }
 
 /// Takes a candidate if it measures something, or says why not.
-bool take(const FlightSeries& series, const Track& candidate, PowerChoice& choice,
+bool take(const FlightSeries& series, const Track& candidate, PowerSelection& choice,
           const std::vector<double>& contradicted_s = {}) {
-    auto sound = sound_track(candidate, contradicted_s, dropout_throttle(series, candidate));
+    auto sound = remove_outliers(candidate, contradicted_s, dropout_throttle(series, candidate));
     if (measures_something(sound.of(candidate))) {
         choice.power_w = sound.take(candidate);
-        if (!sound.left_out.empty()) choice.left_out.push_back(std::move(sound.left_out));
+        if (!sound.removal_note.empty()) choice.left_out.push_back(std::move(sound.removal_note));
         return true;
     }
-    if (sound.of(candidate).empty() && !sound.left_out.empty()) {
-        choice.passed_over.push_back(std::move(sound.left_out));
+    if (sound.of(candidate).empty() && !sound.removal_note.empty()) {
+        choice.passed_over.push_back(std::move(sound.removal_note));
         return false;
     }
     choice.passed_over.push_back(candidate.source +
@@ -112,7 +112,7 @@ bool take(const FlightSeries& series, const Track& candidate, PowerChoice& choic
 
 /// The field ENERGY.power, wherever it stands in the message.
 Track energy_power(const FlightSeries& series) {
-    if (energy_and_power_are_exchanged(series)) {
+    if (energy_and_power_are_swapped(series)) {
         auto track = *find_source(series, energy_read_as_power);
         track.source = "ENERGY.power";
         return track;
@@ -123,7 +123,7 @@ Track energy_power(const FlightSeries& series) {
 
 }  // namespace
 
-bool energy_and_power_are_exchanged(const FlightSeries& series) {
+bool energy_and_power_are_swapped(const FlightSeries& series) {
     const auto* as_read = find_source(series, "ENERGY.power");
     const auto* other = find_source(series, energy_read_as_power);
     const auto* product = find_product(series, "ENERGY.");
@@ -135,11 +135,11 @@ bool energy_and_power_are_exchanged(const FlightSeries& series) {
 std::vector<double> contradicted_times(const FlightSeries& series, std::string_view source) {
     if (source.find('.') == std::string_view::npos) {
         const auto* power = find_plain(series, "power_w");
-        return power == nullptr ? std::vector<double>{} : contradicted_times(*power, plain_product(series));
+        return power == nullptr ? std::vector<double>{} : inconsistent_times(*power, plain_product(series));
     }
     const auto* product = find_product(series, source.substr(0, source.find('.') + 1));
     if (product == nullptr || !source.starts_with("ENERGY.")) return {};
-    return contradicted_times(energy_power(series), *product);
+    return inconsistent_times(energy_power(series), *product);
 }
 
 Track dropout_throttle(const FlightSeries& series, const Track& candidate) {
@@ -151,13 +151,14 @@ Track dropout_throttle(const FlightSeries& series, const Track& candidate) {
     return found == series.tracks.end() ? Track{} : within_bounds(*found);
 }
 
-PowerChoice choose_power(const FlightSeries& series) {
-    PowerChoice choice;
+PowerSelection select_power(const FlightSeries& series) {
+    PowerSelection choice;
     if (const auto* plain = find_plain(series, "power_w")) {
         // Believed even where it is 0 throughout.
-        auto sound = sound_track(*plain, contradicted_times(series, plain->source), dropout_throttle(series, *plain));
+        auto sound =
+            remove_outliers(*plain, contradicted_times(series, plain->source), dropout_throttle(series, *plain));
         choice.power_w = sound.take(*plain);
-        if (!sound.left_out.empty()) choice.left_out.push_back(std::move(sound.left_out));
+        if (!sound.removal_note.empty()) choice.left_out.push_back(std::move(sound.removal_note));
         return choice;
     }
     const auto* product = find_product(series, "ENERGY.");

@@ -1,6 +1,6 @@
 #include "base/error.h"
-#include "base/file_use.h"
 #include "base/number.h"
+#include "base/overwrite_guard.h"
 #include "live/playback.h"
 #include "live/sources/host_and_port.h"
 #include "live/sources/ivy_agent.h"
@@ -54,14 +54,15 @@ class UdpTarget : public PlaybackTarget {
     std::string frame_;
 };
 
-/// Link frames on a serial line, which asio opens without blocking. What it does not take at once waits, but no more than some minutes of a modem's.
+/// Link frames on a serial line, which asio opens without blocking. What it does not take at once waits, but no more
+/// than some minutes of a modem's.
 class SerialTarget : public PlaybackTarget {
   public:
     SerialTarget(std::string_view to, PlaybackTargetSetup setup)
         : definitions_(std::move(setup.definitions.value())),
           encoder_(definitions_, setup.version),
           line_(parse_serial_line(to)) {
-        declare_output(line_.device);
+        register_output(line_.device);
         if (const auto error = open_serial_line(line_, port_)) refuse_serial_line(line_, error);
     }
 
@@ -85,7 +86,7 @@ class SerialTarget : public PlaybackTarget {
         }
         PlaybackTarget::wait_until(then);
     }
-    bool is_idle() const override { return waiting_.empty(); }
+    bool is_drained() const override { return waiting_.empty(); }
 
   private:
     void write() {
@@ -123,7 +124,7 @@ class IvyTarget : public PlaybackTarget {
         }
     }
 
-    bool is_heard(std::chrono::milliseconds timeout) override {
+    bool has_receiver(std::chrono::milliseconds timeout) override {
         for (const auto end = Clock::now() + timeout; agent_.ready_peers() == 0 && Clock::now() < end;) {
             context_.run_one_until(end);
         }
@@ -146,7 +147,7 @@ class IvyTarget : public PlaybackTarget {
         return {};
     }
     void wait_until(Clock::time_point then) override { context_.run_until(then); }
-    bool is_idle() const override { return agent_.waiting_bytes() == 0; }
+    bool is_drained() const override { return agent_.waiting_bytes() == 0; }
 
   private:
     bool as_aircraft_;
@@ -158,10 +159,10 @@ class IvyTarget : public PlaybackTarget {
 class LineTarget : public PlaybackTarget {
   public:
     explicit LineTarget(std::string name) : name_(std::move(name)) {
-        declare_output(name_);
+        register_output(name_);
         file_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666);
         if (file_ < 0) refuse();
-        note_written(name_);
+        mark_written(name_);
     }
     ~LineTarget() override { ::close(file_); }
 

@@ -15,9 +15,9 @@ namespace {
 namespace http = boost::beast::http;
 using boost::beast::error_code;
 
-constexpr std::chrono::seconds longest_request{10}, longest_write{20};
-constexpr std::size_t most_request_bytes = 16'384;
-constexpr std::size_t most_unsent_bytes = 2'000'000;  // a listener that takes nothing for minutes
+constexpr std::chrono::seconds max_request{10}, max_write{20};
+constexpr std::size_t max_request_bytes = 16'384;
+constexpr std::size_t max_unsent_bytes = 2'000'000;  // a listener that takes nothing for minutes
 
 std::string_view text_of(boost::beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -57,9 +57,9 @@ PageSession::PageSession(boost::asio::ip::tcp::socket socket, const PageContents
 
 void PageSession::start() {
     parser_.emplace();
-    parser_->header_limit(most_request_bytes);
-    parser_->body_limit(most_request_bytes);
-    stream_.expires_after(longest_request);
+    parser_->header_limit(max_request_bytes);
+    parser_->body_limit(max_request_bytes);
+    stream_.expires_after(max_request);
     http::async_read_header(stream_, buffer_, *parser_,
                             [self = shared_from_this()](const error_code& error, std::size_t) {
                                 if (self->closed_) return;
@@ -96,7 +96,7 @@ void PageSession::answer() {
 
 void PageSession::send(std::string_view text) {
     if (closed_) return;
-    if (outgoing_.size() + text.size() > most_unsent_bytes + contents_.page.size()) return close();
+    if (outgoing_.size() + text.size() > max_unsent_bytes + contents_.page.size()) return close();
     outgoing_ += text;
     if (writing_.empty()) write_next();
 }
@@ -107,7 +107,7 @@ void PageSession::write_next() {
         if (!is_listener_) close();
         return;
     }
-    stream_.expires_after(longest_write);
+    stream_.expires_after(max_write);
     boost::asio::async_write(stream_, boost::asio::buffer(writing_),
                              [self = shared_from_this()](const error_code& error, std::size_t) {
                                  self->writing_.clear();

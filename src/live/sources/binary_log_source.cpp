@@ -13,14 +13,14 @@ BinaryLogSource::BinaryLogSource(const std::filesystem::path& path, telemetry::M
 
 void BinaryLogSource::receive(std::chrono::milliseconds timeout, std::vector<IncomingMessage>& messages) {
     const auto piece = followed_.read(timeout, true);
-    if (piece.anew) begin_anew(messages);
-    const auto sink = [&](const telemetry::LinkMessage& message) { hand_on(message, messages); };
+    if (piece.anew) restart_decoder(messages);
+    const auto sink = [&](const telemetry::LinkMessage& message) { forward(message, messages); };
     if (!piece.bytes.empty()) decoder_.push(piece.bytes, sink);
     count();
 }
 
-void BinaryLogSource::begin_anew(std::vector<IncomingMessage>& messages) {
-    decoder_.flush([&](const telemetry::LinkMessage& message) { hand_on(message, messages); });
+void BinaryLogSource::restart_decoder(std::vector<IncomingMessage>& messages) {
+    decoder_.flush([&](const telemetry::LinkMessage& message) { forward(message, messages); });
     count();
     decoder_ = telemetry::LinkDecoder(definitions_);
     counted_ = {};
@@ -28,7 +28,7 @@ void BinaryLogSource::begin_anew(std::vector<IncomingMessage>& messages) {
     restarted_ = true;
 }
 
-void BinaryLogSource::hand_on(const telemetry::LinkMessage& message, std::vector<IncomingMessage>& messages) {
+void BinaryLogSource::forward(const telemetry::LinkMessage& message, std::vector<IncomingMessage>& messages) {
     if (message.class_id != telemetry::MessageDictionary::telemetry_class) {
         ++report_.unusable[other_class];
         return;
@@ -38,7 +38,7 @@ void BinaryLogSource::hand_on(const telemetry::LinkMessage& message, std::vector
 }
 
 void BinaryLogSource::count() {
-    tell_unusable(decoder_.counts(), counted_, [this](const char* reason, std::size_t times) {
+    report_unusable(decoder_.counts(), counted_, [this](const char* reason, std::size_t times) {
         if (times > 0) report_.unusable[reason] += times;
     });
     counted_ = decoder_.counts();

@@ -19,11 +19,11 @@ class BinaryLogSource : public MessageSource {
     const SourceReport& report() const override { return report_; }
 
   private:
-    void begin_anew(std::vector<IncomingMessage>& messages);
-    void hand_on(const telemetry::LinkMessage& message, std::vector<IncomingMessage>& messages);
+    void restart_decoder(std::vector<IncomingMessage>& messages);
+    void forward(const telemetry::LinkMessage& message, std::vector<IncomingMessage>& messages);
     void count();
 
-    FollowedBytes followed_;
+    FileTail followed_;
     telemetry::MessageDictionary definitions_;
     telemetry::LinkDecoder decoder_;
     telemetry::LinkCounts counted_;

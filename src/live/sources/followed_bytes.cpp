@@ -1,7 +1,7 @@
 #include "live/sources/followed_bytes.h"
 
 #include "base/error.h"
-#include "base/file_use.h"
+#include "base/overwrite_guard.h"
 
 #include <algorithm>
 #include <thread>
@@ -14,13 +14,13 @@
 namespace flightwatt::live {
 namespace {
 
-constexpr std::size_t most_bytes_a_piece = 65'536;  // a thousand messages
+constexpr std::size_t max_bytes_a_piece = 65'536;  // a thousand messages
 
 }  // namespace
 
-FollowedBytes::FollowedBytes(std::filesystem::path path, const char* expected)
-    : path_(std::move(path)), bytes_(most_bytes_a_piece) {
-    note_input(path_);
+FileTail::FileTail(std::filesystem::path path, const char* expected)
+    : path_(std::move(path)), bytes_(max_bytes_a_piece) {
+    register_input(path_);
     if (std::filesystem::is_directory(path_) || !open()) {
         throw InputError({path_.string()}, std::filesystem::exists(path_) ? "cannot be read" : "there is no such file",
                          expected);
@@ -31,25 +31,25 @@ FollowedBytes::FollowedBytes(std::filesystem::path path, const char* expected)
     throw InputError({path_.string()}, "is no regular file", expected);
 }
 
-FollowedBytes::~FollowedBytes() { close(); }
+FileTail::~FileTail() { close(); }
 
-bool FollowedBytes::open() {
+bool FileTail::open() {
     file_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     offset_ = 0;
     return file_ >= 0;
 }
 
-void FollowedBytes::close() {
+void FileTail::close() {
     if (file_ >= 0) ::close(file_);
     file_ = -1;
 }
 
-FollowedBytes::Piece FollowedBytes::read(std::chrono::milliseconds timeout, bool zeros_are_room) {
+FileTail::Piece FileTail::read(std::chrono::milliseconds timeout, bool zeros_are_padding) {
     using Clock = std::chrono::steady_clock;
     constexpr std::chrono::milliseconds look_again{20};
     const auto until = Clock::now() + timeout;
     for (;;) {
-        if (const auto count = read_more(zeros_are_room); count > 0)
+        if (const auto count = read_more(zeros_are_padding); count > 0)
             return {{bytes_.data(), count}, std::exchange(anew_, false)};
         reopen_if_replaced();
         const auto left = until - Clock::now();
@@ -58,7 +58,7 @@ FollowedBytes::Piece FollowedBytes::read(std::chrono::milliseconds timeout, bool
     }
 }
 
-std::size_t FollowedBytes::read_more(bool zeros_are_room) {
+std::size_t FileTail::read_more(bool zeros_are_padding) {
     if (file_ < 0) return 0;
     struct stat status {};
     if (::fstat(file_, &status) == 0 && status.st_size < offset_) {  // it was cut and is written anew
@@ -68,12 +68,12 @@ std::size_t FollowedBytes::read_more(bool zeros_are_room) {
     const auto count = ::pread(file_, bytes_.data(), bytes_.size(), offset_);
     if (count <= 0) return 0;
     auto written = static_cast<std::size_t>(count);
-    while (zeros_are_room && written > 0 && bytes_[written - 1] == '\0') --written;
+    while (zeros_are_padding && written > 0 && bytes_[written - 1] == '\0') --written;
     offset_ += static_cast<::off_t>(written);
     return written;
 }
 
-void FollowedBytes::reopen_if_replaced() {
+void FileTail::reopen_if_replaced() {
     struct stat named {};
     if (::stat(path_.c_str(), &named) != 0) return;  // gone for a while: what is open is still read
     struct stat opened {};

@@ -24,7 +24,7 @@ using boost::system::error_code;
 /// An announcement is a single datagram, which may be lost: while nobody has answered it is said again. Never to those
 /// who have: Ivy's C library would connect once more.
 constexpr std::chrono::seconds announce_again{1};
-constexpr std::size_t most_peers = 64;
+constexpr std::size_t max_peers = 64;
 
 using ReusePort = asio::detail::socket_option::boolean<SOL_SOCKET, SO_REUSEPORT>;
 
@@ -123,7 +123,7 @@ void IvyAgent::listen_for_announcements() {
         if (!error) {
             const auto announcement = parse_announcement({datagram_.data(), n});
             if (announcement) {
-                heed(*announcement, from_.address());
+                handle_announcement(*announcement, from_.address());
             } else {
                 setup_.on_unusable("announcements that are not of the Ivy protocol, version 3");
             }
@@ -132,11 +132,11 @@ void IvyAgent::listen_for_announcements() {
     });
 }
 
-void IvyAgent::heed(const IvyAnnouncement& announcement, const asio::ip::address& from) {
+void IvyAgent::handle_announcement(const IvyAnnouncement& announcement, const asio::ip::address& from) {
     if (announcement.id == id_ || (setup_.bus.is_local() && !from.is_loopback())) return;
     const bool known = std::any_of(peers_.begin(), peers_.end(), [&](const auto& peer) {
         const bool may_be = peer->announced_id().empty() || peer->announced_id() == announcement.id;
-        return may_be && peer->leads_to(from, announcement.port);
+        return may_be && peer->is_connected_to(from, announcement.port);
     });
     if (known) return;
     if (const auto peer = add_peer()) peer->connect({from, announcement.port}, announcement.id);
@@ -163,7 +163,7 @@ void IvyAgent::accept_later() {
 }
 
 std::shared_ptr<IvyPeer> IvyAgent::add_peer() {
-    if (peers_.size() >= most_peers) {
+    if (peers_.size() >= max_peers) {
         setup_.on_unusable("agents too many to connect with");
         return nullptr;
     }
@@ -174,9 +174,9 @@ void IvyAgent::remove(const IvyPeer& peer) {
     peers_.remove_if([&](const auto& other) { return other.get() == &peer; });
 }
 
-void IvyAgent::close_double(IvyPeer& peer) {
+void IvyAgent::close_duplicate(IvyPeer& peer) {
     for (const auto& other : peers_) {
-        if (other.get() == &peer || !other->leads_to(peer.address(), peer.service_port())) continue;
+        if (other.get() == &peer || !other->is_connected_to(peer.address(), peer.service_port())) continue;
         auto& closed = other->higher_port() > peer.higher_port() ? *other : peer;
         closed.close();
         return remove(closed);

@@ -65,12 +65,12 @@ class IvyAgent {
     void announce();
     void announce_while_alone();
     void listen_for_announcements();
-    void heed(const IvyAnnouncement& announcement, const boost::asio::ip::address& from);
+    void handle_announcement(const IvyAnnouncement& announcement, const boost::asio::ip::address& from);
     void accept();
     void accept_later();
     std::shared_ptr<IvyPeer> add_peer();
     void remove(const IvyPeer& peer);
-    void close_double(IvyPeer& peer);
+    void close_duplicate(IvyPeer& peer);
 
     boost::asio::io_context& context_;
     IvyAgentSetup setup_;

@@ -14,12 +14,12 @@ namespace {
 
 constexpr std::string_view replay_prefix = "replay";
 constexpr std::string_view time_prefix = "time";
-constexpr std::size_t most_aircraft = 256;  // their ids are bytes
-constexpr std::size_t most_waiting = 1000;
+constexpr std::size_t max_aircraft = 256;  // their ids are bytes
+constexpr std::size_t max_waiting = 1000;
 
 bool is_id(std::string_view word) {
-    constexpr std::size_t most_digits = 5;
-    return !word.empty() && word.size() <= most_digits &&
+    constexpr std::size_t max_digits = 5;
+    return !word.empty() && word.size() <= max_digits &&
            std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
@@ -31,7 +31,7 @@ std::string_view id_after(std::string_view prefix, std::string_view word) {
 
 }  // namespace
 
-void IvyMessages::heed(std::string_view said) {
+void IvyMessages::handle(std::string_view said) {
     const auto first = said.find_first_not_of(' ');
     if (first == std::string_view::npos) return void(++no_messages_);
     said.remove_prefix(first);
@@ -56,10 +56,10 @@ void IvyMessages::heed(std::string_view said) {
         // What the ground says beside a replay is said on its clock.
         return sink_({has_aircraft_ ? std::nullopt : latest_time_s_, std::string(said)});
     }
-    if (has_aircraft_ || (replays_.size() >= most_aircraft && !replays_.contains(id))) return void(++unheeded_replays_);
+    if (has_aircraft_ || (replays_.size() >= max_aircraft && !replays_.contains(id))) return void(++unheeded_replays_);
     auto& replay = replays_[std::string(id)];
     replay.waiting.push_back(fmt::format("{}{}", id, rest));
-    if (replay.waiting.size() > most_waiting) hand_on(replay);
+    if (replay.waiting.size() > max_waiting) hand_on(replay);
 }
 
 void IvyMessages::hand_on(Replay& replay) {
@@ -71,7 +71,7 @@ void IvyMessages::release() {
     for (auto& [id, replay] : replays_) hand_on(replay);
 }
 
-bool IvyMessages::waits() const {
+bool IvyMessages::has_pending() const {
     return std::any_of(replays_.begin(), replays_.end(),
                        [](const auto& replay) { return !replay.second.waiting.empty(); });
 }

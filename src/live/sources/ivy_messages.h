@@ -22,16 +22,16 @@ class IvyMessages {
 
     explicit IvyMessages(Sink sink) : sink_(std::move(sink)) {}
 
-    void heed(std::string_view said);
+    void handle(std::string_view said);
     /// What was said until now has been waited for long enough: no time follows.
     void release();
-    bool waits() const;
+    bool has_pending() const;
 
     /// How often a time was said.
     std::size_t times() const { return times_; }
-    std::size_t unheeded_replays() const { return unheeded_replays_; }
+    std::size_t ignored_replays() const { return unheeded_replays_; }
     /// Lines of one word or none.
-    std::size_t no_messages() const { return no_messages_; }
+    std::size_t malformed_lines() const { return no_messages_; }
 
   private:
     struct Replay {

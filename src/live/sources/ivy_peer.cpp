@@ -17,7 +17,7 @@ namespace {
 namespace asio = boost::asio;
 using boost::system::error_code;
 
-constexpr std::size_t most_subscriptions = 4096;  // of one agent; Paparazzi's have some dozens
+constexpr std::size_t max_subscriptions = 4096;  // of one agent; Paparazzi's have some dozens
 constexpr std::size_t most_waiting_bytes = 4'000'000;
 
 /// An agent whose machine is gone says nothing any more: the system finds out within a minute.
@@ -72,7 +72,7 @@ void IvyPeer::listen() {
                                     self->agent_.setup().on_unusable("lines longer than any message");
                                 }
                                 for (const auto& line : self->lines_) {
-                                    if (!self->closed_) self->heed_line(line);
+                                    if (!self->closed_) self->handle_line(line);
                                 }
                                 if (self->closed_) return;
                                 if (error) return self->lose();
@@ -80,7 +80,7 @@ void IvyPeer::listen() {
                             });
 }
 
-void IvyPeer::heed_line(const std::string& line) {
+void IvyPeer::handle_line(const std::string& line) {
     if (line.empty()) return;
     const auto parsed = parse_ivy_line(line);
     if (!parsed) return agent_.setup().on_unusable("lines that are not of the Ivy protocol");
@@ -93,7 +93,7 @@ void IvyPeer::heed(const IvyLine& line) {
         case IvyType::start:
             if (line.id > 0 && line.id <= std::numeric_limits<std::uint16_t>::max())
                 service_port_ = static_cast<std::uint16_t>(line.id);
-            return agent_.close_double(*this);
+            return agent_.close_duplicate(*this);
         case IvyType::subscribe:
             return subscribe(line);
         case IvyType::unsubscribe:
@@ -124,7 +124,7 @@ void IvyPeer::subscribe(const IvyLine& line) {
     if (!agent_.setup().sends) return;
     const auto regexp = PerlRegexp::compile(std::string(line.arguments));
     if (!regexp) return write(to_ivy_line(IvyType::error, line.id, "no regular expression"));
-    if (subscriptions_.size() >= most_subscriptions && !subscriptions_.contains(line.id)) return;
+    if (subscriptions_.size() >= max_subscriptions && !subscriptions_.contains(line.id)) return;
     subscriptions_.insert_or_assign(line.id, *regexp);
 }
 
@@ -178,7 +178,7 @@ void IvyPeer::lose() {
     agent_.remove(*this);
 }
 
-bool IvyPeer::leads_to(const asio::ip::address& address, std::uint16_t service_port) const {
+bool IvyPeer::is_connected_to(const asio::ip::address& address, std::uint16_t service_port) const {
     return address_ == address && service_port_ == service_port;
 }
 

@@ -33,7 +33,7 @@ class IvyPeer : public std::enable_shared_from_this<IvyPeer> {
     void close();
 
     /// Whether this is the connection with the agent that takes connections there.
-    bool leads_to(const boost::asio::ip::address& address, std::uint16_t service_port) const;
+    bool is_connected_to(const boost::asio::ip::address& address, std::uint16_t service_port) const;
     const std::string& announced_id() const { return announced_id_; }
     bool ready() const { return ready_; }
     std::size_t waiting_bytes() const { return outgoing_.size() + writing_.size(); }
@@ -44,7 +44,7 @@ class IvyPeer : public std::enable_shared_from_this<IvyPeer> {
 
   private:
     void listen();
-    void heed_line(const std::string& line);
+    void handle_line(const std::string& line);
     void heed(const IvyLine& line);
     void subscribe(const IvyLine& line);
     void write(std::string_view text);

@@ -8,7 +8,7 @@ namespace flightwatt::live {
 namespace {
 
 /// Between "replay20 ..." and "time20 ..." a player does nothing else.
-constexpr std::chrono::milliseconds longest_wait_for_time{100};
+constexpr std::chrono::milliseconds max_wait_for_time{100};
 
 /// Everything, as one group: every agent's library understands it, and none takes it for a message that its program
 /// never sends.
@@ -42,24 +42,24 @@ void IvyReceiver::stop() {
 }
 
 void IvyReceiver::heed(std::string_view said) {
-    messages_.heed(said);
+    messages_.handle(said);
     queue_.count("messages of a replay while an aircraft itself is on the bus",
-                 messages_.unheeded_replays() - unheeded_replays_);
-    queue_.count("messages of a single word", messages_.no_messages() - no_messages_);
-    unheeded_replays_ = messages_.unheeded_replays();
-    no_messages_ = messages_.no_messages();
-    if (messages_.waits()) release_soon();
+                 messages_.ignored_replays() - unheeded_replays_);
+    queue_.count("messages of a single word", messages_.malformed_lines() - no_messages_);
+    unheeded_replays_ = messages_.ignored_replays();
+    no_messages_ = messages_.malformed_lines();
+    if (messages_.has_pending()) release_soon();
 }
 
 void IvyReceiver::release_soon() {
     if (std::exchange(release_is_due_, true)) return;
-    timer_.expires_after(longest_wait_for_time);
+    timer_.expires_after(max_wait_for_time);
     timer_.async_wait([this, times = messages_.times()](const boost::system::error_code& error) {
         release_is_due_ = false;
         if (error) return;
         if (messages_.times() == times) {
             messages_.release();
-        } else if (messages_.waits()) {
+        } else if (messages_.has_pending()) {
             release_soon();  // what waits came later
         }
     });

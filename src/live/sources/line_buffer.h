@@ -11,12 +11,12 @@ namespace flightwatt::live {
 /// dropped, and counted.
 class LineBuffer {
   public:
-    static constexpr std::size_t longest_line = 16'384;  ///< bytes; Paparazzi's messages have at most 255
+    static constexpr std::size_t max_line = 16'384;  ///< bytes; Paparazzi's messages have at most 255
 
     /// Appends the lines that are whole now, without their breaks (\n or \r\n).
     void push(std::string_view bytes, std::vector<std::string>& lines);
     /// The last line, which lacks its break; empty if there is none.
-    std::string take_rest();
+    std::string take_partial_line();
 
     std::size_t overlong() const { return overlong_; }
 

@@ -26,8 +26,8 @@ void LinkReader::hand_on(const telemetry::LinkMessage& message) {
 }
 
 void LinkReader::count() {
-    tell_unusable(decoder_.counts(), counted_,
-                  [this](const char* reason, std::size_t times) { queue_.count(reason, times); });
+    report_unusable(decoder_.counts(), counted_,
+                    [this](const char* reason, std::size_t times) { queue_.count(reason, times); });
     counted_ = decoder_.counts();
 }
 

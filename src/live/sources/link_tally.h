@@ -6,9 +6,9 @@ namespace flightwatt::live {
 
 /// What a decoder could not use since it was `before`, told to `count(reason, times)`.
 template <typename Count>
-void tell_unusable(const telemetry::LinkCounts& now, const telemetry::LinkCounts& before, const Count& count) {
+void report_unusable(const telemetry::LinkCounts& now, const telemetry::LinkCounts& before, const Count& count) {
     count("frames of messages that are not defined", now.unknown - before.unknown);
-    count("frames of another length than their message's", now.other_lengths - before.other_lengths);
+    count("frames of another length than their message's", now.length_mismatches - before.length_mismatches);
     count("bytes between frames", now.skipped_bytes - before.skipped_bytes);
 }
 

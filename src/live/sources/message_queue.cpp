@@ -12,10 +12,10 @@ void MessageQueue::push(IncomingMessage message) {
     const std::chrono::duration<double> since = std::chrono::steady_clock::now() - opened_;
     if (!message.time_s) message.time_s = since.count() * clock_factor_;
     const std::lock_guard lock(mutex_);
-    message.after_restart = std::exchange(after_restart_, false) || message.after_restart;
+    message.is_after_restart = std::exchange(after_restart_, false) || message.is_after_restart;
     waiting_.push_back(std::move(message));
     ++report_.messages;
-    if (waiting_.size() > most_waiting) {
+    if (waiting_.size() > max_waiting) {
         waiting_.pop_front();
         ++report_.unusable["messages that came in faster than they were looked at"];
     }
@@ -43,7 +43,7 @@ void MessageQueue::take(std::chrono::milliseconds timeout, std::vector<IncomingM
                         SourceReport& report) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, timeout, [&] { return !waiting_.empty(); });
-    const auto end = waiting_.begin() + static_cast<std::ptrdiff_t>(std::min(waiting_.size(), most_a_call));
+    const auto end = waiting_.begin() + static_cast<std::ptrdiff_t>(std::min(waiting_.size(), max_per_call));
     std::move(waiting_.begin(), end, std::back_inserter(messages));
     waiting_.erase(waiting_.begin(), end);
     report = report_;

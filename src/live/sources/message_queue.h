@@ -18,8 +18,8 @@ namespace flightwatt::live {
 /// bound; then the oldest are dropped, and counted.
 class MessageQueue {
   public:
-    static constexpr std::size_t most_waiting = 100'000;  ///< of a lively link an hour or more
-    static constexpr std::size_t most_a_call = 4'000;
+    static constexpr std::size_t max_waiting = 100'000;  ///< of a lively link an hour or more
+    static constexpr std::size_t max_per_call = 4'000;
 
     /// Messages without a time of their own get that of their arrival, since now, times `clock_factor`.
     explicit MessageQueue(double clock_factor);

@@ -14,8 +14,8 @@ class PerlRegexp {
     /// std::nullopt: it is none.
     static std::optional<PerlRegexp> compile(const std::string& expression);
 
-    /// The groups of the first match in `text`, which they point into, empty for one that took no part. std::nullopt: it
-    /// does not match, or trying would take too long.
+    /// The groups of the first match in `text`, which they point into, empty for one that took no part. std::nullopt:
+    /// it does not match, or trying would take too long.
     std::optional<std::vector<std::string_view>> groups_in(std::string_view text) const;
 
   private:

@@ -1,6 +1,6 @@
 #include "live/sources/receiving_source.h"
 
-#include "live/sources/quiet_thread.h"
+#include "live/sources/signal_free_thread.h"
 
 #include <boost/asio/post.hpp>
 

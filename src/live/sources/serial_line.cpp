@@ -14,12 +14,12 @@ using Port = boost::asio::serial_port;
 using boost::system::error_code;
 
 SerialLine parse_serial_line(std::string_view text) {
-    constexpr unsigned usual_baud = 57'600;  // of Paparazzi's modems
-    constexpr unsigned fastest_baud = 4'000'000;
+    constexpr unsigned default_baud = 57'600;  // of Paparazzi's modems
+    constexpr unsigned max_baud = 4'000'000;
     const auto colon = text.rfind(':');
     const auto baud = colon == std::string_view::npos ? std::nullopt : parse_unsigned(text.substr(colon + 1));
-    if (!baud) return {std::string(text), usual_baud};
-    if (colon == 0 || *baud == 0 || *baud > fastest_baud) {
+    if (!baud) return {std::string(text), default_baud};
+    if (colon == 0 || *baud == 0 || *baud > max_baud) {
         throw UsageError(fmt::format("serial line '{}': expected DEVICE:BAUD, as /dev/ttyUSB0:57600", text));
     }
     return {std::string(text.substr(0, colon)), static_cast<unsigned>(*baud)};

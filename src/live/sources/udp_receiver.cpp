@@ -14,7 +14,7 @@
 namespace flightwatt::live {
 namespace {
 
-constexpr std::size_t most_senders = 16;
+constexpr std::size_t max_senders = 16;
 constexpr int receive_buffer_bytes = 1 << 20;
 
 }  // namespace
@@ -61,7 +61,7 @@ LinkReader& UdpReceiver::reader_of(const Endpoint& sender) {
         readers_.splice(readers_.begin(), readers_, known);
         return readers_.front().second;
     }
-    if (readers_.size() == most_senders) readers_.pop_back();
+    if (readers_.size() == max_senders) readers_.pop_back();
     return readers_.emplace_front(sender, LinkReader(dictionary_, telemetry::Framing::link, queue_)).second;
 }
 

@@ -1,7 +1,7 @@
 #include "live/state/aircraft_choice.h"
 
-#include "flight/chosen_track.h"
 #include "flight/segmentation.h"
+#include "flight/selected_track.h"
 
 #include <algorithm>
 #include <exception>
@@ -10,8 +10,8 @@ namespace flightwatt::live {
 namespace {
 
 bool has_flown(const flight::FlightSeries& series) {
-    constexpr std::size_t least_samples = 2;
-    if (flight::chosen_track(series, "altitude_m").time_s.size() < least_samples) return false;
+    constexpr std::size_t min_samples = 2;
+    if (flight::select_track(series, "altitude_m").time_s.size() < min_samples) return false;
     try {
         return !segment(series).sorties.empty();
     } catch (const std::exception&) {
@@ -21,22 +21,22 @@ bool has_flown(const flight::FlightSeries& series) {
 
 }  // namespace
 
-void AircraftChoice::count(std::string_view text) {
+void AircraftSelector::count(std::string_view text) {
     const auto sender = text.substr(0, text.find(' '));
     if (const auto known = messages_.find(sender); known != messages_.end()) {
         ++known->second;
-    } else if (messages_.size() < most_named) {
+    } else if (messages_.size() < max_named) {
         messages_.emplace(sender, 1);
     }
 }
 
-flight::FlightSeries AircraftChoice::choose(TelemetryStore& store) {
-    if (named_ && !settled_) {
+flight::FlightSeries AircraftSelector::choose(TelemetryStore& store) {
+    if (named_ && !is_locked_) {
         chosen_ = *named_;
-        settled_ = true;
+        is_locked_ = true;
         store.keep_only(chosen_);
     }
-    if (settled_) return store.series(chosen_);
+    if (is_locked_) return store.series(chosen_);
     const auto senders = store.senders();
     const auto count_of = [&](const std::string& id) {
         const auto found = messages_.find(id);
@@ -47,7 +47,7 @@ flight::FlightSeries AircraftChoice::choose(TelemetryStore& store) {
         auto series = store.series(id);
         if (has_flown(series)) {
             chosen_ = id;
-            settled_ = true;
+            is_locked_ = true;
             store.keep_only(id);
             return series;
         }
@@ -58,7 +58,7 @@ flight::FlightSeries AircraftChoice::choose(TelemetryStore& store) {
     return std::move(*most);
 }
 
-std::map<std::string, std::size_t> AircraftChoice::others() const {
+std::map<std::string, std::size_t> AircraftSelector::others() const {
     std::map<std::string, std::size_t> others(messages_.begin(), messages_.end());
     others.erase(chosen_);
     return others;

@@ -13,11 +13,11 @@ namespace flightwatt::live {
 
 /// Which of the aircraft on a bus is watched: the one that is named, else the first that is seen to fly; before one
 /// does, the one that sends most. Once it flew it stays, and of the others only the messages are counted.
-class AircraftChoice {
+class AircraftSelector {
   public:
-    static constexpr std::size_t most_named = 32;  ///< senders that are counted one by one
+    static constexpr std::size_t max_named = 32;  ///< senders that are counted one by one
 
-    explicit AircraftChoice(std::optional<std::string> named) : named_(std::move(named)) {}
+    explicit AircraftSelector(std::optional<std::string> named) : named_(std::move(named)) {}
 
     /// Counts a message by its sender.
     void count(std::string_view text);
@@ -29,7 +29,7 @@ class AircraftChoice {
   private:
     std::optional<std::string> named_;
     std::string chosen_;
-    bool settled_ = false;
+    bool is_locked_ = false;
     std::map<std::string, std::size_t, std::less<>> messages_;
 };
 

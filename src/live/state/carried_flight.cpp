@@ -1,8 +1,8 @@
 #include "live/state/carried_flight.h"
 
 #include "base/units.h"
-#include "flight/chosen_track.h"
 #include "flight/phase_statistics.h"
+#include "flight/selected_track.h"
 
 #include <fmt/format.h>
 
@@ -18,7 +18,7 @@ std::optional<double> last_of(const flight::Track& counter) {
 double counted_since(double before, double value) { return value >= before ? value - before : value; }
 
 /// The energy from the restart to the first sample after it, by the energy counter or by that of the charge.
-std::optional<double> energy_between_wh(const CarriedFlight& before, const flight::ChosenTracks& tracks) {
+std::optional<double> energy_between_wh(const CarriedFlight& before, const flight::SelectedTracks& tracks) {
     const auto& energy = tracks["energy_wh"];
     if (before.counted_wh && !energy.empty()) return counted_since(*before.counted_wh, energy.value.front());
     const auto& charge = tracks["charge_ah"];
@@ -29,7 +29,7 @@ std::optional<double> energy_between_wh(const CarriedFlight& before, const fligh
 
 }  // namespace
 
-CarriedFlight carried_flight(const LiveState& state, const flight::ChosenTracks& tracks) {
+CarriedFlight carried_flight(const LiveState& state, const flight::SelectedTracks& tracks) {
     CarriedFlight carried;
     carried.clock_s = state.time_s;
     carried.energy_wh = state.energy_wh;
@@ -39,7 +39,7 @@ CarriedFlight carried_flight(const LiveState& state, const flight::ChosenTracks&
     return carried;
 }
 
-void continue_flight(const CarriedFlight& before, const flight::ChosenTracks& tracks, double now_s,
+void continue_flight(const CarriedFlight& before, const flight::SelectedTracks& tracks, double now_s,
                      const std::optional<battery::Battery>& battery, LiveState& state) {
     const auto& counter = tracks[before.counted_wh ? "energy_wh" : "charge_ah"];
     const auto between_wh = energy_between_wh(before, tracks);
@@ -59,7 +59,7 @@ void continue_flight(const CarriedFlight& before, const flight::ChosenTracks& tr
         !state.battery->soc_percent) {
         const double drawn_ah =
             counted_since(*before.counted_ah, charge.value.front()) + charge.value.back() - charge.value.front();
-        const double soc_percent = *before.soc_percent - units::percent_of(drawn_ah, battery->capacity_ah);
+        const double soc_percent = *before.soc_percent - units::percentage(drawn_ah, battery->capacity_ah);
         if (soc_percent > 0.0) {
             state.battery->soc_percent = soc_percent;
             state.battery->state = battery::BatteryState{soc_percent, 0.0};

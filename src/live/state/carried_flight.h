@@ -17,12 +17,12 @@ struct CarriedFlight {
 };
 
 /// From the state of a flight in the air, and the series that it is of.
-CarriedFlight carried_flight(const LiveState& state, const flight::ChosenTracks& tracks);
+CarriedFlight carried_flight(const LiveState& state, const flight::SelectedTracks& tracks);
 
 /// Adds what was known before to a state whose series begins in the air. The counters fill the time between: one that
-/// goes on by its difference, one that began anew with the aircraft by all it has counted. Without one, energy is unknown,
-/// and the charge is that of the voltage. A warning says which. `battery`: none, if there is none.
-void continue_flight(const CarriedFlight& before, const flight::ChosenTracks& tracks, double now_s,
+/// goes on by its difference, one that began anew with the aircraft by all it has counted. Without one, energy is
+/// unknown, and the charge is that of the voltage. A warning says which. `battery`: none, if there is none.
+void continue_flight(const CarriedFlight& before, const flight::SelectedTracks& tracks, double now_s,
                      const std::optional<battery::Battery>& battery, LiveState& state);
 
 }  // namespace flightwatt::live

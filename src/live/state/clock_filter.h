@@ -19,9 +19,9 @@ namespace flightwatt::live {
 /// as nothing arrived.
 class ClockFilter {
   public:
-    static constexpr double most_step_s = 60.0;
-    static constexpr double most_ahead_s = 10.0;
-    static constexpr std::size_t agreeing = 5;
+    static constexpr double max_step_s = 60.0;
+    static constexpr double max_ahead_s = 10.0;
+    static constexpr std::size_t min_confirmations = 5;
     static constexpr double late_s = 2.0;
     static constexpr std::size_t late_lines = 10;
 
@@ -35,13 +35,13 @@ class ClockFilter {
     /// Of a sender whose clock is thought to be near that time: further lines show whether it is.
     explicit ClockFilter(double about_s) : started_(true), is_guess_(true), latest_s_(about_s) {}
 
-    /// Takes a line, and appends those that are believed now. True where the first of them belongs to a clock that began
-    /// anew. `arrival_s`: on a clock that nobody sets; none where it says nothing.
-    bool push(double time_s, std::string text, std::vector<Line>& believed, std::optional<double> arrival_s = {});
+    /// Takes a line, and appends those that are believed now. True where the first of them belongs to a clock that
+    /// began anew. `arrival_s`: on a clock that nobody sets; none where it says nothing.
+    bool push(double time_s, std::string text, std::vector<Line>& accepted, std::optional<double> arrival_s = {});
     /// Whether a line of that time would be late.
     bool is_late(double time_s) const { return started_ && time_s + offset_s_ < latest_s_ - late_s; }
     /// Nothing more will come: what was held ahead of the latest is believed.
-    void flush(std::vector<Line>& believed);
+    void flush(std::vector<Line>& accepted);
 
     std::size_t unconfirmed() const { return unconfirmed_; }
     std::size_t steps_back() const { return steps_back_; }
@@ -51,11 +51,11 @@ class ClockFilter {
     double latest_s() const { return latest_s_; }
 
   private:
-    bool hold(Line line, std::vector<Line>& believed);
-    void look_at_late(Line& line);
-    void look_at_return(Line& line);
-    void take_back_step();
-    void believe(Line line, std::vector<Line>& believed);
+    bool hold(Line line, std::vector<Line>& accepted);
+    void handle_late_line(Line& line);
+    void handle_recovery(Line& line);
+    void undo_step();
+    void accept_line(Line line, std::vector<Line>& accepted);
 
     bool started_ = false;
     bool is_guess_ = false;  ///< `latest_s_`, of no line
@@ -68,7 +68,7 @@ class ClockFilter {
     std::size_t steps_back_ = 0;
     double stepped_back_s_ = 0.0;  ///< by the last step, as long as it may have been none
     double stepped_at_s_ = 0.0;
-    ReceiptPace pace_;
+    ArrivalMonitor pace_;
     double set_ahead_s_ = 0.0;
 };
 

@@ -26,8 +26,8 @@ bool has_stayed(const flight::Track& altitude_m, double touchdown_s, double now_
 
 }  // namespace
 
-void set_flight_clock(const flight::Sortie& sortie, const flight::Track& altitude_m, double now_s, bool is_over,
-                      LiveState& state) {
+void update_flight_times(const flight::Sortie& sortie, const flight::Track& altitude_m, double now_s, bool is_over,
+                         LiveState& state) {
     using flight::Phase;
     const auto& first = sortie.phases.front();
     const auto& last = sortie.phases.back();
@@ -35,18 +35,18 @@ void set_flight_clock(const flight::Sortie& sortie, const flight::Track& altitud
     state.landed =
         last.phase == Phase::landing && last.complete && (is_over || has_stayed(altitude_m, last.end.time_s, now_s));
     if (!state.began_in_air) state.lift_off_s = first.start.time_s;
-    state.flight_s = (state.landed ? sortie.end_s() : now_s) - sortie.start_s();
+    state.flight_time_s = (state.landed ? sortie.end_s() : now_s) - sortie.start_s();
     if (state.landed) return;
     state.phase = last.phase;
-    state.phase_s = now_s - last.start.time_s;
+    state.phase_time_s = now_s - last.start.time_s;
     const double hold_s = flight::SegmentationOptions{}.hold_s;
-    const bool climbs = last.phase == Phase::cruise && first.phase == Phase::takeoff && state.phase_s < hold_s;
+    const bool climbs = last.phase == Phase::cruise && first.phase == Phase::takeoff && state.phase_time_s < hold_s;
     if (!climbs) return;
     state.phase = Phase::takeoff;
-    state.phase_s = now_s - first.start.time_s;
+    state.phase_time_s = now_s - first.start.time_s;
 }
 
-double first_needed_s(const flight::FlightPhases& phases, const LiveState& state) {
+double retention_start_s(const flight::FlightPhases& phases, const LiveState& state) {
     if (state.phase) return phases.sorties.back().start_s() - rest_kept_s;
     double from_s = state.time_s - ground_kept_s;
     for (const auto& sortie : phases.sorties)

@@ -7,10 +7,10 @@ namespace flightwatt::live {
 
 /// Whether lines come in as fast as their clock goes, as over a link, and not a log at once or in bursts: over the last
 /// half a minute to a minute their times and their arrivals went on together.
-class ReceiptPace {
+class ArrivalMonitor {
   public:
     static constexpr double window_s = 30.0;
-    static constexpr double most_spread_s = 3.0;
+    static constexpr double max_spread_s = 3.0;
 
     /// A line that is believed, both on clocks in seconds.
     void add(double time_s, double arrival_s) {
@@ -20,21 +20,21 @@ class ReceiptPace {
             now_ = {lag_s, lag_s};
             begin_s_ = time_s;
         }
-        now_ = {std::min(now_.least_s, lag_s), std::max(now_.most_s, lag_s)};
+        now_ = {std::min(now_.min_s, lag_s), std::max(now_.max_s, lag_s)};
         arrival_s_ = arrival_s;
     }
 
     /// Of the last line; none where that is not known, or the two do not go together.
     std::optional<double> last_arrival_s() const {
         if (!before_) return std::nullopt;
-        const double spread_s = std::max(before_->most_s, now_.most_s) - std::min(before_->least_s, now_.least_s);
-        return spread_s < most_spread_s ? std::optional(arrival_s_) : std::nullopt;
+        const double spread_s = std::max(before_->max_s, now_.max_s) - std::min(before_->min_s, now_.min_s);
+        return spread_s < max_spread_s ? std::optional(arrival_s_) : std::nullopt;
     }
 
   private:
     struct Lag {
-        double least_s = 0.0;
-        double most_s = 0.0;
+        double min_s = 0.0;
+        double max_s = 0.0;
     };
 
     std::optional<double> begin_s_;  ///< of the window that `now_` is of

@@ -13,13 +13,14 @@ SenderClocks::Clock& SenderClocks::clock_of(std::string_view sender) {
         followed_ = sender;
         return clocks_[followed_];
     }
-    const std::string name(clocks_.size() < most_senders ? sender : std::string_view());
+    const std::string name(clocks_.size() < max_senders ? sender : std::string_view());
     if (const auto shared = clocks_.find(name); shared != clocks_.end()) return shared->second;
     return clocks_.emplace(name, Clock{ClockFilter(latest_s()), 0, 0.0}).first->second;
 }
 
-SenderClocks::Anew SenderClocks::push(double time_s, std::string text, bool restarted,
-                                      std::vector<ClockFilter::Line>& believed, std::optional<double> arrival_s) {
+SenderClocks::RestartScope SenderClocks::push(double time_s, std::string text, bool restarted,
+                                              std::vector<ClockFilter::Line>& believed,
+                                              std::optional<double> arrival_s) {
     const std::string sender(sender_of(text));
     const bool all = restarted && started() && clock_of(sender).filter.is_late(time_s);
     if (all) {
@@ -29,11 +30,11 @@ SenderClocks::Anew SenderClocks::push(double time_s, std::string text, bool rest
     }
     auto& clock = clock_of(sender);
     const bool anew = clock.filter.push(time_s, std::move(text), believed, arrival_s);
-    if (!believed.empty()) go_on(sender, anew, clock);
-    return all ? Anew::all : anew ? Anew::sender : Anew::none;
+    if (!believed.empty()) advance(sender, anew, clock);
+    return all ? RestartScope::all : anew ? RestartScope::sender : RestartScope::none;
 }
 
-void SenderClocks::go_on(std::string_view sender, bool anew, Clock& clock) {
+void SenderClocks::advance(std::string_view sender, bool anew, Clock& clock) {
     if (is_followed(sender)) {
         ++round_;
         others_s_ = 0.0;

@@ -12,18 +12,19 @@
 
 namespace flightwatt::live {
 
-/// A clock for each sender: what is wrong with one says nothing of the others. One of them is followed, and its clock is
-/// the telemetry's.
+/// A clock for each sender: what is wrong with one says nothing of the others. One of them is followed, and its clock
+/// is the telemetry's.
 class SenderClocks {
   public:
-    static constexpr std::size_t most_senders = 32;  ///< those beyond share one
+    static constexpr std::size_t max_senders = 32;  ///< those beyond share one
 
-    enum class Anew { none, sender, all };
+    enum class RestartScope { none, sender, all };
 
-    /// Takes a line, and appends those that are believed now. Whether the clock of their sender began anew before them, or
-    /// all did: `restarted` says that the source of the line began anew, so that no other lines have to agree. `arrival_s`: as ClockFilter.
-    Anew push(double time_s, std::string text, bool restarted, std::vector<ClockFilter::Line>& believed,
-              std::optional<double> arrival_s = {});
+    /// Takes a line, and appends those that are believed now. Whether the clock of their sender began anew before them,
+    /// or all did: `restarted` says that the source of the line began anew, so that no other lines have to agree.
+    /// `arrival_s`: as ClockFilter.
+    RestartScope push(double time_s, std::string text, bool restarted, std::vector<ClockFilter::Line>& believed,
+                      std::optional<double> arrival_s = {});
     /// Nothing more will come.
     void flush(std::vector<ClockFilter::Line>& believed);
 
@@ -51,7 +52,7 @@ class SenderClocks {
     using Clocks = std::map<std::string, Clock, std::less<>>;
 
     Clock& clock_of(std::string_view sender);
-    void go_on(std::string_view sender, bool anew, Clock& clock);
+    void advance(std::string_view sender, bool anew, Clock& clock);
 
     Clocks clocks_;
     std::string followed_;

@@ -15,7 +15,7 @@ namespace flightwatt::live {
 namespace {
 
 /// What a flight series is made of, without what no prediction looks at.
-std::vector<telemetry::MessageRequest> predicting_messages(const WantedTelemetry& wanted) {
+std::vector<telemetry::MessageRequest> predicting_messages(const TelemetryFilter& wanted) {
     static const std::set<std::string> of_places{"NAVIGATION", "GPS_LLA"};
     static const std::set<std::string> place_fields{"utm_east", "utm_north", "utm_zone", "lat", "lon"};
     auto messages = flight::flight_messages();
@@ -67,7 +67,7 @@ void filter_rows(telemetry::MessageTable& table, const std::function<bool(std::s
 }  // namespace
 
 TelemetryStore::TelemetryStore(std::string flight, std::optional<telemetry::LogConfiguration> configuration,
-                               WantedTelemetry wanted)
+                               TelemetryFilter wanted)
     : wanted_(predicting_messages(wanted)) {
     log_.data_file = flight;
     log_.flight = std::move(flight);
@@ -103,7 +103,7 @@ void TelemetryStore::add(std::string_view lines) {
 telemetry::SenderLog* TelemetryStore::sender_of(const std::string& id) {
     const auto found = std::ranges::find(log_.senders, id, &telemetry::SenderLog::id);
     if (found != log_.senders.end()) return &*found;
-    if (log_.senders.size() == most_senders) return nullptr;
+    if (log_.senders.size() == max_senders) return nullptr;
     log_.senders.push_back({id, {}});
     return &log_.senders.back();
 }
@@ -111,7 +111,7 @@ telemetry::SenderLog* TelemetryStore::sender_of(const std::string& id) {
 void TelemetryStore::append(const std::string& sender, telemetry::MessageTable&& rows) {
     auto* of = sender_of(sender);
     if (of == nullptr) {
-        ++skipped_[fmt::format("of more than {} senders", most_senders)];
+        ++skipped_[fmt::format("of more than {} senders", max_senders)];
         return;
     }
     auto table = std::ranges::find(of->tables, rows.message, &telemetry::MessageTable::message);
@@ -132,8 +132,8 @@ void TelemetryStore::append_rows(telemetry::MessageTable& table, const telemetry
                                  Thinning& thinning) {
     for (std::size_t row = 0; row < rows.time_s.size(); ++row) {
         auto device = device_of(rows, row);
-        if (thinning.rows_of.size() >= most_devices && !thinning.rows_of.contains(device)) {
-            ++skipped_[fmt::format("{}: of more than {} devices", rows.message, most_devices)];
+        if (thinning.rows_of.size() >= max_devices && !thinning.rows_of.contains(device)) {
+            ++skipped_[fmt::format("{}: of more than {} devices", rows.message, max_devices)];
             continue;
         }
         if (thinning.rows_of[std::move(device)]++ % thinning.stride != 0) continue;

@@ -14,7 +14,7 @@
 namespace flightwatt::live {
 
 /// What is not always wanted of telemetry.
-struct WantedTelemetry {
+struct TelemetryFilter {
     bool bank = true;    ///< the bank angle, which comes most often
     bool places = true;  ///< positions, which cost most to make
 };
@@ -23,11 +23,11 @@ struct WantedTelemetry {
 /// its beginning, or thinned evenly. Reads lines as the log reader does.
 class TelemetryStore {
   public:
-    static constexpr std::size_t most_senders = 8;   ///< aircraft of which rows are kept
-    static constexpr std::size_t most_devices = 64;  ///< of one message
+    static constexpr std::size_t max_senders = 8;   ///< aircraft of which rows are kept
+    static constexpr std::size_t max_devices = 64;  ///< of one message
 
     TelemetryStore(std::string flight, std::optional<telemetry::LogConfiguration> configuration,
-                   WantedTelemetry wanted = {});
+                   TelemetryFilter wanted = {});
 
     /// Whole .data lines, each with its break.
     void add(std::string_view lines);

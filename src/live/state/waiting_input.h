@@ -12,11 +12,11 @@
 namespace flightwatt::live {
 
 /// What came in since the last look, in memory that is set aside once.
-class WaitingInput {
+class InputBuffer {
   public:
     enum class Kind : std::uint8_t { line, message, frames, sample };
 
-    explicit WaitingInput(std::size_t most_bytes) : bytes_(most_bytes) {}
+    explicit InputBuffer(std::size_t max_bytes) : bytes_(max_bytes) {}
 
     /// False where it does not fit.
     bool push(Kind kind, double time_s, std::string_view bytes) {

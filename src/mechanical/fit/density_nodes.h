@@ -9,12 +9,12 @@ namespace flightwatt::mechanical {
 
 /// The logarithm of a density, without its constant factor, at one place.
 struct DensityNode {
-    double place = 0.0;
+    double x = 0.0;
     double log_density = 0.0;
 };
 
 template <typename LogDensity>
-std::vector<DensityNode> densities_at(const LogDensity& log_density, const std::vector<double>& places) {
+std::vector<DensityNode> evaluate_density(const LogDensity& log_density, const std::vector<double>& places) {
     std::vector<DensityNode> nodes;
     nodes.reserve(places.size());
     for (const double place : places) nodes.push_back({place, log_density(place)});
@@ -25,15 +25,15 @@ std::vector<DensityNode> densities_at(const LogDensity& log_density, const std::
 /// as it takes for neighbours to differ by no more than a factor of two. A peak is found if one of the starts is on it
 /// or if it spans several of them.
 template <typename LogDensity>
-std::vector<DensityNode> resolve_density(const LogDensity& log_density, const std::vector<double>& starts) {
+std::vector<DensityNode> refine_density_nodes(const LogDensity& log_density, const std::vector<double>& starts) {
     constexpr double negligible = 7.0;    // e^-7 of the peak
     constexpr double resolved = 0.7;      // a factor of two
     constexpr double steep = 2.0;         // beside a steep interval even a level one is split: a peak may be inside
     constexpr double same_place = 1e-10;  // relative
-    constexpr int most_rounds = 40;
-    constexpr std::size_t most_nodes = 600;
-    auto nodes = densities_at(log_density, starts);
-    for (int round = 0; round < most_rounds && nodes.size() < most_nodes; ++round) {
+    constexpr int max_rounds = 40;
+    constexpr std::size_t max_nodes = 600;
+    auto nodes = evaluate_density(log_density, starts);
+    for (int round = 0; round < max_rounds && nodes.size() < max_nodes; ++round) {
         const double top = std::ranges::max_element(nodes, {}, &DensityNode::log_density)->log_density;
         const auto rise = [&](std::size_t i) {
             return i + 1 < nodes.size() ? std::abs(nodes[i + 1].log_density - nodes[i].log_density) : 0.0;
@@ -50,7 +50,7 @@ std::vector<DensityNode> resolve_density(const LogDensity& log_density, const st
         }
         if (added.empty()) break;
         nodes.insert(nodes.end(), added.begin(), added.end());
-        std::ranges::sort(nodes, {}, &DensityNode::place);
+        std::ranges::sort(nodes, {}, &DensityNode::x);
     }
     return nodes;
 }
@@ -59,8 +59,8 @@ std::vector<DensityNode> resolve_density(const LogDensity& log_density, const st
 inline std::vector<double> log_masses(const std::vector<DensityNode>& nodes) {
     std::vector<double> masses;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-        const double before = i > 0 ? nodes[i].place - nodes[i - 1].place : 0.0;
-        const double after = i + 1 < nodes.size() ? nodes[i + 1].place - nodes[i].place : 0.0;
+        const double before = i > 0 ? nodes[i].x - nodes[i - 1].x : 0.0;
+        const double after = i + 1 < nodes.size() ? nodes[i + 1].x - nodes[i].x : 0.0;
         const double width = nodes.size() > 1 ? (before + after) / 2.0 : 1.0;
         masses.push_back(nodes[i].log_density + std::log(width));
     }
@@ -68,7 +68,7 @@ inline std::vector<double> log_masses(const std::vector<DensityNode>& nodes) {
 }
 
 /// log sum exp.
-inline double log_sum(const std::vector<double>& logs) {
+inline double log_sum_exp(const std::vector<double>& logs) {
     const double top = *std::ranges::max_element(logs);
     double sum = 0.0;
     for (const double value : logs) sum += std::exp(value - top);

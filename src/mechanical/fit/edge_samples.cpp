@@ -13,7 +13,7 @@ namespace flightwatt::mechanical {
 namespace {
 
 constexpr std::size_t samples_of_line = 8;
-constexpr std::size_t least_of_line = 5;
+constexpr std::size_t min_of_line = 5;
 constexpr double gaps_looked_at = 2.0;
 constexpr double part_looked_at = 0.1;  ///< of the phase's samples
 constexpr double standard_errors = 6.0;
@@ -35,7 +35,7 @@ struct PowerLine {
 };
 
 std::optional<PowerLine> line_through(std::span<const double> time_s, std::span<const double> power_w) {
-    if (time_s.size() < least_of_line) return std::nullopt;
+    if (time_s.size() < min_of_line) return std::nullopt;
     PowerLine line{mean(time_s), mean(power_w)};
     line.samples = static_cast<double>(time_s.size());
     double product = 0.0;
@@ -122,17 +122,17 @@ std::size_t count_at(const flight::Track& power, const flight::PhaseEdge& edge, 
         power, begin + inwards * static_cast<std::ptrdiff_t>(view.looked_at), inwards, view.looked_at + samples_of_line,
         [](double) { return true; }, view.time_s, view.power_w);
     // The neighbour's: not those that may be of this phase, and not what lies behind a gap.
-    const double furthest_s = reach_s + 2.0 * static_cast<double>(samples_of_line) * step_s;
+    const double max_s = reach_s + 2.0 * static_cast<double>(samples_of_line) * step_s;
     take_samples(
         power, begin - inwards, -inwards, samples_of_line,
-        [&](double time_s) { return !near(time_s) && std::abs(time_s - edge.time_s) <= furthest_s; }, view.other_time_s,
+        [&](double time_s) { return !near(time_s) && std::abs(time_s - edge.time_s) <= max_s; }, view.other_time_s,
         view.other_power_w);
     return count_of_neighbour(view);
 }
 
 }  // namespace
 
-EdgeSamples samples_of_neighbours(const flight::Track& power, const flight::PhaseSpan& span) {
+EdgeSamples count_neighbour_samples(const flight::Track& power, const flight::PhaseSpan& span) {
     const auto begin = power.time_s.begin();
     const auto first = std::ranges::lower_bound(power.time_s, span.start.time_s) - begin;
     const auto last = std::ranges::upper_bound(power.time_s, span.end.time_s) - begin;

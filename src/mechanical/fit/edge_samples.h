@@ -20,6 +20,6 @@ struct EdgeSamples {
 /// six standard errors of both, the samples nearer to the neighbour's line, those before them, and the one of the jump
 /// itself (more than a tenth of it off this phase's line) count as the neighbour's. Power that goes on smoothly, or
 /// noise as large as the jump, leaves all of them.
-EdgeSamples samples_of_neighbours(const flight::Track& power, const flight::PhaseSpan& span);
+EdgeSamples count_neighbour_samples(const flight::Track& power, const flight::PhaseSpan& span);
 
 }  // namespace flightwatt::mechanical

@@ -16,7 +16,7 @@ namespace flightwatt::mechanical {
 namespace {
 
 /// No flight is taken to be more than this many times as exact as the least exact one.
-constexpr double most_times_exact = 1e3;
+constexpr double max_times_exact = 1e3;
 
 /// Curves that differ by less than this part of their size are equal.
 constexpr double equal_level = 1e-9;
@@ -36,7 +36,7 @@ std::vector<double> by_variance(const PhaseFit& fit) {
     for (const auto& flight : fit.flights) {
         const auto samples = static_cast<double>(flight.samples);
         // Relative to the largest, so that neither the unit nor an rms of 0 matters.
-        const double relative = largest > 0.0 ? std::max(flight.rms_w / largest, 1.0 / most_times_exact) : 1.0;
+        const double relative = largest > 0.0 ? std::max(flight.rms_w / largest, 1.0 / max_times_exact) : 1.0;
         weights.push_back(samples / (relative * relative));
     }
     return normalised(std::move(weights));
@@ -45,7 +45,7 @@ std::vector<double> by_variance(const PhaseFit& fit) {
 /// How far each flight's curve is from the mean of the others, squared and averaged over the phase [W^2].
 std::vector<double> disagreements(const PhaseFit& fit) {
     const auto& first = fit.flights.front();
-    const auto points = points_of_curve(first.fourier, first.duration_s);
+    const auto points = curve_point_count(first.fourier, first.duration_s);
     std::vector<std::vector<double>> curves;
     std::vector<double> sum(points, 0.0);
     for (const auto& flight : fit.flights) {
@@ -78,8 +78,8 @@ std::vector<double> by_agreement(const PhaseFit& fit) {
     return normalised(std::move(weights));
 }
 
-double weight_by_hand(const std::string& flight, flight::Phase phase, const std::vector<HandWeight>& by_hand) {
-    const HandWeight* found = nullptr;
+double weight_by_hand(const std::string& flight, flight::Phase phase, const std::vector<ManualWeight>& by_hand) {
+    const ManualWeight* found = nullptr;
     for (const auto& weight : by_hand) {
         if (weight.flight != flight) continue;
         if (weight.phase == phase) return weight.weight;
@@ -92,7 +92,7 @@ double weight_by_hand(const std::string& flight, flight::Phase phase, const std:
     return found->weight;
 }
 
-std::vector<double> by_hand(const PhaseFit& fit, flight::Phase phase, const std::vector<HandWeight>& given) {
+std::vector<double> by_hand(const PhaseFit& fit, flight::Phase phase, const std::vector<ManualWeight>& given) {
     std::vector<double> weights;
     for (const auto& flight : fit.flights) weights.push_back(weight_by_hand(flight.flight, phase, given));
     if (std::ranges::none_of(weights, [](double weight) { return weight > 0.0; })) {
@@ -112,8 +112,8 @@ std::optional<Weighting> weighting_from(std::string_view name) {
     return static_cast<Weighting>(found - weighting_names.begin());
 }
 
-void check_weights(const WeightOptions& options, std::span<const std::string> flights) {
-    if (options.weighting != Weighting::by_hand && !options.by_hand.empty()) {
+void validate_weights(const WeightOptions& options, std::span<const std::string> flights) {
+    if (options.weighting != Weighting::manual && !options.by_hand.empty()) {
         throw UsageError(
             fmt::format("weights by hand and weights by {} exclude each other", to_string(options.weighting)));
     }
@@ -127,7 +127,7 @@ void check_weights(const WeightOptions& options, std::span<const std::string> fl
             throw UsageError(
                 fmt::format("the weight of flight '{}' is {}, expected 0 or more", weight->flight, weight->weight));
         }
-        const auto same = [&](const HandWeight& other) {
+        const auto same = [&](const ManualWeight& other) {
             return other.flight == weight->flight && other.phase == weight->phase;
         };
         if (std::any_of(options.by_hand.begin(), weight, same)) {
@@ -145,7 +145,7 @@ std::vector<double> flight_weights(const PhaseFit& fit, flight::Phase phase, con
             return by_variance(fit);
         case Weighting::agreement:
             return by_agreement(fit);
-        case Weighting::by_hand:
+        case Weighting::manual:
             return by_hand(fit, phase, options.by_hand);
     }
     return normalised(std::vector<double>(fit.flights.size(), 1.0));
@@ -157,8 +157,8 @@ PhaseModel average_phase(const PhaseFit& fit, std::span<const double> weights) {
     model.range = fit.range;
     model.samples = fit.samples;
     model.flights = fit.flights.size();
-    model.mean_curve = fit.mean_curve;
-    model.not_negative = fit.not_negative;
+    model.mean_curve = fit.is_frequency_averaged;
+    model.not_negative = fit.is_clamped;
     model.fourier.cos_w.resize(fit.flights.front().fourier.cos_w.size());
     model.fourier.sin_w.resize(model.fourier.cos_w.size());
     for (std::size_t i = 0; i < fit.flights.size(); ++i) {

@@ -15,7 +15,7 @@ enum class Weighting {
     uniform,           ///< every flight the same
     inverse_variance,  ///< samples / rms^2: flights that scatter little about their curve count more
     agreement,         ///< flights whose curve resembles the others' count more
-    by_hand
+    manual
 };
 
 /// "uniform", "inverse-variance", "agreement", "by hand".
@@ -23,7 +23,7 @@ std::string_view to_string(Weighting weighting);
 std::optional<Weighting> weighting_from(std::string_view name);
 
 /// A weight that the user chose, for one phase of a flight or, without a phase, for all its other phases.
-struct HandWeight {
+struct ManualWeight {
     std::string flight;
     std::optional<flight::Phase> phase;
     double weight = 0.0;  ///< 0 or more, in any scale
@@ -31,12 +31,12 @@ struct HandWeight {
 
 struct WeightOptions {
     Weighting weighting = Weighting::agreement;
-    std::vector<HandWeight> by_hand;  ///< for Weighting::by_hand only, and then for every flight
+    std::vector<ManualWeight> by_hand;  ///< for Weighting::by_hand only, and then for every flight
 };
 
 /// Throws UsageError for weights by hand that name no flight of `flights` (with the nearest name) or name one
 /// twice for the same phase, are negative or not finite, or are given though the weighting is another.
-void check_weights(const WeightOptions& options, std::span<const std::string> flights);
+void validate_weights(const WeightOptions& options, std::span<const std::string> flights);
 
 /// The weights of the flights of one phase, in [0, 1], in their order; their sum is 1 (docs/methods.md, Eq. 9).
 ///   inverse-variance: an rms below a thousandth of the largest counts as that; all 0: by samples alone.

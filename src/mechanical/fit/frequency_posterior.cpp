@@ -37,7 +37,7 @@ constexpr std::size_t many_samples = 5'000;
 /// 1, or 0 for every core.
 std::size_t threads_for(std::size_t samples) { return samples < many_samples ? 1 : 0; }
 
-using FlightsAt = std::vector<FlightAtFrequency>;
+using FlightsAt = std::vector<FrequencyProjection>;
 
 std::size_t sample_count(const FlightsAt& flights) {
     std::size_t count = 0;
@@ -50,7 +50,7 @@ FlightsAt flights_at(std::span<const ScaledSamples> flights, int order, double t
     FlightsAt all(flights.size());
     std::atomic<bool> are_determined = true;
     const auto work = [&](std::size_t i) {
-        auto flight = flight_at(flights[i], order, theta_rad);
+        auto flight = project_at_frequency(flights[i], order, theta_rad);
         if (flight) {
             all[i] = *std::move(flight);
         } else {
@@ -63,7 +63,7 @@ FlightsAt flights_at(std::span<const ScaledSamples> flights, int order, double t
 
 double log_likelihood(const FlightsAt& flights, double autocorrelation) {
     std::vector<double> parts(flights.size());
-    const auto work = [&](std::size_t i) { parts[i] = log_likelihood_of(flights[i], autocorrelation); };
+    const auto work = [&](std::size_t i) { parts[i] = restricted_log_likelihood(flights[i], autocorrelation); };
     for_each_in_parallel(flights.size(), work, threads_for(sample_count(flights)));
     return std::accumulate(parts.begin(), parts.end(), 0.0);
 }
@@ -82,8 +82,8 @@ FrequencyNode node_at(std::span<const ScaledSamples> flights, const PosteriorOpt
     if (at.empty()) return node;
     const auto density = [&](double r) { return log_likelihood(at, r); };
     node.autocorrelations =
-        are_all ? densities_at(density, autocorrelations) : resolve_density(density, autocorrelations);
-    node.log_density = log_sum(log_masses(node.autocorrelations)) - 2.0 * std::log(theta_rad);
+        are_all ? evaluate_density(density, autocorrelations) : refine_density_nodes(density, autocorrelations);
+    node.log_density = log_sum_exp(log_masses(node.autocorrelations)) - 2.0 * std::log(theta_rad);
     return node;
 }
 
@@ -126,8 +126,8 @@ CoarseNode coarse_node(std::span<const ScaledSamples> flights, const PosteriorOp
 /// Where the search for the density begins: the frequencies of the screen with both bounds, and every peak.
 std::vector<double> starts_of(std::span<const ScaledSamples> flights, const PosteriorOptions& options, double highest) {
     const auto& range = options.range;
-    auto tried = promising_frequencies(flights, options.order, range, options.found_rad, highest);
-    tried.insert(tried.end(), {range.low_rad, range.high_rad, options.found_rad});
+    auto tried = candidate_frequencies(flights, options.order, range, options.least_squares_rad, highest);
+    tried.insert(tried.end(), {range.low_rad, range.high_rad, options.least_squares_rad});
     std::ranges::sort(tried);
     tried.erase(std::unique(tried.begin(), tried.end()), tried.end());
     std::vector<CoarseNode> nodes;
@@ -196,15 +196,15 @@ std::vector<double> frequencies_about(std::span<const ScaledSamples> flights, co
         const auto at = flights_at(flights, options.order, theta_rad);
         return at.empty() ? no_likelihood : log_likelihood(at, autocorrelation) - 2.0 * std::log(theta_rad);
     };
-    const double peak_rad = climbed(flights, options, options.found_rad, autocorrelation);
-    const double turned_rad = 0.5 / options.order;  // see is_one_frequency
+    const double peak_rad = climbed(flights, options, options.least_squares_rad, autocorrelation);
+    const double turned_rad = 0.5 / options.order;  // see is_frequency_determined
     return places_over({peak_rad, sd_of_peak(density, peak_rad, turned_rad)}, options.range.low_rad,
                        options.range.high_rad);
 }
 
 /// The autocorrelations there, at the frequency of least squares.
 Peak autocorrelation_peak(std::span<const ScaledSamples> flights, const PosteriorOptions& options, double highest) {
-    const auto at = flights_at(flights, options.order, options.found_rad);
+    const auto at = flights_at(flights, options.order, options.least_squares_rad);
     const auto density = [&](double r) { return log_likelihood(at, r); };
     const auto behind = [&](double r) { return -density(r); };
     const double r = boost::math::tools::brent_find_minima(behind, 0.0, highest, climbed_bits).first;
@@ -212,12 +212,12 @@ Peak autocorrelation_peak(std::span<const ScaledSamples> flights, const Posterio
     return {r, sd_of_peak(density, r, std::min(4.0 * expected_sd, (highest - r) / 2.0))};
 }
 
-PosteriorNode posterior_node(const FlightsAt& flights, double theta_rad, double autocorrelation) {
-    PosteriorNode node{theta_rad, autocorrelation};
+QuadratureNode posterior_node(const FlightsAt& flights, double theta_rad, double autocorrelation) {
+    QuadratureNode node{theta_rad, autocorrelation};
     node.flights.resize(flights.size());
     std::vector<double> parts(flights.size());
     const auto work = [&](std::size_t i) {
-        const auto evidence = evidence_of(flights[i], autocorrelation);
+        const auto evidence = restricted_likelihood(flights[i], autocorrelation);
         const auto& back = flights[i].from_orthonormal;
         const double variance = evidence.square_sum / evidence.degrees_of_freedom;
         parts[i] = evidence.log_likelihood;
@@ -239,10 +239,10 @@ Eigen::MatrixXd curve_gram(int order, double theta_rad) {
     return basis.transpose() * basis / points;
 }
 
-MeanNode mean_node(const PosteriorNode& node, std::span<const double> weights) {
+MeanCurveNode mean_node(const QuadratureNode& node, std::span<const double> weights) {
     const auto size = node.flights.front().coefficients.size();
-    MeanNode mean{node.theta_rad,      node.autocorrelation,        node.weight,
-                  node.log_likelihood, Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size)};
+    MeanCurveNode mean{node.theta_rad,      node.autocorrelation,        node.weight,
+                       node.log_likelihood, Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size)};
     const auto gram = curve_gram(static_cast<int>(size - 1) / 2, node.theta_rad);
     double squares = 0.0;
     for (std::size_t i = 0; i < node.flights.size(); ++i) {
@@ -266,14 +266,14 @@ struct WeighedPlace {
 
 std::vector<WeighedPlace> weighed(const std::vector<DensityNode>& density, const std::vector<FrequencyNode>& nodes) {
     const auto masses = log_masses(density);
-    const double total = log_sum(masses);
+    const double total = log_sum_exp(masses);
     std::vector<WeighedPlace> places;
     for (std::size_t i = 0; i < density.size(); ++i) {
         if (nodes[i].autocorrelations.empty()) continue;
         const auto parts = log_masses(nodes[i].autocorrelations);
-        const double all = log_sum(parts);
+        const double all = log_sum_exp(parts);
         for (std::size_t k = 0; k < parts.size(); ++k) {
-            places.push_back({i, nodes[i].autocorrelations[k].place, std::exp(masses[i] - total + parts[k] - all)});
+            places.push_back({i, nodes[i].autocorrelations[k].x, std::exp(masses[i] - total + parts[k] - all)});
         }
     }
     std::ranges::stable_sort(places, {}, &WeighedPlace::weight);
@@ -290,7 +290,7 @@ std::vector<WeighedPlace> weighed(const std::vector<DensityNode>& density, const
 
 }  // namespace
 
-ScaledSamples in_order_of_time(const ScaledSamples& samples) {
+ScaledSamples sort_by_time(const ScaledSamples& samples) {
     if (std::ranges::is_sorted(samples.tau)) return samples;
     std::vector<std::size_t> places(samples.tau.size());
     std::iota(places.begin(), places.end(), std::size_t{0});
@@ -303,10 +303,10 @@ ScaledSamples in_order_of_time(const ScaledSamples& samples) {
     return sorted;
 }
 
-double highest_autocorrelation_of(std::span<const ScaledSamples> flights) {
+double autocorrelation_limit(std::span<const ScaledSamples> flights) {
     constexpr double part_of_phase = 0.2;
     constexpr double least = 0.9;
-    double highest = highest_autocorrelation;
+    double highest = max_autocorrelation;
     for (const auto& samples : flights) {
         const double step = median_gap(samples.tau);
         highest = std::min(highest, std::max(least, std::exp(-step / part_of_phase)));
@@ -316,13 +316,14 @@ double highest_autocorrelation_of(std::span<const ScaledSamples> flights) {
 
 FrequencyPosterior frequency_posterior(std::span<const ScaledSamples> unsorted, const PosteriorOptions& options) {
     std::vector<ScaledSamples> flights;
-    for (const auto& samples : unsorted) flights.push_back(in_order_of_time(samples));
+    for (const auto& samples : unsorted) flights.push_back(sort_by_time(samples));
     FrequencyPosterior posterior;
-    posterior.highest_autocorrelation = highest_autocorrelation_of(flights);
-    const double highest = posterior.highest_autocorrelation;
-    const bool is_told = options.order > 0 && mechanical::sample_count(flights) >= many_samples &&
-                         is_one_frequency(flights, options.order, options.range, options.found_rad, options.scan);
-    std::vector<double> starts{options.found_rad};
+    posterior.max_autocorrelation = autocorrelation_limit(flights);
+    const double highest = posterior.max_autocorrelation;
+    const bool is_told =
+        options.order > 0 && mechanical::sample_count(flights) >= many_samples &&
+        is_frequency_determined(flights, options.order, options.range, options.least_squares_rad, options.scan);
+    std::vector<double> starts{options.least_squares_rad};
     auto autocorrelations = coarse_autocorrelations(highest);
     if (is_told) {
         const auto peak = autocorrelation_peak(flights, options, highest);
@@ -336,13 +337,13 @@ FrequencyPosterior frequency_posterior(std::span<const ScaledSamples> unsorted, 
         known.emplace_back(theta_rad, node_at(flights, options, autocorrelations, is_told, theta_rad));
         return known.back().second.log_density;
     };
-    const auto density = is_told ? densities_at(log_density, starts) : resolve_density(log_density, starts);
+    const auto density = is_told ? evaluate_density(log_density, starts) : refine_density_nodes(log_density, starts);
     std::ranges::sort(known, {}, &std::pair<double, FrequencyNode>::first);
     std::vector<FrequencyNode> nodes;
     nodes.reserve(known.size());
     for (auto& [theta_rad, node] : known) nodes.push_back(std::move(node));
     const double top = std::ranges::max_element(density, {}, &DensityNode::log_density)->log_density;
-    if (top <= no_likelihood) throw NoAnswerError("the times of the samples determine no series at any frequency");
+    if (top <= no_likelihood) throw NoResultError("the times of the samples determine no series at any frequency");
     for (const auto& [theta_rad, log_value] : density) {
         posterior.theta_rad.push_back(theta_rad);
         posterior.density.push_back(std::exp(log_value - top));
@@ -350,33 +351,33 @@ FrequencyPosterior frequency_posterior(std::span<const ScaledSamples> unsorted, 
     FlightsAt at;
     std::size_t computed = density.size();
     for (const auto& [frequency, autocorrelation, weight] : weighed(density, nodes)) {
-        const double theta_rad = density[frequency].place;
+        const double theta_rad = density[frequency].x;
         if (computed != frequency) at = flights_at(flights, options.order, theta_rad);
         computed = frequency;
         posterior.nodes.push_back(posterior_node(at, theta_rad, autocorrelation));
         posterior.nodes.back().weight = weight;
     }
-    const auto likeliest = std::ranges::max_element(posterior.nodes, {}, &PosteriorNode::log_likelihood);
+    const auto likeliest = std::ranges::max_element(posterior.nodes, {}, &QuadratureNode::log_likelihood);
     const double greatest = likeliest->log_likelihood;
     for (auto& node : posterior.nodes) node.log_likelihood -= greatest;
     return posterior;
 }
 
-std::vector<MeanNode> mean_of_flights(const FrequencyPosterior& posterior, std::span<const double> weights) {
-    std::vector<MeanNode> nodes;
+std::vector<MeanCurveNode> mean_curve_nodes(const FrequencyPosterior& posterior, std::span<const double> weights) {
+    std::vector<MeanCurveNode> nodes;
     for (const auto& node : posterior.nodes) nodes.push_back(mean_node(node, weights));
     return nodes;
 }
 
-bool noise_lasts(const FrequencyPosterior& posterior) {
+bool is_autocorrelation_at_limit(const FrequencyPosterior& posterior) {
     constexpr double near_highest = 0.95;
     double weight = 0.0;
     for (const auto& node : posterior.nodes)
-        if (node.autocorrelation > near_highest * posterior.highest_autocorrelation) weight += node.weight;
+        if (node.autocorrelation > near_highest * posterior.max_autocorrelation) weight += node.weight;
     return weight > 0.5;
 }
 
-Interval interval_of_frequency(const FrequencyPosterior& posterior) {
+Interval frequency_interval(const FrequencyPosterior& posterior) {
     const double tail = (1.0 - confidence_level) / 2.0;
     Interval interval{posterior.nodes.front().theta_rad, posterior.nodes.back().theta_rad};
     double sum = 0.0;

@@ -22,16 +22,16 @@ constexpr double turn_between_rad = 1.0;
 /// So many minima of the scan are refined, at most, before the lowest is chosen. One that explains less than
 /// this part of the best explanation cannot make it up within a step.
 constexpr std::size_t refined_minima = 8;
-constexpr double hopeful_part = 0.95;
+constexpr double hopeful_fraction = 0.95;
 
 /// Chance of taking noise for a harmonic.
 constexpr double harmonic_significance = 1e-3;
 
 /// A harmonic with less than this part of the power that the series explains may be done without.
-constexpr double negligible_part = 0.02;
+constexpr double negligible_fraction = 0.02;
 
 /// At a multiple that explains less than this, before it is refined, there is no need to look closer.
-constexpr double promising_part = 0.5;
+constexpr double promising_fraction = 0.5;
 
 /// Below this part of the values' own sum of squares a residual is rounding.
 constexpr double rounding_level = 1e-12;
@@ -131,15 +131,15 @@ double find_frequency(std::span<const ScaledSamples> flights, int order, const F
     const double total = own_square_sum(flights);
     Candidate best;
     for (const auto& candidate : candidates) {
-        if (total - candidate.square_sum < hopeful_part * (total - best.square_sum)) break;
+        if (total - candidate.square_sum < hopeful_fraction * (total - best.square_sum)) break;
         const auto fine = refined(flights, order, range, candidate.theta_rad, scan.step_rad);
         if (fine.square_sum < best.square_sum) best = fine;
     }
-    return simplest_frequency(flights, order, range, best.theta_rad);
+    return resolve_subharmonic(flights, order, range, best.theta_rad);
 }
 
-double simplest_frequency(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
-                          double theta_rad) {
+double resolve_subharmonic(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
+                           double theta_rad) {
     const double total = own_square_sum(flights);
     const double rounding = std::max(rounding_level * total, std::numeric_limits<double>::min());
     const double best = std::max(rounding, projected_square_sum(flights, order, theta_rad));
@@ -153,7 +153,7 @@ double simplest_frequency(std::span<const ScaledSamples> flights, int order, con
         const double reach_rad = turn_between_rad / order * multiple;
         if (multiple * theta_rad + reach_rad > range.high_rad) continue;
         const double unrefined = projected_square_sum(flights, order, multiple * theta_rad);
-        if (total - unrefined < promising_part * (total - best)) continue;
+        if (total - unrefined < promising_fraction * (total - best)) continue;
         const auto simpler = refined(flights, order, range, multiple * theta_rad, reach_rad);
         const bool slope = std::abs(simpler.theta_rad - multiple * theta_rad) > 0.9 * reach_rad;
         if (slope) continue;  // the least is where the search ended, not a minimum
@@ -163,7 +163,7 @@ double simplest_frequency(std::span<const ScaledSamples> flights, int order, con
         const boost::math::fisher_f distribution(lacking, degrees_of_freedom);
         const double by_chance =
             lacking * variance * boost::math::quantile(boost::math::complement(distribution, harmonic_significance));
-        if (worse <= by_chance && worse - lacking * variance <= negligible_part * (total - best)) {
+        if (worse <= by_chance && worse - lacking * variance <= negligible_fraction * (total - best)) {
             return simpler.theta_rad;
         }
     }

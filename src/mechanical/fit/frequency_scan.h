@@ -37,7 +37,7 @@ double frequency_scan_step(const FrequencyRange& range, int order);
 FrequencyScan scan_frequencies(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range);
 
 /// The frequency [rad per phase] that the flights have in common: the lowest minimum of the scan, refined,
-/// unless it is the subharmonic of a simpler answer (see simplest_frequency).
+/// unless it is the subharmonic of a simpler answer (see resolve_subharmonic).
 double find_frequency(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
                       const FrequencyScan& scan);
 
@@ -45,7 +45,7 @@ double find_frequency(std::span<const ScaledSamples> flights, int order, const F
 /// fitted as well by theta/2 and theta/3. Returns m * theta_rad, refined, for the largest m in 2..order at which
 /// the harmonics that get lost are both insignificant (F test at 0.1 %) and, less what noise would give them,
 /// below 2 % of what the series explains (which keeps trends of less than a period); else theta_rad itself.
-double simplest_frequency(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
-                          double theta_rad);
+double resolve_subharmonic(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
+                           double theta_rad);
 
 }  // namespace flightwatt::mechanical

@@ -22,7 +22,7 @@ constexpr double slack = 15.0;
 constexpr double overlapping_rad = 4.0 * std::numbers::pi;
 
 /// Not more frequencies than this are computed, the most likely ones.
-constexpr std::size_t most_frequencies = 300;
+constexpr std::size_t max_frequencies = 300;
 
 /// Variance of noise at an angle per median gap, of all noise 1.
 double noise_spectrum(double autocorrelation, double angle_rad) {
@@ -55,7 +55,7 @@ ScreenedFlight screened(const ScaledSamples& samples, const ScreenGrid& grid, co
         flight.projected.push_back(std::max(0.0, sum));
     const double total = as_vector(samples.value).squaredNorm();
     auto residuals = samples;
-    if (const auto at = flight_at(samples, grid.order, found_rad)) {
+    if (const auto at = project_at_frequency(samples, grid.order, found_rad)) {
         const auto last_column = at->columns.rightCols(1);
         std::copy(last_column.data(), last_column.data() + last_column.size(), residuals.value.begin());
     }
@@ -63,7 +63,7 @@ ScreenedFlight screened(const ScaledSamples& samples, const ScreenGrid& grid, co
     flight.step = median_gap(samples.tau);
     flight.square_sum = std::max(as_vector(residuals.value).squaredNorm(), 1e-22 * total);
     for (const double r : autocorrelations) {
-        flight.whitened.push_back(whitened_sum(residuals.value, gaps_of(samples), r));
+        flight.whitened.push_back(whitened_sum(residuals.value, normalised_gaps(samples), r));
     }
     flight.sums = sum_by_fft(residuals, grid.step_rad, count);
     return flight;
@@ -95,56 +95,56 @@ double screened_log_likelihood(const ScreenedFlight& flight, const ScreenGrid& g
 /// Least sums of squares of all flights at a frequency.
 struct SquareSum {
     double sum = 0.0;
-    double product_sum = 0.0;       ///< of neighbouring residuals
-    double most_correlation = 0.0;  ///< of them, of the flight that has most
+    double product_sum = 0.0;      ///< of neighbouring residuals
+    double max_correlation = 0.0;  ///< of them, of the flight that has most
 };
 
 /// None where a flight determines no series.
 std::optional<SquareSum> square_sum_at(std::span<const ScaledSamples> flights, int order, double theta_rad) {
     SquareSum square;
     for (const auto& samples : flights) {
-        const auto at = flight_at(samples, order, theta_rad);
+        const auto at = project_at_frequency(samples, order, theta_rad);
         if (!at) return std::nullopt;
         const Eigen::VectorXd residuals = at->columns.rightCols(1);
         const auto pairs = residuals.size() - 1;
         const double own = residuals.squaredNorm();
         if (!(own > 0.0)) return std::nullopt;
         const double products = residuals.head(pairs).dot(residuals.tail(pairs));
-        square.most_correlation = std::max(square.most_correlation, products / own);
+        square.max_correlation = std::max(square.max_correlation, products / own);
         square.product_sum += products;
         square.sum += own;
     }
     return square;
 }
 
-/// The correlation of neighbouring residuals that counts: of few flights of many samples the most; of many flights that of
-/// all together, with what series of their own take from it. None where neither tells it, or noise lasts.
+/// The correlation of neighbouring residuals that counts: of few flights of many samples the most; of many flights that
+/// of all together, with what series of their own take from it. None where neither tells it, or noise lasts.
 std::optional<double> correlation_that_counts(std::span<const ScaledSamples> flights, int order,
                                               const SquareSum& square) {
     constexpr std::size_t many_samples = 100;
     constexpr std::size_t many_flights = 30;
     constexpr double most = 0.5;
-    constexpr double most_of_many = 0.8;  // what lasts in one flight is not there in the next
+    constexpr double max_of_many = 0.8;  // what lasts in one flight is not there in the next
     const auto has_fewer = [&](std::size_t least) {
         return std::ranges::any_of(flights, [&](const auto& flight) { return flight.tau.size() < least; });
     };
     if (flights.size() < many_flights) {
-        if (has_fewer(many_samples) || square.most_correlation > most) return std::nullopt;
-        return square.most_correlation;
+        if (has_fewer(many_samples) || square.max_correlation > most) return std::nullopt;
+        return square.max_correlation;
     }
     const auto coefficients = static_cast<std::size_t>(coefficient_count(order));
     if (has_fewer(2 * coefficients)) return std::nullopt;
     const auto taken = static_cast<double>(coefficients * flights.size());
     const double pooled = square.product_sum / square.sum + taken / static_cast<double>(sample_count(flights));
-    if (pooled > most_of_many) return std::nullopt;
+    if (pooled > max_of_many) return std::nullopt;
     return std::max(0.0, pooled);
 }
 
 }  // namespace
 
-bool is_one_frequency(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range, double found_rad,
-                      const FrequencyScan* known) {
-    constexpr double least_log_ratio = 25.0;
+bool is_frequency_determined(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
+                             double found_rad, const FrequencyScan* known) {
+    constexpr double min_log_ratio = 25.0;
     const double beside_rad = 0.5 / order;
     if (found_rad - beside_rad <= range.low_rad || found_rad + beside_rad >= range.high_rad) return false;
     const auto best = square_sum_at(flights, order, found_rad);
@@ -154,14 +154,14 @@ bool is_one_frequency(std::span<const ScaledSamples> flights, int order, const F
     const double freedom =
         static_cast<double>(sample_count(flights)) - static_cast<double>(flights.size()) * coefficient_count(order);
     const double alone = freedom * (1.0 - *correlation) / (1.0 + *correlation);
-    const double least_worse = best->sum * std::exp(2.0 * least_log_ratio / alone);
+    const double min_worse = best->sum * std::exp(2.0 * min_log_ratio / alone);
     for (const double theta_rad : {found_rad - beside_rad, found_rad + beside_rad}) {
         const auto beside = square_sum_at(flights, order, theta_rad);
-        if (!beside || beside->sum < least_worse) return false;
+        if (!beside || beside->sum < min_worse) return false;
     }
     const auto scan = known ? *known : scan_frequencies(flights, order, range);
     for (std::size_t i = 0; i < scan.theta_rad.size(); ++i)
-        if (std::abs(scan.theta_rad[i] - found_rad) > beside_rad && scan.square_sum[i] < least_worse) return false;
+        if (std::abs(scan.theta_rad[i] - found_rad) > beside_rad && scan.square_sum[i] < min_worse) return false;
     return true;
 }
 
@@ -172,7 +172,7 @@ std::vector<double> coarse_autocorrelations(double highest) {
     return values;
 }
 
-std::vector<double> promising_frequencies(std::span<const ScaledSamples> flights, int order,
+std::vector<double> candidate_frequencies(std::span<const ScaledSamples> flights, int order,
                                           const FrequencyRange& range, double found_rad, double highest) {
     const auto scan_step = frequency_scan_step(range, order);
     ScreenGrid grid{scan_step, 0, 0, order};
@@ -208,7 +208,7 @@ std::vector<double> promising_frequencies(std::span<const ScaledSamples> flights
                            theta_rad);
     }
     std::ranges::stable_sort(found, std::greater(), &std::pair<double, double>::first);
-    if (found.size() > most_frequencies) found.resize(most_frequencies);
+    if (found.size() > max_frequencies) found.resize(max_frequencies);
     std::vector<double> frequencies;
     frequencies.reserve(found.size());
     for (const auto& [likelihood, theta_rad] : found) frequencies.push_back(theta_rad);

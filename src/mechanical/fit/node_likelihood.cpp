@@ -10,8 +10,8 @@
 namespace flightwatt::mechanical {
 namespace {
 
-constexpr double least_gap = 0.25;       ///< in median gaps
-constexpr double rounding_part = 1e-22;  ///< of the values' sum of squares
+constexpr double min_gap = 0.25;             ///< in median gaps
+constexpr double rounding_fraction = 1e-22;  ///< of the values' sum of squares
 constexpr double smallest_rounding = 1e-200;
 
 /// The correlation with the sample before.
@@ -44,7 +44,7 @@ struct WhitenedFit {
     double log_likelihood = 0.0;
 };
 
-WhitenedFit whitened_fit(const FlightAtFrequency& flight, double autocorrelation) {
+WhitenedFit whitened_fit(const FrequencyProjection& flight, double autocorrelation) {
     const Eigen::Index size = flight.columns.cols() - 1;
     double log_determinant = 0.0;
     Eigen::MatrixXd gram;
@@ -66,34 +66,34 @@ WhitenedFit whitened_fit(const FlightAtFrequency& flight, double autocorrelation
 
 }  // namespace
 
-std::vector<double> gaps_of(const ScaledSamples& samples) {
+std::vector<double> normalised_gaps(const ScaledSamples& samples) {
     const double step = median_gap(samples.tau);
     std::vector<double> gaps(samples.tau.size(), 0.0);
     for (std::size_t j = 1; j < gaps.size(); ++j) {
-        gaps[j] = std::max(least_gap, step > 0.0 ? (samples.tau[j] - samples.tau[j - 1]) / step : 0.0);
+        gaps[j] = std::max(min_gap, step > 0.0 ? (samples.tau[j] - samples.tau[j - 1]) / step : 0.0);
     }
     return gaps;
 }
 
-std::optional<FlightAtFrequency> flight_at(const ScaledSamples& samples, int order, double theta_rad) {
+std::optional<FrequencyProjection> project_at_frequency(const ScaledSamples& samples, int order, double theta_rad) {
     const auto basis = fourier_basis(samples.tau, order, theta_rad);
     auto fit = solve_least_squares(basis, as_vector(samples.value));
     if (!fit) return std::nullopt;
-    FlightAtFrequency flight;
+    FrequencyProjection flight;
     flight.columns.resize(basis.rows(), basis.cols() + 1);
     flight.columns.leftCols(basis.cols()) = basis * fit->from_orthonormal;
     flight.columns.rightCols(1) = as_vector(samples.value) - basis * fit->coefficients;
     flight.from_orthonormal = std::move(fit->from_orthonormal);
     flight.coordinates = std::move(fit->orthonormal);
-    flight.gap = gaps_of(samples);
-    flight.rounding = std::max(rounding_part * as_vector(samples.value).squaredNorm(), smallest_rounding);
+    flight.gap = normalised_gaps(samples);
+    flight.rounding = std::max(rounding_fraction * as_vector(samples.value).squaredNorm(), smallest_rounding);
     return flight;
 }
 
-FlightEvidence evidence_of(const FlightAtFrequency& flight, double autocorrelation) {
+RestrictedLikelihood restricted_likelihood(const FrequencyProjection& flight, double autocorrelation) {
     const Eigen::Index size = flight.columns.cols() - 1;
     const auto fit = whitened_fit(flight, autocorrelation);
-    FlightEvidence evidence;
+    RestrictedLikelihood evidence;
     evidence.coordinates = flight.coordinates + fit.shift;
     evidence.covariance = fit.cholesky.solve(Eigen::MatrixXd::Identity(size, size));
     evidence.square_sum = fit.square_sum;
@@ -102,7 +102,7 @@ FlightEvidence evidence_of(const FlightAtFrequency& flight, double autocorrelati
     return evidence;
 }
 
-double log_likelihood_of(const FlightAtFrequency& flight, double autocorrelation) {
+double restricted_log_likelihood(const FrequencyProjection& flight, double autocorrelation) {
     return whitened_fit(flight, autocorrelation).log_likelihood;
 }
 

@@ -11,7 +11,7 @@
 namespace flightwatt::mechanical {
 
 /// One flight's samples about its best series at one frequency.
-struct FlightAtFrequency {
+struct FrequencyProjection {
     Eigen::MatrixXd columns;           ///< orthonormal columns of the basis and, last, the residuals
     Eigen::MatrixXd from_orthonormal;  ///< coefficients = this * coordinates
     Eigen::VectorXd coordinates;       ///< of least squares
@@ -20,14 +20,14 @@ struct FlightAtFrequency {
 };
 
 /// `samples` rise in time. std::nullopt where they do not determine a series of the order.
-std::optional<FlightAtFrequency> flight_at(const ScaledSamples& samples, int order, double theta_rad);
+std::optional<FrequencyProjection> project_at_frequency(const ScaledSamples& samples, int order, double theta_rad);
 
 /// The gaps between samples in median gaps, as noise forgets them. Samples at (almost) one time count as a quarter of a
 /// gap apart: two that differ could not be, were their noise the same.
-std::vector<double> gaps_of(const ScaledSamples& samples);
+std::vector<double> normalised_gaps(const ScaledSamples& samples);
 
 /// What one flight says of an autocorrelation r of its noise (R_jk = r^(gaps between), docs/methods.md, Eq. 13).
-struct FlightEvidence {
+struct RestrictedLikelihood {
     double log_likelihood = 0.0;      ///< coefficients and the noise's variance integrated out
     double square_sum = 0.0;          ///< e'R^-1 e of generalised least squares
     double degrees_of_freedom = 0.0;  ///< samples less coefficients
@@ -37,10 +37,10 @@ struct FlightEvidence {
 
 /// Restricted likelihood |R|^-1/2 |Q'R^-1 Q|^-1/2 SSE^(-(n - k)/2), Q the orthonormal basis: the prior of the
 /// coefficients is flat on that basis, so that a frequency does not count more because its harmonics are alike.
-FlightEvidence evidence_of(const FlightAtFrequency& flight, double autocorrelation);
+RestrictedLikelihood restricted_likelihood(const FrequencyProjection& flight, double autocorrelation);
 
 /// Its log_likelihood alone: most places of a search need no more.
-double log_likelihood_of(const FlightAtFrequency& flight, double autocorrelation);
+double restricted_log_likelihood(const FrequencyProjection& flight, double autocorrelation);
 
 /// x'R^-1 x and log |R|.
 struct WhitenedSum {

@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "mechanical/fit/mean_curve.h"
+#include "mechanical/fit/model_averaging.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double bound_tolerance = 1e-6;  ///< nearer to an end than this part of it is standing at it
 /// The likeness of a harmonic's columns up to which their worse direction is told with at least half the information.
-constexpr double most_alike = 0.5;
+constexpr double max_alike = 0.5;
 constexpr double constant_level = 1e-12;  ///< power that varies less than this part of its size is constant
 
 void check_options(const PhaseFitOptions& options) {
@@ -26,12 +26,13 @@ void check_options(const PhaseFitOptions& options) {
         throw UsageError(
             fmt::format("the order of the Fourier series is {}, expected 0 to {}", options.order, max_order));
     }
-    if (!(options.low_rad > 0.0) || !std::isfinite(options.low_rad)) {
-        throw UsageError(fmt::format("the lowest omega * duration is {} rad, expected more than 0", options.low_rad));
+    if (!(options.min_theta_rad > 0.0) || !std::isfinite(options.min_theta_rad)) {
+        throw UsageError(
+            fmt::format("the lowest omega * duration is {} rad, expected more than 0", options.min_theta_rad));
     }
-    if (!(units::rad_from_turns(options.high_periods) > options.low_rad) || !std::isfinite(options.high_periods)) {
+    if (!(units::rad_from_turns(options.max_periods) > options.min_theta_rad) || !std::isfinite(options.max_periods)) {
         throw UsageError(fmt::format("at most {} periods a phase are less than the lowest omega * duration, {} rad",
-                                     options.high_periods, options.low_rad));
+                                     options.max_periods, options.min_theta_rad));
     }
 }
 
@@ -150,23 +151,23 @@ double likeness(const std::vector<double>& tau, int order, double theta_rad) {
 double told_frequency(const std::vector<double>& tau, int order, double low_rad, double high_rad) {
     const double step_rad = std::numbers::pi / (16.0 * std::max(1, order));  // a sixteenth of the likeness's peak
     double theta_rad = high_rad;
-    while (theta_rad > low_rad && likeness(tau, order, theta_rad) > most_alike) theta_rad -= step_rad;
+    while (theta_rad > low_rad && likeness(tau, order, theta_rad) > max_alike) theta_rad -= step_rad;
     return theta_rad;
 }
 
 }  // namespace
 
-std::size_t samples_needed(int order) { return static_cast<std::size_t>(coefficient_count(order)) + 1; }
+std::size_t min_samples(int order) { return static_cast<std::size_t>(coefficient_count(order)) + 1; }
 
-FrequencyRange admissible_range(std::span<const PhaseSamples> flights, const PhaseFitOptions& options) {
+FrequencyRange admissible_frequencies(std::span<const PhaseSamples> flights, const PhaseFitOptions& options) {
     check_options(options);
-    FrequencyRange range{options.low_rad, units::rad_from_turns(options.high_periods)};
+    FrequencyRange range{options.min_theta_rad, units::rad_from_turns(options.max_periods)};
     for (const auto& flight : flights) {
         const double gap = median_gap(flight.tau);
         // A constant needs no frequency: it is content with what a first order needs.
         const double nyquist = gap > 0.0 ? std::numbers::pi / (std::max(1, options.order) * gap) : 0.0;
         if (nyquist <= range.low_rad) {
-            throw NoAnswerError(
+            throw NoResultError(
                 fmt::format("flight '{}': {} samples, {:.3g} of the phase apart, are too sparse for a "
                             "Fourier series of order {}",
                             flight.flight, flight.tau.size(), gap, options.order));
@@ -179,7 +180,7 @@ FrequencyRange admissible_range(std::span<const PhaseSamples> flights, const Pha
     return range;
 }
 
-ScaledSamples fitted_values(const PhaseSamples& samples, const FlightCurve& curve, const PhaseFit& fit) {
+ScaledSamples pseudo_observations(const PhaseSamples& samples, const FlightCurve& curve, const PhaseFit& fit) {
     ScaledSamples values{samples.tau, samples.power_w, samples.flight, samples.scan};
     if (fit.loss == Loss::none || fit.loss_scale_w <= 0.0) return values;
     values.scan = nullptr;
@@ -192,26 +193,26 @@ ScaledSamples fitted_values(const PhaseSamples& samples, const FlightCurve& curv
         residuals.push_back((values.value[j] - fitted) * sample_weight(fit.loss, scales));
         values.value[j] = fitted;
     }
-    if (slope <= 0.0) throw NoAnswerError("too many samples are down-weighted to know the fit's errors");
+    if (slope <= 0.0) throw NoResultError("too many samples are down-weighted to know the fit's errors");
     for (std::size_t j = 0; j < residuals.size(); ++j) values.value[j] += residuals[j] / slope;
     return values;
 }
 
 PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights, const PhaseFitOptions& options) {
     check_options(options);
-    if (flights.empty()) throw NoAnswerError(fmt::format("no flight has a {} to fit", to_string(phase)));
+    if (flights.empty()) throw NoResultError(fmt::format("no flight has a {} to fit", to_string(phase)));
     for (const auto& flight : flights) {
         check_samples(phase, flight);
-        if (flight.tau.size() >= samples_needed(options.order)) continue;
-        throw NoAnswerError(
+        if (flight.tau.size() >= min_samples(options.order)) continue;
+        throw NoResultError(
             fmt::format("flight '{}' has {} samples in {}, a Fourier series of order {} needs {}: "
                         "exclude its {}, or lower the order",
-                        flight.flight, flight.tau.size(), to_string(phase), options.order,
-                        samples_needed(options.order), to_string(phase)));
+                        flight.flight, flight.tau.size(), to_string(phase), options.order, min_samples(options.order),
+                        to_string(phase)));
     }
     const auto scaling = scaled(flights);
     try {
-        const auto range = admissible_range(flights, options);
+        const auto range = admissible_frequencies(flights, options);
         std::optional<FrequencyScan> scan;
         if (options.order > 0) scan = scan_frequencies(scaling.flights, options.order, range);
         auto joint = least_squares(scaling, options.order, range, scan ? &*scan : nullptr);
@@ -222,10 +223,10 @@ PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights, c
             for (double& sum : scan->square_sum) sum *= scaling.unit_w * scaling.unit_w;
             fit.scan = std::make_shared<const FrequencyScan>(*std::move(scan));
         }
-        if (options.curve == Curve::mean) settle_curves(flights, fit);
+        if (options.curve == CurveEstimator::mean) average_over_frequencies(flights, fit);
         return fit;
-    } catch (const NoAnswerError& error) {
-        throw NoAnswerError(fmt::format("{}: {}", to_string(phase), error.what()));
+    } catch (const NoResultError& error) {
+        throw NoResultError(fmt::format("{}: {}", to_string(phase), error.what()));
     }
 }
 

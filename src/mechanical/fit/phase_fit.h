@@ -16,15 +16,17 @@
 namespace flightwatt::mechanical {
 
 /// What a phase's curves are where the samples leave the frequency open.
-enum class Curve {
+enum class CurveEstimator {
     mean,          ///< the mean over all frequencies that may be; never below 0 unless that was measured
     least_squares  ///< that of the least sum of squares, whatever it is
 };
 
-constexpr std::string_view to_string(Curve curve) { return curve == Curve::mean ? "mean" : "least-squares"; }
+constexpr std::string_view to_string(CurveEstimator curve) {
+    return curve == CurveEstimator::mean ? "mean" : "least-squares";
+}
 
-constexpr std::optional<Curve> curve_from(std::string_view name) {
-    for (const auto curve : {Curve::mean, Curve::least_squares})
+constexpr std::optional<CurveEstimator> curve_from(std::string_view name) {
+    for (const auto curve : {CurveEstimator::mean, CurveEstimator::least_squares})
         if (name == to_string(curve)) return curve;
     return std::nullopt;
 }
@@ -34,12 +36,12 @@ struct PhaseFitOptions {
     /// Lowest omega * duration. The fewer periods a phase has, the more alike its harmonics are, and noise in
     /// the coefficients grows: at order 3 the basis's condition is 1 at 2 pi, 38 at the paper's landing (3.63),
     /// 108 at pi, but 2500 at 2 rad and 230000 at 1 rad.
-    double low_rad = std::numbers::pi;
+    double min_theta_rad = std::numbers::pi;
     /// Most periods in a phase; the sampling may allow fewer. 120 in ten minutes are 5 s each: nothing that
     /// an aircraft does over and over in cruise is faster.
-    double high_periods = 120.0;
+    double max_periods = 120.0;
     Loss loss = Loss::none;  ///< huber: outliers count less in the last refinement
-    Curve curve = Curve::mean;
+    CurveEstimator curve = CurveEstimator::mean;
 };
 
 /// One flight's own curve in one phase, in that flight's own seconds.
@@ -59,34 +61,34 @@ struct PhaseFit {
     double rms_w = 0.0;                ///< of all flights' residuals together
     std::size_t samples = 0;
     Loss loss = Loss::none;
-    double loss_scale_w = 0.0;  ///< of the noise as the loss saw it; 0 without a loss
-    bool mean_curve = false;    ///< the curves are means over frequencies (settle_curves)
-    bool not_negative = false;  ///< curves were kept from falling below 0, or below negative power that was measured
+    double loss_scale_w = 0.0;           ///< of the noise as the loss saw it; 0 without a loss
+    bool is_frequency_averaged = false;  ///< the curves are means over frequencies (average_over_frequencies)
+    bool is_clamped = false;  ///< curves were kept from falling below 0, or below negative power that was measured
     std::shared_ptr<const FrequencyPosterior> posterior = {};  ///< if it was needed
     std::shared_ptr<const FrequencyScan> scan = {};  ///< of the samples [W^2]; none with a loss, or of order 0
 };
 
 /// So many samples a flight needs at least: one more than its coefficients.
-std::size_t samples_needed(int order);
+std::size_t min_samples(int order);
 
-/// Where theta may lie: from options.low_rad to options.high_periods periods, but not so high that in some
+/// Where theta may lie: from options.low_rad to options.max_periods periods, but not so high that in some
 /// flight the highest harmonic would have less than two samples a period (of the median gap between samples), or that
 /// its two columns are so alike on the samples that noise in one direction of them is more than twice (its variance)
 /// what it is on well spread ones: as near to two samples a period as evenly spread ones would allow.
-/// Throws UsageError for options that make no sense, NoAnswerError if the samples leave nothing of the range.
-FrequencyRange admissible_range(std::span<const PhaseSamples> flights, const PhaseFitOptions& options);
+/// Throws UsageError for options that make no sense, NoResultError if the samples leave nothing of the range.
+FrequencyRange admissible_frequencies(std::span<const PhaseSamples> flights, const PhaseFitOptions& options);
 
-/// Fits Fourier series of the order to all flights: scans the whole range of theta, refines theta and all
-/// coefficients together. A loss other than none starts from that answer, so outliers still take part in the
-/// search for the frequency. Where the samples leave the frequency open the curves are settled (mean_curve.h) unless
-/// options.curve says otherwise. Order 0 is each flight's own mean (its theta, one period, has no effect).
-/// Throws InputError for samples that are no samples (unequal lengths, tau outside [0, 1], not finite, duration
-/// not positive), NoAnswerError naming flight and phase for a flight with fewer than samples_needed(order)
-/// samples, for no flights, and for a fit that does not converge.
+/// Fits Fourier series of the order to all flights: scans the whole range of theta, refines theta and all coefficients
+/// together. A loss other than none starts from that answer, so outliers still take part in the search for the
+/// frequency. Where the samples leave the frequency open the curves are settled (model_averaging.h) unless
+/// options.curve says otherwise. Order 0 is each flight's own mean (its theta, one period, has no effect). Throws
+/// InputError for samples that are no samples (unequal lengths, tau outside [0, 1], not finite, duration not positive),
+/// NoResultError naming flight and phase for a flight with fewer than min_samples(order) samples, for no flights, and
+/// for a fit that does not converge.
 PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights, const PhaseFitOptions& options = {});
 
 /// A flight's samples; after a robust fit its curve with Huber's pseudo-residuals, psi / mean psi', on which least
-/// squares would have come to the same curve. Throws NoAnswerError if all samples are down-weighted.
-ScaledSamples fitted_values(const PhaseSamples& samples, const FlightCurve& curve, const PhaseFit& fit);
+/// squares would have come to the same curve. Throws NoResultError if all samples are down-weighted.
+ScaledSamples pseudo_observations(const PhaseSamples& samples, const FlightCurve& curve, const PhaseFit& fit);
 
 }  // namespace flightwatt::mechanical

@@ -20,14 +20,14 @@ constexpr double deviations_per_median = 1.4826;
 /// Residuals below this, in standard deviations of the power, are rounding.
 constexpr double smallest_scale = 1e-10;
 
-constexpr int most_scalings = 50;
+constexpr int max_scalings = 50;
 constexpr double same_scale = 1e-6;
 
 LinearFit fit_at(const ScaledSamples& samples, const Eigen::MatrixXd& basis, const Eigen::VectorXd& values,
                  double theta_rad) {
     auto fit = solve_least_squares(basis, values);
     if (fit) return *std::move(fit);
-    throw NoAnswerError(
+    throw NoResultError(
         fmt::format("flight '{}': the times of its {} samples do not determine a series of "
                     "order {} at omega * duration = {:.4g} rad",
                     samples.flight, samples.tau.size(), basis.cols() / 2, theta_rad));
@@ -67,7 +67,7 @@ class FourierCost final : public ceres::CostFunction {
     Eigen::MatrixXd from_orthonormal_;
 };
 
-/// Throws NoAnswerError, `failure` and Ceres's reason, unless theta and the coefficients converge.
+/// Throws NoResultError, `failure` and Ceres's reason, unless theta and the coefficients converge.
 void solve(ceres::Problem& problem, const ceres::Solver::Options& options, double& theta_rad,
            const FrequencyRange& range, const std::string& failure) {
     problem.SetParameterLowerBound(&theta_rad, 0, range.low_rad);
@@ -75,7 +75,7 @@ void solve(ceres::Problem& problem, const ceres::Solver::Options& options, doubl
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
     if (summary.termination_type == ceres::CONVERGENCE) return;
-    throw NoAnswerError(fmt::format("{}: {}", failure, summary.message));
+    throw NoResultError(fmt::format("{}: {}", failure, summary.message));
 }
 
 double scale_of(std::span<const ScaledSamples> flights, const JointFit& fit) {
@@ -101,7 +101,7 @@ void minimise(std::span<const ScaledSamples> flights, const FrequencyRange& rang
             // A loss takes hold of a residual block, so each sample is one.
             problem.AddResidualBlock(
                 new FourierCost({{flights[i].tau[j]}, {flights[i].value[j]}}, start[i].from_orthonormal),
-                new ceres::HuberLoss(tuning_constant * fit.noise_scale), &fit.theta_rad, start[i].orthonormal.data());
+                new ceres::HuberLoss(huber_threshold * fit.noise_scale), &fit.theta_rad, start[i].orthonormal.data());
         }
     }
     ceres::Solver::Options options;
@@ -159,7 +159,7 @@ JointFit refine_jointly(std::span<const ScaledSamples> flights, int order, const
 
 JointFit refine_robustly(std::span<const ScaledSamples> flights, const FrequencyRange& range, JointFit fit) {
     fit.noise_scale = scale_of(flights, fit);
-    for (int i = 0; i < most_scalings && fit.noise_scale > smallest_scale; ++i) {
+    for (int i = 0; i < max_scalings && fit.noise_scale > smallest_scale; ++i) {
         minimise(flights, range, fit);
         const double before = std::exchange(fit.noise_scale, scale_of(flights, fit));
         if (std::abs(fit.noise_scale - before) <= same_scale * before) break;

@@ -29,17 +29,17 @@ constexpr std::optional<Loss> loss_from(std::string_view name) {
 
 /// Where Huber's loss turns from squared to linear, in standard deviations of the noise: 95 % as efficient as
 /// least squares if the noise is normal after all.
-inline constexpr double tuning_constant = 1.345;
+inline constexpr double huber_threshold = 1.345;
 
 /// What a sample counts, in (0, 1], at `residual` in scales of the noise: half the loss's slope over it.
 inline double sample_weight(Loss loss, double residual) {
     const double size = std::abs(residual);
-    return loss == Loss::none || size <= tuning_constant ? 1.0 : tuning_constant / size;
+    return loss == Loss::none || size <= huber_threshold ? 1.0 : huber_threshold / size;
 }
 
 /// The derivative of residual * sample_weight: how far the fit follows a sample that moves.
 inline double sample_influence(Loss loss, double residual) {
-    return loss == Loss::none || std::abs(residual) <= tuning_constant ? 1.0 : 0.0;
+    return loss == Loss::none || std::abs(residual) <= huber_threshold ? 1.0 : 0.0;
 }
 
 /// The frequency all flights share and each flight's own coefficients.
@@ -51,7 +51,7 @@ struct JointFit {
 };
 
 /// Levenberg-Marquardt (Ceres) over theta and all coefficients at once, from `start_rad`, within the range:
-/// the least common sum of squares near where the search began. Throws NoAnswerError if it does not converge,
+/// the least common sum of squares near where the search began. Throws NoResultError if it does not converge,
 /// or if a flight's samples do not determine its coefficients.
 JointFit refine_jointly(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
                         double start_rad);
@@ -59,7 +59,7 @@ JointFit refine_jointly(std::span<const ScaledSamples> flights, int order, const
 /// Moves a least-squares fit to the least Huber loss of all flights' residuals (an M-estimate), theta and all
 /// coefficients together, sample by sample. The scale of the noise is taken from the residuals anew until it
 /// stays. If more than half of the residuals are 0 there is nothing to weigh and the fit stays. Throws
-/// NoAnswerError if it does not converge.
+/// NoResultError if it does not converge.
 JointFit refine_robustly(std::span<const ScaledSamples> flights, const FrequencyRange& range, JointFit fit);
 
 }  // namespace flightwatt::mechanical

@@ -2,7 +2,7 @@
 
 #include "mechanical/physical/power_regression.h"
 #include "mechanical/physical/term_choice.h"
-#include "mechanical/prediction/level_spread.h"
+#include "mechanical/prediction/variance_components.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +34,7 @@ Eigen::VectorXd row_of(const PhysicalModel& model, const TermValues& values) {
     Eigen::VectorXd row(count + 1);
     for (std::size_t i = 0; i < model.terms.size(); ++i)
         row[static_cast<Eigen::Index>(i)] = values[model.terms[i]] / scale[static_cast<int>(model.terms[i])];
-    row[count] = power_of_terms_w(model, values);
+    row[count] = sum_of_terms_w(model, values);
     return row;
 }
 
@@ -51,11 +51,11 @@ Eigen::MatrixXd prior_covariance(const PhysicalModel& model) {
     return prior;
 }
 
-Learned learned_from(const PhysicalModel& model, std::span<const MotionBin> flown) {
+Learned learned_from(const PhysicalModel& model, std::span<const FlightBin> flown) {
     const auto prior = prior_covariance(model);
     const auto count = prior.rows() - 1;
     if (flown.empty() || !(model.drift_sd_w > 0.0)) return {Eigen::VectorXd::Zero(count + 1), prior};
-    const auto sums = motion_sums(flown, model.correlation_s);
+    const auto sums = accumulate_normal_equations(flown, model.correlation_s);
     const auto columns = columns_of(model.terms);
     const Eigen::VectorXd coefficients = coefficients_of(model);
     const Eigen::MatrixXd products = sums.products(columns, columns);
@@ -75,12 +75,12 @@ Learned learned_from(const PhysicalModel& model, std::span<const MotionBin> flow
 
 }  // namespace
 
-PathPower predict_path(const PhysicalModel& model, std::span<const MotionBin> flown, double now_s,
-                       const TermValues& ahead, double remaining_s) {
+PosteriorPower predict_posterior_power(const PhysicalModel& model, std::span<const FlightBin> flown, double now_s,
+                                       const TermValues& ahead, double remaining_s) {
     const auto learned = learned_from(model, flown);
-    const Drift drift{model.drift_sd_w, model.correlation_s};
-    PathPower power;
-    power.model_w = power_of_terms_w(model, ahead);
+    const DriftProcess drift{model.drift_sd_w, model.correlation_s};
+    PosteriorPower power;
+    power.model_w = sum_of_terms_w(model, ahead);
     power.level = learned.mean[learned.mean.size() - 1];
     Eigen::VectorXd row = row_of(model, ahead);
     double mean_w = power.model_w + row.dot(learned.mean);
@@ -90,7 +90,7 @@ PathPower predict_path(const PhysicalModel& model, std::span<const MotionBin> fl
         const double kept = std::exp(-std::max(now_s - last.middle_s(), 0.0) / model.correlation_s) *
                             -std::expm1(-remaining_s / model.correlation_s) * model.correlation_s / remaining_s;
         const Eigen::VectorXd last_row = row_of(model, last.values);
-        mean_w += kept * (last.power_w - power_of_terms_w(model, last.values) - last_row.dot(learned.mean));
+        mean_w += kept * (last.power_w - sum_of_terms_w(model, last.values) - last_row.dot(learned.mean));
         row -= kept * last_row;
         drift_w2 -= kept * kept * model.drift_sd_w * model.drift_sd_w;
     }

@@ -14,7 +14,7 @@
 namespace flightwatt::mechanical {
 namespace {
 
-MotionRange read_motion_range(const TomlTable& table) {
+FlownRange read_motion_range(const TomlTable& table) {
     const double low = table.number("low");
     return {low, number_in(at_least(low), table, "high")};
 }
@@ -80,7 +80,7 @@ void read_terms(PhysicalModel& model, const TomlTable& table) {
     require_covariance(model, table);
 }
 
-std::string motion_range_toml(const MotionRange& range) {
+std::string motion_range_toml(const FlownRange& range) {
     return fmt::format("{{ low = {}, high = {} }}", toml_real(range.low), toml_real(range.high));
 }
 

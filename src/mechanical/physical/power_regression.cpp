@@ -9,14 +9,14 @@
 namespace flightwatt::mechanical {
 namespace {
 
-constexpr double least_condition = 1e-8;  // of the columns' products, each of length 1
+constexpr double min_condition = 1e-8;  // of the columns' products, each of length 1
 constexpr double prior_degrees_of_freedom = 3.0;
 
 /// From half a bin, where neighbours are nearly independent, to 20 minutes; twice as long at each second step.
 std::vector<double> correlations_s() {
     std::vector<double> grid(14);
     for (std::size_t i = 0; i < grid.size(); ++i)
-        grid[i] = 0.5 * usual_bin_s * std::pow(2.0, 0.5 * static_cast<double>(i));
+        grid[i] = 0.5 * default_bin_s * std::pow(2.0, 0.5 * static_cast<double>(i));
     return grid;
 }
 
@@ -44,7 +44,7 @@ struct ChosenSums {
     double log_determinant = 0.0;
 };
 
-std::vector<ChosenSums> chosen_sums(std::span<const MotionSums> flights, const std::vector<int>& columns) {
+std::vector<ChosenSums> chosen_sums(std::span<const NormalEquations> flights, const std::vector<int>& columns) {
     std::vector<ChosenSums> chosen;
     chosen.reserve(flights.size());
     for (const auto& of : flights)
@@ -53,7 +53,7 @@ std::vector<ChosenSums> chosen_sums(std::span<const MotionSums> flights, const s
 }
 
 /// What each flight's power leaves, its own level taken out; flights of a single bin are absent.
-std::vector<double> own_drift_variances_w2(std::span<const MotionSums> flights, const std::vector<int>& columns,
+std::vector<double> own_drift_variances_w2(std::span<const NormalEquations> flights, const std::vector<int>& columns,
                                            const ColumnVector& coefficients) {
     std::vector<double> variances;
     for (const auto& of : flights) {
@@ -76,7 +76,7 @@ bool is_determined(const std::vector<ChosenSums>& flights) {
     const ColumnVector root = sum.diagonal().cwiseSqrt().cwiseInverse();
     const ColumnMatrix scaled = root.asDiagonal() * sum * root.asDiagonal();
     const Eigen::SelfAdjointEigenSolver<ColumnMatrix> solver(scaled, Eigen::EigenvaluesOnly);
-    return solver.eigenvalues().minCoeff() > least_condition;
+    return solver.eigenvalues().minCoeff() > min_condition;
 }
 
 }  // namespace
@@ -87,16 +87,16 @@ ColumnVector column_scale() {
     return scale;
 }
 
-ColumnVector column_values(const MotionBin& bin, const ColumnVector& scale) {
+ColumnVector column_values(const FlightBin& bin, const ColumnVector& scale) {
     ColumnVector values(column_count);
     for (const auto term : all_power_terms) values[static_cast<int>(term)] = bin.values[term];
     values[throttle_column] = bin.throttle_cubed.value_or(0.0);
     return values.cwiseQuotient(scale);
 }
 
-MotionSums motion_sums(std::span<const MotionBin> bins, double correlation_s) {
+NormalEquations accumulate_normal_equations(std::span<const FlightBin> bins, double correlation_s) {
     const auto scale = column_scale();
-    MotionSums sums;
+    NormalEquations sums;
     ColumnVector last;
     for (std::size_t i = 0; i < bins.size(); ++i) {
         const ColumnVector now = column_values(bins[i], scale);
@@ -118,14 +118,15 @@ MotionSums motion_sums(std::span<const MotionBin> bins, double correlation_s) {
     return sums;
 }
 
-std::optional<NodeFit> fit_node(std::span<const MotionSums> flights, const std::vector<int>& columns, double level_sd) {
+std::optional<GlsFit> fit_gls(std::span<const NormalEquations> flights, const std::vector<int>& columns,
+                              double level_sd) {
     constexpr int rounds = 6;  // the expected power and the drift settle in three
     const auto count = static_cast<Eigen::Index>(columns.size());
     const auto sums = chosen_sums(flights, columns);
     std::size_t bins = 0;
     for (const auto& of : flights) bins += of.bins;
     if (bins <= columns.size() || !is_determined(sums)) return std::nullopt;
-    NodeFit fit;
+    GlsFit fit;
     ColumnVector expected = ColumnVector::Zero(count);
     ColumnMatrix normal;
     for (int round = 0; round < rounds; ++round) {
@@ -154,8 +155,8 @@ std::optional<NodeFit> fit_node(std::span<const MotionSums> flights, const std::
                       shrink[i] * level * level;
         }
         const auto freedom = static_cast<double>(bins - columns.size());
-        constexpr double least_w2 = 1e-12;  // bins that a model explains exactly
-        fit.drift_variance_w2 = std::max(square / freedom, least_w2);
+        constexpr double min_w2 = 1e-12;  // bins that a model explains exactly
+        fit.drift_variance_w2 = std::max(square / freedom, min_w2);
         fit.log_likelihood =
             -0.5 * (freedom * std::log(fit.drift_variance_w2) + log_determinant + factor.vectorD().array().log().sum());
         expected = fit.coefficients;
@@ -171,20 +172,20 @@ ColumnVector mean_coefficients(const PowerPosterior& posterior) {
     return mean;
 }
 
-MotionRegression::MotionRegression(std::span<const FlightMotion> flights) : flights_(flights.size()) {
+PowerRegression::PowerRegression(std::span<const BinnedFlight> flights) : flights_(flights.size()) {
     for (const double correlation_s : correlations_s()) {
         auto& sums = by_correlation_.emplace_back();
-        for (const auto& flight : flights) sums.push_back(motion_sums(flight.bins, correlation_s));
+        for (const auto& flight : flights) sums.push_back(accumulate_normal_equations(flight.bins, correlation_s));
     }
     for (const auto& flight : flights) bins_ += flight.bins.size();
 }
 
-std::optional<PowerPosterior> MotionRegression::posterior(const std::vector<int>& columns) const {
+std::optional<PowerPosterior> PowerRegression::posterior(const std::vector<int>& columns) const {
     PowerPosterior posterior;
     const auto correlations = correlations_s();
     for (std::size_t i = 0; i < correlations.size(); ++i) {
         for (const double level_sd : level_sds(flights_)) {
-            auto fit = fit_node(by_correlation_[i], columns, level_sd);
+            auto fit = fit_gls(by_correlation_[i], columns, level_sd);
             if (!fit) return std::nullopt;
             posterior.nodes.push_back({correlations[i], level_sd});
             posterior.weights.push_back(fit->log_likelihood + log_prior(level_sd));

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mechanical/physical/motion_bins.h"
+#include "mechanical/physical/flight_bins.h"
 
 #include <optional>
 #include <span>
@@ -20,7 +20,7 @@ using ColumnVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, c
 
 /// What a regression needs of one flight's bins, their drift taken out: with the drift's correlation R,
 /// products = X' R^-1 X and so on, columns in units of column_scale.
-struct MotionSums {
+struct NormalEquations {
     ColumnMatrix products = ColumnMatrix::Zero(column_count, column_count);
     ColumnVector responses = ColumnVector::Zero(column_count);
     double square = 0.0;
@@ -32,18 +32,18 @@ struct MotionSums {
 ColumnVector column_scale();
 
 /// The columns of one bin, over `scale`.
-ColumnVector column_values(const MotionBin& bin, const ColumnVector& scale);
+ColumnVector column_values(const FlightBin& bin, const ColumnVector& scale);
 
 /// Sums over bins whose drift is correlated by exp(-lag / correlation_s); 0: not at all.
-MotionSums motion_sums(std::span<const MotionBin> bins, double correlation_s);
+NormalEquations accumulate_normal_equations(std::span<const FlightBin> bins, double correlation_s);
 
 /// What the flights' levels and the drift are taken to be.
-struct VarianceNode {
+struct VarianceGridPoint {
     double correlation_s = 0.0;
     double level_sd = 0.0;  ///< as a part of the power
 };
 
-struct NodeFit {
+struct GlsFit {
     ColumnVector coefficients;  ///< in units of W over column_scale
     ColumnMatrix covariance;
     double drift_variance_w2 = 0.0;
@@ -52,12 +52,13 @@ struct NodeFit {
 
 /// Generalised least squares with given variances: flights differ by a factor with sd level_sd, so their covariance is
 /// level_sd^2 m m' + drift, m the power that the model expects. std::nullopt where the columns are not determined.
-std::optional<NodeFit> fit_node(std::span<const MotionSums> flights, const std::vector<int>& columns, double level_sd);
+std::optional<GlsFit> fit_gls(std::span<const NormalEquations> flights, const std::vector<int>& columns,
+                              double level_sd);
 
 /// All nodes of a grid, with their posterior weights.
 struct PowerPosterior {
-    std::vector<VarianceNode> nodes;
-    std::vector<NodeFit> fits;
+    std::vector<VarianceGridPoint> nodes;
+    std::vector<GlsFit> fits;
     std::vector<double> weights;  ///< sum to 1
     std::size_t likeliest = 0;
     std::vector<double> drift_variances_w2;  ///< of each flight about the likeliest fit at the flight's own level
@@ -66,9 +67,9 @@ struct PowerPosterior {
 ColumnVector mean_coefficients(const PowerPosterior& posterior);
 
 /// Each flight's sums for every correlation of the grid.
-class MotionRegression {
+class PowerRegression {
   public:
-    explicit MotionRegression(std::span<const FlightMotion> flights);
+    explicit PowerRegression(std::span<const BinnedFlight> flights);
 
     /// Over the grid of drift correlations and level spreads: weight = REML likelihood times prior. A single flight
     /// has no spread. std::nullopt where the columns are not determined.
@@ -78,7 +79,7 @@ class MotionRegression {
     std::size_t flights() const { return flights_; }
 
   private:
-    std::vector<std::vector<MotionSums>> by_correlation_;
+    std::vector<std::vector<NormalEquations>> by_correlation_;
     std::size_t bins_ = 0;
     std::size_t flights_ = 0;
 };

@@ -11,12 +11,12 @@
 namespace flightwatt::mechanical {
 namespace {
 
-constexpr std::size_t most_folds = 10;
+constexpr std::size_t max_folds = 10;
 constexpr std::size_t blocks_of_single_flight = 5;
 
 /// The level and the drift that the choice works with: about right is enough to compare terms.
 constexpr double working_level_sd = level_prior_scale;
-constexpr double working_correlation_s = 2.0 * usual_bin_s;
+constexpr double working_correlation_s = 2.0 * default_bin_s;
 
 /// Means over a whole phase of a flight that is held back.
 struct HeldPhase {
@@ -26,9 +26,9 @@ struct HeldPhase {
 
 /// What is held back at once.
 struct Fold {
-    std::vector<MotionSums> flights;  ///< their drift taken out
-    MotionSums plain;                 ///< of all bins as they are
-    std::vector<HeldPhase> phases;    ///< empty where bins decide
+    std::vector<NormalEquations> flights;  ///< their drift taken out
+    NormalEquations plain;                 ///< of all bins as they are
+    std::vector<HeldPhase> phases;         ///< empty where bins decide
 };
 
 struct Folds {
@@ -38,22 +38,22 @@ struct Folds {
     bool throttle_measured = true;
     bool phases_decide = false;
     std::size_t flights = 0;
-    const MotionRegression* regression = nullptr;  ///< of all flights
+    const PowerRegression* regression = nullptr;  ///< of all flights
 };
 
-void add_to(MotionSums& sum, const MotionSums& other) {
+void add_to(NormalEquations& sum, const NormalEquations& other) {
     sum.products += other.products;
     sum.responses += other.responses;
     sum.square += other.square;
     sum.bins += other.bins;
 }
 
-void add_bins(Fold& fold, std::span<const MotionBin> bins) {
-    fold.flights.push_back(motion_sums(bins, working_correlation_s));
-    add_to(fold.plain, motion_sums(bins, 0.0));
+void add_bins(Fold& fold, std::span<const FlightBin> bins) {
+    fold.flights.push_back(accumulate_normal_equations(bins, working_correlation_s));
+    add_to(fold.plain, accumulate_normal_equations(bins, 0.0));
 }
 
-std::vector<HeldPhase> phases_of(std::span<const MotionBin> bins) {
+std::vector<HeldPhase> phases_of(std::span<const FlightBin> bins) {
     const auto scale = column_scale();
     std::vector<HeldPhase> phases;
     for (const auto phase : flight::all_phases) {
@@ -70,10 +70,10 @@ std::vector<HeldPhase> phases_of(std::span<const MotionBin> bins) {
     return phases;
 }
 
-Folds folds_of_single(const FlightMotion& flight) {
+Folds folds_of_single(const BinnedFlight& flight) {
     Folds made;
     made.level_sd = 0.0;
-    const std::span<const MotionBin> bins(flight.bins);
+    const std::span<const FlightBin> bins(flight.bins);
     made.folds.resize(std::min(blocks_of_single_flight, bins.size()));
     for (std::size_t i = 0; i < made.folds.size(); ++i) {
         const auto first = bins.size() * i / made.folds.size();
@@ -83,10 +83,10 @@ Folds folds_of_single(const FlightMotion& flight) {
     return made;
 }
 
-Folds folds_of_several(std::span<const FlightMotion> flights) {
+Folds folds_of_several(std::span<const BinnedFlight> flights) {
     Folds made;
     made.phases_decide = true;
-    made.folds.resize(std::min(most_folds, flights.size()));
+    made.folds.resize(std::min(max_folds, flights.size()));
     for (std::size_t i = 0; i < flights.size(); ++i) {
         auto& fold = made.folds[i % made.folds.size()];
         add_bins(fold, flights[i].bins);
@@ -97,7 +97,7 @@ Folds folds_of_several(std::span<const FlightMotion> flights) {
     return made;
 }
 
-Folds folds_of(std::span<const FlightMotion> flights) {
+Folds folds_of(std::span<const BinnedFlight> flights) {
     auto made = flights.size() == 1 ? folds_of_single(flights.front()) : folds_of_several(flights);
     made.flights = flights.size();
     for (const auto& flight : flights) {
@@ -138,7 +138,7 @@ SquareErrors square_errors(std::vector<double> sums, std::size_t count) {
     return {std::move(sums), sum / static_cast<double>(count)};
 }
 
-double bin_square(const MotionSums& plain, const std::vector<int>& columns, const ColumnVector& c) {
+double bin_square(const NormalEquations& plain, const std::vector<int>& columns, const ColumnVector& c) {
     const ColumnVector fitted = plain.products(columns, columns) * c;
     const ColumnVector responses = plain.responses(columns);
     return std::max(plain.square - 2.0 * c.dot(responses) + c.dot(fitted), 0.0);
@@ -163,11 +163,11 @@ std::optional<HeldBackError> held_back_error(const Folds& of, const std::vector<
     std::size_t bins = 0;
     std::size_t phases = 0;
     for (std::size_t out = 0; out < of.folds.size(); ++out) {
-        std::vector<MotionSums> others;
+        std::vector<NormalEquations> others;
         for (std::size_t i = 0; i < of.folds.size(); ++i)
             if (i != out) others.insert(others.end(), of.folds[i].flights.begin(), of.folds[i].flights.end());
         if (others.empty()) return std::nullopt;
-        const auto fit = fit_node(others, columns, of.level_sd);
+        const auto fit = fit_gls(others, columns, of.level_sd);
         if (!fit) return std::nullopt;
         const auto& fold = of.folds[out];
         bin_sums.push_back(bin_square(fold.plain, columns, fit->coefficients));
@@ -218,7 +218,7 @@ std::vector<PowerTerm> with(std::vector<PowerTerm> terms, PowerTerm term) {
 /// Whether the fit of all flights is one that physics lets be.
 bool is_possible(const Folds& of, const std::vector<PowerTerm>& terms) {
     const auto posterior = of.regression->posterior(columns_of(terms));
-    return posterior && are_possible(terms, mean_coefficients(*posterior));
+    return posterior && are_physical(terms, mean_coefficients(*posterior));
 }
 
 struct Candidate {
@@ -226,10 +226,10 @@ struct Candidate {
     HeldBackError error;
 };
 
-/// By least_gain_of_term, and in more than half of the flights; of two in one. Of a single flight's fifths only one may
+/// By min_mse_reduction, and in more than half of the flights; of two in one. Of a single flight's fifths only one may
 /// hold a climb: there the sum alone counts.
 bool is_less(const Folds& of, const SquareErrors& now, const SquareErrors& before) {
-    if (now.mean > (1.0 - least_gain_of_term) * before.mean) return false;
+    if (now.mean > (1.0 - min_mse_reduction) * before.mean) return false;
     std::size_t won = 0;
     for (std::size_t i = 0; i < now.sums.size(); ++i)
         if (now.sums[i] < before.sums[i]) ++won;
@@ -305,7 +305,7 @@ std::vector<int> columns_of(const std::vector<PowerTerm>& terms) {
     return columns;
 }
 
-bool are_possible(const std::vector<PowerTerm>& terms, const ColumnVector& coefficients) {
+bool are_physical(const std::vector<PowerTerm>& terms, const ColumnVector& coefficients) {
     double climb = 0.0;
     for (std::size_t i = 0; i < terms.size(); ++i) {
         const double value = coefficients[static_cast<Eigen::Index>(i)];
@@ -315,10 +315,10 @@ bool are_possible(const std::vector<PowerTerm>& terms, const ColumnVector& coeff
     return true;
 }
 
-TermChoice choose_terms(std::span<const FlightMotion> flights, const MotionRegression& regression) {
+TermSelection select_terms(std::span<const BinnedFlight> flights, const PowerRegression& regression) {
     auto of = folds_of(flights);
     of.regression = &regression;
-    TermChoice choice;
+    TermSelection choice;
     choice.folds = of.folds.size();
     choice.phases_decided = of.phases_decide;
     for (const auto term : all_power_terms) choice.trials.push_back({std::string(to_string(term)), false, {}, {}, ""});

@@ -8,7 +8,7 @@
 
 namespace flightwatt::mechanical {
 
-struct TermChoice {
+struct TermSelection {
     std::vector<PowerTerm> terms;  ///< in the order of all_power_terms; empty where none is determined
     std::vector<TermTrial> trials;
     std::size_t folds = 0;
@@ -16,10 +16,10 @@ struct TermChoice {
 };
 
 /// Which terms predict what was held back (see fit_physical_model). `flights` have bins; `regression` is theirs.
-TermChoice choose_terms(std::span<const FlightMotion> flights, const MotionRegression& regression);
+TermSelection select_terms(std::span<const BinnedFlight> flights, const PowerRegression& regression);
 
 /// Whether physics lets these coefficients be, in the order of `terms`.
-bool are_possible(const std::vector<PowerTerm>& terms, const ColumnVector& coefficients);
+bool are_physical(const std::vector<PowerTerm>& terms, const ColumnVector& coefficients);
 
 /// The columns of terms.
 std::vector<int> columns_of(const std::vector<PowerTerm>& terms);

@@ -12,7 +12,7 @@
 namespace flightwatt::mechanical {
 namespace {
 
-constexpr double longest_log_gap_s = 60.0;
+constexpr double max_log_gap_s = 60.0;
 
 /// What the segmentation looks at.
 flight::FlightSeries tracks_for_segmentation(const flight::FlightSeries& series) {
@@ -25,7 +25,7 @@ flight::FlightSeries tracks_for_segmentation(const flight::FlightSeries& series)
 }
 
 /// The sortie as it looks from what is known; std::nullopt before its lift-off.
-std::optional<flight::Sortie> sortie_of(const flight::ChosenTracks& known, std::size_t index,
+std::optional<flight::Sortie> sortie_of(const flight::SelectedTracks& known, std::size_t index,
                                         const flight::SegmentationOptions& options) {
     if (known["power_w"].time_s.size() < 2 || known["altitude_m"].empty()) return std::nullopt;
     auto phases = segment(known, options);
@@ -53,44 +53,44 @@ double last_time_s(const flight::FlightSeries& series) {
     return end_s;
 }
 
-double time_since_lift_off(const flight::FlightSeries& series, double since_s, std::size_t sortie,
-                           const flight::SegmentationOptions& options) {
+double log_time_after_lift_off(const flight::FlightSeries& series, double since_s, std::size_t sortie,
+                               const flight::SegmentationOptions& options) {
     constexpr double look_again_s = 5.0;
     constexpr double same_s = 1e-3;
     const auto slim = tracks_for_segmentation(series);
     double time_s = first_sample_s(slim) + since_s;
-    const double last_s = last_time_s(slim) + longest_log_gap_s;
+    const double last_s = last_time_s(slim) + max_log_gap_s;
     while (time_s <= last_s) {
-        const auto cut = cut_series(slim, time_s);
-        const auto found = sortie_of(flight::ChosenTracks(cut), sortie, options);
+        const auto cut = truncate_series(slim, time_s);
+        const auto found = sortie_of(flight::SelectedTracks(cut), sortie, options);
         const double due_s =
             found && !found->phases.empty() ? found->phases.front().start.time_s + since_s : time_s + look_again_s;
         if (due_s <= time_s + same_s) return time_s;
         time_s = due_s;
     }
-    throw NoAnswerError(fmt::format("{}: the log ends at {:.0f} s, before {:.0f} s after a lift-off", series.flight,
+    throw NoResultError(fmt::format("{}: the log ends at {:.0f} s, before {:.0f} s after a lift-off", series.flight,
                                     last_time_s(slim), since_s));
 }
 
 FlightProgress progress_at(const flight::FlightSeries& series, double until_s, std::size_t sortie_index,
                            const flight::SegmentationOptions& options) {
-    const auto known = cut_series(series, until_s);
-    const flight::ChosenTracks tracks(known);
+    const auto known = truncate_series(series, until_s);
+    const flight::SelectedTracks tracks(known);
     const auto sortie = sortie_of(tracks, sortie_index, options);
-    return progress_in(tracks, sortie ? &*sortie : nullptr, until_s, options);
+    return progress_of(tracks, sortie ? &*sortie : nullptr, until_s, options);
 }
 
-FlightProgress progress_in(const flight::ChosenTracks& known, const flight::Sortie* sortie, double until_s,
+FlightProgress progress_of(const flight::SelectedTracks& known, const flight::Sortie* sortie, double until_s,
                            const flight::SegmentationOptions& options) {
     const auto& series = known.series();
     FlightProgress flown;
     flown.until_s = until_s;
-    if (const double end_s = last_time_s(series); std::isfinite(end_s) && until_s > end_s + longest_log_gap_s) {
-        throw NoAnswerError(
+    if (const double end_s = last_time_s(series); std::isfinite(end_s) && until_s > end_s + max_log_gap_s) {
+        throw NoResultError(
             fmt::format("{}: the log ends at {:.1f} s, before {:.1f} s", series.flight, end_s, until_s));
     }
     const auto refuse = [&](std::string_view what) {
-        throw NoAnswerError(fmt::format("{}: at {:.1f} s of the log the aircraft {}", series.flight, until_s, what));
+        throw NoResultError(fmt::format("{}: at {:.1f} s of the log the aircraft {}", series.flight, until_s, what));
     };
     if (sortie == nullptr || sortie->phases.empty()) refuse("has not taken off");
     const auto& first = sortie->phases.front();
@@ -111,8 +111,8 @@ FlightProgress progress_in(const flight::ChosenTracks& known, const flight::Sort
     flown.airspeed_cubed_m3_per_s3 =
         mean_cubed_airspeed_m3_per_s3(known["airspeed_m_per_s"], flown.cruise_start_s, until_s);
     flown.covariates = covariates_of(known, *sortie);
-    flown.motion = motion_of(known, {{flight::Phase::takeoff, flown.lift_off_s, flown.cruise_start_s},
-                                     {flight::Phase::cruise, flown.cruise_start_s, until_s}});
+    flown.motion = bin_flight(known, {{flight::Phase::takeoff, flown.lift_off_s, flown.cruise_start_s},
+                                      {flight::Phase::cruise, flown.cruise_start_s, until_s}});
     return flown;
 }
 

@@ -35,7 +35,7 @@ void describe_fit(PhaseErrors& errors, std::span<const PhaseSamples> flights, co
             std::max(errors.condition, basis_condition(fourier_basis(flights[i].tau, order, fit.theta_rad)));
     }
     errors.r2 = about_means > 0.0 ? 1.0 - left / about_means : 1.0;
-    errors.frequency_is_given = fit.flights.front().fourier.cos_w.empty() || is_constant(flights);
+    errors.frequency_is_fixed = fit.flights.front().fourier.cos_w.empty() || is_constant(flights);
 }
 
 /// The row of the mean curve at tau for a frequency.
@@ -54,7 +54,7 @@ Interval around(Interval interval, double value) {
 }
 
 /// Of the nodes below a frequency alone; without weights if they hold too little.
-StudentMixture below(const StudentMixture& mixture, std::span<const MeanNode> nodes, double theta_rad) {
+StudentMixture below(const StudentMixture& mixture, std::span<const MeanCurveNode> nodes, double theta_rad) {
     StudentMixture part;
     double sum = 0.0;
     for (std::size_t i = 0; i < mixture.weight.size(); ++i) {
@@ -83,7 +83,7 @@ Interval coefficient_interval(const ErrorAnalysis& analysis, const StudentMixtur
     return interval;
 }
 
-double sd_of_frequency(std::span<const MeanNode> nodes) {
+double sd_of_frequency(std::span<const MeanCurveNode> nodes) {
     double mean = 0.0;
     for (const auto& node : nodes) mean += node.weight * node.theta_rad;
     double sum = 0.0;
@@ -92,7 +92,7 @@ double sd_of_frequency(std::span<const MeanNode> nodes) {
 }
 
 /// Power without a frequency: what is known of a constant, as that of a series whose harmonics are 0.
-void add_harmonics(std::vector<MeanNode>& nodes, Eigen::Index size) {
+void add_harmonics(std::vector<MeanCurveNode>& nodes, Eigen::Index size) {
     for (auto& node : nodes) {
         node.coefficients.conservativeResizeLike(Eigen::VectorXd::Zero(size));
         node.scale.conservativeResizeLike(Eigen::MatrixXd::Zero(size, size));
@@ -114,11 +114,11 @@ void fill_coefficients(ErrorAnalysis& analysis, double duration_s) {
          : k % 2 == 1 ? intervals.cos_w.emplace_back()
                       : intervals.sin_w.emplace_back()) = {low, high};
     }
-    if (errors.frequency_is_given) {
+    if (errors.frequency_is_fixed) {
         intervals.omega_rad_per_s = {analysis.theta_rad / duration_s, analysis.theta_rad / duration_s};
         return;
     }
-    const auto [low, high] = around(interval_of_frequency(*analysis.posterior), analysis.theta_rad);
+    const auto [low, high] = around(frequency_interval(*analysis.posterior), analysis.theta_rad);
     intervals.omega_rad_per_s = {low / duration_s, high / duration_s};
     errors.omega_rad_per_s = sd_of_frequency(analysis.nodes) / duration_s;
 }
@@ -126,9 +126,9 @@ void fill_coefficients(ErrorAnalysis& analysis, double duration_s) {
 void fill_noise(PhaseErrors& errors, const FrequencyPosterior& posterior, std::span<const PhaseSamples> flights) {
     for (const auto& node : posterior.nodes) errors.autocorrelation += node.weight * node.autocorrelation;
     errors.autocorrelation = std::clamp(errors.autocorrelation, 0.0, 1.0);
-    errors.noise_lasts = noise_lasts(posterior);
+    errors.noise_lasts = is_autocorrelation_at_limit(posterior);
     for (const auto& flight : flights) {
-        const auto sorted = in_order_of_time({flight.tau, {flight.power_w}, {}});
+        const auto sorted = sort_by_time({flight.tau, {flight.power_w}, {}});
         errors.effective_samples +=
             effective_samples(sample_correlation(sorted.tau, median_gap(sorted.tau), errors.autocorrelation));
     }
@@ -137,7 +137,8 @@ void fill_noise(PhaseErrors& errors, const FrequencyPosterior& posterior, std::s
 std::shared_ptr<const FrequencyPosterior> posterior_of_fit(std::span<const PhaseSamples> flights, const PhaseFit& fit,
                                                            bool constant) {
     std::vector<ScaledSamples> values;
-    for (std::size_t i = 0; i < flights.size(); ++i) values.push_back(fitted_values(flights[i], fit.flights[i], fit));
+    for (std::size_t i = 0; i < flights.size(); ++i)
+        values.push_back(pseudo_observations(flights[i], fit.flights[i], fit));
     const int order = constant ? 0 : static_cast<int>(fit.flights.front().fourier.cos_w.size());
     return std::make_shared<const FrequencyPosterior>(
         frequency_posterior(values, {order, fit.range, fit.theta_rad, fit.scan.get()}));
@@ -158,8 +159,8 @@ ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseF
     }
     analysis.theta_rad = fit.theta_rad;
     describe_fit(errors, flights, fit);
-    analysis.posterior = fit.posterior ? fit.posterior : posterior_of_fit(flights, fit, errors.frequency_is_given);
-    analysis.nodes = mean_of_flights(*analysis.posterior, weights);
+    analysis.posterior = fit.posterior ? fit.posterior : posterior_of_fit(flights, fit, errors.frequency_is_fixed);
+    analysis.nodes = mean_curve_nodes(*analysis.posterior, weights);
     add_harmonics(analysis.nodes, analysis.coefficients_w.size());
     errors.degrees_of_freedom = degrees_of_freedom(analysis.nodes);
     fill_noise(errors, *analysis.posterior, flights);

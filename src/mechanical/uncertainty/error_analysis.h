@@ -18,13 +18,13 @@ struct ErrorAnalysis {
     double theta_rad = 0.0;
     Eigen::VectorXd coefficients_w;  ///< of the mean curve: a0, a1, b1, ...
     std::shared_ptr<const FrequencyPosterior> posterior;
-    std::vector<MeanNode> nodes;  ///< its weighted mean of the flights
+    std::vector<MeanCurveNode> nodes;  ///< its weighted mean of the flights
 };
 
 /// Integrates over the frequency and the autocorrelation of the noise (frequency_posterior.h): the mean curve and its
 /// coefficients are mixtures of Student distributions (docs/methods.md, Eqs. 12 to 14). After a robust fit the samples
 /// are the curve with Huber's pseudo-residuals, psi / mean psi'. `flights`, `fit` and `weights` are in the same order;
-/// their samples are those that were fitted. Throws NoAnswerError for samples that do not determine the errors.
+/// their samples are those that were fitted. Throws NoResultError for samples that do not determine the errors.
 ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseFit& fit,
                              std::span<const double> weights);
 

@@ -31,10 +31,10 @@ FrequencyProfile frequency_profile(std::span<const PhaseSamples> flights, const 
                                    const ErrorAnalysis& analysis) {
     const auto order = static_cast<int>(fit.flights.front().fourier.cos_w.size());
     FrequencyProfile profile{{}, {}, fit.range.low_rad, fit.range.high_rad, true, true};
-    if (order == 0 || analysis.errors.frequency_is_given) return profile;
+    if (order == 0 || analysis.errors.frequency_is_fixed) return profile;
 
     const auto& density = analysis.posterior->density;
-    const auto [low, high] = interval_of_frequency(*analysis.posterior);
+    const auto [low, high] = frequency_interval(*analysis.posterior);
     profile.low_rad = std::min(low, fit.theta_rad);
     profile.high_rad = std::max(high, fit.theta_rad);
     const auto& places = analysis.posterior->theta_rad;

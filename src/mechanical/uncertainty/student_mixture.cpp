@@ -36,13 +36,13 @@ double quantile_of(const StudentMixture& mixture, const StudentCdf& cdf, double 
     }
     if (high <= low) return low;
     const auto behind = [&](double value) { return cdf_of(mixture, cdf, value) - probability; };
-    constexpr int most_doublings = 60;
+    constexpr int max_doublings = 60;
     const double width = high - low;
-    for (int i = 0; i < most_doublings && behind(low) > 0.0; ++i) low -= std::ldexp(width, i);
-    for (int i = 0; i < most_doublings && behind(high) < 0.0; ++i) high += std::ldexp(width, i);
-    std::uintmax_t most_steps = 60;
+    for (int i = 0; i < max_doublings && behind(low) > 0.0; ++i) low -= std::ldexp(width, i);
+    for (int i = 0; i < max_doublings && behind(high) < 0.0; ++i) high += std::ldexp(width, i);
+    std::uintmax_t max_steps = 60;
     const auto close = [&](double a, double b) { return std::abs(b - a) <= 1e-5 * widest; };
-    const auto [below, above] = boost::math::tools::toms748_solve(behind, low, high, close, most_steps);
+    const auto [below, above] = boost::math::tools::toms748_solve(behind, low, high, close, max_steps);
     return (below + above) / 2.0;
 }
 
@@ -88,7 +88,7 @@ Interval mixture_interval(const StudentMixture& mixture, const StudentCdf& cdf) 
     return {quantile_of(mixture, cdf, tail), quantile_of(mixture, cdf, 1.0 - tail)};
 }
 
-double degrees_of_freedom(std::span<const MeanNode> nodes) {
+double degrees_of_freedom(std::span<const MeanCurveNode> nodes) {
     double sum = 0.0;
     for (const auto& node : nodes) sum += node.weight * node.degrees_of_freedom;
     return std::max(1.0, sum);

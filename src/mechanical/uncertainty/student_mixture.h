@@ -35,11 +35,11 @@ double mixture_sd(const StudentMixture& mixture, double degrees_of_freedom);
 Interval mixture_interval(const StudentMixture& mixture, const StudentCdf& cdf);
 
 /// The weighted mean of the nodes' degrees of freedom, for which all are computed.
-double degrees_of_freedom(std::span<const MeanNode> nodes);
+double degrees_of_freedom(std::span<const MeanCurveNode> nodes);
 
 /// What the nodes say of a linear function of the coefficients which depends on theta: row(theta) c.
 template <typename Row>
-StudentMixture mixture_of(std::span<const MeanNode> nodes, const Row& row) {
+StudentMixture mixture_of(std::span<const MeanCurveNode> nodes, const Row& row) {
     StudentMixture mixture;
     for (const auto& node : nodes) {
         const Eigen::VectorXd at = row(node.theta_rad);

@@ -31,23 +31,23 @@ ConstantPower constant_mean(std::span<const PhaseSamples> flights) {
     return with_spread(mean(powers_w), powers_w, std::sqrt(1.0 + 1.0 / static_cast<double>(flights.size())));
 }
 
-ConstantPower power_of_flight(std::span<const PhaseSamples> flights, std::size_t index) {
+ConstantPower single_flight_power(std::span<const PhaseSamples> flights, std::size_t index) {
     const auto powers_w = mean_powers_w(flights);
     return with_spread(powers_w[index], powers_w, std::sqrt(2.0));
 }
 
 std::optional<ConstantPower> power_by_covariate(std::span<const PhaseSamples> flights, Covariate covariate,
                                                 const std::optional<double>& value) {
-    const auto law = fit_level_law(flights, covariate);
+    const auto law = fit_covariate_regression(flights, covariate);
     if (!value || !law) return std::nullopt;
-    return constant_power(level_at(*law, *value));
+    return constant_power(predict_mean_power(*law, *value));
 }
 
 EnergyEstimate energy_of(const ConstantPower& power, double duration_s) {
     EnergyEstimate estimate{units::wh_from_joule(power.mean_w * duration_s), power.sd_w.has_value(), 0.0, 0.0};
     if (power.sd_w) {
         const double sd_wh = units::wh_from_joule(*power.sd_w * duration_s);
-        add_share(estimate, {sd_wh * sd_wh, power.degrees_of_freedom});
+        add_variance(estimate, {sd_wh * sd_wh, power.degrees_of_freedom});
     }
     return estimate;
 }

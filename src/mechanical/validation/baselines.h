@@ -1,7 +1,7 @@
 #pragma once
 
+#include "mechanical/covariate_regression.h"
 #include "mechanical/fit/phase_samples.h"
-#include "mechanical/level_law.h"
 #include "mechanical/prediction.h"
 
 #include <optional>
@@ -14,7 +14,7 @@ namespace flightwatt::mechanical {
 ConstantPower constant_mean(std::span<const PhaseSamples> flights);
 
 /// One flight's mean power for another: 2 s^2, s that of all `flights`.
-ConstantPower power_of_flight(std::span<const PhaseSamples> flights, std::size_t index);
+ConstantPower single_flight_power(std::span<const PhaseSamples> flights, std::size_t index);
 
 /// The constant power that the law of `flights` lets expect of another with `value`; std::nullopt if the value
 /// is unknown, or the law is. For 2 flights a line has no spread.

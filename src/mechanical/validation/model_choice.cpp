@@ -51,7 +51,7 @@ bool is_curve_better(std::span<const ValidatedFlight> flights, const HeldOutScor
 
 /// Evenly from all, the first among them.
 std::vector<MeasuredFlight> validated_flights(std::span<const MeasuredFlight> flights) {
-    const auto count = std::min(flights.size(), most_validation_folds);
+    const auto count = std::min(flights.size(), max_validation_folds);
     std::vector<MeasuredFlight> chosen;
     chosen.reserve(count);
     for (std::size_t i = 0; i < count; ++i) chosen.push_back(flights[i * flights.size() / count]);
@@ -91,17 +91,17 @@ std::optional<ModelValidation> validation_of(std::vector<ValidatedFlight> flight
 
 void add_best_power(MechanicalModel& model, std::span<const MeasuredFlight> flights, const ModelFitOptions& options,
                     const std::function<void(std::size_t, std::size_t)>& progress) {
-    if (flights.size() < 2 || options.weights.weighting == Weighting::by_hand) return;
+    if (flights.size() < 2 || options.weights.weighting == Weighting::manual) return;
     try {
         auto plain = options;
         plain.level_covariate.reset();
         model.validation = validation_of(leave_one_out(validated_flights(flights), plain, {}, progress));
         const auto is_physical = [](const auto& score) { return score.model == physical; };
         if (!model.validation || std::ranges::none_of(model.validation->scores, is_physical)) return;
-        std::vector<FlightMotion> motions(flights.size());
+        std::vector<BinnedFlight> motions(flights.size());
         std::ranges::transform(flights, motions.begin(), &MeasuredFlight::motion);
         model.physical = fit_physical_model(motions).model;
-    } catch (const NoAnswerError&) {  // the curves are the model then
+    } catch (const NoResultError&) {  // the curves are the model then
         model.validation.reset();
     }
 }

@@ -9,10 +9,10 @@ namespace {
 
 /// A law through the origin reaches beyond what its flights showed, up to so many times their power and down to its
 /// inverse.
-constexpr double furthest_power_ratio = 2.0;
+constexpr double max_power_ratio = 2.0;
 
-const mechanical::LevelLaw& law_of(const TomlTable& conditions,
-                                   const std::optional<mechanical::MechanicalModel>& mechanical) {
+const mechanical::CovariateRegression& law_of(const TomlTable& conditions,
+                                              const std::optional<mechanical::MechanicalModel>& mechanical) {
     if (!mechanical) {
         throw InputError(conditions.where(), "conditions have no meaning with mechanical = \"none\"", "leave them out");
     }
@@ -44,7 +44,7 @@ void apply_stated_conditions(const TomlTable& conditions, MissionSetup& mission)
                          fmt::format("it follows {}, from {:.4g} to {:.4g}", name, law.least, law.most));
     }
     const double value = conditions.number(name);
-    const auto level = level_at(law, value);
+    const auto level = predict_mean_power(law, value);
     if (!level.within_flights) {
         throw InputError(
             conditions.where(name), fmt::format("{} = {} is beyond what the model's flights showed", name, value),
@@ -57,15 +57,15 @@ void apply_stated_conditions(const TomlTable& conditions, MissionSetup& mission)
 
 /// Level flight at an airspeed by the physical model.
 void apply_physical(double airspeed_m_per_s, const mechanical::PhysicalModel& physical, MissionSetup& mission) {
-    const mechanical::AirMotion motion{airspeed_m_per_s};
-    if (!was_flown(physical, motion)) {
+    const mechanical::FlightState motion{airspeed_m_per_s};
+    if (!is_within_flown_range(physical, motion)) {
         mission.notes.push_back(fmt::format(
             "airspeed_m_per_s = {} is beyond what the model's flights flew ({:.4g} to {:.4g} m/s): its power is extrapolated",
             airspeed_m_per_s, physical.airspeed_m_per_s.low, physical.airspeed_m_per_s.high));
     }
     mechanical::ConstantPower level{power_w(physical, motion), std::nullopt, 0.0};
     const double duration_s = mission.mechanical->phases[Phase::cruise].duration_s;
-    if (const auto uncertainty = uncertainty_of(physical, terms_of(motion), duration_s)) {
+    if (const auto uncertainty = prediction_uncertainty(physical, term_values(motion), duration_s)) {
         level.sd_w = uncertainty->sd_w;
         level.degrees_of_freedom = uncertainty->degrees_of_freedom;
     }
@@ -73,7 +73,7 @@ void apply_physical(double airspeed_m_per_s, const mechanical::PhysicalModel& ph
 }
 
 /// By drag's law of the flights that measured their airspeed, else by the covariate that the model was fitted with.
-const mechanical::LevelLaw* airspeed_law_of(const mechanical::PhaseModel& cruise) {
+const mechanical::CovariateRegression* airspeed_law_of(const mechanical::PhaseModel& cruise) {
     if (cruise.airspeed_law) return &*cruise.airspeed_law;
     if (!cruise.level_law) return nullptr;
     const bool follows_airspeed = cruise.level_law->covariate == mechanical::Covariate::airspeed ||
@@ -93,8 +93,8 @@ void apply_airspeed(const TomlTable& root, MissionSetup& mission) {
     if (mission.mechanical->physical) {
         const auto physical = *mission.mechanical->physical;
         const double power = power_w(physical, {airspeed});
-        if (power > furthest_power_ratio * power_w(physical, {physical.airspeed_m_per_s.high}) ||
-            power * furthest_power_ratio < power_w(physical, {physical.airspeed_m_per_s.low})) {
+        if (power > max_power_ratio * power_w(physical, {physical.airspeed_m_per_s.high}) ||
+            power * max_power_ratio < power_w(physical, {physical.airspeed_m_per_s.low})) {
             refuse(fmt::format("airspeed_m_per_s = {} is beyond what the model's flights flew", airspeed),
                    fmt::format("they flew {:.4g} to {:.4g} m/s; give an airspeed near these, or fit a model to flights "
                                "that were flown so",
@@ -108,13 +108,12 @@ void apply_airspeed(const TomlTable& root, MissionSetup& mission) {
         refuse(fmt::format("the cruise of the mechanical model '{}' does not know airspeed", mission.mechanical->name),
                "fit it to two flights or more that measured their airspeed (AIRSPEED or AIR_DATA in their logs)");
     }
-    const bool is_drag = goes_through_origin(law->covariate);
+    const bool is_drag = is_through_origin(law->covariate);
     const double value = is_drag ? airspeed * airspeed * airspeed : airspeed;
     const double low = is_drag ? std::cbrt(law->least) : law->least;
     const double high = is_drag ? std::cbrt(law->most) : law->most;
-    const auto level = level_at(*law, value);
-    const bool is_near =
-        is_drag && value <= furthest_power_ratio * law->most && value >= law->least / furthest_power_ratio;
+    const auto level = predict_mean_power(*law, value);
+    const bool is_near = is_drag && value <= max_power_ratio * law->most && value >= law->least / max_power_ratio;
     const auto beyond = fmt::format("airspeed_m_per_s = {} is beyond what the model's flights flew", airspeed);
     const auto flown = fmt::format("the {} flights of its law flew {:.4g} to {:.4g} m/s", law->flights, low, high);
     if (!level.within_flights && !is_near) {

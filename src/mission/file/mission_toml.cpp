@@ -17,9 +17,9 @@ namespace flightwatt::mission {
 namespace {
 
 constexpr double shortest_phase_s = 1e-3;
-constexpr double least_capacity_ah_of_a_pack = 1e-3;  // below, it is a mistake in the unit
+constexpr double min_capacity_ah_of_a_pack = 1e-3;  // below, it is a mistake in the unit
 constexpr double largest_sd_percent = 1000.0;
-constexpr double longest_phase_s = 1e7;  // a third of a year: beyond, it is a mistake in the unit
+constexpr double max_phase_s = 1e7;  // a third of a year: beyond, it is a mistake in the unit
 
 std::optional<mechanical::MechanicalModel> read_mechanical(const TomlTable& root) {
     if (root.string("mechanical") == "none") return std::nullopt;
@@ -43,15 +43,15 @@ void find_power_model(const TomlTable& root, MissionSetup& mission) {
             "its cruise power by airspeed is unproven: the model file has no error of it on flights left out");
 }
 
-mechanical::PhaseClock read_clock(const TomlTable& root, bool has_mechanical) {
+mechanical::PhaseTimeScaling read_clock(const TomlTable& root, bool has_mechanical) {
     const auto name = root.optional_string("phase_clock");
-    if (!name) return mechanical::PhaseClock::stretched;
+    if (!name) return mechanical::PhaseTimeScaling::stretched;
     if (!has_mechanical) {
         throw InputError(root.where("phase_clock"), "phase_clock has no meaning with mechanical = \"none\"",
                          "leave it out");
     }
-    if (*name == "stretch") return mechanical::PhaseClock::stretched;
-    if (*name == "absolute") return mechanical::PhaseClock::absolute;
+    if (*name == "stretch") return mechanical::PhaseTimeScaling::stretched;
+    if (*name == "absolute") return mechanical::PhaseTimeScaling::absolute;
     throw InputError(root.where("phase_clock"), fmt::format("there is no phase_clock '{}'", *name),
                      "it is \"stretch\" or \"absolute\"");
 }
@@ -59,7 +59,7 @@ mechanical::PhaseClock read_clock(const TomlTable& root, bool has_mechanical) {
 double read_duration(const TomlTable& durations, std::string_view phase) {
     const double value = durations.number(phase);
     if (value == 0.0) return value;
-    return number_in(between(shortest_phase_s, longest_phase_s), durations, phase, "or 0: not flown");
+    return number_in(between(shortest_phase_s, max_phase_s), durations, phase, "or 0: not flown");
 }
 
 void read_durations(const TomlTable& root, MissionSetup& mission) {
@@ -88,12 +88,12 @@ void read_mission_battery(const TomlTable& root, MissionSetup& mission) {
     auto& battery = mission.battery;
     battery = root.is_table("battery") ? battery::battery_from(root.table("battery"))
                                        : battery::read_battery(file_of(root, "battery"));
-    const auto capacity_ah = optional_number_in(between(least_capacity_ah_of_a_pack, battery::max_capacity_ah), root,
+    const auto capacity_ah = optional_number_in(between(min_capacity_ah_of_a_pack, battery::max_capacity_ah), root,
                                                 "capacity_ah", battery::capacity_hint);
     mission.capacity_is_stated = capacity_ah.has_value();
-    if (!capacity_ah && battery.capacity_ah < least_capacity_ah_of_a_pack)
+    if (!capacity_ah && battery.capacity_ah < min_capacity_ah_of_a_pack)
         throw InputError(root.where("battery"), fmt::format("the battery holds {:.3g} Ah", battery.capacity_ah),
-                         fmt::format("expected {} Ah or more", least_capacity_ah_of_a_pack));
+                         fmt::format("expected {} Ah or more", min_capacity_ah_of_a_pack));
     if (!capacity_ah) return;
     battery.capacity_ah = *capacity_ah;
     battery.intervals.capacity_ah.reset();  // that was of the other capacity
@@ -151,7 +151,7 @@ Uncertainty read_uncertainty(const TomlTable& mission, const compute::ComputeMod
                          "leave it out");
     }
     read.level_sd_percent = read_phases(*table, "level_sd_percent", largest_sd_percent);
-    read.duration_sd_s = read_phases(*table, "duration_sd_s", longest_phase_s);
+    read.duration_sd_s = read_phases(*table, "duration_sd_s", max_phase_s);
     read.capacity_sd_percent = optional_sd_percent(*table, "capacity_sd_percent");
     if (const auto components = table->optional_table("compute_sd_percent")) {
         for (std::size_t i = 0; i < compute.components.size(); ++i)
@@ -174,11 +174,11 @@ void require_schedule(const TomlTable& root, bool lacks_schedule) {
 }
 
 /// The mission with its schedule; or with what is fixed of it, the rest to be planned.
-AnyMission with_read_schedule(const TomlTable& root, const MissionReading& reading, MissionSetup setup) {
+MissionVariant with_read_schedule(const TomlTable& root, const MissionReadOptions& reading, MissionSetup setup) {
     auto adaptive = read_adaptive_policy(root);
     auto entries = read_schedule(root, setup.compute, setup.duration_s);
     const bool lacks_schedule = entries.empty() && !setup.compute.components.empty();
-    if (!reading.may_lack_schedule && !adaptive) require_schedule(root, lacks_schedule);
+    if (!reading.allow_unplanned && !adaptive) require_schedule(root, lacks_schedule);
     if (lacks_schedule || root.has("plan") || adaptive) {
         PlanningProblem problem{std::move(setup), {}, {}, adaptive};
         problem.plan = read_plan_settings(root, problem.compute);
@@ -199,9 +199,10 @@ AnyMission with_read_schedule(const TomlTable& root, const MissionReading& readi
 
 }  // namespace
 
-AnyMission parse_mission(std::string_view text, const std::filesystem::path& path, const MissionReading& reading) {
+MissionVariant parse_mission(std::string_view text, const std::filesystem::path& path,
+                             const MissionReadOptions& reading) {
     const auto root = parse_toml(text, path.string());
-    refuse_other_kinds(root, FileKind::mission);
+    require_kind(root, FileKind::mission);
     root.refuse_keys_except({"format",
                              "name",
                              "mechanical",
@@ -246,7 +247,7 @@ AnyMission parse_mission(std::string_view text, const std::filesystem::path& pat
     return with_read_schedule(root, reading, std::move(mission));
 }
 
-AnyMission read_mission(const std::filesystem::path& path, const MissionReading& reading) {
+MissionVariant read_mission(const std::filesystem::path& path, const MissionReadOptions& reading) {
     return parse_mission(read_file(path), path, reading);
 }
 

@@ -10,7 +10,7 @@ namespace flightwatt::mission {
 
 std::filesystem::path file_of(const TomlTable& table, std::string_view key) {
     auto path = std::filesystem::path(table.file()).parent_path() / table.string(key);
-    const auto error = reading_error(path);
+    const auto error = open_error(path);
     if (error == std::errc::no_such_file_or_directory) {
         throw InputError(table.where(key), fmt::format("{}: there is no file {}", key, path.string()),
                          "paths are relative to the mission file");

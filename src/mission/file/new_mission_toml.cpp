@@ -89,15 +89,15 @@ mechanical = {}
 /// As the battery says; else of LiPo cells, by the voltage of a full pack, or by the paper's constant one.
 int cells_of(const battery::Battery& pack) {
     constexpr double full_v = 4.2;
-    constexpr double usual_v = 3.7;
+    constexpr double nominal_v = 3.7;
     if (pack.cells) return *pack.cells;
     const double cells =
-        pack.thevenin ? pack.thevenin->open_circuit.voltage_v.back() / full_v : pack.voltage_v / usual_v;
+        pack.thevenin ? pack.thevenin->open_circuit.voltage_v.back() / full_v : pack.voltage_v / nominal_v;
     return std::max(1, static_cast<int>(std::lround(cells)));
 }
 
 std::string battery(const NewMission& mission) {
-    constexpr double least_v_per_cell = 3.0;
+    constexpr double min_v_per_cell = 3.0;
     const int cells = cells_of(mission.pack);
     return fmt::format(
         R"(# The battery, from `flightwatt battery`; or {{ voltage_v = 11.1, resistance_ohm = 0.05, capacity_ah = 5 }}.
@@ -115,7 +115,7 @@ reserve_soc_percent = 20
 
 )",
         toml_string(mission.battery), mission.pack.capacity_ah,
-        cells == 1 ? "" : fmt::format(", and this pack has about {}", cells), least_v_per_cell * cells);
+        cells == 1 ? "" : fmt::format(", and this pack has about {}", cells), min_v_per_cell * cells);
 }
 
 /// Of each condition what it is, and a value for models that follow another.
@@ -237,9 +237,9 @@ std::string plan(const NewMission& mission) {
          {"# components that may be switched off",
           fmt::format("may_be_off = [{}]", toml_string(mission.components.front().name))},
          {"# the values to choose from, instead of all that were profiled", "levels = " + levels_text(mission)}}};
-    constexpr std::size_t longest_line = 110;  // levels may be many: they are told above
+    constexpr std::size_t max_line = 110;  // levels may be many: they are told above
     for (const auto& [what, key] : keys) {
-        const bool fits = key.size() + std::string_view(what).size() < longest_line;
+        const bool fits = key.size() + std::string_view(what).size() < max_line;
         text += mission.is_planned ? fmt::format("{}\n#{}\n", what, key)
                                    : fmt::format("#{}{}{}\n", key, fits ? "    " : "", fits ? what : "");
     }

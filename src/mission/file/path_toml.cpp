@@ -12,7 +12,7 @@
 namespace flightwatt::mission {
 namespace {
 
-constexpr double fastest_wind_m_per_s = 100.0;
+constexpr double max_wind_m_per_s = 100.0;
 constexpr auto altitudes = between(-1e5, 1e5);
 constexpr auto times = more_than_up_to(0.0, 1e7);
 
@@ -21,8 +21,8 @@ Wind read_wind(const TomlTable& root) {
     const auto table = root.optional_table("wind");
     if (!table) return wind;
     table->refuse_keys_except({"speed_m_per_s", "from_deg", "speed_sd_m_per_s", "direction_sd_deg"});
-    wind.speed_m_per_s = number_in(between(0.0, fastest_wind_m_per_s), *table, "speed_m_per_s");
-    wind.speed_sd_m_per_s = number_in_or(between(0.0, fastest_wind_m_per_s), *table, "speed_sd_m_per_s", 0.0);
+    wind.speed_m_per_s = number_in(between(0.0, max_wind_m_per_s), *table, "speed_m_per_s");
+    wind.speed_sd_m_per_s = number_in_or(between(0.0, max_wind_m_per_s), *table, "speed_sd_m_per_s", 0.0);
     const bool is_calm = wind.speed_m_per_s == 0.0 && wind.speed_sd_m_per_s == 0.0;
     wind.from_deg = is_calm ? number_in_or(between(-360.0, 360.0), *table, "from_deg", 0.0)
                             : number_in(between(-360.0, 360.0), *table, "from_deg");
@@ -31,24 +31,24 @@ Wind read_wind(const TomlTable& root) {
 }
 
 ClimbRates read_rates(const TomlTable& table) {
-    const auto rates = more_than_up_to(0.0, fastest_m_per_s);
+    const auto rates = more_than_up_to(0.0, max_m_per_s);
     return {optional_number_in(rates, table, "climb_m_per_s"), optional_number_in(rates, table, "descent_m_per_s")};
 }
 
 /// The place that a table gives, in either coordinates.
 struct StatedPlace {
-    std::optional<LocalPlace> local;
-    std::optional<GeographicPlace> geographic;
+    std::optional<LocalPosition> local;
+    std::optional<GeodeticPosition> geographic;
 };
 
 StatedPlace read_place(const TomlTable& table) {
     StatedPlace place;
     const auto metres = between(-1e7, 1e7);
     if (table.has("east_m") || table.has("north_m"))
-        place.local = LocalPlace{number_in(metres, table, "east_m"), number_in(metres, table, "north_m")};
+        place.local = LocalPosition{number_in(metres, table, "east_m"), number_in(metres, table, "north_m")};
     if (table.has("latitude_deg") || table.has("longitude_deg")) {
-        place.geographic = GeographicPlace{number_in(between(-90.0, 90.0), table, "latitude_deg"),
-                                           number_in(between(-180.0, 180.0), table, "longitude_deg")};
+        place.geographic = GeodeticPosition{number_in(between(-90.0, 90.0), table, "latitude_deg"),
+                                            number_in(between(-180.0, 180.0), table, "longitude_deg")};
     }
     if (place.local && place.geographic)
         throw InputError(table.where(), "a place in metres and in degrees", "give one of them");
@@ -65,14 +65,14 @@ PathEntry read_leg(const TomlTable& leg, std::size_t number) {
     const auto place = read_place(leg);
     entry.place = place.local;
     entry.geographic = place.geographic;
-    entry.length_m = optional_number_in(more_than_up_to(0.0, longest_leg_m), leg, "length_m");
+    entry.length_m = optional_number_in(more_than_up_to(0.0, max_leg_m), leg, "length_m");
     entry.course_deg = optional_number_in(between(-360.0, 360.0), leg, "course_deg");
     entry.duration_s = optional_number_in(times, leg, "duration_s");
     entry.altitude_m = optional_number_in(altitudes, leg, "altitude_m");
-    entry.airspeed_m_per_s = optional_number_in(more_than_up_to(0.0, fastest_m_per_s), leg, "airspeed_m_per_s");
+    entry.airspeed_m_per_s = optional_number_in(more_than_up_to(0.0, max_m_per_s), leg, "airspeed_m_per_s");
     entry.rates = read_rates(leg);
     entry.circles = optional_number_in(more_than_up_to(0.0, largest_circle_count), leg, "circles");
-    entry.radius_m = optional_number_in(between(least_radius_m, most_radius_m), leg, "radius_m");
+    entry.radius_m = optional_number_in(between(min_radius_m, max_radius_m), leg, "radius_m");
     entry.hold_s = optional_number_in(times, leg, "hold_s");
     if (const auto turn = leg.optional_string("turn")) {
         if (*turn != "left" && *turn != "right")
@@ -87,7 +87,7 @@ PathEntry read_leg(const TomlTable& leg, std::size_t number) {
 PathDefaults read_defaults(const TomlTable& path) {
     PathDefaults defaults;
     defaults.where = path.where();
-    defaults.airspeed_m_per_s = number_in(more_than_up_to(0.0, fastest_m_per_s), path, "airspeed_m_per_s");
+    defaults.airspeed_m_per_s = number_in(more_than_up_to(0.0, max_m_per_s), path, "airspeed_m_per_s");
     defaults.altitude_m = optional_number_in(altitudes, path, "altitude_m");
     defaults.rates = read_rates(path);
     defaults.return_to_start = path.optional_boolean("return_to_start").value_or(false);
@@ -165,7 +165,7 @@ mechanical::PhysicalModel power_model(const TomlTable& path, const MissionSetup&
                                      mission.mechanical->name),
                          "fly at one altitude, or " + fit);
     }
-    return model_of_law(*law);
+    return physical_model_from_drag(*law);
 }
 
 /// The entry whose circles may be repeated: the last that has some.
@@ -174,25 +174,25 @@ PathEntry* repeated_circles(std::vector<PathEntry>& entries) {
     return last == entries.rend() ? nullptr : &*last;
 }
 
-FlightPath read_path(const TomlTable& table, const MissionReading& reading) {
+FlightPath read_path(const TomlTable& table, const MissionReadOptions& reading) {
     table.refuse_keys_except({"airspeed_m_per_s", "altitude_m", "climb_m_per_s", "descent_m_per_s", "start",
                               "return_to_start", "waypoints", "flight_plan", "waypoint_order", "leg"});
     const auto defaults = read_defaults(table);
     auto entries = read_entries(table);
     if (reading.circles) {
         auto* repeated = repeated_circles(entries);
-        if (repeated == nullptr) throw NoAnswerError("the path has no circles");
+        if (repeated == nullptr) throw NoResultError("the path has no circles");
         repeated->circles = *reading.circles;
     }
     auto path = path_of(entries, defaults);
-    if (reading.return_after_m) path = there_and_back(path, *reading.return_after_m, defaults.rates);
+    if (reading.return_after_m) path = out_and_back(path, *reading.return_after_m, defaults.rates);
     return path;
 }
 
 /// The level of the cruise and how flights differ about it.
-mechanical::ConstantPower level_of(const mechanical::PhysicalModel& model, const FlownPath& flown, double mean_w) {
+mechanical::ConstantPower level_of(const mechanical::PhysicalModel& model, const PathTrajectory& flown, double mean_w) {
     mechanical::ConstantPower level{mean_w, std::nullopt, 0.0};
-    if (const auto uncertainty = uncertainty_of(model, mean_terms(model, flown), flown.duration_s)) {
+    if (const auto uncertainty = prediction_uncertainty(model, mean_terms(model, flown), flown.duration_s)) {
         level.sd_w = uncertainty->sd_w;
         level.degrees_of_freedom = uncertainty->degrees_of_freedom;
     }
@@ -201,25 +201,25 @@ mechanical::ConstantPower level_of(const mechanical::PhysicalModel& model, const
 
 }  // namespace
 
-void read_cruise_path(const TomlTable& mission_table, const MissionReading& reading, MissionSetup& mission) {
+void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& reading, MissionSetup& mission) {
     const auto table = mission_table.optional_table("path");
     if (!table) {
         if (mission_table.has("wind"))
             throw InputError(mission_table.where("wind"), "[wind] belongs to a [path]", "leave it out, or add one");
         return;
     }
-    if (reading.cruise_s) throw NoAnswerError("the duration of the cruise follows from its path");
+    if (reading.cruise_s) throw NoResultError("the duration of the cruise follows from its path");
     refuse_what_the_path_decides(mission_table);
-    PathPlan plan;
+    PlannedPath plan;
     plan.path = read_path(*table, reading);
     plan.wind = read_wind(mission_table);
     const bool is_level =
         std::ranges::all_of(plan.path.elements, [](const auto& element) { return element.altitude_change_m == 0.0; });
     plan.power = power_model(*table, mission, is_level);
-    const auto flown = fly_path(plan.path, plan.wind);
+    const auto flown = compute_trajectory(plan.path, plan.wind);
     for (auto& warning : path_warnings(plan, flown)) mission.notes.push_back(std::move(warning));
-    const auto shared = std::make_shared<const PathPlan>(std::move(plan));
-    mission.cruise_path = fly_cruise(shared, shared->wind, ForbiddenLeg::refuse);
+    const auto shared = std::make_shared<const PlannedPath>(std::move(plan));
+    mission.cruise_path = compute_cruise(shared, shared->wind, InfeasibleLegPolicy::refuse);
     mission.cruise_level = level_of(shared->power, flown, mean_power_w(*mission.cruise_path));
     mission.duration_s[Phase::cruise] = duration_s(*mission.cruise_path);
     mission.duration_is_stated[Phase::cruise] = true;

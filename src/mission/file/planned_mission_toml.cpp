@@ -1,6 +1,6 @@
 #include "base/toml_reader.h"
 #include "base/toml_text.h"
-#include "mission/file/kept_text.h"
+#include "mission/file/text_editing.h"
 #include "mission/file/toml_keys.h"
 #include "mission/mission_file.h"
 
@@ -72,7 +72,7 @@ std::string toml_inline_table(const std::vector<std::string>& pairs) {
 PlannedMissionText planned_mission_toml(std::string_view text, const std::filesystem::path& path,
                                         const compute::ComputeModel& compute, const Schedule& schedule,
                                         const std::filesystem::path& folder) {
-    const auto plain = plain_text(text);
+    const auto plain = normalise_text(text);
     const auto read = toml::parse(plain, path.string());
     auto root = read;
     root.insert_or_assign("format", format_version);
@@ -89,7 +89,7 @@ PlannedMissionText planned_mission_toml(std::string_view text, const std::filesy
     if (auto* cruise = root.get_as<toml::table>("path"))
         for (const std::string_view key : {"waypoints", "flight_plan"}) move_path(*cruise, key, from, to);
     const auto schedule_below = schedule_text(compute, schedule);
-    if (const auto kept = kept_text(plain, read, root)) return {*kept + schedule_below, false};
+    if (const auto kept = edit_keeping_comments(plain, read, root)) return {*kept + schedule_below, false};
     std::ostringstream out;
     out << toml::toml_formatter{root, toml::toml_formatter::default_flags & ~toml::format_flags::indentation};
     return {out.str() + "\n" + schedule_below, plain.find('#') != std::string::npos};

@@ -39,13 +39,13 @@ UtilityShape read_shape(const TomlTable& table) {
                      R"(it is "linear", "sqrt", "log" or "points")");
 }
 
-void require_defined(const TomlTable& table, UtilityShape shape, double least_qos) {
-    const bool defined = shape == UtilityShape::square_root ? least_qos >= 0.0
-                         : shape == UtilityShape::logarithm ? least_qos > -1.0
+void require_defined(const TomlTable& table, UtilityShape shape, double min_qos) {
+    const bool defined = shape == UtilityShape::square_root ? min_qos >= 0.0
+                         : shape == UtilityShape::logarithm ? min_qos > -1.0
                                                             : true;
     if (defined) return;
     throw InputError(table.where("shape"),
-                     fmt::format("this shape has no value at {}, where the profile begins", least_qos),
+                     fmt::format("this shape has no value at {}, where the profile begins", min_qos),
                      R"(use "linear" or "points")");
 }
 

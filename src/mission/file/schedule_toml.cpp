@@ -198,7 +198,7 @@ Phase read_flown_phase(const TomlTable& entry, const PerPhase<double>& duration_
 }
 
 double read_time_s(const TomlTable& entry, std::string_view key, double duration_s) {
-    return entry.is_number(key) ? entry.number(key) : units::part_of(duration_s, percent_in(entry, key));
+    return entry.is_number(key) ? entry.number(key) : units::amount_from_percent(duration_s, percent_in(entry, key));
 }
 
 std::vector<ScheduleEntry> read_schedule(const TomlTable& mission, const compute::ComputeModel& compute,

@@ -12,7 +12,7 @@ namespace flightwatt::mission {
 namespace {
 
 constexpr double pieces_a_turn = 12.0;
-constexpr double most_pieces = 240.0;  // of one element: longer ones have longer pieces, with exact means
+constexpr double max_pieces = 240.0;  // of one element: longer ones have longer pieces, with exact means
 
 double rad_of(double deg) { return deg / units::degree_per_rad; }
 
@@ -58,17 +58,18 @@ WindVelocity velocity_of(const Wind& wind) {
     return {-wind.speed_m_per_s * std::sin(from_rad), -wind.speed_m_per_s * std::cos(from_rad)};
 }
 
-std::optional<Drift> drift_of(double horizontal_m_per_s, double course_rad, const WindVelocity& wind) {
+std::optional<WindTriangle> solve_wind_triangle(double horizontal_m_per_s, double course_rad,
+                                                const WindVelocity& wind) {
     const auto [along, across] = wind_along(course_rad, wind);
     const double squared = horizontal_m_per_s * horizontal_m_per_s - across * across;
     if (!(squared > 0.0)) return std::nullopt;
     const double headway = std::sqrt(squared);
     if (!(headway + along > 0.0)) return std::nullopt;
-    return Drift{headway + along, headway / horizontal_m_per_s};
+    return WindTriangle{headway + along, headway / horizontal_m_per_s};
 }
 
 std::optional<double> ground_speed_m_per_s(double airspeed_m_per_s, double course_deg, const Wind& wind) {
-    const auto drift = drift_of(airspeed_m_per_s, rad_of(course_deg), velocity_of(wind));
+    const auto drift = solve_wind_triangle(airspeed_m_per_s, rad_of(course_deg), velocity_of(wind));
     return drift ? std::optional(drift->ground_speed_m_per_s) : std::nullopt;
 }
 
@@ -81,7 +82,7 @@ GroundTrack::GroundTrack(const Circles& circles, const Wind& wind)
       curvature_rad_m_((circles.to_right ? 1.0 : -1.0) / circles.radius_m),
       wind_(velocity_of(wind)) {}
 
-double GroundTrack::least_horizontal_m_per_s() const {
+double GroundTrack::min_horizontal_m_per_s() const {
     const double wind_m_per_s = std::hypot(wind_.east_m_per_s, wind_.north_m_per_s);
     if (curvature_rad_m_ != 0.0) return wind_m_per_s;
     const auto [along, across] = wind_along(course_rad_, wind_);
@@ -106,9 +107,10 @@ double GroundTrack::load_factor_squared(double from_m, double to_m, double horiz
     return 1.0 + curvature_per_g * curvature_per_g * speed_fourth_m4_per_s3 / time_s;
 }
 
-Drift GroundTrack::steady_drift(double horizontal_m_per_s) const {
+WindTriangle GroundTrack::steady_drift(double horizontal_m_per_s) const {
     // Above the least airspeed there is one, but for rounding.
-    return drift_of(horizontal_m_per_s, course_rad_, wind_).value_or(Drift{1e-12 * horizontal_m_per_s, 1e-12});
+    return solve_wind_triangle(horizontal_m_per_s, course_rad_, wind_)
+        .value_or(WindTriangle{1e-12 * horizontal_m_per_s, 1e-12});
 }
 
 GroundTrack::Turned GroundTrack::turned(double from_m, double to_m, double horizontal_m_per_s) const {
@@ -134,17 +136,18 @@ GroundTrack::Turned GroundTrack::turned_until(double along_m, double horizontal_
     return {(headway - speed * across) / difference / curvature_rad_m_, speed * speed * fourth / curvature_rad_m_};
 }
 
-std::size_t GroundTrack::pieces_a_period() const {
-    const bool is_part_of_a_turn = !is_steady() && piece_m() * std::abs(curvature_rad_m_) < units::rad_per_turn / 2.0;
+std::size_t GroundTrack::segments_per_turn() const {
+    const bool is_part_of_a_turn =
+        !is_steady() && segment_length_m() * std::abs(curvature_rad_m_) < units::rad_per_turn / 2.0;
     return is_part_of_a_turn ? static_cast<std::size_t>(pieces_a_turn) : 1;
 }
 
-double GroundTrack::piece_m() const {
+double GroundTrack::segment_length_m() const {
     if (is_steady()) return length_m_;
     const double turn_m = units::rad_per_turn / std::abs(curvature_rad_m_);
     const double part_m = turn_m / pieces_a_turn;
-    if (length_m_ <= most_pieces * part_m) return part_m;
-    return std::ceil(length_m_ / turn_m / most_pieces) * turn_m;
+    if (length_m_ <= max_pieces * part_m) return part_m;
+    return std::ceil(length_m_ / turn_m / max_pieces) * turn_m;
 }
 
 }  // namespace flightwatt::mission

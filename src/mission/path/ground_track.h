@@ -14,13 +14,13 @@ struct WindVelocity {
 WindVelocity velocity_of(const Wind& wind);
 
 /// The wind triangle of one course.
-struct Drift {
+struct WindTriangle {
     double ground_speed_m_per_s = 0.0;
     double cosine = 1.0;  ///< of the angle between heading and course
 };
 
 /// `horizontal_m_per_s`: the airspeed's part along the ground. None as ground_speed_m_per_s.
-std::optional<Drift> drift_of(double horizontal_m_per_s, double course_rad, const WindVelocity& wind);
+std::optional<WindTriangle> solve_wind_triangle(double horizontal_m_per_s, double course_rad, const WindVelocity& wind);
 
 /// A leg or circles as lines over ground, measured in metres from their start.
 class GroundTrack {
@@ -31,7 +31,7 @@ class GroundTrack {
     double length_m() const { return length_m_; }
 
     /// All of it can be flown with any horizontal airspeed above this one.
-    double least_horizontal_m_per_s() const;
+    double min_horizontal_m_per_s() const;
 
     /// How long it takes from one place of it to another, at a horizontal airspeed above the least.
     double time_s(double from_m, double to_m, double horizontal_m_per_s) const;
@@ -40,16 +40,16 @@ class GroundTrack {
     double load_factor_squared(double from_m, double to_m, double horizontal_m_per_s) const;
 
     /// The greatest length over which the motion counts as one: all of it where nothing turns or no wind blows.
-    double piece_m() const;
+    double segment_length_m() const;
 
     /// After so many whole pieces the motion repeats itself.
-    std::size_t pieces_a_period() const;
+    std::size_t segments_per_turn() const;
 
   private:
     bool is_steady() const {
         return curvature_rad_m_ == 0.0 || (wind_.east_m_per_s == 0.0 && wind_.north_m_per_s == 0.0);
     }
-    Drift steady_drift(double horizontal_m_per_s) const;
+    WindTriangle steady_drift(double horizontal_m_per_s) const;
 
     /// A part of a turn in wind: its time, and the integral over that of (ground speed^2 / cos(drift))^2.
     struct Turned {

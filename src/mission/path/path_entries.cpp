@@ -10,13 +10,13 @@
 namespace flightwatt::mission {
 namespace {
 
-constexpr double furthest_m = 300e3;  // of a place from the start: beyond, coordinates were mistaken
+constexpr double max_m = 300e3;  // of a place from the start: beyond, coordinates were mistaken
 constexpr double same_place_m = 1e-6;
 
 using Vector3 = std::array<double, 3>;
 
 /// On the surface of the ellipsoid, earth-centred.
-Vector3 earth_centred_m(const GeographicPlace& place) {
+Vector3 earth_centred_m(const GeodeticPosition& place) {
     constexpr double equatorial_radius_m = 6378137.0;
     constexpr double flattening = 1.0 / 298.257223563;
     constexpr double eccentricity_squared = flattening * (2.0 - flattening);
@@ -31,7 +31,7 @@ Vector3 earth_centred_m(const GeographicPlace& place) {
 /// Follows the aircraft from entry to entry.
 class PathBuilder {
   public:
-    explicit PathBuilder(const PathDefaults& defaults, const std::optional<GeographicPlace>& origin)
+    explicit PathBuilder(const PathDefaults& defaults, const std::optional<GeodeticPosition>& origin)
         : defaults_(defaults), origin_(origin), altitude_m_(defaults.altitude_m) {
         if (defaults.start) place_ = *defaults.start;
         start_ = place_;
@@ -61,7 +61,7 @@ class PathBuilder {
             change_m_ = altitude_change_m(home);
             fly_to(home, start_);
             if (!path_.elements.empty() && path_.elements.back().name == home.name)
-                path_.elements.back().is_way_home = true;
+                path_.elements.back().is_return_leg = true;
             if (change_m_ != 0.0) change_height(home);
         }
         return std::move(path_);
@@ -113,23 +113,23 @@ class PathBuilder {
         return place && std::hypot(place->east_m - place_.east_m, place->north_m - place_.north_m) <= same_place_m;
     }
 
-    std::optional<LocalPlace> place_of(const PathEntry& entry) const {
+    std::optional<LocalPosition> place_of(const PathEntry& entry) const {
         if (entry.place && origin_)
             refuse(entry, "is in metres, on a path that has latitudes", "give all places in the same coordinates");
         if (entry.geographic && !origin_)
             refuse(entry, "has a latitude, on a path in metres", "give all places in the same coordinates");
         if (!entry.place && !entry.geographic) return std::nullopt;
-        const auto place = entry.place ? *entry.place : local_place(*entry.geographic, *origin_);
+        const auto place = entry.place ? *entry.place : to_local(*entry.geographic, *origin_);
         const double distance_m = std::hypot(place.east_m - start_.east_m, place.north_m - start_.north_m);
-        if (!(distance_m < furthest_m)) {
+        if (!(distance_m < max_m)) {
             refuse(entry, fmt::format("is {:.4g} km from the start", distance_m / 1000.0),
                    fmt::format("expected less than {:.0f} km: are latitude and longitude the right way round?",
-                               furthest_m / 1000.0));
+                               max_m / 1000.0));
         }
         return place;
     }
 
-    void fly_to(const PathEntry& entry, const LocalPlace& there) {
+    void fly_to(const PathEntry& entry, const LocalPosition& there) {
         const double east_m = there.east_m - place_.east_m;
         const double north_m = there.north_m - place_.north_m;
         const double length_m = std::hypot(east_m, north_m);
@@ -152,7 +152,7 @@ class PathBuilder {
     }
 
     /// Straight towards the centre, or from it, to the edge.
-    void fly_to_circle(const PathEntry& entry, const LocalPlace& centre) {
+    void fly_to_circle(const PathEntry& entry, const LocalPosition& centre) {
         const double east_m = place_.east_m - centre.east_m;
         const double north_m = place_.north_m - centre.north_m;
         const double distance_m = std::hypot(east_m, north_m);
@@ -166,12 +166,12 @@ class PathBuilder {
         course_deg_ = std::fmod(bearing_deg + (entry.to_right ? 90.0 : 270.0) + 360.0, 360.0);
     }
 
-    void circle(const PathEntry& entry, const std::optional<LocalPlace>& centre) {
+    void circle(const PathEntry& entry, const std::optional<LocalPosition>& centre) {
         const double side = entry.to_right ? 1.0 : -1.0;
         const double radius_m = *entry.radius_m;
         const double start_rad = course_deg_ / units::degree_per_rad;
-        const auto middle = centre.value_or(LocalPlace{place_.east_m + side * radius_m * std::cos(start_rad),
-                                                       place_.north_m - side * radius_m * std::sin(start_rad)});
+        const auto middle = centre.value_or(LocalPosition{place_.east_m + side * radius_m * std::cos(start_rad),
+                                                          place_.north_m - side * radius_m * std::sin(start_rad)});
         add_element(entry, Circles{radius_m, *entry.circles, entry.to_right, course_deg_});
         const double turned_deg = 360.0 * std::fmod(*entry.circles, 1.0);
         course_deg_ = std::fmod(course_deg_ + side * turned_deg + 360.0, 360.0);
@@ -212,17 +212,17 @@ class PathBuilder {
     }
 
     const PathDefaults& defaults_;
-    std::optional<GeographicPlace> origin_;
+    std::optional<GeodeticPosition> origin_;
     std::optional<double> altitude_m_;
-    LocalPlace start_;
-    LocalPlace place_;
+    LocalPosition start_;
+    LocalPosition place_;
     double course_deg_ = 0.0;
     double change_m_ = 0.0;  ///< of the height, that the entry's elements have not flown yet
     FlightPath path_;
 };
 
 /// Of the plane in which a geographic path is flown.
-std::optional<GeographicPlace> origin_of(const std::vector<PathEntry>& entries, const PathDefaults& defaults) {
+std::optional<GeodeticPosition> origin_of(const std::vector<PathEntry>& entries, const PathDefaults& defaults) {
     if (defaults.geographic_start || defaults.start) return defaults.geographic_start;
     for (const auto& entry : entries) {
         if (entry.geographic) return entry.geographic;
@@ -233,7 +233,7 @@ std::optional<GeographicPlace> origin_of(const std::vector<PathEntry>& entries, 
 
 }  // namespace
 
-LocalPlace local_place(const GeographicPlace& place, const GeographicPlace& origin) {
+LocalPosition to_local(const GeodeticPosition& place, const GeodeticPosition& origin) {
     const auto from = earth_centred_m(origin);
     const auto to = earth_centred_m(place);
     const double x = to[0] - from[0];

@@ -9,33 +9,33 @@
 namespace flightwatt::mission {
 
 // What the numbers of a path may be: beyond, a unit was mistaken.
-inline constexpr double fastest_m_per_s = 300.0;
+inline constexpr double max_m_per_s = 300.0;
 inline constexpr double largest_circle_count = 1e4;
-inline constexpr double least_radius_m = 1.0;
-inline constexpr double most_radius_m = 1e5;
-inline constexpr double longest_leg_m = 1e6;
+inline constexpr double min_radius_m = 1.0;
+inline constexpr double max_radius_m = 1e5;
+inline constexpr double max_leg_m = 1e6;
 
 /// From an origin [m], towards east and north.
-struct LocalPlace {
+struct LocalPosition {
     double east_m = 0.0;
     double north_m = 0.0;
 };
 
 /// On the WGS84 ellipsoid.
-struct GeographicPlace {
+struct GeodeticPosition {
     double latitude_deg = 0.0;
     double longitude_deg = 0.0;
 };
 
 /// The place in the plane that touches the ellipsoid at `origin`: exact to 1e-6 of distances within 10 km of it.
-LocalPlace local_place(const GeographicPlace& place, const GeographicPlace& origin);
+LocalPosition to_local(const GeodeticPosition& place, const GeodeticPosition& origin);
 
 /// One entry of a path as it was written: where to fly, and what to do there. What is not stated is as before.
 struct PathEntry {
     std::string name;  ///< "leg 3"
     Location where;
-    std::optional<LocalPlace> place;
-    std::optional<GeographicPlace> geographic;
+    std::optional<LocalPosition> place;
+    std::optional<GeodeticPosition> geographic;
     std::optional<double> length_m;  ///< with course_deg, instead of a place
     std::optional<double> course_deg;
     std::optional<double> duration_s;  ///< the way there took so long: no wind triangle
@@ -53,15 +53,16 @@ struct PathDefaults {
     double airspeed_m_per_s = 0.0;
     std::optional<double> altitude_m;  ///< at the start
     ClimbRates rates;
-    std::optional<LocalPlace> start;  ///< none: the origin, or the first entry if that is geographic
-    std::optional<GeographicPlace> geographic_start;
+    std::optional<LocalPosition> start;  ///< none: the origin, or the first entry if that is geographic
+    std::optional<GeodeticPosition> geographic_start;
     bool return_to_start = false;
     Location where;
 };
 
-/// The path that the entries make: to a place a leg; to circles around a place the leg to their edge; then circles, then
-/// the hold. Throws InputError, placed at the entry, for a place in other coordinates than the path's, one that is 300 km
-/// and more from the start, an altitude where the path has none at its start, and an entry that is nothing or two things.
+/// The path that the entries make: to a place a leg; to circles around a place the leg to their edge; then circles,
+/// then the hold. Throws InputError, placed at the entry, for a place in other coordinates than the path's, one that is
+/// 300 km and more from the start, an altitude where the path has none at its start, and an entry that is nothing or
+/// two things.
 FlightPath path_of(const std::vector<PathEntry>& entries, const PathDefaults& defaults);
 
 }  // namespace flightwatt::mission

@@ -24,16 +24,16 @@ void set_value(PathEntry& entry, std::string_view name, double value, const Loca
         return value;
     };
     if (name == "altitude_m") entry.altitude_m = checked(between(-1e5, 1e5));
-    if (name == "airspeed_m_per_s") entry.airspeed_m_per_s = checked(more_than_up_to(0.0, fastest_m_per_s));
+    if (name == "airspeed_m_per_s") entry.airspeed_m_per_s = checked(more_than_up_to(0.0, max_m_per_s));
     if (name == "duration_s") entry.duration_s = checked(more_than_up_to(0.0, 1e7));
     if (name == "hold_s") entry.hold_s = checked(more_than_up_to(0.0, 1e7));
     if (name == "circles") entry.circles = checked(more_than_up_to(0.0, largest_circle_count));
-    if (name == "radius_m") entry.radius_m = checked(between(least_radius_m, most_radius_m));
+    if (name == "radius_m") entry.radius_m = checked(between(min_radius_m, max_radius_m));
 }
 
 constexpr std::array waypoint_values{"altitude_m", "airspeed_m_per_s", "duration_s", "hold_s", "circles", "radius_m"};
 
-GeographicPlace geographic_place(double latitude_deg, double longitude_deg, const Location& where) {
+GeodeticPosition geographic_place(double latitude_deg, double longitude_deg, const Location& where) {
     require_in(between(-90.0, 90.0), latitude_deg, "latitude_deg", where);
     require_in(between(-180.0, 180.0), longitude_deg, "longitude_deg", where);
     return {latitude_deg, longitude_deg};
@@ -198,11 +198,10 @@ class FlightPlanReader {
         entry.name = fmt::format("waypoint {}", name);
         entry.where = where(found);
         if (has(found, "x") && has(found, "y")) {
-            entry.place = LocalPlace{number(found, "x"), number(found, "y")};
+            entry.place = LocalPosition{number(found, "x"), number(found, "y")};
         } else if (has(found, "lat") && has(found, "lon")) {
             const auto origin = geographic_place(number(plan_, "lat0"), number(plan_, "lon0"), where(plan_));
-            entry.place =
-                local_place(geographic_place(number(found, "lat"), number(found, "lon"), entry.where), origin);
+            entry.place = to_local(geographic_place(number(found, "lat"), number(found, "lon"), entry.where), origin);
         } else {
             throw InputError(entry.where, entry.name + " has no place", "expected x and y, or lat and lon");
         }
@@ -256,7 +255,7 @@ std::vector<PathEntry> parse_waypoint_csv(std::string_view text, const std::stri
         if (places.is_geographic)
             entry.geographic = geographic_place(first, second, entry.where);
         else
-            entry.place = LocalPlace{first, second};
+            entry.place = LocalPosition{first, second};
         for (const auto* name : waypoint_values) {
             const auto column = std::ranges::find(table.columns, name) - table.columns.begin();
             const auto index = static_cast<std::size_t>(column);

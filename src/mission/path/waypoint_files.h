@@ -9,8 +9,8 @@
 
 namespace flightwatt::mission {
 
-/// The waypoints of a file, in its order: GeoJSON by its ending (.geojson, .json), else CSV (docs/formats.md, Waypoints).
-/// Throws InputError, placed in the file.
+/// The waypoints of a file, in its order: GeoJSON by its ending (.geojson, .json), else CSV (docs/formats.md,
+/// Waypoints). Throws InputError, placed in the file.
 std::vector<PathEntry> read_waypoints(const std::filesystem::path& path);
 
 /// The same from text.

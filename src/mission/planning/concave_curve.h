@@ -20,8 +20,8 @@ ConcaveCurve concave_hull(std::vector<CurvePoint> points);
 
 double value_at(const ConcaveCurve& curve, double x);
 
-/// What is known of a rising map over a part of its axis: where the part's end is mapped to, and that the map rises by at
-/// least `growth` for 1.
+/// What is known of a rising map over a part of its axis: where the part's end is mapped to, and that the map rises by
+/// at least `growth` for 1.
 struct MappedCell {
     double start = 0.0;
     double end = 0.0;

@@ -14,9 +14,9 @@ namespace flightwatt::mission {
 namespace {
 
 constexpr double wanted_error_percent = 1e-8;
-constexpr std::size_t fewest_cells = 16;
+constexpr std::size_t min_cells = 16;
 constexpr std::size_t first_cells_at_most = 4096;
-constexpr std::size_t most_cells = 65536;
+constexpr std::size_t max_cells = 65536;
 
 /// The load of one configuration in one phase.
 struct PhaseLoad {
@@ -40,13 +40,13 @@ struct PhaseLoad {
     }
     double percent_per_s(double time_s) const {
         const double current_a = internal_current_a(battery, std::min(power_w(time_s), power_limit_w(battery)));
-        return units::percent_of(current_a, units::coulomb_from_ah(battery.capacity_ah));
+        return units::percentage(current_a, units::coulomb_from_ah(battery.capacity_ah));
     }
     /// The depletion from one time to another.
     double percent(double start_s, double end_s) const {
         if (battery.resistance_ohm == 0.0) {
             const double charge_as = (energy_j(end_s) - energy_j(start_s)) / battery.voltage_v;
-            return units::percent_of(charge_as, units::coulomb_from_ah(battery.capacity_ah));
+            return units::percentage(charge_as, units::coulomb_from_ah(battery.capacity_ah));
         }
         const auto rate = [&](double time_s) { return percent_per_s(time_s); };
         return boost::math::quadrature::gauss<double, 7>::integrate(rate, start_s, end_s);
@@ -113,9 +113,9 @@ PhaseDepletion tabulate(const PhaseLoad& load, double duration_s, std::size_t ce
 
 /// The table with as many cells as the wanted error takes.
 PhaseDepletion tabulate(const PhaseLoad& load, double duration_s) {
-    auto cells = std::clamp(static_cast<std::size_t>(std::ceil(duration_s)), fewest_cells, first_cells_at_most);
+    auto cells = std::clamp(static_cast<std::size_t>(std::ceil(duration_s)), min_cells, first_cells_at_most);
     auto depletion = tabulate(load, duration_s, cells);
-    while (depletion.error_percent > wanted_error_percent && cells < most_cells && depletion.deliverable) {
+    while (depletion.error_percent > wanted_error_percent && cells < max_cells && depletion.deliverable) {
         cells *= 2;
         depletion = tabulate(load, duration_s, cells);
     }
@@ -123,7 +123,7 @@ PhaseDepletion tabulate(const PhaseLoad& load, double duration_s) {
 }
 
 /// A table for each piece of a path.
-PhaseDepletion tabulate(PhaseLoad load, const PowerPieces& pieces) {
+PhaseDepletion tabulate(PhaseLoad load, const PiecewisePower& pieces) {
     PhaseDepletion depletion;
     depletion.duration_s = pieces.back().end_s;
     double depleted = 0.0;
@@ -173,7 +173,7 @@ DepletionTable make_depletion_table(const MissionSetup& mission, std::vector<com
     table.initial_soc_percent = mission.initial_soc_percent;
     table.configurations = std::move(configurations);
     table.depletions.resize(table.configurations.size());
-    const auto flown = load_of(mission);
+    const auto flown = make_mission_load(mission);
     for (const auto phase : all_phases) {
         if (mission.duration_s[phase] == 0.0) continue;
         for (std::size_t c = 0; c < table.configurations.size(); ++c) {
@@ -196,8 +196,8 @@ std::optional<std::size_t> index_of(const DepletionTable& table, const compute::
     return static_cast<std::size_t>(found - known.begin());
 }
 
-std::vector<TabledSegment> tabled(const Schedule& schedule, const DepletionTable& table) {
-    std::vector<TabledSegment> result;
+std::vector<IndexedSegment> to_indexed(const Schedule& schedule, const DepletionTable& table) {
+    std::vector<IndexedSegment> result;
     result.reserve(schedule.size());
     for (const auto& segment : schedule) {
         const auto configuration = index_of(table, segment.run);
@@ -207,13 +207,13 @@ std::vector<TabledSegment> tabled(const Schedule& schedule, const DepletionTable
     return result;
 }
 
-double soc_depletion_percent(const DepletionTable& table, const TabledSegment& segment) {
+double soc_depletion_percent(const DepletionTable& table, const IndexedSegment& segment) {
     const auto& depletion = table.depletions[segment.configuration][segment.phase];
     if (is_undeliverable(depletion, segment.start_s, segment.end_s)) return std::numeric_limits<double>::infinity();
     return depleted_percent(depletion, segment.end_s) - depleted_percent(depletion, segment.start_s);
 }
 
-std::optional<double> soc_after(const DepletionTable& table, std::span<const TabledSegment> schedule) {
+std::optional<double> soc_after_schedule(const DepletionTable& table, std::span<const IndexedSegment> schedule) {
     if (table.charges) return std::nullopt;
     double soc_percent = table.initial_soc_percent;
     for (const auto& segment : schedule) soc_percent -= soc_depletion_percent(table, segment);

@@ -45,7 +45,7 @@ struct DepletionTable {
 };
 
 /// A part of a phase in which one of the table's configurations runs.
-struct TabledSegment : PhaseSegment {
+struct IndexedSegment : PhaseSegment {
     std::size_t configuration = 0;
 };
 
@@ -59,13 +59,13 @@ DepletionTable make_depletion_table(const MissionSetup& mission, std::vector<com
 std::optional<std::size_t> index_of(const DepletionTable& table, const compute::Configuration& run);
 
 /// A schedule in terms of a table. Throws std::invalid_argument for a configuration that it does not hold.
-std::vector<TabledSegment> tabled(const Schedule& schedule, const DepletionTable& table);
+std::vector<IndexedSegment> to_indexed(const Schedule& schedule, const DepletionTable& table);
 
 /// The depletion by a segment [points]; infinite if the battery cannot deliver its power.
-double soc_depletion_percent(const DepletionTable& table, const TabledSegment& segment);
+double soc_depletion_percent(const DepletionTable& table, const IndexedSegment& segment);
 
 /// State of charge after a whole schedule, as if the battery went on below empty. None where the table does not hold:
 /// it charges, or cannot be delivered.
-std::optional<double> soc_after(const DepletionTable& table, std::span<const TabledSegment> schedule);
+std::optional<double> soc_after_schedule(const DepletionTable& table, std::span<const IndexedSegment> schedule);
 
 }  // namespace flightwatt::mission

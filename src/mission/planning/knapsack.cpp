@@ -38,8 +38,8 @@ double slack(double budget) { return 1e-12 * std::max(1.0, std::abs(budget)); }
 /// One pass from the first slot to the last with at most so many labels at a time.
 class LabelPass {
   public:
-    LabelPass(const Search& search, std::size_t most_labels, double utility_gap)
-        : search_(search), most_labels_(most_labels), utility_gap_(utility_gap) {
+    LabelPass(const Search& search, std::size_t max_labels, double utility_gap)
+        : search_(search), max_labels_(max_labels), utility_gap_(utility_gap) {
         // Half of the gap for what is dropped as good as dominated, in two prunings a slot; half for bounds.
         as_good_ = utility_gap / 2.0 / static_cast<double>(2 * search.graph.slots + 2);
         dropped_bound_ = search.best.sum.utility;
@@ -111,22 +111,22 @@ class LabelPass {
     /// Leaves labels that can still win, none as good as dominated by another. `utility_to_go` and `minus_cost`
     /// are what the rest can bring by slope and what it costs at least.
     void prune(std::vector<Label>& labels, double utility_to_go, double minus_cost) {
-        const double most_cost = search_.budget + minus_cost + slack(search_.budget);
+        const double max_cost = search_.budget + minus_cost + slack(search_.budget);
         std::erase_if(labels, [&](const Label& label) {
-            if (!(label.sum.cost <= most_cost)) return true;
+            if (!(label.sum.cost <= max_cost)) return true;
             return drop_if(label, utility_to_go, search_.best.sum.utility + utility_gap_ / 2.0);
         });
         std::ranges::sort(labels, [](const Label& a, const Label& b) {
             return a.sum.cost != b.sum.cost ? a.sum.cost < b.sum.cost : a.sum.utility > b.sum.utility;
         });
-        double most_utility = -std::numeric_limits<double>::infinity();
+        double max_utility = -std::numeric_limits<double>::infinity();
         std::erase_if(labels, [&](const Label& label) {
-            if (label.sum.utility <= most_utility + as_good_) return true;
-            most_utility = label.sum.utility;
+            if (label.sum.utility <= max_utility + as_good_) return true;
+            max_utility = label.sum.utility;
             return false;
         });
-        if (labels.size() <= most_labels_) return;
-        const auto last = labels.begin() + static_cast<std::ptrdiff_t>(most_labels_);
+        if (labels.size() <= max_labels_) return;
+        const auto last = labels.begin() + static_cast<std::ptrdiff_t>(max_labels_);
         std::nth_element(labels.begin(), last, labels.end(), [&](const Label& a, const Label& b) {
             return bound_of(a, utility_to_go) > bound_of(b, utility_to_go);
         });
@@ -156,7 +156,7 @@ class LabelPass {
     }
 
     const Search& search_;
-    std::size_t most_labels_;
+    std::size_t max_labels_;
     double utility_gap_;
     double as_good_ = 0.0;
     double dropped_bound_ = 0.0;
@@ -184,8 +184,8 @@ void relax(const KnapsackPath& greedy, Search& search) {
     }
 }
 
-/// The best within the budget of the paths that begin as one of two and end as the other. Where all slots are alike, the
-/// relaxation jumps from one path to the other, and everything in between is as good by its slope: more than labels
+/// The best within the budget of the paths that begin as one of two and end as the other. Where all slots are alike,
+/// the relaxation jumps from one path to the other, and everything in between is as good by its slope: more than labels
 /// hold. Returns whether one is better than the best.
 bool cross(const MultipleChoiceKnapsack& problem, Search& search) {
     const auto from = search.best;
@@ -210,18 +210,18 @@ bool cross(const MultipleChoiceKnapsack& problem, Search& search) {
 }
 
 /// As many labels as the effort allows, and as time and memory do for many slots, choices or long runs.
-std::size_t affordable_labels(const KnapsackGraph& graph, const KnapsackEffort& effort) {
-    constexpr std::size_t most_in_all = 4000000;
+std::size_t affordable_labels(const KnapsackGraph& graph, const SearchLimits& effort) {
+    constexpr std::size_t max_in_all = 4000000;
     constexpr std::size_t fewest = 50;
     std::size_t work = 1;  // labels made of each, over all slots
     for (const auto& runs : graph.runs) work += runs.size();
     for (const auto& runs : graph.one_more) work += runs.size();
-    return std::min(effort.most_labels, std::max(fewest, most_in_all / work));
+    return std::min(effort.max_labels, std::max(fewest, max_in_all / work));
 }
 
 }  // namespace
 
-KnapsackSolution solve_knapsack(const MultipleChoiceKnapsack& problem, const KnapsackEffort& effort) {
+KnapsackSolution solve_knapsack(const MultipleChoiceKnapsack& problem, const SearchLimits& effort) {
     const auto graph = make_knapsack_graph(problem);
     KnapsackSolution result;
     Search search{graph, problem.budget, 0.0, {}, cost_to_go(graph, 0.0, 1.0), {}, {}, 0.0};
@@ -245,16 +245,16 @@ KnapsackSolution solve_knapsack(const MultipleChoiceKnapsack& problem, const Kna
     if (greedy.sum.cost <= problem.budget) return finish(greedy, true, greedy.sum.utility);
     search.bound = greedy.sum.utility;
     relax(greedy, search);
-    const auto most_labels = affordable_labels(graph, effort);
+    const auto max_labels = affordable_labels(graph, effort);
     for (std::size_t labels = 200;; labels *= 10) {
         const double gap = effort.relative_gap * std::max(std::abs(search.best.sum.utility), 1e-9);
         if (search.bound - search.best.sum.utility <= gap) break;
-        LabelPass(search, std::min(labels, most_labels), gap).run(search);
-        if (labels >= most_labels) break;
+        LabelPass(search, std::min(labels, max_labels), gap).run(search);
+        if (labels >= max_labels) break;
     }
     const double wanted = effort.relative_gap * std::max(std::abs(search.best.sum.utility), 1e-9);
     if (problem.dwell_s == 0.0 && search.bound - search.best.sum.utility > wanted && cross(problem, search))
-        LabelPass(search, most_labels, wanted).run(search);
+        LabelPass(search, max_labels, wanted).run(search);
     return finish(search.best, true, search.bound);
 }
 

@@ -41,15 +41,15 @@ struct KnapsackSolution {
 };
 
 /// How far to search.
-struct KnapsackEffort {
-    double relative_gap = 1e-6;       ///< between utility and bound, at which the search ends
-    std::size_t most_labels = 20000;  ///< kept a slot; if more are needed, the bound says what that may cost
-    std::size_t value_cells = 96;     ///< of the bound over charge, where the battery's state counts (schedule_value.h)
+struct SearchLimits {
+    double relative_gap = 1e-6;      ///< between utility and bound, at which the search ends
+    std::size_t max_labels = 20000;  ///< kept a slot; if more are needed, the bound says what that may cost
+    std::size_t value_cells = 96;    ///< of the bound over charge, where the battery's state counts (schedule_value.h)
 };
 
 /// Lagrangian relaxation finds the slope of utility over cost and a bound; labels (cost, utility) are then
 /// carried from slot to slot, without those that another one dominates or whose own bound says that they
 /// cannot win. What is dropped for want of room raises the bound, so that it holds in any case.
-KnapsackSolution solve_knapsack(const MultipleChoiceKnapsack& problem, const KnapsackEffort& effort = {});
+KnapsackSolution solve_knapsack(const MultipleChoiceKnapsack& problem, const SearchLimits& effort = {});
 
 }  // namespace flightwatt::mission

@@ -8,7 +8,7 @@
 namespace flightwatt::mission {
 namespace {
 
-constexpr std::size_t most_compared = 32;  // labels before one in the order of charge, to become one with
+constexpr std::size_t max_compared = 32;  // labels before one in the order of charge, to become one with
 
 /// Utilities by keys, of which none is less than another one's with both less key and less utility.
 class UtilityFront {
@@ -46,7 +46,8 @@ void join(const StateLabel& label, const MergeWeights& weights, StateLabel& into
 
 }  // namespace
 
-std::vector<StateLabel> merged(const std::vector<StateLabel>& labels, const MergeWeights& weights, double tolerance) {
+std::vector<StateLabel> merge_labels(const std::vector<StateLabel>& labels, const MergeWeights& weights,
+                                     double tolerance) {
     std::vector<StateLabel> kept;
     std::vector<double> utility_as_kept;
     UtilityFront front;
@@ -54,8 +55,8 @@ std::vector<StateLabel> merged(const std::vector<StateLabel>& labels, const Merg
         const double key = std::isfinite(weights.rc_high)
                                ? label.state.soc_percent - weights.rc_high * label.state.rc_voltage_v
                                : -label.state.rc_voltage_v;
-        if (front.dominates(key, label.utility, weights.as_good)) continue;
-        const std::size_t first = kept.size() > most_compared ? kept.size() - most_compared : 0;
+        if (front.dominates(key, label.utility, weights.utility_tolerance)) continue;
+        const std::size_t first = kept.size() > max_compared ? kept.size() - max_compared : 0;
         std::size_t at = kept.size();
         while (at > first && (label.utility > utility_as_kept[at - 1] + tolerance ||
                               joining_costs(kept[at - 1], label, weights) > tolerance))

@@ -20,24 +20,25 @@ struct StateLabel : RunStep {
     battery::BatteryState state;
     double utility = 0.0;
     EffectiveCharge charge = {};
-    double weighed_percent = 0.0;  ///< the charge less what its RC voltage costs at least
-    double bound = 0.0;            ///< nothing that begins so has more utility
-    double promise = 0.0;          ///< where there is no room for all, those with the greatest are kept
+    double adjusted_percent = 0.0;  ///< the charge less what its RC voltage costs at least
+    double bound = 0.0;             ///< nothing that begins so has more utility
+    double priority = 0.0;          ///< where there is no room for all, those with the greatest are kept
 };
 
 /// What counts when labels of a slot are compared.
 struct MergeWeights {
-    double rc_low = 0.0;  ///< [points/V] as in ScheduleValue
+    double rc_low = 0.0;  ///< [points/V] as in UtilityBound
     double rc_high = 0.0;
     double rc_joined = 0.0;
     double utility_per_percent = 0.0;  ///< about
-    double as_good = 0.0;              ///< a utility that counts for nothing
+    double utility_tolerance = 0.0;    ///< a utility that counts for nothing
 };
 
 /// Labels, given in the order of their weighed charge, without those that another one is as good as: that has as much
-/// charge and, with RC voltage weighed by what it may cost at most, as much again; or no more RC voltage, where that may
-/// end a flight. Of the others, those that differ by less than `tolerance`, a utility, become one that none of them is
-/// better than.
-std::vector<StateLabel> merged(const std::vector<StateLabel>& labels, const MergeWeights& weights, double tolerance);
+/// charge and, with RC voltage weighed by what it may cost at most, as much again; or no more RC voltage, where that
+/// may end a flight. Of the others, those that differ by less than `tolerance`, a utility, become one that none of them
+/// is better than.
+std::vector<StateLabel> merge_labels(const std::vector<StateLabel>& labels, const MergeWeights& weights,
+                                     double tolerance);
 
 }  // namespace flightwatt::mission

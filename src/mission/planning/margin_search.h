@@ -14,7 +14,7 @@ class MarginSearch {
     double margin_percent() const { return margin_percent_; }
 
     /// What the flights of the answer keep with that chance above the reserve, and what they should at most.
-    void learn(double slack_percent, double wanted_percent) {
+    void add_result(double slack_percent, double wanted_percent) {
         auto& end_percent = slack_percent >= 0.0 ? enough_percent_ : too_little_percent_;
         end_percent = margin_percent_;
         const double step = margin_per_slack(slack_percent);
@@ -23,16 +23,16 @@ class MarginSearch {
     }
 
     /// The answer keeps so much, though it need not: it is that of every margin up to this one.
-    void learn_kept(double kept_percent) { margin_percent_ = std::max(margin_percent_, kept_percent); }
+    void raise_lower_bound(double kept_percent) { margin_percent_ = std::max(margin_percent_, kept_percent); }
 
     /// There is no answer with so much.
-    void learn_too_much() {
+    void mark_infeasible() {
         enough_percent_ = margin_percent_;
         move_to(std::midpoint(too_little_percent_.value_or(0.0), margin_percent_));
     }
 
     /// Nothing is left between what is enough and what is not.
-    bool is_exhausted() const {
+    bool has_converged() const {
         return too_little_percent_ && enough_percent_ && *enough_percent_ - *too_little_percent_ < 1e-6;
     }
 

@@ -11,8 +11,8 @@
 namespace flightwatt::mission {
 namespace {
 
-constexpr double most_combinations = 1e6;
-constexpr double most_slots = 20000;
+constexpr double max_combinations = 1e6;
+constexpr double max_slots = 20000;
 
 struct Choice {
     compute::Configuration run;
@@ -51,10 +51,10 @@ void require_few(const PlanningProblem& problem) {
                             [](double all, const auto& levels) { return all * static_cast<double>(levels.size()); });
         combinations *= ways + (component.may_be_off ? 1.0 : 0.0);
     }
-    if (combinations <= most_combinations) return;
+    if (combinations <= max_combinations) return;
     throw InputError({problem.file},
                      fmt::format("the components have {:.3g} combinations of levels, more than {:.0e} to choose from",
-                                 combinations, most_combinations),
+                                 combinations, max_combinations),
                      "say with `levels` in [plan] which ones may be chosen");
 }
 
@@ -106,16 +106,16 @@ void add_free_slots(PhaseSegment free, double slot_s, double tolerance_s, std::v
 void require_few_slots(const PlanningProblem& problem, double duration_s) {
     double slots = 0.0;
     for (const auto phase : all_phases)
-        slots += problem.duration_s[phase] / (problem.plan.slot_s * problem.plan.slot_part[phase]);
-    if (slots <= most_slots) return;
-    throw InputError({problem.file},
-                     fmt::format("{:.6g} s in slots of {:.6g} s are more than {} slots", duration_s,
-                                 problem.plan.slot_s, most_slots),
-                     "make slot_s in [plan] longer");
+        slots += problem.duration_s[phase] / (problem.plan.slot_s * problem.plan.slot_scale[phase]);
+    if (slots <= max_slots) return;
+    throw InputError(
+        {problem.file},
+        fmt::format("{:.6g} s in slots of {:.6g} s are more than {} slots", duration_s, problem.plan.slot_s, max_slots),
+        "make slot_s in [plan] longer");
 }
 
 /// All but the costs.
-MultipleChoiceKnapsack choices_of(const PlanningProblem& problem, const Planner& planner, const PlanStart& start,
+MultipleChoiceKnapsack choices_of(const PlanningProblem& problem, const PlanningTables& planner, const PlanStart& start,
                                   const std::vector<MissionSlot>& slots) {
     MultipleChoiceKnapsack knapsack;
     knapsack.utility_per_s = planner.utility_per_s;
@@ -132,7 +132,7 @@ MultipleChoiceKnapsack choices_of(const PlanningProblem& problem, const Planner&
     return knapsack;
 }
 
-void set_costs(const Planner& planner, double mechanical_factor, const std::vector<MissionSlot>& slots,
+void set_costs(const PlanningTables& planner, double mechanical_factor, const std::vector<MissionSlot>& slots,
                MultipleChoiceKnapsack& knapsack) {
     for (std::size_t i = 0; i < slots.size(); ++i) {
         double more_percent = 0.0;
@@ -147,7 +147,7 @@ void set_costs(const Planner& planner, double mechanical_factor, const std::vect
 
 std::vector<PhaseSegment> parts_of(const std::vector<MissionSlot>& slots) { return {slots.begin(), slots.end()}; }
 
-std::vector<double> compute_w_of(const PlanningProblem& problem, const Planner& planner) {
+std::vector<double> compute_w_of(const PlanningProblem& problem, const PlanningTables& planner) {
     std::vector<double> compute_w;
     for (const auto& run : planner.depletions.configurations) compute_w.push_back(power_w(problem.compute, run));
     return compute_w;
@@ -155,28 +155,27 @@ std::vector<double> compute_w_of(const PlanningProblem& problem, const Planner& 
 
 /// In steps of a length, but not shorter than the planner's. What longer ones are off by falls with the square of the
 /// step, as at a knot of the open-circuit voltage.
-SlotDynamics dynamics_of(const PlanningProblem& problem, const Planner& planner, const PlanStart& start,
+SlotDynamics dynamics_of(const PlanningProblem& problem, const PlanningTables& planner, const PlanStart& start,
                          const std::vector<MissionSlot>& slots, double step_s) {
     const double longer_s = std::max(step_s, *planner.step_s);
     auto dynamics =
         make_slot_dynamics(problem, parts_of(slots), compute_w_of(problem, planner), longer_s, start.mechanical_factor);
     if (longer_s > *planner.step_s) {
         const double part = longer_s / planner.quick_step_s * (longer_s / planner.quick_step_s);
-        dynamics.error_percent = part * quick_error_percent;
-        dynamics.error_v = part * quick_error_v;
+        dynamics.error_percent = part * coarse_error_percent;
+        dynamics.error_v = part * coarse_error_v;
     }
     return dynamics;
 }
 
 bool charges(const SlotDynamics& dynamics) {
     constexpr double rounding_of_power_w = 1e-6;  // as refuse_charging has it
-    const double least_compute_w = std::ranges::min(dynamics.compute_w);
-    return std::ranges::any_of(dynamics.slots, [&](const auto& slot) {
-        return slot.least_mechanical_w + least_compute_w < -rounding_of_power_w;
-    });
+    const double min_compute_w = std::ranges::min(dynamics.compute_w);
+    return std::ranges::any_of(
+        dynamics.slots, [&](const auto& slot) { return slot.min_mechanical_w + min_compute_w < -rounding_of_power_w; });
 }
 
-Schedule schedule_of(const Planner& planner, const std::vector<MissionSlot>& slots,
+Schedule schedule_of(const PlanningTables& planner, const std::vector<MissionSlot>& slots,
                      const std::vector<std::size_t>& choices) {
     Schedule schedule;
     for (std::size_t i = 0; i < slots.size(); ++i)
@@ -186,13 +185,13 @@ Schedule schedule_of(const Planner& planner, const std::vector<MissionSlot>& slo
 
 }  // namespace
 
-compute::Configuration least_power_configuration(const PlanningProblem& problem) {
+compute::Configuration min_power_configuration(const PlanningProblem& problem) {
     require_few(problem);
     const auto choices = every_choice(problem);
     return std::ranges::min_element(choices, draws_less)->run;
 }
 
-Planner make_planner(const PlanningProblem& problem) {
+PlanningTables make_planning_tables(const PlanningProblem& problem) {
     if (std::ranges::none_of(problem.utilities, [](const auto& u) { return !!u; })) {
         throw InputError({problem.file}, "the mission states no utility",
                          "give a component utility = { parameter = ..., weight = ... }");
@@ -200,7 +199,7 @@ Planner make_planner(const PlanningProblem& problem) {
     require_few(problem);
     const auto fixed = configurations_of(problem.fixed);
     const auto kept = problem.plan.dwell_s > 0.0 ? fixed : std::vector<compute::Configuration>();
-    Planner planner;
+    PlanningTables planner;
     auto& configurations = planner.depletions.configurations;
     for (auto& choice : undominated(every_choice(problem), kept)) {
         configurations.push_back(std::move(choice.run));
@@ -213,9 +212,9 @@ Planner make_planner(const PlanningProblem& problem) {
         planner.utility_per_s.push_back(utility_per_s(problem.utilities, run));
     }
     if (problem.battery.thevenin || problem.cutoff_voltage_v > 0.0) {
-        const auto slots = parts_of(slots_of(problem));
-        planner.step_s = step_for(problem, slots, compute_w_of(problem, planner));
-        planner.quick_step_s = quick_step_for(problem, slots, compute_w_of(problem, planner), *planner.step_s);
+        const auto slots = parts_of(make_slots(problem));
+        planner.step_s = choose_step_s(problem, slots, compute_w_of(problem, planner));
+        planner.quick_step_s = choose_coarse_step_s(problem, slots, compute_w_of(problem, planner), *planner.step_s);
         return planner;
     }
     planner.depletions = make_depletion_table(problem, std::move(configurations));
@@ -223,7 +222,7 @@ Planner make_planner(const PlanningProblem& problem) {
     return planner;
 }
 
-std::vector<MissionSlot> slots_of(const PlanningProblem& problem, double time_s) {
+std::vector<MissionSlot> make_slots(const PlanningProblem& problem, double time_s) {
     const auto timeline = timeline_of(problem.duration_s);
     require_few_slots(problem, timeline.duration_s);
     std::vector<MissionSlot> slots;
@@ -232,7 +231,7 @@ std::vector<MissionSlot> slots_of(const PlanningProblem& problem, double time_s)
         const double tolerance_s = same_time_tolerance_s(duration_s);
         double covered_s = std::max(0.0, time_s - timeline.start_s[phase]);
         const auto fill_until = [&](double until_s) {
-            add_free_slots({phase, covered_s, until_s}, problem.plan.slot_s * problem.plan.slot_part[phase],
+            add_free_slots({phase, covered_s, until_s}, problem.plan.slot_s * problem.plan.slot_scale[phase],
                            tolerance_s, slots);
         };
         for (const auto& segment : problem.fixed) {
@@ -247,23 +246,23 @@ std::vector<MissionSlot> slots_of(const PlanningProblem& problem, double time_s)
 }
 
 Schedule minimum_energy_schedule(const PlanningProblem& problem) {
-    const auto least_power = least_power_configuration(problem);
+    const auto least_power = min_power_configuration(problem);
     Schedule schedule;
-    for (const auto& slot : slots_of(problem)) schedule.push_back({slot, slot.fixed.value_or(least_power)});
+    for (const auto& slot : make_slots(problem)) schedule.push_back({slot, slot.fixed.value_or(least_power)});
     return schedule;
 }
 
-Mission with_minimum_energy_schedule(const AnyMission& mission) {
+Mission with_minimum_energy_schedule(const MissionVariant& mission) {
     if (const auto* problem = std::get_if<PlanningProblem>(&mission))
         return {*problem, minimum_energy_schedule(*problem)};
     return std::get<Mission>(mission);
 }
 
-Plan plan_rest(const PlanningProblem& problem, const Planner& planner, const PlanStart& start,
-               double reserve_soc_percent, const KnapsackEffort& effort) {
+Plan plan_remaining(const PlanningProblem& problem, const PlanningTables& planner, const PlanStart& start,
+                    double reserve_soc_percent, const SearchLimits& effort) {
     constexpr double rounding_percent = 3e-6;  // of the search's battery against the simulation's
-    constexpr double least_gap = 3e-5;
-    const auto slots = slots_of(problem, start.time_s);
+    constexpr double min_gap = 3e-5;
+    const auto slots = make_slots(problem, start.time_s);
     auto knapsack = choices_of(problem, planner, start, slots);
     Plan plan;
     KnapsackSolution chosen;
@@ -274,7 +273,7 @@ Plan plan_rest(const PlanningProblem& problem, const Planner& planner, const Pla
         const auto in_between = dynamics_of(problem, planner, start, slots, planner.quick_step_s / closer);
         plan.bound_is_proven = !charges(exact);
         auto coarser = effort;
-        coarser.relative_gap = std::max(effort.relative_gap, least_gap);
+        coarser.relative_gap = std::max(effort.relative_gap, min_gap);
         chosen = search_schedule({exact,
                                   quick,
                                   in_between,
@@ -295,7 +294,7 @@ Plan plan_rest(const PlanningProblem& problem, const Planner& planner, const Pla
     for (const auto& slot : slots) duration_s += slot.duration_s();
     if (duration_s > 0.0) {
         plan.utility = chosen.utility / duration_s;
-        plan.bound = chosen.bound / duration_s;
+        plan.utility_bound = chosen.bound / duration_s;
     }
     plan.final_soc_percent = start.soc_percent - chosen.cost;
     return plan;

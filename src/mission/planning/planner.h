@@ -11,7 +11,7 @@
 namespace flightwatt::mission {
 
 /// What all plans of a problem have in common: configurations with their utility, and how they deplete the battery.
-struct Planner {
+struct PlanningTables {
     DepletionTable depletions;            ///< its configurations are the choices
     std::vector<double> utility_per_s;    ///< of each of them
     std::size_t free_choices = 0;         ///< the first so many may be chosen; the others are only fixed
@@ -19,23 +19,23 @@ struct Planner {
     /// The step of schedule_search.h, for batteries whose depletion by a slot depends on what ran before: their source
     /// follows their charge, or they may be cut off. Such a planner's tables hold configurations alone.
     std::optional<double> step_s = std::nullopt;
-    double quick_step_s = 0.0;  ///< of quick_step_for
+    double quick_step_s = 0.0;  ///< of choose_coarse_step_s
 };
 
 /// The configurations that [plan] allows, without those that draw more than another one of as much utility, and those
 /// that the fixed segments run. Throws InputError if the mission states no utility, or has more than a million
 /// combinations.
-Planner make_planner(const PlanningProblem& problem);
+PlanningTables make_planning_tables(const PlanningProblem& problem);
 
 /// The schedule that demands least energy: the configuration that draws least wherever nothing is fixed (which
-/// any dwell time allows). Throws InputError as make_planner does for too many combinations.
+/// any dwell time allows). Throws InputError as make_planning_tables does for too many combinations.
 Schedule minimum_energy_schedule(const PlanningProblem& problem);
 
 /// The mission with that schedule; one that has a schedule stays as it is.
-Mission with_minimum_energy_schedule(const AnyMission& mission);
+Mission with_minimum_energy_schedule(const MissionVariant& mission);
 
 /// The configuration that [plan] allows and that draws least.
-compute::Configuration least_power_configuration(const PlanningProblem& problem);
+compute::Configuration min_power_configuration(const PlanningProblem& problem);
 
 /// A part of a phase in which one configuration runs throughout.
 struct MissionSlot : PhaseSegment {
@@ -44,7 +44,7 @@ struct MissionSlot : PhaseSegment {
 
 /// The mission from `time_s` on: fixed segments, and between them slots that end at multiples of slot_s since their
 /// phase began, or where a fixed segment or the phase does. Throws InputError for more than 20000 slots.
-std::vector<MissionSlot> slots_of(const PlanningProblem& problem, double time_s = 0.0);
+std::vector<MissionSlot> make_slots(const PlanningProblem& problem, double time_s = 0.0);
 
 /// Where a plan starts: before the flight, or in it.
 struct PlanStart {
@@ -59,7 +59,7 @@ struct PlanStart {
 
 /// The schedule of most utility of those that end with the reserve; takes milliseconds, or with little effort on a
 /// battery whose state counts, for calls in flight.
-Plan plan_rest(const PlanningProblem& problem, const Planner& planner, const PlanStart& start,
-               double reserve_soc_percent, const KnapsackEffort& effort = {});
+Plan plan_remaining(const PlanningProblem& problem, const PlanningTables& planner, const PlanStart& start,
+                    double reserve_soc_percent, const SearchLimits& effort = {});
 
 }  // namespace flightwatt::mission

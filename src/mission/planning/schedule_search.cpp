@@ -1,6 +1,6 @@
 #include "mission/planning/schedule_search.h"
 
-#include "mission/planning/cautious_value.h"
+#include "mission/planning/heuristic_value.h"
 #include "mission/planning/label_merge.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ struct FoundSchedule {
 /// Carries the label's battery through the slots of its last run, from `from` on; false if it does not last.
 bool follow(const SlotDynamics& dynamics, std::size_t from, StateLabel& label) {
     for (std::size_t i = from; i < label.to; ++i) {
-        const auto after = after_slot(dynamics, i, label.choice, label.state);
+        const auto after = advance_slot(dynamics, i, label.choice, label.state);
         if (!after) return false;
         label.state = *after;
     }
@@ -33,26 +33,26 @@ bool follow(const SlotDynamics& dynamics, std::size_t from, StateLabel& label) {
 /// Where a schedule ends; minus infinity if it does not.
 double end_percent(const SlotDynamics& dynamics, const std::vector<std::size_t>& choices, battery::BatteryState state) {
     for (std::size_t i = 0; i < choices.size(); ++i) {
-        const auto after = after_slot(dynamics, i, choices[i], state);
+        const auto after = advance_slot(dynamics, i, choices[i], state);
         if (!after || after->soc_percent < 0.0) return -infinite;
         state = *after;
     }
     return state.soc_percent;
 }
 
-void set_bound(const ScheduleValue& value, StateLabel& label) {
+void set_bound(const UtilityBound& value, StateLabel& label) {
     label.charge = effective_charge(value, label.to, label.state);
-    label.weighed_percent = label.state.soc_percent - value.rc_low[label.to] * label.state.rc_voltage_v;
+    label.adjusted_percent = label.state.soc_percent - value.rc_low[label.to] * label.state.rc_voltage_v;
     label.bound = may_land(value, label.to, label.state)
                       ? label.utility + utility_to_go(value, label.to, label.choice, label.charge)
                       : -infinite;
 }
 
 /// What becomes of labels for which there is no room.
-enum class Crowd {
+enum class LabelPruning {
     drop_by_bound,    ///< the least promising are dropped
     drop_by_charge,   ///< the least promising of their charge: where a cut-off comes, bounds know little of it
-    drop_by_caution,  ///< those that promise least by a CautiousValue
+    drop_by_caution,  ///< those that promise least by a HeuristicValue
     join              ///< those that differ little become one
 };
 
@@ -60,13 +60,13 @@ enum class Crowd {
 class StatePass {
   public:
     struct Limits {
-        std::size_t most_labels = 0;
+        std::size_t max_labels = 0;
         double utility_gap = 0.0;
-        Crowd crowd = Crowd::join;
-        const CautiousValue* caution = nullptr;  ///< of drop_by_caution
+        LabelPruning crowd = LabelPruning::join;
+        const HeuristicValue* caution = nullptr;  ///< of drop_by_caution
     };
 
-    StatePass(const ScheduleQuestion& question, const KnapsackGraph& graph, const ScheduleValue& value,
+    StatePass(const ScheduleProblem& question, const KnapsackGraph& graph, const UtilityBound& value,
               const StateLabel& first, const Limits& limits)
         : question_(question), graph_(graph), value_(value), first_(first), limits_(limits) {
         constexpr double part_for_rounding = 1e-3;
@@ -94,13 +94,14 @@ class StatePass {
             dropped_bound_ = std::max(dropped_bound_, finished.front().utility);
             bound_is_flown_ = lands_quickly(choices_of(finished.front()));
         }
-        constexpr std::size_t most_tried = 500;
-        if (finished.size() > most_tried) finished.resize(most_tried);
+        constexpr std::size_t max_tried = 500;
+        if (finished.size() > max_tried) finished.resize(max_tried);
         for (const auto& label : finished) try_schedule(label, best);
         return std::max(best.utility, dropped_bound_) + lost_;
     }
 
-    /// Whether what has most utility lands, as far as the quick dynamics can tell: those limit the bound, and not the room.
+    /// Whether what has most utility lands, as far as the quick dynamics can tell: those limit the bound, and not the
+    /// room.
     bool bound_is_flown() const { return bound_is_flown_; }
 
   private:
@@ -120,11 +121,11 @@ class StatePass {
     bool lands_quickly(const std::vector<std::size_t>& choices) const {
         auto state = question_.start;
         for (std::size_t i = 0; i < choices.size(); ++i) {
-            const auto after = after_slot(question_.quick, i, choices[i], state);
+            const auto after = advance_slot(question_.coarse, i, choices[i], state);
             if (!after) return false;
             state = *after;
         }
-        return state.soc_percent >= question_.reserve_soc_percent - question_.quick.error_percent;
+        return state.soc_percent >= question_.reserve_soc_percent - question_.coarse.error_percent;
     }
 
     bool is_wanted(double bound) {
@@ -160,7 +161,7 @@ class StatePass {
     }
 
     /// Appends what a run makes of the labels.
-    void carry(std::size_t i, const std::vector<StateLabel>& labels, const ChoiceRun& run, const RunReach& reach,
+    void carry(std::size_t i, const std::vector<StateLabel>& labels, const ChoiceRun& run, const RunTransition& reach,
                std::vector<StateLabel>& to) {
         for (const auto& label : labels) {
             StateLabel next = label;
@@ -168,9 +169,9 @@ class StatePass {
             next.to = run.to;
             next.utility += run.sum.utility;
             // What is known of the run beforehand saves most integrations.
-            const auto end = reached(value_, i, reach, label.charge);
+            const auto end = apply_transition(value_, i, reach, label.charge);
             if (!is_wanted(next.utility + utility_to_go(value_, run.to, run.choice, end))) continue;
-            if (!follow(question_.quick, i, next)) continue;
+            if (!follow(question_.coarse, i, next)) continue;
             set_bound(value_, next);
             if (is_wanted(next.bound)) to.push_back(next);
         }
@@ -179,12 +180,12 @@ class StatePass {
     /// Of as many equal ranges of charge as half of the labels that there is room for. The labels are in the order of
     /// their charge.
     void move_best_of_each_charge_first(std::vector<StateLabel>& labels) const {
-        const auto half_of_room = limits_.most_labels / 2;
+        const auto half_of_room = limits_.max_labels / 2;
         const auto ranges = static_cast<double>(half_of_room);
-        const double most_percent = labels.front().weighed_percent;
-        const double all_percent = std::max(1e-9, most_percent - labels.back().weighed_percent);
+        const double max_percent = labels.front().adjusted_percent;
+        const double all_percent = std::max(1e-9, max_percent - labels.back().adjusted_percent);
         const auto range_of = [&](const StateLabel& label) {
-            return std::min(ranges - 1.0, std::floor((most_percent - label.weighed_percent) / all_percent * ranges));
+            return std::min(ranges - 1.0, std::floor((max_percent - label.adjusted_percent) / all_percent * ranges));
         };
         std::vector<StateLabel> best;
         std::vector<StateLabel> others;
@@ -196,17 +197,17 @@ class StatePass {
             if (label.bound > best.back().bound) std::swap(label, best.back());
             others.push_back(label);
         }
-        best.resize(limits_.most_labels / 2, best.back());
+        best.resize(limits_.max_labels / 2, best.back());
         best.insert(best.end(), others.begin(), others.end());
         labels = std::move(best);
     }
 
     /// But for the first `kept`.
     void drop_least_promising(std::vector<StateLabel>& labels, std::size_t kept) {
-        const auto last = labels.begin() + static_cast<std::ptrdiff_t>(limits_.most_labels);
+        const auto last = labels.begin() + static_cast<std::ptrdiff_t>(limits_.max_labels);
         if (last >= labels.end()) return;
         std::ranges::nth_element(labels.begin() + static_cast<std::ptrdiff_t>(kept), last, labels.end(),
-                                 std::ranges::greater(), &StateLabel::promise);
+                                 std::ranges::greater(), &StateLabel::priority);
         for (auto label = last; label != labels.end(); ++label) dropped_bound_ = std::max(dropped_bound_, label->bound);
         labels.erase(last, labels.end());
     }
@@ -219,19 +220,19 @@ class StatePass {
     void merge(std::size_t i, std::vector<StateLabel>& labels) {
         constexpr double times_more = 1.5;
         std::ranges::sort(labels, [](const StateLabel& a, const StateLabel& b) {
-            if (a.weighed_percent != b.weighed_percent) return a.weighed_percent > b.weighed_percent;
+            if (a.adjusted_percent != b.adjusted_percent) return a.adjusted_percent > b.adjusted_percent;
             if (a.utility != b.utility) return a.utility > b.utility;
             return a.state.soc_percent < b.state.soc_percent;
         });
         const MergeWeights weights{value_.rc_low[i], value_.rc_high[i], value_.rc_joined[i], utility_per_percent_,
                                    as_good_};
-        auto kept = merged(labels, weights, tolerance_);
-        for (auto& label : kept) label.promise = promise_of(i, label);
-        if (kept.size() > limits_.most_labels && limits_.crowd != Crowd::join) {
-            if (limits_.crowd == Crowd::drop_by_charge) move_best_of_each_charge_first(kept);
-            drop_least_promising(kept, limits_.crowd == Crowd::drop_by_charge ? limits_.most_labels / 2 : 0);
+        auto kept = merge_labels(labels, weights, tolerance_);
+        for (auto& label : kept) label.priority = promise_of(i, label);
+        if (kept.size() > limits_.max_labels && limits_.crowd != LabelPruning::join) {
+            if (limits_.crowd == LabelPruning::drop_by_charge) move_best_of_each_charge_first(kept);
+            drop_least_promising(kept, limits_.crowd == LabelPruning::drop_by_charge ? limits_.max_labels / 2 : 0);
         }
-        while (kept.size() > limits_.most_labels) kept = merged(labels, weights, tolerance_ *= times_more);
+        while (kept.size() > limits_.max_labels) kept = merge_labels(labels, weights, tolerance_ *= times_more);
         labels = std::move(kept);
         for (auto& label : labels) set_bound(value_, label);
     }
@@ -247,9 +248,9 @@ class StatePass {
         return choices;
     }
 
-    const ScheduleQuestion& question_;
+    const ScheduleProblem& question_;
     const KnapsackGraph& graph_;
-    const ScheduleValue& value_;
+    const UtilityBound& value_;
     const StateLabel& first_;
     Limits limits_;
     double lost_ = 0.0;
@@ -263,7 +264,7 @@ class StatePass {
 };
 
 /// The choices as a graph in which the least cost is the least energy demand.
-KnapsackGraph graph_of(const ScheduleQuestion& question) {
+KnapsackGraph graph_of(const ScheduleProblem& question) {
     auto choices = question.choices;
     for (std::size_t i = 0; i < choices.slots.size(); ++i) {
         auto& slot = choices.slots[i];
@@ -275,23 +276,23 @@ KnapsackGraph graph_of(const ScheduleQuestion& question) {
 }
 
 /// The schedule of least energy demand, and where it ends.
-FoundSchedule least_schedule(const ScheduleQuestion& question, const KnapsackGraph& graph) {
+FoundSchedule least_schedule(const ScheduleProblem& question, const KnapsackGraph& graph) {
     const auto path = best_path(graph, cost_to_go(graph, 0.0, 1.0), 0.0, 1.0);
     return {path.choices, path.sum.utility, end_percent(question.exact, path.choices, question.start)};
 }
 
 /// As much of the effort as time and memory allow for many slots, choices or long runs.
-KnapsackEffort affordable(KnapsackEffort effort, const KnapsackGraph& graph) {
-    constexpr std::size_t most_slots_followed = 2000000;  // for the bound
-    constexpr std::size_t most_labels_made = 6000000;
-    constexpr std::size_t fewest_labels = 50;
-    constexpr std::size_t fewest_cells = 8;
+SearchLimits affordable(SearchLimits effort, const KnapsackGraph& graph) {
+    constexpr std::size_t max_slots_followed = 2000000;  // for the bound
+    constexpr std::size_t max_labels_made = 6000000;
+    constexpr std::size_t min_labels = 50;
+    constexpr std::size_t min_cells = 8;
     std::size_t work = 1;
     for (const auto* each : {&graph.runs, &graph.one_more})
         for (std::size_t i = 0; i < graph.slots; ++i)
             for (const auto& run : (*each)[i]) work += run.to - i;
-    effort.value_cells = std::min(effort.value_cells, std::max(fewest_cells, most_slots_followed / work));
-    effort.most_labels = std::min(effort.most_labels, std::max(fewest_labels, most_labels_made / work));
+    effort.value_cells = std::min(effort.value_cells, std::max(min_cells, max_slots_followed / work));
+    effort.max_labels = std::min(effort.max_labels, std::max(min_labels, max_labels_made / work));
     return effort;
 }
 
@@ -311,22 +312,22 @@ struct SearchState {
 };
 
 /// Passes with ever more labels: the first drop what is less promising, to have a good schedule soon, the others prove.
-void improve(const ScheduleQuestion& question, const KnapsackGraph& graph, const KnapsackEffort& effort,
+void improve(const ScheduleProblem& question, const KnapsackGraph& graph, const SearchLimits& effort,
              SearchState& search) {
     const auto value = make_schedule_value(question, graph, effort.value_cells);
     // Behind the slots that are committed already.
     StateLabel first{{0, graph.begin_choice, 0}, question.start, graph.before_begin.utility};
     first.to = graph.begin;
-    if (!value.possible || !follow(question.quick, 0, first)) {
+    if (!value.possible || !follow(question.coarse, 0, first)) {
         search.bound = search.best.utility;
         return;
     }
     set_bound(value, first);
     search.bound = std::min(search.bound, first.bound);
-    const auto pass = [&](std::size_t labels, Crowd crowd, const CautiousValue* caution = nullptr) {
+    const auto pass = [&](std::size_t labels, LabelPruning crowd, const HeuristicValue* caution = nullptr) {
         if (search.is_within(effort.relative_gap) || !std::isfinite(search.bound)) return;
         const double gap = effort.relative_gap * std::max(std::abs(search.bound), 1e-9);
-        StatePass labelled(question, graph, value, first, {std::min(labels, effort.most_labels), gap, crowd, caution});
+        StatePass labelled(question, graph, value, first, {std::min(labels, effort.max_labels), gap, crowd, caution});
         search.bound = std::min(search.bound, labelled.run(search.best));
         search.bound_is_flown = labelled.bound_is_flown();
     };
@@ -334,31 +335,31 @@ void improve(const ScheduleQuestion& question, const KnapsackGraph& graph, const
     if (search.bound_is_flown) {
         labels *= times_beam;  // of a search before: a good schedule is known
     } else {
-        pass(labels, Crowd::drop_by_bound);
-        if (question.quick.cutoff_voltage_v > 0.0 && !search.is_within(effort.relative_gap)) {
-            pass(labels, Crowd::drop_by_charge);
+        pass(labels, LabelPruning::drop_by_bound);
+        if (question.coarse.cutoff_voltage_v > 0.0 && !search.is_within(effort.relative_gap)) {
+            pass(labels, LabelPruning::drop_by_charge);
             const auto caution = make_cautious_value(question, graph, value, effort.value_cells);
-            pass(labels, Crowd::drop_by_caution, &caution);
+            pass(labels, LabelPruning::drop_by_caution, &caution);
         }
-        if (effort.most_labels <= beam_labels) return;
+        if (effort.max_labels <= beam_labels) return;
     }
     do {
         labels *= times_beam;
-        pass(labels, Crowd::join);
-    } while (labels < effort.most_labels && !search.bound_is_flown);
+        pass(labels, LabelPruning::join);
+    } while (labels < effort.max_labels && !search.bound_is_flown);
 }
 
 /// Looks for a first schedule among those whose choices stay for a few slots: these are far fewer, and where a cut-off
 /// comes late a search among all of them seldom meets one that lands with much.
-void begin_with_long_runs(const ScheduleQuestion& question, SearchState& search) {
+void begin_with_long_runs(const ScheduleProblem& question, SearchState& search) {
     constexpr double slots_a_run = 3.0;
-    constexpr KnapsackEffort quick_effort{1e-3, beam_labels, 32};
+    constexpr SearchLimits quick_effort{1e-3, beam_labels, 32};
     auto choices = question.choices;
     const double mission_s = std::accumulate(choices.slots.begin(), choices.slots.end(), 0.0,
                                              [](double sum_s, const auto& slot) { return sum_s + slot.duration_s; });
     choices.dwell_s = std::max(choices.dwell_s, slots_a_run * mission_s / static_cast<double>(choices.slots.size()));
-    const ScheduleQuestion coarse{question.exact, question.quick, question.closer,
-                                  choices,        question.start, question.reserve_soc_percent};
+    const ScheduleProblem coarse{question.exact, question.coarse, question.medium,
+                                 choices,        question.start,  question.reserve_soc_percent};
     const auto graph = graph_of(coarse);
     if (!graph.possible) return;
     SearchState found{search.best};
@@ -368,20 +369,20 @@ void begin_with_long_runs(const ScheduleQuestion& question, SearchState& search)
 
 }  // namespace
 
-KnapsackSolution search_schedule(const ScheduleQuestion& question, const KnapsackEffort& wanted_effort) {
+KnapsackSolution search_schedule(const ScheduleProblem& question, const SearchLimits& wanted_effort) {
     const auto graph = graph_of(question);
     const auto effort = affordable(wanted_effort, graph);
     const auto least = least_schedule(question, graph);
     SearchState search;
     if (least.end_percent >= question.reserve_soc_percent) search.best = least;
-    const bool may_take_time = effort.most_labels > times_beam * beam_labels;  // and is none of a flight's many plans
-    if (question.quick.cutoff_voltage_v > 0.0 && graph.slots > few_slots && may_take_time)
+    const bool may_take_time = effort.max_labels > times_beam * beam_labels;  // and is none of a flight's many plans
+    if (question.coarse.cutoff_voltage_v > 0.0 && graph.slots > few_slots && may_take_time)
         begin_with_long_runs(question, search);
     improve(question, graph, effort, search);
     if (!search.is_within(effort.relative_gap) && search.bound_is_flown) {
         // What keeps the bound up lands in the quick dynamics, but not in the exact ones.
-        const ScheduleQuestion closer{question.exact,   question.closer, question.closer,
-                                      question.choices, question.start,  question.reserve_soc_percent};
+        const ScheduleProblem closer{question.exact,   question.medium, question.medium,
+                                     question.choices, question.start,  question.reserve_soc_percent};
         improve(closer, graph, effort, search);
     }
     KnapsackSolution result;

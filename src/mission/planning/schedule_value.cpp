@@ -14,24 +14,24 @@ constexpr double between_samples = 0.01;  // of a power: what it may be beyond i
 
 /// Compute power that a slot runs at least and at most.
 struct ComputeRange {
-    double least_w = 0.0;
-    double greatest_w = 0.0;
-    std::size_t least_choice = 0;
+    double min_w = 0.0;
+    double max_w = 0.0;
+    std::size_t min_choice = 0;
 };
 
-ComputeRange range_of(const ScheduleQuestion& question, std::size_t slot) {
-    const auto& compute_w = question.quick.compute_w;
+ComputeRange range_of(const ScheduleProblem& question, std::size_t slot) {
+    const auto& compute_w = question.coarse.compute_w;
     if (const auto fixed = question.choices.slots[slot].fixed) return {compute_w[*fixed], compute_w[*fixed], *fixed};
     ComputeRange range{compute_w[0], compute_w[0], 0};
     for (std::size_t c = 0; c < compute_w.size(); ++c) {
         const bool is_free = c < question.choices.free_choices;
         const bool goes_on = question.choices.running && question.choices.running->choice == c;
         if (!is_free && !goes_on) continue;
-        if (compute_w[c] < range.least_w) {
-            range.least_w = compute_w[c];
-            range.least_choice = c;
+        if (compute_w[c] < range.min_w) {
+            range.min_w = compute_w[c];
+            range.min_choice = c;
         }
-        range.greatest_w = std::max(range.greatest_w, compute_w[c]);
+        range.max_w = std::max(range.max_w, compute_w[c]);
     }
     return range;
 }
@@ -55,23 +55,24 @@ SlopeRange slopes_in(const SlotDynamics& dynamics, double from_percent, double t
 }
 
 /// No schedule that lands has less in the quick dynamics.
-double quick_reserve_percent(const ScheduleQuestion& question) {
-    return question.reserve_soc_percent - question.quick.error_percent;
+double quick_reserve_percent(const ScheduleProblem& question) {
+    return question.reserve_soc_percent - question.coarse.error_percent;
 }
 
-bool fly_least(const ScheduleQuestion& question, ScheduleValue& value) {
-    value.highest = {question.start};
-    for (std::size_t i = 0; i < question.quick.slots.size(); ++i) {
-        const auto after = after_slot(question.quick, i, range_of(question, i).least_choice, value.highest.back());
+bool fly_least(const ScheduleProblem& question, UtilityBound& value) {
+    value.min_power_trajectory = {question.start};
+    for (std::size_t i = 0; i < question.coarse.slots.size(); ++i) {
+        const auto after =
+            advance_slot(question.coarse, i, range_of(question, i).min_choice, value.min_power_trajectory.back());
         if (!after) return false;
-        value.highest.push_back(*after);
+        value.min_power_trajectory.push_back(*after);
     }
-    value.spare_percent = value.highest.back().soc_percent - quick_reserve_percent(question);
+    value.spare_percent = value.min_power_trajectory.back().soc_percent - quick_reserve_percent(question);
     return value.spare_percent >= 0.0;
 }
 
-double lowest_percent(const ScheduleValue& value, std::size_t slot) {
-    return value.highest[slot].soc_percent - value.spare_percent;
+double min_percent(const UtilityBound& value, std::size_t slot) {
+    return value.min_power_trajectory[slot].soc_percent - value.spare_percent;
 }
 
 /// After a time in which da/dt = rate - decay a.
@@ -95,18 +96,19 @@ std::optional<CurrentBound> current_bound(double power_w, double source_v, doubl
     return CurrentBound{current_a, current_a / root};
 }
 
-/// A volt of RC voltage costs current, the least at the least power, for as long as it lasts; with it goes a part of the charge, whose
-/// slope makes up for some of it.
-void set_rc_low(const ScheduleQuestion& question, ScheduleValue& value) {
-    const auto& dynamics = question.quick;
+/// A volt of RC voltage costs current, the least at the least power, for as long as it lasts; with it goes a part of
+/// the charge, whose slope makes up for some of it.
+void set_rc_low(const ScheduleProblem& question, UtilityBound& value) {
+    const auto& dynamics = question.coarse;
     value.rc_low.assign(dynamics.slots.size() + 1, 0.0);
     if (dynamics.rc_resistance_ohm == 0.0) return;
     const double steepest =
-        slopes_in(dynamics, lowest_percent(value, dynamics.slots.size()), value.highest.front().soc_percent).greatest;
+        slopes_in(dynamics, min_percent(value, dynamics.slots.size()), value.min_power_trajectory.front().soc_percent)
+            .greatest;
     for (std::size_t i = dynamics.slots.size(); i-- > 0;) {
         const auto& slot = dynamics.slots[i];
-        const double power_w = slot.least_mechanical_w + range_of(question, i).least_w;
-        const double source_v = open_circuit_voltage_v(dynamics, value.highest[i].soc_percent);
+        const double power_w = slot.min_mechanical_w + range_of(question, i).min_w;
+        const double source_v = open_circuit_voltage_v(dynamics, value.min_power_trajectory[i].soc_percent);
         const auto bound = current_bound(std::max(0.0, power_w), source_v, dynamics.resistance_ohm);
         const double percent_per_vs =
             bound ? (1.0 - between_samples) * bound->current_a_per_v * dynamics.percent_per_as : 0.0;
@@ -115,17 +117,17 @@ void set_rc_low(const ScheduleQuestion& question, ScheduleValue& value) {
     }
 }
 
-double greatest_w(const ScheduleQuestion& question, std::size_t slot) {
+double max_w(const ScheduleProblem& question, std::size_t slot) {
     return (1.0 + between_samples) *
-           std::max(0.0, question.quick.slots[slot].greatest_mechanical_w + range_of(question, slot).greatest_w);
+           std::max(0.0, question.coarse.slots[slot].max_mechanical_w + range_of(question, slot).max_w);
 }
 
 /// The greatest RC voltage of what lands; none if the power limit is near.
-std::optional<double> greatest_rc_v(const ScheduleQuestion& question, const ScheduleValue& value) {
-    const auto& dynamics = question.quick;
+std::optional<double> max_rc_v(const ScheduleProblem& question, const UtilityBound& value) {
+    const auto& dynamics = question.coarse;
     double power_w = 0.0;
-    for (std::size_t i = 0; i < dynamics.slots.size(); ++i) power_w = std::max(power_w, greatest_w(question, i));
-    const double rest_v = open_circuit_voltage_v(dynamics, lowest_percent(value, dynamics.slots.size()));
+    for (std::size_t i = 0; i < dynamics.slots.size(); ++i) power_w = std::max(power_w, max_w(question, i));
+    const double rest_v = open_circuit_voltage_v(dynamics, min_percent(value, dynamics.slots.size()));
     double rc_v = question.start.rc_voltage_v;
     constexpr int rounds = 50;  // to where the current's own voltage holds it
     for (int round = 0; round < rounds; ++round) {
@@ -138,29 +140,30 @@ std::optional<double> greatest_rc_v(const ScheduleQuestion& question, const Sche
     return std::nullopt;
 }
 
-/// Charge that outweighs a volt of RC voltage at once: it keeps the voltage before the resistor higher, and with that the
-/// current lower, for ever.
+/// Charge that outweighs a volt of RC voltage at once: it keeps the voltage before the resistor higher, and with that
+/// the current lower, for ever.
 double outweighing_percent_per_v(const SlotDynamics& dynamics, double from_percent, double to_percent) {
     const double least = slopes_in(dynamics, from_percent, to_percent).least;
     return least > 0.0 ? 1.0 / least : std::numeric_limits<double>::infinity();
 }
 
-/// The same as set_rc_low from above: what a volt costs at most, as long as a cut-off or the power limit cannot end what
-/// lands otherwise; where they can, what outweighs it.
-void set_rc_high(const ScheduleQuestion& question, ScheduleValue& value) {
-    const auto& dynamics = question.quick;
+/// The same as set_rc_low from above: what a volt costs at most, as long as a cut-off or the power limit cannot end
+/// what lands otherwise; where they can, what outweighs it.
+void set_rc_high(const ScheduleProblem& question, UtilityBound& value) {
+    const auto& dynamics = question.coarse;
     value.rc_usual.assign(dynamics.slots.size() + 1, 0.0);
     value.rc_high.assign(dynamics.slots.size() + 1, 0.0);
     value.rc_joined = value.rc_high;
     if (dynamics.rc_resistance_ohm == 0.0) return;
-    const auto rc_v = greatest_rc_v(question, value);
-    const double end_percent = lowest_percent(value, dynamics.slots.size());
+    const auto rc_v = max_rc_v(question, value);
+    const double end_percent = min_percent(value, dynamics.slots.size());
     bool may_end = false;
     double of_limit = 0.0;  // what a volt gives in a slot whose power the voltage limits
     for (std::size_t i = dynamics.slots.size(); i-- > 0;) {
-        const double source_v = open_circuit_voltage_v(dynamics, lowest_percent(value, i + 1)) - rc_v.value_or(0.0);
-        const auto bound = current_bound(greatest_w(question, i), source_v, dynamics.resistance_ohm);
-        const double outweighs = outweighing_percent_per_v(dynamics, end_percent, value.highest[i].soc_percent);
+        const double source_v = open_circuit_voltage_v(dynamics, min_percent(value, i + 1)) - rc_v.value_or(0.0);
+        const auto bound = current_bound(max_w(question, i), source_v, dynamics.resistance_ohm);
+        const double outweighs =
+            outweighing_percent_per_v(dynamics, end_percent, value.min_power_trajectory[i].soc_percent);
         double usual = outweighs;
         if (bound && dynamics.rc_resistance_ohm * bound->current_a_per_v < 1.0) {
             const double decay_per_s =
@@ -183,14 +186,14 @@ void set_rc_high(const ScheduleQuestion& question, ScheduleValue& value) {
     }
 }
 
-double cell_percent(const ScheduleValue& value) {
+double cell_percent(const UtilityBound& value) {
     return std::max(value.spare_percent, 1e-9) / static_cast<double>(value.cells);
 }
 
 std::optional<battery::BatteryState> after_run(const SlotDynamics& dynamics, std::size_t from, const ChoiceRun& run,
                                                battery::BatteryState state) {
     for (std::size_t i = from; i < run.to; ++i) {
-        const auto after = after_slot(dynamics, i, run.choice, state);
+        const auto after = advance_slot(dynamics, i, run.choice, state);
         if (!after) return std::nullopt;
         state = *after;
     }
@@ -204,11 +207,12 @@ double energy_j(const SlotDynamics& dynamics, std::size_t from, const ChoiceRun&
     return sum_j;
 }
 
-/// How far the RC voltage of what draws most gets above the least, in equal levels; what is above the last counts as there.
-void set_levels(const ScheduleQuestion& question, ScheduleValue& value) {
+/// How far the RC voltage of what draws most gets above the least, in equal levels; what is above the last counts as
+/// there.
+void set_levels(const ScheduleProblem& question, UtilityBound& value) {
     constexpr std::size_t levels = 5;
     constexpr std::size_t cells_with_levels = 48;  // fewer cells are meant to be quick
-    const auto& dynamics = question.quick;
+    const auto& dynamics = question.coarse;
     value.level_v.assign(dynamics.slots.size() + 1, 0.0);
     if (dynamics.rc_resistance_ohm == 0.0 || value.cells < cells_with_levels) return;
     value.levels = levels;
@@ -216,8 +220,8 @@ void set_levels(const ScheduleQuestion& question, ScheduleValue& value) {
     double above_v = 0.0;
     for (std::size_t i = 0; i < dynamics.slots.size(); ++i) {
         const auto range = range_of(question, i);
-        const double source_v = open_circuit_voltage_v(dynamics, value.highest[i].soc_percent);
-        const double steady_v = dynamics.rc_resistance_ohm * (range.greatest_w - range.least_w) / source_v;
+        const double source_v = open_circuit_voltage_v(dynamics, value.min_power_trajectory[i].soc_percent);
+        const double steady_v = dynamics.rc_resistance_ohm * (range.max_w - range.min_w) / source_v;
         above_v = relaxed(above_v, steady_v / dynamics.rc_time_constant_s, 1.0 / dynamics.rc_time_constant_s,
                           dynamics.slots[i].duration_s);
         value.level_v[i + 1] = above_v / static_cast<double>(levels);
@@ -225,50 +229,52 @@ void set_levels(const ScheduleQuestion& question, ScheduleValue& value) {
 }
 
 /// From the mission's end back, by bisection.
-void set_enough(const ScheduleQuestion& question, ScheduleValue& value) {
+void set_enough(const ScheduleProblem& question, UtilityBound& value) {
     constexpr std::size_t steps = 40;
     constexpr int halvings = 20;
-    const auto& dynamics = question.quick;
+    const auto& dynamics = question.coarse;
     if (dynamics.cutoff_voltage_v == 0.0) return;
     const std::size_t slots = dynamics.slots.size();
     const auto levels = static_cast<double>(value.levels);
     for (std::size_t i = 0; i <= slots; ++i)
         value.enough_step_v.push_back(value.level_v[i] * levels / static_cast<double>(steps));
-    value.enough_percent.assign(slots + 1, std::vector<double>(steps + 1, quick_reserve_percent(question)));
+    value.min_charge_percent.assign(slots + 1, std::vector<double>(steps + 1, quick_reserve_percent(question)));
     for (std::size_t i = slots; i-- > 0;) {
         for (std::size_t k = 0; k <= steps; ++k) {
-            const double rc_v = value.highest[i].rc_voltage_v + value.enough_step_v[i] * static_cast<double>(k);
-            double too_low = lowest_percent(value, i);
-            double high = value.highest[i].soc_percent;
+            const double rc_v =
+                value.min_power_trajectory[i].rc_voltage_v + value.enough_step_v[i] * static_cast<double>(k);
+            double too_low = min_percent(value, i);
+            double high = value.min_power_trajectory[i].soc_percent;
             for (int halving = 0; halving < halvings; ++halving) {
                 const double middle = std::midpoint(too_low, high);
-                const auto after = after_slot(dynamics, i, range_of(question, i).least_choice, {middle, rc_v});
+                const auto after = advance_slot(dynamics, i, range_of(question, i).min_choice, {middle, rc_v});
                 (after && may_land(value, i + 1, *after) ? high : too_low) = middle;
             }
-            value.enough_percent[i][k] = too_low;
+            value.min_charge_percent[i][k] = too_low;
         }
     }
 }
 
-double level_rc_v(const ScheduleValue& value, std::size_t slot, std::size_t level) {
-    return value.highest[slot].rc_voltage_v + value.level_v[slot] * static_cast<double>(level);
+double level_rc_v(const UtilityBound& value, std::size_t slot, std::size_t level) {
+    return value.min_power_trajectory[slot].rc_voltage_v + value.level_v[slot] * static_cast<double>(level);
 }
 
-const std::vector<ConcaveCurve>& curves_with(const ScheduleValue& value, std::size_t slot, std::size_t choice) {
+const std::vector<ConcaveCurve>& curves_with(const UtilityBound& value, std::size_t slot, std::size_t choice) {
     const auto& with = value.with[slot];
     return choice < with.size() && !with[choice].empty() ? with[choice] : value.any[slot];
 }
 
 /// Two charges part by what the higher one's voltage saves: of a slope m at least m P / U^2 points a second for each.
-RunReach reach_of(const SlotDynamics& dynamics, const ScheduleValue& value, std::size_t from, const ChoiceRun& run) {
+RunTransition reach_of(const SlotDynamics& dynamics, const UtilityBound& value, std::size_t from,
+                       const ChoiceRun& run) {
     const std::size_t charges = value.cells + 1;
-    RunReach reach{std::vector<EffectiveCharge>(value.levels * charges, {never, 0}),
-                   std::vector<double>(value.levels * charges, 1.0)};
+    RunTransition reach{std::vector<EffectiveCharge>(value.levels * charges, {never, 0}),
+                        std::vector<double>(value.levels * charges, 1.0)};
     const double run_j = energy_j(dynamics, from, run);
     for (std::size_t level = 0; level < value.levels; ++level) {
         std::optional<double> lower_end;
         for (std::size_t j = 0; j < charges; ++j) {
-            const double start_percent = lowest_percent(value, from) + cell_percent(value) * static_cast<double>(j);
+            const double start_percent = min_percent(value, from) + cell_percent(value) * static_cast<double>(j);
             const auto end = after_run(dynamics, from, run, {start_percent, level_rc_v(value, from, level)});
             if (!end || !may_land(value, run.to, *end)) continue;
             reach.end[level * charges + j] = effective_charge(value, run.to, *end);
@@ -285,22 +291,22 @@ RunReach reach_of(const SlotDynamics& dynamics, const ScheduleValue& value, std:
 }
 
 /// Of one level.
-void add_run_points(const ScheduleValue& value, std::size_t from, std::size_t level, const ChoiceRun& run,
-                    const RunReach& reach, std::vector<CurvePoint>& points) {
+void add_run_points(const UtilityBound& value, std::size_t from, std::size_t level, const ChoiceRun& run,
+                    const RunTransition& reach, std::vector<CurvePoint>& points) {
     const auto& next = curves_with(value, run.to, run.choice);
     const double step = cell_percent(value);
     for (std::size_t j = 1; j <= value.cells; ++j) {
         const std::size_t at = level * (value.cells + 1) + j;
-        const double end_percent = lowest_percent(value, from) + step * static_cast<double>(j);
+        const double end_percent = min_percent(value, from) + step * static_cast<double>(j);
         add_mapped(next[reach.end[at].level],
                    {end_percent - step, end_percent, reach.end[at].percent, reach.growth[at]}, run.sum.utility, points);
     }
 }
 
 /// The curves of one slot, of those behind it.
-void set_curves(const ScheduleQuestion& question, const KnapsackGraph& graph, std::size_t i, ScheduleValue& value) {
-    for (const auto& run : graph.runs[i]) value.runs[i].push_back(reach_of(question.quick, value, i, run));
-    for (const auto& run : graph.one_more[i]) value.one_more[i].push_back(reach_of(question.quick, value, i, run));
+void set_curves(const ScheduleProblem& question, const KnapsackGraph& graph, std::size_t i, UtilityBound& value) {
+    for (const auto& run : graph.runs[i]) value.runs[i].push_back(reach_of(question.coarse, value, i, run));
+    for (const auto& run : graph.one_more[i]) value.one_more[i].push_back(reach_of(question.coarse, value, i, run));
     if (!graph.one_more[i].empty()) value.with[i].resize(graph.choices);
     for (std::size_t level = 0; level < value.levels; ++level) {
         std::vector<CurvePoint> points;
@@ -317,8 +323,8 @@ void set_curves(const ScheduleQuestion& question, const KnapsackGraph& graph, st
 
 }  // namespace
 
-ScheduleValue make_schedule_value(const ScheduleQuestion& question, const KnapsackGraph& graph, std::size_t cells) {
-    ScheduleValue value;
+UtilityBound make_schedule_value(const ScheduleProblem& question, const KnapsackGraph& graph, std::size_t cells) {
+    UtilityBound value;
     value.cells = cells;
     value.possible = fly_least(question, value);
     if (!value.possible) return value;
@@ -335,32 +341,32 @@ ScheduleValue make_schedule_value(const ScheduleQuestion& question, const Knapsa
     return value;
 }
 
-bool may_land(const ScheduleValue& value, std::size_t slot, const battery::BatteryState& state) {
-    if (value.enough_percent.empty()) return true;
-    const auto& enough = value.enough_percent[slot];
+bool may_land(const UtilityBound& value, std::size_t slot, const battery::BatteryState& state) {
+    if (value.min_charge_percent.empty()) return true;
+    const auto& enough = value.min_charge_percent[slot];
     const double step_v = value.enough_step_v[slot];
-    const double above_v = state.rc_voltage_v - value.highest[slot].rc_voltage_v;
+    const double above_v = state.rc_voltage_v - value.min_power_trajectory[slot].rc_voltage_v;
     const double most = static_cast<double>(enough.size() - 1);
     const double steps = step_v > 0.0 ? std::clamp(std::floor(above_v / step_v), 0.0, most) : 0.0;
     return state.soc_percent >= enough[static_cast<std::size_t>(steps)];
 }
 
-EffectiveCharge effective_charge(const ScheduleValue& value, std::size_t slot, const battery::BatteryState& state) {
-    const double above_v = state.rc_voltage_v - value.highest[slot].rc_voltage_v;
+EffectiveCharge effective_charge(const UtilityBound& value, std::size_t slot, const battery::BatteryState& state) {
+    const double above_v = state.rc_voltage_v - value.min_power_trajectory[slot].rc_voltage_v;
     const double level_v = value.level_v[slot];
-    const double highest_level = static_cast<double>(value.levels - 1);
-    const double level = level_v > 0.0 ? std::clamp(std::floor(above_v / level_v), 0.0, highest_level) : 0.0;
+    const double max_level = static_cast<double>(value.levels - 1);
+    const double level = level_v > 0.0 ? std::clamp(std::floor(above_v / level_v), 0.0, max_level) : 0.0;
     return {state.soc_percent - value.rc_low[slot] * (above_v - level * level_v), static_cast<std::size_t>(level)};
 }
 
-double utility_to_go(const ScheduleValue& value, std::size_t slot, std::size_t choice, const EffectiveCharge& charge) {
+double utility_to_go(const UtilityBound& value, std::size_t slot, std::size_t choice, const EffectiveCharge& charge) {
     return value_at(curves_with(value, slot, choice)[charge.level], charge.percent);
 }
 
-EffectiveCharge reached(const ScheduleValue& value, std::size_t slot, const RunReach& reach,
-                        const EffectiveCharge& charge) {
+EffectiveCharge apply_transition(const UtilityBound& value, std::size_t slot, const RunTransition& reach,
+                                 const EffectiveCharge& charge) {
     const double step = cell_percent(value);
-    const double lowest = lowest_percent(value, slot);
+    const double lowest = min_percent(value, slot);
     const double position = std::ceil((charge.percent - lowest) / step);
     const auto j = static_cast<std::size_t>(std::clamp(position, 1.0, static_cast<double>(value.cells)));
     const std::size_t at = charge.level * (value.cells + 1) + j;

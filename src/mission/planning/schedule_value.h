@@ -10,10 +10,10 @@
 namespace flightwatt::mission {
 
 /// A question to search schedules for: which choice to run in each slot, so that the battery lands with the reserve.
-struct ScheduleQuestion {
+struct ScheduleProblem {
     const SlotDynamics& exact;
-    const SlotDynamics& quick;              ///< in longer steps, for the many states that are compared
-    const SlotDynamics& closer;             ///< in between, where `quick` cannot tell
+    const SlotDynamics& coarse;             ///< in longer steps, for the many states that are compared
+    const SlotDynamics& medium;             ///< in between, where `coarse` cannot tell
     const MultipleChoiceKnapsack& choices;  ///< its costs and its budget count for nothing
     battery::BatteryState start;
     double reserve_soc_percent = 0.0;
@@ -26,7 +26,7 @@ struct EffectiveCharge {
 };
 
 /// Where a run leads to from evenly spread charges at each level of RC voltage.
-struct RunReach {
+struct RunTransition {
     std::vector<EffectiveCharge> end;  ///< level by level; minus infinity: the battery does not do it
     std::vector<double> growth;        ///< by which the end rises at least with the start, from the charge below
 };
@@ -34,12 +34,12 @@ struct RunReach {
 /// An upper bound of the utility that can follow from any state in which a slot may be reached.
 ///
 /// If nothing charges, more charge and less RC voltage are better at any later time: with y = -U_rc the right sides of
-/// Eqs. 26 and 29 rise with the other variable (a cooperative system). So no schedule has more charge or less RC voltage
-/// than the one of least power, the difference of two charges never shrinks, and RC voltage above the least can be
-/// traded for charge: `rc_low` points a volt are no loss, `rc_high` are no gain.
-struct ScheduleValue {
+/// Eqs. 26 and 29 rise with the other variable (a cooperative system). So no schedule has more charge or less RC
+/// voltage than the one of least power, the difference of two charges never shrinks, and RC voltage above the least can
+/// be traded for charge: `rc_low` points a volt are no loss, `rc_high` are no gain.
+struct UtilityBound {
     /// Of the course of least power at each slot's start, and the mission's end.
-    std::vector<battery::BatteryState> highest;
+    std::vector<battery::BatteryState> min_power_trajectory;
     double spare_percent = 0.0;  ///< that course lands with so much above the reserve; no state that lands is lower
     std::size_t cells = 0;       ///< the charges from there up to the course
     std::vector<double> rc_low;  ///< [points/V] at each slot's start
@@ -51,27 +51,27 @@ struct ScheduleValue {
     std::vector<double> level_v;  ///< from one to the next, at each slot's start
     /// Where there is a cut-off: with less than this charge not even the least power keeps the battery from it. At each
     /// slot's start, for RC voltages from the course's on, in equal steps.
-    std::vector<std::vector<double>> enough_percent;
+    std::vector<std::vector<double>> min_charge_percent;
     std::vector<double> enough_step_v;
     std::vector<std::vector<ConcaveCurve>> any;  ///< of each level, over effective charge; free to begin a run
     std::vector<std::vector<std::vector<ConcaveCurve>>> with;  ///< while a choice runs that may go on; none: as any
-    std::vector<std::vector<RunReach>> runs;                   ///< as the graph's
-    std::vector<std::vector<RunReach>> one_more;
+    std::vector<std::vector<RunTransition>> runs;              ///< as the graph's
+    std::vector<std::vector<RunTransition>> one_more;
     bool possible = true;  ///< the course of least power lands with the reserve
 };
 
-ScheduleValue make_schedule_value(const ScheduleQuestion& question, const KnapsackGraph& graph, std::size_t cells);
+UtilityBound make_schedule_value(const ScheduleProblem& question, const KnapsackGraph& graph, std::size_t cells);
 
-EffectiveCharge effective_charge(const ScheduleValue& value, std::size_t slot, const battery::BatteryState& state);
+EffectiveCharge effective_charge(const UtilityBound& value, std::size_t slot, const battery::BatteryState& state);
 
 /// Whether the course of least power may land from a state; nothing else lands otherwise.
-bool may_land(const ScheduleValue& value, std::size_t slot, const battery::BatteryState& state);
+bool may_land(const UtilityBound& value, std::size_t slot, const battery::BatteryState& state);
 
 /// The bound of what can follow while a choice runs.
-double utility_to_go(const ScheduleValue& value, std::size_t slot, std::size_t choice, const EffectiveCharge& charge);
+double utility_to_go(const UtilityBound& value, std::size_t slot, std::size_t choice, const EffectiveCharge& charge);
 
 /// No more than this is left of a charge at `slot` after a run.
-EffectiveCharge reached(const ScheduleValue& value, std::size_t slot, const RunReach& reach,
-                        const EffectiveCharge& charge);
+EffectiveCharge apply_transition(const UtilityBound& value, std::size_t slot, const RunTransition& reach,
+                                 const EffectiveCharge& charge);
 
 }  // namespace flightwatt::mission

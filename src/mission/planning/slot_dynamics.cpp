@@ -10,11 +10,11 @@
 namespace flightwatt::mission {
 namespace {
 
-constexpr double longest_step_s = 4.0;
+constexpr double max_step_s = 4.0;
 constexpr double shortest_step_s = 0.05;
 constexpr double wanted_agreement_percent = 1e-7;
 constexpr double longest_quick_step_s = 20.0;
-constexpr double quick_agreement_percent = quick_error_percent / 10.0;
+constexpr double quick_agreement_percent = coarse_error_percent / 10.0;
 
 /// The circuit while one choice runs: the line of the open-circuit voltage in which the charge was last seen is
 /// remembered.
@@ -71,10 +71,10 @@ class SlotCircuit {
     std::size_t line_ = 0;
 };
 
-SlotDynamics::Part part_of(const SlotDynamics& dynamics, const LoadSegment& segment, double most_step_s,
+SlotDynamics::Part part_of(const SlotDynamics& dynamics, const LoadSegment& segment, double longest_step_s,
                            double mechanical_factor) {
     const double duration_s = segment.end_s - segment.start_s;
-    const auto steps = static_cast<std::size_t>(std::max(1.0, std::ceil(duration_s / most_step_s * (1.0 - 1e-12))));
+    const auto steps = static_cast<std::size_t>(std::max(1.0, std::ceil(duration_s / longest_step_s * (1.0 - 1e-12))));
     const double step_s = duration_s / static_cast<double>(steps);
     const double ohm = dynamics.rc_resistance_ohm;
     const double constant_s = dynamics.rc_time_constant_s;
@@ -91,13 +91,13 @@ SlotDynamics::Slot slot_of(const SlotDynamics& dynamics, const LoadSegment& segm
                            double mechanical_factor) {
     SlotDynamics::Slot slot;
     slot.duration_s = segment.end_s - segment.start_s;
-    slot.least_mechanical_w = std::numeric_limits<double>::infinity();
-    slot.greatest_mechanical_w = -slot.least_mechanical_w;
-    for (const auto& smooth : smooth_parts(segment)) {
+    slot.min_mechanical_w = std::numeric_limits<double>::infinity();
+    slot.max_mechanical_w = -slot.min_mechanical_w;
+    for (const auto& smooth : split_at_jumps(segment)) {
         slot.parts.push_back(part_of(dynamics, smooth, step_s, mechanical_factor));
         const auto [least, greatest] = std::ranges::minmax_element(slot.parts.back().mechanical_w);
-        slot.least_mechanical_w = std::min(slot.least_mechanical_w, *least);
-        slot.greatest_mechanical_w = std::max(slot.greatest_mechanical_w, *greatest);
+        slot.min_mechanical_w = std::min(slot.min_mechanical_w, *least);
+        slot.max_mechanical_w = std::max(slot.max_mechanical_w, *greatest);
     }
     slot.mechanical_energy_j = mechanical_factor * mechanical_energy_j(segment, segment.end_s);
     return slot;
@@ -105,7 +105,7 @@ SlotDynamics::Slot slot_of(const SlotDynamics& dynamics, const LoadSegment& segm
 
 void set_circuit(const battery::Battery& battery, SlotDynamics& dynamics) {
     dynamics.resistance_ohm = battery.resistance_ohm;
-    dynamics.percent_per_as = units::percent_of(1.0, units::coulomb_from_ah(battery.capacity_ah));
+    dynamics.percent_per_as = units::percentage(1.0, units::coulomb_from_ah(battery.capacity_ah));
     if (battery.thevenin) {
         dynamics.knot_percent = battery.thevenin->open_circuit.soc_percent;
         dynamics.knot_v = battery.thevenin->open_circuit.voltage_v;
@@ -139,7 +139,7 @@ struct SlotStep {
 struct StepEnd {
     LoadedState end;
     double middle_percent = 0.0;
-    double least_v = 0.0;
+    double min_v = 0.0;
 };
 
 StepEnd after_step(SlotCircuit& circuit, const SlotStep& step, const LoadedState& start) {
@@ -160,9 +160,9 @@ StepEnd after_step(SlotCircuit& circuit, const SlotStep& step, const LoadedState
     after.end.state.soc_percent = std::min(after.end.state.soc_percent, units::percent_per_whole);
     after.end.load = circuit.at(after.end.state, step.mechanical_w.end);
     after.middle_percent = middle_state.soc_percent;
-    after.least_v = battery::Parabola{circuit.terminal_v(start.load), circuit.terminal_v(middle),
-                                      circuit.terminal_v(after.end.load)}
-                        .least();
+    after.min_v = battery::Parabola{circuit.terminal_v(start.load), circuit.terminal_v(middle),
+                                    circuit.terminal_v(after.end.load)}
+                      .minimum();
     return after;
 }
 
@@ -177,11 +177,11 @@ StepEnd after_knot(const SlotDynamics& dynamics, SlotCircuit& circuit, const Slo
         return after_step(
             circuit, {{power_w.at(from), power_w.at((from + to) / 2.0), power_w.at(to)}, length_s, half, whole}, at);
     };
-    const double knot = std::clamp(beyond_knot.falls_below_zero(), 0.0, 1.0);
+    const double knot = std::clamp(beyond_knot.first_zero_crossing(), 0.0, 1.0);
     if (knot == 0.0 || knot == 1.0) return after_step(circuit, step, start);
     const auto before = part_of(0.0, knot, start);
     auto after = part_of(knot, 1.0, before.end);
-    after.least_v = std::min(before.least_v, after.least_v);
+    after.min_v = std::min(before.min_v, after.min_v);
     return after;
 }
 
@@ -189,10 +189,10 @@ std::optional<battery::BatteryState> after_part(const SlotDynamics& dynamics, co
                                                 SlotCircuit& circuit, const battery::BatteryState& state) {
     constexpr double rounding_v = 1e-6;
     const double cutoff_v = dynamics.cutoff_voltage_v;
-    const double least_v = cutoff_v > 0.0 ? cutoff_v - dynamics.error_v - rounding_v : -1.0;
+    const double min_v = cutoff_v > 0.0 ? cutoff_v - dynamics.error_v - rounding_v : -1.0;
     const auto& power_w = part.mechanical_w;
     LoadedState now{state, circuit.at(state, power_w.front())};
-    if (!now.load.is_deliverable || circuit.terminal_v(now.load) < least_v) return std::nullopt;
+    if (!now.load.is_deliverable || circuit.terminal_v(now.load) < min_v) return std::nullopt;
     for (std::size_t k = 0; k + 1 < power_w.size(); k += 2) {
         const SlotStep step{{power_w[k], power_w[k + 1], power_w[k + 2]}, part.step_s, part.half_step, part.step};
         auto after = after_step(circuit, step, now);
@@ -204,7 +204,7 @@ std::optional<battery::BatteryState> after_part(const SlotDynamics& dynamics, co
                 dynamics, circuit, step, now,
                 {sign * (from_percent - *knot), sign * (after.middle_percent - *knot), sign * (to_percent - *knot)});
         }
-        if (!after.end.load.is_deliverable || after.least_v < least_v) return std::nullopt;
+        if (!after.end.load.is_deliverable || after.min_v < min_v) return std::nullopt;
         now = after.end;
     }
     return now.state;
@@ -214,7 +214,7 @@ std::optional<battery::BatteryState> after_part(const SlotDynamics& dynamics, co
 std::optional<double> end_percent(const SlotDynamics& dynamics, std::size_t choice, double soc_percent) {
     battery::BatteryState state{soc_percent};
     for (std::size_t i = 0; i < dynamics.slots.size(); ++i) {
-        const auto after = after_slot(dynamics, i, choice, state);
+        const auto after = advance_slot(dynamics, i, choice, state);
         if (!after || after->soc_percent < 0.0) return std::nullopt;
         state = *after;
     }
@@ -227,7 +227,7 @@ MissionSetup without_cut_off(MissionSetup mission) {
 }
 
 /// Over longer steps the RC pair's transient is no parabola.
-double longest_transient_s(const battery::Battery& battery) {
+double max_transient_s(const battery::Battery& battery) {
     const bool has_pair = battery.thevenin && battery.thevenin->rc_resistance_ohm > 0.0;
     return has_pair ? battery.thevenin->rc_time_constant_s : std::numeric_limits<double>::infinity();
 }
@@ -250,17 +250,17 @@ SlotDynamics make_slot_dynamics(const MissionSetup& mission, const std::vector<P
     set_circuit(mission.battery, dynamics);
     dynamics.cutoff_voltage_v = mission.cutoff_voltage_v;
     dynamics.compute_w = std::move(compute_w);
-    const auto load = load_of(mission);
+    const auto load = make_mission_load(mission);
     dynamics.slots.reserve(slots.size());
     for (const auto& slot : slots)
         dynamics.slots.push_back(slot_of(dynamics, load_segment(load, {slot, {}}), step_s, mechanical_factor));
     return dynamics;
 }
 
-double step_for(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
-                const std::vector<double>& compute_w) {
+double choose_step_s(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
+                     const std::vector<double>& compute_w) {
     const auto uncut = without_cut_off(mission);
-    double step_s = std::min(longest_step_s, longest_transient_s(mission.battery) / 2.0);
+    double step_s = std::min(max_step_s, max_transient_s(mission.battery) / 2.0);
     const auto [least, most] = std::ranges::minmax_element(compute_w);
     const std::vector<double> extremes{*least, *most};
     auto dynamics = make_slot_dynamics(uncut, slots, extremes, step_s);
@@ -273,22 +273,22 @@ double step_for(const MissionSetup& mission, const std::vector<PhaseSegment>& sl
     return step_s;
 }
 
-double quick_step_for(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
-                      const std::vector<double>& compute_w, double step_s) {
+double choose_coarse_step_s(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
+                            const std::vector<double>& compute_w, double step_s) {
     const auto uncut = without_cut_off(mission);
     const auto [least, most] = std::ranges::minmax_element(compute_w);
     const std::vector<double> extremes{*least, *most};
     const auto exact = make_slot_dynamics(uncut, slots, extremes, step_s);
     double quick_s = step_s;
-    const double longest_s = std::min(longest_quick_step_s, longest_transient_s(mission.battery));
-    while (quick_s * 2.0 <= longest_s && agree(exact, make_slot_dynamics(uncut, slots, extremes, quick_s * 2.0),
-                                               mission.initial_soc_percent, quick_agreement_percent))
+    const double max_s = std::min(longest_quick_step_s, max_transient_s(mission.battery));
+    while (quick_s * 2.0 <= max_s && agree(exact, make_slot_dynamics(uncut, slots, extremes, quick_s * 2.0),
+                                           mission.initial_soc_percent, quick_agreement_percent))
         quick_s *= 2.0;
     return quick_s;
 }
 
-std::optional<battery::BatteryState> after_slot(const SlotDynamics& dynamics, std::size_t slot, std::size_t choice,
-                                                const battery::BatteryState& state) {
+std::optional<battery::BatteryState> advance_slot(const SlotDynamics& dynamics, std::size_t slot, std::size_t choice,
+                                                  const battery::BatteryState& state) {
     SlotCircuit circuit(dynamics, dynamics.compute_w[choice]);
     std::optional<battery::BatteryState> after = state;
     for (const auto& part : dynamics.slots[slot].parts)

@@ -23,8 +23,8 @@ struct SlotDynamics {
     };
     struct Slot {
         std::vector<Part> parts;  ///< one, but on a path
-        double least_mechanical_w = 0.0;
-        double greatest_mechanical_w = 0.0;
+        double min_mechanical_w = 0.0;
+        double max_mechanical_w = 0.0;
         double mechanical_energy_j = 0.0;
         double duration_s = 0.0;
     };
@@ -45,9 +45,9 @@ struct SlotDynamics {
     double error_v = 0.0;
 };
 
-/// What steps of quick_step_for are taken to be off by at most.
-constexpr double quick_error_percent = 2e-4;
-constexpr double quick_error_v = 1e-4;
+/// What steps of choose_coarse_step_s are taken to be off by at most.
+constexpr double coarse_error_percent = 2e-4;
+constexpr double coarse_error_v = 1e-4;
 
 /// The dynamics of parts of a mission's phases, with the mechanical power times a factor. Steps are at most `step_s`.
 SlotDynamics make_slot_dynamics(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
@@ -55,19 +55,19 @@ SlotDynamics make_slot_dynamics(const MissionSetup& mission, const std::vector<P
 
 /// The longest step [s] whose halving moves the end of neither the schedule of least power nor that of most by 1e-7
 /// points, of the steps tried: 4 s (or half the RC time constant), and halves of that down to 0.05 s.
-double step_for(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
-                const std::vector<double>& compute_w);
+double choose_step_s(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
+                     const std::vector<double>& compute_w);
 
 /// A longer step, of at most 20 s and the RC time constant, for the many states that a search only compares: doubled
-/// while the ends of both schedules move by less than a tenth of quick_error_percent.
-double quick_step_for(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
-                      const std::vector<double>& compute_w, double step_s);
+/// while the ends of both schedules move by less than a tenth of coarse_error_percent.
+double choose_coarse_step_s(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
+                            const std::vector<double>& compute_w, double step_s);
 
 /// The battery at the end of a slot; none if it was cut off (by a parabola through the voltages at the start,
 /// middle and end of each step), or could not deliver at the start or the end of a step. State of charge goes on below
 /// 0, and not above 100.
-std::optional<battery::BatteryState> after_slot(const SlotDynamics& dynamics, std::size_t slot, std::size_t choice,
-                                                const battery::BatteryState& state);
+std::optional<battery::BatteryState> advance_slot(const SlotDynamics& dynamics, std::size_t slot, std::size_t choice,
+                                                  const battery::BatteryState& state);
 
 /// [V] at rest.
 double open_circuit_voltage_v(const SlotDynamics& dynamics, double soc_percent);

@@ -1,7 +1,7 @@
 #include "mission/replanning/adaptive_flight.h"
 
 #include "base/error.h"
-#include "mission/flight_decider.h"
+#include "mission/flight_replanner.h"
 #include "mission/simulation/load_segments.h"
 
 #include <algorithm>
@@ -43,26 +43,26 @@ std::vector<PhaseSegment> intervals_of(const PlanningProblem& known) {
 class Flight {
   public:
     Flight(const AdaptivePlanner& planner, const MissionSetup& actual, const Disturbances& disturbances)
-        : known_(planner.known),
+        : known_(planner.nominal),
           actual_(actual),
           disturbances_(disturbances),
-          battery_(disturbed(actual.battery, disturbances)),
-          load_(load_of(actual)),
+          battery_(apply_disturbances(actual.battery, disturbances)),
+          load_(make_mission_load(actual)),
           decider_(planner) {
         charge_.soc_percent = actual.initial_soc_percent;
     }
 
     void fly(const PhaseSegment& interval) {
-        const auto plan = decider_.decide({interval.phase, interval.start_s}, charge_);
+        const auto plan = decider_.replan({interval.phase, interval.start_s}, charge_);
         const auto before = charge_;
-        const auto run = part_of(plan.schedule, interval);
+        const auto run = clip_to_interval(plan.schedule, interval);
         for (const auto& segment : run) fly(segment);
-        decider_.learn(interval, run, before, charge_.soc_percent);
+        decider_.update(interval, run, before, charge_.soc_percent);
         ++flight_.decisions.made;
         if (!plan.feasible) ++flight_.decisions.without_plan;
     }
 
-    AdaptiveFlight landed() {
+    AdaptiveResult landed() {
         flight_.schedule =
             rescale_to_flown_durations(std::move(flight_.schedule), known_.duration_s, actual_.duration_s);
         flight_.decisions.mechanical_factor = decider_.mechanical_factor();
@@ -74,8 +74,8 @@ class Flight {
     void fly(const ScheduleSegment& planned) {
         append_merged(flight_.schedule, planned);
         const auto flown = rescale_to_flown_durations({planned}, known_.duration_s, actual_.duration_s);
-        for (const auto& segment : disturbed(smooth_parts(load_segment(load_, flown.front())), disturbances_))
-            charge_ = after_segment(battery_, actual_.cutoff_voltage_v, segment, charge_);
+        for (const auto& segment : disturbed(split_at_jumps(load_segment(load_, flown.front())), disturbances_))
+            charge_ = advance_segment(battery_, actual_.cutoff_voltage_v, segment, charge_);
     }
 
     const PlanningProblem& known_;
@@ -83,8 +83,8 @@ class Flight {
     const Disturbances& disturbances_;
     battery::Battery battery_;  ///< as it really is
     MissionLoad load_;          ///< of the mission as it really is
-    FlightDecider decider_;
-    AdaptiveFlight flight_;
+    FlightReplanner decider_;
+    AdaptiveResult flight_;
     battery::Discharge charge_;
 };
 
@@ -93,7 +93,7 @@ class Flight {
 AdaptivePlanner make_adaptive_planner(const PlanningProblem& problem) {
     if (!problem.adaptive) throw std::invalid_argument("make_adaptive_planner: the policy is not adaptive");
     require_few_decisions(problem);
-    AdaptivePlanner planner{problem, make_planner(problem)};
+    AdaptivePlanner planner{problem, make_planning_tables(problem)};
     if (auto& step_s = planner.planner.step_s) {
         double quick_s = 2.0;  // what that is off is far below what flights differ by
         if (problem.battery.thevenin) quick_s = std::min(quick_s, problem.battery.thevenin->rc_time_constant_s / 2.0);
@@ -102,10 +102,10 @@ AdaptivePlanner make_adaptive_planner(const PlanningProblem& problem) {
     return planner;
 }
 
-AdaptiveFlight fly_adaptively(const AdaptivePlanner& planner, const MissionSetup& actual,
-                              const Disturbances& disturbances) {
+AdaptiveResult simulate_adaptive(const AdaptivePlanner& planner, const MissionSetup& actual,
+                                 const Disturbances& disturbances) {
     Flight flight(planner, actual, disturbances);
-    for (const auto& interval : intervals_of(planner.known)) flight.fly(interval);
+    for (const auto& interval : intervals_of(planner.nominal)) flight.fly(interval);
     return flight.landed();
 }
 

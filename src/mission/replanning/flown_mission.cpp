@@ -9,10 +9,10 @@ constexpr double shortest_piece_s = 1.0;  // as long as the coarse steps of flig
 
 }  // namespace
 
-PowerPieces power_pieces(const mechanical::PhasePower& measured) {
+PiecewisePower measured_power_profile(const mechanical::PhasePower& measured) {
     const auto& time_s = measured.time_s;
     const auto& power_w = measured.power_w;
-    PowerPieces pieces;
+    PiecewisePower pieces;
     double energy_j = 0.0;  // of the piece that is being made
     double start_s = 0.0;
     double before_j = 0.0;
@@ -29,8 +29,8 @@ PowerPieces power_pieces(const mechanical::PhasePower& measured) {
     return pieces;
 }
 
-MissionSetup known_mission(const MissionSetup& stated, const mechanical::MechanicalModel& model,
-                           const std::optional<PerPhase<double>>& flown_s) {
+MissionSetup nominal_mission(const MissionSetup& stated, const mechanical::MechanicalModel& model,
+                             const std::optional<PerPhase<double>>& flown_s) {
     auto known = stated;
     known.mechanical = model;
     known.cruise_level.reset();
@@ -48,12 +48,12 @@ MissionSetup known_mission(const MissionSetup& stated, const mechanical::Mechani
     return known;
 }
 
-MissionSetup flown_mission(const MissionSetup& known, const mechanical::MeasuredFlight& flight) {
+MissionSetup measured_mission(const MissionSetup& known, const mechanical::MeasuredFlight& flight) {
     auto flown = known;
     for (const auto phase : all_phases) {
         if (known.duration_s[phase] == 0.0) continue;
         const auto& power = flight.power[phase].value();
-        flown.measured[phase] = std::make_shared<const PowerPieces>(power_pieces(power));
+        flown.measured_power[phase] = std::make_shared<const PiecewisePower>(measured_power_profile(power));
         flown.duration_s[phase] = power.time_s.back();
     }
     return flown;

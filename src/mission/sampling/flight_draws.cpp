@@ -20,9 +20,9 @@
 namespace flightwatt::mission {
 namespace {
 
-constexpr double shortest_part = 0.1;  ///< of a planned duration
-constexpr double longest_part = 10.0;  ///< of it too
-constexpr double least_part = 1e-3;    ///< of what must stay positive
+constexpr double shortest_fraction = 0.1;  ///< of a planned duration
+constexpr double max_part = 10.0;          ///< of it too
+constexpr double min_part = 1e-3;          ///< of what must stay positive
 
 /// `value` moved by `z` deviations of an interval.
 double moved(double value, const std::optional<battery::Interval>& interval, double z, double least) {
@@ -33,7 +33,7 @@ double moved(double value, const std::optional<battery::Interval>& interval, dou
 
 /// The same in the logarithm.
 double moved_logarithm(double value, const std::optional<battery::Interval>& interval, double z) {
-    if (!interval || interval->low <= 0.0) return moved(value, interval, z, least_part * value);
+    if (!interval || interval->low <= 0.0) return moved(value, interval, z, min_part * value);
     const double sd = std::log(z < 0.0 ? value / interval->low : interval->high / value) / sd_per_half_95;
     return value * std::exp(z * sd);
 }
@@ -44,7 +44,7 @@ double moved_resistance_ohm(double mean_ohm, const battery::BatteryIntervals& in
     const double of_mean_ohm = moved(mean_ohm, intervals.resistance_ohm, z, 0.0);
     const auto& scatter = intervals.resistance_scatter;
     if (!scatter) return of_mean_ohm;
-    const double of_flight_ohm = scatter->sd_ohm * student_of_normal(z, static_cast<double>(scatter->flights));
+    const double of_flight_ohm = scatter->sd_ohm * student_from_normal(z, static_cast<double>(scatter->flights));
     return std::max(0.0, mean_ohm + std::copysign(std::hypot(of_mean_ohm - mean_ohm, of_flight_ohm), z));
 }
 
@@ -76,7 +76,7 @@ void move_level(mechanical::PhaseModel& phase, double moved_w, double shown_s) {
     auto& curve = phase.fourier;
     const double planned_a0_w = curve.a0_w;
     curve.a0_w += moved_w;
-    if (moved_w >= 0.0 || least_power_w(curve, {0.0, shown_s}).power_w >= 0.0) return;
+    if (moved_w >= 0.0 || min_power_w(curve, {0.0, shown_s}).power_w >= 0.0) return;
     const double mean_w = energy_j(curve, shown_s) / shown_s - moved_w;
     if (mean_w <= 0.0) return;
     const double factor = std::max(0.0, (mean_w + moved_w) / mean_w);
@@ -93,7 +93,7 @@ void fly_drawn_path(double moved_w, double speed_z, double direction_z, const Mi
     wind.speed_m_per_s = std::max(0.0, wind.speed_m_per_s + speed_z * wind.speed_sd_m_per_s);
     wind.from_deg += direction_z * wind.direction_sd_deg;
     const double factor = std::max(0.0, 1.0 + moved_w / mean_power_w(*planned.cruise_path));
-    flight.cruise_path = fly_cruise(plan, wind, ForbiddenLeg::crawl, factor);
+    flight.cruise_path = compute_cruise(plan, wind, InfeasibleLegPolicy::crawl, factor);
     flight.duration_s[Phase::cruise] = duration_s(*flight.cruise_path);
 }
 
@@ -103,11 +103,11 @@ struct PhaseDeviations {
     std::array<bool, phase_quantities> is_joint{};
 };
 
-PhaseDeviations phase_deviations(const FlightSpreads& spreads, std::span<const double> normals) {
+PhaseDeviations phase_deviations(const FlightUncertainty& spreads, std::span<const double> normals) {
     PhaseDeviations deviations;
     for (const auto phase : all_phases) {
-        deviations.of.at(level_of(phase)) = normals[level_of(phase)] * spreads.level_sd_w[phase];
-        deviations.of.at(duration_of(phase)) = normals[duration_of(phase)] * spreads.duration_sd_s[phase];
+        deviations.of.at(level_index(phase)) = normals[level_index(phase)] * spreads.level_sd_w[phase];
+        deviations.of.at(duration_index(phase)) = normals[duration_index(phase)] * spreads.duration_sd_s[phase];
     }
     for (const auto& joint : spreads.of_flights) {
         std::vector<double> own;
@@ -128,17 +128,17 @@ void move_phases(const MissionSetup& mission, const PhaseDeviations& deviations,
     for (const auto phase : all_phases) {
         const double planned_s = mission.duration_s[phase];
         if (planned_s == 0.0) continue;
-        const auto level = level_of(phase);
-        const auto duration = duration_of(phase);
+        const auto level = level_index(phase);
+        const auto duration = duration_index(phase);
         const double flown_s =
-            std::clamp(planned_s + deviations.of.at(duration), shortest_part * planned_s, longest_part * planned_s);
+            std::clamp(planned_s + deviations.of.at(duration), shortest_fraction * planned_s, max_part * planned_s);
         flight.duration_s[phase] = flown_s;
         if (!flight.mechanical) continue;
         double moved_w = deviations.of.at(level);
         if (deviations.is_joint.at(level) && deviations.is_joint.at(duration)) moved_w *= planned_s / flown_s;
         auto& model = flight.mechanical->phases[phase];
         model.fourier = mission.mechanical->phases[phase].fourier;
-        const bool stretched = mission.phase_clock == mechanical::PhaseClock::stretched;
+        const bool stretched = mission.phase_clock == mechanical::PhaseTimeScaling::stretched;
         move_level(model, moved_w, stretched ? model.duration_s : flown_s);
     }
 }
@@ -161,9 +161,8 @@ void move_battery(const battery::BatteryIntervals& intervals, Normals& normal, b
     const double resistance_z = normal();
     const double rc_resistance_z = normal();
     const double time_constant_z = normal();
-    battery.capacity_ah =
-        moved(battery.capacity_ah, intervals.capacity_ah, capacity_z, least_part * battery.capacity_ah);
-    battery.voltage_v = moved(battery.voltage_v, intervals.voltage_v, voltage_z, least_part * battery.voltage_v);
+    battery.capacity_ah = moved(battery.capacity_ah, intervals.capacity_ah, capacity_z, min_part * battery.capacity_ah);
+    battery.voltage_v = moved(battery.voltage_v, intervals.voltage_v, voltage_z, min_part * battery.voltage_v);
     battery.resistance_ohm = moved_resistance_ohm(battery.resistance_ohm, intervals, resistance_z);
     if (!battery.thevenin) return;
     auto& circuit = *battery.thevenin;
@@ -171,7 +170,7 @@ void move_battery(const battery::BatteryIntervals& intervals, Normals& normal, b
     circuit.rc_time_constant_s =
         moved_logarithm(circuit.rc_time_constant_s, intervals.rc_time_constant_s, time_constant_z);
     auto& voltage_v = circuit.open_circuit.voltage_v;
-    double below_v = least_part * voltage_v.front();  // the curve never falls
+    double below_v = min_part * voltage_v.front();  // the curve never falls
     for (std::size_t k = 0; k < intervals.open_circuit_standard_error_v.size(); ++k) {
         voltage_v[k] = std::max(below_v, voltage_v[k] + voltage_z * intervals.open_circuit_standard_error_v[k]);
         below_v = voltage_v[k];
@@ -179,12 +178,12 @@ void move_battery(const battery::BatteryIntervals& intervals, Normals& normal, b
 }
 
 void move_component(const ComponentSpread& spread, Normals& normal, std::vector<double>& power_w) {
-    const double factor = std::max(0.0, 1.0 + units::part_of(normal(), spread.common_sd_percent));
+    const double factor = std::max(0.0, 1.0 + units::amount_from_percent(normal(), spread.common_sd_percent));
     for (std::size_t k = 0; k < power_w.size(); ++k) {
         const double node_z = normal();
-        const double least_w = std::min(0.0, power_w[k]);
+        const double min_w = std::min(0.0, power_w[k]);
         power_w[k] *= factor;
-        if (!spread.node_sd_w.empty()) power_w[k] = std::max(least_w, power_w[k] + node_z * spread.node_sd_w[k]);
+        if (!spread.node_sd_w.empty()) power_w[k] = std::max(min_w, power_w[k] + node_z * spread.node_sd_w[k]);
     }
 }
 
@@ -219,8 +218,8 @@ CommonSources common_sources(const MissionSetup& a, const MissionSetup& b) {
     return common;
 }
 
-std::vector<double> normals_beside(const MissionSetup& a, const MissionSetup& b, const CommonSources& common,
-                                   std::span<const double> of_a, std::vector<double> own) {
+std::vector<double> correlated_normals(const MissionSetup& a, const MissionSetup& b, const CommonSources& common,
+                                       std::span<const double> of_a, std::vector<double> own) {
     const auto take = [&](std::size_t from, std::size_t to, std::size_t count) {
         std::ranges::copy(of_a.subspan(from, count), own.begin() + static_cast<std::ptrdiff_t>(to));
     };
@@ -243,14 +242,15 @@ std::vector<double> draw_normals(std::size_t count, std::uint64_t seed, std::uin
     return normals;
 }
 
-MissionSetup flight_of(const MissionSetup& mission, const FlightSpreads& spreads, std::span<const double> normals) {
+MissionSetup apply_draw(const MissionSetup& mission, const FlightUncertainty& spreads,
+                        std::span<const double> normals) {
     auto flight = mission;
-    draw_onto(mission, spreads, normals, flight);
+    apply_draw_to(mission, spreads, normals, flight);
     return flight;
 }
 
-void draw_onto(const MissionSetup& mission, const FlightSpreads& spreads, std::span<const double> normals,
-               MissionSetup& flight) {
+void apply_draw_to(const MissionSetup& mission, const FlightUncertainty& spreads, std::span<const double> normals,
+                   MissionSetup& flight) {
     const auto deviations = phase_deviations(spreads, normals);
     move_phases(mission, deviations, flight);
     Normals normal(normals.subspan(phase_quantities));
@@ -264,15 +264,15 @@ void draw_onto(const MissionSetup& mission, const FlightSpreads& spreads, std::s
     if (!mission.cruise_path) return;
     const double wind_speed_z = normal();
     const double wind_direction_z = normal();
-    fly_drawn_path(deviations.of.at(level_of(Phase::cruise)), wind_speed_z, wind_direction_z, mission, flight);
+    fly_drawn_path(deviations.of.at(level_index(Phase::cruise)), wind_speed_z, wind_direction_z, mission, flight);
 }
 
-MissionSetup draw_flight(const MissionSetup& mission, const FlightSpreads& spreads, std::uint64_t seed,
+MissionSetup draw_flight(const MissionSetup& mission, const FlightUncertainty& spreads, std::uint64_t seed,
                          std::uint64_t index) {
-    return flight_of(mission, spreads, draw_normals(count_normals(mission), seed, index));
+    return apply_draw(mission, spreads, draw_normals(count_normals(mission), seed, index));
 }
 
-MissionSetup without_evidence(MissionSetup mission) {
+MissionSetup without_model_metadata(MissionSetup mission) {
     if (mission.mechanical) {
         mission.mechanical->flights.clear();
         mission.mechanical->physical.reset();

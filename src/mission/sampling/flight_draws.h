@@ -25,11 +25,11 @@ std::vector<double> draw_normals(std::size_t count, std::uint64_t seed, std::uin
 /// voltage move together, each by its own error. An interval has a deviation for each side; a time constant is normal
 /// in its logarithm. Durations stop at a tenth of the planned and at ten times it, what cannot be negative at 0 (or a
 /// thousandth).
-MissionSetup flight_of(const MissionSetup& mission, const FlightSpreads& spreads, std::span<const double> normals);
+MissionSetup apply_draw(const MissionSetup& mission, const FlightUncertainty& spreads, std::span<const double> normals);
 
 /// The same onto `flight`, a copy of the mission that may have been another flight before: copying less is faster.
-void draw_onto(const MissionSetup& mission, const FlightSpreads& spreads, std::span<const double> normals,
-               MissionSetup& flight);
+void apply_draw_to(const MissionSetup& mission, const FlightUncertainty& spreads, std::span<const double> normals,
+                   MissionSetup& flight);
 
 /// Which of two missions' sources are the same, and deviate alike on the same day.
 struct CommonSources {
@@ -39,16 +39,16 @@ struct CommonSources {
 };
 CommonSources common_sources(const MissionSetup& a, const MissionSetup& b);
 
-/// b's numbers of a flight of which a has the numbers `of_a`: those of what is in common, and `own` ones of the rest. The
-/// wind is that of a where both have a path.
-std::vector<double> normals_beside(const MissionSetup& a, const MissionSetup& b, const CommonSources& common,
-                                   std::span<const double> of_a, std::vector<double> own);
+/// b's numbers of a flight of which a has the numbers `of_a`: those of what is in common, and `own` ones of the rest.
+/// The wind is that of a where both have a path.
+std::vector<double> correlated_normals(const MissionSetup& a, const MissionSetup& b, const CommonSources& common,
+                                       std::span<const double> of_a, std::vector<double> own);
 
 /// The flight that draw_normals makes.
-MissionSetup draw_flight(const MissionSetup& mission, const FlightSpreads& spreads, std::uint64_t seed,
+MissionSetup draw_flight(const MissionSetup& mission, const FlightUncertainty& spreads, std::uint64_t seed,
                          std::uint64_t index);
 
 /// The mission without what only says where its models come from, which copies faster.
-MissionSetup without_evidence(MissionSetup mission);
+MissionSetup without_model_metadata(MissionSetup mission);
 
 }  // namespace flightwatt::mission

@@ -2,7 +2,7 @@
 
 #include "base/units.h"
 #include "battery/discharge_lanes.h"
-#include "battery/quick_discharge.h"
+#include "battery/fast_discharge.h"
 
 #include <algorithm>
 #include <array>
@@ -35,13 +35,13 @@ struct Failure {
 
 bool have_lanes(const MissionSetup& setup) {
     return !setup.cruise_path &&
-           std::ranges::none_of(setup.measured.values, [](const auto& m) { return m != nullptr; });
+           std::ranges::none_of(setup.measured_power.values, [](const auto& m) { return m != nullptr; });
 }
 
 /// Flies up to lane_count flights at once.
 class Block {
   public:
-    Block(const MissionSetup& setup, const FlightSpreads& spreads, const LaneSchedule& schedule)
+    Block(const MissionSetup& setup, const FlightUncertainty& spreads, const LaneSchedule& schedule)
         : setup_(setup),
           spreads_(spreads),
           schedule_(schedule),
@@ -52,27 +52,27 @@ class Block {
             phases_[phase].cos_w.resize(setup.mechanical->phases[phase].fourier.cos_w.size());
             phases_[phase].sin_w.resize(phases_[phase].cos_w.size());
         }
-        if (setup.battery.thevenin) batteries_ = battery::lanes_like(setup.battery);
+        if (setup.battery.thevenin) batteries_ = battery::make_lanes(setup.battery);
     }
 
     /// Which of the flights landed here; the others have to fly alone.
     battery::LaneMask fly(std::span<const std::vector<double>> normals, std::size_t times,
-                          std::span<Landing> landings) {
+                          std::span<FlightOutcome> landings) {
         normals_ = normals;
         failures_ = {};
         for (auto& flight : alone_) flight.reset();
         battery::LaneMask flown;
         for (std::size_t i = 0; i < lane_count; ++i) {
             // Empty lanes fly as the first does; nobody looks at them.
-            draw_onto(setup_, spreads_, normals[i < normals.size() ? i : 0], flight_);
+            apply_draw_to(setup_, spreads_, normals[i < normals.size() ? i : 0], flight_);
             set_lane(static_cast<int>(i));
             flown[i] = i < normals.size() && is_ordinary();
         }
         battery::StateLanes state;
-        state.is_on = flown;
+        state.is_active = flown;
         state.soc_percent.setConstant(setup_.initial_soc_percent);
         for (const auto& stretch : schedule_.stretches) {
-            for (std::size_t note = 0; note < stretch.notes; ++note) note_charges(state, flown, landings);
+            for (std::size_t note = 0; note < stretch.outputs_at_start; ++note) note_charges(state, flown, landings);
             setup_.battery.thevenin ? fly_thevenin(stretch, state) : fly_constant(stretch, state);
         }
         if (!setup_.battery.thevenin) flown &= above_zero(state);
@@ -121,32 +121,32 @@ class Block {
                     amplitude_w[phase] += std::hypot(curve.cos_w[n], curve.sin_w[n]);
             }
         }
-        double highest_w = 0.0;
+        double max_w = 0.0;
         for (const auto& stretch : schedule_.stretches) {
             const auto phase = stretch.phase;
             const double level_w = phases_[phase].a0_w(last_lane_) + compute_w_[stretch.configuration](last_lane_);
-            if (flight_.duration_s[phase] > stretch.most_s || level_w < amplitude_w[phase]) return false;
-            highest_w = std::max(highest_w, level_w + amplitude_w[phase]);
+            if (flight_.duration_s[phase] > stretch.max_s || level_w < amplitude_w[phase]) return false;
+            max_w = std::max(max_w, level_w + amplitude_w[phase]);
         }
         const auto& battery = flight_.battery;
         return battery.thevenin ||
-               (highest_w < power_limit_w(battery) &&
-                terminal_voltage_v(battery, {}, internal_current_a(battery, highest_w)) >= setup_.cutoff_voltage_v);
+               (max_w < power_limit_w(battery) &&
+                terminal_voltage_v(battery, {}, internal_current_a(battery, max_w)) >= setup_.cutoff_voltage_v);
     }
 
-    Lanes start_of(const Stretch& stretch) const {
+    Lanes start_of(const LaneSegment& stretch) const {
         const auto& phase = phases_[stretch.phase];
         return phase.start_s + stretch.from_part * phase.duration_s;
     }
-    Lanes length_of(const Stretch& stretch) const {
+    Lanes length_of(const LaneSegment& stretch) const {
         return (stretch.to_part - stretch.from_part) * phases_[stretch.phase].duration_s;
     }
 
-    void power_at(const Stretch& stretch, std::size_t node, Lanes& power_w) const {
+    void power_at(const LaneSegment& stretch, std::size_t node, Lanes& power_w) const {
         const auto& phase = phases_[stretch.phase];
         power_w = phase.a0_w + compute_w_[stretch.configuration];
-        if (!stretch.turned.empty()) {
-            const auto& turned = stretch.turned[node];
+        if (!stretch.harmonics.empty()) {
+            const auto& turned = stretch.harmonics[node];
             for (std::size_t n = 0; n < phase.cos_w.size(); ++n)
                 power_w += turned[2 * n] * phase.cos_w[n] + turned[2 * n + 1] * phase.sin_w[n];
         } else if (setup_.mechanical) {
@@ -161,7 +161,7 @@ class Block {
     }
 
     /// The charge that a source of constant voltage gives away.
-    void fly_constant(const Stretch& stretch, battery::StateLanes& state) const {
+    void fly_constant(const LaneSegment& stretch, battery::StateLanes& state) const {
         Lanes mean_a = Lanes::Zero();
         Lanes power_w;
         for (std::size_t node = 0; node < stretch.nodes.size(); ++node) {
@@ -172,7 +172,7 @@ class Block {
         state.soc_percent -= units::percent_per_whole * mean_a * length_of(stretch) / capacity_as_;
     }
 
-    void fly_thevenin(const Stretch& stretch, battery::StateLanes& state) {
+    void fly_thevenin(const LaneSegment& stretch, battery::StateLanes& state) {
         const battery::LoadLanes load{length_of(stretch), stretch.steps, [&](std::size_t half_step, Lanes& power_w) {
                                           power_at(stretch, half_step, power_w);
                                       }};
@@ -183,22 +183,22 @@ class Block {
     }
 
     /// One step of one flight by itself.
-    bool goes_on(const Stretch& stretch, std::size_t step, std::size_t i, battery::BatteryState& now) {
+    bool goes_on(const LaneSegment& stretch, std::size_t step, std::size_t i, battery::BatteryState& now) {
         const int lane = static_cast<int>(i);
         const auto& flight = alone(i);
         const double step_s = length_of(stretch)(lane) / static_cast<double>(stretch.steps);
         const double start_s = start_of(stretch)(lane) + static_cast<double>(step) * step_s;
         std::optional<mechanical::FourierModel> curve;
         if (flight.mechanical)
-            curve = flown_model(flight.mechanical->phases[stretch.phase], flight.duration_s[stretch.phase],
-                                setup_.phase_clock);
+            curve = time_scaled_model(flight.mechanical->phases[stretch.phase], flight.duration_s[stretch.phase],
+                                      setup_.phase_clock);
         const double compute_w = compute_w_[stretch.configuration](lane);
         const double phase_start_s = phases_[stretch.phase].start_s(lane);
         const auto power_w = [&](double time_s) {
             return compute_w + (curve ? mechanical::power_w(*curve, time_s - phase_start_s) : 0.0);
         };
-        const auto after = battery::quick_discharge(flight.battery, {power_w, start_s, start_s + step_s}, now,
-                                                    {step_s, setup_.cutoff_voltage_v});
+        const auto after = battery::fast_discharge(flight.battery, {power_w, start_s, start_s + step_s}, now,
+                                                   {step_s, setup_.cutoff_voltage_v});
         now = after;
         if (after.undeliverable) failures_.at(i) = {after.undeliverable->time_s, now.soc_percent, false};
         if (const auto ended_at_s = after.ended_at_s())
@@ -208,7 +208,7 @@ class Block {
 
     const MissionSetup& alone(std::size_t i) {
         auto& flight = alone_.at(i);
-        if (!flight) flight = std::make_unique<MissionSetup>(flight_of(setup_, spreads_, normals_[i]));
+        if (!flight) flight = std::make_unique<MissionSetup>(apply_draw(setup_, spreads_, normals_[i]));
         return *flight;
     }
 
@@ -217,7 +217,7 @@ class Block {
     }
 
     void note_charges(const battery::StateLanes& state, const battery::LaneMask& flown,
-                      std::span<Landing> landings) const {
+                      std::span<FlightOutcome> landings) const {
         for (std::size_t i = 0; i < landings.size(); ++i)
             if (flown[i]) landings[i].soc_percent.push_back(soc_percent(i, state));
     }
@@ -229,18 +229,18 @@ class Block {
     }
 
     /// As land() does.
-    void land_lane(std::size_t i, const battery::StateLanes& state, std::size_t times, Landing& landing) {
+    void land_lane(std::size_t i, const battery::StateLanes& state, std::size_t times, FlightOutcome& landing) {
         const int lane = static_cast<int>(i);
-        landing.final_soc_percent = landing.left_percent = soc_percent(i, state);
+        landing.final_soc_percent = landing.remaining_percent = soc_percent(i, state);
         landing.soc_percent.resize(times, landing.final_soc_percent);
         if (!failures_.at(i)) return;
         const auto& failure = *failures_.at(i);
         const auto& last = phases_[all_phases.back()];
-        const double lasted_s = last.start_s(lane) + last.duration_s(lane) - lasting_tolerance_s;
+        const double lasted_s = last.start_s(lane) + last.duration_s(lane) - end_tolerance_s;
         const bool is_early = failure.time_s < lasted_s;
         landing.depleted = failure.is_empty && is_early;
         landing.battery_failure = is_early;
-        if (is_early) landing.left_percent = std::min(-1e-9, -missed_percent(i, failure.time_s));
+        if (is_early) landing.remaining_percent = std::min(-1e-9, -missed_percent(i, failure.time_s));
     }
 
     /// Energy demanded after the battery failed, as a part of what a full one holds [points].
@@ -252,7 +252,7 @@ class Block {
             const double flown_s = flight.duration_s[phase];
             const double from_s = std::max(0.0, failed_at_s - phases_[phase].start_s(lane));
             if (!flight.mechanical || from_s >= flown_s) continue;
-            const auto curve = flown_model(flight.mechanical->phases[phase], flown_s, setup_.phase_clock);
+            const auto curve = time_scaled_model(flight.mechanical->phases[phase], flown_s, setup_.phase_clock);
             missed_j += energy_j(curve, flown_s) - energy_j(curve, from_s);
         }
         for (const auto& stretch : schedule_.stretches) {
@@ -261,11 +261,11 @@ class Block {
             const double from_s = std::max(stretch.from_part * flown_s, failed_in_phase_s);
             missed_j += compute_w_[stretch.configuration](lane) * std::max(0.0, stretch.to_part * flown_s - from_s);
         }
-        return units::percent_of(units::wh_from_joule(missed_j), full_energy_wh(flight.battery));
+        return units::percentage(units::wh_from_joule(missed_j), full_energy_wh(flight.battery));
     }
 
     const MissionSetup& setup_;
-    const FlightSpreads& spreads_;
+    const FlightUncertainty& spreads_;
     const LaneSchedule& schedule_;
     MissionSetup flight_;  ///< that was drawn last
     int last_lane_ = 0;
@@ -282,8 +282,8 @@ class Block {
 
 }  // namespace
 
-FlightLanes::FlightLanes(const MissionSetup& setup, const FlightSpreads& spreads, const Schedule& schedule,
-                         std::vector<double> times_s)
+SimdFlightSimulator::SimdFlightSimulator(const MissionSetup& setup, const FlightUncertainty& spreads,
+                                         const Schedule& schedule, std::vector<double> times_s)
     : setup_(setup),
       spreads_(spreads),
       schedule_(schedule),
@@ -292,7 +292,8 @@ FlightLanes::FlightLanes(const MissionSetup& setup, const FlightSpreads& spreads
     if (have_lanes_) lanes_ = lane_schedule(setup, spreads, schedule, times_s_);
 }
 
-void FlightLanes::fly(std::span<const std::vector<double>> normals, std::span<Landing> landings) const {
+void SimdFlightSimulator::simulate(std::span<const std::vector<double>> normals,
+                                   std::span<FlightOutcome> landings) const {
     std::optional<Block> block;
     for (std::size_t from = 0; from < normals.size(); from += lane_count) {
         const auto count = std::min<std::size_t>(lane_count, normals.size() - from);
@@ -303,17 +304,17 @@ void FlightLanes::fly(std::span<const std::vector<double>> normals, std::span<La
             flown = block->fly(own, times_s_.size(), landings.subspan(from, count));
         }
         for (std::size_t i = 0; i < count; ++i)
-            if (!flown[i]) landings[from + i] = fly_alone(own[i]);
+            if (!flown[i]) landings[from + i] = simulate_scalar(own[i]);
     }
 }
 
-Landing FlightLanes::fly_alone(std::span<const double> normals) const {
+FlightOutcome SimdFlightSimulator::simulate_scalar(std::span<const double> normals) const {
     const auto& planned_s = setup_.duration_s;
-    const auto flight = flight_of(setup_, spreads_, normals);
+    const auto flight = apply_draw(setup_, spreads_, normals);
     const auto schedule = rescale_to_flown_durations(schedule_, planned_s, flight.duration_s);
     auto times_s = times_s_;
     for (auto& time_s : times_s) time_s = rescale_to_flown_durations_s(time_s, planned_s, flight.duration_s);
-    return land({flight, flight.battery, load_segments(flight, schedule)}, times_s);
+    return simulate_flight({flight, flight.battery, load_segments(flight, schedule)}, times_s);
 }
 
 }  // namespace flightwatt::mission

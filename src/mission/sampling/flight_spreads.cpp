@@ -17,7 +17,7 @@ namespace flightwatt::mission {
 namespace {
 
 /// Notes down a source, as drawn or not.
-void note_source(FlightSpreads& spreads, bool is_drawn, const std::string& source, const std::string& basis) {
+void note_source(FlightUncertainty& spreads, bool is_drawn, const std::string& source, const std::string& basis) {
     auto& [drawn, not_drawn] = spreads.sources;
     (is_drawn ? drawn : not_drawn).push_back(fmt::format("{} ({})", source, basis));
 }
@@ -27,7 +27,7 @@ std::string student_words(double degrees_of_freedom) {
                        degrees_of_freedom == 1.0 ? "" : "s");
 }
 
-std::string basis_of(const LevelDeviation& deviation) {
+std::string basis_of(const MeanPowerDeviation& deviation) {
     const auto sd = fmt::format("sd {:.4g} W, ", deviation.sd_w);
     switch (deviation.source) {
         case DeviationSource::none:
@@ -53,7 +53,7 @@ bool has_wind_spread(const MissionSetup& mission) {
     return wind.speed_sd_m_per_s > 0.0 || wind.direction_sd_deg > 0.0;
 }
 
-void find_wind(const MissionSetup& mission, FlightSpreads& spreads) {
+void find_wind(const MissionSetup& mission, FlightUncertainty& spreads) {
     if (!mission.cruise_path) return;
     const auto& wind = mission.cruise_path->plan->wind;
     const auto note = [&](double sd, const std::string& what, std::string_view unit, std::string_view key) {
@@ -76,23 +76,24 @@ std::vector<std::optional<double>> of_flights(const MissionSetup& mission, Phase
 }
 
 /// Notes how often a level stands at 0, because a flight takes no power back, where one in 2000 flights or more does.
-std::string at_zero_words(const MissionSetup& mission, Phase phase, const LevelDeviation& deviation) {
-    constexpr double least_share = 5e-4;
+std::string at_zero_words(const MissionSetup& mission, Phase phase, const MeanPowerDeviation& deviation) {
+    constexpr double min_share = 5e-4;
     const auto& model = mission.mechanical->phases[phase];
-    const auto curve = flown_model(model, mission.duration_s[phase], mission.phase_clock);
+    const auto curve = time_scaled_model(model, mission.duration_s[phase], mission.phase_clock);
     const double mean_w = energy_j(curve, mission.duration_s[phase]) / mission.duration_s[phase];
     if (!(mean_w > 0.0) || !(deviation.sd_w > 0.0)) return "";
-    const double share = chance_beyond(normal_of_student(mean_w / deviation.sd_w, deviation.degrees_of_freedom));
-    return share < least_share ? "" : fmt::format(", 0 W in {:.2g} % of flights", units::percent_of(share, 1.0));
+    const double share =
+        normal_tail_probability(normal_from_student(mean_w / deviation.sd_w, deviation.degrees_of_freedom));
+    return share < min_share ? "" : fmt::format(", 0 W in {:.2g} % of flights", units::percentage(share, 1.0));
 }
 
-void find_level(const MissionSetup& mission, Phase phase, FlightSpreads& spreads,
+void find_level(const MissionSetup& mission, Phase phase, FlightUncertainty& spreads,
                 std::vector<EstimatedSpread>& estimated) {
     const auto deviation = level_deviation(mission, phase);
     spreads.level_sd_w[phase] = deviation.sd_w;
     auto basis = basis_of(deviation) + at_zero_words(mission, phase, deviation);
-    if (deviation.degrees_of_freedom < as_if_known) {
-        EstimatedSpread spread{level_of(phase), deviation.sd_w, deviation.degrees_of_freedom, {}};
+    if (deviation.degrees_of_freedom < infinite_dof) {
+        EstimatedSpread spread{level_index(phase), deviation.sd_w, deviation.degrees_of_freedom, {}};
         if (deviation.source == DeviationSource::flights) {
             spread.of_flights = of_flights(mission, phase, [](const auto& part) { return part.mean_power_w; });
             if (!is_known_of_flights(spread)) basis += ", correlated with nothing: the model has no mean_power_w";
@@ -103,13 +104,13 @@ void find_level(const MissionSetup& mission, Phase phase, FlightSpreads& spreads
 }
 
 /// Throughout, what the mission states is fixed, and [uncertainty] alone gives it a spread.
-void find_duration(const MissionSetup& mission, Phase phase, FlightSpreads& spreads,
+void find_duration(const MissionSetup& mission, Phase phase, FlightUncertainty& spreads,
                    std::vector<EstimatedSpread>& estimated) {
     const auto source = fmt::format("{} duration", to_string(phase));
     if (phase == Phase::cruise && mission.cruise_path)
         return note_source(spreads, has_wind_spread(mission), source, "as the path and the wind make it");
     auto& sd_s = spreads.duration_sd_s[phase];
-    EstimatedSpread spread{duration_of(phase), 0.0, as_if_known, {}};
+    EstimatedSpread spread{duration_index(phase), 0.0, infinite_dof, {}};
     if (mission.mechanical)
         spread.of_flights = of_flights(mission, phase, [](const auto& part) { return std::optional(part.duration_s); });
     std::string basis = "no flights that differ: state duration_sd_s";
@@ -134,7 +135,7 @@ void find_duration(const MissionSetup& mission, Phase phase, FlightSpreads& spre
     note_source(spreads, sd_s > 0.0, source, basis);
 }
 
-void find_compute(const MissionSetup& mission, FlightSpreads& spreads) {
+void find_compute(const MissionSetup& mission, FlightUncertainty& spreads) {
     for (std::size_t i = 0; i < mission.compute.components.size(); ++i) {
         const auto& component = mission.compute.components[i];
         const auto& errors_w = component.profile.standard_error_w;
@@ -153,7 +154,7 @@ void find_compute(const MissionSetup& mission, FlightSpreads& spreads) {
     }
 }
 
-void find_capacity(const MissionSetup& mission, FlightSpreads& spreads) {
+void find_capacity(const MissionSetup& mission, FlightUncertainty& spreads) {
     auto& interval = spreads.battery.capacity_ah;
     std::string basis = interval ? "the battery's interval" : "the battery's file has no interval";
     if (const auto percent = mission.uncertainty.capacity_sd_percent)
@@ -164,7 +165,7 @@ void find_capacity(const MissionSetup& mission, FlightSpreads& spreads) {
     note_source(spreads, interval.has_value(), "battery capacity", basis);
 }
 
-void find_resistance(const battery::BatteryIntervals& intervals, FlightSpreads& spreads) {
+void find_resistance(const battery::BatteryIntervals& intervals, FlightUncertainty& spreads) {
     std::string basis = "the battery's file has no interval";
     if (const auto& scatter = intervals.resistance_scatter)
         basis = fmt::format("sd {:.4g} ohm, of {} flights, {}, {}", scatter->sd_ohm, scatter->flights,
@@ -175,7 +176,7 @@ void find_resistance(const battery::BatteryIntervals& intervals, FlightSpreads& 
     note_source(spreads, intervals.resistance_scatter || intervals.resistance_ohm, "battery resistance", basis);
 }
 
-void find_battery(const MissionSetup& mission, FlightSpreads& spreads) {
+void find_battery(const MissionSetup& mission, FlightUncertainty& spreads) {
     const auto& battery = mission.battery;
     const auto& intervals = spreads.battery = battery.intervals;
     const auto find = [&](const std::string& source, bool has_interval) {
@@ -202,19 +203,19 @@ std::optional<battery::Interval> capacity_interval_ah(const MissionSetup& missio
     if (!percent) return mission.capacity_is_stated ? std::nullopt : mission.battery.intervals.capacity_ah;
     if (!(*percent > 0.0)) return std::nullopt;
     const double capacity_ah = mission.battery.capacity_ah;
-    const double reach_ah = sd_per_half_95 * units::part_of(capacity_ah, *percent);
+    const double reach_ah = sd_per_half_95 * units::amount_from_percent(capacity_ah, *percent);
     return battery::Interval{capacity_ah - reach_ah, capacity_ah + reach_ah};
 }
 
-FlightSpreads find_spreads(const MissionSetup& mission) {
-    FlightSpreads spreads;
+FlightUncertainty collect_uncertainty(const MissionSetup& mission) {
+    FlightUncertainty spreads;
     std::vector<EstimatedSpread> estimated;
     for (const auto phase : all_phases) {
         if (mission.duration_s[phase] == 0.0) continue;
         if (mission.mechanical) find_level(mission, phase, spreads, estimated);
         find_duration(mission, phase, spreads, estimated);
     }
-    spreads.of_flights = joint_spreads(estimated);
+    spreads.of_flights = estimate_joint_distributions(estimated);
     find_wind(mission, spreads);
     find_compute(mission, spreads);
     find_battery(mission, spreads);

@@ -59,13 +59,13 @@ bool is_known_of_flights(const EstimatedSpread& spread) {
     return std::ranges::count_if(spread.of_flights, [](const auto& value) { return value.has_value(); }) >= 2;
 }
 
-std::vector<JointSpread> joint_spreads(const std::vector<EstimatedSpread>& spreads) {
+std::vector<JointDistribution> estimate_joint_distributions(const std::vector<EstimatedSpread>& spreads) {
     std::map<double, std::vector<EstimatedSpread>> of_freedom;
     for (const auto& spread : spreads)
         if (spread.sd > 0.0) of_freedom[spread.degrees_of_freedom].push_back(spread);
-    std::vector<JointSpread> joints;
+    std::vector<JointDistribution> joints;
     for (const auto& [degrees_of_freedom, together] : of_freedom) {
-        JointSpread joint{degrees_of_freedom, {}, root_of(correlations_of(centred_flights(together)))};
+        JointDistribution joint{degrees_of_freedom, {}, root_of(correlations_of(centred_flights(together)))};
         for (std::size_t k = 0; k < together.size(); ++k) {
             joint.quantities.push_back(together[k].quantity);
             joint.factor.row(static_cast<Eigen::Index>(k)) *= together[k].sd;

@@ -13,8 +13,8 @@ namespace flightwatt::mission {
 /// What differs between the phases of flights: levels [W] and durations [s], numbered level and duration of take-off,
 /// those of cruise, those of landing.
 inline constexpr std::size_t phase_quantities = 2 * all_phases.size();
-constexpr std::size_t level_of(Phase phase) { return 2 * static_cast<std::size_t>(phase); }
-constexpr std::size_t duration_of(Phase phase) { return level_of(phase) + 1; }
+constexpr std::size_t level_index(Phase phase) { return 2 * static_cast<std::size_t>(phase); }
+constexpr std::size_t duration_index(Phase phase) { return level_index(phase) + 1; }
 
 /// How one of them differs, as few flights show.
 struct EstimatedSpread {
@@ -25,7 +25,7 @@ struct EstimatedSpread {
 };
 
 /// Quantities that rest on as many flights, and are drawn together.
-struct JointSpread {
+struct JointDistribution {
     double degrees_of_freedom = 1.0;
     std::vector<std::size_t> quantities;  ///< rising
     Eigen::MatrixXd factor;               ///< the quantities' deviations, in their order, are this times student_vector
@@ -33,7 +33,7 @@ struct JointSpread {
 
 /// Spreads of as many degrees of freedom together, with the correlations that the flights show which have all that is
 /// known of any. What is known of fewer than two flights is correlated with nothing.
-std::vector<JointSpread> joint_spreads(const std::vector<EstimatedSpread>& spreads);
+std::vector<JointDistribution> estimate_joint_distributions(const std::vector<EstimatedSpread>& spreads);
 
 /// True of a spread that `spreads` draws by how it went together with the others of its flights.
 bool is_known_of_flights(const EstimatedSpread& spread);

@@ -9,19 +9,19 @@
 namespace flightwatt::mission {
 
 /// A part of a flight in which one configuration runs, wherever a flight's durations put it.
-struct Stretch {
+struct LaneSegment {
     Phase phase = Phase::takeoff;
-    double from_part = 0.0;         ///< of its phase
-    double to_part = 0.0;           ///< of it too
-    std::size_t configuration = 0;  ///< of LaneSchedule::configurations
-    std::size_t notes = 0;          ///< how many of the times asked for are at its start
-    std::size_t steps = 1;          ///< in which all flights fly it
-    double most_s = 0.0;            ///< [s] longest duration of its phase for which these are fine enough
-    std::vector<double> nodes;      ///< [parts of the stretch] where the power is looked at
-    std::vector<double> weights;    ///< of the nodes, of a constant source: Gauss quadrature over the stretch
+    double from_part = 0.0;            ///< of its phase
+    double to_part = 0.0;              ///< of it too
+    std::size_t configuration = 0;     ///< of LaneSchedule::configurations
+    std::size_t outputs_at_start = 0;  ///< how many of the times asked for are at its start
+    std::size_t steps = 1;             ///< in which all flights fly it
+    double max_s = 0.0;                ///< [s] longest duration of its phase for which these are fine enough
+    std::vector<double> nodes;         ///< [parts of the stretch] where the power is looked at
+    std::vector<double> weights;       ///< of the nodes, of a constant source: Gauss quadrature over the stretch
     /// Of stretched phases, at each node: cos and sin of the curve's angle, of twice it, ...; empty: they differ by
     /// flight.
-    std::vector<std::vector<double>> turned;
+    std::vector<std::vector<double>> harmonics;
 };
 
 /// What one node of a component's profile counts in the power of a configuration.
@@ -33,12 +33,12 @@ struct NodeWeight {
 
 /// A mission's schedule as far as it is the same in all of its flights.
 struct LaneSchedule {
-    std::vector<Stretch> stretches;
+    std::vector<LaneSegment> stretches;
     std::vector<std::vector<NodeWeight>> configurations;
 };
 
 /// Of a mission without path and measured phases. `times_s` of the mission as planned, rising: stretches start there.
-LaneSchedule lane_schedule(const MissionSetup& setup, const FlightSpreads& spreads, const Schedule& schedule,
+LaneSchedule lane_schedule(const MissionSetup& setup, const FlightUncertainty& spreads, const Schedule& schedule,
                            const std::vector<double>& times_s);
 
 }  // namespace flightwatt::mission

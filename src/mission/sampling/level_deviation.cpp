@@ -11,7 +11,7 @@
 namespace flightwatt::mission {
 namespace {
 
-bool is_of_flights(const LevelDeviation& deviation) {
+bool is_of_flights(const MeanPowerDeviation& deviation) {
     return deviation.source != DeviationSource::none && deviation.source != DeviationSource::fit_error;
 }
 
@@ -20,27 +20,27 @@ bool is_of_flights(const LevelDeviation& deviation) {
 double mean_level_w(const MissionSetup& mission, Phase phase) {
     if (phase == Phase::cruise && mission.cruise_path) return mean_power_w(*mission.cruise_path);
     const double duration_s = mission.duration_s[phase];
-    const auto flown = flown_model(mission.mechanical->phases[phase], duration_s, mission.phase_clock);
+    const auto flown = time_scaled_model(mission.mechanical->phases[phase], duration_s, mission.phase_clock);
     return std::abs(energy_j(flown, duration_s) / duration_s);
 }
 
-bool says_how_flights_differ(const MissionSetup& mission) {
+bool has_flight_variability(const MissionSetup& mission) {
     return mission.mechanical && std::ranges::all_of(all_phases, [&](Phase phase) {
                return !(mission.duration_s[phase] > 0.0) || is_of_flights(level_deviation(mission, phase));
            });
 }
 
-LevelDeviation level_deviation(const MissionSetup& mission, Phase phase) {
+MeanPowerDeviation level_deviation(const MissionSetup& mission, Phase phase) {
     const auto& model = mission.mechanical->phases[phase];
     if (const auto percent = mission.uncertainty.level_sd_percent[phase])
-        return {units::part_of(mean_level_w(mission, phase), *percent), DeviationSource::stated};
+        return {units::amount_from_percent(mean_level_w(mission, phase), *percent), DeviationSource::stated};
     if (phase == Phase::cruise && mission.cruise_level && mission.cruise_level->sd_w)
         return {*mission.cruise_level->sd_w, mission.cruise_path ? DeviationSource::path : DeviationSource::conditions,
                 0, mission.cruise_level->degrees_of_freedom};
     if (const auto& spread = model.level_spread) {
         const double weight_square_sum = forecast_of(*mission.mechanical, phase).weight_square_sum;
-        return {spread->level_sd_w * std::sqrt(1.0 + weight_square_sum), DeviationSource::flights, spread->flights,
-                static_cast<double>(spread->flights - 1)};
+        return {spread->between_flight_sd_w * std::sqrt(1.0 + weight_square_sum), DeviationSource::flights,
+                spread->flights, static_cast<double>(spread->flights - 1)};
     }
     if (model.errors) return {model.errors->a0_w, DeviationSource::fit_error, 0, model.errors->degrees_of_freedom};
     return {};
@@ -56,7 +56,7 @@ double level_sd_w(const MissionSetup& mission, Phase phase) {
         "[uncertainty] with level_sd_percent");
 }
 
-void require_known_levels(const MissionSetup& mission) {
+void require_flight_variability(const MissionSetup& mission) {
     for (const auto phase : all_phases)
         if (mission.mechanical && mission.duration_s[phase] > 0.0) level_sd_w(mission, phase);
 }

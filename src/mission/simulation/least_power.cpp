@@ -24,7 +24,7 @@ double bound_below_w(const mechanical::FourierModel& curve) {
 
 }  // namespace
 
-PowerAt least_power_w(const mechanical::FourierModel& curve, const CurveTime& within, double enough_w) {
+PowerAt min_power_w(const mechanical::FourierModel& curve, const CurveInterval& within, double enough_w) {
     const double bound_w = bound_below_w(curve);
     if (bound_w >= enough_w || curve.cos_w.empty()) return {within.start_s, bound_w};
     const double length_s = within.end_s - within.start_s;
@@ -49,8 +49,8 @@ void refuse_charging(const MissionSetup& mission, const std::vector<LoadSegment>
     for (const auto& segment : segments) {
         PowerAt least{segment.start_s - segment.phase_start_s, 0.0};
         if (segment.mechanical)
-            least = least_power_w(*segment.mechanical, {least.time_s, segment.end_s - segment.phase_start_s},
-                                  -segment.compute_w);
+            least = min_power_w(*segment.mechanical, {least.time_s, segment.end_s - segment.phase_start_s},
+                                -segment.compute_w);
         if (least.power_w + segment.compute_w >= -rounding_of_power_w) continue;
         throw InputError(
             {mission.file},

@@ -1,7 +1,7 @@
 #include "mission/simulation/load_segments.h"
 
 #include "base/units.h"
-#include "battery/quick_discharge.h"
+#include "battery/fast_discharge.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,7 +54,7 @@ double depleted_percent(const battery::Battery& battery, const LoadSegment& segm
     const double capacity_as = units::coulomb_from_ah(battery.capacity_ah);
     if (battery.resistance_ohm == 0.0) {
         const double energy_j = mechanical_energy_j(segment, segment.end_s) + compute_energy_j(segment, segment.end_s);
-        return units::percent_of(energy_j / battery.voltage_v, capacity_as);
+        return units::percentage(energy_j / battery.voltage_v, capacity_as);
     }
     const double length_s = segment.end_s - segment.start_s;
     double turns = 0.0;
@@ -70,7 +70,7 @@ double depleted_percent(const battery::Battery& battery, const LoadSegment& segm
         const double start_s = segment.start_s + piece_s * static_cast<double>(k);
         charge_as += boost::math::quadrature::gauss<double, 7>::integrate(current_a, start_s, start_s + piece_s);
     }
-    return units::percent_of(charge_as, capacity_as);
+    return units::percentage(charge_as, capacity_as);
 }
 
 }  // namespace
@@ -89,21 +89,21 @@ PowerBounds bounds_of(const LoadSegment& segment) {
 double quick_step_s(const LoadSegment& segment) {
     constexpr double steps_a_turn = 12.0;  // of the highest harmonic
     if (!segment.mechanical || segment.mechanical->cos_w.empty()) return longest_quick_step_s;
-    const double fastest_rad_per_s =
+    const double max_rad_per_s =
         static_cast<double>(segment.mechanical->cos_w.size()) * segment.mechanical->omega_rad_per_s;
-    return std::min(longest_quick_step_s, units::rad_per_turn / (steps_a_turn * fastest_rad_per_s));
+    return std::min(longest_quick_step_s, units::rad_per_turn / (steps_a_turn * max_rad_per_s));
 }
 
-MissionLoad load_of(const MissionSetup& mission) {
+MissionLoad make_mission_load(const MissionSetup& mission) {
     MissionLoad load{mission, timeline_of(mission.duration_s), {}, {}};
     for (const auto phase : all_phases) {
         if (!mission.mechanical || mission.duration_s[phase] == 0.0) continue;
-        load.pieces[phase] = mission.measured[phase];
+        load.pieces[phase] = mission.measured_power[phase];
         if (phase == Phase::cruise && mission.cruise_path && !load.pieces[phase])
             load.pieces[phase] = mission.cruise_path->pieces;
         if (load.pieces[phase]) continue;
         load.mechanical[phase] =
-            flown_model(mission.mechanical->phases[phase], mission.duration_s[phase], mission.phase_clock);
+            time_scaled_model(mission.mechanical->phases[phase], mission.duration_s[phase], mission.phase_clock);
     }
     return load;
 }
@@ -121,7 +121,7 @@ LoadSegment load_segment(const MissionLoad& load, const ScheduleSegment& schedul
 }
 
 std::vector<LoadSegment> load_segments(const MissionSetup& mission, const Schedule& schedule) {
-    const auto load = load_of(mission);
+    const auto load = make_mission_load(mission);
     std::vector<LoadSegment> segments;
     segments.reserve(schedule.size());
     for (const auto& scheduled : schedule) {
@@ -129,16 +129,16 @@ std::vector<LoadSegment> load_segments(const MissionSetup& mission, const Schedu
         if (!segment.pieces)
             segments.push_back(std::move(segment));
         else
-            std::ranges::move(smooth_parts(segment), std::back_inserter(segments));
+            std::ranges::move(split_at_jumps(segment), std::back_inserter(segments));
     }
     return segments;
 }
 
-std::vector<LoadSegment> smooth_parts(const LoadSegment& segment) {
+std::vector<LoadSegment> split_at_jumps(const LoadSegment& segment) {
     if (!segment.pieces) return {segment};
     std::vector<LoadSegment> parts;
     const auto last = segment.pieces->size() - 1;
-    const auto* first_piece = &piece_at(*segment.pieces, segment.start_s - segment.phase_start_s + edge_tolerance_s);
+    const auto* first_piece = &segment_at(*segment.pieces, segment.start_s - segment.phase_start_s + edge_tolerance_s);
     for (auto i = static_cast<std::size_t>(first_piece - segment.pieces->data()); i <= last; ++i) {
         const auto& piece = (*segment.pieces)[i];
         auto& part = parts.emplace_back(segment);
@@ -183,7 +183,7 @@ std::vector<LoadSegment> disturbed(const std::vector<LoadSegment>& segments, con
 }
 
 double mechanical_w(const LoadSegment& segment, double time_s) {
-    if (segment.pieces) return piece_at(*segment.pieces, time_s - segment.phase_start_s).power_w;
+    if (segment.pieces) return segment_at(*segment.pieces, time_s - segment.phase_start_s).power_w;
     return segment.mechanical ? power_w(*segment.mechanical, time_s - segment.phase_start_s) : 0.0;
 }
 
@@ -203,7 +203,7 @@ double compute_energy_j(const LoadSegment& segment, double time_s) {
     return segment.compute_w * (time_s - segment.start_s);
 }
 
-battery::Discharge after_drop(battery::Discharge state, const LoadSegment& segment) {
+battery::Discharge apply_charge_drop(battery::Discharge state, const LoadSegment& segment) {
     state.soc_percent -= segment.soc_drop_percent;
     if (state.soc_percent <= 0.0) {
         state.soc_percent = 0.0;
@@ -212,10 +212,10 @@ battery::Discharge after_drop(battery::Discharge state, const LoadSegment& segme
     return state;
 }
 
-battery::Discharge after_segment(const battery::Battery& battery, double cutoff_voltage_v, const LoadSegment& segment,
-                                 battery::Discharge state) {
+battery::Discharge advance_segment(const battery::Battery& battery, double cutoff_voltage_v, const LoadSegment& segment,
+                                   battery::Discharge state) {
     if (state.ended_at_s() || state.undeliverable) return state;
-    if (segment.soc_drop_percent > 0.0) state = after_drop(state, segment);
+    if (segment.soc_drop_percent > 0.0) state = apply_charge_drop(state, segment);
     if (state.ended_at_s()) return state;
     if (depends_on_power_alone(battery, cutoff_voltage_v, segment)) {
         const double left_percent = state.soc_percent - depleted_percent(battery, segment);
@@ -226,7 +226,7 @@ battery::Discharge after_segment(const battery::Battery& battery, double cutoff_
     }
     const battery::Load load{[&](double time_s) { return power_w(segment, time_s); }, segment.start_s, segment.end_s};
     if (battery.thevenin && bounds_of(segment).low_w >= 0.0)
-        return quick_discharge(battery, load, state, {quick_step_s(segment), cutoff_voltage_v});
+        return fast_discharge(battery, load, state, {quick_step_s(segment), cutoff_voltage_v});
     return discharge(battery, load, state, {coarse_step_s, cutoff_voltage_v});
 }
 

@@ -11,17 +11,17 @@
 namespace flightwatt::mission {
 
 /// A battery that ends this near to the end of its mission has lasted.
-inline constexpr double lasting_tolerance_s = 1e-6;
+inline constexpr double end_tolerance_s = 1e-6;
 
-/// What a mission demands while one configuration runs: mechanical power, smooth but for the jumps between the pieces of
-/// a path or of a measured flight, and constant computing. Times are those of the mission.
+/// What a mission demands while one configuration runs: mechanical power, smooth but for the jumps between the pieces
+/// of a path or of a measured flight, and constant computing. Times are those of the mission.
 struct LoadSegment {
     Phase phase = Phase::takeoff;
     double phase_start_s = 0.0;
     double start_s = 0.0;
     double end_s = 0.0;
     std::optional<mechanical::FourierModel> mechanical;  ///< in the phase's own time
-    std::shared_ptr<const PowerPieces> pieces;           ///< instead: in the phase's own time too
+    std::shared_ptr<const PiecewisePower> pieces;        ///< instead: in the phase's own time too
     double compute_w = 0.0;
     double soc_drop_percent = 0.0;  ///< [points] that the battery loses at once as this starts
 };
@@ -32,15 +32,16 @@ struct MissionLoad {
     MissionTimeline timeline;
     /// Of the phases that are flown, in their own time; none without a mechanical model.
     PerPhase<std::optional<mechanical::FourierModel>> mechanical;
-    PerPhase<std::shared_ptr<const PowerPieces>> pieces = {};  ///< of a path or a measured flight, instead of a curve
+    PerPhase<std::shared_ptr<const PiecewisePower>> pieces =
+        {};  ///< of a path or a measured flight, instead of a curve
 };
 
-MissionLoad load_of(const MissionSetup& mission);
-/// Of pieces it may hold jumps, which smooth_parts parts.
+MissionLoad make_mission_load(const MissionSetup& mission);
+/// Of pieces it may hold jumps, which split_at_jumps parts.
 LoadSegment load_segment(const MissionLoad& load, const ScheduleSegment& scheduled);
 
 /// A segment, parted where its pieces meet: each of one constant power. Others are one part.
-std::vector<LoadSegment> smooth_parts(const LoadSegment& segment);
+std::vector<LoadSegment> split_at_jumps(const LoadSegment& segment);
 
 /// The load of a schedule in smooth parts, in order and without gaps: each starts exactly where the one before ends.
 std::vector<LoadSegment> load_segments(const MissionSetup& mission, const Schedule& schedule);
@@ -58,7 +59,7 @@ struct PowerBounds {
 };
 PowerBounds bounds_of(const LoadSegment& segment);
 
-/// [s] Steps over which a segment's power is nearly a parabola, for quick_discharge.
+/// [s] Steps over which a segment's power is nearly a parabola, for fast_discharge.
 double quick_step_s(const LoadSegment& segment);
 
 /// Energies [J] demanded from the segment's start to `time_s`, a time within it.
@@ -66,12 +67,12 @@ double mechanical_energy_j(const LoadSegment& segment, double time_s);
 double compute_energy_j(const LoadSegment& segment, double time_s);
 
 /// The battery after the charge that it loses at once as a segment starts.
-battery::Discharge after_drop(battery::Discharge state, const LoadSegment& segment);
+battery::Discharge apply_charge_drop(battery::Discharge state, const LoadSegment& segment);
 
 /// The battery after a segment, for flights that are flown by the thousand: an integral of the power where the source
-/// is constant and nothing but its charge can end it, quick_discharge of a Thevenin circuit that is not charged, and else
-/// Runge-Kutta with steps of a second. A battery that has ended, or cannot deliver, stays as it is.
-battery::Discharge after_segment(const battery::Battery& battery, double cutoff_voltage_v, const LoadSegment& segment,
-                                 battery::Discharge state);
+/// is constant and nothing but its charge can end it, fast_discharge of a Thevenin circuit that is not charged, and
+/// else Runge-Kutta with steps of a second. A battery that has ended, or cannot deliver, stays as it is.
+battery::Discharge advance_segment(const battery::Battery& battery, double cutoff_voltage_v, const LoadSegment& segment,
+                                   battery::Discharge state);
 
 }  // namespace flightwatt::mission

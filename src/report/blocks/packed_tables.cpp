@@ -15,7 +15,7 @@ namespace flightwatt::report {
 namespace {
 
 constexpr auto table_name = "a figure's table";
-constexpr std::size_t most_digits = 15;  ///< that a double keeps, and JavaScript with it
+constexpr std::size_t max_digits = 15;  ///< that a double keeps, and JavaScript with it
 
 /// A cell of a column of numbers.
 struct NumberCell {
@@ -40,7 +40,7 @@ NumberCell number_cell(const CsvRowView::Cell& cell, std::size_t line) {
     const auto point = text.find('.');
     number.whole = std::min(point, text.size());
     number.decimals = point == std::string_view::npos ? 0 : text.size() - point - 1;
-    number.is_decimal = number.whole + number.decimals <= most_digits;
+    number.is_decimal = number.whole + number.decimals <= max_digits;
     for (const char c : text) {
         if (!number.is_decimal || c == '.') continue;
         number.is_decimal = c >= '0' && c <= '9';
@@ -71,7 +71,7 @@ class PackedColumn {
             decimals = std::max(decimals, number.decimals);
             if (!number.is_decimal) return VegaJson::array_t{name_, values()};
         }
-        if (whole + decimals > most_digits) return VegaJson::array_t{name_, values()};
+        if (whole + decimals > max_digits) return VegaJson::array_t{name_, values()};
         return VegaJson::array_t{name_, decimals, steps(decimals)};
     }
 

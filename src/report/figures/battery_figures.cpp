@@ -17,7 +17,7 @@ constexpr auto soc_title = "state of charge [%]";
 /// A curve as a screen shows it, broken where the record is not used.
 void add_curve(FigureData& data, const battery::DischargeRecord& record, const std::vector<double>& voltage_v,
                std::string_view name) {
-    for (const auto i : visible_rows(record.time_s, voltage_v, battery_columns)) {
+    for (const auto i : downsample_m4(record.time_s, voltage_v, battery_columns)) {
         data.add({record.time_s[i], record.used[i] ? voltage_v[i] : std::nan("")}, {name});
     }
 }
@@ -27,12 +27,12 @@ VegaJson voltage_panel(const battery::Battery& battery, const battery::Discharge
     FigureData data({"time_s", "voltage_v"}, {"curve"});
     add_curve(data, record, record.voltage_v, "measured");
     add_curve(data, record, predict_voltage(battery, record, initial_charge_ah).voltage_v, "model");
-    VegaJson encoding{{"x", quantity("time_s", record_time_title)},
-                      {"y", quantity("voltage_v", "voltage [V]", {{"scale", {{"zero", false}}}})}};
+    VegaJson encoding{{"x", numeric_channel("time_s", record_time_title)},
+                      {"y", numeric_channel("voltage_v", "voltage [V]", {{"scale", {{"zero", false}}}})}};
     add_measured_and_model(encoding, 3.2,
                            1.1);  // what is measured stands out behind the model where both are one
-    encoding["tooltip"] = {category("curve", "curve"), shown("time_s", "time [s]", ".1f"),
-                           shown("voltage_v", "voltage [V]", ".3f")};
+    encoding["tooltip"] = {nominal_channel("curve", "curve"), tooltip_number("time_s", "time [s]", ".1f"),
+                           tooltip_number("voltage_v", "voltage [V]", ".3f")};
     const VegaJson curves{{"data", data.json()},
                           {"mark", vega(R"({"type": "line", "point": {"opacity": 0, "size": 40, "aria": false}})")},
                           {"encoding", encoding}};
@@ -47,7 +47,7 @@ FigureData knot_rows(const battery::BatteryIdentification& identified) {
     for (std::size_t i = 0; i < curve.soc_percent.size(); ++i) {
         const double reach_v = errors_v.empty() ? std::nan("") : normal_half_width() * errors_v[i];
         // Knots are rounded to their state of charge: the last one that was flown belongs to the flights.
-        const bool flown = curve.soc_percent[i] >= identified.known_down_to_percent - 1e-6;
+        const bool flown = curve.soc_percent[i] >= identified.observed_min_soc_percent - 1e-6;
         data.add({curve.soc_percent[i], curve.voltage_v[i], curve.voltage_v[i] - reach_v, curve.voltage_v[i] + reach_v},
                  {flown ? "from flights" : "after the LiPo chart"});
     }
@@ -55,18 +55,19 @@ FigureData knot_rows(const battery::BatteryIdentification& identified) {
 }
 
 VegaJson open_circuit_axis(std::string_view field) {
-    return quantity(field, "open-circuit voltage [V]", {{"scale", {{"zero", false}}}});
+    return numeric_channel(field, "open-circuit voltage [V]", {{"scale", {{"zero", false}}}});
 }
 
 VegaJson band_layer() {
-    return layer(
-        R"({"type": "area", "style": "measured", "opacity": 0.2, "aria": false})",
-        {{"x", quantity("soc_percent", soc_title)}, {"y", open_circuit_axis("low_v")}, {"y2", {{"field", "high_v"}}}});
+    return layer(R"({"type": "area", "style": "measured", "opacity": 0.2, "aria": false})",
+                 {{"x", numeric_channel("soc_percent", soc_title)},
+                  {"y", open_circuit_axis("low_v")},
+                  {"y2", {{"field", "high_v"}}}});
 }
 
 VegaJson curve_layer() {
     return layer(R"({"type": "line", "style": "measured"})",
-                 {{"x", quantity("soc_percent", soc_title)}, {"y", open_circuit_axis("voltage_v")}});
+                 {{"x", numeric_channel("soc_percent", soc_title)}, {"y", open_circuit_axis("voltage_v")}});
 }
 
 VegaJson knot_layer() {
@@ -74,14 +75,14 @@ VegaJson knot_layer() {
     auto shape = color;
     shape["scale"]["range"] = {"circle", "diamond"};
     return layer(R"({"type": "point", "size": 50, "filled": true, "opacity": 1})",
-                 {{"x", quantity("soc_percent", soc_title)},
+                 {{"x", numeric_channel("soc_percent", soc_title)},
                   {"y", open_circuit_axis("voltage_v")},
-                  {"color", category("origin", "", color)},
-                  {"shape", category("origin", "", shape)},
+                  {"color", nominal_channel("origin", "", color)},
+                  {"shape", nominal_channel("origin", "", shape)},
                   {"tooltip",
-                   {category("origin", "known"), shown("soc_percent", soc_title, ".1f"),
-                    shown("voltage_v", "voltage [V]", ".3f"), shown("low_v", "95 %, low [V]", ".3f"),
-                    shown("high_v", "95 %, high [V]", ".3f")}}});
+                   {nominal_channel("origin", "known"), tooltip_number("soc_percent", soc_title, ".1f"),
+                    tooltip_number("voltage_v", "voltage [V]", ".3f"), tooltip_number("low_v", "95 %, low [V]", ".3f"),
+                    tooltip_number("high_v", "95 %, high [V]", ".3f")}}});
 }
 
 }  // namespace
@@ -94,7 +95,7 @@ Figure voltage_figure(const battery::BatteryIdentification& identified,
         const auto& record = records[i];
         const auto [low, high] = std::ranges::minmax_element(record.voltage_v);
         description += fmt::format(" {}: {:.2f} to {:.2f} V.", record.flight, *low, *high);
-        panels.push_back(voltage_panel(identified.battery, record, identified.flights[i].initial_charge_ah));
+        panels.push_back(voltage_panel(identified.battery, record, identified.flights[i].initial_depletion_ah));
     }
     auto figure = new_figure(
         id,
@@ -108,17 +109,17 @@ Figure voltage_figure(const battery::BatteryIdentification& identified,
 Figure open_circuit_figure(const battery::BatteryIdentification& identified, const std::string& id) {
     const auto& curve = identified.battery.thevenin->open_circuit;
     std::string caption = "Open-circuit voltage with the 95 % intervals of its knots.";
-    if (identified.known_down_to_percent > 0.0) {
+    if (identified.observed_min_soc_percent > 0.0) {
         caption += fmt::format(
             " Below {:.0f} % no flight shows it: there it goes on in parallel to the usual chart of {} LiPo "
             "cells, {:.0f} mV a cell unsure.",
-            identified.known_down_to_percent, identified.cells, units::mv_from_v(battery::lipo_chart_uncertainty_v));
+            identified.observed_min_soc_percent, identified.cells, units::mv_from_v(battery::lipo_chart_sd_v));
     }
     auto figure = new_figure(
         id, caption,
         fmt::format("Open-circuit voltage over state of charge: {:.2f} V empty, {:.2f} V full, flown down to "
                     "{:.0f} %.",
-                    curve.voltage_v.front(), curve.voltage_v.back(), identified.known_down_to_percent));
+                    curve.voltage_v.front(), curve.voltage_v.back(), identified.observed_min_soc_percent));
     figure.spec["width"] = 560;
     figure.spec["height"] = 240;
     figure.spec["data"] = knot_rows(identified).json();

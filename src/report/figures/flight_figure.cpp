@@ -1,6 +1,6 @@
-#include "flight/chosen_track.h"
-#include "flight/edge_witness.h"
+#include "flight/edge_events.h"
 #include "flight/phase_statistics.h"
+#include "flight/selected_track.h"
 #include "report/figures/flight_figures.h"
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 std::string explained(const flight::PhaseEdge& edge) {
     auto text = fmt::format("altitude {:.1f} m", edge.altitude_m);
     if (edge.throttle_percent) text += fmt::format(", throttle {:.0f} %", *edge.throttle_percent);
-    if (edge.takeoff_after_s && std::abs(*edge.takeoff_after_s) < flight::witness_reach_s) {
+    if (edge.takeoff_after_s && std::abs(*edge.takeoff_after_s) < flight::max_event_distance_s) {
         text += fmt::format(", nearest TAKEOFF message {:.1f} s {}", std::abs(*edge.takeoff_after_s),
                             *edge.takeoff_after_s < 0.0 ? "before" : "after");
     }
@@ -83,7 +83,7 @@ FigureData power_rows(const ReportFlight& flight, const flight::Track& power,
                       const std::optional<mechanical::MechanicalModel>& model) {
     FigureData data({"time_s", "power_w"}, {"curve"});
     data.round_to({decimals_for(power.time_s, time_steps, 1), decimals_for(power.value, value_steps, 1)});
-    for (const auto i : visible_rows(power.time_s, power.value, power_columns)) {
+    for (const auto i : downsample_m4(power.time_s, power.value, power_columns)) {
         data.add({power.time_s[i], power.value[i]}, {"measured"});
     }
     if (!model) return data;
@@ -91,8 +91,8 @@ FigureData power_rows(const ReportFlight& flight, const flight::Track& power,
     for (const auto& sortie : flight.phases.sorties) {
         for (const auto& span : sortie.phases) {
             if (!span.complete || span.duration_s() <= 0.0) continue;
-            const auto curve =
-                flown_model(model->phases[span.phase], span.duration_s(), mechanical::PhaseClock::stretched);
+            const auto curve = time_scaled_model(model->phases[span.phase], span.duration_s(),
+                                                 mechanical::PhaseTimeScaling::stretched);
             for (int i = 0; i <= points; ++i) {
                 const double time_s = span.duration_s() * i / points;
                 data.add({span.start.time_s + time_s, power_w(curve, time_s)}, {"model"});
@@ -107,7 +107,7 @@ FigureData channel_rows(const std::vector<double>& time_s, const std::vector<dou
                         const std::string& column) {
     FigureData data({"time_s", column});
     data.round_to({decimals_for(time_s, time_steps, 1), decimals_for(values, value_steps, 1)});
-    for (const auto i : visible_rows(time_s, values, power_columns)) data.add({time_s[i], values[i]});
+    for (const auto i : downsample_m4(time_s, values, power_columns)) data.add({time_s[i], values[i]});
     return data;
 }
 
@@ -117,16 +117,16 @@ VegaJson phase_layers(const FigureData& phases, const FigureData& edges, bool wi
     auto layers = VegaJson::array();
     layers.push_back(layer(phases.reference("phases"),
                            R"({"type": "rect", "opacity": 0.13, "aria": false, "clip": true})",
-                           {{"x", quantity("start_s", log_time_title)},
+                           {{"x", numeric_channel("start_s", log_time_title)},
                             {"x2", {{"field", "end_s"}}},
-                            {"fill", category("phase", "phase", fill)}}));
+                            {"fill", nominal_channel("phase", "phase", fill)}}));
     layers.push_back(
         layer(edges.reference("edges"),
               R"({"type": "rule", "style": "edge", "strokeDash": [3, 3], "strokeWidth": 1.5, "clip": true})",
-              {{"x", quantity("time_s", log_time_title)},
+              {{"x", numeric_channel("time_s", log_time_title)},
                {"tooltip",
-                {category("edge", "edge"), shown("time_s", "time [s]", ".1f"), category("evidence", "evidence"),
-                 category("verdict", "the autopilot")}}}));
+                {nominal_channel("edge", "edge"), tooltip_number("time_s", "time [s]", ".1f"),
+                 nominal_channel("evidence", "evidence"), nominal_channel("verdict", "the autopilot")}}}));
     if (with_names) layers.push_back(phase_names(phases.reference("phases"), log_time_title));
     return layers;
 }
@@ -146,9 +146,9 @@ VegaJson line_layer(const FigureData& data, const std::string& column, const std
     return layer(data.json(),
                  R"({"type": "line", "style": "measured", "strokeWidth": 1.2, "clip": true,
                      "point": {"opacity": 0, "size": 60, "aria": false}})",
-                 {{"x", quantity("time_s", log_time_title)},
-                  {"y", quantity(column, title, {{"scale", {{"zero", false}}}})},
-                  {"tooltip", {shown("time_s", "time [s]", ".1f"), shown(column, title, ".1f")}}});
+                 {{"x", numeric_channel("time_s", log_time_title)},
+                  {"y", numeric_channel(column, title, {{"scale", {{"zero", false}}}})},
+                  {"tooltip", {tooltip_number("time_s", "time [s]", ".1f"), tooltip_number(column, title, ".1f")}}});
 }
 
 VegaJson power_layer(const FigureData& data) {
@@ -157,7 +157,7 @@ VegaJson power_layer(const FigureData& data) {
     auto& encoding = line["encoding"];
     add_measured_and_model(encoding, 1.1, 2.2);
     line["transform"] = VegaJson::array({shown_by_legend()});
-    encoding["tooltip"].insert(encoding["tooltip"].begin(), category("curve", "curve"));
+    encoding["tooltip"].insert(encoding["tooltip"].begin(), nominal_channel("curve", "curve"));
     return line;
 }
 
@@ -180,7 +180,7 @@ std::string caption_of(const flight::Track& power, bool has_model) {
     std::string text = "Phases are shaded and end at the dashed lines; those tell their evidence when pointed at.";
     if (has_model) text += " The model is each phase's curve, stretched to the time flown.";
     const auto samples = power.time_s.size();
-    const auto drawn = visible_rows(power.time_s, power.value, power_columns).size();
+    const auto drawn = downsample_m4(power.time_s, power.value, power_columns).size();
     if (drawn < samples) {
         text += fmt::format(" Drawn with {} of {} samples: the extremes of each column of the screen.", drawn, samples);
     }
@@ -193,7 +193,7 @@ std::vector<NamedEdge> edges_of(const ReportFlight& flight) {
     std::vector<NamedEdge> edges;
     if (flight.phases.sorties.empty()) return edges;
     auto clock = power_track(flight.series);
-    if (clock.empty()) clock = chosen_track(flight.series, "altitude_m");
+    if (clock.empty()) clock = select_track(flight.series, "altitude_m");
     for (const auto& sortie : flight.phases.sorties) {
         for (std::size_t i = 0; i < sortie.phases.size(); ++i) {
             const auto& span = sortie.phases[i];
@@ -213,7 +213,7 @@ std::vector<NamedEdge> edges_of(const ReportFlight& flight) {
 
 Figure flight_figure(const ReportFlight& flight, const std::optional<mechanical::MechanicalModel>& model,
                      const std::string& id) {
-    const flight::ChosenTracks tracks(flight.series);
+    const flight::SelectedTracks tracks(flight.series);
     const auto& power = tracks["power_w"];
     const auto& time_s = power.time_s;
     auto figure = new_figure(id, caption_of(power, model.has_value()), description_of(flight));

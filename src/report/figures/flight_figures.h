@@ -54,7 +54,7 @@ Figure validation_figure(std::span<const mechanical::ValidatedFlight> flights, c
 
 /// Power over airspeed: a point a stretch of a flight, coloured by its climb, and the model's power in level flight,
 /// climbing and descending. `flights` have bins.
-Figure physical_figure(const mechanical::PhysicalModel& model, std::span<const mechanical::FlightMotion> flights,
+Figure physical_figure(const mechanical::PhysicalModel& model, std::span<const mechanical::BinnedFlight> flights,
                        const std::string& id);
 
 /// Terminal voltage over time, measured and modelled, a panel a flight: the model follows from the current and the

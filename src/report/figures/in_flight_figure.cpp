@@ -36,20 +36,23 @@ Figure in_flight_figure(const std::string& name, const PredictedFlight& flight, 
     figure.spec["data"] = data.json();
     figure.spec["width"] = in_flight_width;
     figure.spec["height"] = in_flight_height;
-    const auto time = quantity("flown_s", in_flight_time_title, {{"scale", {{"nice", false}}}});
+    const auto time = numeric_channel("flown_s", in_flight_time_title, {{"scale", {{"nice", false}}}});
     const VegaJson energy{{"scale", {{"zero", false}}}};
     figure.spec["layer"] = {
         layer(R"({"type": "area", "style": "measured", "opacity": 0.2, "aria": false})",
-              {{"x", time}, {"y", quantity("low_wh", in_flight_energy_title, energy)}, {"y2", {{"field", "high_wh"}}}}),
+              {{"x", time},
+               {"y", numeric_channel("low_wh", in_flight_energy_title, energy)},
+               {"y2", {{"field", "high_wh"}}}}),
         layer(R"({"type": "line", "style": "edge", "aria": false})",
-              {{"x", time}, {"y", quantity("measured_wh", in_flight_energy_title, energy)}}),
+              {{"x", time}, {"y", numeric_channel("measured_wh", in_flight_energy_title, energy)}}),
         layer(R"({"type": "line", "style": "measured", "point": {"size": 26}})",
               {{"x", time},
-               {"y", quantity("energy_wh", in_flight_energy_title, energy)},
+               {"y", numeric_channel("energy_wh", in_flight_energy_title, energy)},
                {"tooltip",
-                {shown("flown_s", in_flight_time_title, ".0f"), shown("energy_wh", "predicted [Wh]", ".3f"),
-                 shown("low_wh", "low [Wh]", ".3f"), shown("high_wh", "high [Wh]", ".3f"),
-                 shown("measured_wh", "measured [Wh]", ".3f")}}})};
+                {tooltip_number("flown_s", in_flight_time_title, ".0f"),
+                 tooltip_number("energy_wh", "predicted [Wh]", ".3f"), tooltip_number("low_wh", "low [Wh]", ".3f"),
+                 tooltip_number("high_wh", "high [Wh]", ".3f"),
+                 tooltip_number("measured_wh", "measured [Wh]", ".3f")}}})};
     return figure;
 }
 

@@ -39,14 +39,14 @@ Figure utility_figure(const SimulatedMission& planned, const std::vector<Utility
 
 /// When a component of a mission runs with which quality of service, from start to end as it is seen: equal
 /// neighbours are one.
-struct Running {
+struct RunInterval {
     std::size_t component = 0;
     double start_s = 0.0;  ///< since the mission began
     double end_s = 0.0;
     std::vector<double> qos;
 };
 
-std::vector<Running> running_times(const mission::Mission& mission);
+std::vector<RunInterval> run_intervals(const mission::Mission& mission);
 
 /// "fps 32, key_bits 448", or "on" of a component without parameters.
 std::string describe_qos(const compute::Component& component, const std::vector<double>& qos);

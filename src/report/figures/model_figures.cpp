@@ -32,14 +32,16 @@ VegaJson color_of(PhaseCurve curve, const VegaJson& drawn) {
             {"legend", {{"values", drawn}, {"symbolType", "square"}, {"columns", 4}}}};
 }
 
-VegaJson power_axis(std::string_view field) { return quantity(field, "power [W]", {{"scale", {{"zero", false}}}}); }
+VegaJson power_axis(std::string_view field) {
+    return numeric_channel(field, "power [W]", {{"scale", {{"zero", false}}}});
+}
 
 VegaJson area_layer(const std::vector<double>& time_s, const std::vector<double>& low_w,
                     const std::vector<double>& high_w, double opacity, const VegaJson& color) {
     FigureData data({"time_s", "low_w", "high_w"});
     for (std::size_t i = 0; i < time_s.size(); ++i) data.add({time_s[i], low_w[i], high_w[i]});
     auto area = layer(data.json(), R"({"type": "area", "opacity": 0, "clip": true, "aria": false})",
-                      {{"x", quantity("time_s", phase_time_title)},
+                      {{"x", numeric_channel("time_s", phase_time_title)},
                        {"y", power_axis("low_w")},
                        {"y2", {{"field", "high_w"}}},
                        {"color", color}});
@@ -65,23 +67,25 @@ VegaJson model_layer(const mechanical::PhaseModel& phase, const VegaJson& drawn)
         const double time_s = time_at(i, phase.duration_s);
         data.add({time_s, power_w(phase.fourier, time_s)});
     }
-    return layer(data.json(),
-                 R"({"type": "line", "strokeWidth": 2, "clip": true,
+    return layer(
+        data.json(),
+        R"({"type": "line", "strokeWidth": 2, "clip": true,
                      "point": {"opacity": 0, "size": 60, "aria": false}})",
-                 {{"x", quantity("time_s", phase_time_title, {{"scale", {{"nice", false}}}})},
-                  {"y", power_axis("power_w")},
-                  {"color", color_of(model_curve, drawn)},
-                  {"tooltip", {shown("time_s", "time [s]", ".1f"), shown("power_w", "model [W]", ".2f")}}});
+        {{"x", numeric_channel("time_s", phase_time_title, {{"scale", {{"nice", false}}}})},
+         {"y", power_axis("power_w")},
+         {"color", color_of(model_curve, drawn)},
+         {"tooltip", {tooltip_number("time_s", "time [s]", ".1f"), tooltip_number("power_w", "model [W]", ".2f")}}});
 }
 
 VegaJson published_layer(const PublishedCurve& curve, const VegaJson& drawn) {
     FigureData data({"time_s", "power_w"});
     for (std::size_t i = 0; i < curve.time_s.size(); ++i) data.add({curve.time_s[i], curve.value[i]});
     return layer(data.json(), R"({"type": "point", "size": 14, "strokeWidth": 1.2, "clip": true, "aria": false})",
-                 {{"x", quantity("time_s", phase_time_title)},
+                 {{"x", numeric_channel("time_s", phase_time_title)},
                   {"y", power_axis("power_w")},
                   {"color", color_of(published_curve, drawn)},
-                  {"tooltip", {shown("time_s", "time [s]", ".1f"), shown("power_w", "published [W]", ".2f")}}});
+                  {"tooltip",
+                   {tooltip_number("time_s", "time [s]", ".1f"), tooltip_number("power_w", "published [W]", ".2f")}}});
 }
 
 /// Root mean square of published less model, over the points within the phase.
@@ -175,16 +179,17 @@ Figure validation_figure(std::span<const mechanical::ValidatedFlight> flights, c
                    errors_described(flights));
     figure.spec["width"] = 560;
     figure.spec["height"] = {{"step", 30}};
-    figure.spec["layer"] = {
-        layer(vega(R"({"values": [{}]})"), R"({"type": "rule", "style": "edge", "aria": false})",
-              vega(R"({"x": {"datum": 0}})")),
-        layer(error_rows(flights).json(), R"({"type": "point", "size": 55, "opacity": 0.85})",
-              {{"x", quantity("error_wh", "predicted less measured [Wh]")},
-               {"y", category("model", "", {{"sort", nullptr}})},
-               {"color", category("model", "", {{"legend", nullptr}})},
-               {"tooltip",
-                {category("flight", "flight"), category("model", "model"), shown("measured_wh", "measured [Wh]", ".3f"),
-                 shown("predicted_wh", "predicted [Wh]", ".3f"), shown("error_wh", "error [Wh]", "+.3f")}}})};
+    figure.spec["layer"] = {layer(vega(R"({"values": [{}]})"), R"({"type": "rule", "style": "edge", "aria": false})",
+                                  vega(R"({"x": {"datum": 0}})")),
+                            layer(error_rows(flights).json(), R"({"type": "point", "size": 55, "opacity": 0.85})",
+                                  {{"x", numeric_channel("error_wh", "predicted less measured [Wh]")},
+                                   {"y", nominal_channel("model", "", {{"sort", nullptr}})},
+                                   {"color", nominal_channel("model", "", {{"legend", nullptr}})},
+                                   {"tooltip",
+                                    {nominal_channel("flight", "flight"), nominal_channel("model", "model"),
+                                     tooltip_number("measured_wh", "measured [Wh]", ".3f"),
+                                     tooltip_number("predicted_wh", "predicted [Wh]", ".3f"),
+                                     tooltip_number("error_wh", "error [Wh]", "+.3f")}}})};
     return figure;
 }
 

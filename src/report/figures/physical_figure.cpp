@@ -11,7 +11,7 @@ constexpr int points_of_line = 41;
 constexpr auto airspeed_title = "airspeed [m/s]";
 constexpr auto motion_power_title = "power [W]";
 
-FigureData stretch_rows(std::span<const mechanical::FlightMotion> flights) {
+FigureData stretch_rows(std::span<const mechanical::BinnedFlight> flights) {
     FigureData data({"airspeed_m_per_s", "power_w", "climb_m_per_s", "start_s"}, {"flight"});
     for (const auto& flight : flights) {
         for (const auto& bin : flight.bins) {
@@ -56,21 +56,22 @@ std::string motion_described(const mechanical::PhysicalModel& model) {
 }
 
 VegaJson climb_color() {
-    return quantity("climb_m_per_s", "climb [m/s]",
-                    {{"scale", {{"scheme", "blueorange"}, {"domainMid", 0}}}, {"legend", {{"orient", "right"}}}});
+    return numeric_channel(
+        "climb_m_per_s", "climb [m/s]",
+        {{"scale", {{"scheme", "blueorange"}, {"domainMid", 0}}}, {"legend", {{"orient", "right"}}}});
 }
 
 }  // namespace
 
-Figure physical_figure(const mechanical::PhysicalModel& model, std::span<const mechanical::FlightMotion> flights,
+Figure physical_figure(const mechanical::PhysicalModel& model, std::span<const mechanical::BinnedFlight> flights,
                        const std::string& id) {
     auto figure =
         new_figure(id,
                    "Power over airspeed. A ring is a stretch of a flight of about 30 s; lines are the model in "
                    "level flight, climbing and descending. The colour is the climb.",
                    motion_described(model));
-    const auto x = quantity("airspeed_m_per_s", airspeed_title, {{"scale", {{"zero", false}}}});
-    const auto y = quantity("power_w", motion_power_title);
+    const auto x = numeric_channel("airspeed_m_per_s", airspeed_title, {{"scale", {{"zero", false}}}});
+    const auto y = numeric_channel("power_w", motion_power_title);
     figure.spec["width"] = 560;
     figure.spec["height"] = 360;
     figure.spec["layer"] = {
@@ -79,15 +80,17 @@ Figure physical_figure(const mechanical::PhysicalModel& model, std::span<const m
                {"y", y},
                {"color", climb_color()},
                {"tooltip",
-                {category("flight", "flight"), shown("start_s", "from [s]", ".0f"),
-                 shown("airspeed_m_per_s", "airspeed [m/s]", ".2f"), shown("climb_m_per_s", "climb [m/s]", "+.2f"),
-                 shown("power_w", "measured [W]", ".2f")}}}),
+                {nominal_channel("flight", "flight"), tooltip_number("start_s", "from [s]", ".0f"),
+                 tooltip_number("airspeed_m_per_s", "airspeed [m/s]", ".2f"),
+                 tooltip_number("climb_m_per_s", "climb [m/s]", "+.2f"),
+                 tooltip_number("power_w", "measured [W]", ".2f")}}}),
         layer(line_rows(model).json(), R"({"type": "line", "strokeWidth": 2})",
               {{"x", x},
                {"y", y},
                {"color", climb_color()},
                {"detail", {{"field", "line"}, {"type", "nominal"}}},
-               {"tooltip", {category("line", "model, climbing"), shown("power_w", "power [W]", ".2f")}}})};
+               {"tooltip",
+                {nominal_channel("line", "model, climbing"), tooltip_number("power_w", "power [W]", ".2f")}}})};
     return figure;
 }
 

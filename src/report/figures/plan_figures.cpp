@@ -16,8 +16,8 @@ constexpr auto mission_time_title = "time since lift-off [s]";
 constexpr auto final_soc_title = "final state of charge [%]";
 
 VegaJson utility_axes() {
-    return {{"x", quantity("soc_percent", final_soc_title)},
-            {"y", quantity("utility", "utility (mean value a second)")}};
+    return {{"x", numeric_channel("soc_percent", final_soc_title)},
+            {"y", numeric_channel("utility", "utility (mean value a second)")}};
 }
 
 VegaJson points_layer(const std::vector<UtilityPoint>& points) {
@@ -30,20 +30,21 @@ VegaJson points_layer(const std::vector<UtilityPoint>& points) {
     }
     auto scale = vega(R"({"scale": {"domain": ["planned", "given"]}})");
     auto encoding = utility_axes();
-    encoding["color"] = category("kind", "", scale);
+    encoding["color"] = nominal_channel("kind", "", scale);
     scale["scale"]["range"] = {"diamond", "circle"};
-    encoding["shape"] = category("kind", "", scale);
+    encoding["shape"] = nominal_channel("kind", "", scale);
     scale["scale"]["range"] = {190, 60};
     encoding["size"] = {{"field", "kind"}, {"type", "ordinal"}, {"title", ""}};
     encoding["size"].update(scale);
-    encoding["tooltip"] = {category("mission", "mission"), category("kind", "schedule"),
-                           shown("utility", "utility", ".4g"), shown("soc_percent", final_soc_title, ".2f")};
+    encoding["tooltip"] = {nominal_channel("mission", "mission"), nominal_channel("kind", "schedule"),
+                           tooltip_number("utility", "utility", ".4g"),
+                           tooltip_number("soc_percent", final_soc_title, ".2f")};
     return layer(data.json(), R"({"type": "point", "filled": true, "opacity": 1})", encoding);
 }
 
 /// Points that a reader cannot tell apart share a name.
 std::vector<UtilityPoint> named_together(const std::vector<UtilityPoint>& points) {
-    constexpr double near_part = 0.02;  // of what the points span
+    constexpr double near_fraction = 0.02;  // of what the points span
     const auto span_of = [&](double UtilityPoint::*value) {
         const auto [low, high] = std::ranges::minmax_element(
             points, [&](const UtilityPoint& a, const UtilityPoint& b) { return a.*value < b.*value; });
@@ -54,8 +55,8 @@ std::vector<UtilityPoint> named_together(const std::vector<UtilityPoint>& points
     std::vector<UtilityPoint> together;
     for (const auto& point : points) {
         const auto twin = std::ranges::find_if(together, [&](const UtilityPoint& other) {
-            return std::abs(other.soc_percent - point.soc_percent) <= near_part * soc_span &&
-                   std::abs(other.utility - point.utility) <= near_part * utility_span;
+            return std::abs(other.soc_percent - point.soc_percent) <= near_fraction * soc_span &&
+                   std::abs(other.utility - point.utility) <= near_fraction * utility_span;
         });
         if (twin == together.end()) {
             together.push_back(point);
@@ -70,14 +71,14 @@ std::vector<UtilityPoint> named_together(const std::vector<UtilityPoint>& points
 VegaJson names_layer(const std::vector<UtilityPoint>& points) {
     FigureData data({"soc_percent", "utility"}, {"mission", "side"});
     constexpr double right_end = 0.65;
-    double greatest_percent = 0.0;
-    for (const auto& point : points) greatest_percent = std::max(greatest_percent, point.soc_percent);
+    double max_percent = 0.0;
+    for (const auto& point : points) max_percent = std::max(max_percent, point.soc_percent);
     for (const auto& point : named_together(points)) {
         data.add({point.soc_percent, point.utility},
-                 {point.mission, point.soc_percent > right_end * greatest_percent ? "left" : "right"});
+                 {point.mission, point.soc_percent > right_end * max_percent ? "left" : "right"});
     }
     auto encoding = utility_axes();
-    encoding["text"] = category("mission", "mission");
+    encoding["text"] = nominal_channel("mission", "mission");
     const auto texts = [&](std::string_view side, std::string_view mark) {
         VegaJson filtered{{"transform", VegaJson::array({{{"filter", {{"field", "side"}, {"equal", side}}}}})}};
         filtered.update(layer(mark, encoding));
@@ -93,7 +94,7 @@ VegaJson names_layer(const std::vector<UtilityPoint>& points) {
 /// A line across the figure, its place on `channel`, with its name written by `mark`.
 VegaJson rule_layer(std::string_view channel, double value, const std::string& text, std::string_view mark) {
     const auto with = [&](std::string_view more) -> VegaJson {
-        return {{channel, {{"datum", value}}}, {more, category("text", "line")}};
+        return {{channel, {{"datum", value}}}, {more, nominal_channel("text", "line")}};
     };
     return {{"data", {{"values", VegaJson::array({{{"text", text}}})}}},
             {"layer",
@@ -103,29 +104,30 @@ VegaJson rule_layer(std::string_view channel, double value, const std::string& t
 
 VegaJson bars_layer(const mission::Mission& mission, double duration_s) {
     FigureData data({"from_s", "to_s", "middle_s", "power_w", "long_s"}, {"component", "runs"});
-    for (const auto& running : running_times(mission)) {
+    for (const auto& running : run_intervals(mission)) {
         const auto& component = mission.compute.components[running.component];
         data.add({running.start_s, running.end_s, std::midpoint(running.start_s, running.end_s),
                   power_w(component.profile, running.qos), running.end_s - running.start_s},
                  {component.name, describe_qos(component, running.qos)});
     }
     const VegaJson whole{{"scale", {{"domain", {0.0, duration_s}}, {"nice", false}}}, {"axis", {{"grid", false}}}};
-    const auto y = category("component", "", vega(R"({"sort": null, "axis": {"labelLimit": 130}})"));
-    const auto bars =
-        layer(R"({"type": "bar", "clip": true, "height": 15, "yOffset": 9})",
-              {{"x", quantity("from_s", mission_time_title, whole)},
-               {"x2", {{"field", "to_s"}}},
-               {"y", y},
-               {"color", power_ramp("power_w", "power of the component [W]")},
-               {"tooltip",
-                {category("component", "component"), category("runs", "runs"), shown("from_s", "from [s]", ".0f"),
-                 shown("to_s", "to [s]", ".0f"), shown("power_w", "power [W]", ".2f")}}});
-    constexpr double least_part = 0.13;  // of the time: a shorter bar has no room for its words
+    const auto y = nominal_channel("component", "", vega(R"({"sort": null, "axis": {"labelLimit": 130}})"));
+    const auto bars = layer(R"({"type": "bar", "clip": true, "height": 15, "yOffset": 9})",
+                            {{"x", numeric_channel("from_s", mission_time_title, whole)},
+                             {"x2", {{"field", "to_s"}}},
+                             {"y", y},
+                             {"color", power_ramp("power_w", "power of the component [W]")},
+                             {"tooltip",
+                              {nominal_channel("component", "component"), nominal_channel("runs", "runs"),
+                               tooltip_number("from_s", "from [s]", ".0f"), tooltip_number("to_s", "to [s]", ".0f"),
+                               tooltip_number("power_w", "power [W]", ".2f")}}});
+    constexpr double min_part = 0.13;  // of the time: a shorter bar has no room for its words
     VegaJson words{
-        {"transform", VegaJson::array({{{"filter", fmt::format("datum.long_s > {}", least_part * duration_s)}}})}};
-    words.update(
-        layer(R"({"type": "text", "style": "note", "dy": -8})",
-              {{"x", quantity("middle_s", mission_time_title, whole)}, {"y", y}, {"text", category("runs", "runs")}}));
+        {"transform", VegaJson::array({{{"filter", fmt::format("datum.long_s > {}", min_part * duration_s)}}})}};
+    words.update(layer(R"({"type": "text", "style": "note", "dy": -8})",
+                       {{"x", numeric_channel("middle_s", mission_time_title, whole)},
+                        {"y", y},
+                        {"text", nominal_channel("runs", "runs")}}));
     return {{"data", data.json()}, {"layer", {bars, words}}};
 }
 
@@ -140,16 +142,17 @@ VegaJson edge_layer(const mission::Mission& mission) {
     return {{"data", data.json()},
             {"layer",
              {layer(R"({"type": "rule", "style": "edge", "strokeDash": [3, 3], "aria": false})",
-                    {{"x", quantity("begin_s", mission_time_title)}}),
+                    {{"x", numeric_channel("begin_s", mission_time_title)}}),
               layer(R"({"type": "text", "style": "note", "baseline": "bottom", "dy": -3, "y": 0})",
-                    {{"x", quantity("middle_s", mission_time_title)}, {"text", category("phase", "phase")}})}}};
+                    {{"x", numeric_channel("middle_s", mission_time_title)},
+                     {"text", nominal_channel("phase", "phase")}})}}};
 }
 
 }  // namespace
 
-std::vector<Running> running_times(const mission::Mission& mission) {
+std::vector<RunInterval> run_intervals(const mission::Mission& mission) {
     const auto timeline = mission::timeline_of(mission.duration_s);
-    std::vector<Running> times;
+    std::vector<RunInterval> times;
     std::map<std::size_t, std::size_t> last;  // of each component, its index in `times`
     for (const auto& segment : mission.schedule) {
         const double start_s = timeline.start_s[segment.phase] + segment.start_s;
@@ -169,7 +172,7 @@ std::vector<Running> running_times(const mission::Mission& mission) {
 }
 
 std::string describe_qos(const compute::Component& component, const std::vector<double>& qos) {
-    return qos.empty() ? "on" : compute::spell_qos(component.profile.parameters, qos, " ", ", ");
+    return qos.empty() ? "on" : compute::format_qos(component.profile.parameters, qos, " ", ", ");
 }
 
 Figure utility_figure(const SimulatedMission& planned, const std::vector<UtilityPoint>& points, const std::string& id) {
@@ -201,7 +204,7 @@ Figure utility_figure(const SimulatedMission& planned, const std::vector<Utility
 Figure strip_figure(const SimulatedMission& planned, const std::string& id) {
     const auto& mission = planned.mission;
     auto description = fmt::format("What {} runs when.", planned.title);
-    for (const auto& running : running_times(mission)) {
+    for (const auto& running : run_intervals(mission)) {
         const auto& component = mission.compute.components[running.component];
         description += fmt::format(" {} {} from {:.0f} to {:.0f} s.", component.name,
                                    describe_qos(component, running.qos), running.start_s, running.end_s);

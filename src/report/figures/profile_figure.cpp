@@ -43,7 +43,7 @@ VegaJson points_layer(const compute::PowerProfile& profile) {
     if (all_measured(profile)) {
         points["mark"]["filled"] = true;
     } else {
-        points["encoding"]["shape"] = category("origin", "", vega(R"({"scale":
+        points["encoding"]["shape"] = nominal_channel("origin", "", vega(R"({"scale":
             {"domain": ["measured", "interpolated"], "range": ["circle", "cross"]}})"));
     }
     return points;
@@ -65,20 +65,20 @@ FigureData node_rows(const compute::PowerProfile& profile) {
 VegaJson panel_of(const compute::Component& component) {
     const auto& profile = component.profile;
     const auto title = profile.parameters.empty() ? "no parameter" : valid_utf8(profile.parameters.front());
-    VegaJson encoding{{"x", quantity("qos", title, {{"scale", {{"zero", false}}}})},
-                      {"y", quantity("power_w", "power [W]")},
-                      {"tooltip", {quantity("qos", title), shown("power_w", "power [W]", ".2f")}}};
+    VegaJson encoding{{"x", numeric_channel("qos", title, {{"scale", {{"zero", false}}}})},
+                      {"y", numeric_channel("power_w", "power [W]")},
+                      {"tooltip", {numeric_channel("qos", title), tooltip_number("power_w", "power [W]", ".2f")}}};
     if (profile.parameters.size() > 1) {
-        encoding["color"] = category("line", "", {{"sort", nullptr}});
-        encoding["tooltip"].push_back(category("line", "also"));
+        encoding["color"] = nominal_channel("line", "", {{"sort", nullptr}});
+        encoding["tooltip"].push_back(nominal_channel("line", "also"));
     }
     auto layers = vega(R"([{"mark": {"type": "line", "style": "measured"}}])");
     if (!profile.standard_error_w.empty()) {
-        encoding["tooltip"].push_back(shown("error_w", "standard error [W]", ".3f"));
+        encoding["tooltip"].push_back(tooltip_number("error_w", "standard error [W]", ".3f"));
         layers.push_back(layer(R"({"type": "rule", "style": "measured", "strokeWidth": 1.4})",
-                               {{"y", quantity("low_w", "power [W]")}, {"y2", {{"field", "high_w"}}}}));
+                               {{"y", numeric_channel("low_w", "power [W]")}, {"y2", {{"field", "high_w"}}}}));
     }
-    if (!all_measured(profile)) encoding["tooltip"].push_back(category("origin", "node"));
+    if (!all_measured(profile)) encoding["tooltip"].push_back(nominal_channel("origin", "node"));
     layers.push_back(points_layer(profile));
     const VegaJson nodes{{"data", node_rows(profile).json()}, {"encoding", encoding}, {"layer", layers}};
     return {{"width", 280}, {"height", 190}, {"layer", {nodes, panel_name(component.name)}}};

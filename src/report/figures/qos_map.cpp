@@ -61,14 +61,15 @@ double cell_soc(const QosMap& map, std::size_t i, std::size_t j) {
 }
 
 VegaJson axis(const std::string& field, const QosAxis& qos) {
-    return quantity(field, valid_utf8(qos.name),
-                    {{"scale", {{"domain", {qos.nodes.front(), qos.nodes.back()}}, {"nice", false}, {"zero", false}}},
-                     {"axis", {{"grid", false}}}});
+    return numeric_channel(
+        field, valid_utf8(qos.name),
+        {{"scale", {{"domain", {qos.nodes.front(), qos.nodes.back()}}, {"nice", false}, {"zero", false}}},
+         {"axis", {{"grid", false}}}});
 }
 
 VegaJson soc_color() {
-    return quantity("soc_percent", map_soc_title,
-                    vega(R"({"scale": {"range": "heatmap"}, "legend": {"gradientLength": 200}})"));
+    return numeric_channel("soc_percent", map_soc_title,
+                           vega(R"({"scale": {"range": "heatmap"}, "legend": {"gradientLength": 200}})"));
 }
 
 VegaJson cell_layer(const QosMap& map) {
@@ -85,9 +86,9 @@ VegaJson cell_layer(const QosMap& map) {
                   {"y2", {{"field", "y_high"}}},
                   {"color", soc_color()},
                   {"tooltip",
-                   {quantity("x_low", valid_utf8(map.x.name) + " from"), quantity("x_high", "to"),
-                    quantity("y_low", valid_utf8(map.y.name) + " from"), quantity("y_high", "to"),
-                    shown("soc_percent", map_soc_title, ".2f")}}});
+                   {numeric_channel("x_low", valid_utf8(map.x.name) + " from"), numeric_channel("x_high", "to"),
+                    numeric_channel("y_low", valid_utf8(map.y.name) + " from"), numeric_channel("y_high", "to"),
+                    tooltip_number("soc_percent", map_soc_title, ".2f")}}});
 }
 
 /// The configurations that the missions run with both components on, and who runs them.
@@ -120,8 +121,8 @@ VegaJson marker_layer(const QosMap& map, std::span<const SimulatedMission> missi
                  {{"x", axis("x", map.x)},
                   {"y", axis("y", map.y)},
                   {"tooltip",
-                   {category("missions", "run by"), quantity("x", valid_utf8(map.x.name)),
-                    quantity("y", valid_utf8(map.y.name))}}});
+                   {nominal_channel("missions", "run by"), numeric_channel("x", valid_utf8(map.x.name)),
+                    numeric_channel("y", valid_utf8(map.y.name))}}});
 }
 
 VegaJson published_layer(const QosMap& map, const std::vector<PublishedCell>& cells) {
@@ -137,8 +138,8 @@ VegaJson published_layer(const QosMap& map, const std::vector<PublishedCell>& ce
                   {"y", axis("y", map.y)},
                   {"color", soc_color()},
                   {"tooltip",
-                   {quantity("x", valid_utf8(map.x.name)), quantity("y", valid_utf8(map.y.name)),
-                    shown("soc_percent", "published, Fig. 4 [%]", ".2f")}}});
+                   {numeric_channel("x", valid_utf8(map.x.name)), numeric_channel("y", valid_utf8(map.y.name)),
+                    tooltip_number("soc_percent", "published, Fig. 4 [%]", ".2f")}}});
 }
 
 /// The least and the greatest of what can be delivered; both 0 if nothing can.
@@ -179,7 +180,7 @@ std::optional<QosMap> qos_map(const mission::MissionSetup& mission) {
     for (std::size_t a = 2; a < axes.size(); ++a) {
         map.others += fmt::format("{}{} {:g}", map.others.empty() ? "" : ", ", axes[a].name, axes[a].nodes.back());
     }
-    mission::SimulationSteps steps;
+    mission::SimulationOptions steps;
     steps.integration_s = 1.0;  // constant or smooth power: the error is far below a hundredth of a percent
     for (const auto phase : flight::all_phases) steps.output_s = std::max(steps.output_s, mission.duration_s[phase]);
     for (const double y : map.y.nodes) {

@@ -48,9 +48,9 @@ VegaJson title_list(Missions missions) {
 
 /// The channel that tells missions apart by a range of colours or dashes.
 VegaJson mission_channel(Missions missions, const VegaJson& range) {
-    return category("mission", "",
-                    {{"scale", {{"domain", title_list(missions)}, {"range", range}}},
-                     {"legend", {{"columns", 3}, {"symbolType", "stroke"}}}});
+    return nominal_channel("mission", "",
+                           {{"scale", {{"domain", title_list(missions)}, {"range", range}}},
+                            {"legend", {{"columns", 3}, {"symbolType", "stroke"}}}});
 }
 
 /// Dashes tell apart what colours may not: of missions that share a colour, and in print.
@@ -68,13 +68,14 @@ VegaJson curve_layer(Missions missions, const FigureData& titles) {
             {"mark", vega(R"({"type": "line", "strokeWidth": 1.8, "clip": true,
                               "point": {"opacity": 0, "size": 50, "aria": false}})")},
             {"encoding",
-             {{"x", quantity("time_s", schedule_time_title)},
-              {"y", quantity("soc_percent", schedule_soc_title)},
+             {{"x", numeric_channel("time_s", schedule_time_title)},
+              {"y", numeric_channel("soc_percent", schedule_soc_title)},
               {"color", mission_channel(missions, "category")},
               {"strokeDash", mission_channel(missions, dashes_of(missions))},
               {"tooltip",
-               {category("mission", "mission"), category("phase", "phase"), shown("time_s", "time [s]", ".0f"),
-                shown("soc_percent", schedule_soc_title, ".2f"), shown("power_w", "power [W]", ".2f")}}}}};
+               {nominal_channel("mission", "mission"), nominal_channel("phase", "phase"),
+                tooltip_number("time_s", "time [s]", ".0f"), tooltip_number("soc_percent", schedule_soc_title, ".2f"),
+                tooltip_number("power_w", "power [W]", ".2f")}}}}};
 }
 
 VegaJson published_layer(Missions missions, const PublishedFigures& published, const FigureData& titles) {
@@ -90,12 +91,12 @@ VegaJson published_layer(Missions missions, const PublishedFigures& published, c
             {"transform", with_titles(titles)},
             {"mark", vega(R"({"type": "point", "size": 12, "strokeWidth": 1, "clip": true, "aria": false})")},
             {"encoding",
-             {{"x", quantity("time_s", schedule_time_title)},
-              {"y", quantity("soc_percent", schedule_soc_title)},
+             {{"x", numeric_channel("time_s", schedule_time_title)},
+              {"y", numeric_channel("soc_percent", schedule_soc_title)},
               {"color", mission_channel(missions, "category")},
               {"tooltip",
-               {category("mission", "published, Fig. 3"), shown("time_s", "time [s]", ".0f"),
-                shown("soc_percent", schedule_soc_title, ".2f")}}}}};
+               {nominal_channel("mission", "published, Fig. 3"), tooltip_number("time_s", "time [s]", ".0f"),
+                tooltip_number("soc_percent", schedule_soc_title, ".2f")}}}}};
 }
 
 /// Where 5 to 95 % of the flights that were drawn are.
@@ -114,8 +115,8 @@ VegaJson band_layer(Missions missions, const FigureData& titles) {
             {"transform", transform},
             {"mark", vega(R"({"type": "area", "fillOpacity": 0.16, "clip": true, "aria": false})")},
             {"encoding",
-             {{"x", quantity("time_s", schedule_time_title)},
-              {"y", quantity("p05_percent", schedule_soc_title)},
+             {{"x", numeric_channel("time_s", schedule_time_title)},
+              {"y", numeric_channel("p05_percent", schedule_soc_title)},
               {"y2", {{"field", "p95_percent"}}},
               {"color", mission_channel(missions, "category")}}}};
 }
@@ -134,8 +135,8 @@ VegaJson reserve_layer(Missions missions) {
     return {{"data", data.json()},
             {"mark", vega(R"({"type": "rule", "style": "edge", "strokeDash": [5, 4], "aria": false})")},
             {"encoding",
-             {{"y", quantity("reserve_percent", schedule_soc_title)},
-              {"tooltip", {shown("reserve_percent", "reserve [%]", ".4g")}}}}};
+             {{"y", numeric_channel("reserve_percent", schedule_soc_title)},
+              {"tooltip", {tooltip_number("reserve_percent", "reserve [%]", ".4g")}}}}};
 }
 
 VegaJson phase_layers(Missions missions) {
@@ -152,12 +153,12 @@ VegaJson phase_layers(Missions missions) {
     }
     const auto edges =
         layer(data.json(), R"({"type": "rule", "style": "edge", "strokeDash": [3, 3], "clip": true, "aria": false})",
-              {{"x", quantity("end_s", schedule_time_title)}});
+              {{"x", numeric_channel("end_s", schedule_time_title)}});
     return VegaJson::array({edges, phase_names(data.json(), schedule_time_title)});
 }
 
 /// A bar a segment: when a mission runs which configuration.
-VegaJson strip_panel(Missions missions, double longest_s) {
+VegaJson strip_panel(Missions missions, double max_s) {
     FigureData data({"start_s", "end_s", "compute_w"}, {"mission", "phase", "runs"});
     for (const auto& simulated : missions) {
         const auto& mission = simulated.mission;
@@ -168,22 +169,23 @@ VegaJson strip_panel(Missions missions, double longest_s) {
                      {simulated.title, phase_word(segment.phase), describe(mission.compute, segment.run)});
         }
     }
-    const VegaJson whole{{"scale", {{"domain", {0.0, longest_s}}, {"nice", false}}}, {"axis", {{"grid", false}}}};
+    const VegaJson whole{{"scale", {{"domain", {0.0, max_s}}, {"nice", false}}}, {"axis", {{"grid", false}}}};
     const VegaJson rows{{"sort", title_list(missions)},
                         {"axis", {{"labelLimit", 150}, {"ticks", false}, {"domain", false}}}};
-    return {{"width", schedule_width},
-            {"height", {{"step", 18}}},
-            {"data", data.json()},
-            {"mark", {{"type", "bar"}, {"clip", true}}},
-            {"encoding",
-             {{"x", quantity("start_s", schedule_time_title, whole)},
-              {"x2", {{"field", "end_s"}}},
-              {"y", category("mission", "", rows)},
-              {"color", power_ramp("compute_w", "computing power [W]")},
-              {"tooltip",
-               {category("mission", "mission"), category("phase", "phase"), category("runs", "runs"),
-                shown("start_s", "from [s]", ".0f"), shown("end_s", "to [s]", ".0f"),
-                shown("compute_w", "computing power [W]", ".2f")}}}}};
+    return {
+        {"width", schedule_width},
+        {"height", {{"step", 18}}},
+        {"data", data.json()},
+        {"mark", {{"type", "bar"}, {"clip", true}}},
+        {"encoding",
+         {{"x", numeric_channel("start_s", schedule_time_title, whole)},
+          {"x2", {{"field", "end_s"}}},
+          {"y", nominal_channel("mission", "", rows)},
+          {"color", power_ramp("compute_w", "computing power [W]")},
+          {"tooltip",
+           {nominal_channel("mission", "mission"), nominal_channel("phase", "phase"), nominal_channel("runs", "runs"),
+            tooltip_number("start_s", "from [s]", ".0f"), tooltip_number("end_s", "to [s]", ".0f"),
+            tooltip_number("compute_w", "computing power [W]", ".2f")}}}}};
 }
 
 std::string schedules_described(Missions missions) {
@@ -200,8 +202,8 @@ Figure schedule_figure(Missions missions, const PublishedFigures& published, con
     auto figure = new_figure(
         id, "A click on the legend hides a mission. Below: what each schedule runs when, coloured by its power.",
         schedules_described(missions));
-    double longest_s = 0.0;
-    for (const auto& mission : missions) longest_s = std::max(longest_s, mission.simulation.summary.duration_s);
+    double max_s = 0.0;
+    for (const auto& mission : missions) max_s = std::max(max_s, mission.simulation.summary.duration_s);
     const auto titles = title_rows(missions);
     auto layers = phase_layers(missions);
     if (auto bands = band_layer(missions, titles); !bands.is_null()) {
@@ -219,14 +221,14 @@ Figure schedule_figure(Missions missions, const PublishedFigures& published, con
     }
     for (auto& part : layers) {
         if (part["encoding"].contains("x"))
-            part["encoding"]["x"]["scale"] = {{"domain", {0.0, longest_s}}, {"nice", false}};
+            part["encoding"]["x"]["scale"] = {{"domain", {0.0, max_s}}, {"nice", false}};
         if (part["encoding"].contains("y")) part["encoding"]["y"]["scale"] = vega(R"({"domain": [0.0, 100.0]})");
     }
     figure.spec["params"] = {add_zoom(figure, {"curves"}), legend_parameter("mission", title_list(missions), "curves")};
     figure.spec["usermeta"] = {{"margin_px", 170}};  // the strip's names
     figure.spec["datasets"] = {{"missions", titles.csv()}};
     figure.spec["vconcat"] = {{{"width", schedule_width}, {"height", 330}, {"layer", layers}},
-                              strip_panel(missions, longest_s)};
+                              strip_panel(missions, max_s)};
     figure.spec["resolve"] = vega(R"({"scale": {"x": "shared", "color": "independent", "strokeDash": "independent"}})");
     return figure;
 }

@@ -1,5 +1,5 @@
-#include "flight/chosen_track.h"
 #include "flight/phase_statistics.h"
+#include "flight/selected_track.h"
 #include "report/figures/flight_figures.h"
 
 #include <algorithm>
@@ -38,9 +38,9 @@ struct GroundTrack {
 GroundTrack ground_track(const ReportFlight& flight) {
     const auto& series = flight.series;
     const auto time_s = power_track(series).time_s;
-    const auto altitude = chosen_track(series, "altitude_m");
-    GroundTrack track{time_s, chosen_at(series, "east_m", time_s), chosen_at(series, "north_m", time_s),
-                      std::vector<double>(time_s.size(), 0.0)};
+    const auto altitude = select_track(series, "altitude_m");
+    GroundTrack track{time_s, sample_selected_track(series, "east_m", time_s),
+                      sample_selected_track(series, "north_m", time_s), std::vector<double>(time_s.size(), 0.0)};
     if (altitude.empty() || flight.phases.sorties.empty()) return track;
     track.height_m = resample(altitude, time_s);
     const double ground_m = value_at(altitude, flight.phases.sorties.front().phases.front().start.time_s);
@@ -116,7 +116,7 @@ FigureData track_rows(const ReportFlight& flight, const GroundTrack& track, doub
 }
 
 VegaJson axis_of(std::string_view field, std::string_view title, double middle_m, double half_m) {
-    return quantity(
+    return numeric_channel(
         field, title,
         {{"scale", {{"domain", {middle_m - half_m, middle_m + half_m}}, {"nice", false}, {"zero", false}}}});
 }
@@ -125,16 +125,16 @@ VegaJson east_axis(const Square& square) { return axis_of("east_m", "east [m]", 
 VegaJson north_axis(const Square& square) { return axis_of("north_m", "north [m]", square.north_m, square.half_m); }
 
 VegaJson track_tooltip() {
-    return {category("word", "phase"), shown("east_m", "east [m]", ".0f"), shown("north_m", "north [m]", ".0f"),
-            shown("height_m", "height [m]", ".0f")};
+    return {nominal_channel("word", "phase"), tooltip_number("east_m", "east [m]", ".0f"),
+            tooltip_number("north_m", "north [m]", ".0f"), tooltip_number("height_m", "height [m]", ".0f")};
 }
 
 /// The length of 1, 2 or 5 times a power of ten that is nearest below a quarter of the square.
 double scale_bar_m(const Square& square) {
-    const double most_m = square.half_m / 2.0;
-    const double decade_m = std::pow(10.0, std::floor(std::log10(most_m)));
+    const double max_m = square.half_m / 2.0;
+    const double decade_m = std::pow(10.0, std::floor(std::log10(max_m)));
     for (const double times : {5.0, 2.0}) {
-        if (times * decade_m <= most_m) return times * decade_m;
+        if (times * decade_m <= max_m) return times * decade_m;
     }
     return decade_m;
 }
@@ -165,8 +165,8 @@ VegaJson phase_panel(const Square& square) {
                             {"y", north_axis(square)},
                             {"order", {{"field", "order"}, {"type", "quantitative"}}},
                             {"detail", {{"field", "piece"}}},
-                            {"color", category("word", "", color)},
-                            {"strokeDash", category("word", "", dash)},
+                            {"color", nominal_channel("word", "", color)},
+                            {"strokeDash", nominal_channel("word", "", dash)},
                             {"tooltip", track_tooltip()}}));
     return {{"width", side}, {"height", side}, {"layer", layers}};
 }
@@ -185,7 +185,7 @@ VegaJson height_panel(const Square& square) {
         {"y", north_axis(square)},
         {"x2", {{"field", "next_east_m"}}},
         {"y2", {{"field", "next_north_m"}}},
-        {"color", quantity("height_m", "height [m]", vega(R"({"scale": {"scheme": "viridis", "zero": false},
+        {"color", numeric_channel("height_m", "height [m]", vega(R"({"scale": {"scheme": "viridis", "zero": false},
                                                              "legend": {"orient": "top", "gradientLength": 160}})"))},
         {"tooltip", track_tooltip()}};
     return panel;

@@ -55,15 +55,15 @@ std::size_t header_of(std::uint8_t kind) {
 
 }  // namespace
 
-Look look_at_xbee_frame(const char* p, const char* end, bool escaped, Frame& frame) {
+ParseStatus parse_xbee_frame(const char* p, const char* end, bool escaped, Frame& frame) {
     PacketReader reader(p + 1, end, escaped);
-    const auto stopped = [&] { return reader.is_refused() ? Look::none : Look::incomplete; };
+    const auto stopped = [&] { return reader.is_refused() ? ParseStatus::none : ParseStatus::incomplete; };
     const auto high = reader.next();
     const auto low = high ? reader.next() : std::nullopt;
     if (!low) return stopped();
     const auto length = *high * std::size_t{256} + *low;
-    if (length < 2 || length > frame.unescaped.size()) return Look::none;
-    if (!escaped && static_cast<std::size_t>(end - reader.position()) < length + 1) return Look::incomplete;
+    if (length < 2 || length > frame.unescaped.size()) return ParseStatus::none;
+    if (!escaped && static_cast<std::size_t>(end - reader.position()) < length + 1) return ParseStatus::incomplete;
     const char* const data = reader.position();
     std::uint8_t sum = 0;
     for (std::size_t i = 0; i <= length; ++i) {
@@ -72,28 +72,28 @@ Look look_at_xbee_frame(const char* p, const char* end, bool escaped, Frame& fra
         sum = static_cast<std::uint8_t>(sum + *byte);
         if (escaped && i < length) frame.unescaped[i] = static_cast<char>(*byte);
     }
-    if (sum != 0xFF) return Look::none;
+    if (sum != 0xFF) return ParseStatus::none;
     const std::string_view packet(escaped ? frame.unescaped.data() : data, length);
     const auto header = header_of(byte_at(packet.data()));
     frame.size = static_cast<std::size_t>(reader.position() - p);
     frame.message = header == 0 || packet.size() < header ? std::string_view() : packet.substr(header);
     frame.source = 0;
-    return Look::frame;
+    return ParseStatus::frame;
 }
 
-Look look_at_either_xbee_frame(const char* p, const char* end, Frame& frame) {
+ParseStatus parse_any_xbee_frame(const char* p, const char* end, Frame& frame) {
     const auto is_followed = [&](const Frame& read) {
         return p + read.size == end || p[read.size] == sync_byte(Framing::xbee);
     };
-    const auto plain = look_at_xbee_frame(p, end, false, frame);
-    const bool is_plain = plain == Look::frame && is_followed(frame);
+    const auto plain = parse_xbee_frame(p, end, false, frame);
+    const bool is_plain = plain == ParseStatus::frame && is_followed(frame);
     const auto plain_size = frame.size;
-    const auto escaped = look_at_xbee_frame(p, end, true, frame);
-    if (escaped == Look::frame &&
-        (plain != Look::frame || (is_followed(frame) && (!is_plain || frame.size < plain_size))))
+    const auto escaped = parse_xbee_frame(p, end, true, frame);
+    if (escaped == ParseStatus::frame &&
+        (plain != ParseStatus::frame || (is_followed(frame) && (!is_plain || frame.size < plain_size))))
         return escaped;
-    if (plain == Look::frame) return look_at_xbee_frame(p, end, false, frame);
-    return escaped == Look::none ? plain : escaped;
+    if (plain == ParseStatus::frame) return parse_xbee_frame(p, end, false, frame);
+    return escaped == ParseStatus::none ? plain : escaped;
 }
 
 }  // namespace flightwatt::telemetry

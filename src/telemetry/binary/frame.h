@@ -21,7 +21,7 @@ struct Frame {
     std::array<char, 320> unescaped{};  ///< what `message` lies in, if the frame was escaped
 };
 
-enum class Look {
+enum class ParseStatus {
     none,        ///< no frame begins here
     incomplete,  ///< one may, but there are too few bytes
     frame,
@@ -61,63 +61,63 @@ constexpr std::ptrdiff_t checksum_bytes(Framing framing) { return framing == Fra
 /// Whether two frames seem to begin, by sync bytes and a length, one after the other at `p`: a quick look. Never for
 /// XBees, whose lengths may be escaped.
 template <Framing framing>
-bool two_seem_to_begin(const char* p, const char* end) {
+bool looks_like_two_frames(const char* p, const char* end) {
     if (framing == Framing::xbee || end - p < 2 || *p != sync_byte(framing)) return false;
     const std::ptrdiff_t size = byte_at(p + 1) + (framing == Framing::card ? 8 : 0);
     return size < end - p && p[size] == sync_byte(framing);
 }
 
 /// The most bytes that a frame has: an escaped one is nearly twice as long.
-constexpr std::size_t most_frame_bytes = 640;
+constexpr std::size_t max_frame_bytes = 640;
 
-inline Look look_at_card_frame(const char* p, const char* end, Frame& frame) {
-    constexpr std::size_t around = 8;
-    if (end - p < 2) return Look::incomplete;
+inline ParseStatus parse_card_frame(const char* p, const char* end, Frame& frame) {
+    constexpr std::size_t overhead = 8;
+    if (end - p < 2) return ParseStatus::incomplete;
     const std::size_t length = byte_at(p + 1);
-    if (length < 2) return Look::none;
-    const auto size = length + around;
-    if (static_cast<std::size_t>(end - p) < size) return Look::incomplete;
-    if (sum_of(p + 1, size - 2) != byte_at(p + size - 1)) return Look::none;
+    if (length < 2) return ParseStatus::none;
+    const auto size = length + overhead;
+    if (static_cast<std::size_t>(end - p) < size) return ParseStatus::incomplete;
+    if (sum_of(p + 1, size - 2) != byte_at(p + size - 1)) return ParseStatus::none;
     frame.size = size;
     frame.message = {p + 7, length};
     frame.source = byte_at(p + 2);
     frame.time_100us = byte_at(p + 3) | std::uint32_t{byte_at(p + 4)} << 8 | std::uint32_t{byte_at(p + 5)} << 16 |
                        std::uint32_t{byte_at(p + 6)} << 24;
-    return Look::frame;
+    return ParseStatus::frame;
 }
 
-inline Look look_at_link_frame(const char* p, const char* end, Frame& frame) {
-    constexpr std::size_t around = 4;
-    if (end - p < 2) return Look::incomplete;
+inline ParseStatus parse_link_frame(const char* p, const char* end, Frame& frame) {
+    constexpr std::size_t overhead = 4;
+    if (end - p < 2) return ParseStatus::incomplete;
     const std::size_t size = byte_at(p + 1);
-    if (size < around + 2) return Look::none;
-    if (static_cast<std::size_t>(end - p) < size) return Look::incomplete;
+    if (size < overhead + 2) return ParseStatus::none;
+    if (static_cast<std::size_t>(end - p) < size) return ParseStatus::incomplete;
     std::uint8_t a = 0;
     std::uint8_t b = 0;
     for (const char* at = p + 1; at < p + size - 2; ++at) {
         a = static_cast<std::uint8_t>(a + byte_at(at));
         b = static_cast<std::uint8_t>(b + a);
     }
-    if (a != byte_at(p + size - 2) || b != byte_at(p + size - 1)) return Look::none;
+    if (a != byte_at(p + size - 2) || b != byte_at(p + size - 1)) return ParseStatus::none;
     frame.size = size;
-    frame.message = {p + 2, size - around};
+    frame.message = {p + 2, size - overhead};
     frame.source = 0;
-    return Look::frame;
+    return ParseStatus::frame;
 }
 
 /// `escaped`: XBees in API mode 2 send 0x7E, 0x7D, 0x11 and 0x13 as 0x7D and the byte with bit 5 turned.
-Look look_at_xbee_frame(const char* p, const char* end, bool escaped, Frame& frame);
+ParseStatus parse_xbee_frame(const char* p, const char* end, bool escaped, Frame& frame);
 
 /// As it stands, or escaped: where both have a right checksum, the one that another frame follows, and of two the
 /// shorter.
-Look look_at_either_xbee_frame(const char* p, const char* end, Frame& frame);
+ParseStatus parse_any_xbee_frame(const char* p, const char* end, Frame& frame);
 
 /// `p` stands on a sync byte.
 template <Framing framing>
-Look look_at_frame(const char* p, const char* end, Frame& frame) {
-    if constexpr (framing == Framing::card) return look_at_card_frame(p, end, frame);
-    if constexpr (framing == Framing::link) return look_at_link_frame(p, end, frame);
-    return look_at_either_xbee_frame(p, end, frame);
+ParseStatus parse_frame(const char* p, const char* end, Frame& frame) {
+    if constexpr (framing == Framing::card) return parse_card_frame(p, end, frame);
+    if constexpr (framing == Framing::link) return parse_link_frame(p, end, frame);
+    return parse_any_xbee_frame(p, end, frame);
 }
 
 }  // namespace flightwatt::telemetry

@@ -4,9 +4,9 @@
 
 namespace flightwatt::telemetry {
 
-/// The time of card frames, which starts anew after 119.3 h. It is taken to have done so where a time is before the last
-/// one and, counted across the end of the range, less than an hour behind it: a damaged time or a clock that was set
-/// back does not count as one.
+/// The time of card frames, which starts anew after 119.3 h. It is taken to have done so where a time is before the
+/// last one and, counted across the end of the range, less than an hour behind it: a damaged time or a clock that was
+/// set back does not count as one.
 class FrameClock {
   public:
     double time_s(std::uint32_t time_100us) {

@@ -22,7 +22,7 @@ struct FoundFrame {
     bool carries_message = false;
     std::string_view fields;
     const WireMessage* message = nullptr;  ///< nullptr: not defined
-    bool fits = false;                     ///< the fields have the length that is defined
+    bool length_matches = false;           ///< the fields have the length that is defined
 };
 
 /// Bytes between frames.
@@ -33,8 +33,8 @@ struct Gap {
     bool is_cut_off = false;  ///< begins where a frame should, of which there is too little
 };
 
-/// What header and fields are; without a message where there are too few bytes for the header. Of every frame, and short:
-/// a call and a copy of the result would be a tenth of the time that a log takes.
+/// What header and fields are; without a message where there are too few bytes for the header. Of every frame, and
+/// short: a call and a copy of the result would be a tenth of the time that a log takes.
 [[gnu::always_inline]] inline FoundFrame read_message_header(const Frame& frame, LinkVersion version,
                                                              const MessageDictionary& dictionary) {
     FoundFrame found;
@@ -51,21 +51,21 @@ struct Gap {
     found.id = byte_at(bytes.data() + header - 1);
     found.fields = {bytes.data() + header, bytes.size() - header};
     found.message = dictionary.find(found.class_id, found.id);
-    found.fits = found.message != nullptr && found.message->fits(found.fields);
+    found.length_matches = found.message != nullptr && found.message->fits(found.fields);
     return found;
 }
 
 /// What comes behind the bytes that are scanned.
-enum class Behind {
+enum class InputContinuation {
     more,   ///< more bytes, at once
     pause,  ///< more may come
     end,
 };
 
-/// Frames out of bytes, also damaged ones (docs/formats.md, "Damage"). A frame whose checksum is right and whose message
-/// fits its definition counts; where the next frame does not follow, only if none that fits begins within it. One that
-/// does not fit counts if none that fits begins within it and it stands where a frame should, or one follows, or its
-/// sender is known. So a damaged length cannot swallow the frames behind it.
+/// Frames out of bytes, also damaged ones (docs/formats.md, "Damage"). A frame whose checksum is right and whose
+/// message fits its definition counts; where the next frame does not follow, only if none that fits begins within it.
+/// One that does not fit counts if none that fits begins within it and it stands where a frame should, or one follows,
+/// or its sender is known. So a damaged length cannot swallow the frames behind it.
 template <Framing framing>
 class FrameScanner {
   public:
@@ -76,9 +76,10 @@ class FrameScanner {
     std::optional<LinkVersion> version() const { return version_ ? version_ : likely_version(); }
 
     /// Calls on_frame(FoundFrame, Frame) and on_gap(Gap) in the order of the bytes; a gap is told with the frame behind
-    /// it, or at the end. Returns how many bytes are done with: the others are to be given again, with more behind them.
+    /// it, or at the end. Returns how many bytes are done with: the others are to be given again, with more behind
+    /// them.
     template <typename OnFrame, typename OnGap>
-    std::size_t scan(std::string_view bytes, Behind behind, OnFrame&& on_frame, OnGap&& on_gap) {
+    std::size_t scan(std::string_view bytes, InputContinuation behind, OnFrame&& on_frame, OnGap&& on_gap) {
         begin_ = bytes.data();
         end_ = begin_ + bytes.size();
         searched_ = begin_;
@@ -93,62 +94,70 @@ class FrameScanner {
                 continue;
             }
             const auto look = look_at(p, frame_);
-            if (look == Look::incomplete && behind != Behind::end && !fitting_begins_in(p + 1, end_)) break;
-            if (look == Look::frame) {
+            if (look == ParseStatus::incomplete && behind != InputContinuation::end &&
+                !find_matching_frame(p + 1, end_))
+                break;
+            if (look == ParseStatus::frame) {
                 const char* const stop = p + frame_.size;
                 auto found = read(frame_, true);
-                const bool is_sure = found.fits && two_seem_to_begin<framing>(stop, end_);
-                const auto verdict = is_sure ? Verdict::count : judge(found, p, stop, behind);
-                if (verdict == Verdict::wait) break;
-                if (verdict != Verdict::reject) {
+                const bool is_sure = found.length_matches && looks_like_two_frames<framing>(stop, end_);
+                const auto verdict = is_sure ? FrameDecision::count : decide(found, p, stop, behind);
+                if (verdict == FrameDecision::wait) break;
+                if (verdict != FrameDecision::reject) {
                     close_gap(on_gap);
                     found.offset = offset_of(p);
-                    in_step_ = true;
-                    if (found.fits) known_senders_.set(found.sender);
+                    in_sync_ = true;
+                    if (found.length_matches) known_senders_.set(found.sender);
                     on_frame(static_cast<const FoundFrame&>(found), static_cast<const Frame&>(frame_));
-                    p = verdict == Verdict::count ? stop : fitting_;
+                    p = verdict == FrameDecision::count ? stop : fitting_;
                     continue;
                 }
             }
-            skip(p, p + 1, look == Look::incomplete);
+            skip(p, p + 1, look == ParseStatus::incomplete);
             ++p;
         }
         const auto done = static_cast<std::size_t>(p - begin_);
         offset_ += done;
-        if (behind == Behind::end) close_gap(on_gap);
+        if (behind == InputContinuation::end) close_gap(on_gap);
         return done;
     }
 
   private:
-    enum class Verdict { count, count_both, reject, wait };
+    enum class FrameDecision { count, count_both, reject, wait };
 
-    Verdict judge(const FoundFrame& found, const char* p, const char* stop, Behind behind) {
+    FrameDecision decide(const FoundFrame& found, const char* p, const char* stop, InputContinuation behind) {
         const bool is_last = stop == end_;
-        if (is_last && (behind == Behind::more || (behind == Behind::pause && !found.fits))) return Verdict::wait;
+        if (is_last &&
+            (behind == InputContinuation::more || (behind == InputContinuation::pause && !found.length_matches)))
+            return FrameDecision::wait;
         const bool is_followed = is_last || *stop == sync_byte(framing);
-        if (found.fits && is_last) return Verdict::count;
-        if (found.fits && is_followed) {
+        if (found.length_matches && is_last) return FrameDecision::count;
+        if (found.length_matches && is_followed) {
             const auto next = look_at(stop, inner_);
-            if (next == Look::incomplete && behind == Behind::more) return Verdict::wait;
-            if (next == Look::frame || (next == Look::incomplete && behind == Behind::pause)) return Verdict::count;
+            if (next == ParseStatus::incomplete && behind == InputContinuation::more) return FrameDecision::wait;
+            if (next == ParseStatus::frame || (next == ParseStatus::incomplete && behind == InputContinuation::pause))
+                return FrameDecision::count;
         }
-        if (fitting_begins_in(p + 1, stop)) {
-            // Of a frame that has lost its last byte, and of one that has lost its first, the neighbour may stand in for
-            // it: both were sent, and which of them is damaged cannot be told.
-            return found.fits && fitting_ >= stop - checksum_bytes(framing) ? Verdict::count_both : Verdict::reject;
+        if (find_matching_frame(p + 1, stop)) {
+            // Of a frame that has lost its last byte, and of one that has lost its first, the neighbour may stand in
+            // for it: both were sent, and which of them is damaged cannot be told.
+            return found.length_matches && fitting_ >= stop - checksum_bytes(framing) ? FrameDecision::count_both
+                                                                                      : FrameDecision::reject;
         }
-        const bool counts = found.fits || in_step_ || is_followed || known_senders_.test(found.sender);
-        return counts ? Verdict::count : Verdict::reject;
+        const bool counts = found.length_matches || in_sync_ || is_followed || known_senders_.test(found.sender);
+        return counts ? FrameDecision::count : FrameDecision::reject;
     }
 
     /// Of an XBee's packet that has a right checksum both as it stands and escaped, the one whose message fits.
-    Look look_at(const char* p, Frame& frame) {
-        const auto look = look_at_frame<framing>(p, end_, frame);
+    ParseStatus look_at(const char* p, Frame& frame) {
+        const auto look = parse_frame<framing>(p, end_, frame);
         if constexpr (framing == Framing::xbee) {
-            if (look != Look::frame || read(frame, false).fits) return look;
+            if (look != ParseStatus::frame || read(frame, false).length_matches) return look;
             for (const bool escaped : {false, true}) {
-                if (look_at_xbee_frame(p, end_, escaped, other_) != Look::frame || !read(other_, false).fits) continue;
-                return look_at_xbee_frame(p, end_, escaped, frame);
+                if (parse_xbee_frame(p, end_, escaped, other_) != ParseStatus::frame ||
+                    !read(other_, false).length_matches)
+                    continue;
+                return parse_xbee_frame(p, end_, escaped, frame);
             }
         }
         return look;
@@ -162,13 +171,13 @@ class FrameScanner {
     FoundFrame read_of_any_version(const Frame& frame, bool counts) {
         const auto v1 = read_message_header(frame, LinkVersion::v1, *dictionary_);
         const auto v2 = read_message_header(frame, LinkVersion::v2, *dictionary_);
-        if (counts && v1.fits != v2.fits) ++(v1.fits ? fit_v1_ : fit_v2_);
+        if (counts && v1.length_matches != v2.length_matches) ++(v1.length_matches ? fit_v1_ : fit_v2_);
         if (const auto likely = likely_version()) return *likely == LinkVersion::v1 ? v1 : v2;
-        if (v1.fits && (!v2.fits || v2.class_id != MessageDictionary::telemetry_class)) return v1;
-        if (v2.fits && !v1.fits) return v2;
+        if (v1.length_matches && (!v2.length_matches || v2.class_id != MessageDictionary::telemetry_class)) return v1;
+        if (v2.length_matches && !v1.length_matches) return v2;
         FoundFrame undecided = v1;
         undecided.message = nullptr;
-        undecided.fits = false;
+        undecided.length_matches = false;
         return undecided;
     }
 
@@ -178,14 +187,14 @@ class FrameScanner {
     }
 
     /// Whether a frame that fits begins in [from, to). Each byte is looked at once.
-    bool fitting_begins_in(const char* from, const char* to) {
+    bool find_matching_frame(const char* from, const char* to) {
         if (fitting_ != nullptr && fitting_ >= from) return fitting_ < to;
         fitting_ = nullptr;
         for (const char* p = std::max(from, searched_); p < to; ++p) {
             const void* const next = std::memchr(p, sync_byte(framing), static_cast<std::size_t>(to - p));
             if (next == nullptr) break;
             p = static_cast<const char*>(next);
-            if (look_at(p, inner_) != Look::frame || !read(inner_, false).fits) continue;
+            if (look_at(p, inner_) != ParseStatus::frame || !read(inner_, false).length_matches) continue;
             fitting_ = p;
             searched_ = p + 1;
             return true;
@@ -197,8 +206,8 @@ class FrameScanner {
     std::size_t offset_of(const char* p) const { return offset_ + static_cast<std::size_t>(p - begin_); }
 
     void skip(const char* from, const char* to, bool is_incomplete) {
-        if (gap_.bytes == 0) gap_ = {offset_of(from), 0, 0, in_step_ && is_incomplete};
-        in_step_ = false;
+        if (gap_.bytes == 0) gap_ = {offset_of(from), 0, 0, in_sync_ && is_incomplete};
+        in_sync_ = false;
         const auto bytes = static_cast<std::size_t>(to - from);
         std::size_t zeros = 0;
         while (zeros < bytes && to[-1 - static_cast<std::ptrdiff_t>(zeros)] == '\0') ++zeros;
@@ -217,7 +226,7 @@ class FrameScanner {
     std::size_t fit_v1_ = 0;
     std::size_t fit_v2_ = 0;
     std::bitset<256> known_senders_;
-    bool in_step_ = true;  ///< the last frame ended where the next byte is
+    bool in_sync_ = true;  ///< the last frame ended where the next byte is
     Gap gap_;
     std::size_t offset_ = 0;  ///< of begin_
     const char* begin_ = nullptr;

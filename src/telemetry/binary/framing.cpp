@@ -20,7 +20,7 @@ void for_each_frame(std::string_view bytes, OnFrame&& on_frame) {
         const void* const next = std::memchr(p, sync_byte(framing), static_cast<std::size_t>(end - p));
         if (next == nullptr) return;
         p = static_cast<const char*>(next);
-        if (look_at_frame<framing>(p, end, frame) != Look::frame) {
+        if (parse_frame<framing>(p, end, frame) != ParseStatus::frame) {
             ++p;
             continue;
         }
@@ -54,15 +54,15 @@ FramedBytes framed_bytes(std::string_view bytes) {
 
 }  // namespace
 
-std::optional<Framing> framing_in(std::string_view bytes, bool is_whole) {
+std::optional<Framing> detect_framing(std::string_view bytes, bool is_whole) {
     // Right checksums by chance: two of them one behind the other once in 4 billion bytes.
-    constexpr std::size_t fewest_followers = 2;
+    constexpr std::size_t min_followers = 2;
     const auto filled = bytes.find_last_not_of('\0') + 1;
     std::optional<Framing> best;
     std::size_t most = 0;
     for (const auto framing : {Framing::card, Framing::link, Framing::xbee}) {
         const auto framed = with_framing(framing, [&]<Framing f>() { return framed_bytes<f>(bytes); });
-        std::size_t score = framed.followers >= fewest_followers ? framed.in_chains : 0;
+        std::size_t score = framed.followers >= min_followers ? framed.in_chains : 0;
         constexpr std::size_t nearly = 10;  // all but a tenth
         if (score == 0 && is_whole && framed.all > filled - filled / nearly) score = framed.all;
         if (score > most) {
@@ -73,15 +73,16 @@ std::optional<Framing> framing_in(std::string_view bytes, bool is_whole) {
     return best;
 }
 
-std::optional<LinkVersion> version_in(std::string_view bytes, Framing framing, const MessageDictionary& dictionary) {
+std::optional<LinkVersion> detect_version(std::string_view bytes, Framing framing,
+                                          const MessageDictionary& dictionary) {
     constexpr std::size_t enough = 4000;
     std::size_t fit_v1 = 0;
     std::size_t fit_v2 = 0;
     std::size_t frames = 0;
     with_framing(framing, [&]<Framing f>() {
         for_each_frame<f>(bytes, [&](const Frame& frame, bool /*follows*/) {
-            fit_v1 += read_message_header(frame, LinkVersion::v1, dictionary).fits ? 1 : 0;
-            fit_v2 += read_message_header(frame, LinkVersion::v2, dictionary).fits ? 1 : 0;
+            fit_v1 += read_message_header(frame, LinkVersion::v1, dictionary).length_matches ? 1 : 0;
+            fit_v2 += read_message_header(frame, LinkVersion::v2, dictionary).length_matches ? 1 : 0;
             return ++frames < enough;
         });
     });

@@ -8,11 +8,11 @@
 namespace flightwatt::telemetry {
 
 /// The framing whose frames with right checksums follow each other in most of the bytes; nothing where none does.
-/// `is_whole`: nothing comes behind, so that a single frame is enough which fills them.
-std::optional<Framing> framing_in(std::string_view bytes, bool is_whole);
+/// `is_unchanged`: nothing comes behind, so that a single frame is enough which fills them.
+std::optional<Framing> detect_framing(std::string_view bytes, bool is_whole);
 
 /// The header that most frames fit, of the first few thousand; nothing where none fits.
-std::optional<LinkVersion> version_in(std::string_view bytes, Framing framing, const MessageDictionary& dictionary);
+std::optional<LinkVersion> detect_version(std::string_view bytes, Framing framing, const MessageDictionary& dictionary);
 
 /// Calls use.template operator()<framing>().
 template <typename Use>

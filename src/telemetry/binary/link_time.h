@@ -9,7 +9,7 @@
 namespace flightwatt::telemetry {
 
 /// Fewer zeros between frames are damage, not room that was set aside.
-inline constexpr std::size_t fewest_zeros_of_room = 16;
+inline constexpr std::size_t min_padding_zeros = 16;
 
 /// The time of messages on links that have none of their own: what the last TIMESTAMP message said [ms], as an OpenLog
 /// stores them.

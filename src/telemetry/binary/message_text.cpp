@@ -39,7 +39,7 @@ void append_element(WireType type, const char* p, std::string& text) {
             text += *p == ' ' ? '?' : shown_character(*p);
             break;
         case WireType::float32:
-            append_number(as_written(wire_number<float>(p)), text);
+            append_number(shortest_decimal(wire_number<float>(p)), text);
             break;
         case WireType::float64:
             append_number(wire_number<double>(p), text);
@@ -67,7 +67,7 @@ void append_quoted(std::string_view characters, std::string& text) {
 
 }  // namespace
 
-double as_written_slowly(float value) {
+double shortest_decimal_general(float value) {
     if (!std::isfinite(value)) return double{value};
     std::array<char, 32> digits{};
     const auto written = std::to_chars(digits.data(), digits.data() + digits.size(), value);

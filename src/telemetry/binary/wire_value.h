@@ -24,16 +24,16 @@ T wire_number(const char* p) {
     return value;
 }
 
-/// as_written() for what is far from one.
-double as_written_slowly(float value);
+/// shortest_decimal() for what is far from one.
+double shortest_decimal_general(float value);
 
-/// The decimal number of fewest digits that a float is read from: 11.62 of the float 11.6199999. So a log reads the same
-/// as the text that it is converted to. `decimals`: how many it is likely to have, then how many it has; fields mostly
-/// have as many from message to message.
-inline double as_written(float value, int& decimals) {
+/// The decimal number of fewest digits that a float is read from: 11.62 of the float 11.6199999. So a log reads the
+/// same as the text that it is converted to. `decimals`: how many it is likely to have, then how many it has; fields
+/// mostly have as many from message to message.
+inline double shortest_decimal(float value, int& decimals) {
     const double exact{value};
     const double magnitude = std::fabs(exact);
-    if (!(magnitude < 1e9 && magnitude > 1e-9)) return exact == 0.0 ? exact : as_written_slowly(value);
+    if (!(magnitude < 1e9 && magnitude > 1e-9)) return exact == 0.0 ? exact : shortest_decimal_general(value);
     if (static_cast<double>(static_cast<std::int64_t>(exact)) == exact) return exact;
     static constexpr double tenths[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9, 1e10,
                                         1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20};
@@ -47,24 +47,24 @@ inline double as_written(float value, int& decimals) {
         return std::fabs(digits_of(places) - exact * tenths[places]) <= half_step * tenths[places];
     };
     // No float needs more than nine digits behind the leading zeros. 1233 / 4096 is log10(2).
-    constexpr int most_decimals = 20;
-    decimals = std::min(decimals, std::clamp(9 - (exponent * 1233 >> 12), 0, most_decimals - 2));
-    while (decimals < most_decimals && !reads_back(decimals)) ++decimals;
+    constexpr int max_decimals = 20;
+    decimals = std::min(decimals, std::clamp(9 - (exponent * 1233 >> 12), 0, max_decimals - 2));
+    while (decimals < max_decimals && !reads_back(decimals)) ++decimals;
     while (decimals > 0 && reads_back(decimals - 1)) --decimals;
     double number = digits_of(decimals) / tenths[decimals];
-    while (decimals < most_decimals && static_cast<float>(number) != value) {
+    while (decimals < max_decimals && static_cast<float>(number) != value) {
         ++decimals;
         number = digits_of(decimals) / tenths[decimals];
     }
     return number;
 }
 
-inline double as_written(float value) {
+inline double shortest_decimal(float value) {
     int decimals = 4;  // often enough
-    return as_written(value, decimals);
+    return shortest_decimal(value, decimals);
 }
 
-/// One element as a number; a char is its code. `decimals`: as for as_written().
+/// One element as a number; a char is its code. `decimals`: as for shortest_decimal().
 inline double wire_value(WireType type, const char* p, int& decimals) {
     switch (type) {
         case WireType::int8:
@@ -85,7 +85,7 @@ inline double wire_value(WireType type, const char* p, int& decimals) {
         case WireType::uint64:
             return static_cast<double>(wire_number<std::uint64_t>(p));
         case WireType::float32:
-            return as_written(wire_number<float>(p), decimals);
+            return shortest_decimal(wire_number<float>(p), decimals);
         case WireType::float64:
             return wire_number<double>(p);
     }

@@ -13,22 +13,22 @@ namespace {
 constexpr std::string_view first_element = "[0]";
 
 /// Paparazzi's ids are bytes; some ground programs send under names.
-constexpr std::size_t most_senders = 300;
+constexpr std::size_t max_senders = 300;
 
 /// What a field of a .log's definition is taken for.
-FieldConversion declared_conversion(MessagePlan& plan, std::size_t index) {
+FieldConversion declared_conversion(DecodePlan& plan, std::size_t index) {
     auto field = plan.definition->fields[index];
     if (const auto unit = undeclared_unit(*plan.definition, index); !unit.empty()) {
         plan.units.push_back(fmt::format("{} has none: {} is assumed", field.name, unit));
         field.unit = unit;
     }
-    const auto conversion = conversion_of(plan.definition->name, field);
+    const auto conversion = find_conversion(plan.definition->name, field);
     if (!conversion.quantity && !field.unit.empty() && field.alt_unit.empty()) {
-        constexpr std::size_t longest_unit = 20;
+        constexpr std::size_t max_unit = 20;
         std::ranges::replace_if(
             field.unit, [](char c) { return c < ' ' || c > '~'; }, '?');
         plan.units.push_back(
-            fmt::format("{} has '{}', which is none that is known", field.name, field.unit.substr(0, longest_unit)));
+            fmt::format("{} has '{}', which is none that is known", field.name, field.unit.substr(0, max_unit)));
     }
     return conversion;
 }
@@ -46,8 +46,8 @@ double first_time_s(const TelemetryLog& log, const std::string& message) {
 
 }  // namespace
 
-MessagePlan plan_of(const MessageRequest& request, const std::optional<LogConfiguration>& configuration) {
-    MessagePlan plan;
+DecodePlan make_decode_plan(const MessageRequest& request, const std::optional<LogConfiguration>& configuration) {
+    DecodePlan plan;
     plan.request = request;
     plan.from_log = configuration.has_value();
     if (!plan.from_log) {
@@ -59,7 +59,7 @@ MessagePlan plan_of(const MessageRequest& request, const std::optional<LogConfig
     return plan;
 }
 
-bool choose_definition(MessagePlan& plan, std::size_t field_count) {
+bool choose_definition(DecodePlan& plan, std::size_t field_count) {
     const auto fits = [&](const MessageDefinition& candidate) { return candidate.fields.size() == field_count; };
     const auto found = std::find_if(plan.candidates.begin(), plan.candidates.end(), fits);
     if (found == plan.candidates.end()) return false;
@@ -72,14 +72,14 @@ bool choose_definition(MessagePlan& plan, std::size_t field_count) {
         if (!index) continue;
         const auto conversion = is_first_element ? FieldConversion{}
                                 : plan.from_log  ? declared_conversion(plan, *index)
-                                                 : conversion_of(found->name, found->fields[*index]);
+                                                 : find_conversion(found->name, found->fields[*index]);
         plan.targets.push_back({*index, conversion.quantity, conversion.factor, is_first_element});
         plan.fields_wanted = std::max(plan.fields_wanted, *index + 1);
     }
     return true;
 }
 
-void note_assumptions(const std::vector<MessagePlan>& plans, TelemetryLog& log) {
+void note_assumptions(const std::vector<DecodePlan>& plans, TelemetryLog& log) {
     for (const auto& plan : plans) {
         const auto& message = plan.request.message;
         if (plan.definition == nullptr || (plan.from_log && plan.units.empty())) continue;
@@ -88,12 +88,12 @@ void note_assumptions(const std::vector<MessagePlan>& plans, TelemetryLog& log) 
     }
 }
 
-std::size_t LogTables::place_of(std::string_view sender, std::size_t line) {
+std::size_t LogTables::sender_index(std::string_view sender, std::size_t line) {
     const auto [known, is_new] = sender_index_.try_emplace(std::string(sender), log_.senders.size());
     if (!is_new) return known->second;
-    if (log_.senders.size() == most_senders) {
+    if (log_.senders.size() == max_senders) {
         throw InputError({log_.data_file.string(), line},
-                         fmt::format("'{}' is the sender number {} of this log", sender, most_senders + 1),
+                         fmt::format("'{}' is the sender number {} of this log", sender, max_senders + 1),
                          "no network has so many: the second word of a line should be an aircraft's id");
     }
     log_.senders.push_back({std::string(sender), {}});
@@ -101,7 +101,7 @@ std::size_t LogTables::place_of(std::string_view sender, std::size_t line) {
     return known->second;
 }
 
-MessageTable& LogTables::new_table(std::size_t sender, std::size_t plan_index, const MessagePlan& plan) {
+MessageTable& LogTables::new_table(std::size_t sender, std::size_t plan_index, const DecodePlan& plan) {
     auto& tables = log_.senders[sender].tables;
     slots_[sender][plan_index] = tables.size();
     tables.push_back({plan.request.message, {}, {}});
@@ -110,7 +110,7 @@ MessageTable& LogTables::new_table(std::size_t sender, std::size_t plan_index, c
     return tables.back();
 }
 
-void make_room(MessageTable& table, std::size_t read, std::size_t all) {
+void reserve_rows(MessageTable& table, std::size_t read, std::size_t all) {
     constexpr std::size_t too_few_for_a_rate = 1000;
     const auto rows = table.time_s.size();
     auto room = std::max<std::size_t>(64, 2 * rows);

@@ -17,7 +17,7 @@ namespace flightwatt::telemetry {
 inline constexpr std::size_t max_fields = 64;
 
 /// Which fields of a message go into which columns, and by what factor.
-struct MessagePlan {
+struct DecodePlan {
     MessageRequest request;
     std::vector<MessageDefinition> candidates;  ///< the .log's one, or the built-in ones
     bool from_log = false;
@@ -33,13 +33,13 @@ struct MessagePlan {
     std::size_t fields_wanted = max_fields;  ///< up to the last target's; all while no definition is chosen
 };
 
-MessagePlan plan_of(const MessageRequest& request, const std::optional<LogConfiguration>& configuration);
+DecodePlan make_decode_plan(const MessageRequest& request, const std::optional<LogConfiguration>& configuration);
 
 /// Chooses the definition by the number of fields; false if none has it.
-bool choose_definition(MessagePlan& plan, std::size_t field_count);
+bool choose_definition(DecodePlan& plan, std::size_t field_count);
 
 /// Adds to the log what was assumed of its messages, and since when.
-void note_assumptions(const std::vector<MessagePlan>& plans, TelemetryLog& log);
+void note_assumptions(const std::vector<DecodePlan>& plans, TelemetryLog& log);
 
 /// The tables of a log by sender and message, made as they are needed.
 class LogTables {
@@ -47,8 +47,8 @@ class LogTables {
     LogTables(TelemetryLog& log, std::size_t plans) : log_(log), plans_(plans) {}
 
     /// The place of `sender` among the log's. Throws InputError for one too many, at `line`.
-    std::size_t place_of(std::string_view sender, std::size_t line);
-    MessageTable& table_of(std::size_t sender, std::size_t plan_index, const MessagePlan& plan) {
+    std::size_t sender_index(std::string_view sender, std::size_t line);
+    MessageTable& table_of(std::size_t sender, std::size_t plan_index, const DecodePlan& plan) {
         const auto slot = slots_[sender][plan_index];
         return slot == no_table ? new_table(sender, plan_index, plan) : log_.senders[sender].tables[slot];
     }
@@ -56,7 +56,7 @@ class LogTables {
   private:
     static constexpr std::size_t no_table = std::numeric_limits<std::size_t>::max();
 
-    MessageTable& new_table(std::size_t sender, std::size_t plan_index, const MessagePlan& plan);
+    MessageTable& new_table(std::size_t sender, std::size_t plan_index, const DecodePlan& plan);
 
     TelemetryLog& log_;
     std::size_t plans_;
@@ -67,6 +67,6 @@ class LogTables {
 /// Room for as many rows as the rest of a log promises at the rate so far, and a tenth more: memory that is never
 /// written costs nothing, while columns that grow step by step are copied and faulted in again. `read` of `all` bytes
 /// are read.
-void make_room(MessageTable& table, std::size_t read, std::size_t all);
+void reserve_rows(MessageTable& table, std::size_t read, std::size_t all);
 
 }  // namespace flightwatt::telemetry

@@ -93,17 +93,17 @@ bool push_decompressor(std::string_view bytes, io::filtering_istream& stream) {
     return true;
 }
 
-void require_at_most(std::size_t most_bytes, std::size_t bytes, const std::filesystem::path& file) {
-    if (bytes <= most_bytes) return;
+void require_at_most(std::size_t max_bytes, std::size_t bytes, const std::filesystem::path& file) {
+    if (bytes <= max_bytes) return;
     throw InputError({file.string()},
-                     fmt::format("unpacks to more than {:.4g} MB", static_cast<double>(most_bytes) / 1e6),
+                     fmt::format("unpacks to more than {:.4g} MB", static_cast<double>(max_bytes) / 1e6),
                      "if it is a log all the same, --max-log-mb raises the limit");
 }
 
 }  // namespace
 
 std::optional<std::string> decompressed(std::string_view bytes, const std::filesystem::path& file,
-                                        std::size_t most_bytes) {
+                                        std::size_t max_bytes) {
     constexpr std::streamsize step = 1 << 16;
     std::string text;
     try {
@@ -113,7 +113,7 @@ std::optional<std::string> decompressed(std::string_view bytes, const std::files
         std::array<char, step> part{};
         for (auto count = io::read(stream, part.data(), step); count > 0; count = io::read(stream, part.data(), step)) {
             text.append(part.data(), static_cast<std::size_t>(count));
-            require_at_most(most_bytes, text.size(), file);
+            require_at_most(max_bytes, text.size(), file);
         }
         return text;
     } catch (const InputError&) {

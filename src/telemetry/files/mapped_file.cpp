@@ -27,7 +27,7 @@ struct Slot {
 };
 static_assert(std::atomic<std::uintptr_t>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
-std::array<Slot, MappedFile::most_mapped> slots;
+std::array<Slot, MappedFile::max_mapped> slots;
 struct sigaction handler_before {};
 std::uintptr_t page_size = 0;
 

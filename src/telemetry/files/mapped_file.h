@@ -9,10 +9,10 @@ namespace flightwatt::telemetry {
 
 /// A regular file that is not empty, mapped into memory. Where it is cut while it is mapped, its rest reads as zeros
 /// from then on instead of ending the program (SIGBUS), and is_damaged() tells. Any thread may read; any number of
-/// files up to `most_mapped` may be mapped at a time.
+/// files up to `max_mapped` may be mapped at a time.
 class MappedFile {
   public:
-    static constexpr std::size_t most_mapped = 1024;
+    static constexpr std::size_t max_mapped = 1024;
 
     /// Throws InputError where the system cannot map it. `file` may be closed after.
     explicit MappedFile(const InputFile& file);

@@ -36,7 +36,7 @@ class LogReader {
               std::string_view part)
         : log_(log), part_(part), skips_(text), tables_(log, wanted.size()) {
         for (const auto& request : wanted) {
-            plans_.push_back(plan_of(request, log.configuration));
+            plans_.push_back(make_decode_plan(request, log.configuration));
             wanted_.add(request.message);
         }
     }
@@ -47,7 +47,7 @@ class LogReader {
             if (line.end > line.begin) skips_.add_without_time({Reason::not_a_message, 0}, line);
             return;
         }
-        if (const auto index = wanted_.find(name); index != WantedMessages::none) read_message(index, line);
+        if (const auto index = wanted_.find(name); index != MessageNameSet::none) read_message(index, line);
     }
 
     /// Takes over what `later` has read of the part behind this one's, which begins behind `lines_before` lines. False
@@ -62,7 +62,7 @@ class LogReader {
             }
         }
         for (const auto& sender : later.log_.senders) {
-            const auto place = tables_.place_of(sender.id, lines_before);
+            const auto place = tables_.sender_index(sender.id, lines_before);
             for (const auto& table : sender.tables) {
                 const auto plan = place_of(table.message);
                 tables_.table_of(place, plan, plans_[plan]);
@@ -127,7 +127,7 @@ class LogReader {
             return skips_.add({Reason::other_field_count, index}, time_s, line.number);
         }
         auto& table = table_of(sender, index, line);
-        if (table.time_s.size() == table.time_s.capacity()) make_room(table, bytes_read(line), part_.size());
+        if (table.time_s.size() == table.time_s.capacity()) reserve_rows(table, bytes_read(line), part_.size());
         table.time_s.push_back(time_s);
         for (std::size_t i = 0; i < plan.targets.size(); ++i) {
             const auto& target = plan.targets[i];
@@ -150,12 +150,12 @@ class LogReader {
     MessageTable& table_of(std::string_view sender, std::size_t plan_index, const ScannedLine& line) {
         // Neighbouring lines mostly come from the same sender.
         if (last_sender_ >= log_.senders.size() || log_.senders[last_sender_].id != sender)
-            last_sender_ = tables_.place_of(sender, line.number);
+            last_sender_ = tables_.sender_index(sender, line.number);
         return tables_.table_of(last_sender_, plan_index, plans_[plan_index]);
     }
 
     std::size_t place_of(const std::string& message) const {
-        const auto is_its = [&](const MessagePlan& plan) { return plan.request.message == message; };
+        const auto is_its = [&](const DecodePlan& plan) { return plan.request.message == message; };
         return static_cast<std::size_t>(std::ranges::find_if(plans_, is_its) - plans_.begin());
     }
 
@@ -186,8 +186,8 @@ class LogReader {
 
     TelemetryLog& log_;
     std::string_view part_;
-    WantedMessages wanted_;
-    std::vector<MessagePlan> plans_;
+    MessageNameSet wanted_;
+    std::vector<DecodePlan> plans_;
     SkipCounter skips_;
     LogTables tables_;
     std::size_t last_sender_ = std::numeric_limits<std::size_t>::max();
@@ -242,12 +242,12 @@ std::optional<TelemetryLog> parse_in_parts(const TelemetryLog& empty, const std:
 TelemetryLog parse_telemetry(std::string_view text, const std::filesystem::path& data_file,
                              std::optional<LogConfiguration> configuration, const std::vector<MessageRequest>& wanted,
                              std::size_t parts) {
-    constexpr std::size_t least_part_bytes = 4'000'000;  // reading less takes no longer than joining
+    constexpr std::size_t min_part_bytes = 4'000'000;  // reading less takes no longer than joining
     TelemetryLog log;
     log.data_file = data_file;
     log.flight = flight_name(data_file);
     log.configuration = std::move(configuration);
-    if (parts == 0) parts = threads_for(text.size() / least_part_bytes);
+    if (parts == 0) parts = threads_for(text.size() / min_part_bytes);
     if (parts > 1) {
         if (auto joined = parse_in_parts(log, wanted, text, parts_of(text, parts))) return std::move(*joined);
     }

@@ -12,7 +12,7 @@ namespace flightwatt::telemetry {
 
 /// A small hash set of message names. Words are compared eight bytes at a time, so the text must be readable
 /// for eight bytes from a word's begin.
-class WantedMessages {
+class MessageNameSet {
   public:
     static constexpr std::uint8_t none = 0xFF;
 

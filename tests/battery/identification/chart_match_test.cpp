@@ -11,8 +11,8 @@ namespace flightwatt::battery {
 namespace {
 
 /// A pack of 2 Ah whose voltage is the chart's, flown from one state of charge to another.
-ShownCurve shown(double from_percent, double to_percent, int knots = 6) {
-    ShownCurve curve;
+ObservedOcv shown(double from_percent, double to_percent, int knots = 6) {
+    ObservedOcv curve;
     curve.cells = 3;
     for (int k = 0; k <= knots; ++k) {
         const double drawn_percent = (from_percent - to_percent) * k / knots;
@@ -25,53 +25,53 @@ ShownCurve shown(double from_percent, double to_percent, int knots = 6) {
 }
 
 TEST(ChartMatch, FindsTheCapacityOfAPackThatFollowsTheChart) {
-    const auto posterior = match_chart(shown(100.0, 10.0), std::nullopt);
+    const auto posterior = capacity_posterior(shown(100.0, 10.0), std::nullopt);
     double sum = 0.0;
     for (const auto& scale : posterior) sum += scale.probability;
     EXPECT_NEAR(sum, 1.0, 1e-9);
-    EXPECT_EQ(probable_missing_ah(posterior), 0.0);
+    EXPECT_EQ(estimate_depletion_ah(posterior), 0.0);
     EXPECT_LT(capacity_quantile_ah(posterior, 0.025), 2.0);
     EXPECT_GT(capacity_quantile_ah(posterior, 0.975), 2.0);
     EXPECT_NEAR(capacity_quantile_ah(posterior, 0.5), 2.0, 0.3);
 }
 
 TEST(ChartMatch, IsTheSurerTheDeeperWasFlown) {
-    const auto deep = match_chart(shown(100.0, 5.0), std::nullopt);
-    const auto shallow = match_chart(shown(100.0, 60.0), std::nullopt);
-    const auto width_ah = [](const std::vector<ChargeScale>& posterior) {
+    const auto deep = capacity_posterior(shown(100.0, 5.0), std::nullopt);
+    const auto shallow = capacity_posterior(shown(100.0, 60.0), std::nullopt);
+    const auto width_ah = [](const std::vector<CapacityHypothesis>& posterior) {
         return capacity_quantile_ah(posterior, 0.975) - capacity_quantile_ah(posterior, 0.025);
     };
     EXPECT_LT(width_ah(deep), width_ah(shallow) / 2.0);
 }
 
 TEST(ChartMatch, TakesNoSmoothnessForARuler) {
-    const auto width = [](const std::vector<ChargeScale>& posterior) {
+    const auto width = [](const std::vector<CapacityHypothesis>& posterior) {
         return capacity_quantile_ah(posterior, 0.975) / capacity_quantile_ah(posterior, 0.025);
     };
-    const auto coarse = width(match_chart(shown(80.0, 50.0, 3), std::nullopt));
-    const auto fine = width(match_chart(shown(80.0, 50.0, 12), std::nullopt));
+    const auto coarse = width(capacity_posterior(shown(80.0, 50.0, 3), std::nullopt));
+    const auto fine = width(capacity_posterior(shown(80.0, 50.0, 12), std::nullopt));
     EXPECT_NEAR(fine, coarse, 0.1 * coarse) << "the same curve, told at more knots";
     EXPECT_GT(fine, 2.0);
 }
 
 TEST(ChartMatch, LeavesAFullPackSomePercentShort) {
-    const auto posterior = match_chart(shown(100.0, 10.0), 2.0);
-    const auto interval = missing_interval_ah(posterior, 0.0, 0.0);
+    const auto posterior = capacity_posterior(shown(100.0, 10.0), 2.0);
+    const auto interval = depletion_interval_ah(posterior, 0.0, 0.0);
     EXPECT_NEAR(interval.low, 0.0, 1e-6);
     EXPECT_GT(interval.high, 0.02 * 2.0);
     EXPECT_LT(interval.high, 0.2 * 2.0);
 }
 
 TEST(ChartMatch, CountsAsFullWhereThatIsMoreProbable) {
-    std::vector<ChargeScale> posterior{{2.0, 0.1, 0.4, true}, {2.0, 0.3, 0.2, false}, {2.0, 0.9, 0.4, false}};
-    EXPECT_EQ(probable_missing_ah(posterior), 0.3);
+    std::vector<CapacityHypothesis> posterior{{2.0, 0.1, 0.4, true}, {2.0, 0.3, 0.2, false}, {2.0, 0.9, 0.4, false}};
+    EXPECT_EQ(estimate_depletion_ah(posterior), 0.3);
     posterior[0].probability = 0.7;
-    EXPECT_EQ(probable_missing_ah(posterior), 0.0);
+    EXPECT_EQ(estimate_depletion_ah(posterior), 0.0);
 }
 
 TEST(ChartMatch, SeesThatAPackIsNotFull) {
-    const auto posterior = match_chart(shown(60.0, 20.0), 2.0);
-    const auto interval = missing_interval_ah(posterior, 0.0, 0.0);
+    const auto posterior = capacity_posterior(shown(60.0, 20.0), 2.0);
+    const auto interval = depletion_interval_ah(posterior, 0.0, 0.0);
     EXPECT_GT(interval.low, 0.1);
     EXPECT_LT(interval.low, 0.8);
     EXPECT_GT(interval.high, 0.8);
@@ -79,16 +79,16 @@ TEST(ChartMatch, SeesThatAPackIsNotFull) {
 }
 
 TEST(ChartMatch, AddsTheErrorOfAFlightsPlace) {
-    const std::vector<ChargeScale> full{{2.0, 0.0, 1.0}};
-    const auto interval = missing_interval_ah(full, 0.5, 0.1);
+    const std::vector<CapacityHypothesis> full{{2.0, 0.0, 1.0}};
+    const auto interval = depletion_interval_ah(full, 0.5, 0.1);
     EXPECT_NEAR(interval.low, 0.5 - 1.96 * 0.1, 1e-3);
     EXPECT_NEAR(interval.high, 0.5 + 1.96 * 0.1, 1e-3);
-    EXPECT_EQ(missing_interval_ah(full, 0.0, 0.1).low, 0.0) << "nothing is fuller than full";
+    EXPECT_EQ(depletion_interval_ah(full, 0.0, 0.1).low, 0.0) << "nothing is fuller than full";
 }
 
 TEST(ChartMatch, RefusesACapacityBelowWhatWasDrawn) {
-    EXPECT_THROW(match_chart(shown(100.0, 20.0), 1.0), UsageError);
-    EXPECT_NO_THROW(match_chart(shown(100.0, 20.0), 1.55)) << "initial charges are not exact";
+    EXPECT_THROW(capacity_posterior(shown(100.0, 20.0), 1.0), UsageError);
+    EXPECT_NO_THROW(capacity_posterior(shown(100.0, 20.0), 1.55)) << "initial charges are not exact";
 }
 
 }  // namespace

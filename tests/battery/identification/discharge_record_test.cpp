@@ -80,7 +80,7 @@ TEST(DischargeRecord, SettlesAsTheClosedFormDoes) {
         record.time_s.push_back(i * i * 0.1);  // whatever the intervals
         record.mean_current_a.push_back(3.0);
     }
-    const auto settled = settled_current_a(record, 20.0);
+    const auto settled = rc_branch_current_a(record, 20.0);
     for (std::size_t i = 0; i < settled.size(); ++i) {
         EXPECT_NEAR(settled[i], 3.0 * (1.0 - std::exp(-record.time_s[i] / 20.0)), 1e-12);
     }

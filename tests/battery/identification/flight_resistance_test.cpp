@@ -42,7 +42,7 @@ TEST(FlightResistance, HasATrendFromThreeFlightsOn) {
         std::vector{resistance(0.080), resistance(0.0825), resistance(0.0845), resistance(0.087), resistance(0.089)});
     ASSERT_TRUE(rising);
     EXPECT_EQ(rising->flights, 5U);
-    EXPECT_NEAR(rising->ohm_a_flight, 0.00225, 1e-4);
+    EXPECT_NEAR(rising->ohm_per_flight, 0.00225, 1e-4);
     EXPECT_GT(rising->interval_ohm_a_flight.low, 0.0);
     const auto level = resistance_trend(std::vector{resistance(0.08), resistance(0.10), resistance(0.08)});
     ASSERT_TRUE(level);

@@ -89,21 +89,21 @@ TEST(LipoCells, MayBeOneLessOfHighVoltage) {
 }
 
 TEST(OpenCircuit, TakesTheMedianOfWhatIsProbable) {
-    const std::vector<ChargeScale> posterior{{1.0, 0.0, 0.2}, {2.0, 0.0, 0.5}, {3.0, 0.0, 0.3}};
-    const auto capacity = capacity_of(1.0, posterior, std::nullopt);
+    const std::vector<CapacityHypothesis> posterior{{1.0, 0.0, 0.2}, {2.0, 0.0, 0.5}, {3.0, 0.0, 0.3}};
+    const auto capacity = estimate_capacity(1.0, posterior, std::nullopt);
     EXPECT_EQ(capacity.value_ah, 2.0);
     EXPECT_EQ(capacity.origin, CapacityOrigin::chart);
     ASSERT_TRUE(capacity.interval_ah);
     EXPECT_EQ(*capacity.interval_ah, (Interval{1.0, 3.0}));
-    EXPECT_EQ(capacity_of(1.95, posterior, std::nullopt).origin, CapacityOrigin::flown);
-    EXPECT_THROW(capacity_of(0.05, posterior, std::nullopt), NoAnswerError);
-    EXPECT_EQ(capacity_of(1.0, posterior, 2.2).value_ah, 2.2);
-    EXPECT_EQ(capacity_of(1.0, posterior, 2.2).origin, CapacityOrigin::given);
-    EXPECT_FALSE(capacity_of(1.0, posterior, 2.2).interval_ah);
+    EXPECT_EQ(estimate_capacity(1.95, posterior, std::nullopt).origin, CapacityOrigin::measured);
+    EXPECT_THROW(estimate_capacity(0.05, posterior, std::nullopt), NoResultError);
+    EXPECT_EQ(estimate_capacity(1.0, posterior, 2.2).value_ah, 2.2);
+    EXPECT_EQ(estimate_capacity(1.0, posterior, 2.2).origin, CapacityOrigin::given);
+    EXPECT_FALSE(estimate_capacity(1.0, posterior, 2.2).interval_ah);
 }
 
 TEST(OpenCircuit, GoesOnInParallelToTheChart) {
-    const auto extended = extended_curve(fit_down_to(3.84), {0.01, 0.02, 0.03}, 2.4, 0.0);
+    const auto extended = extrapolate_curve(fit_down_to(3.84), {0.01, 0.02, 0.03}, 2.4, 0.0);
     const auto& curve = extended.curve;
     EXPECT_DOUBLE_EQ(extended.known_down_to_percent, 50.0);
     EXPECT_DOUBLE_EQ(extended.known_up_to_percent, 100.0);
@@ -113,12 +113,12 @@ TEST(OpenCircuit, GoesOnInParallelToTheChart) {
     EXPECT_NEAR(curve.voltage_v.front(), 3.0 * 3.27, 1e-9);
     EXPECT_TRUE(std::is_sorted(curve.voltage_v.begin(), curve.voltage_v.end()));
     EXPECT_EQ(curve.soc_percent.size(), 13U);  // 0 to 45 in steps of 5, and the three knots
-    EXPECT_NEAR(extended.standard_error_v.front(), std::hypot(0.03, 3.0 * lipo_chart_uncertainty_v), 1e-9);
+    EXPECT_NEAR(extended.standard_error_v.front(), std::hypot(0.03, 3.0 * lipo_chart_sd_v), 1e-9);
     EXPECT_EQ(extended.standard_error_v.back(), 0.01);
 }
 
 TEST(OpenCircuit, GoesOnAboveWhatWasFlownToo) {
-    const auto extended = extended_curve(fit_down_to(3.84), {0.01, 0.02, 0.03}, 2.4, 0.6);  // from 75 to 25 %
+    const auto extended = extrapolate_curve(fit_down_to(3.84), {0.01, 0.02, 0.03}, 2.4, 0.6);  // from 75 to 25 %
     const auto& [soc, volts] = extended.curve;
     EXPECT_DOUBLE_EQ(extended.known_up_to_percent, 75.0);
     EXPECT_DOUBLE_EQ(extended.known_down_to_percent, 25.0);
@@ -128,14 +128,14 @@ TEST(OpenCircuit, GoesOnAboveWhatWasFlownToo) {
 }
 
 TEST(OpenCircuit, NeedsNoChartWhereAllWasFlown) {
-    const auto extended = extended_curve(fit_down_to(3.4), {0.01, 0.02, 0.03}, 1.2, 0.0);
+    const auto extended = extrapolate_curve(fit_down_to(3.4), {0.01, 0.02, 0.03}, 1.2, 0.0);
     EXPECT_EQ(extended.known_down_to_percent, 0.0);
     EXPECT_EQ(extended.curve.soc_percent, (std::vector<double>{0.0, 50.0, 100.0}));
     EXPECT_EQ(extended.standard_error_v, (std::vector<double>{0.03, 0.02, 0.01}));
 }
 
 TEST(OpenCircuit, EndsWhereACapacityThatWasGivenEnds) {
-    const auto extended = extended_curve(fit_down_to(3.4), {0.01, 0.02, 0.03}, 1.15, 0.0);
+    const auto extended = extrapolate_curve(fit_down_to(3.4), {0.01, 0.02, 0.03}, 1.15, 0.0);
     EXPECT_EQ(extended.curve.soc_percent.size(), 3U);
     EXPECT_EQ(extended.curve.soc_percent.front(), 0.0);
     EXPECT_EQ(extended.curve.voltage_v.front(), 3.0 * 3.4);

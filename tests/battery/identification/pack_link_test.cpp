@@ -30,7 +30,7 @@ class Packs : public testing::Test {
     }
     std::optional<PackLink> link() const {
         const std::vector<AlignedRecord> known{{&earlier_, 0.0}, {&later_, 0.9}};
-        return pack_link(later_, known, fit_);
+        return find_pack_link(later_, known, fit_);
     }
     DischargeRecord earlier_;
     DischargeRecord later_;
@@ -43,7 +43,7 @@ TEST_F(Packs, GoOnWhereClockAndVoltageAgree) {
     EXPECT_EQ(found->earlier, 0U);
     EXPECT_EQ(found->charge_ah, 0.9);
     EXPECT_EQ(found->pause_s, 1200.0);
-    EXPECT_FALSE(found->counter_goes_on);
+    EXPECT_FALSE(found->counter_continues);
 }
 
 TEST_F(Packs, DoNotGoOnAfterHoursOrBackwards) {
@@ -80,10 +80,10 @@ TEST_F(Packs, AreToldByTheCounter) {
     earlier_.counter_ah = Interval{0.0, 0.9};
     later_.counter_ah = Interval{0.0, 0.4};
     ASSERT_TRUE(link());
-    EXPECT_FALSE(link()->counter_goes_on) << "it began anew";
+    EXPECT_FALSE(link()->counter_continues) << "it began anew";
     later_.counter_ah = Interval{0.905, 1.305};
     ASSERT_TRUE(link());
-    EXPECT_TRUE(link()->counter_goes_on);
+    EXPECT_TRUE(link()->counter_continues);
     later_.counter_ah = Interval{0.3, 0.7};
     EXPECT_FALSE(link()) << "something else was counted in between";
 }
@@ -102,7 +102,7 @@ TEST_F(Packs, AreThoseOfTheLatestFlightBefore) {
     between.resting_voltage_v = 12.4;
     between.charge_ah = {0.0, 0.7};
     const std::vector<AlignedRecord> known{{&earlier_, 0.0}, {&between, 0.0}};
-    const auto found = pack_link(later_, known, fit_);
+    const auto found = find_pack_link(later_, known, fit_);
     ASSERT_TRUE(found);
     EXPECT_EQ(found->earlier, 1U);
     EXPECT_EQ(found->charge_ah, 0.7);

@@ -14,8 +14,8 @@ namespace {
 
 std::vector<int> segments_of(test::PackCurve curve, std::size_t flights, double resistance_spread) {
     const auto drawn = test::drawn_flights({curve, flights, true, false, resistance_spread, 0.0}, 31);
-    const auto aligned = aligned_fit(drawn.records, 3);
-    return segments_by_prediction(aligned.records, aligned.fit);
+    const auto aligned = fit_circuit_jointly(drawn.records, 3);
+    return rank_segment_counts(aligned.records, aligned.fit);
 }
 
 TEST(SegmentChoice, TakesAStraightCurveForStraight) {

@@ -30,14 +30,14 @@ StageCall call_of(const std::vector<std::string>& words, PathNeed need) {
 
 TEST(BasisOptions, OfAMissionWithoutAPathTakeItsCruiseAndItsBattery) {
     const auto call = call_of({"--mission", path_of("missions/synthetic/thevenin-plan.toml")}, PathNeed::optional);
-    std::optional<mission::AnyMission> mission;
+    std::optional<mission::MissionVariant> mission;
     const auto basis = read_basis(call, PathNeed::optional, &mission);
     ASSERT_TRUE(mission);
     EXPECT_EQ(basis.cruise_s, 1800.0);
     EXPECT_EQ(basis.limits.reserve_soc_percent, 20.0);
     EXPECT_TRUE(basis.battery && basis.battery->thevenin);
     EXPECT_FALSE(basis.initial_soc_percent) << "its voltage tells it";
-    EXPECT_FALSE(basis.cannot_predict.empty()) << "a published model has no spread";
+    EXPECT_FALSE(basis.no_prediction_reason.empty()) << "a published model has no spread";
     EXPECT_THROW(
         read_basis(call_of({"--mission", path_of("missions/synthetic/thevenin-plan.toml")}, PathNeed::required),
                    PathNeed::required),
@@ -54,7 +54,7 @@ TEST(BasisOptions, ThatAreGivenCountBeforeTheMissions) {
     EXPECT_EQ(basis.initial_soc_percent, 77.0);
     EXPECT_EQ(basis.remaining_s, 60.0);
     EXPECT_TRUE(basis.path);
-    EXPECT_TRUE(basis.cannot_predict.empty());
+    EXPECT_TRUE(basis.no_prediction_reason.empty());
 }
 
 TEST(BasisOptions, RefuseWhatDoesNotFitTogether) {

@@ -21,11 +21,11 @@ class BatteryOutput : public testing::Test {
             records_.push_back(test::discharge_record(test::synthetic_discharge(test::known_pack(), {}, seed)));
         }
         identified_ = identify_battery(records_, options);
-        checks_ = leave_each_out(records_, options);
+        checks_ = leave_one_out(records_, options);
     }
     std::vector<battery::DischargeRecord> records_;
     battery::BatteryIdentification identified_;
-    std::vector<battery::LeftOutCheck> checks_;
+    std::vector<battery::LeaveOneOutCheck> checks_;
 };
 
 TEST_F(BatteryOutput, HasARowAParameterAndAFlight) {
@@ -45,7 +45,7 @@ TEST_F(BatteryOutput, SaysWhosePackWasAssumed) {
     const auto columns = flights_table(identified_, {}).header.size();
     auto& flight = identified_.flights[1];
     flight.link = battery::PackLink{0, 0.4, 0.01, 1380.0, false};
-    flight.pack_of = "synthetic_1";
+    flight.same_pack_as = "synthetic_1";
     flight.air_temperature_c = 21.5;
     EXPECT_THAT(describe_link(flight),
                 HasSubstr("synthetic_2: assumed to be flown on the pack of synthetic_1, as it begins 23 min after"));

@@ -39,8 +39,8 @@ TEST(FitOptions, AreTheLibrarysUnlessGiven) {
     const auto options = read_fit_options(call_with({}));
     EXPECT_EQ(options.phases.order, usual.phases.order);
     EXPECT_EQ(options.weights.weighting, usual.weights.weighting);
-    EXPECT_NEAR(options.phases.low_rad, usual.phases.low_rad, 1e-12);
-    EXPECT_EQ(options.phases.high_periods, usual.phases.high_periods);
+    EXPECT_NEAR(options.phases.min_theta_rad, usual.phases.min_theta_rad, 1e-12);
+    EXPECT_EQ(options.phases.max_periods, usual.phases.max_periods);
     EXPECT_EQ(read_fit_options(call_with({"--order", "5"})).phases.order, 5);
 }
 
@@ -53,7 +53,7 @@ TEST(FitOptions, ChooseTheOrderOnlyWhereTheStageCan) {
 
 TEST(FitOptions, TakeWeightsByHandForAFlightOrItsPhase) {
     const auto options = read_fit_options(call_with({"--weight", "a=0.4", "--weight", "b:c:cruise=2"}));
-    EXPECT_EQ(options.weights.weighting, mechanical::Weighting::by_hand);
+    EXPECT_EQ(options.weights.weighting, mechanical::Weighting::manual);
     ASSERT_EQ(options.weights.by_hand.size(), 2U);
     EXPECT_EQ(options.weights.by_hand[0].flight, "a");
     EXPECT_EQ(options.weights.by_hand[0].phase, std::nullopt);

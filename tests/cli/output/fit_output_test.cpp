@@ -70,7 +70,7 @@ TEST(AddErrorsJson, PutsIntervalsAboutTheEstimates) {
     EXPECT_LT(low, cruise.fourier.a0_w);
     EXPECT_GT(high, cruise.fourier.a0_w);
     EXPECT_GT(high - low, 2.0 * 1.8 * cruise.errors->a0_w) << "a 95 % interval";
-    EXPECT_EQ(entry["spread"]["counted_flights"], cruise.spread->counted_flights);
+    EXPECT_EQ(entry["spread"]["counted_flights"], cruise.spread->effective_flights);
     EXPECT_FALSE(entry["frequency_profile"]["rms_w"].empty());
 }
 
@@ -91,7 +91,7 @@ TEST(AddLossJson, ListsTheOutliersThatCountLess) {
 }
 
 TEST(AddOrderJson, HasNullForAnOrderThatWasNotFitted) {
-    mechanical::OrderChoice choice;
+    mechanical::OrderSelection choice;
     choice.order = 2;
     choice.errors.resize(2);
     choice.errors[0].rms_w = 1.5;
@@ -106,7 +106,7 @@ TEST(AddOrderJson, HasNullForAnOrderThatWasNotFitted) {
 }
 
 TEST(NoteOrder, ShowsTheErrorOfEveryOrder) {
-    mechanical::OrderChoice choice;
+    mechanical::OrderSelection choice;
     choice.order = 1;
     choice.errors.resize(2);
     choice.errors[0].order = 1;

@@ -34,7 +34,7 @@ TEST(SamplingOptions, HoldNumberSeedAndBands) {
     ASSERT_TRUE(options);
     EXPECT_EQ(options->samples, 500U);
     EXPECT_EQ(options->seed, 3U);
-    EXPECT_GT(options->band_times, 0U);
+    EXPECT_GT(options->band_points, 0U);
     EXPECT_EQ(sampling_options(call_with({"--samples", "500"}), false)->seed, 1U);
 }
 
@@ -76,10 +76,10 @@ TEST(MissionJson, HoldsTheLandingThatTheFlightsIndicate) {
 
 TEST(MissionJson, HoldsTheChancesOfSampledFlights) {
     auto summary = simulate(test::paper_mission("phased")).summary;
-    summary.samples = mission::SampledFlights{};
+    summary.samples = mission::MonteCarloResult{};
     summary.samples->samples = 1000;
     summary.samples->probability_below_reserve = 0.25;
-    summary.samples->sources.drawn = {"cruise power"};
+    summary.samples->sources.varied = {"cruise power"};
     const auto json = to_json(summary);
     EXPECT_EQ(json["samples"], 1000);
     EXPECT_EQ(json["probability_below_reserve"], 0.25);
@@ -108,7 +108,7 @@ TEST(PlanJson, HasNullForWhatAnInfeasiblePlanLacks) {
 
 TEST(InfeasibilityJson, HasNullForMeasuresThatAreNotEnough) {
     mission::InfeasibilityReport report;
-    report.short_percent = 2.5;
+    report.shortfall_percent = 2.5;
     report.capacity_ah = 4.0;
     const auto json = to_json(report);
     EXPECT_EQ(json["short_percent"], 2.5);

@@ -20,7 +20,7 @@ Prediction made_up() {
     prediction.cruise.energy.energy_wh = 2.0;
     prediction.landing.energy_wh = 0.5;
     prediction.landing_s = 90.0;
-    prediction.rest.energy_wh = 2.5;
+    prediction.remaining_energy.energy_wh = 2.5;
     prediction.interval = {2.0, 3.0};
     return prediction;
 }
@@ -29,7 +29,7 @@ TEST(PredictionOutput, SaysWhatTheDifferenceSoFarMeans) {
     auto prediction = made_up();
     EXPECT_THAT(text_of(prediction), HasSubstr("of the difference 25 % goes on"));
     EXPECT_EQ(json_of(prediction)["cruise"]["gain"], 0.25);
-    prediction.by_motion = true;
+    prediction.uses_physical_model = true;
     EXPECT_THAT(text_of(prediction), HasSubstr("own level is not known"));
     EXPECT_TRUE(json_of(prediction)["cruise"]["own_level"].is_null());
     prediction.flown.motion.bins.resize(2);

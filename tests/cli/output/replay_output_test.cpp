@@ -6,12 +6,12 @@
 namespace flightwatt::cli {
 namespace {
 
-using mission::ReplayedWay;
+using mission::ScheduleMethod;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-mission::ReplayedSchedule ended(ReplayedWay way, double soc_percent, double utility) {
+mission::ReplayedSchedule ended(ScheduleMethod way, double soc_percent, double utility) {
     mission::ReplayedSchedule schedule;
     schedule.way = way;
     schedule.summary.final_soc_percent = soc_percent;
@@ -23,7 +23,7 @@ mission::ReplayedSchedule ended(ReplayedWay way, double soc_percent, double util
     return schedule;
 }
 
-mission::ReplayedSchedule emptied(ReplayedWay way, double at_s) {
+mission::ReplayedSchedule emptied(ScheduleMethod way, double at_s) {
     auto schedule = ended(way, 0.0, 10.0);
     schedule.summary.feasible = false;
     schedule.summary.depleted_at_s = at_s;
@@ -42,8 +42,8 @@ mission::Replay replay_of(const std::string& flight, mission::ReplayedSchedule p
 }
 
 std::vector<mission::Replay> all_cases() {
-    constexpr auto planned = ReplayedWay::planned;
-    constexpr auto replanned = ReplayedWay::replanned;
+    constexpr auto planned = ScheduleMethod::planned;
+    constexpr auto replanned = ScheduleMethod::replanned;
     return {replay_of("saved", ended(planned, 12.0, 30.0), ended(replanned, 20.5, 27.0)),
             replay_of("spent", ended(planned, 30.0, 20.0), ended(replanned, 21.0, 24.0)),
             replay_of("tied", ended(planned, 20.2, 25.0), ended(replanned, 20.4, 24.99)),
@@ -88,9 +88,9 @@ TEST(ReplayBasis, SaysWhatTheModelSaw) {
     auto replay = all_cases()[0];
     const auto model_cell = [&] { return replay_basis_table(std::vector{replay}).rows[0][2]; };
     EXPECT_EQ(model_cell(), "others, 1 flight");
-    replay.model_saw_flight = mission::ModelSawFlight::yes;
+    replay.model_saw_flight = mission::TrainingOverlap::yes;
     EXPECT_EQ(model_cell(), "others, which saw this flight");
-    replay.model_saw_flight = mission::ModelSawFlight::unknown;
+    replay.model_saw_flight = mission::TrainingOverlap::unknown;
     EXPECT_EQ(model_cell(), "others, which does not name its flights");
 }
 

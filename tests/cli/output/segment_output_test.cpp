@@ -32,13 +32,13 @@ TEST(Explanation, GivesTheReasonsOfEveryEdgeAndThePowerRecord) {
 }
 
 TEST(WitnessText, NamesWitnessesBeforeWhatIsNearby) {
-    flight::ExplainedEdge edge;
+    flight::EdgeReport edge;
     EXPECT_EQ(witness_text(edge), "-");
-    edge.witnesses.resize(1);
-    edge.witnesses[0].what = "TAKEOFF";
-    edge.witnesses[0].time_s = 40.0;
-    edge.witnesses[0].after_s = -0.4;
-    edge.nearby = edge.witnesses;
+    edge.matching_events.resize(1);
+    edge.matching_events[0].what = "TAKEOFF";
+    edge.matching_events[0].time_s = 40.0;
+    edge.matching_events[0].after_s = -0.4;
+    edge.other_events = edge.matching_events;
     EXPECT_EQ(witness_text(edge), "TAKEOFF at 40.0 s (-0.4 s); nearby: TAKEOFF at 40.0 s (-0.4 s)");
 }
 

@@ -24,9 +24,9 @@ live::LiveState flying() {
     state.time_s = 400.0;
     state.aircraft_id = "7";
     state.phase = flight::Phase::cruise;
-    state.flight_s = 300.0;
+    state.flight_time_s = 300.0;
     state.energy_wh = 2.5;
-    state.waits_for = "a model";
+    state.no_prediction_reason = "a model";
     state.decision.emplace();
     state.decision->run = {{0, {5.8}}};
     state.decision->next = compute::Configuration{{0, {32.0}}, {1, {}}};
@@ -54,12 +54,12 @@ TEST(WatchOutput, SaysWhatIsKnownAndWhatIsNot) {
 TEST(WatchOutput, SaysWhenToTurnHome) {
     auto state = flying();
     state.battery.emplace();
-    state.battery->reserve_in_s = 600.0;
-    state.battery->chance_below = 0.031;
-    state.turn_home = live::TurnHome{90.0, false};
+    state.battery->time_to_reserve_s = 600.0;
+    state.battery->probability_below_reserve = 0.031;
+    state.turn_home = live::ReturnDeadline{90.0, false};
     EXPECT_THAT(line_of(state, two_components()),
                 HasSubstr("reserve in 10.0 min of cruise, chance of landing below it 3.1 %, turn home within 1.5 min"));
-    state.turn_home = live::TurnHome{};
+    state.turn_home = live::ReturnDeadline{};
     EXPECT_THAT(line_of(state, two_components()), HasSubstr("too late to turn home"));
     EXPECT_TRUE(json_of(state, two_components())["turn_home"]["latest_in_s"].is_null());
 }

@@ -31,10 +31,10 @@ class MisbehavingComponent : public testing::Test {
     /// Runs a shell script that names the marker wherever it sleeps.
     ComponentRun run(const std::string& script, const ProfileTiming& timing) const {
         auto sampler = constant_sampler(3.0);
-        RunFrame frame;
+        RunContext frame;
         frame.sampler = &sampler;
         frame.interval_s = 0.01;
-        frame.patience_s = patience_s;
+        frame.kill_timeout_s = patience_s;
         auto whole = script;
         for (auto at = whole.find("FOREVER"); at != std::string::npos; at = whole.find("FOREVER")) {
             whole.replace(at, 7, "sleep " + marker);
@@ -117,7 +117,7 @@ TEST_F(MisbehavingComponent, ForksOnAndOn) {
 
 TEST(ComponentRun, CannotBeStarted) {
     auto sampler = constant_sampler(3.0);
-    RunFrame frame;
+    RunContext frame;
     frame.sampler = &sampler;
     const auto done = run_component({{"there-is-no-such-component"}}, short_time, frame);
     EXPECT_EQ(done.status, RunStatus::not_started);
@@ -126,7 +126,7 @@ TEST(ComponentRun, CannotBeStarted) {
 
 TEST(ComponentRun, EndsWithTheFirstOfThoseThatRunTogether) {
     auto sampler = constant_sampler(3.0);
-    RunFrame frame;
+    RunContext frame;
     frame.sampler = &sampler;
     const auto marker = test::new_marker();
     const auto done = run_component({{"sleep", marker}, {"sleep", "0.5"}}, until_it_ends, frame);
@@ -139,13 +139,13 @@ TEST(ComponentRun, ASamplerThatBreaksLeavesNothingRunning) {
     int calls = 0;
     sampler.read = [&calls]() -> std::vector<PowerReading> {
         if (++calls < 3) return {};
-        throw NoAnswerError("the meter is gone");
+        throw NoResultError("the meter is gone");
     };
-    RunFrame frame;
+    RunContext frame;
     frame.sampler = &sampler;
     frame.interval_s = 0.01;
     const auto marker = test::new_marker();
-    EXPECT_THROW(run_component({{"sleep", marker}}, short_time, frame), NoAnswerError);
+    EXPECT_THROW(run_component({{"sleep", marker}}, short_time, frame), NoResultError);
     EXPECT_EQ(test::processes_with(marker), 0);
 }
 

@@ -65,7 +65,7 @@ TEST_F(SensorTree, JetsonNanoThroughIio) {
     chosen.rails = {"POM_5V_GPU", "POM_5V_CPU"};
     EXPECT_DOUBLE_EQ(power_w(chosen), 0.575);
     chosen.rails = {"VDD_CPU"};
-    EXPECT_THROW(open_sampler(chosen), NoAnswerError);
+    EXPECT_THROW(open_sampler(chosen), NoResultError);
 }
 
 TEST_F(SensorTree, JetsonTx2ThroughTheOlderIioPath) {
@@ -160,8 +160,8 @@ TEST_F(SensorTree, RaplCountsPackagesOnce) {
     zone("intel-rapl:1", "package-1", "800000");  // 0.3 J
     const auto readings = sampler.read();
     ASSERT_EQ(readings.size(), 1U);
-    const double longest_s = std::chrono::duration<double>(readings.front().time - before).count();
-    EXPECT_GE(readings.front().power_w, 0.5 / longest_s);
+    const double max_s = std::chrono::duration<double>(readings.front().time - before).count();
+    EXPECT_GE(readings.front().power_w, 0.5 / max_s);
     EXPECT_LE(readings.front().power_w, 0.5 / 0.05);
     EXPECT_DOUBLE_EQ(power_of_counter_w(900000, 100000, 1000000, 0.1), 2.0);
 }
@@ -186,9 +186,9 @@ TEST_F(SensorTree, AFolderAboveSysWillDo) {
 
 TEST_F(SensorTree, NoSensorAndBrokenSensors) {
     std::filesystem::create_directories(root);
-    EXPECT_THROW(open_sampler(settings()), NoAnswerError);
+    EXPECT_THROW(open_sampler(settings()), NoResultError);
     put("class/power_supply/BAT0/power_now", "1500000");
-    EXPECT_THROW(open_sampler(settings(SamplerKind::rapl)), NoAnswerError);
+    EXPECT_THROW(open_sampler(settings(SamplerKind::rapl)), NoResultError);
     const auto sampler = open_sampler(settings());
     put("class/power_supply/BAT0/power_now", "broken");
     EXPECT_EQ(test::rejected([&] { sampler.read(); }, root),
@@ -226,11 +226,11 @@ TEST(CommandSampler, RefusesWhatIsNoPower) {
     EXPECT_THAT(test::rejected([&] { read_some(open_sampler(settings), 1); }),
                 HasSubstr("the sampler printed '3,5 W', expected watts, a number a line"));
     settings.command = {"sh", "-c", "exit 2"};
-    EXPECT_THROW(read_some(open_sampler(settings), 1), NoAnswerError);
+    EXPECT_THROW(read_some(open_sampler(settings), 1), NoResultError);
     settings.command = {"true"};
-    EXPECT_THROW(read_some(open_sampler(settings), 1), NoAnswerError);
+    EXPECT_THROW(read_some(open_sampler(settings), 1), NoResultError);
     settings.command = {"there-is-no-such-meter"};
-    EXPECT_THROW(read_some(open_sampler(settings), 1), NoAnswerError);
+    EXPECT_THROW(read_some(open_sampler(settings), 1), NoResultError);
 }
 
 }  // namespace

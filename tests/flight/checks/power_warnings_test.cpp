@@ -1,8 +1,8 @@
 #include "flight/checks/power_warnings.h"
 
 #include "base/number.h"
-#include "flight/chosen_track.h"
 #include "flight/phase_statistics.h"
+#include "flight/selected_track.h"
 #include "helpers/damaged_logs.h"
 #include "helpers/rejected.h"
 
@@ -148,7 +148,7 @@ TEST(PowerWarnings, LeaveOutShortDropoutsWhileTheThrottleIsOpen) {
         });
         EXPECT_NEAR(test::energy_in_flight_wh(loaded), sound_energy_wh(), 0.02 * sound_energy_wh()) << length;
         EXPECT_THAT(test::said_of(loaded), HasSubstr("at 0 for up to three samples with the throttle open")) << length;
-        EXPECT_EQ(chosen_track(loaded.series, "current_a").time_s, power_track(loaded.series).time_s);
+        EXPECT_EQ(select_track(loaded.series, "current_a").time_s, power_track(loaded.series).time_s);
     }
 }
 
@@ -249,7 +249,7 @@ LoadedFlight with_escs(const std::function<void(double time_s, double& amps, dou
             text += fmt::format("{:.3f} {} ESC {:.5f} {} {:.6f} 5000 {} 0 {}\n", value(words, time) + 0.001 * motor,
                                 words[1], amps, volts, watts, volts, motor);
     });
-    return examine_flight(flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), "7"), {});
+    return segment_and_check(flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), "7"), {});
 }
 
 TEST(PowerWarnings, CompareThePowerOfEscsWithVoltageTimesCurrent) {

@@ -33,7 +33,7 @@ PowerRecord sound_record() {
         record.altitude_m.push_back(flies ? 100.0 : 0.0);
     }
     record.power_source = "ESC";
-    record.flown = {{first, last}};
+    record.in_flight = {{first, last}};
     record.energy_j = 20.0 * static_cast<double>(last - first);
     record.duration_s = static_cast<double>(last - first);
     return record;

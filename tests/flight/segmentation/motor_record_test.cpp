@@ -1,7 +1,7 @@
 #include "flight/segmentation/motor_record.h"
 
-#include "flight/chosen_track.h"
 #include "flight/segmentation.h"
+#include "flight/selected_track.h"
 #include "helpers/flown_points.h"
 
 #include <random>
@@ -51,11 +51,11 @@ TEST(MotorRecord, TakesPowerWhereThereIsNoThrottle) {
     auto columns = measured_flight();
     const auto expected = segment(test::series_of(columns));
     ASSERT_EQ(expected.sorties.size(), 1u);
-    EXPECT_EQ(expected.motor_evidence, "series CSV");
+    EXPECT_EQ(expected.motor_source, "series CSV");
     columns.throttle_percent.clear();
     const auto phases = segment(test::series_of(columns));
     expect_same_phases(phases, expected);
-    EXPECT_EQ(phases.motor_evidence, "power: idle 0.4 W, running 45.4 W");
+    EXPECT_EQ(phases.motor_source, "power: idle 0.4 W, running 45.4 W");
     EXPECT_THAT(phases.warnings, testing::Contains(HasSubstr("no throttle: the motor is taken to run above 4.9 W")));
     EXPECT_THAT(phases.ground_events.at(0).what, HasSubstr("power at its idle"));
 }
@@ -84,7 +84,7 @@ TEST(MotorRecord, SaysThatNothingTellsOfTheMotor) {
     columns.throttle_percent.clear();
     columns.power_w.assign(columns.time_s.size(), 12.0);
     const auto phases = segment(test::series_of(columns));
-    EXPECT_EQ(phases.motor_evidence, "nothing");
+    EXPECT_EQ(phases.motor_source, "nothing");
     EXPECT_THAT(phases.warnings, testing::Contains(HasSubstr("no throttle: segmented by altitude alone")));
     for (const auto& event : phases.ground_events) {
         EXPECT_THAT(event.what, testing::Not(HasSubstr("motor off"))) << "nobody measured that";
@@ -99,7 +99,7 @@ TEST(MotorRecord, TakesAThrottleFromZeroToOneForAFraction) {
         for (auto& throttle : columns.throttle_percent) throttle /= 100.0;
         const auto series = test::series_of(columns);
         expect_same_phases(segment(series), expected);
-        EXPECT_EQ(chosen_track(series, "throttle_percent").value, columns_of_percent(series));
+        EXPECT_EQ(select_track(series, "throttle_percent").value, columns_of_percent(series));
         EXPECT_THAT(warnings_of(series),
                     testing::Contains(HasSubstr("runs from 0 to 0.9: it is taken for a fraction, 0 to 90 %")));
     }

@@ -1,7 +1,7 @@
 #include "flight/sources/device_check.h"
 
 #include "base/number.h"
-#include "flight/chosen_track.h"
+#include "flight/selected_track.h"
 #include "helpers/damaged_logs.h"
 
 #include <cmath>
@@ -40,8 +40,8 @@ LoadedFlight with_devices(const std::string& message, int count, const DeviceRep
                                      : fmt::format("POWER_DEVICE 1 {} {:.5f} {}\n", device, a, v);
         }
     });
-    return examine_flight(flight_series(parse_telemetry(text, "damaged.data", std::nullopt, flight_messages()), "7"),
-                          {});
+    return segment_and_check(flight_series(parse_telemetry(text, "damaged.data", std::nullopt, flight_messages()), "7"),
+                             {});
 }
 
 Report a_quarter(Report pack) { return {pack.current_a / 4.0, pack.voltage_v}; }
@@ -90,7 +90,7 @@ TEST(DeviceDoubts, TellOfAPowerThatStandsStillWhileTheCurrentGoesOn) {
         }
     }
     const auto series = flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), "7");
-    EXPECT_THAT(device_doubts(series, "ESC"),
+    EXPECT_THAT(find_suspect_devices(series, "ESC"),
                 testing::ElementsAre(HasSubstr("ESC 5 reports the same value again and again (2.50 W)")));
 }
 
@@ -125,8 +125,8 @@ TEST(DeviceDoubts, DoNotFaultCircuitsOfOtherVoltages) {
     });
     EXPECT_THAT(loaded.power.power_faults, testing::IsEmpty());
     EXPECT_THAT(test::said_of(loaded), HasSubstr("the circuits of POWER_DEVICE have 5.0 to 12.3 V"));
-    EXPECT_TRUE(chosen_track(loaded.series, "voltage_v").empty());
-    EXPECT_TRUE(chosen_track(loaded.series, "current_a").empty());
+    EXPECT_TRUE(select_track(loaded.series, "voltage_v").empty());
+    EXPECT_TRUE(select_track(loaded.series, "current_a").empty());
 }
 
 TEST(DeviceDoubts, LetLiftMotorsStandWhileThePusherRuns) {
@@ -143,8 +143,8 @@ TEST(DeviceDoubts, NameIdsThatAreMissingBetweenOthers) {
         for (int k = 0; k < 60; ++k)
             for (const auto& id : ids)
                 text += fmt::format("{} 7 POWER_DEVICE {} {:.3f} 12.0\n", k, id, 2.0 + 0.1 * std::sin(0.1 * k));
-        return device_doubts(flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), "7"),
-                             "POWER_DEVICE");
+        return find_suspect_devices(
+            flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), "7"), "POWER_DEVICE");
     };
     EXPECT_THAT(doubts_of({"1 0", "1 2", "1 3"}),
                 testing::ElementsAre("POWER_DEVICE 1 is missing between 0 and 2: what it draws is not in the sum"));

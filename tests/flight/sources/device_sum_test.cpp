@@ -1,7 +1,7 @@
 #include "flight/sources/device_sum.h"
 
 #include "base/number.h"
-#include "flight/chosen_track.h"
+#include "flight/selected_track.h"
 #include "helpers/damaged_logs.h"
 #include "helpers/rejected.h"
 
@@ -32,8 +32,8 @@ LoadedFlight with_motors(const Report& report) {
                                        number_or_nan(words[6]) * part, words[4]));
         }
     });
-    return examine_flight(flight_series(parse_telemetry(text, "damaged.data", std::nullopt, flight_messages()), "7"),
-                          {});
+    return segment_and_check(flight_series(parse_telemetry(text, "damaged.data", std::nullopt, flight_messages()), "7"),
+                             {});
 }
 
 std::string line(double time_s, const std::string& sender, const std::string& fields, int id) {

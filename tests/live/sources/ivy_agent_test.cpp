@@ -1,4 +1,5 @@
-// The agent among others: those of a test that say what Ivy's libraries in C and Python say, byte by byte, and its like.
+// The agent among others: those of a test that say what Ivy's libraries in C and Python say, byte by byte, and its
+// like.
 
 #include "live/sources/ivy_agent.h"
 

@@ -16,8 +16,8 @@ TEST(LineBuffer, LinesAreTheSameInAnyPieces) {
         std::vector<std::string> lines;
         for (std::size_t i = 0; i < text.size(); i += size) buffer.push(text.substr(i, size), lines);
         EXPECT_EQ(lines, expected) << size;
-        EXPECT_EQ(buffer.take_rest(), "the rest");
-        EXPECT_EQ(buffer.take_rest(), "");
+        EXPECT_EQ(buffer.take_partial_line(), "the rest");
+        EXPECT_EQ(buffer.take_partial_line(), "");
     }
 }
 
@@ -25,7 +25,7 @@ TEST(LineBuffer, AnEndlessLineIsDroppedAndTheNextIsRead) {
     LineBuffer buffer;
     std::vector<std::string> lines;
     for (int i = 0; i < 1000; ++i) buffer.push(std::string(1000, '#'), lines);
-    buffer.push("\n1 20 PONG\n" + std::string(LineBuffer::longest_line + 1, 'x') + "\n2 20 PONG\n", lines);
+    buffer.push("\n1 20 PONG\n" + std::string(LineBuffer::max_line + 1, 'x') + "\n2 20 PONG\n", lines);
     EXPECT_EQ(lines, (std::vector<std::string>{"1 20 PONG", "2 20 PONG"}));
     EXPECT_EQ(buffer.overlong(), 2U);
 }

@@ -28,21 +28,21 @@ TEST(MessageQueue, GivesTimesOfArrivalToMessagesWithoutOne) {
 
 TEST(MessageQueue, DropsTheOldestOfTooManyAndSaysSo) {
     MessageQueue queue(1.0);
-    for (std::size_t i = 0; i < MessageQueue::most_waiting + 3; ++i) queue.push({static_cast<double>(i), "1 A"});
+    for (std::size_t i = 0; i < MessageQueue::max_waiting + 3; ++i) queue.push({static_cast<double>(i), "1 A"});
     queue.count("bytes", 7);
     queue.count("bytes", 0);
     std::vector<IncomingMessage> messages;
     SourceReport report;
-    while (messages.size() < MessageQueue::most_waiting) {
+    while (messages.size() < MessageQueue::max_waiting) {
         const auto before = messages.size();
         queue.take(milliseconds(0), messages, report);
         ASSERT_GT(messages.size(), before);
-        ASSERT_LE(messages.size() - before, MessageQueue::most_a_call);
+        ASSERT_LE(messages.size() - before, MessageQueue::max_per_call);
     }
     queue.take(milliseconds(0), messages, report);
-    EXPECT_EQ(messages.size(), MessageQueue::most_waiting);
+    EXPECT_EQ(messages.size(), MessageQueue::max_waiting);
     EXPECT_EQ(messages.front().time_s, 3.0);
-    EXPECT_EQ(report.messages, MessageQueue::most_waiting + 3);
+    EXPECT_EQ(report.messages, MessageQueue::max_waiting + 3);
     EXPECT_EQ(report.unusable.at("messages that came in faster than they were looked at"), 3U);
     EXPECT_EQ(report.unusable.at("bytes"), 7U);
 }
@@ -58,9 +58,9 @@ TEST(MessageQueue, MarksTheFirstMessageOfANewClock) {
     SourceReport report;
     queue.take(milliseconds(0), messages, report);
     ASSERT_EQ(messages.size(), 3U);
-    EXPECT_FALSE(messages[0].after_restart);
-    EXPECT_TRUE(messages[1].after_restart);
-    EXPECT_FALSE(messages[2].after_restart);
+    EXPECT_FALSE(messages[0].is_after_restart);
+    EXPECT_TRUE(messages[1].is_after_restart);
+    EXPECT_FALSE(messages[2].is_after_restart);
     EXPECT_EQ(report.restarts, 2U);
 }
 

@@ -8,7 +8,7 @@
 namespace flightwatt::live {
 namespace {
 
-using Anew = SenderClocks::Anew;
+using Anew = SenderClocks::RestartScope;
 
 class SenderClocksTest : public testing::Test {
   protected:

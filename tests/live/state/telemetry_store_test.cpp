@@ -1,6 +1,6 @@
 #include "live/state/telemetry_store.h"
 
-#include "flight/chosen_track.h"
+#include "flight/selected_track.h"
 
 #include <string>
 
@@ -79,7 +79,7 @@ TEST(TelemetryStore, DropsFromItsBeginningAndOtherSenders) {
 TEST(TelemetryStore, HoldsFewSenders) {
     TelemetryStore store("live", std::nullopt);
     for (int sender = 0; sender < 20; ++sender) store.add(energy_line(1, std::to_string(sender)));
-    EXPECT_EQ(store.rows(), TelemetryStore::most_senders);
+    EXPECT_EQ(store.rows(), TelemetryStore::max_senders);
     EXPECT_FALSE(store.skipped().empty());
 }
 

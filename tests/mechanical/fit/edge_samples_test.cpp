@@ -33,7 +33,7 @@ flight::Track track_of(const std::function<double(double)>& power_w, double nois
 }
 
 TEST(EdgeSamples, PowerThatJumpsAtTheEdgeLosesNone) {
-    const auto found = samples_of_neighbours(
+    const auto found = count_neighbour_samples(
         track_of([](double time_s) { return time_s < start_s ? 57.0
                                             : time_s < end_s ? 22.0
                                                              : 2.0; }), cruise());
@@ -46,33 +46,33 @@ TEST(EdgeSamples, TakeOffPowerInTheCruiseIsTheTakeOffs) {
     const auto power = [](double time_s) {
         return time_s < 61.0 ? 57.0 : time_s < 62.0 ? 35.0 : time_s < 359.0 ? 22.0 : 2.0;
     };
-    const auto found = samples_of_neighbours(track_of(power), cruise());
+    const auto found = count_neighbour_samples(track_of(power), cruise());
     EXPECT_EQ(found.at_start, 2U);
     EXPECT_EQ(found.at_end, 1U);
 }
 
 TEST(EdgeSamples, OneSampleBetweenBothPowersCountsToo) {
     const auto power = [](double time_s) { return time_s < start_s ? 57.0 : time_s < 61.0 ? 34.7 : 22.0; };
-    EXPECT_EQ(samples_of_neighbours(track_of(power), cruise()).at_start, 1U);
+    EXPECT_EQ(count_neighbour_samples(track_of(power), cruise()).at_start, 1U);
 }
 
 TEST(EdgeSamples, WhatIsFurtherFromTheEdgeThanItIsKnownStays) {
     const auto power = [](double time_s) { return time_s < 70.0 ? 57.0 : 22.0; };
-    const auto found = samples_of_neighbours(track_of(power), cruise());
+    const auto found = count_neighbour_samples(track_of(power), cruise());
     EXPECT_EQ(found.at_start, 0U);
 }
 
 TEST(EdgeSamples, SmoothPowerLosesNone) {
     const auto smooth = [](double time_s) { return 30.0 + 8.0 * std::sin(time_s / 9.0); };
     for (const double noise_w : {0.001, 0.02, 1.0}) {
-        const auto found = samples_of_neighbours(track_of(smooth, noise_w), cruise());
+        const auto found = count_neighbour_samples(track_of(smooth, noise_w), cruise());
         EXPECT_EQ(found.at_start + found.at_end, 0U) << noise_w;
     }
 }
 
 TEST(EdgeSamples, AJumpWithinTheNoiseLosesNone) {
     const auto power = [](double time_s) { return time_s < 61.0 ? 23.0 : 22.0; };
-    const auto found = samples_of_neighbours(track_of(power, 1.0), cruise());
+    const auto found = count_neighbour_samples(track_of(power, 1.0), cruise());
     EXPECT_EQ(found.at_start, 0U);
 }
 
@@ -80,7 +80,7 @@ TEST(EdgeSamples, AtAnEndOfTheRecordThereIsNoNeighbour) {
     auto span = cruise();
     span.start.time_s = 0.0;
     const auto power = [](double time_s) { return time_s < 2.0 ? 57.0 : 22.0; };
-    EXPECT_EQ(samples_of_neighbours(track_of(power), span).at_start, 0U);
+    EXPECT_EQ(count_neighbour_samples(track_of(power), span).at_start, 0U);
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ std::string usage_error_of(const Action& action) {
 
 TEST(FlightWeights, HaveNamesBothWays) {
     for (const auto weighting :
-         {Weighting::uniform, Weighting::inverse_variance, Weighting::agreement, Weighting::by_hand}) {
+         {Weighting::uniform, Weighting::inverse_variance, Weighting::agreement, Weighting::manual}) {
         EXPECT_EQ(weighting_from(to_string(weighting)), weighting);
     }
     EXPECT_EQ(to_string(Weighting::inverse_variance), "inverse-variance");
@@ -53,10 +53,10 @@ TEST(FlightWeights, HaveNamesBothWays) {
 
 TEST(FlightWeights, SumToOneWhateverTheWay) {
     const auto fit = fit_phase(flight::Phase::landing, test::record_flights(flight::Phase::landing, 6, 0.2, 1));
-    std::vector<HandWeight> by_hand;
+    std::vector<ManualWeight> by_hand;
     for (std::size_t i = 0; i < 6; ++i) by_hand.push_back({fit.flights[i].flight, {}, static_cast<double>(i)});
     for (const auto& options : {WeightOptions{Weighting::uniform, {}}, WeightOptions{Weighting::inverse_variance, {}},
-                                WeightOptions{Weighting::agreement, {}}, WeightOptions{Weighting::by_hand, by_hand}}) {
+                                WeightOptions{Weighting::agreement, {}}, WeightOptions{Weighting::manual, by_hand}}) {
         const auto weights = flight_weights(fit, flight::Phase::landing, options);
         ASSERT_EQ(weights.size(), 6U);
         EXPECT_NEAR(std::accumulate(weights.begin(), weights.end(), 0.0), 1.0, 1e-14);
@@ -118,7 +118,7 @@ TEST(FlightWeights, AgreementOfFewOrEqualFlightsIsUniform) {
 }
 
 TEST(FlightWeights, ByHandAreNormalisedAndMayDifferByPhase) {
-    const WeightOptions options{Weighting::by_hand,
+    const WeightOptions options{Weighting::manual,
                                 {{"f1", {}, 3.0}, {"f2", {}, 1.0}, {"f2", flight::Phase::landing, 0.0}}};
     const auto fit = fit_with_levels({20, 25});
     EXPECT_THAT(flight_weights(fit, flight::Phase::cruise, options), ElementsAre(0.75, 0.25));
@@ -127,29 +127,28 @@ TEST(FlightWeights, ByHandAreNormalisedAndMayDifferByPhase) {
 
 TEST(FlightWeights, ByHandRefusesWhatDoesNotFitTheFlights) {
     const std::vector<std::string> flights{"20_07_03", "20_07_05"};
-    const auto refusal = [&](Weighting weighting, std::vector<HandWeight> by_hand) {
-        return usage_error_of([&] { check_weights({weighting, std::move(by_hand)}, flights); });
+    const auto refusal = [&](Weighting weighting, std::vector<ManualWeight> by_hand) {
+        return usage_error_of([&] { validate_weights({weighting, std::move(by_hand)}, flights); });
     };
-    EXPECT_EQ(refusal(Weighting::by_hand, {{"20_07_03", {}, 1.0}, {"20_07_05", {}, 0.0}}), "accepted");
-    EXPECT_THAT(refusal(Weighting::by_hand, {{"20_07_30", {}, 1.0}}),
+    EXPECT_EQ(refusal(Weighting::manual, {{"20_07_03", {}, 1.0}, {"20_07_05", {}, 0.0}}), "accepted");
+    EXPECT_THAT(refusal(Weighting::manual, {{"20_07_30", {}, 1.0}}),
                 AllOf(HasSubstr("'20_07_30', which is none of the flights"), HasSubstr("did you mean '20_07_03'")));
-    EXPECT_THAT(refusal(Weighting::by_hand, {{"20_07_03", {}, -1.0}}), HasSubstr("is -1, expected 0 or more"));
-    EXPECT_THAT(refusal(Weighting::by_hand, {{"20_07_03", {}, std::nan("")}}), HasSubstr("expected 0 or more"));
-    EXPECT_THAT(refusal(Weighting::by_hand,
+    EXPECT_THAT(refusal(Weighting::manual, {{"20_07_03", {}, -1.0}}), HasSubstr("is -1, expected 0 or more"));
+    EXPECT_THAT(refusal(Weighting::manual, {{"20_07_03", {}, std::nan("")}}), HasSubstr("expected 0 or more"));
+    EXPECT_THAT(refusal(Weighting::manual,
                         {{"20_07_03", flight::Phase::cruise, 1.0}, {"20_07_03", flight::Phase::cruise, 2.0}}),
                 HasSubstr("'20_07_03' has two weights in cruise"));
     EXPECT_THAT(refusal(Weighting::uniform, {{"20_07_03", {}, 1.0}}), HasSubstr("exclude each other"));
 
     const auto fit = fit_with_levels({20, 25});
     EXPECT_THAT(usage_error_of([&] {
-                    flight_weights(fit, flight::Phase::cruise, {Weighting::by_hand, {{"f1", {}, 1.0}}});
+                    flight_weights(fit, flight::Phase::cruise, {Weighting::manual, {{"f1", {}, 1.0}}});
                 }),
                 HasSubstr("'f2' has no weight by hand in cruise"));
-    EXPECT_THAT(
-        usage_error_of([&] {
-            flight_weights(fit, flight::Phase::cruise, {Weighting::by_hand, {{"f1", {}, 0.0}, {"f2", {}, 0.0}}});
-        }),
-        HasSubstr("every flight's weight by hand is 0 in cruise"));
+    EXPECT_THAT(usage_error_of([&] {
+                    flight_weights(fit, flight::Phase::cruise, {Weighting::manual, {{"f1", {}, 0.0}, {"f2", {}, 0.0}}});
+                }),
+                HasSubstr("every flight's weight by hand is 0 in cruise"));
 }
 
 TEST(FlightWeights, AveragingCoefficientsIsAveragingCurves) {

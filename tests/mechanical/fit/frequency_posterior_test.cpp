@@ -21,8 +21,9 @@ namespace {
 TEST(DensityNodes, ResolveAPeakThatOneStartIsOn) {
     for (const double sd : {0.3, 0.01, 1e-5}) {
         const auto density = [&](double x) { return -0.5 * std::pow((x - 5.03) / sd, 2); };
-        const auto nodes = resolve_density(density, {3.0, 4.0, 5.0, 5.03, 6.0});
-        EXPECT_NEAR(std::exp(log_sum(log_masses(nodes))) / (sd * std::sqrt(2.0 * std::numbers::pi)), 1.0, 0.03) << sd;
+        const auto nodes = refine_density_nodes(density, {3.0, 4.0, 5.0, 5.03, 6.0});
+        EXPECT_NEAR(std::exp(log_sum_exp(log_masses(nodes))) / (sd * std::sqrt(2.0 * std::numbers::pi)), 1.0, 0.03)
+            << sd;
         EXPECT_LT(nodes.size(), 120U);
     }
 }
@@ -33,9 +34,9 @@ TEST(NodeLikelihood, IsThatOfTheWholeMatrices) {
     const ScaledSamples scaled{samples.tau, samples.power_w, ""};
     constexpr double r = 0.6;
     constexpr double theta_rad = 4.1;
-    const auto flight = flight_at(scaled, 3, theta_rad).value();
-    const auto evidence = evidence_of(flight, r);
-    const auto gaps = gaps_of(scaled);
+    const auto flight = project_at_frequency(scaled, 3, theta_rad).value();
+    const auto evidence = restricted_likelihood(flight, r);
+    const auto gaps = normalised_gaps(scaled);
     const auto count = static_cast<Eigen::Index>(gaps.size());
     Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(count, count);
     for (Eigen::Index i = 0; i < count; ++i) {
@@ -67,7 +68,7 @@ TEST(NodeLikelihood, IsThatOfTheWholeMatrices) {
 }
 
 FrequencyPosterior posterior_of(const std::vector<PhaseSamples>& flights, flight::Phase phase) {
-    const auto fit = fit_phase(phase, flights, {.curve = Curve::least_squares});
+    const auto fit = fit_phase(phase, flights, {.curve = CurveEstimator::least_squares});
     std::vector<ScaledSamples> scaled;
     for (const auto& samples : flights) scaled.push_back({samples.tau, samples.power_w, ""});
     return frequency_posterior(scaled, {3, fit.range, fit.theta_rad});
@@ -79,7 +80,7 @@ TEST(FrequencyPosterior, OfPreciseFlightsIsAtTheTruth) {
         double sum = 0.0;
         for (const auto& node : posterior.nodes) sum += node.weight;
         const double truth_rad = test::theta_rad(test::published_model().phases[phase]);
-        const auto [low_rad, high_rad] = interval_of_frequency(posterior);
+        const auto [low_rad, high_rad] = frequency_interval(posterior);
         EXPECT_LE(low_rad, truth_rad) << to_string(phase);
         EXPECT_GE(high_rad, truth_rad) << to_string(phase);
         EXPECT_LT(high_rad - low_rad, 0.3) << to_string(phase);
@@ -119,7 +120,7 @@ std::vector<ScaledSamples> many_flights(double autocorrelation) {
     for (int i = 0; i < 120; ++i) {
         auto samples = test::record(takeoff, {50.0, 1.1, 0.0, 0.0}, random);
         test::add_noise(samples, 0.05, autocorrelation, random);
-        flights.push_back(in_order_of_time({samples.tau, samples.power_w, ""}));
+        flights.push_back(sort_by_time({samples.tau, samples.power_w, ""}));
     }
     return flights;
 }
@@ -155,14 +156,14 @@ TEST(FrequencyPosterior, OfManyFlightsIsThatOfAFineGrid) {
         std::vector<double> logs;
         for (int i = -15; i <= 15; ++i) {
             places.push_back(mean_rad + i * sd_rad / 3.0);
-            std::vector<FlightAtFrequency> at;
-            for (const auto& flight : flights) at.push_back(flight_at(flight, 3, places.back()).value());
+            std::vector<FrequencyProjection> at;
+            for (const auto& flight : flights) at.push_back(project_at_frequency(flight, 3, places.back()).value());
             std::vector<double> of_r;
             for (double r = 0.0; r <= 0.6; r += 0.02) {
                 of_r.push_back(0.0);
-                for (const auto& flight : at) of_r.back() += evidence_of(flight, r).log_likelihood;
+                for (const auto& flight : at) of_r.back() += restricted_likelihood(flight, r).log_likelihood;
             }
-            logs.push_back(log_sum(of_r) - 2.0 * std::log(places.back()));
+            logs.push_back(log_sum_exp(of_r) - 2.0 * std::log(places.back()));
         }
         const double top = *std::ranges::max_element(logs);
         for (double& value : logs) value = std::exp(value - top);

@@ -69,16 +69,16 @@ TEST(FrequencyScan, DoesNotTakeOddHarmonicsForNoise) {
     const FrequencyRange range{std::numbers::pi, 500.0};
     const auto flights = one_flight(test::cruise_of(5.0, {0.4, 3.0, 0.0}, {0.0, 2.0, 0.4}), 1.5, 4);
     EXPECT_NEAR(found_frequency(flights, range), 10.0 * std::numbers::pi, 0.1);
-    EXPECT_NEAR(simplest_frequency(flights, 3, range, 10.0 * std::numbers::pi), 10.0 * std::numbers::pi, 0.1);
+    EXPECT_NEAR(resolve_subharmonic(flights, 3, range, 10.0 * std::numbers::pi), 10.0 * std::numbers::pi, 0.1);
 }
 
 TEST(FrequencyScan, MovesASubharmonicToTheSimplestFrequency) {
     const FrequencyRange range{std::numbers::pi, 500.0};
     const double theta_rad = 2.0 * std::numbers::pi * 12.0;
     const auto flights = one_flight(test::cruise_of(12.0, {3.0}, {2.0}), 1.5, 5);
-    EXPECT_NEAR(simplest_frequency(flights, 3, range, theta_rad / 2.0), theta_rad, 0.05);
-    EXPECT_NEAR(simplest_frequency(flights, 3, range, theta_rad / 3.0), theta_rad, 0.05);
-    EXPECT_EQ(simplest_frequency(flights, 3, range, theta_rad), theta_rad);
+    EXPECT_NEAR(resolve_subharmonic(flights, 3, range, theta_rad / 2.0), theta_rad, 0.05);
+    EXPECT_NEAR(resolve_subharmonic(flights, 3, range, theta_rad / 3.0), theta_rad, 0.05);
+    EXPECT_EQ(resolve_subharmonic(flights, 3, range, theta_rad), theta_rad);
 }
 
 TEST(FrequencyScan, KeepsTheTrendOfAShortTakeOff) {

@@ -25,13 +25,13 @@ TEST(OneFrequency, IsToldOnlyWhereAllThatMayBeAreOne) {
             for (unsigned seed = 1; seed <= 3; ++seed) {
                 const auto samples = cruise(noise_w, autocorrelation, 600.0, seed);
                 const auto fit =
-                    fit_phase(flight::Phase::cruise, std::span(&samples, 1), {.curve = Curve::least_squares});
-                const auto values = in_order_of_time({samples.tau, samples.power_w, ""});
+                    fit_phase(flight::Phase::cruise, std::span(&samples, 1), {.curve = CurveEstimator::least_squares});
+                const auto values = sort_by_time({samples.tau, samples.power_w, ""});
                 ++cases;
-                if (!is_one_frequency(std::span(&values, 1), 3, fit.range, fit.theta_rad)) continue;
+                if (!is_frequency_determined(std::span(&values, 1), 3, fit.range, fit.theta_rad)) continue;
                 ++told;
                 const auto posterior = frequency_posterior(std::span(&values, 1), {3, fit.range, fit.theta_rad});
-                const auto [low_rad, high_rad] = interval_of_frequency(posterior);
+                const auto [low_rad, high_rad] = frequency_interval(posterior);
                 EXPECT_LT(3.0 * (high_rad - low_rad), 1.0) << noise_w << " " << autocorrelation << " " << seed;
             }
         }
@@ -42,11 +42,11 @@ TEST(OneFrequency, IsToldOnlyWhereAllThatMayBeAreOne) {
 
 TEST(OneFrequency, IsNotToldOfFewSamplesLastingNoiseOrABound) {
     const auto told = [](const PhaseSamples& samples, double found_rad) {
-        const auto values = in_order_of_time({samples.tau, samples.power_w, ""});
-        return is_one_frequency(std::span(&values, 1), 3, {3.142, 60.0}, found_rad);
+        const auto values = sort_by_time({samples.tau, samples.power_w, ""});
+        return is_frequency_determined(std::span(&values, 1), 3, {3.142, 60.0}, found_rad);
     };
     const auto clear = cruise(0.05, 0.0, 600.0, 1);
-    const auto fit = fit_phase(flight::Phase::cruise, std::span(&clear, 1), {.curve = Curve::least_squares});
+    const auto fit = fit_phase(flight::Phase::cruise, std::span(&clear, 1), {.curve = CurveEstimator::least_squares});
     EXPECT_TRUE(told(clear, fit.theta_rad));
     EXPECT_FALSE(told(clear, 3.142)) << "at the bound";
     EXPECT_FALSE(told(clear, 2.0 * fit.theta_rad)) << "where it is not";

@@ -76,7 +76,8 @@ TEST_P(FrequencyIdentification, IsWithinOnePerCentEveryTime) {
             std::mt19937 random(seed);
             const auto phase = test::cruise_of(periods, GetParam().cos_w, GetParam().sin_w);
             const auto samples = test::record(phase, {600.0, 0.1, 1.5, 0.0}, random);
-            const auto fit = fit_phase(flight::Phase::cruise, std::vector{samples}, {.curve = Curve::least_squares});
+            const auto fit =
+                fit_phase(flight::Phase::cruise, std::vector{samples}, {.curve = CurveEstimator::least_squares});
             const auto& found = fit.flights.front().fourier;
             EXPECT_NEAR(found.omega_rad_per_s / phase.fourier.omega_rad_per_s, 1.0, 0.01)
                 << periods << " periods, seed " << seed;
@@ -100,7 +101,8 @@ TEST(PhaseFit, EstimatesTheFrequencyAsWellAsTheNoiseAllows) {
     for (unsigned seed = 1; seed <= seeds; ++seed) {
         std::mt19937 random(seed);
         const auto samples = test::record(published, {600.0, 1.1, 0.3, 0.0}, random);
-        const auto fit = fit_phase(flight::Phase::cruise, std::vector{samples}, {.curve = Curve::least_squares});
+        const auto fit =
+            fit_phase(flight::Phase::cruise, std::vector{samples}, {.curve = CurveEstimator::least_squares});
         square_sum += std::pow(fit.theta_rad - test::theta_rad(published), 2);
         least_rad = least_deviation_rad(published, samples, 0.3);
     }
@@ -166,10 +168,12 @@ TEST(PhaseFit, TheSharedFrequencyIsTheSameForTwinsAsForOne) {
 
 TEST(PhaseFit, ReportsThatItStandsAtABound) {
     const auto flights = test::record_flights(flight::Phase::cruise, 2, 0.0, 8);  // theta is 5.04
-    const auto low = fit_phase(flight::Phase::cruise, flights, {.low_rad = 5.3, .curve = Curve::least_squares});
+    const auto low =
+        fit_phase(flight::Phase::cruise, flights, {.min_theta_rad = 5.3, .curve = CurveEstimator::least_squares});
     EXPECT_EQ(low.range.at_bound, FrequencyBound::low);
     EXPECT_NEAR(low.theta_rad, 5.3, 1e-5);
-    const auto high = fit_phase(flight::Phase::cruise, flights, {.high_periods = 0.75, .curve = Curve::least_squares});
+    const auto high =
+        fit_phase(flight::Phase::cruise, flights, {.max_periods = 0.75, .curve = CurveEstimator::least_squares});
     EXPECT_EQ(high.range.at_bound, FrequencyBound::high);
     EXPECT_NEAR(high.theta_rad, 1.5 * std::numbers::pi, 1e-5);
 }
@@ -180,11 +184,12 @@ TEST(PhaseFit, TheRangeEndsWhereTheHighestHarmonicOutrunsTheSamples) {
     const auto coarse = test::record(phase, {600.0, 2.0, 0.0, 0.0}, random);
     const auto fine = test::record(phase, {600.0, 0.1, 0.0, 0.0}, random);
     // Two samples a period are pi 300 / order; evenly spread ones tell both columns 1.9 rad of the phase below.
-    EXPECT_NEAR(admissible_range(std::vector{fine, coarse}, {}).high_rad, (std::numbers::pi * 300.0 - 1.9) / 3.0, 0.07);
-    EXPECT_NEAR(admissible_range(std::vector{fine, coarse}, {.order = 5}).high_rad,
+    EXPECT_NEAR(admissible_frequencies(std::vector{fine, coarse}, {}).high_rad, (std::numbers::pi * 300.0 - 1.9) / 3.0,
+                0.07);
+    EXPECT_NEAR(admissible_frequencies(std::vector{fine, coarse}, {.order = 5}).high_rad,
                 (std::numbers::pi * 300.0 - 1.9) / 5.0, 0.07);
-    EXPECT_NEAR(admissible_range(std::vector{fine}, {}).high_rad, 240.0 * std::numbers::pi, 1e-9);  // the cap
-    EXPECT_EQ(admissible_range(std::vector{fine}, {}).low_rad, std::numbers::pi);
+    EXPECT_NEAR(admissible_frequencies(std::vector{fine}, {}).high_rad, 240.0 * std::numbers::pi, 1e-9);  // the cap
+    EXPECT_EQ(admissible_frequencies(std::vector{fine}, {}).low_rad, std::numbers::pi);
 }
 
 TEST(PhaseFit, RegularSeriesHaveNoWildCurves) {
@@ -229,10 +234,10 @@ TEST(PhaseFit, RefusesTooFewSamplesNamingTheFlight) {
     auto flights = test::record_flights(flight::Phase::cruise, 2, 0.5, 9);
     flights[1].tau.resize(7);
     flights[1].power_w.resize(7);
-    EXPECT_EQ(samples_needed(3), 8U);
-    EXPECT_THAT(message_of<NoAnswerError>(flights),
+    EXPECT_EQ(min_samples(3), 8U);
+    EXPECT_THAT(message_of<NoResultError>(flights),
                 AllOf(HasSubstr("'flight2' has 7 samples in cruise"), HasSubstr("order 3 needs 8")));
-    EXPECT_THAT(message_of<NoAnswerError>({}), HasSubstr("no flight has a cruise"));
+    EXPECT_THAT(message_of<NoResultError>({}), HasSubstr("no flight has a cruise"));
 }
 
 TEST(PhaseFit, RefusesSamplesThatLeaveNoRange) {
@@ -241,7 +246,7 @@ TEST(PhaseFit, RefusesSamplesThatLeaveNoRange) {
         samples.tau.push_back(0.5 * (i % 3));
         samples.power_w.push_back(20.0 + i);
     }
-    EXPECT_THAT(message_of<NoAnswerError>({samples}),
+    EXPECT_THAT(message_of<NoResultError>({samples}),
                 AllOf(HasSubstr("cruise"), HasSubstr("'sparse'"), HasSubstr("too sparse")));
 }
 
@@ -270,8 +275,8 @@ TEST(PhaseFit, RefusesOptionsThatMakeNoSense) {
     const auto flights = test::record_flights(flight::Phase::cruise, 1, 0.5, 11);
     EXPECT_THAT(message_of<UsageError>(flights, {.order = -1}), HasSubstr("expected 0 to 8"));
     EXPECT_THAT(message_of<UsageError>(flights, {.order = 9}), HasSubstr("expected 0 to 8"));
-    EXPECT_THAT(message_of<UsageError>(flights, {.low_rad = 0.0}), HasSubstr("expected more than 0"));
-    EXPECT_THAT(message_of<UsageError>(flights, {.high_periods = 0.4}), HasSubstr("0.4 periods"));
+    EXPECT_THAT(message_of<UsageError>(flights, {.min_theta_rad = 0.0}), HasSubstr("expected more than 0"));
+    EXPECT_THAT(message_of<UsageError>(flights, {.max_periods = 0.4}), HasSubstr("0.4 periods"));
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ TEST(JointRefinement, FromOnePeriodTheFasterFrequenciesAreMissed) {
         try {
             const auto fit = refine_jointly(flights, 3, wide, 2.0 * std::numbers::pi);
             missed += std::abs(fit.theta_rad / test::theta_rad(phase) - 1.0) > 0.01;
-        } catch (const NoAnswerError&) {
+        } catch (const NoResultError&) {
             ++missed;
         }
     }
@@ -59,7 +59,7 @@ TEST(JointRefinement, RefusesTimesThatDetermineNothing) {
         samples.tau.push_back(0.5 * (i % 3));
         samples.value.push_back(i % 2 == 0 ? 1.0 : -1.0);
     }
-    EXPECT_THROW(refine_jointly(std::vector{samples}, 3, wide, 5.0), NoAnswerError);
+    EXPECT_THROW(refine_jointly(std::vector{samples}, 3, wide, 5.0), NoResultError);
 }
 
 /// Two cruises of 0.1 W noise; every 25th sample of the second is 8 W too high.
@@ -73,7 +73,7 @@ std::vector<PhaseSamples> with_outliers() {
 double off_by_w(const PhaseFit& fit, std::size_t flight) {
     const auto& curve = fit.flights[flight];
     const PhaseModel found{curve.fourier, curve.duration_s, {}, {}, 0, 0, {}, {}};
-    return curve_rms_difference_w(found, test::published_model().phases[flight::Phase::cruise]);
+    return rms_difference_w(found, test::published_model().phases[flight::Phase::cruise]);
 }
 
 TEST(RobustRefinement, OutliersHardlyMoveTheCurve) {

@@ -1,7 +1,7 @@
 #include "mechanical/physical/path_prediction.h"
 
 #include "helpers/generated_motion.h"
-#include "mechanical/prediction/level_spread.h"
+#include "mechanical/prediction/variance_components.h"
 
 #include <cmath>
 #include <vector>
@@ -19,11 +19,11 @@ TEST(PathPrediction, IsTheConditionalMeanOfTheJointDistribution) {
     const auto flown = test::made_up_motions(1, 12, {}, 5).front().bins;
     const double now_s = 360.0;
     const double remaining_s = 400.0;
-    const auto ahead = terms_of({.airspeed_m_per_s = 14.5, .climb_m_per_s = 0.1});
+    const auto ahead = term_values({.airspeed_m_per_s = 14.5, .climb_m_per_s = 0.1});
     const auto count = static_cast<Eigen::Index>(flown.size());
     Eigen::MatrixXd rows(count + 1, 3);  // the last row is what lies ahead
     const auto set_row = [&](Eigen::Index i, const TermValues& values) {
-        rows.row(i) << values[PowerTerm::drag], values[PowerTerm::climb], power_of_terms_w(model, values);
+        rows.row(i) << values[PowerTerm::drag], values[PowerTerm::climb], sum_of_terms_w(model, values);
     };
     for (Eigen::Index i = 0; i < count; ++i) set_row(i, flown[static_cast<std::size_t>(i)].values);
     set_row(count, ahead);
@@ -48,7 +48,7 @@ TEST(PathPrediction, IsTheConditionalMeanOfTheJointDistribution) {
     const double mean_w = rows(count, 2) + gain.dot(residual);
     const double variance_w2 = covariance(count, count) - gain.dot(covariance.topRightCorner(count, 1).col(0));
 
-    const auto power = predict_path(model, flown, now_s, ahead, remaining_s);
+    const auto power = predict_posterior_power(model, flown, now_s, ahead, remaining_s);
     EXPECT_NEAR(power.mean_w, mean_w, 1e-8 * mean_w);
     EXPECT_NEAR(power.parameter_sd_w * power.parameter_sd_w + power.drift_sd_w * power.drift_sd_w, variance_w2,
                 1e-8 * variance_w2);
@@ -57,11 +57,11 @@ TEST(PathPrediction, IsTheConditionalMeanOfTheJointDistribution) {
 
 TEST(PathPrediction, IsTheModelBeforeAnythingWasFlown) {
     const auto model = test::drag_and_climb_model();
-    const auto ahead = terms_of({.airspeed_m_per_s = 14.0});
-    const auto power = predict_path(model, {}, 0.0, ahead, 600.0);
-    EXPECT_DOUBLE_EQ(power.mean_w, power_of_terms_w(model, ahead));
+    const auto ahead = term_values({.airspeed_m_per_s = 14.0});
+    const auto power = predict_posterior_power(model, {}, 0.0, ahead, 600.0);
+    EXPECT_DOUBLE_EQ(power.mean_w, sum_of_terms_w(model, ahead));
     EXPECT_EQ(power.level, 0.0);
-    const auto before = uncertainty_of(model, ahead, 600.0).value();
+    const auto before = prediction_uncertainty(model, ahead, 600.0).value();
     EXPECT_NEAR(std::hypot(power.parameter_sd_w, power.drift_sd_w), before.sd_w, 1e-9 * before.sd_w);
 }
 
@@ -69,8 +69,8 @@ TEST(PathPrediction, LearnsTheFlightsLevel) {
     auto model = test::drag_and_climb_model();
     model.covariance = {{0.0, 0.0}, {0.0, 0.0}};
     auto flown = test::made_up_motions(1, 60, {.level_sd = 0.0, .drift_sd_w = 0.0}, 5).front().bins;
-    for (auto& bin : flown) bin.power_w = 1.2 * power_of_terms_w(model, bin.values);
-    const auto power = predict_path(model, flown, 1800.0, terms_of({.airspeed_m_per_s = 14.0}), 600.0);
+    for (auto& bin : flown) bin.power_w = 1.2 * sum_of_terms_w(model, bin.values);
+    const auto power = predict_posterior_power(model, flown, 1800.0, term_values({.airspeed_m_per_s = 14.0}), 600.0);
     EXPECT_GT(power.level, 0.18);
     EXPECT_LT(power.level, 0.2);
     EXPECT_LT(power.parameter_sd_w, 0.1 * power.model_w / 2.0);

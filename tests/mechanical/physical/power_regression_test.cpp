@@ -25,7 +25,7 @@ struct DenseData {
     std::vector<Eigen::Index> starts;  ///< of the flights, and the end
 };
 
-DenseData dense_data(const std::vector<FlightMotion>& flights, const std::vector<PowerTerm>& terms) {
+DenseData dense_data(const std::vector<BinnedFlight>& flights, const std::vector<PowerTerm>& terms) {
     Eigen::Index rows = 0;
     for (const auto& flight : flights) rows += static_cast<Eigen::Index>(flight.bins.size());
     DenseData data{Eigen::MatrixXd(rows, static_cast<Eigen::Index>(terms.size())), Eigen::VectorXd(rows), {0}};
@@ -43,7 +43,7 @@ DenseData dense_data(const std::vector<FlightMotion>& flights, const std::vector
 }
 
 /// R + (level_sd^2 / drift variance) m m', block by block.
-Eigen::MatrixXd dense_covariance(const std::vector<FlightMotion>& flights, const DenseData& data,
+Eigen::MatrixXd dense_covariance(const std::vector<BinnedFlight>& flights, const DenseData& data,
                                  const Eigen::VectorXd& expected, double correlation_s, double ratio) {
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(data.power_w.size(), data.power_w.size());
     for (std::size_t f = 0; f < flights.size(); ++f) {
@@ -60,7 +60,8 @@ Eigen::MatrixXd dense_covariance(const std::vector<FlightMotion>& flights, const
     return covariance;
 }
 
-DenseFit dense_fit(const std::vector<FlightMotion>& flights, const std::vector<PowerTerm>& terms, VarianceNode node) {
+DenseFit dense_fit(const std::vector<BinnedFlight>& flights, const std::vector<PowerTerm>& terms,
+                   VarianceGridPoint node) {
     const auto data = dense_data(flights, terms);
     const auto freedom = static_cast<double>(data.columns.rows() - data.columns.cols());
     DenseFit fit;
@@ -86,10 +87,11 @@ TEST(PowerRegression, IsGeneralisedLeastSquaresWithTheWholeCovariance) {
     auto& gap = flights[1].bins;
     gap.erase(gap.begin() + 5, gap.begin() + 9);
     const std::vector terms{PowerTerm::drag, PowerTerm::climb, PowerTerm::descent};
-    for (const VarianceNode node : {VarianceNode{60.0, 0.0}, VarianceNode{60.0, 0.05}, VarianceNode{300.0, 0.3}}) {
-        std::vector<MotionSums> sums;
-        for (const auto& flight : flights) sums.push_back(motion_sums(flight.bins, node.correlation_s));
-        const auto fit = fit_node(sums, columns_of(terms), node.level_sd).value();
+    for (const VarianceGridPoint node :
+         {VarianceGridPoint{60.0, 0.0}, VarianceGridPoint{60.0, 0.05}, VarianceGridPoint{300.0, 0.3}}) {
+        std::vector<NormalEquations> sums;
+        for (const auto& flight : flights) sums.push_back(accumulate_normal_equations(flight.bins, node.correlation_s));
+        const auto fit = fit_gls(sums, columns_of(terms), node.level_sd).value();
         const auto dense = dense_fit(flights, terms, node);
         for (Eigen::Index i = 0; i < fit.coefficients.size(); ++i)
             EXPECT_NEAR(fit.coefficients[i], dense.coefficients[i], 1e-8 * std::abs(dense.coefficients[i]));
@@ -102,7 +104,7 @@ TEST(PowerRegression, FindsTheDriftAndTheSpreadOfManyFlights) {
     const auto flights =
         test::made_up_motions(40, 40, {.level_sd = 0.08, .drift_sd_w = 2.0, .correlation_s = 120.0}, 3);
     const auto posterior =
-        MotionRegression(flights).posterior(columns_of({PowerTerm::drag, PowerTerm::climb, PowerTerm::descent}));
+        PowerRegression(flights).posterior(columns_of({PowerTerm::drag, PowerTerm::climb, PowerTerm::descent}));
     ASSERT_TRUE(posterior.has_value());
     const auto& likeliest = posterior->nodes[posterior->likeliest];
     EXPECT_NEAR(likeliest.correlation_s, 120.0, 45.0);
@@ -117,11 +119,11 @@ TEST(PowerRegression, RefusesColumnsThatAreNotDetermined) {
     auto flights = test::made_up_motions(2, 20, {}, 1);
     for (auto& flight : flights)
         for (auto& bin : flight.bins) bin.values[PowerTerm::climb] = 0.0;
-    EXPECT_FALSE(MotionRegression(flights).posterior(columns_of({PowerTerm::drag, PowerTerm::climb})).has_value());
+    EXPECT_FALSE(PowerRegression(flights).posterior(columns_of({PowerTerm::drag, PowerTerm::climb})).has_value());
     for (auto& flight : flights)
         for (auto& bin : flight.bins) bin.values[PowerTerm::drag] = 2000.0;
-    EXPECT_FALSE(MotionRegression(flights).posterior(columns_of({PowerTerm::drag, PowerTerm::constant})).has_value());
-    EXPECT_TRUE(MotionRegression(flights).posterior(columns_of({PowerTerm::constant})).has_value());
+    EXPECT_FALSE(PowerRegression(flights).posterior(columns_of({PowerTerm::drag, PowerTerm::constant})).has_value());
+    EXPECT_TRUE(PowerRegression(flights).posterior(columns_of({PowerTerm::constant})).has_value());
 }
 
 }  // namespace

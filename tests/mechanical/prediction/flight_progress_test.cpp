@@ -17,7 +17,7 @@ flight::FlightSeries sample_flight() {
 }
 
 FlightProgress progress_since(const flight::FlightSeries& series, double since_s, std::size_t sortie = 0) {
-    return progress_at(series, time_since_lift_off(series, since_s, sortie), sortie);
+    return progress_at(series, log_time_after_lift_off(series, since_s, sortie), sortie);
 }
 
 TEST(FlightProgress, CountsFromLiftOff) {
@@ -41,7 +41,7 @@ TEST(FlightProgress, IsTheSameOnTheLogsClock) {
 /// The later part of the log changes nothing, bit by bit.
 void expect_no_hindsight(const flight::FlightSeries& series, double since_s) {
     const auto whole = progress_since(series, since_s);
-    const auto cut = progress_since(cut_series(series, whole.until_s), since_s);
+    const auto cut = progress_since(truncate_series(series, whole.until_s), since_s);
     EXPECT_EQ(whole.until_s, cut.until_s);
     EXPECT_EQ(whole.lift_off_s, cut.lift_off_s);
     EXPECT_EQ(whole.cruise_start_s, cut.cruise_start_s);
@@ -64,11 +64,11 @@ TEST(FlightProgress, HasNoHindsightOnRealFlights) {
 
 TEST(FlightProgress, RefusesMomentsOutsideOfTheCruise) {
     const auto series = sample_flight();
-    EXPECT_THROW(progress_at(series, 40.0), NoAnswerError);         // on the ground
-    EXPECT_THROW(progress_at(series, 74.0), NoAnswerError);         // climbing
-    EXPECT_THROW(progress_at(series, 740.0), NoAnswerError);        // landed
-    EXPECT_THROW(progress_since(series, 5000.0), NoAnswerError);    // the log ends before
-    EXPECT_THROW(progress_since(series, 300.0, 1), NoAnswerError);  // no second sortie
+    EXPECT_THROW(progress_at(series, 40.0), NoResultError);         // on the ground
+    EXPECT_THROW(progress_at(series, 74.0), NoResultError);         // climbing
+    EXPECT_THROW(progress_at(series, 740.0), NoResultError);        // landed
+    EXPECT_THROW(progress_since(series, 5000.0), NoResultError);    // the log ends before
+    EXPECT_THROW(progress_since(series, 300.0, 1), NoResultError);  // no second sortie
 }
 
 }  // namespace

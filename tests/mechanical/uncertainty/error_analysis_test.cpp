@@ -88,8 +88,8 @@ TEST(ErrorAnalysis, TheNoiseOfOneFlightCountsByItsWeight) {
 
 TEST(ErrorAnalysis, AtABoundTheFrequencyIsOpen) {
     const auto bound =
-        analysed(test::record_flights(flight::Phase::cruise, 2, 0.2, 8), flight::Phase::cruise, {.low_rad = 5.3});
-    EXPECT_FALSE(bound.analysis.errors.frequency_is_given);
+        analysed(test::record_flights(flight::Phase::cruise, 2, 0.2, 8), flight::Phase::cruise, {.min_theta_rad = 5.3});
+    EXPECT_FALSE(bound.analysis.errors.frequency_is_fixed);
     const auto profile = frequency_profile(bound.flights, bound.fit, bound.analysis);
     EXPECT_TRUE(profile.low_is_open);
     EXPECT_NEAR(profile.low_rad, 5.3, 1e-2);
@@ -112,7 +112,7 @@ TEST(ErrorAnalysis, ConstantPowerHasNoFrequencyToBeSureOf) {
         samples.power_w.push_back(21.7);
     }
     const auto constant = analysed({samples}, flight::Phase::cruise);
-    EXPECT_TRUE(constant.analysis.errors.frequency_is_given);
+    EXPECT_TRUE(constant.analysis.errors.frequency_is_fixed);
     EXPECT_LT(constant.analysis.errors.a0_w, 1e-9);
     const auto profile = frequency_profile(constant.flights, constant.fit, constant.analysis);
     EXPECT_TRUE(profile.low_is_open && profile.high_is_open);
@@ -125,7 +125,7 @@ TEST(ErrorAnalysis, OrderZeroIsTheErrorOfTheMean) {
     const auto constant = analysed({samples}, flight::Phase::cruise, {.order = 0});
     EXPECT_NEAR(constant.fit.flights[0].fourier.a0_w, 27.22, 0.1);
     EXPECT_NEAR(constant.analysis.errors.a0_w, 0.5 / std::sqrt(600.0), 0.006);
-    EXPECT_TRUE(constant.analysis.errors.frequency_is_given);
+    EXPECT_TRUE(constant.analysis.errors.frequency_is_fixed);
 }
 
 TEST(FrequencyProfile, IsLowestAtTheFrequencyFoundAndAgreesWithItsStandardError) {

@@ -24,13 +24,13 @@ TEST(Baselines, ConstantMeanIsThatOfTheFlights) {
 TEST(Baselines, OneFlightHasNoInterval) {
     const std::vector flights{constant(20.0, 600.0)};
     EXPECT_FALSE(interval_95(energy_of(constant_mean(flights), 100.0)).has_value());
-    EXPECT_FALSE(interval_95(energy_of(power_of_flight(flights, 0), 100.0)).has_value());
+    EXPECT_FALSE(interval_95(energy_of(single_flight_power(flights, 0), 100.0)).has_value());
 }
 
 TEST(Baselines, OneFlightForAnotherIsTwiceAsUncertain) {
     const std::vector flights{constant(20.0, 600.0), constant(22.0, 60.0)};
-    EXPECT_DOUBLE_EQ(power_of_flight(flights, 1).mean_w, 22.0);
-    EXPECT_NEAR(power_of_flight(flights, 1).sd_w.value(), 2.0, 1e-12);
+    EXPECT_DOUBLE_EQ(single_flight_power(flights, 1).mean_w, 22.0);
+    EXPECT_NEAR(single_flight_power(flights, 1).sd_w.value(), 2.0, 1e-12);
 }
 
 TEST(Baselines, NearestFlightIsByTheDurationsOfCommonPhases) {

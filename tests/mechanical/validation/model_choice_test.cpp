@@ -126,13 +126,13 @@ TEST(AddBestPower, AddsNothingToOneFlightOrToWeightsByHand) {
     add_best_power(model, steady_flights(1), of_order(0));
     EXPECT_FALSE(model.validation);
     auto options = of_order(0);
-    options.weights.weighting = Weighting::by_hand;
+    options.weights.weighting = Weighting::manual;
     add_best_power(model, steady_flights(3), options);
     EXPECT_FALSE(model.validation);
 }
 
 /// Flights that fly as their motion: energies and samples are its bins'.
-std::vector<MeasuredFlight> flights_of(const std::vector<FlightMotion>& motions) {
+std::vector<MeasuredFlight> flights_of(const std::vector<BinnedFlight>& motions) {
     std::vector<MeasuredFlight> flights;
     for (const auto& motion : motions) {
         MeasuredFlight flight;

@@ -26,7 +26,7 @@ std::filesystem::path folder_with_law() {
     auto folder = folder_with_opterra();
     auto model = mechanical::read_mechanical_model(folder / "opterra.toml");
     model.phases[flight::Phase::cruise].level_law =
-        mechanical::LevelLaw{mechanical::Covariate::height, 4, 100.0, 10.0, 90.0, 110.0, 27.0, 2.0, 1.5};
+        mechanical::CovariateRegression{mechanical::Covariate::height, 4, 100.0, 10.0, 90.0, 110.0, 27.0, 2.0, 1.5};
     write_text(folder / "law.toml", mechanical::to_toml(model));
     return folder;
 }
@@ -63,11 +63,11 @@ TEST(ConditionsToml, SetsTheCruiseLevelByTheAirspeed) {
     const auto folder = folder_with_opterra();
     auto model = mechanical::read_mechanical_model(folder / "opterra.toml");
     auto& cruise_model = model.phases[flight::Phase::cruise];
-    cruise_model.airspeed_law = mechanical::LevelLaw{
+    cruise_model.airspeed_law = mechanical::CovariateRegression{
         mechanical::Covariate::airspeed_cubed, 3, 2197.0, 400.0, 1728.0, 2744.0, 27.0, 27.0 * 400.0 / 2197.0, 1.5};
     write_text(folder / "law.toml", mechanical::to_toml(model));
     cruise_model.level_law =
-        mechanical::LevelLaw{mechanical::Covariate::airspeed, 4, 13.0, 1.0, 12.0, 14.0, 26.0, 5.0, 1.5};
+        mechanical::CovariateRegression{mechanical::Covariate::airspeed, 4, 13.0, 1.0, 12.0, 14.0, 26.0, 5.0, 1.5};
     cruise_model.airspeed_law.reset();
     write_text(folder / "line.toml", mechanical::to_toml(model));
     const auto at = [&](const std::string& law, const std::string& airspeed) {
@@ -114,7 +114,7 @@ TEST(ConditionsToml, NamesTheModelThatSaysThePowerAndItsError) {
     const auto folder = folder_with_opterra();
     auto model = mechanical::read_mechanical_model(folder / "opterra.toml");
     auto& cruise = model.phases[flight::Phase::cruise];
-    cruise.airspeed_law = mechanical::LevelLaw{
+    cruise.airspeed_law = mechanical::CovariateRegression{
         mechanical::Covariate::airspeed_cubed, 3, 2197.0, 400.0, 1728.0, 2744.0, 27.0, 27.0 * 400.0 / 2197.0, 1.5};
     model.flights = {{"a", {}}, {"b", {}}};
     for (auto& flight : model.flights)

@@ -14,13 +14,14 @@ using test::rejected;
 using test::scratch_dir;
 using test::write_text;
 
-/// A folder with a model that knows motion, one that knows airspeed cubed from 10^3 to 14^3, and one that knows neither.
+/// A folder with a model that knows motion, one that knows airspeed cubed from 10^3 to 14^3, and one that knows
+/// neither.
 std::filesystem::path path_folder() {
     auto folder = scratch_dir();
     auto model = mechanical::read_mechanical_model(test::source_dir() / "fits" / "mechanical" / "opterra-table1.toml");
     write_text(folder / "plain.toml", mechanical::to_toml(model));
-    model.phases[flight::Phase::cruise].airspeed_law =
-        mechanical::LevelLaw{mechanical::Covariate::airspeed_cubed, 4, 1800.0, 700.0, 1000.0, 2744.0, 18.0, 7.0, 0.9};
+    model.phases[flight::Phase::cruise].airspeed_law = mechanical::CovariateRegression{
+        mechanical::Covariate::airspeed_cubed, 4, 1800.0, 700.0, 1000.0, 2744.0, 18.0, 7.0, 0.9};
     write_text(folder / "airspeed.toml", mechanical::to_toml(model));
     model.physical = test::made_up_wing();
     model.physical->bins = 100;
@@ -33,7 +34,7 @@ std::filesystem::path path_folder() {
 const std::string battery = "battery = { voltage_v = 11.1, resistance_ohm = 0.05, capacity_ah = 3 }\n";
 
 Mission read(const std::filesystem::path& folder, const std::string& model, const std::string& keys,
-             const MissionReading& reading = {}) {
+             const MissionReadOptions& reading = {}) {
     return std::get<Mission>(
         parse_mission("mechanical = \"" + model + "\"\n" + battery + keys, folder / "m.toml", reading));
 }
@@ -119,7 +120,7 @@ TEST(PathToml, FliesOtherExtents) {
         "[path]\nairspeed_m_per_s = 13\nreturn_to_start = true\nleg = [{ length_m = 1300, course_deg = 0 }]\n";
     EXPECT_NEAR(read(folder, "wing.toml", home).duration_s[Phase::cruise], 200.0, 1e-9);
     EXPECT_NEAR(read(folder, "wing.toml", home, {.return_after_m = 650.0}).duration_s[Phase::cruise], 100.0, 1e-9);
-    EXPECT_THROW(read(folder, "wing.toml", home, {.cruise_s = 100.0}), NoAnswerError);
+    EXPECT_THROW(read(folder, "wing.toml", home, {.cruise_s = 100.0}), NoResultError);
 }
 
 TEST(PathToml, RefusesWhatContradictsThePath) {

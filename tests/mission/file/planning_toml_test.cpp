@@ -26,7 +26,7 @@ std::filesystem::path mission_folder() {
     return folder;
 }
 
-AnyMission read(const std::string& text, bool may_lack_schedule = true) {
+MissionVariant read(const std::string& text, bool may_lack_schedule = true) {
     return parse_mission(head + text, mission_folder() / "m.toml", {may_lack_schedule, std::nullopt});
 }
 

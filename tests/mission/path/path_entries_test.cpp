@@ -21,13 +21,13 @@ PathEntry entry(const std::string& name = "leg 1") {
 
 PathEntry to(double east_m, double north_m) {
     auto made = entry();
-    made.place = LocalPlace{east_m, north_m};
+    made.place = LocalPosition{east_m, north_m};
     return made;
 }
 
 PathEntry to_latitude(double latitude_deg, double longitude_deg) {
     auto made = entry();
-    made.geographic = GeographicPlace{latitude_deg, longitude_deg};
+    made.geographic = GeodeticPosition{latitude_deg, longitude_deg};
     return made;
 }
 
@@ -55,7 +55,7 @@ TEST(PathEntries, BecomeLegsFromPlaceToPlace) {
     EXPECT_NEAR(leg(path, 1).length_m, 400.0, 1e-9);
     EXPECT_NEAR(leg(path, 2).length_m, 500.0, 1e-9);
     EXPECT_NEAR(leg(path, 2).course_deg, 180.0 + std::atan2(3.0, 4.0) * 180.0 / std::numbers::pi, 1e-9);
-    EXPECT_TRUE(path.elements[2].is_way_home);
+    EXPECT_TRUE(path.elements[2].is_return_leg);
     EXPECT_EQ(path.elements[2].name, "return to start");
 }
 
@@ -113,15 +113,15 @@ TEST(PathEntries, ChangeTheirHeightOnTheWay) {
 
 /// Degrees of WGS84 (NGA.STND.0036, the lengths of a degree at 45 degrees: 111131.745 m and 78846.806 m).
 TEST(PathEntries, MeasureDegreesOnTheEllipsoid) {
-    const GeographicPlace origin{45.0, 5.0};
-    const auto north = local_place({45.001, 5.0}, origin);
+    const GeodeticPosition origin{45.0, 5.0};
+    const auto north = to_local({45.001, 5.0}, origin);
     EXPECT_NEAR(north.north_m, 111.131745, 1e-4);
     EXPECT_NEAR(north.east_m, 0.0, 1e-9);
-    const auto east = local_place({45.0, 5.001}, origin);
+    const auto east = to_local({45.0, 5.001}, origin);
     EXPECT_NEAR(east.east_m, 78.846806, 1e-4);
     EXPECT_NEAR(east.north_m, 0.0, 1e-3);
     // Across the date line.
-    EXPECT_NEAR(local_place({10.0, -179.999}, {10.0, 179.999}).east_m, 219.2, 0.2);
+    EXPECT_NEAR(to_local({10.0, -179.999}, {10.0, 179.999}).east_m, 219.2, 0.2);
     const auto path = path_of({to_latitude(45.0, 5.0), to_latitude(45.01, 5.0)}, defaults());
     ASSERT_EQ(path.elements.size(), 1U);
     EXPECT_NEAR(leg(path, 0).length_m, 1111.32, 0.02);

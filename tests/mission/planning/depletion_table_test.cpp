@@ -16,7 +16,7 @@ using test::paper_mission;
 /// State of charge after the mission's own schedule, by a table.
 std::optional<double> tabled_soc(const Mission& mission) {
     const auto table = make_depletion_table(mission, configurations_of(mission.schedule));
-    return soc_after(table, tabled(mission.schedule, table));
+    return soc_after_schedule(table, to_indexed(mission.schedule, table));
 }
 
 /// A schedule of segments that begin and end anywhere.
@@ -72,7 +72,7 @@ TEST(DepletionTable, SaysItsError) {
 }
 
 TEST(DepletionTable, FollowsBothPhaseClocks) {
-    for (const auto clock : {mechanical::PhaseClock::stretched, mechanical::PhaseClock::absolute}) {
+    for (const auto clock : {mechanical::PhaseTimeScaling::stretched, mechanical::PhaseTimeScaling::absolute}) {
         auto mission = paper_mission("mechanical-only");
         mission.phase_clock = clock;
         mission.duration_s[flight::Phase::cruise] = 900.5;
@@ -102,7 +102,7 @@ TEST(DepletionTable, DoesNotAnswerWhereTheBatteryIsCharged) {
 TEST(DepletionTable, RefusesAConfigurationThatItDoesNotHold) {
     const auto mission = paper_mission("phased");
     const auto table = make_depletion_table(mission, {mission.schedule.front().run});
-    EXPECT_THROW(tabled(mission.schedule, table), std::invalid_argument);
+    EXPECT_THROW(to_indexed(mission.schedule, table), std::invalid_argument);
 }
 
 }  // namespace

@@ -8,23 +8,23 @@
 namespace flightwatt::mission {
 namespace {
 
-/// The margin found, and after how many answers, where answers keep `least_percent` whatever the margin and flights need
-/// `needed_percent`, each point of margin being so much of slack.
+/// The margin found, and after how many answers, where answers keep `least_percent` whatever the margin and flights
+/// need `needed_percent`, each point of margin being so much of slack.
 struct Found {
     double margin_percent = 0.0;
     int rounds = 0;
 };
 
 Found find(double least_percent, double needed_percent, double slack_per_margin) {
-    constexpr int most_rounds = 40;
+    constexpr int max_rounds = 40;
     MarginSearch search(0.0);
     Found found;
-    for (; found.rounds < most_rounds; ++found.rounds) {
+    for (; found.rounds < max_rounds; ++found.rounds) {
         found.margin_percent = std::max(search.margin_percent(), least_percent);
         const double slack_percent = slack_per_margin * (found.margin_percent - needed_percent);
         if (std::abs(slack_percent) < 1e-4) break;
-        if (slack_percent < 0.0) search.learn_kept(found.margin_percent);
-        search.learn(slack_percent, 0.0);
+        if (slack_percent < 0.0) search.raise_lower_bound(found.margin_percent);
+        search.add_result(slack_percent, 0.0);
     }
     return found;
 }

@@ -27,7 +27,7 @@ void expect_what_the_flights_keep(unsigned seed) {
     const auto [problem, probability, kind] = test::generated_mission(seed);
     const auto plan = plan_mission(problem, probability);
     ASSERT_TRUE(plan.plan.feasible) << kind;
-    const double errors = standard_errors(share_below(plan.flown), probability);
+    const double errors = standard_errors(share_below(plan.mission), probability);
     EXPECT_LT(errors, 3.5) << kind;
     EXPECT_GT(errors, -3.5) << kind;
     EXPECT_LT(*plan.summary.utility, std::sqrt(32.0) - 0.01) << "has charge for everything: no test of the line above";
@@ -51,7 +51,7 @@ TEST(PlannedProbability, IsWhatTheFlightsOfAnAnswerKeep) {
     EXPECT_NEAR(standard_errors(share_below(with_payload(least, payload.value)), probability), 0.0, 3.5);
     EXPECT_NEAR(payload.residual_percent, 0.0, 0.02);
     auto smaller = least;
-    smaller.battery.capacity_ah = least_capacity_ah(least, probability).value();
+    smaller.battery.capacity_ah = min_capacity_ah(least, probability).value();
     EXPECT_NEAR(standard_errors(share_below(smaller), probability), 0.0, 3.5);
     const auto mission_of = [&](double cruise_s) {
         auto other = problem;
@@ -79,7 +79,7 @@ TEST(PlannedProbability, NamesRemediesThatAreOnes) {
         return other;
     };
     const auto report = infeasibility_report(problem, plan, mission_of, probability);
-    EXPECT_GT(report.short_percent, 0.0);
+    EXPECT_GT(report.shortfall_percent, 0.0);
     ASSERT_TRUE(report.cruise_s && report.capacity_ah);
     EXPECT_TRUE(plan_mission(mission_of(*report.cruise_s - 0.5), probability).plan.feasible);
     EXPECT_FALSE(plan_mission(mission_of(*report.cruise_s + 0.5), probability).plan.feasible);

@@ -44,8 +44,8 @@ PlanningProblem small_mission(std::mt19937& random) {
 
 /// The most utility of any schedule that lands, by simulating them. One that computes more in every slot than another
 /// draws more, so those above one that does not land are passed over.
-double best_of_all(const PlanningProblem& mission, const Planner& planner) {
-    const auto slots = slots_of(mission);
+double best_of_all(const PlanningProblem& mission, const PlanningTables& planner) {
+    const auto slots = make_slots(mission);
     std::vector<bool> lands(std::size_t{1} << slots.size());
     double best = -1.0;
     for (std::size_t code = 0; code < lands.size(); ++code) {
@@ -70,11 +70,11 @@ TEST(SimulatedPlan, KeepsTheReserve) {
         const auto plan = plan_mission(mission);
         ASSERT_TRUE(plan.plan.feasible) << reserve;
         EXPECT_TRUE(plan.summary.keeps_reserve) << reserve;
-        EXPECT_TRUE(simulate(plan.flown).summary.keeps_reserve);
+        EXPECT_TRUE(simulate(plan.mission).summary.keeps_reserve);
         EXPECT_LT(*plan.summary.final_soc_percent, reserve + 0.1) << "a part of a slot of 60 s";
         EXPECT_TRUE(plan.plan.bound_is_proven);
-        EXPECT_GE(plan.plan.bound, *plan.summary.utility);
-        EXPECT_LE(plan.plan.bound, *plan.summary.utility * (1.0 + 1e-4));
+        EXPECT_GE(plan.plan.utility_bound, *plan.summary.utility);
+        EXPECT_LE(plan.plan.utility_bound, *plan.summary.utility * (1.0 + 1e-4));
     }
 }
 
@@ -89,14 +89,14 @@ TEST(SimulatedPlan, IsTheBestOfAllSimulatedSchedules) {
         mission.reserve_soc_percent = share(random) * *least.final_soc_percent;
         if (i % 2 == 1) mission.cutoff_voltage_v = 10.4;
         const auto plan = plan_mission(mission);
-        const double best = best_of_all(mission, make_planner(mission));
+        const double best = best_of_all(mission, make_planning_tables(mission));
         ASSERT_EQ(plan.plan.feasible, best >= 0.0);
         if (!plan.plan.feasible) continue;
         ++feasible;
         EXPECT_TRUE(plan.summary.keeps_reserve);
-        EXPECT_GE(plan.plan.bound, best - 1e-9);
+        EXPECT_GE(plan.plan.utility_bound, best - 1e-9);
         EXPECT_GE(*plan.summary.utility, best * (1.0 - 1e-4));
-        EXPECT_LE(plan.plan.bound, *plan.summary.utility * (1.0 + 1e-4));
+        EXPECT_LE(plan.plan.utility_bound, *plan.summary.utility * (1.0 + 1e-4));
     }
     EXPECT_GE(feasible, 5);
 }
@@ -107,14 +107,14 @@ class SmallMissions : public testing::TestWithParam<unsigned> {};
 TEST_P(SmallMissions, HaveNoBetterScheduleThanThePlan) {
     const auto [problem, kind] = test::small_mission(GetParam());
     const auto plan = plan_mission(problem);
-    const auto best = test::EverySchedule(problem, make_planner(problem))
-                          .most_utility(plan.plan.feasible ? plan.summary.utility : std::nullopt);
+    const auto best = test::EverySchedule(problem, make_planning_tables(problem))
+                          .max_utility(plan.plan.feasible ? plan.summary.utility : std::nullopt);
     ASSERT_EQ(plan.plan.feasible, best.has_value()) << kind;
     if (!best) return;
     EXPECT_TRUE(plan.summary.keeps_reserve) << kind;
     EXPECT_GE(*plan.summary.utility, *best * (1.0 - 1e-4)) << kind;
-    EXPECT_GE(plan.plan.bound, *best * (1.0 - 1e-9)) << kind;
-    EXPECT_LE(plan.plan.bound, *plan.summary.utility * (1.0 + 1e-4)) << kind;
+    EXPECT_GE(plan.plan.utility_bound, *best * (1.0 - 1e-9)) << kind;
+    EXPECT_LE(plan.plan.utility_bound, *plan.summary.utility * (1.0 + 1e-4)) << kind;
     EXPECT_TRUE(plan.plan.bound_is_proven);
 }
 
@@ -125,11 +125,11 @@ TEST(SimulatedPlanStudy, IsProvenForManySlotsAndChoices) {
     for (const unsigned seed : {1U, 2U, 3U}) {
         for (const bool dwells : {false, true}) {
             const auto made = test::SmallMissionGenerator(seed).make_long(dwells, false);
-            EXPECT_GT(slots_of(made.problem).size(), 60U);
+            EXPECT_GT(make_slots(made.problem).size(), 60U);
             const auto plan = plan_mission(made.problem);
             ASSERT_TRUE(plan.plan.feasible) << seed;
             EXPECT_TRUE(plan.summary.keeps_reserve) << seed;
-            EXPECT_LE(plan.plan.bound, *plan.summary.utility * (1.0 + 1e-4)) << seed << ' ' << made.kind;
+            EXPECT_LE(plan.plan.utility_bound, *plan.summary.utility * (1.0 + 1e-4)) << seed << ' ' << made.kind;
         }
     }
 }
@@ -141,16 +141,16 @@ TEST(SimulatedPlanStudy, UsesWhatATightCutOffLeaves) {
     ASSERT_TRUE(plan.plan.feasible);
     EXPECT_TRUE(plan.summary.keeps_reserve);
     EXPECT_GT(*plan.summary.utility, 1.2 * *simulate(with_minimum_energy_schedule(made.problem)).summary.utility);
-    EXPECT_LE(plan.plan.bound, *plan.summary.utility * 1.05);
+    EXPECT_LE(plan.plan.utility_bound, *plan.summary.utility * 1.05);
 }
 
 TEST(SimulatedPlan, IsNotCutOff) {
     const auto mission = thevenin_plan(20.0, 11.0)(1800.0);
     const auto plan = plan_mission(mission);
     ASSERT_TRUE(plan.plan.feasible);
-    for (const auto& row : simulate(plan.flown).curve.rows) ASSERT_GE(row.terminal_voltage_v, 11.0);
+    for (const auto& row : simulate(plan.mission).curve.rows) ASSERT_GE(row.terminal_voltage_v, 11.0);
     // What has most utility without a cut-off would be.
-    auto careless = plan_mission(thevenin_plan(20.0, 0.0)(1800.0)).flown;
+    auto careless = plan_mission(thevenin_plan(20.0, 0.0)(1800.0)).mission;
     careless.cutoff_voltage_v = 11.0;
     EXPECT_TRUE(simulate(careless).summary.cut_off_at_s);
 }
@@ -160,29 +160,29 @@ TEST(SimulatedPlan, KeepsThePapersBatteryFromItsCutOff) {
     mission.fixed.clear();
     mission.reserve_soc_percent = 1.0;
     mission.battery = {"", 3.6, 0.02, 3.4};
-    const double least_v = [&] {
+    const double min_v = [&] {
         const auto rows = simulate(with_minimum_energy_schedule(mission)).curve.rows;
         return std::min_element(
                    rows.begin(), rows.end(),
                    [](const auto& a, const auto& b) { return a.terminal_voltage_v < b.terminal_voltage_v; })
             ->terminal_voltage_v;
     }();
-    mission.cutoff_voltage_v = least_v - 0.005;
+    mission.cutoff_voltage_v = min_v - 0.005;
     const auto plan = plan_mission(mission);
     ASSERT_TRUE(plan.plan.feasible);
     EXPECT_TRUE(plan.summary.keeps_reserve);
-    EXPECT_LE(plan.plan.bound, *plan.summary.utility * 1.001) << "a constant source: tables are exact";
-    mission.cutoff_voltage_v = least_v + 0.005;
+    EXPECT_LE(plan.plan.utility_bound, *plan.summary.utility * 1.001) << "a constant source: tables are exact";
+    mission.cutoff_voltage_v = min_v + 0.005;
     EXPECT_FALSE(plan_mission(mission).plan.feasible);
 }
 
 TEST(PlanRest, AnswersALearnedFactorOnAPackWhoseVoltageFalls) {
     const auto problem = thevenin_plan()(1800.0);
-    const auto planner = make_planner(problem);
+    const auto planner = make_planning_tables(problem);
     PlanStart start{600.0, 80.0};
     start.mechanical_factor = 1.1;
     start.rc_voltage_v = 0.02;
-    const auto plan = plan_rest(problem, planner, start, 20.0);
+    const auto plan = plan_remaining(problem, planner, start, 20.0);
     ASSERT_TRUE(plan.feasible);
     auto windy = problem;
     for (const auto phase : flight::all_phases) {
@@ -198,13 +198,13 @@ TEST(PlanRest, AnswersALearnedFactorOnAPackWhoseVoltageFalls) {
     }
     EXPECT_FALSE(state.ended_at_s() || state.undeliverable);
     EXPECT_NEAR(plan.final_soc_percent, state.soc_percent, 3e-6);
-    EXPECT_LE(plan.bound, plan.utility * (1.0 + 1e-4));
+    EXPECT_LE(plan.utility_bound, plan.utility * (1.0 + 1e-4));
     start.mechanical_factor = 1.0;
-    EXPECT_GT(plan_rest(problem, planner, start, 20.0).utility, plan.utility);
+    EXPECT_GT(plan_remaining(problem, planner, start, 20.0).utility, plan.utility);
     start.soc_percent = 30.0;
-    const auto lost = plan_rest(problem, planner, start, 20.0);
+    const auto lost = plan_remaining(problem, planner, start, 20.0);
     EXPECT_FALSE(lost.feasible);
-    EXPECT_EQ(lost.schedule.back().run, least_power_configuration(problem)) << "it does the least";
+    EXPECT_EQ(lost.schedule.back().run, min_power_configuration(problem)) << "it does the least";
 }
 
 TEST(SimulatedPlanStudy, KeepsTheReserveWithAProbability) {
@@ -219,9 +219,9 @@ TEST(SimulatedPlanStudy, KeepsTheReserveWithAProbability) {
     EXPECT_GT(plan.margin_percent, 0.5);
     EXPECT_NEAR(*plan.summary.final_soc_percent, 20.0 + plan.margin_percent, 0.05);
     constexpr std::size_t flights = 1000;
-    const auto sampled = sample_flights({plan.flown, plan.flown.schedule, std::nullopt}, {}, {flights, 1, 0});
+    const auto sampled = sample_flights({plan.mission, plan.mission.schedule, std::nullopt}, {}, {flights, 1, 0});
     EXPECT_NEAR(sampled.probability_below_reserve, 0.05, 3.0 * std::sqrt(0.05 * 0.95 / flights));
-    EXPECT_EQ(sampled.sources.drawn, plan.sources->drawn);
+    EXPECT_EQ(sampled.sources.varied, plan.sources->varied);
 }
 
 TEST(SimulatedPlan, ProvesNothingWhereTheBatteryIsCharged) {
@@ -240,8 +240,8 @@ TEST(SimulatedPlan, SaysWhatIsMissing) {
     const auto plan = plan_mission(mission);
     ASSERT_FALSE(plan.plan.feasible);
     const auto report = infeasibility_report(mission, plan, mission_of);
-    EXPECT_GT(report.short_percent, 0.0);
-    EXPECT_GT(report.short_wh, 0.0);
+    EXPECT_GT(report.shortfall_percent, 0.0);
+    EXPECT_GT(report.shortfall_wh, 0.0);
     ASSERT_TRUE(report.cut_off_at_s && report.cruise_s && report.capacity_ah);
     EXPECT_FALSE(report.reserve_soc_percent) << "it is not the reserve";
     EXPECT_TRUE(plan_mission(mission_of(*report.cruise_s)).plan.feasible);
@@ -256,10 +256,10 @@ TEST(SimulatedPlan, SaysWhatIsMissing) {
 TEST(SimulatedPlan, HasFeasibilityLimits) {
     const auto cruise = longest_cruise(thevenin_plan());
     EXPECT_NEAR(cruise.residual_percent, 0.0, 1e-6);
-    EXPECT_EQ(cruise.limited_by, FeasibilityBound::charge);
+    EXPECT_EQ(cruise.limited_by, LimitingFactor::charge);
     const auto cut_off = longest_cruise(thevenin_plan(20.0, 11.0));
     EXPECT_LT(cut_off.value, cruise.value);
-    EXPECT_EQ(cut_off.limited_by, FeasibilityBound::cut_off);
+    EXPECT_EQ(cut_off.limited_by, LimitingFactor::cut_off);
     EXPECT_GT(cut_off.residual_percent, 1.0);
     const auto mission = thevenin_plan()(1800.0);
     const auto payload = largest_payload(mission);

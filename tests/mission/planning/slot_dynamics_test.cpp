@@ -20,18 +20,18 @@ struct Prepared {
 
 Prepared prepared(unsigned seed, double mechanical_factor = 1.0) {
     Prepared made{test::small_mission(seed).problem, {}, {}, {}};
-    made.runs = make_planner(made.problem).depletions.configurations;
-    for (const auto& slot : slots_of(made.problem)) made.slots.push_back(slot);
+    made.runs = make_planning_tables(made.problem).depletions.configurations;
+    for (const auto& slot : make_slots(made.problem)) made.slots.push_back(slot);
     std::vector<double> compute_w;
     for (const auto& run : made.runs) compute_w.push_back(power_w(made.problem.compute, run));
-    const double step_s = step_for(made.problem, made.slots, compute_w);
+    const double step_s = choose_step_s(made.problem, made.slots, compute_w);
     made.dynamics = make_slot_dynamics(made.problem, made.slots, compute_w, step_s, mechanical_factor);
     return made;
 }
 
 battery::Discharge discharged(const Prepared& made, std::size_t slot, std::size_t choice,
                               const battery::BatteryState& state) {
-    const auto load = load_of(made.problem);
+    const auto load = make_mission_load(made.problem);
     const auto segment = load_segment(load, {made.slots[slot], made.runs[choice]});
     const auto power = [&](double time_s) { return power_w(segment, time_s); };
     return discharge(made.problem.battery, {power, segment.start_s, segment.end_s}, state,
@@ -44,23 +44,23 @@ TEST(SlotDynamics, AreOffByLittleInQuickSteps) {
     for (unsigned seed = 1; seed <= 20; ++seed) {
         const auto made = prepared(seed);
         const auto& compute_w = made.dynamics.compute_w;
-        const double step_s = step_for(made.problem, made.slots, compute_w);
-        const double quick_s = quick_step_for(made.problem, made.slots, compute_w, step_s);
+        const double step_s = choose_step_s(made.problem, made.slots, compute_w);
+        const double quick_s = choose_coarse_step_s(made.problem, made.slots, compute_w, step_s);
         longer += quick_s > step_s ? 1 : 0;
         auto quick = make_slot_dynamics(made.problem, made.slots, compute_w, quick_s);
-        quick.error_v = quick_error_v;
+        quick.error_v = coarse_error_v;
         std::uniform_int_distribution<std::size_t> any(0, made.runs.size() - 1);
         for (int schedule = 0; schedule < 20; ++schedule) {
             std::optional<battery::BatteryState> exact(battery::BatteryState{made.problem.initial_soc_percent});
             auto quickly = exact;
             for (std::size_t i = 0; i < made.slots.size() && exact && exact->soc_percent > 0.0; ++i) {
                 const auto choice = any(random);
-                exact = after_slot(made.dynamics, i, choice, *exact);
-                quickly = after_slot(quick, i, choice, *quickly);
+                exact = advance_slot(made.dynamics, i, choice, *exact);
+                quickly = advance_slot(quick, i, choice, *quickly);
                 ASSERT_TRUE(!exact || quickly) << seed << ": what lives lives with the error let pass";
                 if (!exact) break;
-                EXPECT_NEAR(exact->soc_percent, quickly->soc_percent, quick_error_percent) << seed;
-                EXPECT_NEAR(exact->rc_voltage_v, quickly->rc_voltage_v, quick_error_v) << seed;
+                EXPECT_NEAR(exact->soc_percent, quickly->soc_percent, coarse_error_percent) << seed;
+                EXPECT_NEAR(exact->rc_voltage_v, quickly->rc_voltage_v, coarse_error_v) << seed;
             }
         }
     }
@@ -75,7 +75,7 @@ TEST(SlotDynamics, AgreeWithTheDischarge) {
             battery::BatteryState state{made.problem.initial_soc_percent};
             for (std::size_t i = 0; i < made.slots.size(); ++i) {
                 const auto expected = discharged(made, i, choice, state);
-                const auto after = after_slot(made.dynamics, i, choice, state);
+                const auto after = advance_slot(made.dynamics, i, choice, state);
                 if (!after || after->soc_percent <= 0.0) {
                     EXPECT_TRUE(expected.ended_at_s() || expected.undeliverable) << seed << ' ' << i;
                     ++ended;
@@ -111,8 +111,8 @@ TEST(SlotDynamics, KeepTheOrderOfStates) {
             const battery::BatteryState low{30.0 + 60.0 * uniform(random), 0.1 * uniform(random)};
             const battery::BatteryState high{low.soc_percent + uniform(random), low.rc_voltage_v * uniform(random)};
             const auto choice = static_cast<std::size_t>(uniform(random) * static_cast<double>(made.runs.size()));
-            const auto low_end = after_slot(made.dynamics, i, choice, low);
-            const auto high_end = after_slot(made.dynamics, i, choice, high);
+            const auto low_end = advance_slot(made.dynamics, i, choice, low);
+            const auto high_end = advance_slot(made.dynamics, i, choice, high);
             if (!low_end) continue;
             ASSERT_TRUE(high_end) << seed;
             EXPECT_LE(high_end->rc_voltage_v, low_end->rc_voltage_v + 1e-12);

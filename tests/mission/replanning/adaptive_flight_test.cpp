@@ -19,8 +19,8 @@ PlanningProblem planned_beforehand() {
     return mission;
 }
 
-MissionSummary flown(const AnyMission& mission, const std::vector<Disturbance>& disturbances) {
-    return fly(prepare(mission), {}, disturbances).simulation.summary;
+MissionSummary flown(const MissionVariant& mission, const std::vector<Disturbance>& disturbances) {
+    return simulate_prepared(prepare_mission(mission), {}, disturbances).simulation.summary;
 }
 
 Disturbance headwind(double factor) {
@@ -46,8 +46,8 @@ TEST(AdaptiveFlight, KeepsItsReserveInAHeadwindThatEmptiesStaticSchedules) {
     const auto summary = flown(paper_problem("adaptive-replanned"), {headwind(1.1)});
     EXPECT_TRUE(summary.keeps_reserve) << *summary.final_soc_percent;
     EXPECT_LT(*summary.final_soc_percent, 2.5) << "and does not hoard";
-    const std::vector<AnyMission> others{paper_mission("phased"), paper_mission("invariant-10fps-240bit"),
-                                         planned_beforehand()};
+    const std::vector<MissionVariant> others{paper_mission("phased"), paper_mission("invariant-10fps-240bit"),
+                                             planned_beforehand()};
     for (const auto& mission : others)
         EXPECT_TRUE(flown(mission, {headwind(1.1)}).depleted_at_s) << setup_of(mission).name;
 }
@@ -81,7 +81,7 @@ TEST(AdaptiveFlight, IsNearlyAsGoodAsThePlanIfNothingHappens) {
     const auto plan = plan_mission(planned_beforehand());
     EXPECT_TRUE(adaptive.keeps_reserve);
     EXPECT_GE(*adaptive.utility, 0.97 * *plan.summary.utility);
-    EXPECT_LE(*adaptive.utility, plan.plan.bound + 1e-9) << "nothing keeps the reserve and has more utility";
+    EXPECT_LE(*adaptive.utility, plan.plan.utility_bound + 1e-9) << "nothing keeps the reserve and has more utility";
 }
 
 TEST(AdaptiveFlight, LearnsHowMuchMoreMechanicalPowerIs) {
@@ -94,7 +94,7 @@ TEST(AdaptiveFlight, LearnsHowMuchMoreMechanicalPowerIs) {
 }
 
 TEST(AdaptiveFlight, KeepsWhatIsFixed) {
-    const auto flight = fly(prepare(paper_problem("adaptive-replanned")), {}, {headwind(1.3)});
+    const auto flight = simulate_prepared(prepare_mission(paper_problem("adaptive-replanned")), {}, {headwind(1.3)});
     bool found = false;
     for (const auto& segment : flight.schedule) {
         if (segment.phase != flight::Phase::cruise || segment.start_s != 240.0) continue;
@@ -135,7 +135,7 @@ TEST(AdaptiveFlight, ForeseesACutOff) {
         const auto summary = flown(mission, {headwind(factor)});
         EXPECT_FALSE(summary.cut_off_at_s) << factor;
         EXPECT_TRUE(summary.keeps_reserve) << factor;
-        const auto schedule = fly(prepare(careless), {}, {headwind(factor)}).schedule;
+        const auto schedule = simulate_prepared(prepare_mission(careless), {}, {headwind(factor)}).schedule;
         EXPECT_TRUE(simulate(mission, schedule, {}, {headwind(factor)}).summary.cut_off_at_s)
             << factor << ": without foresight it is cut off";
     }

@@ -12,7 +12,7 @@ TEST(PowerPieces, HaveTheEnergyBetweenTheirSamples) {
     mechanical::PhasePower measured;
     measured.time_s = {0.0, 2.0, 5.0, 27.0, 27.4, 27.8, 28.6, 29.0};  // with a gap of 22 s, and faster at the end
     measured.power_w = {10.0, 20.0, 30.0, 20.0, 10.0, 10.0, 20.0, 40.0};
-    const auto pieces = power_pieces(measured);
+    const auto pieces = measured_power_profile(measured);
     ASSERT_EQ(pieces.size(), 5U);
     EXPECT_EQ(pieces[0].power_w, 15.0);
     EXPECT_EQ(pieces[1].power_w, 25.0);
@@ -25,7 +25,7 @@ TEST(PowerPieces, HaveTheEnergyBetweenTheirSamples) {
 }
 
 TEST(PowerPieces, GiveNothingBack) {
-    const auto pieces = power_pieces({{0.0, 10.0, 20.0}, {-4.0, -4.0, 24.0}, {}});
+    const auto pieces = measured_power_profile({{0.0, 10.0, 20.0}, {-4.0, -4.0, 24.0}, {}});
     EXPECT_EQ(pieces[0].power_w, 0.0);
     EXPECT_EQ(pieces[1].power_w, 10.0);
     EXPECT_EQ(energy_until_j(pieces, 20.0), 100.0);
@@ -36,23 +36,23 @@ TEST(KnownMission, TakesTheModelAndWhatTheMissionStates) {
     auto model = *stated.mechanical;
     model.phases[Phase::cruise].duration_s = 700.0;
     model.phases[Phase::landing].duration_s = 60.0;
-    EXPECT_EQ(known_mission(stated, model, std::nullopt).duration_s[Phase::cruise], 700.0);
-    EXPECT_EQ(known_mission(stated, model, std::nullopt).duration_s[Phase::landing], 0.0) << "it has none";
+    EXPECT_EQ(nominal_mission(stated, model, std::nullopt).duration_s[Phase::cruise], 700.0);
+    EXPECT_EQ(nominal_mission(stated, model, std::nullopt).duration_s[Phase::landing], 0.0) << "it has none";
     const PerPhase<double> flown_s{{1.0, 2.0, 3.0}};
-    EXPECT_EQ(known_mission(stated, model, flown_s).duration_s[Phase::cruise], 2.0);
-    EXPECT_EQ(known_mission(stated, model, flown_s).duration_s[Phase::takeoff], 0.0);
+    EXPECT_EQ(nominal_mission(stated, model, flown_s).duration_s[Phase::cruise], 2.0);
+    EXPECT_EQ(nominal_mission(stated, model, flown_s).duration_s[Phase::takeoff], 0.0);
     stated.duration_is_stated[Phase::cruise] = true;
-    EXPECT_EQ(known_mission(stated, model, std::nullopt).duration_s[Phase::cruise], 1000.0);
+    EXPECT_EQ(nominal_mission(stated, model, std::nullopt).duration_s[Phase::cruise], 1000.0);
 }
 
 TEST(FlownMission, HasPowerAndDurationsOfTheFlight) {
     const auto known = static_cast<MissionSetup>(test::steady_mission());
     const auto flight = test::flight_with_power("f", {{10.0, 500.0, 10.0}}, [](auto, double) { return 30.0; });
-    const auto flown = flown_mission(known, flight);
+    const auto flown = measured_mission(known, flight);
     EXPECT_EQ(flown.duration_s[Phase::cruise], 500.0);
     EXPECT_EQ(flown.duration_s[Phase::takeoff], 0.0) << "the mission has none";
-    EXPECT_FALSE(flown.measured[Phase::takeoff]);
-    EXPECT_NEAR(energy_until_j(*flown.measured[Phase::cruise], 500.0), 15000.0, 1e-6);
+    EXPECT_FALSE(flown.measured_power[Phase::takeoff]);
+    EXPECT_NEAR(energy_until_j(*flown.measured_power[Phase::cruise], 500.0), 15000.0, 1e-6);
 }
 
 }  // namespace

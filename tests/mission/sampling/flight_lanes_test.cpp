@@ -39,12 +39,12 @@ TEST(FlightLanes, LandAsRungeKuttaDoes) {
     std::size_t failed = 0;
     for (unsigned seed = 1; seed <= 40; ++seed) {
         const auto mission = flown_mission(seed, seed % 3 == 0 ? 0.8 : 1.0);
-        const auto spreads = find_spreads(mission);
+        const auto spreads = collect_uncertainty(mission);
         const auto normals = drawn_numbers(mission, 3);
-        std::vector<Landing> landings(normals.size());
-        FlightLanes(mission, spreads, mission.schedule).fly(normals, landings);
+        std::vector<FlightOutcome> landings(normals.size());
+        SimdFlightSimulator(mission, spreads, mission.schedule).simulate(normals, landings);
         for (std::size_t i = 0; i < normals.size(); ++i) {
-            auto flight = flight_of(mission, spreads, normals[i]);
+            auto flight = apply_draw(mission, spreads, normals[i]);
             flight.may_charge = true;
             const auto schedule = rescale_to_flown_durations(mission.schedule, mission.duration_s, flight.duration_s);
             const auto exact = simulate(flight, schedule, {60.0, 0.25}).summary;
@@ -66,19 +66,19 @@ TEST(FlightLanes, LandAsRungeKuttaDoes) {
 TEST(FlightLanes, LandAsFlightsAlone) {
     for (const unsigned seed : {1U, 2U, 3U, 4U, 5U, 6U, 18U}) {  // of 18 flights fail one after the other
         const auto mission = flown_mission(seed, seed % 3 == 0 ? 0.8 : 1.0);
-        const auto spreads = find_spreads(mission);
+        const auto spreads = collect_uncertainty(mission);
         const auto normals = drawn_numbers(mission, 70);
-        std::vector<Landing> landings(normals.size());
+        std::vector<FlightOutcome> landings(normals.size());
         const std::vector<double> times_s{0.0, 31.0, 250.0, 400.0, 2000.0};
-        const FlightLanes lanes(mission, spreads, mission.schedule, times_s);
-        lanes.fly(normals, landings);
+        const SimdFlightSimulator lanes(mission, spreads, mission.schedule, times_s);
+        lanes.simulate(normals, landings);
         for (std::size_t i = 0; i < normals.size(); ++i) {
-            const auto alone = lanes.fly_alone(normals[i]);
+            const auto alone = lanes.simulate_scalar(normals[i]);
             ASSERT_EQ(landings[i].battery_failure, alone.battery_failure) << seed << ", flight " << i;
             EXPECT_EQ(landings[i].depleted, alone.depleted) << seed << ", flight " << i;
             EXPECT_NEAR(landings[i].final_soc_percent, alone.final_soc_percent, 5e-3) << seed << ", flight " << i;
             // A moment of failure that differs by some hundredths of a second misses as much.
-            EXPECT_NEAR(landings[i].left_percent, alone.left_percent, 2e-2) << seed << ", flight " << i;
+            EXPECT_NEAR(landings[i].remaining_percent, alone.remaining_percent, 2e-2) << seed << ", flight " << i;
             ASSERT_EQ(landings[i].soc_percent.size(), times_s.size());
             for (std::size_t k = 0; k < times_s.size(); ++k)
                 EXPECT_NEAR(landings[i].soc_percent[k], alone.soc_percent[k], 5e-3) << seed << ", flight " << i;
@@ -88,27 +88,27 @@ TEST(FlightLanes, LandAsFlightsAlone) {
 
 TEST(FlightLanes, DependOnNothingBeside) {
     const auto mission = flown_mission(2, 0.9);
-    const auto spreads = find_spreads(mission);
+    const auto spreads = collect_uncertainty(mission);
     auto normals = drawn_numbers(mission, 45);
-    const FlightLanes lanes(mission, spreads, mission.schedule);
-    std::vector<Landing> landings(normals.size());
-    lanes.fly(normals, landings);
+    const SimdFlightSimulator lanes(mission, spreads, mission.schedule);
+    std::vector<FlightOutcome> landings(normals.size());
+    lanes.simulate(normals, landings);
     std::ranges::reverse(normals);
-    std::vector<Landing> reversed(normals.size());
-    lanes.fly(normals, reversed);
+    std::vector<FlightOutcome> reversed(normals.size());
+    lanes.simulate(normals, reversed);
     for (std::size_t i = 0; i < normals.size(); ++i)
-        EXPECT_EQ(landings[i].left_percent, reversed[normals.size() - 1 - i].left_percent) << i;
+        EXPECT_EQ(landings[i].remaining_percent, reversed[normals.size() - 1 - i].remaining_percent) << i;
 }
 
 TEST(FlightLanes, FlyAloneWhatIsFarOut) {
     auto mission = test::paper_mission("phased");
-    const auto spreads = find_spreads(mission);
+    const auto spreads = collect_uncertainty(mission);
     std::vector<std::vector<double>> normals(1, std::vector<double>(count_normals(mission)));
-    normals[0][level_of(Phase::cruise)] = -40.0;
-    const FlightLanes lanes(mission, spreads, mission.schedule);
-    std::vector<Landing> landings(1);
-    lanes.fly(normals, landings);
-    EXPECT_EQ(landings[0].final_soc_percent, lanes.fly_alone(normals[0]).final_soc_percent);
+    normals[0][level_index(Phase::cruise)] = -40.0;
+    const SimdFlightSimulator lanes(mission, spreads, mission.schedule);
+    std::vector<FlightOutcome> landings(1);
+    lanes.simulate(normals, landings);
+    EXPECT_EQ(landings[0].final_soc_percent, lanes.simulate_scalar(normals[0]).final_soc_percent);
 }
 
 }  // namespace

@@ -29,21 +29,21 @@ Mission cut_off_above_21_w() {
 
 TEST(FlightLines, FindWhereFlightsFallBelow) {
     const auto mission = uncertain_level();
-    const auto spreads = find_spreads(mission);
-    const FlightLines lines(mission, spreads);
-    EXPECT_NEAR(lines.stated_percent(), 100.0 - 20.0 / 0.36, 1e-9);
+    const auto spreads = collect_uncertainty(mission);
+    const LineSampler lines(mission, spreads);
+    EXPECT_NEAR(lines.nominal_percent(), 100.0 - 20.0 / 0.36, 1e-9);
     EXPECT_NEAR(lines.sd_percent(), 1.0 / 0.36, 1e-9);
     EXPECT_FALSE(lines.some_fail());
     LineSearch search;
-    lines.find_thresholds(0, lines.stated_percent() - 3.0 * lines.sd_percent(), search);
+    lines.find_thresholds(0, lines.nominal_percent() - 3.0 * lines.sd_percent(), search);
     EXPECT_NEAR(search.threshold, 3.0, 1e-3);
 }
 
 TEST(FlightLines, RememberWhatTheyFlew) {
     const auto mission = cut_off_above_21_w();
-    const auto spreads = find_spreads(mission);
-    const FlightLines lines(mission, spreads);
-    ChanceBelow below(lines, 30.0);
+    const auto spreads = collect_uncertainty(mission);
+    const LineSampler lines(mission, spreads);
+    LineSamplingEstimate below(lines, 30.0);
     EXPECT_NEAR(below.chance(), 0.5 * std::erfc(std::sqrt(0.5)), 1e-3);  // 5 % above 20 W
     const auto flown = lines.flown();
     below.move_to(10.0);  // fails at once: the same flights
@@ -55,17 +55,17 @@ TEST(FlightLines, RememberWhatTheyFlew) {
 TEST(FlightLines, TellTheSameChanceInAnyDirection) {
     auto mission = uncertain_level();
     mission.uncertainty.duration_sd_s[flight::Phase::cruise] = 100.0;
-    const auto spreads = find_spreads(mission);
-    FlightLines lines(mission, spreads);
-    ChanceBelow before(lines, 30.0);
+    const auto spreads = collect_uncertainty(mission);
+    LineSampler lines(mission, spreads);
+    LineSamplingEstimate before(lines, 30.0);
     const auto lines_before = before.lines();
     before.double_lines();
     EXPECT_EQ(before.lines(), 2 * lines_before);
     const double chance = before.chance();
     const double error = before.standard_error();
     EXPECT_GT(chance, 0.005);
-    lines.turn_to_beyond(before.searches());
-    const ChanceBelow after(lines, 30.0);
+    lines.redirect_to_failures(before.searches());
+    const LineSamplingEstimate after(lines, 30.0);
     EXPECT_NEAR(after.chance(), chance, 4.0 * (error + after.standard_error()) + 1e-5);
 }
 

@@ -17,7 +17,7 @@ namespace {
 using test::steady_mission;
 
 double quantile_of(const Mission& mission, double probability) {
-    return landing_quantile(mission, find_spreads(mission), probability).left_percent;
+    return landing_quantile(mission, collect_uncertainty(mission), probability).left_percent;
 }
 
 TEST(LandingQuantile, IsThatOfAGaussianWhereDepletionIsLinear) {
@@ -35,15 +35,15 @@ TEST(LandingQuantile, IsThatOfStudentTWhereFewFlightsTellTheLevel) {
     auto& cruise = mission.mechanical->phases[flight::Phase::cruise];
     mission.battery.capacity_ah = 10.0;
     mission.mechanical->phases[flight::Phase::cruise].flights = 3;
-    cruise.level_spread = mechanical::LevelSpread{3, 1.0, 0.0, 1.0};
+    cruise.level_spread = mechanical::VarianceComponents{3, 1.0, 0.0, 1.0};
     const double sd_w = std::sqrt(1.0 + 1.0 / 3.0);
     for (const double probability : {0.5, 0.8, 0.95, 0.999}) {
-        const double level_w = 20.0 + sd_w * student_of_normal(normal_quantile(probability), 2.0);
+        const double level_w = 20.0 + sd_w * student_from_normal(normal_quantile(probability), 2.0);
         EXPECT_NEAR(quantile_of(mission, probability), 100.0 - level_w / 3.6, 5e-3) << probability;
     }
-    const FlightSpreads spreads = find_spreads(mission);
+    const FlightUncertainty spreads = collect_uncertainty(mission);
     mission.reserve_soc_percent = quantile_of(mission, 0.95);
-    const auto chance = landing_chance(mission, spreads, 0.95);
+    const auto chance = failure_probability(mission, spreads, 0.95);
     EXPECT_NEAR(chance.degrees_of_freedom, 2.0, 1e-9);
     EXPECT_NEAR(chance.below, 0.05, 1e-4);
     EXPECT_NEAR(chance.spare_percent(0.8), quantile_of(mission, 0.8) - mission.reserve_soc_percent, 0.01);
@@ -78,7 +78,7 @@ TEST(LandingQuantile, IsBelowNothingWhereThatManyFail) {
     mission.initial_soc_percent = 20.0 / 0.36;  // empty in half of the flights
     mission.uncertainty.level_sd_percent[flight::Phase::cruise] = 5.0;
     EXPECT_LT(quantile_of(mission, 0.95), 0.0);
-    const auto quantile = landing_quantile(mission, find_spreads(mission), 0.5);
+    const auto quantile = landing_quantile(mission, collect_uncertainty(mission), 0.5);
     EXPECT_NEAR(quantile.left_percent, 0.0, 0.01);
 }
 
@@ -88,7 +88,7 @@ TEST(LandingChance, IsThatOfTheQuantile) {
     mission.uncertainty.duration_sd_s[flight::Phase::cruise] = 150.0;
     for (const double probability : {0.8, 0.95, 0.99}) {
         mission.reserve_soc_percent = quantile_of(mission, probability);
-        const auto chance = landing_chance(mission, find_spreads(mission), probability);
+        const auto chance = failure_probability(mission, collect_uncertainty(mission), probability);
         EXPECT_NEAR(chance.below, 1.0 - probability, 2e-3 * (1.0 - probability));
         EXPECT_NEAR(chance.spare_percent(probability), 0.0, 1e-3 * chance.sd_percent);
         EXPECT_LT(chance.spare_percent(std::min(0.999, probability + 0.05)), 0.0);
@@ -103,16 +103,16 @@ TEST(LandingChance, AgreesWithDrawnFlightsThatAreCutOff) {
     mission.uncertainty.level_sd_percent[flight::Phase::cruise] = 5.0;
     mission.uncertainty.capacity_sd_percent = 5.0;
     mission.reserve_soc_percent = 30.0;
-    const auto chance = landing_chance(mission, find_spreads(mission), 0.95);
-    const auto flights = sample_flights(prepare(mission), {}, {20000, 3, 0});
+    const auto chance = failure_probability(mission, collect_uncertainty(mission), 0.95);
+    const auto flights = sample_flights(prepare_mission(mission), {}, {20000, 3, 0});
     EXPECT_GT(chance.below, 0.02);
     EXPECT_LT(chance.below, 0.3);
     const double error = std::sqrt(chance.below * (1.0 - chance.below) / 20000.0) + chance.standard_error;
     EXPECT_NEAR(flights.probability_below_reserve, chance.below, 4.0 * error);
 }
 
-/// A mission of few known flights, with a pack so weak that `failing` of its flights are cut off at once in take-off, and
-/// with much to spare in all others.
+/// A mission of few known flights, with a pack so weak that `failing` of its flights are cut off at once in take-off,
+/// and with much to spare in all others.
 Mission weak_in_takeoff(unsigned seed, double failing) {
     auto mission = with_minimum_energy_schedule(test::generated_mission(seed).problem);
     auto& battery = mission.battery;
@@ -124,7 +124,7 @@ Mission weak_in_takeoff(unsigned seed, double failing) {
         auto& part = mission.mechanical->phases[phase];
         part.flights = 3;
         const double spread_w = (phase == flight::Phase::takeoff ? 0.25 : 0.05) * part.fourier.a0_w;
-        part.level_spread = mechanical::LevelSpread{3, spread_w, 0.1, 20.0};
+        part.level_spread = mechanical::VarianceComponents{3, spread_w, 0.1, 20.0};
         for (std::size_t k = 0; k < 3; ++k)
             mission.mechanical->flights[k].phases[phase] = mechanical::PhaseContribution{
                 1.0 / 3.0, part.duration_s * (0.9 + 0.1 * static_cast<double>(k)), 1.0, 100};
@@ -132,7 +132,7 @@ Mission weak_in_takeoff(unsigned seed, double failing) {
     mission.uncertainty.level_sd_percent = {};
     const auto too_few_fail = [&](double cutoff_voltage_v) {
         mission.cutoff_voltage_v = cutoff_voltage_v;
-        return sample_flights(prepare(mission), {}, {2000, 5, 0}).probability_battery_failure < failing;
+        return sample_flights(prepare_mission(mission), {}, {2000, 5, 0}).probability_battery_failure < failing;
     };
     double low_v = 6.0;
     double high_v = 12.5;
@@ -152,8 +152,8 @@ TEST(LandingChanceStudy, AgreesWithDrawnFlightsOfWeakPacks) {
             auto flown = mission;
             flown.duration_s[flight::Phase::cruise] *= part;
             flown.schedule = rescale_to_flown_durations(mission.schedule, mission.duration_s, flown.duration_s);
-            const auto chance = landing_chance(flown, find_spreads(flown), 0.95);
-            const auto flights = sample_flights(prepare(flown), {}, {20000, 3, 0});
+            const auto chance = failure_probability(flown, collect_uncertainty(flown), 0.95);
+            const auto flights = sample_flights(prepare_mission(flown), {}, {20000, 3, 0});
             const double drawn = flights.probability_below_reserve;
             const double error = std::sqrt(drawn * (1.0 - drawn) / 20000.0) + chance.standard_error;
             EXPECT_NEAR(drawn, chance.below, 4.0 * error) << "seed " << seed << ", cruise times " << part;
@@ -163,7 +163,7 @@ TEST(LandingChanceStudy, AgreesWithDrawnFlightsOfWeakPacks) {
 
 TEST(LandingQuantile, NeedsNoMarginWhereNothingDiffers) {
     const auto mission = steady_mission();
-    const auto quantile = landing_quantile(mission, find_spreads(mission), 0.95);
+    const auto quantile = landing_quantile(mission, collect_uncertainty(mission), 0.95);
     EXPECT_EQ(quantile.margin_percent, 0.0);
     EXPECT_EQ(quantile.sd_percent, 0.0);
     EXPECT_NEAR(quantile.left_percent, 100.0 - 20.0 / 0.36, 1e-9);

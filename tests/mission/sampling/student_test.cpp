@@ -12,24 +12,24 @@ namespace {
 
 TEST(Student, LiesAsFarOutAsTheNormal) {
     for (const double freedom : {1.0, 2.0, 3.5, 10.0})
-        EXPECT_NEAR(student_of_normal(normal_half_width(), freedom), student_t_half_width(freedom), 1e-9) << freedom;
-    EXPECT_NEAR(student_of_normal(normal_quantile(0.95), 1.0), std::tan(0.45 * std::acos(-1.0)), 1e-9);
-    EXPECT_EQ(student_of_normal(1.3, as_if_known), 1.3);
-    EXPECT_EQ(student_of_normal(0.0, 2.0), 0.0);
-    EXPECT_EQ(student_of_normal(-1.3, 2.0), -student_of_normal(1.3, 2.0));
+        EXPECT_NEAR(student_from_normal(normal_half_width(), freedom), student_t_half_width(freedom), 1e-9) << freedom;
+    EXPECT_NEAR(student_from_normal(normal_quantile(0.95), 1.0), std::tan(0.45 * std::acos(-1.0)), 1e-9);
+    EXPECT_EQ(student_from_normal(1.3, infinite_dof), 1.3);
+    EXPECT_EQ(student_from_normal(0.0, 2.0), 0.0);
+    EXPECT_EQ(student_from_normal(-1.3, 2.0), -student_from_normal(1.3, 2.0));
 }
 
 TEST(Student, ComesBack) {
     for (const double freedom : {1.0, 2.0, 7.3, 200.0})
         for (const double normal : {-3.0, -0.2, 0.0, 1e-3, 1.0, 4.0})
-            EXPECT_NEAR(normal_of_student(student_of_normal(normal, freedom), freedom), normal, 1e-9);
-    EXPECT_EQ(normal_of_student(2.5, as_if_known), 2.5);
+            EXPECT_NEAR(normal_from_student(student_from_normal(normal, freedom), freedom), normal, 1e-9);
+    EXPECT_EQ(normal_from_student(2.5, infinite_dof), 2.5);
 }
 
 TEST(Student, EndsSomewhere) {
-    EXPECT_EQ(student_of_normal(9.0, 1.0), furthest_student);
-    EXPECT_EQ(student_of_normal(-40.0, 1.0), -furthest_student);
-    EXPECT_TRUE(std::isfinite(normal_of_student(1e200, 1.0)));
+    EXPECT_EQ(student_from_normal(9.0, 1.0), max_student);
+    EXPECT_EQ(student_from_normal(-40.0, 1.0), -max_student);
+    EXPECT_TRUE(std::isfinite(normal_from_student(1e200, 1.0)));
 }
 
 /// A sum of numbers that share one estimated deviation is Student t with the same degrees of freedom, whatever its

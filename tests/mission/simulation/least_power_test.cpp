@@ -22,14 +22,14 @@ TEST(LeastPower, IsThatOfAFineGrid) {
                                              1.0,
                                              {uniform(random), uniform(random), uniform(random)},
                                              {uniform(random), uniform(random), uniform(random)}};
-        const CurveTime within{5.0 * (1.0 + uniform(random)), 40.0 + 20.0 * uniform(random)};
-        double least_w = 1e9;
+        const CurveInterval within{5.0 * (1.0 + uniform(random)), 40.0 + 20.0 * uniform(random)};
+        double min_w = 1e9;
         for (int k = 0; k <= 100000; ++k) {
             const double time_s = within.start_s + (within.end_s - within.start_s) * k / 100000.0;
-            least_w = std::min(least_w, power_w(curve, time_s));
+            min_w = std::min(min_w, power_w(curve, time_s));
         }
-        const auto least = least_power_w(curve, within, 1e9);
-        EXPECT_NEAR(least.power_w, least_w, 1e-6);
+        const auto least = min_power_w(curve, within, 1e9);
+        EXPECT_NEAR(least.power_w, min_w, 1e-6);
         EXPECT_NEAR(power_w(curve, least.time_s), least.power_w, 1e-12);
     }
 }
@@ -48,7 +48,7 @@ TEST(Charging, IsRefusedUnlessItIsMeant) {
     EXPECT_EQ(text.substr(0, text.find(';')),
               "m.toml: mechanical-only: 60.0 s into the landing it draws -2.99 W (-2.99 W mechanical, 0 W computing), "
               "which charges the battery in flight");
-    EXPECT_THROW(fly(prepare(mission)), InputError);
+    EXPECT_THROW(simulate_prepared(prepare_mission(mission)), InputError);
     mission.may_charge = true;
     EXPECT_TRUE(simulate(mission).summary.feasible);
     mission.may_charge = false;
@@ -67,14 +67,14 @@ TEST(Charging, IsAskedForByADisturbance) {
 TEST(Charging, HappensInNoFlightThatIsDrawn) {
     auto mission = test::paper_mission("mechanical-only");
     for (const auto phase : flight::all_phases) mission.uncertainty.level_sd_percent[phase] = 60.0;
-    mission.phase_clock = mechanical::PhaseClock::absolute;
-    const auto spreads = find_spreads(mission);
+    mission.phase_clock = mechanical::PhaseTimeScaling::absolute;
+    const auto spreads = collect_uncertainty(mission);
     double mean_w = 0.0;
     constexpr int flights = 4000;
     for (std::uint64_t i = 0; i < flights; ++i) {
         auto flight = Mission{draw_flight(mission, spreads, 1, i), mission.schedule};
         for (const auto& segment : load_segments(flight, flight.schedule))
-            EXPECT_GE(least_power_w(*segment.mechanical, {0.0, segment.end_s - segment.phase_start_s}).power_w, -1e-9);
+            EXPECT_GE(min_power_w(*segment.mechanical, {0.0, segment.end_s - segment.phase_start_s}).power_w, -1e-9);
         const auto& cruise = flight.mechanical->phases[Phase::cruise].fourier;
         mean_w += energy_j(cruise, 600.0) / 600.0 / flights;
     }

@@ -65,7 +65,7 @@ TEST(LoadSegment, ClocksAPhaseFlownLonger) {
     mission.duration_s[flight::Phase::cruise] = 900.0;
     mission.schedule[1].end_s = 900.0;
     const auto stretched = load_of(mission)[1];
-    mission.phase_clock = mechanical::PhaseClock::absolute;
+    mission.phase_clock = mechanical::PhaseTimeScaling::absolute;
     const auto absolute = load_of(mission)[1];
     for (const double t : {0.0, 100.0, 450.0, 900.0}) {
         EXPECT_NEAR(mechanical_w(stretched, 28.0 + t), mechanical_w(as_fitted, 28.0 + t / 1.5), 1e-12);
@@ -82,7 +82,7 @@ TEST(SegmentDischarge, AgreesWithTheSimulation) {
         battery::Discharge charge;
         charge.soc_percent = 100.0;
         for (const auto& segment : load_segments(mission, mission.schedule))
-            charge = after_segment(mission.battery, mission.cutoff_voltage_v, segment, charge);
+            charge = advance_segment(mission.battery, mission.cutoff_voltage_v, segment, charge);
         EXPECT_NEAR(charge.soc_percent, *simulate(mission).summary.final_soc_percent, 1e-6);
     }
 }

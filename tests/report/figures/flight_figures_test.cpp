@@ -1,7 +1,7 @@
 #include "report/figures/flight_figures.h"
 
-#include "flight/chosen_track.h"
 #include "flight/load_flight.h"
+#include "flight/selected_track.h"
 #include "helpers/test_paths.h"
 
 #include <algorithm>

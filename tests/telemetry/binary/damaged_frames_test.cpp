@@ -124,10 +124,10 @@ std::size_t collisions_in(const std::vector<Piece>& log, Framing framing) {
         for (std::size_t i = begin; piece.is_damaged && i < begin + piece.bytes.size(); ++i) {
             if (bytes[i] != sync_byte(framing)) continue;
             const char* const end = bytes.data() + bytes.size();
-            const auto look = framing == Framing::card   ? look_at_frame<Framing::card>(bytes.data() + i, end, frame)
-                              : framing == Framing::link ? look_at_frame<Framing::link>(bytes.data() + i, end, frame)
-                                                         : look_at_frame<Framing::xbee>(bytes.data() + i, end, frame);
-            count += look == Look::frame ? 1 : 0;
+            const auto look = framing == Framing::card   ? parse_frame<Framing::card>(bytes.data() + i, end, frame)
+                              : framing == Framing::link ? parse_frame<Framing::link>(bytes.data() + i, end, frame)
+                                                         : parse_frame<Framing::xbee>(bytes.data() + i, end, frame);
+            count += look == ParseStatus::frame ? 1 : 0;
         }
         begin += piece.bytes.size();
     }
@@ -245,7 +245,7 @@ TEST(DamagedFrames, OfAnXbeeAreReadAsTheirMessagesFit) {
     const auto is_right_in_both = [&](const std::string& plain) {
         const std::string_view packet(plain);
         const auto escaped = test::xbee_frame(packet.substr(8, packet.size() - 9), 0x81, true) + "\x01\x02\x03";
-        return look_at_xbee_frame(escaped.data(), escaped.data() + escaped.size(), false, frame) == Look::frame;
+        return parse_xbee_frame(escaped.data(), escaped.data() + escaped.size(), false, frame) == ParseStatus::frame;
     };
     const auto text = energy_with(Framing::xbee, is_right_in_both);
     const auto packet = test::xbee_frame(test::binary_message(text, dictionary, LinkVersion::v1).value(), 0x81, true);

@@ -1,0 +1,351 @@
+#include "flight/selected_track.h"
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/statistics.h"
+#include "base/units.h"
+#include "flight/checks/runs.h"
+#include "flight/flight_phases.h"
+#include "flight/phase_statistics.h"
+#include "flight/sources/derived_tracks.h"
+#include "flight/sources/device_check.h"
+#include "flight/sources/device_sum.h"
+#include "flight/sources/outliers.h"
+#include "flight/sources/power_source.h"
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flightwatt::flight {
+namespace {
+
+constexpr std::string_view power_device = "POWER_DEVICE";
+constexpr auto units_in_log = "units in the .log";
+constexpr auto any_source = [](const Track&) { return true; };
+
+using Choice = TrackSelection;
+
+/// A copy of its own, where it had none.
+Track& to_change(Choice& choice) {
+    if (choice.logged != nullptr) choice.derived = *std::exchange(choice.logged, nullptr);
+    return choice.derived;
+}
+
+/// Leaves out what cannot be.
+Choice sound_choice(const FlightSeries& series, const Track& candidate) {
+    const bool is_current = candidate.name == "current_a";
+    auto sound = remove_outliers(candidate, {}, is_current ? dropout_throttle(series, candidate) : Track{});
+    Choice choice;
+    if (sound.is_unchanged) choice.logged = &candidate;
+    choice.derived = std::move(sound.track);
+    if (!sound.removal_note.empty()) choice.removal_notes.push_back(std::move(sound.removal_note));
+    if (candidate.name != "voltage_v" && !is_current) return choice;
+    // Where the message contradicts itself is said of its power.
+    const auto contradicted_s = contradicted_times(series, candidate.source);
+    if (!contradicted_s.empty()) to_change(choice) = without_times(choice.track(), contradicted_s);
+    return choice;
+}
+
+template <typename Accept = decltype(any_source)>
+Choice first_that_varies(const FlightSeries& series, std::string_view name, const Accept& accept = any_source) {
+    Choice constant;
+    for (const auto& track : series.tracks) {
+        if (track.name != name || track.empty() || !track.device.empty() || !accept(track)) continue;
+        if (is_constant(track) && !constant.track().empty()) continue;
+        auto sound = sound_choice(series, track);
+        if (sound.track().empty()) {
+            constant.removal_notes.insert(constant.removal_notes.end(), sound.removal_notes.begin(),
+                                          sound.removal_notes.end());
+        } else if (!is_constant(sound.track())) {
+            sound.removal_notes.insert(sound.removal_notes.begin(), constant.removal_notes.begin(),
+                                       constant.removal_notes.end());
+            return sound;
+        } else if (constant.track().empty()) {
+            sound.removal_notes.insert(sound.removal_notes.begin(), constant.removal_notes.begin(),
+                                       constant.removal_notes.end());
+            constant = std::move(sound);
+        }
+    }
+    return constant;
+}
+
+Choice first_of(const FlightSeries& series, std::string_view name) {
+    for (const auto& track : series.tracks)
+        if (track.name == name && !track.empty()) return sound_choice(series, track);
+    return {};
+}
+
+/// Whether a throttle is written as 0 to 1: power tells that a motor ran at so little, or what is no whole percent.
+bool is_fraction(const Track& throttle, const FlightSeries& series) {
+    constexpr std::size_t enough = 10;
+    constexpr double idle = 0.05;
+    constexpr double runs = 0.2;
+    constexpr double full = 1.5;
+    if (throttle.empty()) return false;
+    const auto [least, most] = std::ranges::minmax(throttle.value);
+    if (most < runs || most > full || least < -idle) return false;
+    const auto power = select_power(series).power_w;
+    std::vector<double> idle_w;
+    std::vector<double> running_w;
+    for (std::size_t i = 0; i < power.time_s.size(); ++i) {
+        const double part = value_at(throttle, power.time_s[i]);
+        if (part <= idle) idle_w.push_back(power.value[i]);
+        if (part >= runs) running_w.push_back(power.value[i]);
+    }
+    if (!is_constant(power) && idle_w.size() >= enough && running_w.size() >= enough)
+        return median_high(std::move(running_w)) >= 3.0 * std::max(median_high(std::move(idle_w)), 0.0) + 1.0;
+    const auto is_part = [](double value) { return value > idle && value != 1.0; };
+    return std::ranges::count_if(throttle.value, is_part) >= static_cast<std::ptrdiff_t>(enough);
+}
+
+/// In percent.
+void scale_fraction(const FlightSeries& series, Choice& throttle) {
+    if (throttle.track().empty() || !is_fraction(throttle.track(), series)) return;
+    auto& track = to_change(throttle);
+    const auto [least, most] = std::ranges::minmax(track.value);
+    throttle.removal_notes.push_back(
+        fmt::format("the throttle ({}) runs from {:.3g} to {:.3g}: it is taken for a fraction, "
+                    "{:.0f} to {:.0f} %",
+                    track.source, least, most, units::percentage(least, 1.0), units::percentage(most, 1.0)));
+    for (auto& value : track.value) value = units::percentage(value, 1.0);
+}
+
+/// The commands, if they are those of a throttle; nullptr if there are none.
+const Track* commands_of(const FlightSeries& series) {
+    const auto found = std::ranges::find(series.tracks, commanded_throttle, &Track::source);
+    const bool is_throttle = found != series.tracks.end() && !found->empty() &&
+                             std::ranges::none_of(found->value, [](double percent) { return percent < 0.0; });
+    return is_throttle ? &*found : nullptr;
+}
+
+/// Takes the commands while the throttle idles where they do not for half a minute in all, as in manual mode.
+void follow_commands(const FlightSeries& series, Choice& throttle) {
+    constexpr SegmentationOptions limits;
+    const auto* commands = commands_of(series);
+    if (commands == nullptr || throttle.track().empty() || throttle.track().source == commanded_throttle) return;
+    const auto& track = throttle.track();
+    const auto percent = resample(*commands, track.time_s);
+    const auto idles = [&](std::size_t i) { return track.value[i] <= limits.idle_throttle_percent; };
+    const auto runs = [&](std::size_t i) { return commands->value[i] >= limits.flight_throttle_percent; };
+    const auto first_from = [](const std::vector<double>& times_s, double time_s) {
+        return static_cast<std::size_t>(std::ranges::lower_bound(times_s, time_s) - times_s.begin());
+    };
+    const auto first_after = [](const std::vector<double>& times_s, double time_s) {
+        return static_cast<std::size_t>(std::ranges::upper_bound(times_s, time_s) - times_s.begin());
+    };
+    const double gap_s = gap_threshold_s(commands->time_s);
+    double together_s = 0.0;
+    std::optional<double> first_s;
+    for (const auto& run : runs_of({0, track.time_s.size()}, idles)) {
+        const SampleRange sent{first_from(commands->time_s, track.time_s[run.first]),
+                               first_after(commands->time_s, track.time_s[run.last - 1])};
+        const double running_s = time_where(commands->time_s, sent, gap_s, runs);
+        if (running_s < contradicted_s) continue;
+        const auto last = first_after(track.time_s, commands->time_s[sent.last - 1]);  // what stopped says nothing
+        std::copy(percent.begin() + static_cast<std::ptrdiff_t>(run.first),
+                  percent.begin() + static_cast<std::ptrdiff_t>(last),
+                  to_change(throttle).value.begin() + static_cast<std::ptrdiff_t>(run.first));
+        together_s += running_s;
+        if (!first_s) first_s = track.time_s[run.first];
+    }
+    if (!first_s) return;
+    throttle.removal_notes.push_back(
+        fmt::format("{} is at idle while {} is not for {:.0f} s, first from {:.0f} s on: the latter "
+                    "counts there",
+                    throttle.track().source, commanded_throttle, together_s, *first_s));
+}
+
+Choice throttle(const FlightSeries& series) {
+    constexpr double often_s = 2.0;  // of commands that come more seldom a throttle is only made where nothing else is
+    const auto* commands = commands_of(series);
+    const bool counts =
+        commands != nullptr && (median_interval_s(commands->time_s) <= often_s || select_power(series).power_w.empty());
+    const auto is_thrust = [](const Track& track) { return track.source == "ROTORCRAFT_FP.thrust"; };
+    auto found = first_that_varies(series, "throttle_percent", [&](const Track& track) {
+        return !is_thrust(track) && (track.source != commanded_throttle || counts);
+    });
+    if (found.track().empty()) {
+        auto thrust = first_that_varies(series, "throttle_percent", is_thrust);
+        thrust.removal_notes.insert(thrust.removal_notes.begin(), found.removal_notes.begin(),
+                                    found.removal_notes.end());
+        found = std::move(thrust);
+    }
+    scale_fraction(series, found);
+    follow_commands(series, found);
+    return found;
+}
+
+/// The pack's current, or else the sum of what its consumers report.
+Choice current(const FlightSeries& series) {
+    auto found = first_that_varies(series, "current_a");
+    for (const std::string_view message : {std::string_view("ESC"), power_device}) {
+        if (!found.track().empty()) break;
+        if (message == power_device && !differing_voltages_reason(series).empty()) continue;
+        found.logged = nullptr;
+        found.derived = sum_over_devices(series, "current_a", message).track;
+    }
+    return found;
+}
+
+/// Of circuits with voltages of their own none.
+Choice voltage(const FlightSeries& series) {
+    auto found = first_that_varies(series, "voltage_v");
+    if (!found.track().source.starts_with(power_device)) return found;
+    auto reason = differing_voltages_reason(series);
+    if (reason.empty()) return found;
+    return {.removal_notes = {std::move(reason)}};
+}
+
+Choice charge(const FlightSeries& series) {
+    const bool exchanged = energy_and_power_are_swapped(series);
+    auto found = first_that_varies(series, "charge_ah", [&](const Track& track) {
+        return exchanged ? track.source != "ENERGY.energy" : track.source != power_read_as_energy;
+    });
+    if (found.track().source == power_read_as_energy) to_change(found).source = "ENERGY.energy";
+    return found;
+}
+
+Choice power(const FlightSeries& series) {
+    auto choice = select_power(series);
+    return {.derived = std::move(choice.power_w),
+            .removal_notes = std::move(choice.left_out),
+            .rejected_sources = std::move(choice.passed_over)};
+}
+
+Choice choose(const FlightSeries& series, std::string_view name) {
+    if (name == "power_w") return power(series);
+    if (name == "current_a") return current(series);
+    if (name == "voltage_v") return voltage(series);
+    if (name == "charge_ah") return charge(series);
+    if (name == "throttle_percent") return throttle(series);
+    if (name == "ground_speed_m_per_s") return first_of(series, name);
+    auto found = first_that_varies(series, name);
+    if (name == "airspeed_m_per_s" && is_constant(found.track()))
+        return {.removal_notes = std::move(found.removal_notes)};
+    return found;
+}
+
+}  // namespace
+
+Track select_track(const FlightSeries& series, std::string_view name) {
+    auto choice = choose(series, name);
+    return std::move(to_change(choice));
+}
+
+const TrackSelection& SelectedTracks::choice(std::string_view name) const {
+    const auto made = made_.find(name);
+    return made != made_.end() ? made->second : made_.emplace(name, choose(series_, name)).first->second;
+}
+
+void SelectedTracks::compute_all() const {
+    constexpr std::size_t few_samples = 100'000;  // are judged before another thread has begun
+    std::size_t samples = 0;
+    for (const auto& track : series_.tracks) samples += track.time_s.size();
+    std::vector<std::string> names;
+    std::ranges::copy_if(track_names(), std::back_inserter(names),
+                         [&](const std::string& name) { return !made_.contains(name); });
+    std::vector<TrackSelection> choices(names.size());
+    for_each_in_parallel(
+        names.size(), [&](std::size_t i) { choices[i] = choose(series_, names[i]); }, samples < few_samples ? 1 : 0);
+    for (std::size_t i = 0; i < names.size(); ++i) made_.emplace(names[i], std::move(choices[i]));
+}
+
+std::vector<double> sample_selected_track(const FlightSeries& series, std::string_view name,
+                                          const std::vector<double>& time_s) {
+    const auto track = select_track(series, name);
+    return track.empty() ? std::vector<double>{} : resample(track, time_s);
+}
+
+std::map<std::string, std::string> track_sources(const FlightSeries& series) {
+    return track_sources(SelectedTracks(series));
+}
+
+std::map<std::string, std::string> track_sources(const SelectedTracks& tracks) {
+    std::map<std::string, std::string> sources;
+    for (const auto& name : track_names())
+        if (const auto& track = tracks[name]; !track.empty()) sources[name] = track.source;
+    return sources;
+}
+
+std::optional<double> ground_altitude_m(const SelectedTracks& tracks) {
+    // A rotorcraft's heights are above the reference on the ground.
+    if (tracks["altitude_m"].source.starts_with("ROTORCRAFT_FP")) return 0.0;
+    const auto& logged = tracks["ground_altitude_m"];
+    return logged.empty() ? tracks.series().planned_ground_altitude_m : logged.value.back();
+}
+
+std::vector<std::string> warnings_of(const FlightSeries& series) { return warnings_of(SelectedTracks(series)); }
+
+std::vector<std::string> warnings_of(const SelectedTracks& tracks) {
+    const auto& series = tracks.series();
+    std::vector<std::string> warnings;
+    if (energy_and_power_are_swapped(series)) {
+        warnings.emplace_back("ENERGY holds its power before its energy: the two were exchanged");
+    }
+    if (!series.assumed_definitions.empty()) {
+        std::vector<std::string> assumed;
+        for (const auto& definition : series.assumed_definitions) assumed.push_back(definition.text);
+        warnings.push_back(
+            fmt::format("{}: {}", series.log_is_missing ? "no .log beside it: message layouts assumed" : units_in_log,
+                        fmt::join(assumed, ", ")));
+    }
+    if (series.current_origin == CurrentOrigin::throttle) {
+        warnings.emplace_back(
+            "the airframe defines MILLIAMP_AT_FULL_THROTTLE and no current sensor: its current was computed "
+            "from throttle, so a power model fitted to it is circular");
+    }
+    const auto& power_w = tracks["power_w"];
+    for (const auto& reason : tracks.choice("power_w").rejected_sources) {
+        if (power_w.empty()) break;  // see no_power_reason
+        warnings.push_back(fmt::format("{}: power is taken from {}", reason, power_w.source));
+    }
+    const auto add_said = [&](const std::string& name) {
+        const auto& said = tracks.choice(name).removal_notes;
+        warnings.insert(warnings.end(), said.begin(), said.end());
+    };
+    add_said("power_w");
+    for (const auto* message : {"ESC", "POWER_DEVICE"}) {
+        if (!power_w.source.starts_with(message)) continue;
+        for (auto& doubt : find_suspect_devices(series, message)) warnings.push_back(std::move(doubt));
+    }
+    for (const auto& name : track_names()) {
+        if (name == "power_w") continue;
+        add_said(name);
+    }
+    for (const auto& skip : series.skipped) warnings.push_back(describe(skip));
+    if (series.log_is_missing && series.assumed_definitions.empty()) warnings.emplace_back("no .log beside it");
+    warnings.insert(warnings.end(), series.notes.begin(), series.notes.end());
+    return warnings;
+}
+
+std::string no_power_reason(const FlightSeries& series) {
+    const auto power = select_power(series);
+    if (!power.power_w.empty()) return "";
+    std::vector<std::string> reasons = power.passed_over;
+    for (const auto& skip : series.skipped) reasons.push_back(describe(skip));
+    for (const auto& assumed : series.assumed_definitions)
+        reasons.push_back(fmt::format("{} {}", series.log_is_missing ? "assumed" : "the .log:", assumed.text));
+    return fmt::format("{}", fmt::join(reasons, "; "));
+}
+
+void require_power(const FlightSeries& series, const std::string& holds) {
+    if (const auto& restart = series.clock_restart) {
+        throw InputError({series.file},
+                         fmt::format("its clock runs back from {:.3f} to {:.3f} s (aircraft {}, {})", restart->from_s,
+                                     restart->to_s, series.aircraft_id, restart->message),
+                         "it holds several recordings, or one over another: split it where the time begins anew");
+    }
+    if (!select_power(series).power_w.empty()) return;
+    const auto reasons = no_power_reason(series);
+    const auto reason = reasons.empty() ? "" : fmt::format(" ({})", reasons);
+    throw InputError({series.file}, fmt::format("holds no measured power of aircraft {}{}", series.aircraft_id, reason),
+                     fmt::format("expected ENERGY with power, BAT or ENERGY with current, ESC or POWER_DEVICE{}{}",
+                                 holds.empty() ? "" : "; it holds ", holds));
+}
+
+}  // namespace flightwatt::flight

@@ -1,0 +1,303 @@
+#include "flight/sources/derived_tracks.h"
+
+#include "base/parallel.h"
+#include "base/units.h"
+#include "flight/sources/device_sum.h"
+#include "flight/sources/power_source.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flightwatt::flight {
+namespace {
+
+using telemetry::Column;
+using telemetry::MessageTable;
+using telemetry::SenderLog;
+using units::Quantity;
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  // make_track drops it
+
+using Row = std::vector<double>;
+
+/// A track that is made of several fields of one message, row by row; nothing where one is missing.
+struct MadeTrack {
+    const char* name;
+    const char* message;
+    std::vector<const char*> fields;
+    std::optional<Quantity> quantity;  ///< that the first field must have
+    const char* source;
+    std::function<double(const Row&)> make;
+};
+
+struct Position {
+    double latitude_deg = 0.0;
+    double longitude_deg = 0.0;
+};
+
+/// The position on WGS 84 of UTM coordinates as Paparazzi logs them: the north has no false origin, so it is negative
+/// in the south. NaN where one of them is NaN or the zone is none of 1 to 60. Krueger's series to the third order
+/// (Karney, Transverse Mercator with an accuracy of a few nanometers, J. Geodesy 85, 2011): better than a millimetre.
+Position position_of_utm(double east_m, double north_m, double zone) {
+    if (!(zone >= 1.0 && zone <= 60.0) || !std::isfinite(east_m) || !std::isfinite(north_m)) {
+        return {unknown, unknown};
+    }
+    constexpr double equator_m = 6378137.0;
+    constexpr double flattening = 1.0 / 298.257223563;
+    constexpr double scale = 0.9996;
+    constexpr double false_east_m = 500e3;
+    constexpr double n = flattening / (2.0 - flattening);
+    constexpr double meridian_m = equator_m / (1.0 + n) * (1.0 + n * n / 4.0 + n * n * n * n / 64.0);
+    constexpr double beta[] = {n / 2.0 - 2.0 / 3.0 * n * n + 37.0 / 96.0 * n * n * n, n * n / 48.0 + n * n * n / 15.0,
+                               17.0 / 480.0 * n * n * n};
+    constexpr double delta[] = {2.0 * n - 2.0 / 3.0 * n * n - 2.0 * n * n * n,
+                                7.0 / 3.0 * n * n - 8.0 / 5.0 * n * n * n, 56.0 / 15.0 * n * n * n};
+    const double xi = north_m / (scale * meridian_m);
+    const double eta = (east_m - false_east_m) / (scale * meridian_m);
+    double xi_0 = xi;
+    double eta_0 = eta;
+    for (int j = 1; j <= 3; ++j) {
+        xi_0 -= beta[j - 1] * std::sin(2 * j * xi) * std::cosh(2 * j * eta);
+        eta_0 -= beta[j - 1] * std::cos(2 * j * xi) * std::sinh(2 * j * eta);
+    }
+    const double conformal = std::asin(std::sin(xi_0) / std::cosh(eta_0));
+    double latitude = conformal;
+    for (int j = 1; j <= 3; ++j) latitude += delta[j - 1] * std::sin(2 * j * conformal);
+    const double from_meridian = std::atan2(std::sinh(eta_0), std::cos(xi_0));
+    constexpr double degree_per_zone = 6.0;
+    constexpr double first_meridian_deg = -183.0;
+    return {latitude * units::degree_per_rad,
+            first_meridian_deg + degree_per_zone * zone + from_meridian * units::degree_per_rad};
+}
+
+/// 0 east and 0 north says that the aircraft does not know the wind yet.
+double wind_speed(const Row& east_north) {
+    const double speed = std::hypot(east_north[0], east_north[1]);
+    return speed > 0.0 ? speed : unknown;
+}
+
+const std::vector<MadeTrack>& made_tracks() {
+    static const std::vector<MadeTrack> made{
+        // Rotorcraft before 2018: thrust, without a unit, on Paparazzi's command scale.
+        {"throttle_percent",
+         "ROTORCRAFT_FP",
+         {"thrust"},
+         {},
+         "ROTORCRAFT_FP.thrust",
+         [](const Row& row) { return units::percent_from_pprz(row[0]); }},
+        // What the motor is commanded, also in manual mode.
+        {"throttle_percent",
+         "COMMANDS",
+         {"values"},
+         {},
+         commanded_throttle,
+         [](const Row& row) { return units::percent_from_pprz(row[0]); }},
+        {"ground_speed_m_per_s",
+         "GPS_INT",
+         {"ecef_xd", "ecef_yd", "ecef_zd"},
+         {},
+         "GPS_INT.ecef velocity",
+         [](const Row& row) { return std::hypot(row[0], row[1], row[2]); }},
+        {"wind_speed_m_per_s",
+         "WIND_INFO",
+         {"east", "north"},
+         Quantity::metre_per_second,
+         "WIND_INFO.east, north",
+         wind_speed},
+    };
+    return made;
+}
+
+void add_made(std::vector<Track>& tracks, const SenderLog& sender, const MadeTrack& made) {
+    const auto* table = sender.table(made.message);
+    if (table == nullptr) return;
+    std::vector<const Column*> columns;
+    for (const auto* field : made.fields) {
+        columns.push_back(table->column(field));
+        if (columns.back() == nullptr) return;
+    }
+    if (made.quantity && columns.front()->quantity != made.quantity) return;
+    std::vector<double> values(table->time_s.size());
+    Row row(columns.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        for (std::size_t c = 0; c < columns.size(); ++c) row[c] = columns[c]->values[i];
+        values[i] = made.make(row);
+    }
+    tracks.push_back(make_candidate(made.name, made.source, *table, std::move(values), Merge::mean));
+}
+
+/// Latitude and longitude from the same series, which takes long.
+void add_utm_position(std::vector<Track>& tracks, const SenderLog& sender) {
+    const auto* table = sender.table("GPS");
+    if (table == nullptr) return;
+    const auto* east = table->column("utm_east");
+    const auto* north = table->column("utm_north");
+    const auto* zone = table->column("utm_zone");
+    if (east == nullptr || north == nullptr || zone == nullptr) return;
+    const auto rows = table->time_s.size();
+    std::vector<double> latitude_deg(rows);
+    std::vector<double> longitude_deg(rows);
+    constexpr std::size_t rows_at_once = 10'000;
+    const auto convert = [&](std::size_t part) {
+        const auto end = std::min((part + 1) * rows_at_once, rows);
+        for (auto i = part * rows_at_once; i < end; ++i) {
+            const auto position = position_of_utm(east->values[i], north->values[i], zone->values[i]);
+            latitude_deg[i] = position.latitude_deg;
+            longitude_deg[i] = position.longitude_deg;
+        }
+    };
+    for_each_in_parallel((rows + rows_at_once - 1) / rows_at_once, convert);
+    tracks.push_back(make_candidate("latitude_deg", "GPS.utm", *table, std::move(latitude_deg), Merge::mean));
+    tracks.push_back(make_candidate("longitude_deg", "GPS.utm", *table, std::move(longitude_deg), Merge::mean));
+}
+
+/// The first of `fields` that the table has with the given quantity; nullptr if it has none.
+const Column* first_column(const MessageTable& table, std::initializer_list<const char*> fields, Quantity quantity) {
+    for (const auto* field : fields) {
+        const auto* column = table.column(field);
+        if (column != nullptr && column->quantity == quantity) return column;
+    }
+    return nullptr;
+}
+
+const Column* voltage_of(const MessageTable& table) {
+    return first_column(table, {"voltage", "bat", "bat_volts"}, Quantity::volt);
+}
+
+const Column* current_of(const MessageTable& table) {
+    return first_column(table, {"current", "amp", "amps"}, Quantity::ampere);
+}
+
+std::vector<double> products(const Column& a, const Column& b) {
+    std::vector<double> result(a.values.size());
+    std::transform(a.values.begin(), a.values.end(), b.values.begin(), result.begin(), std::multiplies<>());
+    return result;
+}
+
+void add_products(std::vector<Track>& tracks, const SenderLog& sender) {
+    for (const auto* message : {"ENERGY", "BAT"}) {
+        const auto* table = sender.table(message);
+        if (table == nullptr) continue;
+        const auto* voltage = voltage_of(*table);
+        const auto* current = current_of(*table);
+        if (voltage == nullptr || current == nullptr) continue;
+        tracks.push_back(make_candidate("power_w",
+                                        fmt::format("{0}.{1} * {0}.{2}", message, voltage->field, current->field),
+                                        *table, products(*voltage, *current), Merge::mean));
+    }
+}
+
+/// The last two fields of a 4-field ENERGY, read the other way round.
+void add_exchanged(std::vector<Track>& tracks, const SenderLog& sender) {
+    const auto* table = sender.table("ENERGY");
+    if (table == nullptr || table->columns.size() != 4) return;
+    const auto* energy = table->column("energy");
+    const auto* power = table->column("power");
+    if (energy == nullptr || power == nullptr || table->column("bat") == nullptr || table->column("amp") == nullptr) {
+        return;
+    }
+    constexpr double raw_per_ah = 1000.0;  // the column was read as mAh
+    std::vector<double> watts = energy->values;
+    for (auto& value : watts) value *= raw_per_ah;
+    std::vector<double> ampere_hours = power->values;
+    for (auto& value : ampere_hours) value /= raw_per_ah;
+    tracks.push_back(make_candidate("power_w", energy_read_as_power, *table, std::move(watts), Merge::mean));
+    tracks.push_back(make_candidate("charge_ah", power_read_as_energy, *table, std::move(ampere_hours), Merge::latest));
+}
+
+/// One message that several devices send, told apart by the values of the id fields that it has.
+struct DeviceMessage {
+    const MessageTable& table;
+    std::vector<const Column*> ids;
+};
+
+/// Row by row of one device; the second, third ... report of one time are tracks of their own, not merged.
+void add_device(std::vector<Track>& tracks, const std::string& id, const Track& as, const MessageTable& table,
+                const std::vector<std::pair<double, double>>& rows) {
+    std::vector<MessageTable> reports;
+    std::vector<std::vector<double>> values;
+    double last_s = unknown;
+    std::size_t report = 0;
+    for (const auto& [time_s, value] : rows) {
+        report = time_s == last_s ? report + 1 : 0;
+        last_s = time_s;
+        if (report == reports.size()) {
+            reports.push_back({table.message, {}, {}});
+            values.emplace_back();
+        }
+        reports[report].time_s.push_back(time_s);
+        values[report].push_back(value);
+    }
+    for (std::size_t r = 0; r < reports.size(); ++r) {
+        tracks.push_back(make_candidate(as.name, as.source, reports[r], std::move(values[r]), Merge::mean));
+        tracks.back().device = r == 0 ? id : fmt::format("{}{}{}", id, report_separator, r + 1);
+    }
+}
+
+void add_devices(std::vector<Track>& tracks, const DeviceMessage& message, const char* name, const std::string& source,
+                 const std::vector<double>& column_values) {
+    std::map<std::vector<double>, std::vector<std::pair<double, double>>> rows;
+    for (std::size_t i = 0; i < column_values.size(); ++i) {
+        std::vector<double> id;
+        for (const auto* column : message.ids) id.push_back(column->values[i]);
+        if (std::any_of(id.begin(), id.end(), [](double part) { return std::isnan(part); })) continue;
+        rows[id].emplace_back(message.table.time_s[i], column_values[i]);
+    }
+    for (auto& [id, of_device] : rows) {
+        std::ranges::stable_sort(of_device, {}, &std::pair<double, double>::first);
+        const auto text = id.empty() ? std::string("all") : fmt::format("{}", fmt::join(id, "/"));
+        add_device(tracks, text, {.name = name, .source = source}, message.table, of_device);
+    }
+}
+
+void add_device_message(std::vector<Track>& tracks, const MessageTable* table,
+                        std::initializer_list<const char*> id_fields) {
+    if (table == nullptr) return;
+    DeviceMessage message{*table, {}};
+    for (const auto* field : id_fields)
+        if (const auto* column = table->column(field)) message.ids.push_back(column);
+    const auto* voltage = voltage_of(*table);
+    const auto* current = current_of(*table);
+    if (const auto* power = first_column(*table, {"power"}, Quantity::watt)) {
+        add_devices(tracks, message, "power_w", table->message, power->values);
+    } else if (voltage != nullptr && current != nullptr) {
+        add_devices(tracks, message, "power_w", table->message, products(*voltage, *current));
+    }
+    if (current == nullptr) return;
+    add_devices(tracks, message, "current_a", fmt::format("{}.{}", table->message, current->field), current->values);
+}
+
+}  // namespace
+
+Track make_candidate(const std::string& name, const std::string& source, const MessageTable& table,
+                     std::vector<double> values, Merge merge) {
+    auto track = make_track(table.time_s, std::move(values), merge);
+    track.name = name;
+    track.source = source;
+    const bool is_whole = track.time_s.size() == table.time_s.size();  // in the order of time
+    track.since_s = is_whole ? track.time_s.front() : *std::ranges::min_element(table.time_s);
+    return track;
+}
+
+void add_derived_tracks(std::vector<Track>& tracks, const SenderLog& sender, bool definitions_assumed) {
+    add_products(tracks, sender);
+    if (definitions_assumed) add_exchanged(tracks, sender);
+    for (const auto& made : made_tracks()) add_made(tracks, sender, made);
+    add_utm_position(tracks, sender);
+    if (const auto* takeoff = sender.table("TAKEOFF"); takeoff != nullptr && !takeoff->empty()) {
+        std::vector<double> ones(takeoff->time_s.size(), 1.0);
+        tracks.push_back(make_candidate("takeoff", "TAKEOFF", *takeoff, std::move(ones), Merge::latest));
+    }
+    add_device_message(tracks, sender.table("ESC"), {"node_id", "motor_id"});
+    add_device_message(tracks, sender.table("POWER_DEVICE"), {"node_id", "circuit"});
+}
+
+}  // namespace flightwatt::flight

@@ -1,0 +1,96 @@
+#include "live/state/airborne_start.h"
+
+#include "base/error.h"
+#include "base/units.h"
+#include "flight/phase_statistics.h"
+#include "flight/segmentation.h"
+#include "flight/selected_track.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace flightwatt::live {
+namespace {
+
+using flight::Phase;
+
+mechanical::FlightProgress progress_from_air(const flight::FlightSeries& series, const flight::Sortie& sortie) {
+    mechanical::FlightProgress flown;
+    flown.until_s = mechanical::last_time_s(series);
+    flown.lift_off_s = sortie.start_s();
+    const auto& first = sortie.phases.front();
+    flown.cruise_start_s = first.phase == Phase::takeoff ? first.end.time_s : sortie.start_s();
+    const double hold_s = flight::SegmentationOptions{}.hold_s;
+    if (sortie.phases.back().phase == Phase::takeoff || flown.cruise_s() < hold_s) {
+        throw NoResultError(fmt::format(
+            "at {:.1f} s of the log the aircraft, seen from the air on, has not held its height for {:.0f} s",
+            flown.until_s, hold_s));
+    }
+    flown.cruise_energy_wh = integrated_energy_wh(series, flown.cruise_start_s, flown.until_s);
+    flown.energy_wh = integrated_energy_wh(series, flown.lift_off_s, flown.cruise_start_s) + flown.cruise_energy_wh;
+    const flight::SelectedTracks tracks(series);
+    flown.airspeed_cubed_m3_per_s3 =
+        mean_cubed_airspeed_m3_per_s3(tracks["airspeed_m_per_s"], flown.cruise_start_s, flown.until_s);
+    flown.motion = mechanical::bin_flight(tracks, {{Phase::cruise, flown.cruise_start_s, flown.until_s}});
+    return flown;
+}
+
+/// What may be left of a cruise of which so much was seen.
+double max_left_s(const PredictionInput& basis, double seen_s) {
+    const double whole_s = basis.path ? basis.path->flown().duration_s : basis.cruise_s.value();
+    if (seen_s < whole_s) return whole_s - seen_s;
+    throw NoResultError(
+        fmt::format("the cruise takes longer than the mission's {:.0f} s: how long it goes on is not known "
+                    "(--remaining says it)",
+                    whole_s));
+}
+
+/// Evenly likely from 0 to that time.
+void add_unknown_time(double time_s, Prediction& prediction) {
+    constexpr double variance_of_even = 1.0 / 12.0;
+    constexpr double known_well = 1e9;
+    const double energy_wh = units::wh_from_joule(prediction.cruise.remaining_mean_w * time_s);
+    mechanical::add_variance(prediction.remaining_energy, {energy_wh * energy_wh * variance_of_even, known_well});
+    prediction.interval = mechanical::interval_95(prediction.remaining_energy).value();
+}
+
+}  // namespace
+
+Prediction predict_airborne_start(const PredictionInput& basis, const flight::FlightSeries& series,
+                                  const flight::Sortie& sortie, const LiveBattery* battery, PathTracker* places,
+                                  Diagnostics& remarks) {
+    const auto flown = progress_from_air(series, sortie);
+    auto ahead = basis;
+    if (!ahead.level) ahead.level = mechanical::CruisePrior::constant;  // where on the curve it is, is not known
+    double unknown_s = 0.0;
+    const bool saw_cruise_begin = sortie.phases.front().phase == Phase::takeoff;
+    if (!basis.remaining_s && !saw_cruise_begin) {
+        unknown_s = max_left_s(basis, flown.cruise_s());
+        ahead.remaining_s = 0.5 * unknown_s;
+        remarks.warnings.push_back(fmt::format(
+            "watched from the air on: how far the cruise had come is not known. Of the mission's 0 to {:.0f} s "
+            "may be left; half of that is expected, and the interval holds all of it",
+            unknown_s));
+    }
+    std::optional<PathFix> sighting;
+    if (saw_cruise_begin && places != nullptr)
+        sighting = places->find(flight::SelectedTracks(series), flown.cruise_start_s, flown.until_s);
+    auto prediction = predict_energy(ahead, flown, sighting, remarks);
+    prediction.began_in_air = true;
+    if (unknown_s > 0.0) add_unknown_time(unknown_s, prediction);
+    if (battery != nullptr && battery->state) {
+        auto& of = prediction.battery.emplace();
+        of.limits = basis.limits;
+        of.initial_soc_percent = battery->state->soc_percent;
+        of.initial_soc_is_current = true;
+        forecast_battery(*basis.battery, *battery->state, prediction, of);
+        remarks.warnings.emplace_back(
+            battery->soc_percent ? "watched from the air on: the state of charge is what --initial-soc (or the "
+                                   "mission) leaves by the autopilot's counter"
+                                 : "watched from the air on: the state of charge is that of the voltage in flight");
+    }
+    return prediction;
+}
+
+}  // namespace flightwatt::live

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "live/state/path_grid.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace flightwatt::live {
+
+/// How likely a flight at each place of a path is, on the path and off it, by its observations one after the other.
+class PathFilter {
+  public:
+    static constexpr double likelihood_weight = 0.5;  ///< of a position: it is off as the one before was
+
+    /// The path lasts as long as the filter.
+    explicit PathFilter(const PathGrid& places);
+
+    /// From the beginning of the path, which lies `origin` off the first observation. `off_path_m`: one deviation of
+    /// positions from the path.
+    void begin(double off_path_m, const Displacement& origin);
+    void add_observation(const Observation& seen);
+
+    const Displacement& origin() const { return origin_; }
+    /// Observations since the beginning.
+    std::size_t taken() const { return taken_; }
+    /// Seconds of planned time that were seen, and those of them on the path.
+    double known_s() const { return known_s_; }
+    double seen_on_path_s() const { return seen_on_path_s_; }
+
+    bool is_on_path() const { return on_path_ >= 0.5; }
+    /// The middle of what is likely, in places.
+    double median_position() const;
+    /// The place nearest to the last position that was seen, of those about the middle: the filter lags behind a flight
+    /// that is faster or slower than planned.
+    double nearest_position() const;
+    /// What the last position that was seen is off a place.
+    Displacement off(double place) const;
+    const PathPoint& point_of(double place) const;
+
+  private:
+    void predict_step();
+    void update_step(const Observation& seen);
+    double log_likelihood(std::size_t i) const;
+    std::size_t index_of(double place) const;
+
+    const PathGrid* places_;
+    double off_path_m_ = 0.0;
+    Displacement origin_;
+    Observation last_seen_;
+    std::size_t taken_ = 0;
+    double known_s_ = 0.0;
+    double seen_on_path_s_ = 0.0;
+    std::vector<double> on_;
+    std::vector<double> off_;
+    double on_path_ = 0.0;          ///< sum of `on_`
+    std::vector<double> next_on_;   ///< of go_on
+    std::vector<double> next_off_;  ///< and what goes over an end of the path
+};
+
+}  // namespace flightwatt::live

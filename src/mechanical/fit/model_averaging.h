@@ -1,0 +1,22 @@
+#pragma once
+
+#include "mechanical/fit/phase_fit.h"
+
+#include <span>
+
+namespace flightwatt::mechanical {
+
+/// Where the samples leave the frequency open, the mean of the curves over all frequencies and autocorrelations that
+/// may be (frequency_posterior.h) is nearer to the truth than that of least squares. The frequency is open where its
+/// 95 % interval, with that of least squares, lets the highest harmonic turn by more than 1 rad over the phase, and
+/// noise and curve are told apart (noise_lasts). There the mean takes the place of the fit's curves if it is further
+/// from them than a quarter of its standard deviation, if they fall below 0, or if their constant is implausible:
+/// negative, or further from all power measured than that ranges. The record stays a series of the order with one
+/// frequency (docs/methods.md, Eq. 13): of those that are within a tenth of a standard deviation of the mean and have
+/// plausible constants, the one with the smallest harmonics.
+/// A curve that falls below 0 is held above it, its mean power as before, unless power below 0 was measured: a mean
+/// over a fifth of the phase that is negative by more than chance (95 %), which then is the least.
+/// Sets PhaseFit::mean_curve and not_negative where it changes the curves, and PhaseFit::posterior.
+void average_over_frequencies(std::span<const PhaseSamples> flights, PhaseFit& fit);
+
+}  // namespace flightwatt::mechanical

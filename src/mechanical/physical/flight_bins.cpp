@@ -1,0 +1,153 @@
+#include "mechanical/physical/flight_bins.h"
+
+#include "base/statistics.h"
+#include "base/units.h"
+#include "flight/phase_statistics.h"
+#include "flight/selected_track.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace flightwatt::mechanical {
+namespace {
+
+constexpr double reach_s = 5.0;        // of a sample
+constexpr double edge_window_s = 2.5;  // to both sides of a bin's edge, for the airspeed there
+constexpr double steepest_turn_deg = 60.0;
+
+/// The track's values in [start_s, end_s].
+std::span<const double> values_between(const flight::Track& track, double start_s, double end_s) {
+    const auto first = std::ranges::lower_bound(track.time_s, start_s);
+    const auto last = std::upper_bound(first, track.time_s.end(), end_s);
+    return std::span(track.value)
+        .subspan(static_cast<std::size_t>(first - track.time_s.begin()), static_cast<std::size_t>(last - first));
+}
+
+/// Whether half of the time or more has a sample near it, and there is one inside.
+bool is_measured(const flight::Track& track, double start_s, double end_s) {
+    double covered_s = 0.0;
+    double covered_until_s = start_s;
+    for (auto i = std::ranges::lower_bound(track.time_s, start_s); i != track.time_s.end() && *i <= end_s; ++i) {
+        const double until_s = std::min(*i + reach_s, end_s);
+        covered_s += until_s - std::max(covered_until_s, std::max(*i - reach_s, start_s));
+        covered_until_s = until_s;
+    }
+    return covered_s >= 0.5 * (end_s - start_s) && !values_between(track, start_s, end_s).empty();
+}
+
+template <typename Function>
+double mean_of(std::span<const double> values, const Function& function) {
+    double sum = 0.0;
+    for (const double value : values) sum += function(value);
+    return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
+/// What a sortie's bins are made from.
+struct MotionTracks {
+    const flight::Track& power;
+    const flight::Track& airspeed;
+    const flight::Track& altitude;
+    const flight::Track& roll;
+    const flight::Track& throttle;
+    double min_m_per_s = 0.0;  ///< at which the wing carries
+};
+
+/// Altitude and kinetic energy, in metres of height.
+double energy_height_m(const MotionTracks& tracks, double time_s) {
+    const auto near = values_between(tracks.airspeed, time_s - edge_window_s, time_s + edge_window_s);
+    const double airspeed = near.empty() ? value_at(tracks.airspeed, time_s) : mean(near);
+    return value_at(tracks.altitude, time_s) + airspeed * airspeed / (2.0 * units::standard_gravity_m_per_s2);
+}
+
+FlightBin motion_bin(const MotionTracks& tracks, const BinSpan& span) {
+    FlightBin bin;
+    bin.phase = span.phase;
+    bin.start_s = span.start_s;
+    bin.duration_s = span.end_s - span.start_s;
+    const auto speeds = values_between(tracks.airspeed, span.start_s, span.end_s);
+    const double slowest = tracks.min_m_per_s;
+    bin.power_w =
+        flight::integrated(tracks.power.time_s, tracks.power.value, span.start_s, span.end_s) / bin.duration_s;
+    bin.samples = values_between(tracks.power, span.start_s, span.end_s).size();
+    bin.airspeed_m_per_s = mean(speeds);
+    bin.values[PowerTerm::drag] = mean_of(speeds, [](double v) { return v * v * v; });
+    bin.values[PowerTerm::induced] = mean_of(speeds, [&](double v) { return 1.0 / std::max(v, slowest); });
+    const double tan_squared = mean_of(values_between(tracks.roll, span.start_s, span.end_s), [](double roll_deg) {
+        const double bank_deg = std::min(std::abs(roll_deg), steepest_turn_deg);
+        return std::pow(std::tan(bank_deg / units::degree_per_rad), 2);
+    });
+    bin.values[PowerTerm::turn] = tan_squared * bin.values[PowerTerm::induced];
+    const double climb = (energy_height_m(tracks, span.end_s) - energy_height_m(tracks, span.start_s)) / bin.duration_s;
+    bin.values[PowerTerm::climb] = climb;
+    bin.values[PowerTerm::descent] = std::min(climb, 0.0);
+    bin.values[PowerTerm::constant] = 1.0;
+    if (is_measured(tracks.throttle, span.start_s, span.end_s)) {
+        bin.throttle_cubed = mean_of(values_between(tracks.throttle, span.start_s, span.end_s),
+                                     [](double percent) { return std::pow(percent / units::percent_per_whole, 3); });
+    }
+    return bin;
+}
+
+/// Why a flight's power cannot be told by its motion; empty if it can.
+std::string why_without_motion(const flight::SelectedTracks& tracks) {
+    const auto& firmware = tracks.series().firmware;
+    if (firmware == "rotorcraft") return "a rotorcraft: this model is one of wings, and a hover has no airspeed";
+    if (firmware == "rover") return "a rover: it drives";
+    if (tracks["power_w"].empty()) return "its power was not measured";
+    if (tracks["altitude_m"].empty()) return "its altitude was not measured";
+    if (!tracks["airspeed_m_per_s"].empty()) return "";
+    return "its airspeed was not measured: ground speed is no stand-in, in wind the cubes of both differ";
+}
+
+}  // namespace
+
+std::vector<BinSpan> phase_spans(const flight::Sortie& sortie) {
+    std::vector<BinSpan> spans;
+    spans.reserve(sortie.phases.size());
+    for (const auto& phase : sortie.phases) spans.push_back({phase.phase, phase.start.time_s, phase.end.time_s});
+    return spans;
+}
+
+BinnedFlight bin_flight(const flight::SelectedTracks& tracks, const std::vector<BinSpan>& spans, double bin_s) {
+    BinnedFlight motion{tracks.series().flight, {}, false, why_without_motion(tracks)};
+    if (!motion.no_bins_reason.empty()) return motion;
+    MotionTracks of{tracks["power_w"], tracks["airspeed_m_per_s"], tracks["altitude_m"], tracks["roll_deg"],
+                    tracks["throttle_percent"]};
+    std::vector<double> speeds;
+    for (const auto& span : spans) {
+        const auto values = values_between(of.airspeed, span.start_s, span.end_s);
+        speeds.insert(speeds.end(), values.begin(), values.end());
+    }
+    if (!speeds.empty()) of.min_m_per_s = 0.5 * median(speeds);
+    motion.bank_measured = !of.roll.empty();
+    for (const auto& span : spans) {
+        const double duration_s = span.end_s - span.start_s;
+        const auto count = std::max<std::size_t>(1, static_cast<std::size_t>(std::round(duration_s / bin_s)));
+        const double width_s = duration_s / static_cast<double>(count);
+        for (std::size_t i = 0; i < count && duration_s > 0.0; ++i) {
+            const double start_s = span.start_s + static_cast<double>(i) * width_s;
+            const double end_s = start_s + width_s;
+            if (!is_measured(of.power, start_s, end_s) || !is_measured(of.airspeed, start_s, end_s) ||
+                !is_measured(of.altitude, start_s, end_s) || !(of.min_m_per_s > 0.0))
+                continue;
+            motion.bins.push_back(motion_bin(of, {span.phase, start_s, end_s}));
+        }
+    }
+    if (motion.bins.empty())
+        motion.no_bins_reason = "power, airspeed and altitude were never measured at the same time";
+    return motion;
+}
+
+TermValues mean_values(const std::vector<FlightBin>& bins) {
+    TermValues sum;
+    double duration_s = 0.0;
+    for (const auto& bin : bins) {
+        for (const auto term : all_power_terms) sum[term] += bin.values[term] * bin.duration_s;
+        duration_s += bin.duration_s;
+    }
+    for (auto& value : sum.values) value = duration_s > 0.0 ? value / duration_s : 0.0;
+    return sum;
+}
+
+}  // namespace flightwatt::mechanical

@@ -1,0 +1,65 @@
+#pragma once
+
+#include "flight/flight_phases.h"
+#include "mechanical/physical_model.h"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flightwatt::flight {
+class SelectedTracks;
+}
+
+namespace flightwatt::mechanical {
+
+/// Power and motion of a flight, averaged over a short time.
+struct FlightBin {
+    flight::Phase phase = flight::Phase::cruise;
+    double start_s = 0.0;  ///< the log's own seconds
+    double duration_s = 0.0;
+    double power_w = 0.0;
+    std::size_t samples = 0;  ///< of power
+    TermValues values;        ///< means of the terms; the climb is that of the energy height
+    double airspeed_m_per_s = 0.0;
+    std::optional<double> throttle_cubed;  ///< mean cube of the throttle, 1 is full
+
+    double middle_s() const { return start_s + 0.5 * duration_s; }
+};
+
+/// The bins of one flight, in their order, from lift-off to touchdown.
+struct BinnedFlight {
+    std::string flight;
+    std::vector<FlightBin> bins;
+    bool bank_measured = false;  ///< without it every load factor is taken for 1
+    std::string no_bins_reason;  ///< why there are no bins; empty if there are
+};
+
+/// How long a bin is: longer than gusts and the exchange of height and speed, short beside a manoeuvre.
+inline constexpr double default_bin_s = 30.0;
+
+/// A stretch of a flight.
+struct BinSpan {
+    flight::Phase phase = flight::Phase::cruise;
+    double start_s = 0.0;
+    double end_s = 0.0;
+};
+
+/// Each span in equal bins of about `bin_s`. A bin counts where power, airspeed and altitude were measured in half of
+/// its seconds or more (a sample within 5 s). Its terms:
+///   drag, induced   means of V^3 and 1/V of the airspeed's samples (below half their median the wing does not carry,
+///                   and 1/V is that of the half)
+///   climb           of the energy height altitude + V^2 / 2g, from end to end: power that becomes speed is not lost
+///   descent         the same where it is below 0
+///   turn            mean of tan^2 of the bank (at most 60 degrees: what banks more is no steady turn) times that of 1/V
+BinnedFlight bin_flight(const flight::SelectedTracks& tracks, const std::vector<BinSpan>& spans,
+                        double bin_s = default_bin_s);
+
+/// The spans of a sortie: its phases.
+std::vector<BinSpan> phase_spans(const flight::Sortie& sortie);
+
+/// Means of the bins' terms, each weighing as long as it is. Of no bins zeros.
+TermValues mean_values(const std::vector<FlightBin>& bins);
+
+}  // namespace flightwatt::mechanical

@@ -1,0 +1,169 @@
+#include "mission/flight_replanner.h"
+
+#include "base/statistics.h"
+#include "base/units.h"
+#include "mission/sampling/level_deviation.h"
+#include "mission/sampling/student.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flightwatt::mission {
+namespace {
+
+/// Of tables: the relaxation's plan leaves at most what one slot could spend, and the next decision spends it; only
+/// near the end does a search pay. Where the battery's state counts, a few labels follow it all the way.
+SearchLimits effort_for(const PlanningTables& planner, double slots_left) {
+    constexpr double searched_slots = 8.0;
+    const bool searches = slots_left <= searched_slots;
+    if (planner.step_s) return {1e-4, searches ? std::size_t{200} : std::size_t{20}, 16};
+    return {searches ? 1e-4 : 1.0, 200};
+}
+
+/// How far mechanical power may be above the model's with the policy's probability, as a part of it: as the policy
+/// states, or as flights differ (levels independent from phase to phase), or where nothing says so by 5 %.
+double expected_reach(const PlanningProblem& mission) {
+    constexpr double sd_if_unknown_percent = 5.0;
+    const auto& policy = *mission.adaptive;
+    if (policy.mechanical_sd_percent || !has_flight_variability(mission)) {
+        const double sd_percent = policy.mechanical_sd_percent.value_or(sd_if_unknown_percent);
+        return sd_percent / units::percent_per_whole * normal_quantile(policy.probability);
+    }
+    double energy = 0.0;
+    double variance = 0.0;
+    double freedom = infinite_dof;
+    for (const auto phase : all_phases) {
+        const double duration_s = mission.duration_s[phase];
+        if (!(duration_s > 0.0)) continue;
+        const auto deviation = level_deviation(mission, phase);
+        energy += mean_level_w(mission, phase) * duration_s;
+        variance += std::pow(deviation.sd_w * duration_s, 2);
+        freedom = std::min(freedom, deviation.degrees_of_freedom);
+    }
+    const double deviations = student_from_normal(normal_quantile(policy.probability), freedom);
+    return energy > 0.0 ? deviations * std::sqrt(variance) / energy : 0.0;
+}
+
+constexpr double jump_factor = 2.0;  ///< of the depletion predicted: beyond, charge was lost otherwise
+
+/// What of a schedule comes at a moment or later.
+Schedule rest_of(Schedule schedule, const PhaseTime& moment) {
+    std::erase_if(schedule, [&](const ScheduleSegment& s) {
+        return s.phase < moment.phase || (s.phase == moment.phase && s.end_s <= moment.time_s);
+    });
+    if (!schedule.empty() && schedule.front().phase == moment.phase)
+        schedule.front().start_s = std::max(schedule.front().start_s, moment.time_s);
+    return schedule;
+}
+
+}  // namespace
+
+FlightReplanner::FlightReplanner(const AdaptivePlanner& planner)
+    : adaptive_(planner),
+      nominal_(planner.nominal),
+      planned_(timeline_of(nominal_.duration_s)),
+      known_load_(make_mission_load(nominal_)) {
+    required_deviation_ = expected_reach(nominal_);
+}
+
+double FlightReplanner::mechanical_factor() const {
+    if (learned_.mechanical_percent <= 0.0) return 1.0;
+    const double gain = learned_.time_s / (learned_.time_s + nominal_.adaptive->learning_time_s);
+    return std::max(
+        0.0, 1.0 + gain * (learned_.observed_percent - learned_.predicted_percent) / learned_.mechanical_percent);
+}
+
+double FlightReplanner::mechanical_percent(const PhaseSegment& time) const {
+    return soc_depletion_percent(adaptive_.planner.mechanical_depletion, {time, 0});
+}
+
+double FlightReplanner::rest_mechanical_percent(const PhaseTime& moment) const {
+    double percent = 0.0;
+    for (const auto phase : all_phases) {
+        if (phase < moment.phase) continue;
+        const double from_s = phase == moment.phase ? moment.time_s : 0.0;
+        if (from_s < nominal_.duration_s[phase])
+            percent += mechanical_percent({phase, from_s, nominal_.duration_s[phase]});
+    }
+    return percent;
+}
+
+FlightReplanner::PredictedDepletion FlightReplanner::predict(const PhaseSegment& interval, const Schedule& run,
+                                                             const battery::BatteryState& state) const {
+    if (!state_counts()) {
+        PredictedDepletion predicted{0.0, mechanical_percent(interval)};
+        const auto& table = adaptive_.planner.depletions;
+        for (const auto& segment : to_indexed(run, table)) predicted.percent += soc_depletion_percent(table, segment);
+        return predicted;
+    }
+    constexpr double more = 0.01;
+    const auto lost_percent = [&](double mechanical_factor) {
+        Disturbance wind;
+        wind.mechanical_factor = mechanical_factor;
+        battery::Discharge now{state};
+        for (const auto& scheduled : run)
+            for (const auto& segment : disturbed({load_segment(known_load_, scheduled)}, {wind}))
+                now = advance_segment(nominal_.battery, 0.0, segment, now);
+        return state.soc_percent - now.soc_percent;
+    };
+    const double percent = lost_percent(1.0);
+    return {percent, (lost_percent(1.0 + more) - percent) / more};
+}
+
+Plan FlightReplanner::replan(const PhaseTime& moment, const battery::BatteryState& now) const {
+    const auto& policy = *nominal_.adaptive;
+    PlanStart start{planned_.start_s[moment.phase] + moment.time_s,
+                    now.soc_percent,
+                    running_,
+                    running_for_s_,
+                    mechanical_factor(),
+                    now.rc_voltage_v};
+    const double seen =
+        policy.learning_time_s > 0.0 ? policy.learning_time_s / (learned_.time_s + policy.learning_time_s) : 0.0;
+    const double to_come = policy.learning_time_s / (planned_.duration_s - start.time_s);
+    const double margin = required_deviation_ * std::sqrt(seen + to_come);  // of the mechanical power that is left
+    double reserve_percent = nominal_.reserve_soc_percent;
+    if (state_counts())
+        start.mechanical_factor += margin;  // its voltage falls as well
+    else
+        reserve_percent += margin * rest_mechanical_percent(moment);
+    auto plan =
+        plan_remaining(nominal_, adaptive_.planner, start, reserve_percent,
+                       effort_for(adaptive_.planner, (planned_.duration_s - start.time_s) / nominal_.plan.slot_s));
+    // Nothing that the battery can deliver is known: fly on with what demands least energy.
+    if (plan.schedule.empty()) plan.schedule = rest_of(minimum_energy_schedule(nominal_), moment);
+    return plan;
+}
+
+void FlightReplanner::update(const PhaseSegment& interval, const Schedule& run, const battery::BatteryState& before,
+                             double soc_after_percent) {
+    for (const auto& segment : run) {
+        if (!running_ || *running_ != segment.run) running_for_s_ = 0.0;
+        running_for_s_ += segment.duration_s();
+        running_ = segment.run;
+    }
+    const auto predicted = predict(interval, run, before);
+    const double observed_percent = before.soc_percent - soc_after_percent;
+    if (observed_percent < 0.0 || observed_percent > jump_factor * predicted.percent) return;
+    learned_.time_s += interval.duration_s();
+    learned_.observed_percent += observed_percent;
+    learned_.predicted_percent += predicted.percent;
+    learned_.mechanical_percent += predicted.mechanical_percent;
+}
+
+Schedule clip_to_interval(const Schedule& plan, const PhaseSegment& interval) {
+    Schedule run;
+    for (const auto& planned : plan) {
+        if (planned.phase != interval.phase || planned.start_s >= interval.end_s) {
+            if (run.empty() && planned.phase <= interval.phase) continue;
+            break;
+        }
+        if (planned.end_s <= interval.start_s) continue;
+        run.push_back(planned);
+        run.back().start_s = std::max(planned.start_s, interval.start_s);
+        run.back().end_s = std::min(planned.end_s, interval.end_s);
+    }
+    return run;
+}
+
+}  // namespace flightwatt::mission

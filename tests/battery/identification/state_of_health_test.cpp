@@ -1,0 +1,103 @@
+// What each flight alone says of its pack, as that ages.
+
+#include "battery/identification/state_of_health.h"
+
+#include "base/statistics.h"
+#include "helpers/aged_flights.h"
+#include "helpers/synthetic_discharge.h"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::battery {
+namespace {
+
+TEST(StateOfHealth, HasTheResistanceOfTheFlight) {
+    std::vector<DischargeRecord> records;
+    const std::vector<double> true_ohm{0.06, 0.08, 0.12};
+    for (std::size_t f = 0; f < true_ohm.size(); ++f) {
+        auto pack = test::known_pack();
+        pack.resistance_ohm = true_ohm[f];
+        records.push_back(test::discharge_record(test::synthetic_discharge(pack, {}, 40 + f)));
+    }
+    const auto found = estimate_state_of_health(fit_circuit_jointly(records, 3), false);
+    for (std::size_t f = 0; f < true_ohm.size(); ++f) {
+        ASSERT_TRUE(found[f].resistance);
+        EXPECT_NEAR(found[f].resistance->value_ohm, true_ohm[f], 0.004) << f;
+        EXPECT_LT(found[f].resistance->standard_error_ohm, 0.01) << f;
+    }
+}
+
+TEST(StateOfHealth, SaysHowFarItsErrorMovesTheCharge) {
+    const std::vector records{test::discharge_record(test::synthetic_discharge(test::known_pack(), {}, 51)),
+                              test::discharge_record(test::synthetic_discharge(test::known_pack(), {}, 52))};
+    for (const auto& wear : estimate_state_of_health(fit_circuit_jointly(records, 3), false)) {
+        const auto& own = wear.resistance;
+        ASSERT_TRUE(own);
+        // More resistance takes more voltage at 2.5 A; less charge missing, where the curve falls by 0.4 V/Ah, gives
+        // it.
+        EXPECT_LT(own->charge_ah_per_ohm, -2.0);
+        EXPECT_GT(own->charge_ah_per_ohm, -15.0);
+    }
+}
+
+/// The slope over the date, by least squares.
+double slope_of(const std::vector<double>& day, const std::vector<double>& value) {
+    const double middle = mean(day);
+    double squares = 0.0;
+    double products = 0.0;
+    for (std::size_t f = 0; f < day.size(); ++f) {
+        squares += std::pow(day[f] - middle, 2);
+        products += (day[f] - middle) * value[f];
+    }
+    return products / squares;
+}
+
+/// Resistance and capacity that one pack's flights show.
+struct Shown {
+    std::vector<double> resistance_ohm;
+    std::vector<double> log_ratio;
+};
+
+Shown shown_by(const test::AgedFlights& aged) {
+    Shown shown;
+    for (const auto& wear : estimate_state_of_health(fit_circuit_jointly(aged.records, 3), true)) {
+        EXPECT_TRUE(wear.resistance && wear.capacity);
+        if (!wear.resistance || !wear.capacity) continue;
+        shown.resistance_ohm.push_back(wear.resistance->value_ohm);
+        shown.log_ratio.push_back(std::log(wear.capacity->ratio));
+        EXPECT_LT(wear.capacity->ratio_interval.low, wear.capacity->ratio);
+        EXPECT_GT(wear.capacity->ratio_interval.high, wear.capacity->ratio);
+    }
+    return shown;
+}
+
+TEST(StateOfHealth, OfAnAgeingPackIsNotUnderstated) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        const test::Ageing ageing{0.0001, 0.001};
+        const auto aged = test::aged_flights(ageing, seed);
+        const auto shown = shown_by(aged);
+        ASSERT_EQ(shown.log_ratio.size(), aged.day.size());
+        EXPECT_NEAR(slope_of(aged.day, shown.resistance_ohm), ageing.ohm_a_day, 0.2 * ageing.ohm_a_day) << seed;
+        EXPECT_NEAR(slope_of(aged.day, shown.log_ratio), -ageing.part_a_day, 0.2 * ageing.part_a_day) << seed;
+    }
+}
+
+TEST(StateOfHealth, IsNoneWhereNothingTellsIt) {
+    const std::vector records{test::discharge_record(test::synthetic_discharge(test::known_pack(), {}, 61)),
+                              test::discharge_record(test::synthetic_discharge(test::known_pack(), {}, 62))};
+    const auto aligned = fit_circuit_jointly(records, 3);
+    for (const auto& wear : estimate_state_of_health(aligned, false))
+        EXPECT_FALSE(wear.capacity) << "it was not asked for";
+    test::SyntheticDischarge shallow;
+    shallow.duration_s = 320.0;
+    const std::vector few{test::discharge_record(test::synthetic_discharge(test::known_pack(), shallow, 63)),
+                          test::discharge_record(test::synthetic_discharge(test::known_pack(), shallow, 64))};
+    for (const auto& wear : estimate_state_of_health(fit_circuit_jointly(few, 3), true))
+        EXPECT_FALSE(wear.capacity) << "it draws too little";
+}
+
+}  // namespace
+}  // namespace flightwatt::battery

@@ -1,0 +1,290 @@
+#include "live/state/path_tracker.h"
+
+#include "flight/selected_track.h"
+#include "helpers/path_missions.h"
+#include "live/turn_home.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::live {
+namespace {
+
+using mission::Circles;
+using mission::FlightPath;
+using mission::Leg;
+using mission::Wind;
+
+constexpr double begin_s = 100.0;
+
+/// A survey with circles in it, and two legs that are flown in both directions.
+FlightPath survey() {
+    FlightPath path;
+    path.elements = {test::path_element(Leg{900.0, 20.0}),
+                     test::path_element(Circles{70.0, 4.0, true, 20.0}),
+                     test::path_element(Leg{300.0, 110.0}),
+                     test::path_element(Leg{900.0, 200.0}),
+                     test::path_element(Circles{60.0, 2.5, false, 200.0}),
+                     test::path_element(Leg{500.0, 20.0}),
+                     test::path_element(Leg{500.0, 200.0}),
+                     test::path_element(Leg{400.0, 290.0})};
+    return path;
+}
+
+struct Flown {
+    flight::FlightSeries series;
+    std::vector<double> planned_s;  ///< where on the path it truly is at each position, in planned time
+    double end_s = 0.0;
+};
+
+struct Conditions {
+    Wind planned = {};
+    Wind true_wind = {};
+    double noise_m = 4.0;
+    Displacement origin = {};   ///< of the path, from where its first position is
+    double detour_at_s = -1.0;  ///< of the flight's time
+    double detour_s = 0.0;
+    double every_s = 0.25;
+};
+
+/// What is planned to be where the flight is after `time_s` in its own wind.
+double planned_s(const mission::PathForecast& plan, const mission::PathTrajectory& flown, double time_s) {
+    const auto place = position_at(flown, time_s);
+    double planned_s = 0.0;
+    for (std::size_t i = 0; i < std::min(place.element, plan.flown().element_s.size()); ++i)
+        planned_s += plan.flown().element_s[i];
+    return place.element < plan.flown().element_s.size()
+               ? planned_s + place.part * plan.flown().element_s[place.element]
+               : planned_s;
+}
+
+Flown fly(const FlightPath& path, const Conditions& conditions, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> noise(0.0, conditions.noise_m);
+    const mission::PathForecast plan({path, conditions.planned, test::made_up_wing()});
+    const auto flown = compute_trajectory(path, conditions.true_wind);
+    Flown result;
+    flight::Track east{.name = "east_m", .source = "NAVIGATION.pos_x"};
+    flight::Track north{.name = "north_m", .source = "NAVIGATION.pos_y"};
+    const double all_s = flown.duration_s + conditions.detour_s;
+    for (double t = 0.0; t <= all_s; t += conditions.every_s) {
+        double on_path_s = t;
+        Displacement away;
+        if (conditions.detour_at_s >= 0.0 && t > conditions.detour_at_s) {
+            const double gone_s = std::min(t - conditions.detour_at_s, conditions.detour_s);
+            on_path_s = t - gone_s;
+            if (gone_s < conditions.detour_s) {
+                const double angle = 2.0 * M_PI * gone_s / conditions.detour_s;
+                away = {400.0 * std::sin(angle), 400.0 * (1.0 - std::cos(angle))};
+            }
+        }
+        const auto at = displacement_at(path, position_at(flown, on_path_s));
+        const bool is_first = t == 0.0;
+        for (auto* track : {&east, &north}) track->time_s.push_back(begin_s + t);
+        east.value.push_back(700.0 + at.east_m + away.east_m + (is_first ? 0.0 : conditions.origin.east_m) +
+                             noise(random));
+        north.value.push_back(-90.0 + at.north_m + away.north_m + (is_first ? 0.0 : conditions.origin.north_m) +
+                              noise(random));
+        result.planned_s.push_back(planned_s(plan, flown, on_path_s));
+    }
+    result.end_s = begin_s + all_s;
+    result.series.tracks = {std::move(east), std::move(north)};
+    return result;
+}
+
+/// The worst of the places that are told every 10 s, from 30 s on; -1 where one is not told.
+double worst_s(const FlightPath& path, const Conditions& conditions, const Flown& flown) {
+    const mission::PathForecast plan({path, conditions.planned, test::made_up_wing()});
+    double worst_s = 0.0;
+    for (double time_s = begin_s + 30.0; time_s < flown.end_s - 10.0; time_s += 10.0) {
+        const auto sighting = locate_on_path(plan, truncate_series(flown.series, time_s), begin_s, time_s);
+        if (!sighting || !sighting->path_time_s) return -1.0;
+        const auto index = static_cast<std::size_t>((time_s - begin_s) / conditions.every_s);
+        const double off_s = std::abs(*sighting->path_time_s - flown.planned_s[index]);
+        if (sighting->is_on_path) worst_s = std::max(worst_s, off_s);
+    }
+    return worst_s;
+}
+
+TEST(PathTracker, IsFoundInWindsThatMakeTheFlightFasterAndSlowerThanPlanned) {
+    const auto path = survey();
+    const std::vector<Conditions> all{
+        {}, {{}, {6.0, 20.0}}, {{}, {6.0, 200.0}}, {{}, {8.0, 110.0}}, {{6.0, 20.0}, {}}, {{5.0, 200.0}, {7.0, 60.0}}};
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const auto flown = fly(path, all[i], 11 + static_cast<std::uint32_t>(i));
+        const double worst = worst_s(path, all[i], flown);
+        EXPECT_GE(worst, 0.0) << i;
+        EXPECT_LT(worst, 8.0) << i;
+    }
+}
+
+TEST(PathTracker, BearsNoiseAndAPathThatBeginsElsewhere) {
+    const auto path = survey();
+    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+        std::mt19937 random(seed);
+        std::normal_distribution<double> far(0.0, 40.0);
+        Conditions conditions{{}, {4.0, 20.0}, 10.0, {far(random), far(random)}};
+        const auto flown = fly(path, conditions, seed);
+        const double worst = worst_s(path, conditions, flown);
+        EXPECT_GE(worst, 0.0) << seed;
+        EXPECT_LT(worst, 12.0) << seed << " " << conditions.origin.east_m << " " << conditions.origin.north_m;
+    }
+}
+
+TEST(PathTracker, ADetourIsSeenAndThePathGoesOnWhereItWasLeft) {
+    const auto path = survey();
+    Conditions conditions;
+    conditions.detour_at_s = 230.0;
+    conditions.detour_s = 120.0;
+    const auto flown = fly(path, conditions, 5);
+    const mission::PathForecast plan({path, {}, test::made_up_wing()});
+    const auto at = [&](double time_s) {
+        return locate_on_path(plan, truncate_series(flown.series, begin_s + time_s), begin_s, begin_s + time_s);
+    };
+    ASSERT_TRUE(at(290.0));
+    EXPECT_FALSE(at(290.0)->is_on_path);
+    EXPECT_NEAR(at(290.0)->path_time_s.value(), 230.0, 25.0) << "where it was left";
+    EXPECT_GT(at(290.0)->distance_m, 300.0);
+    ASSERT_TRUE(at(390.0));
+    EXPECT_TRUE(at(390.0)->is_on_path);
+    EXPECT_NEAR(at(390.0)->path_time_s.value(), 270.0, 8.0);
+}
+
+TEST(PathTracker, IsNotToldByPositionsElsewhereOrMissingOnes) {
+    const mission::PathForecast plan({survey(), {}, test::made_up_wing()});
+    FlightPath other;
+    other.elements = {test::path_element(Circles{150.0, 8.0, false, 270.0})};
+    const auto elsewhere = fly(other, {}, 3);
+    EXPECT_FALSE(locate_on_path(plan, elsewhere.series, begin_s, begin_s + 400.0).value().path_time_s);
+    EXPECT_FALSE(locate_on_path(plan, {}, begin_s, begin_s + 400.0));
+    const auto late = fly(survey(), {}, 3);
+    EXPECT_FALSE(locate_on_path(plan, late.series, begin_s - 30.0, begin_s + 200.0)) << "from where is not known";
+}
+
+TEST(PathTracker, NothingLaterIsLookedAt) {
+    const auto path = survey();
+    const auto flown = fly(path, {}, 8);
+    const mission::PathForecast plan({path, {}, test::made_up_wing()});
+    const double until_s = begin_s + 222.2;
+    const auto whole = locate_on_path(plan, flown.series, begin_s, until_s);
+    const auto known = locate_on_path(plan, truncate_series(flown.series, until_s), begin_s, until_s);
+    ASSERT_TRUE(whole && known);
+    EXPECT_NEAR(whole->path_time_s.value(), known->path_time_s.value(), 1.0);
+}
+
+Conditions made_up_conditions(std::mt19937& random) {
+    std::uniform_real_distribution<double> part(0.0, 1.0);
+    Conditions conditions;
+    conditions.true_wind = {8.0 * part(random), 360.0 * part(random)};
+    conditions.noise_m = 1.0 + 11.0 * part(random);
+    conditions.origin = {80.0 * part(random) - 40.0, 80.0 * part(random) - 40.0};
+    if (part(random) < 0.5) {
+        conditions.detour_at_s = 60.0 + 120.0 * part(random);
+        conditions.detour_s = 40.0 + 100.0 * part(random);
+    }
+    return conditions;
+}
+
+TEST(PathTracker, GoingOnFromMomentToMomentIsTheSameAsBeginningAnew) {
+    const auto path = survey();
+    const mission::PathForecast plan({path, {}, test::made_up_wing()});
+    std::mt19937 random(2024);
+    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+        const auto flown = fly(path, made_up_conditions(random), seed);
+        PathTracker finder(plan);
+        for (double time_s = begin_s + 5.0; time_s < flown.end_s; time_s += 11.3) {
+            const auto series = truncate_series(flown.series, time_s);
+            const auto found = finder.find(flight::SelectedTracks(series), begin_s, time_s);
+            const auto anew = locate_on_path(plan, series, begin_s, time_s);
+            ASSERT_TRUE(found && anew);
+            EXPECT_EQ(found->path_time_s, anew->path_time_s) << seed << " " << time_s;
+            EXPECT_EQ(found->is_on_path, anew->is_on_path);
+            EXPECT_EQ(found->distance_m, anew->distance_m);
+        }
+    }
+}
+
+/// The second filter over all observations, from the origin that the first gives.
+PathFilter second_anew(const mission::PathForecast& plan, const flight::FlightSeries& series, double until_s,
+                       const PathGrid& places) {
+    Observations seen;
+    collect_observations(flight::SelectedTracks(series), begin_s, until_s, places.step_s, seen);
+    PathFilter first(places);
+    first.begin(60.0, {});
+    OriginEstimate origin;
+    for (const auto& at : seen.of) {
+        first.add_observation(at);
+        if (!at.is_known || !first.is_on_path()) continue;
+        const auto& point = first.point_of(first.median_position());
+        if (!point.is_unconstrained) origin.add(first.off(first.median_position()), point.course);
+    }
+    PathFilter second(places);
+    second.begin(25.0, origin.value());
+    for (const auto& at : seen.of) second.add_observation(at);
+    EXPECT_LE(second.median_position() * places.step_s, plan.flown().duration_s);
+    return second;
+}
+
+/// A second pass that is behind by some seconds costs a place little, and its verdict nothing.
+TEST(PathPlaceStudy, ASecondPassInPartsTellsWhatAWholeOneDoes) {
+    const auto path = survey();
+    const mission::PathForecast plan({path, {}, test::made_up_wing()});
+    const auto places = make_path_grid(plan);
+    std::mt19937 random(7);
+    std::vector<double> differences_s;
+    std::size_t other_verdicts = 0;
+    for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+        const auto flown = fly(path, made_up_conditions(random), seed);
+        for (double time_s = begin_s + 30.0; time_s < flown.end_s; time_s += 23.7) {
+            const auto series = truncate_series(flown.series, time_s);
+            const auto found = locate_on_path(plan, series, begin_s, time_s);
+            const auto whole = second_anew(plan, series, time_s, places);
+            if (!found || !found->path_time_s) continue;
+            other_verdicts += found->is_on_path == whole.is_on_path() ? 0 : 1;
+            if (!found->is_on_path || !whole.is_on_path()) continue;
+            const double last_seen_s = std::floor((time_s - begin_s) / places.step_s) * places.step_s + begin_s;
+            const double whole_s = std::clamp(whole.nearest_position() * places.step_s + time_s - last_seen_s, 0.0,
+                                              plan.flown().duration_s);
+            differences_s.push_back(std::abs(*found->path_time_s - whole_s));
+        }
+    }
+    ASSERT_GT(differences_s.size(), 150U);
+    std::ranges::sort(differences_s);
+    RecordProperty("most_s", std::to_string(differences_s.back()));
+    RecordProperty("p99_s", std::to_string(differences_s[differences_s.size() * 99 / 100]));
+    RecordProperty("looks", std::to_string(differences_s.size()));
+    RecordProperty("other_verdicts", std::to_string(other_verdicts));
+    EXPECT_LT(differences_s[differences_s.size() * 99 / 100], 2.5);
+    EXPECT_LT(differences_s.back(), 4.5);
+    EXPECT_EQ(other_verdicts, 0U);
+}
+
+/// As when rows are thinned, or a late message comes in.
+TEST(PathTracker, WhatChangedBeforeIsTakenAnew) {
+    const auto path = survey();
+    const mission::PathForecast plan({path, {}, test::made_up_wing()});
+    const auto flown = fly(path, {}, 4);
+    const double until_s = begin_s + 200.0;
+    auto changed = truncate_series(flown.series, until_s);
+    PathTracker finder(plan);
+    ASSERT_TRUE(finder.find(flight::SelectedTracks(changed), begin_s, until_s)->path_time_s);
+    for (auto& track : changed.tracks)
+        for (std::size_t i = 0; i < track.value.size(); ++i) track.value[i] += i < 400 ? 6.0 : 0.0;
+    const auto found = finder.find(flight::SelectedTracks(changed), begin_s, until_s);
+    EXPECT_EQ(found->path_time_s, locate_on_path(plan, changed, begin_s, until_s)->path_time_s);
+    const auto earlier = truncate_series(changed, until_s - 50.0);
+    EXPECT_EQ(finder.find(flight::SelectedTracks(earlier), begin_s, until_s - 50.0)->path_time_s,
+              locate_on_path(plan, earlier, begin_s, until_s - 50.0)->path_time_s);
+    EXPECT_FALSE(finder.find(flight::SelectedTracks(flight::FlightSeries{}), begin_s, until_s));
+    EXPECT_EQ(finder.find(flight::SelectedTracks(changed), begin_s, until_s)->path_time_s, found->path_time_s);
+}
+
+}  // namespace
+}  // namespace flightwatt::live
