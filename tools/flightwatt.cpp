@@ -1,16 +1,14 @@
-// The front: `flightwatt STAGE ...` runs flightwatt-STAGE, which stands beside it, as git does.
+// The program: `flightwatt STAGE ...`. flightwatt-STAGE is a link to it.
 
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/input_file.h"
 #include "base/toml_reader.h"
 #include "cli/help_pages.h"
 #include "cli/stage.h"
 #include "cli/version.h"
+#include "stages.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <iterator>
 #include <string>
@@ -18,55 +16,61 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 namespace {
 
 using namespace flightwatt;
 
-struct StageLine {
+struct Stage {
     std::string_view name;
     std::string_view summary;
+    int (*run)(int argc, char** argv);
 };
 
-constexpr StageLine stages[] = {
-    {"init", "a folder for an aircraft, with the five commands from logs to a report"},
-    {"parse", "a Paparazzi log to a table of its power samples (CSV)"},
-    {"convert", "a binary log of an SD card or a link to text"},
-    {"segment", "take-off, cruise and landing of every sortie in a log"},
-    {"fit", "several flights to a mechanical power model and Table I"},
-    {"validate", "leave-one-out: each flight's energy predicted by the others, beside simple baselines"},
-    {"predict", "the energy to the end of a flight that is in the air"},
-    {"watch", "the same and more, once a second, from telemetry as it comes in"},
-    {"diff", "what differs between two models, batches or missions, and whether it is chance"},
-    {"trends", "how aircraft and pack age: energy, power and resistance over the dates of flights"},
-    {"battery", "flights to the battery that they were flown on"},
-    {"batch", "parse, segment and fit every log of a folder, incrementally"},
-    {"merge", "join the folders of several batches into one"},
-    {"profile", "software to its power by quality of service, measured while it runs"},
-    {"new-mission", "a mission file to begin with, every key explained"},
-    {"simulate", "a mission file to its state of charge over time"},
-    {"compare", "several missions, ranked by final state of charge"},
-    {"plan", "the schedule of highest utility that lands a mission with its reserve"},
-    {"replay", "schedules judged on flights that were flown: planned, replanned in flight, in hindsight"},
-    {"path", "the path of a mission leg by leg; of a log as waypoints"},
-    {"play", "a log once more as it came in, over the links that watch listens to"},
-    {"report", "flights, model and missions as one page, and figures for papers"},
-    {"export", "flights, models and missions for other programs: maps, plots, autopilots, LaTeX"},
-    {"synthesize", "synthetic Paparazzi logs of flights after a model"},
+constexpr Stage stage_table[] = {
+    {"init", "a folder for an aircraft, with the five commands from logs to a report", stages::init_stage},
+    {"parse", "a Paparazzi log to a table of its power samples (CSV)", stages::parse_stage},
+    {"convert", "a binary log of an SD card or a link to text", stages::convert_stage},
+    {"segment", "take-off, cruise and landing of every sortie in a log", stages::segment_stage},
+    {"fit", "several flights to a mechanical power model and Table I", stages::fit_stage},
+    {"validate", "leave-one-out: each flight's energy predicted by the others, beside simple baselines",
+     stages::validate_stage},
+    {"predict", "the energy to the end of a flight that is in the air", stages::predict_stage},
+    {"watch", "the same and more, once a second, from telemetry as it comes in", stages::watch_stage},
+    {"diff", "what differs between two models, batches or missions, and whether it is chance", stages::diff_stage},
+    {"trends", "how aircraft and pack age: energy, power and resistance over the dates of flights",
+     stages::trends_stage},
+    {"battery", "flights to the battery that they were flown on", stages::battery_stage},
+    {"batch", "parse, segment and fit every log of a folder, incrementally", stages::batch_stage},
+    {"merge", "join the folders of several batches into one", stages::merge_stage},
+    {"profile", "software to its power by quality of service, measured while it runs", stages::profile_stage},
+    {"new-mission", "a mission file to begin with, every key explained", stages::new_mission_stage},
+    {"simulate", "a mission file to its state of charge over time", stages::simulate_stage},
+    {"compare", "several missions, ranked by final state of charge", stages::compare_stage},
+    {"plan", "the schedule of highest utility that lands a mission with its reserve", stages::plan_stage},
+    {"replay", "schedules judged on flights that were flown: planned, replanned in flight, in hindsight",
+     stages::replay_stage},
+    {"path", "the path of a mission leg by leg; of a log as waypoints", stages::path_stage},
+    {"play", "a log once more as it came in, over the links that watch listens to", stages::play_stage},
+    {"report", "flights, model and missions as one page, and figures for papers", stages::report_stage},
+    {"export", "flights, models and missions for other programs: maps, plots, autopilots, LaTeX", stages::export_stage},
+    {"synthesize", "synthetic Paparazzi logs of flights after a model", stages::synthesize_stage},
 };
 
 std::string stage_list() {
     std::string text = "\nStages:\n";
-    for (const auto& [name, summary] : stages) text += fmt::format("  {:<11} {}\n", name, summary);
+    for (const auto& [name, summary, run] : stage_table) text += fmt::format("  {:<11} {}\n", name, summary);
     return text;
 }
 
-bool is_stage(std::string_view name) { return std::ranges::find(stages, name, &StageLine::name) != std::end(stages); }
+const Stage* find_stage(std::string_view name) {
+    const auto* found = std::ranges::find(stage_table, name, &Stage::name);
+    return found == std::end(stage_table) ? nullptr : found;
+}
 
 std::vector<std::string> stage_names() {
     std::vector<std::string> names;
-    for (const auto& stage : stages) names.emplace_back(stage.name);
+    for (const auto& stage : stage_table) names.emplace_back(stage.name);
     return names;
 }
 
@@ -76,23 +80,10 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
     return near.empty() ? otherwise : fmt::format("did you mean '{}'?", near);
 }
 
-[[noreturn]] void refuse_stage(const std::string& stage) {
-    if (is_stage(stage)) {
-        throw OutputError(fmt::format("the program flightwatt-{} is missing beside flightwatt", stage));
-    }
-    throw UsageError(fmt::format("there is no stage '{}'; {}", stage,
-                                 suggestion(stage, stage_names(), "flightwatt alone lists them")));
-}
-
-/// Becomes flightwatt-STAGE. `arguments` ends with nullptr; its first becomes the program's name.
-[[noreturn]] void run_program(const std::string& stage, char** arguments) {
-    if (stage.find('/') != std::string::npos || stage.starts_with('-')) refuse_stage(stage);
-    const auto program = "flightwatt-" + stage;
-    const auto beside = executable_folder() / program;
-    ::execv(beside.c_str(), arguments);
-    if (errno == ENOENT) ::execvp(program.c_str(), arguments);
-    if (errno == ENOENT) refuse_stage(stage);
-    throw OutputError(fmt::format("cannot run {}: {}", beside.string(), std::strerror(errno)));
+int run_stage(const std::string& name, int argc, char** argv) {
+    if (const auto* stage = find_stage(name)) return stage->run(argc, argv);
+    throw UsageError(fmt::format("there is no stage '{}'; {}", name,
+                                 suggestion(name, stage_names(), "flightwatt alone lists them")));
 }
 
 std::filesystem::path documentation() {
@@ -109,15 +100,18 @@ void list_topics() {
     cli::print(text + stage_list());
 }
 
-void help(const std::string& topic) {
-    if (is_stage(topic)) {
+int help(const std::string& topic) {
+    if (find_stage(topic)) {
         std::string words[] = {topic, "--help"};
         char* arguments[] = {words[0].data(), words[1].data(), nullptr};
-        run_program(topic, arguments);
+        return run_stage(topic, 2, arguments);
     }
     auto known = stage_names();
     for (const auto& page : cli::help_pages(documentation())) {
-        if (page.topic == topic) return cli::show_page(read_file(page.file));
+        if (page.topic == topic) {
+            cli::show_page(read_file(page.file));
+            return cli::ok;
+        }
         known.push_back(page.topic);
     }
     throw UsageError(fmt::format("there is no help on '{}'; {}", topic,
@@ -132,15 +126,15 @@ int run(int argc, char** argv) {
             "usage: flightwatt STAGE [arguments]; flightwatt help tells more\n" +
             stage_list());
     } else if (stage == "--list-stages") {  // for completion and man pages
-        for (const auto& [name, summary] : stages) cli::print(fmt::format("{}\t{}\n", name, summary));
+        for (const auto& [name, summary, run] : stage_table) cli::print(fmt::format("{}\t{}\n", name, summary));
     } else if (stage == "--version") {
         cli::print(fmt::format("flightwatt {}\n", cli::version_text()));
     } else if (stage != "help") {
-        run_program(stage, argv + 1);
+        return run_stage(stage, argc - 1, argv + 1);
     } else if (argc > 3) {
         throw UsageError(fmt::format("unexpected argument '{}'; usage: flightwatt help [STAGE|PAGE]", argv[3]));
     } else if (argc == 3) {
-        help(argv[2]);
+        return help(argv[2]);
     } else {
         list_topics();
     }
@@ -150,5 +144,9 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    constexpr std::string_view prefix = "flightwatt-";
+    const auto called = argc > 0 ? std::filesystem::path(argv[0]).filename().string() : "";
+    if (const auto* stage = called.starts_with(prefix) ? find_stage(called.substr(prefix.size())) : nullptr)
+        return stage->run(argc, argv);
     return cli::run_guarded("flightwatt", [&] { return run(argc, argv); });
 }

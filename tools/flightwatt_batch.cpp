@@ -18,6 +18,7 @@
 #include "cli/progress.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
+#include "stages.h"
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
@@ -372,7 +373,7 @@ int run_over_logs(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::batch_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "batch", "LOG|FOLDER... -o OUT",
         R"(Parses and segments every .data log (folders are searched to the bottom) into OUT/flights, several at a

@@ -9,6 +9,7 @@
 #include "cli/progress.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
+#include "stages.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -143,7 +144,7 @@ int identify(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::battery_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "battery", "FLIGHT.data|SERIES.csv|FOLDER...",
         R"(Identifies the battery from the flights' own voltage, current and charge: open-circuit voltage over

@@ -9,6 +9,7 @@
 #include "mission/mission_summary.h"
 #include "mission/prepared_mission.h"
 #include "mission/sampled_flights.h"
+#include "stages.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -133,7 +134,7 @@ int compare_missions(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::compare_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "compare", "MISSION.toml...",
         R"(Runs several missions and ranks them by final state of charge; of those that run empty, the one that

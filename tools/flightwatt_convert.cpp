@@ -7,6 +7,7 @@
 #include "cli/output/json_text.h"
 #include "cli/stage.h"
 #include "flight/load_flight.h"
+#include "stages.h"
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
@@ -217,7 +218,7 @@ int convert(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::convert_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "convert", "LOG",
         R"(Writes a binary log as text, as Paparazzi's sd2log does: the .LOG or .tlm of an SD card, or a capture

@@ -13,6 +13,7 @@
 #include "mission/mission_file.h"
 #include "mission/prepared_mission.h"
 #include "mission/sampled_flights.h"
+#include "stages.h"
 
 #include <algorithm>
 #include <cmath>
@@ -294,7 +295,7 @@ int show_difference(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::diff_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "diff", "A B",
         R"(Says what differs between two mechanical models, two folders of flightwatt batch, or two missions: B minus A

@@ -25,6 +25,7 @@
 #include "report/model_section.h"
 #include "report/replay_section.h"
 #include "report/simulated_mission.h"
+#include "stages.h"
 
 #include <algorithm>
 #include <array>
@@ -378,7 +379,7 @@ int export_inputs(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::export_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "export", "FLIGHT|MODEL.toml|PACK.toml|MISSION.toml|OUT...",
         R"(Writes what others' programs read. Of a log or series: its track (geojson, kml, gpx), or columns over time

@@ -11,6 +11,7 @@
 #include "cli/stage.h"
 #include "mechanical/measured_flight.h"
 #include "mechanical/physical_fit.h"
+#include "stages.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -131,7 +132,7 @@ int fit(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::fit_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "fit", "FLIGHT.data|SERIES.csv|FOLDER...",
         R"(Fits the mechanical power of take-off, cruise and landing: a third-order Fourier series a phase, one

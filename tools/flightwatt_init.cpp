@@ -5,6 +5,7 @@
 #include "cli/output/battery_output.h"
 #include "cli/output/json_text.h"
 #include "cli/stage.h"
+#include "stages.h"
 
 #include <array>
 #include <filesystem>
@@ -74,7 +75,7 @@ int make_folder(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::init_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "init", "DIR",
         R"(Lays out a folder for an aircraft: logs/, fits/, missions/, and a Makefile with the five commands that lead from

@@ -11,6 +11,7 @@
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "mechanical/validation.h"
+#include "stages.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -132,7 +133,7 @@ int merge(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::merge_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "merge", "OUT... -o OUT",
         R"(Joins folders of flightwatt batch into one: every flight's files, checked against the fingerprints of their

@@ -7,6 +7,7 @@
 #include "cli/stage.h"
 #include "compute/profile_reader.h"
 #include "mission/mission_file.h"
+#include "stages.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -88,7 +89,7 @@ int write_new_mission(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::new_mission_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "new-mission", "--mechanical MODEL.toml --battery PACK.toml [--profile P.csv]...",
         R"(Writes a mission file to begin with, for that aircraft, pack and software. It simulates as it is: each

@@ -8,6 +8,7 @@
 #include "flight/phase_statistics.h"
 #include "flight/selected_track.h"
 #include "flight/series_file.h"
+#include "stages.h"
 
 #include <fmt/format.h>
 
@@ -64,7 +65,7 @@ int parse(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::parse_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "parse", "FLIGHT.data",
         R"(Reads a Paparazzi log with the .log beside it, .data or the .LOG of an SD card (also .gz, .bz2, .xz,

@@ -11,6 +11,7 @@
 #include "cli/stage.h"
 #include "flight/flown_path.h"
 #include "mission/mission_file.h"
+#include "stages.h"
 
 #include <algorithm>
 
@@ -116,7 +117,7 @@ void refuse_flight_options(const cli::StageCall& call) {
     }
 }
 
-int path_stage(const cli::StageCall& call) {
+int show_or_take_path(const cli::StageCall& call) {
     const auto log = call.get_optional<std::string>("path-from");
     if (log.has_value() == !call.inputs.empty()) throw UsageError("give a mission, or a log with --path-from");
     if (!log) refuse_flight_options(call);
@@ -125,7 +126,7 @@ int path_stage(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::path_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "path", "[MISSION.toml]",
         R"(Shows how the cruise of a mission with a [path] is flown, an element a row: leg, kind, start_s, duration_s,
@@ -138,5 +139,5 @@ With --path-from the path of a log's cruise instead, as waypoints for a mission 
     stage.options.add_options()("path-from", cli::input_file("LOG"),
                                 "write the path that was flown in LOG as waypoints");
     cli::add_flight_options(stage.options);
-    return cli::run_stage(argc, argv, stage, path_stage);
+    return cli::run_stage(argc, argv, stage, show_or_take_path);
 }

@@ -12,6 +12,7 @@
 #include "mission/mission_file.h"
 #include "mission/path_limits.h"
 #include "mission/plan.h"
+#include "stages.h"
 
 #include <filesystem>
 
@@ -184,7 +185,7 @@ int plan_file(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::plan_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "plan", "MISSION.toml",
         R"(Makes the schedule of most utility that still lands with the reserve, and proves how much better any

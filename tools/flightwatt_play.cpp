@@ -6,6 +6,7 @@
 #include "cli/output/json_text.h"
 #include "cli/stage.h"
 #include "live/playback.h"
+#include "stages.h"
 #include "telemetry/binary_log.h"
 #include "telemetry/data_file.h"
 #include "telemetry/log_configuration.h"
@@ -124,7 +125,7 @@ int play(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::play_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "play", "LOG --to TARGET",
         R"(Plays a log once more as it came in, in its own time or faster, over a link that flightwatt watch listens to:

@@ -10,6 +10,7 @@
 #include "flight/flight_series.h"
 #include "flight/selected_track.h"
 #include "mechanical/prediction.h"
+#include "stages.h"
 
 #include <algorithm>
 #include <optional>
@@ -79,7 +80,7 @@ int predict(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::predict_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "predict", "FLIGHT.data|SERIES.csv --model MODEL.toml --remaining S | --mission MISSION.toml",
         R"(Predicts the energy from a moment in cruise to the end of the flight. What was measured until then

@@ -12,6 +12,7 @@
 #include "cli/stage.h"
 #include "compute/profile_interpolation.h"
 #include "compute/profile_reader.h"
+#include "stages.h"
 
 #include <algorithm>
 
@@ -162,7 +163,7 @@ int profile_components(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::profile_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "profile", "SPEC -o DIR | --check-interpolation FILE...",
         R"(Runs each component of SPEC (TOML, or powprofiler's .cfg) over its quality of service while sampling

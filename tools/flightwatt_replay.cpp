@@ -11,6 +11,7 @@
 #include "mechanical/measured_flight.h"
 #include "mission/mission_file.h"
 #include "mission/replay.h"
+#include "stages.h"
 
 #include <filesystem>
 #include <set>
@@ -72,7 +73,7 @@ int replay(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::replay_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "replay", "FLIGHT.data|SERIES.csv|FOLDER... --mission MISSION.toml",
         R"(Judges schedules on flights that were flown: the power that each flight measured, phase by phase, and

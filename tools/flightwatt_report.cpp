@@ -22,6 +22,7 @@
 #include "report/replay_section.h"
 #include "report/summary_section.h"
 #include "report/trends_section.h"
+#include "stages.h"
 
 #include <algorithm>
 #include <chrono>
@@ -335,7 +336,7 @@ int write_page(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::report_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "report", "[OUT...] [MISSION.toml...] -o report.html",
         R"(Writes one HTML page, to be opened offline, of what flightwatt batch left in the folder OUT (flights,

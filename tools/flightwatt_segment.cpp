@@ -11,6 +11,7 @@
 #include "cli/stage.h"
 #include "exchange/log_slices.h"
 #include "flight/phases_file.h"
+#include "stages.h"
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
@@ -199,7 +200,7 @@ int segment_flights(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::segment_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "segment", "FLIGHT.data|SERIES.csv|FOLDER...",
         R"(Finds every sortie in a log by altitude and throttle and writes its phases as CSV: take-off from

@@ -8,6 +8,7 @@
 #include "cli/stage.h"
 #include "mission/mission_file.h"
 #include "mission/prepared_mission.h"
+#include "stages.h"
 
 #include <filesystem>
 
@@ -67,7 +68,7 @@ int simulate_mission(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::simulate_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "simulate", "MISSION.toml",
         R"(Computes the power that a mission demands and the battery's state of charge over time, as CSV:

@@ -9,6 +9,7 @@
 #include "cli/output/json_text.h"
 #include "cli/stage.h"
 #include "mechanical/mechanical_model.h"
+#include "stages.h"
 #include "synthetic/flight_spread.h"
 #include "synthetic/synthetic_log.h"
 
@@ -189,7 +190,7 @@ int synthesize(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::synthesize_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "synthesize", "MODEL.toml -o FOLDER",
         R"(Writes synthetic Paparazzi logs (.log and .data) of flights whose power follows a mechanical model, with

@@ -10,6 +10,7 @@
 #include "cli/stage.h"
 #include "report/figure_files.h"
 #include "report/trends_section.h"
+#include "stages.h"
 
 #include <algorithm>
 #include <cmath>
@@ -192,7 +193,7 @@ int show_trends(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::trends_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "trends", "FLIGHT.data|SERIES.csv|FOLDER...",
         R"(Says how aircraft and pack age: of every flight its energy by minute and by kilometre over ground and through

@@ -12,6 +12,7 @@
 #include "flight/selected_track.h"
 #include "mechanical/covariates.h"
 #include "mechanical/measured_flight.h"
+#include "stages.h"
 
 #include <algorithm>
 #include <iterator>
@@ -107,7 +108,7 @@ int validate_flights(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::validate_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "validate", "FLIGHT.data|SERIES.csv|FOLDER...",
         R"(Leaves one flight out, fits the others, and predicts the energy of each of its phases and of the whole

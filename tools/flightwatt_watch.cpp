@@ -15,6 +15,7 @@
 #include "live/page_server.h"
 #include "live/recorder.h"
 #include "report/page.h"
+#include "stages.h"
 #include "telemetry/log_configuration.h"
 
 #include <chrono>
@@ -301,7 +302,7 @@ int watch(const cli::StageCall& call) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int flightwatt::stages::watch_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "watch", "SOURCE [--mission MISSION.toml | --model MODEL.toml --remaining S]",
         R"(Says once a second of a flight that is in the air: phase, energy, state of charge, and how it will
