@@ -1,30 +1,19 @@
 #pragma once
 
-#include "battery/battery.h"
+#include "battery/battery_step.h"
 
 #include <bitset>
 #include <cstddef>
 #include <functional>
 #include <vector>
 
-#include <Eigen/Core>
-
 namespace flightwatt::battery {
 
-/// How many batteries are discharged side by side.
-inline constexpr int lane_count = 32;
-
-/// A number of each of them. Of fixed size, so that what happens in a lane is the same to the last bit whatever the
-/// others do and wherever it lies.
-using Lanes = Eigen::Array<double, lane_count, 1>;
 using LaneMask = std::bitset<lane_count>;
 
 /// Thévenin circuits side by side; their curves have the same knots.
 struct BatteryLanes {
-    Lanes resistance_ohm = Lanes::Zero();
-    Lanes percent_per_as = Lanes::Ones();  ///< what a coulomb takes [points]
-    Lanes rc_resistance_ohm = Lanes::Zero();
-    Lanes rc_time_constant_s = Lanes::Ones();
+    Circuit<Lanes> circuit;
     std::vector<double> knots_percent;
     std::vector<Lanes> knots_v;  ///< one a knot
 };

@@ -5,7 +5,7 @@
 #include "mission/planning/depletion_table.h"
 #include "mission/planning/margin_search.h"
 #include "mission/planning/planner.h"
-#include "mission/sampling/landing_quantile.h"
+#include "mission/sampling/landing_distribution.h"
 
 #include <algorithm>
 #include <array>
@@ -129,22 +129,22 @@ AnswerWithMargin answer_with_chance(const MarginQuestion& question, const std::o
     MarginSearch search(0.0);
     std::optional<AnswerWithMargin> last;
     std::optional<NoResultError> none;
-    std::optional<FailureProbability> min_below;
+    std::optional<LandingDistribution> nearest;
     for (int round = 0; round < rounds && !search.has_converged(); ++round) {
         const double margin_percent = search.margin_percent();
         try {
             const double value = question.answer(margin_percent);
             const auto mission = question.mission_of(value);
             require_known_spread(mission);
-            const auto landing = failure_probability(mission, collect_uncertainty(mission), *probability);
-            if (!min_below || landing.below < min_below->below) min_below = landing;
-            const double slack_percent = landing.spare_percent(*probability);
-            if (slack_percent < 0.0) search.raise_lower_bound(landing.stated_spare_percent);
+            const auto landings = draw_landings_until_known(mission, collect_uncertainty(mission), *probability);
+            if (!nearest || landings.below() < nearest->below()) nearest = landings;
+            const double slack_percent = landings.spare_percent(*probability);
+            if (slack_percent < 0.0) search.raise_lower_bound(landings.nominal_spare_percent());
             search.add_result(slack_percent, 0.0);
-            const bool is_close = std::abs(slack_percent) <= close_fraction * landing.sd_percent ||
-                                  std::abs(landing.below - (1.0 - *probability)) <= landing.resolution;
+            const bool is_close = std::abs(slack_percent) <= close_fraction * landings.sd_percent ||
+                                  std::abs(landings.below() - (1.0 - *probability)) <= landings.resolution();
             if (slack_percent >= 0.0 || is_close)
-                last = {value, std::max(0.0, landing.stated_spare_percent - slack_percent)};
+                last = {value, std::max(0.0, landings.nominal_spare_percent() - slack_percent)};
             if (is_close) break;
         } catch (const NoResultError& error) {
             none = error;
@@ -152,12 +152,12 @@ AnswerWithMargin answer_with_chance(const MarginQuestion& question, const std::o
         }
     }
     if (last) return *last;
-    if (!min_below) throw none.value_or(NoResultError("no answer lands with the reserve often enough"));
+    if (!nearest) throw none.value_or(NoResultError("no answer lands with the reserve often enough"));
     throw NoResultError(fmt::format(
         "no answer lands with the reserve in {:.4g} % of flights: with the one that came nearest {:.3g} % do "
         "not (standard error {:.2g} %)",
-        units::percentage(*probability, 1.0), units::percentage(min_below->below, 1.0),
-        units::percentage(min_below->standard_error, 1.0)));
+        units::percentage(*probability, 1.0), units::percentage(nearest->below(), 1.0),
+        units::percentage(nearest->standard_error(), 1.0)));
 }
 
 }  // namespace
@@ -309,8 +309,9 @@ std::optional<double> spare_without_fixed(PlanningProblem problem, const std::op
     problem.fixed.clear();
     const auto least = with_minimum_energy_schedule(problem);
     const double spare =
-        probability ? failure_probability(least, collect_uncertainty(least), *probability).spare_percent(*probability)
-                    : surplus_percent(least);
+        probability
+            ? draw_landings_until_known(least, collect_uncertainty(least), *probability).spare_percent(*probability)
+            : surplus_percent(least);
     return spare < 0.0 ? std::nullopt : std::optional(spare);
 }
 

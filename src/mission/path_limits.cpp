@@ -1,7 +1,7 @@
 #include "mission/path_limits.h"
 
 #include "mission/planning/planner.h"
-#include "mission/sampling/landing_quantile.h"
+#include "mission/sampling/landing_distribution.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +14,7 @@ namespace flightwatt::mission {
 namespace {
 
 constexpr double max_circles_tried = 1e4;
+constexpr std::size_t rough_flights = 1250;
 
 /// Looks for the greatest extent that keeps the reserve. Short ones may not fit the schedule.
 class ExtentSearch {
@@ -34,10 +35,10 @@ class ExtentSearch {
             require_known_spread(flown);
             const auto spreads = collect_uncertainty(flown);
             if (chance == Chance::rough)
-                return approximate_failure_probability(flown, spreads, *probability_).spare_percent(*probability_);
-            const auto landing = failure_probability(flown, spreads, *probability_);
-            const double spare = landing.spare_percent(*probability_);
-            margins_percent_[extent] = std::max(0.0, landing.stated_spare_percent - spare);
+                return draw_landings(flown, spreads, rough_flights).spare_percent(*probability_);
+            const auto landings = draw_landings_until_known(flown, spreads, *probability_);
+            const double spare = landings.spare_percent(*probability_);
+            margins_percent_[extent] = std::max(0.0, landings.nominal_spare_percent() - spare);
             return spare;
         } catch (const InputError& error) {
             misfit_ = error;

@@ -4,7 +4,7 @@
 #include "mission/planning/margin_search.h"
 #include "mission/planning/planner.h"
 #include "mission/sampled_flights.h"
-#include "mission/sampling/landing_quantile.h"
+#include "mission/sampling/landing_distribution.h"
 #include "mission/sampling/level_deviation.h"
 
 #include <algorithm>
@@ -138,11 +138,10 @@ MissionPlan least_plan(const PlanningProblem& problem, const FlightUncertainty& 
     plan.summary = simulate(plan.mission).summary;
     plan.plan.schedule = plan.mission.schedule;
     plan.plan.deliverable = !plan.summary.undeliverable;
-    const auto quantile = landing_quantile(plan.mission, spreads, probability);
-    plan.margin_percent = quantile.margin_percent;
-    plan.plan.final_soc_percent = quantile.left_percent + quantile.margin_percent;
-    plan.plan.feasible = plan.summary.keeps_reserve &&
-                         failure_probability(plan.mission, spreads, probability).below <= 1.0 - probability;
+    const auto landings = draw_landings(plan.mission, spreads);
+    plan.margin_percent = landings.nominal_percent - landings.quantile_percent(probability);
+    plan.plan.final_soc_percent = landings.nominal_percent;
+    plan.plan.feasible = plan.summary.keeps_reserve && landings.below() <= 1.0 - probability;
     plan.plan.utility = plan.plan.utility_bound = plan.summary.utility.value_or(0.0);
     return plan;
 }
@@ -159,7 +158,7 @@ MissionPlan plan_with_chance(const PlanningProblem& problem, double probability)
     }
     MarginSearch search(best.margin_percent);
     bool is_least = true;
-    FailureProbability landing;
+    LandingDistribution landings;
     Schedule last;
     for (int round = 0; round < (is_least ? max_rounds_to_any : max_margin_rounds) && !search.has_converged();
          ++round) {
@@ -172,23 +171,24 @@ MissionPlan plan_with_chance(const PlanningProblem& problem, double probability)
             continue;
         }
         plan.mission.reserve_soc_percent = problem.reserve_soc_percent;
-        if (plan.mission.schedule != last) landing = failure_probability(plan.mission, spreads, probability);
+        if (plan.mission.schedule != last) landings = draw_landings_until_known(plan.mission, spreads, probability);
         last = plan.mission.schedule;
-        const double slack_percent = landing.spare_percent(probability);
-        const double close_percent = slack_fraction * landing.sd_percent;
+        const double slack_percent = landings.spare_percent(probability);
+        const double close_percent = slack_fraction * landings.sd_percent;
         search.add_result(slack_percent, close_percent / 2.0);
         if (slack_percent < 0.0) continue;
         const bool is_same = plan.mission.schedule == best.mission.schedule;
         if (is_least || *plan.summary.utility >= *best.summary.utility) {
             plan.sources = spreads.sources;
-            plan.probability_standard_error = landing.standard_error;
+            plan.probability_standard_error = landings.standard_error();
             best = std::move(plan);
         }
         if (slack_percent <= close_percent || planned_percent == 0.0 || (is_same && !is_least)) break;
         is_least = false;
     }
     best.summary = simulate(best.mission).summary;
-    best.margin_percent = std::max(landing_quantile(best.mission, spreads, probability).margin_percent, 0.0);
+    const auto best_landings = draw_landings(best.mission, spreads);
+    best.margin_percent = std::max(best_landings.nominal_percent - best_landings.quantile_percent(probability), 0.0);
     return best;
 }
 

@@ -34,7 +34,7 @@ struct MissionPlan {
 ///
 /// With `probability`, the reserve is kept by that part of the flights which flight_of makes of the plan
 /// (sampling/flight_draws.h), battery failures counted as below it: margins above the reserve are tried until the
-/// plan's flights do (sampling/landing_quantile.h). The bound is then that of schedules which, flown as stated, keep
+/// plan's flights do (sampling/landing_distribution.h). The bound is then that of schedules which, flown as stated, keep
 /// reserve and margin. Infeasible plans are returned as such. Throws InputError if the mission states no utility, or
 /// too many choices; with `probability` also as require_known_spread does.
 MissionPlan plan_mission(const PlanningProblem& problem, const std::optional<double>& probability = std::nullopt);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "mission/planning/planner.h"
-#include "mission/sampling/landing_quantile.h"
+#include "mission/sampling/landing_distribution.h"
 #include "mission/simulation.h"
 
 #include <random>
@@ -143,7 +143,7 @@ class MissionGenerator {
         auto& problem = made.problem;
         auto flown = with_minimum_energy_schedule(problem);
         const auto left_percent = [&] {
-            return landing_quantile(flown, collect_uncertainty(flown), made.probability).left_percent;
+            return draw_landings(flown, collect_uncertainty(flown)).quantile_percent(made.probability);
         };
         double least_percent = left_percent();
         while (least_percent < 10.0) {  // too many fail

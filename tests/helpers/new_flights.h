@@ -5,7 +5,7 @@
 #include "mechanical/model_fit.h"
 #include "mission/plan.h"
 #include "mission/sampling/flight_outcome.h"
-#include "mission/sampling/landing_quantile.h"
+#include "mission/sampling/landing_distribution.h"
 #include "mission/simulation.h"
 
 #include <cmath>
@@ -19,7 +19,7 @@ namespace flightwatt::test {
 struct PromiseTrial {
     std::size_t flights = 3;    ///< that the model is made of
     bool by_fit = false;        ///< the model is fitted to samples of power; else made of the flights' own curves
-    bool by_plan = false;       ///< plan_mission keeps a reserve; else landing_quantile says one for a schedule
+    bool by_plan = false;       ///< plan_mission keeps a reserve; else draw_landings finds one for a schedule
     bool as_if_known = false;   ///< the spread of few flights as if it were that of all, phases independent
     double probability = 0.95;  ///< that is promised
     std::size_t new_flights = 200;
@@ -55,7 +55,7 @@ class UnknownAircraft {
             promised = with_highest_quality(problem);
             auto spreads = collect_uncertainty(promised);
             if (trial.as_if_known) spreads.of_flights.clear();
-            least_percent = landing_quantile(promised, spreads, trial.probability).left_percent;
+            least_percent = draw_landings(promised, spreads).quantile_percent(trial.probability);
         }
         std::size_t kept = 0;
         for (std::size_t i = 0; i < trial.new_flights; ++i)

@@ -1,7 +1,7 @@
 #include "mission/path_limits.h"
 
 #include "helpers/path_missions.h"
-#include "mission/sampling/landing_quantile.h"
+#include "mission/sampling/landing_distribution.h"
 #include "mission/simulation.h"
 
 #include <numbers>
@@ -91,7 +91,7 @@ TEST(PathLimits, KeepTheReserveWithAChance) {
     EXPECT_GE(likely.residual_percent, -1e-6);
     const auto spare_percent = [&](double circles) {
         const auto mission = std::get<Mission>(mission_of(circles));
-        return failure_probability(mission, collect_uncertainty(mission), 0.95).spare_percent(0.95);
+        return draw_landings(mission, collect_uncertainty(mission)).spare_percent(0.95);
     };
     EXPECT_GE(spare_percent(likely.value), 0.0);
     EXPECT_LT(spare_percent(likely.value + 1.0), 0.0);

@@ -13,9 +13,9 @@ constexpr double never = -std::numeric_limits<double>::infinity();
 double steady_rc_v(const SlotDynamics& dynamics, std::size_t slot, double compute_w, double soc_percent) {
     const double power_w = dynamics.slots[slot].mechanical_energy_j / dynamics.slots[slot].duration_s + compute_w;
     const double source_v = open_circuit_voltage_v(dynamics, soc_percent);
-    const double both_ohm = dynamics.resistance_ohm + dynamics.rc_resistance_ohm;
+    const double both_ohm = dynamics.circuit.resistance_ohm + dynamics.circuit.rc_resistance_ohm;
     const double discriminant = source_v * source_v - 4.0 * both_ohm * power_w;
-    return dynamics.rc_resistance_ohm * 2.0 * power_w / (source_v + std::sqrt(std::max(0.0, discriminant)));
+    return dynamics.circuit.rc_resistance_ohm * 2.0 * power_w / (source_v + std::sqrt(std::max(0.0, discriminant)));
 }
 
 double after_run(const ScheduleProblem& question, const UtilityBound& bounds, const HeuristicValue& value,

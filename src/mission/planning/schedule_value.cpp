@@ -43,12 +43,13 @@ struct SlopeRange {
 };
 
 SlopeRange slopes_in(const SlotDynamics& dynamics, double from_percent, double to_percent) {
-    const auto& knots = dynamics.knot_percent;
+    const auto& [knots, volts] = dynamics.open_circuit;
     SlopeRange slopes{std::numeric_limits<double>::infinity(), 0.0};
-    for (std::size_t k = 0; k < dynamics.slope_v_per_percent.size(); ++k) {
+    for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
         if (knots[k] > to_percent || knots[k + 1] < from_percent) continue;
-        slopes.least = std::min(slopes.least, dynamics.slope_v_per_percent[k]);
-        slopes.greatest = std::max(slopes.greatest, dynamics.slope_v_per_percent[k]);
+        const double slope_v_per_percent = (volts[k + 1] - volts[k]) / (knots[k + 1] - knots[k]);
+        slopes.least = std::min(slopes.least, slope_v_per_percent);
+        slopes.greatest = std::max(slopes.greatest, slope_v_per_percent);
     }
     if (!(from_percent >= knots.front()) || !std::isfinite(slopes.least)) slopes.least = 0.0;
     return slopes;
@@ -101,7 +102,7 @@ std::optional<CurrentBound> current_bound(double power_w, double source_v, doubl
 void set_rc_low(const ScheduleProblem& question, UtilityBound& value) {
     const auto& dynamics = question.coarse;
     value.rc_low.assign(dynamics.slots.size() + 1, 0.0);
-    if (dynamics.rc_resistance_ohm == 0.0) return;
+    if (dynamics.circuit.rc_resistance_ohm == 0.0) return;
     const double steepest =
         slopes_in(dynamics, min_percent(value, dynamics.slots.size()), value.min_power_trajectory.front().soc_percent)
             .greatest;
@@ -109,10 +110,10 @@ void set_rc_low(const ScheduleProblem& question, UtilityBound& value) {
         const auto& slot = dynamics.slots[i];
         const double power_w = slot.min_mechanical_w + range_of(question, i).min_w;
         const double source_v = open_circuit_voltage_v(dynamics, value.min_power_trajectory[i].soc_percent);
-        const auto bound = current_bound(std::max(0.0, power_w), source_v, dynamics.resistance_ohm);
+        const auto bound = current_bound(std::max(0.0, power_w), source_v, dynamics.circuit.resistance_ohm);
         const double percent_per_vs =
-            bound ? (1.0 - between_samples) * bound->current_a_per_v * dynamics.percent_per_as : 0.0;
-        const double decay_per_s = 1.0 / dynamics.rc_time_constant_s + steepest * percent_per_vs;
+            bound ? (1.0 - between_samples) * bound->current_a_per_v * dynamics.circuit.percent_per_as : 0.0;
+        const double decay_per_s = 1.0 / dynamics.circuit.rc_time_constant_s + steepest * percent_per_vs;
         value.rc_low[i] = relaxed(value.rc_low[i + 1], percent_per_vs, decay_per_s, slot.duration_s);
     }
 }
@@ -131,9 +132,10 @@ std::optional<double> max_rc_v(const ScheduleProblem& question, const UtilityBou
     double rc_v = question.start.rc_voltage_v;
     constexpr int rounds = 50;  // to where the current's own voltage holds it
     for (int round = 0; round < rounds; ++round) {
-        const auto bound = current_bound(power_w, rest_v - rc_v, dynamics.resistance_ohm);
+        const auto bound = current_bound(power_w, rest_v - rc_v, dynamics.circuit.resistance_ohm);
         if (!bound) return std::nullopt;
-        const double next_v = std::max(question.start.rc_voltage_v, dynamics.rc_resistance_ohm * bound->current_a);
+        const double next_v =
+            std::max(question.start.rc_voltage_v, dynamics.circuit.rc_resistance_ohm * bound->current_a);
         if (next_v <= rc_v * (1.0 + 1e-9)) return next_v * (1.0 + 1e-6);
         rc_v = next_v;
     }
@@ -154,30 +156,33 @@ void set_rc_high(const ScheduleProblem& question, UtilityBound& value) {
     value.rc_usual.assign(dynamics.slots.size() + 1, 0.0);
     value.rc_high.assign(dynamics.slots.size() + 1, 0.0);
     value.rc_joined = value.rc_high;
-    if (dynamics.rc_resistance_ohm == 0.0) return;
+    if (dynamics.circuit.rc_resistance_ohm == 0.0) return;
     const auto rc_v = max_rc_v(question, value);
     const double end_percent = min_percent(value, dynamics.slots.size());
     bool may_end = false;
     double of_limit = 0.0;  // what a volt gives in a slot whose power the voltage limits
     for (std::size_t i = dynamics.slots.size(); i-- > 0;) {
         const double source_v = open_circuit_voltage_v(dynamics, min_percent(value, i + 1)) - rc_v.value_or(0.0);
-        const auto bound = current_bound(max_w(question, i), source_v, dynamics.resistance_ohm);
+        const auto bound = current_bound(max_w(question, i), source_v, dynamics.circuit.resistance_ohm);
         const double outweighs =
             outweighing_percent_per_v(dynamics, end_percent, value.min_power_trajectory[i].soc_percent);
         double usual = outweighs;
-        if (bound && dynamics.rc_resistance_ohm * bound->current_a_per_v < 1.0) {
-            const double decay_per_s =
-                (1.0 - dynamics.rc_resistance_ohm * bound->current_a_per_v) / dynamics.rc_time_constant_s;
-            usual = std::min(outweighs, relaxed(value.rc_usual[i + 1], bound->current_a_per_v * dynamics.percent_per_as,
-                                                decay_per_s, dynamics.slots[i].duration_s));
+        if (bound && dynamics.circuit.rc_resistance_ohm * bound->current_a_per_v < 1.0) {
+            const double decay_per_s = (1.0 - dynamics.circuit.rc_resistance_ohm * bound->current_a_per_v) /
+                                       dynamics.circuit.rc_time_constant_s;
+            usual = std::min(outweighs,
+                             relaxed(value.rc_usual[i + 1], bound->current_a_per_v * dynamics.circuit.percent_per_as,
+                                     decay_per_s, dynamics.slots[i].duration_s));
         }
         const bool may_end_here =
-            !rc_v || !bound || source_v - dynamics.resistance_ohm * bound->current_a < dynamics.cutoff_voltage_v;
+            !rc_v || !bound ||
+            source_v - dynamics.circuit.resistance_ohm * bound->current_a < dynamics.cutoff_voltage_v;
         may_end = may_end || may_end_here;
         const double duration_s = dynamics.slots[i].duration_s;
-        of_limit *= std::exp(-duration_s / dynamics.rc_time_constant_s);
+        of_limit *= std::exp(-duration_s / dynamics.circuit.rc_time_constant_s);
         if (may_end_here) {
-            const double percent_per_v = dynamics.percent_per_as * duration_s / std::max(1e-3, dynamics.resistance_ohm);
+            const double percent_per_v =
+                dynamics.circuit.percent_per_as * duration_s / std::max(1e-3, dynamics.circuit.resistance_ohm);
             of_limit = std::max(of_limit, percent_per_v);
         }
         value.rc_joined[i] = of_limit + (std::isfinite(usual) ? (usual - value.rc_low[i]) / 2.0 : value.rc_low[i]);
@@ -214,16 +219,16 @@ void set_levels(const ScheduleProblem& question, UtilityBound& value) {
     constexpr std::size_t cells_with_levels = 48;  // fewer cells are meant to be quick
     const auto& dynamics = question.coarse;
     value.level_v.assign(dynamics.slots.size() + 1, 0.0);
-    if (dynamics.rc_resistance_ohm == 0.0 || value.cells < cells_with_levels) return;
+    if (dynamics.circuit.rc_resistance_ohm == 0.0 || value.cells < cells_with_levels) return;
     value.levels = levels;
     value.cells /= 3;
     double above_v = 0.0;
     for (std::size_t i = 0; i < dynamics.slots.size(); ++i) {
         const auto range = range_of(question, i);
         const double source_v = open_circuit_voltage_v(dynamics, value.min_power_trajectory[i].soc_percent);
-        const double steady_v = dynamics.rc_resistance_ohm * (range.max_w - range.min_w) / source_v;
-        above_v = relaxed(above_v, steady_v / dynamics.rc_time_constant_s, 1.0 / dynamics.rc_time_constant_s,
-                          dynamics.slots[i].duration_s);
+        const double steady_v = dynamics.circuit.rc_resistance_ohm * (range.max_w - range.min_w) / source_v;
+        above_v = relaxed(above_v, steady_v / dynamics.circuit.rc_time_constant_s,
+                          1.0 / dynamics.circuit.rc_time_constant_s, dynamics.slots[i].duration_s);
         value.level_v[i + 1] = above_v / static_cast<double>(levels);
     }
 }
@@ -281,7 +286,7 @@ RunTransition reach_of(const SlotDynamics& dynamics, const UtilityBound& value, 
             if (lower_end) {
                 const double source_v = open_circuit_voltage_v(dynamics, start_percent);
                 reach.growth[level * charges + j] += slopes_in(dynamics, *lower_end, start_percent).least *
-                                                     dynamics.percent_per_as * std::max(0.0, run_j) /
+                                                     dynamics.circuit.percent_per_as * std::max(0.0, run_j) /
                                                      (source_v * source_v);
             }
             lower_end = end->soc_percent;

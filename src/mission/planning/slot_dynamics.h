@@ -1,6 +1,6 @@
 #pragma once
 
-#include "battery/parabola.h"
+#include "battery/battery_step.h"
 #include "mission/mission.h"
 
 #include <cstddef>
@@ -17,8 +17,7 @@ struct SlotDynamics {
     /// steps, in each of which the current is a parabola.
     struct Part {
         double step_s;
-        battery::RcStep half_step;
-        battery::RcStep step;
+        battery::StepLength<double> step;
         std::vector<double> mechanical_w;  ///< 2 steps + 1
     };
     struct Slot {
@@ -31,14 +30,8 @@ struct SlotDynamics {
 
     std::vector<Slot> slots;
     std::vector<double> compute_w;  ///< of each choice
-    // The open-circuit voltage: straight lines from knot to knot. A constant source has two knots of equal voltage.
-    std::vector<double> knot_percent;
-    std::vector<double> knot_v;
-    std::vector<double> slope_v_per_percent;  ///< of each line
-    double resistance_ohm = 0.0;
-    double rc_resistance_ohm = 0.0;
-    double rc_time_constant_s = 1.0;
-    double percent_per_as = 0.0;    ///< points that one ampere takes in one second
+    battery::Circuit<double> circuit;
+    battery::OpenCircuitVoltage open_circuit;
     double cutoff_voltage_v = 0.0;  ///< 0: never
     // By what long steps are off at most. A battery that fails by less is let live.
     double error_percent = 0.0;

@@ -1,4 +1,4 @@
-#include "mission/sampling/landing_quantile.h"
+#include "mission/sampling/landing_distribution.h"
 
 #include "base/statistics.h"
 #include "helpers/generated_missions.h"
@@ -17,40 +17,48 @@ namespace {
 using test::steady_mission;
 
 double quantile_of(const Mission& mission, double probability) {
-    return landing_quantile(mission, collect_uncertainty(mission), probability).left_percent;
+    return draw_landings(mission, collect_uncertainty(mission)).quantile_percent(probability);
 }
 
-TEST(LandingQuantile, IsThatOfAGaussianWhereDepletionIsLinear) {
+/// Of a probability, as so many flights are drawn.
+double standard_error(double probability) {
+    return std::sqrt(probability * (1.0 - probability) / static_cast<double>(landing_flights));
+}
+
+TEST(LandingDistribution, IsThatOfAGaussianWhereDepletionIsLinear) {
     auto mission = steady_mission();
     mission.uncertainty.level_sd_percent[flight::Phase::cruise] = 5.0;
-    for (const double probability : {0.5, 0.8, 0.95, 0.999})
-        EXPECT_NEAR(quantile_of(mission, probability),
-                    100.0 - 20.0 / 0.36 * (1.0 + 0.05 * normal_quantile(probability)), 2e-3);
-    EXPECT_THROW(quantile_of(mission, 0.4), std::invalid_argument);
-    EXPECT_THROW(quantile_of(mission, 1.0), std::invalid_argument);
+    for (const double probability : {0.5, 0.8, 0.95, 0.999}) {
+        const double deviations = (quantile_of(mission, probability) - (100.0 - 20.0 / 0.36)) / (-0.05 * 20.0 / 0.36);
+        const double kept = 0.5 * std::erfc(-deviations / std::sqrt(2.0));
+        EXPECT_NEAR(kept, probability, 4.0 * standard_error(probability));
+    }
 }
 
-TEST(LandingQuantile, IsThatOfStudentTWhereFewFlightsTellTheLevel) {
+TEST(LandingDistribution, IsThatOfStudentTWhereFewFlightsShowTheLevel) {
     auto mission = steady_mission();
     auto& cruise = mission.mechanical->phases[flight::Phase::cruise];
     mission.battery.capacity_ah = 10.0;
-    mission.mechanical->phases[flight::Phase::cruise].flights = 3;
+    cruise.flights = 3;
     cruise.level_spread = mechanical::VarianceComponents{3, 1.0, 0.0, 1.0};
     const double sd_w = std::sqrt(1.0 + 1.0 / 3.0);
     for (const double probability : {0.5, 0.8, 0.95, 0.999}) {
-        const double level_w = 20.0 + sd_w * student_from_normal(normal_quantile(probability), 2.0);
-        EXPECT_NEAR(quantile_of(mission, probability), 100.0 - level_w / 3.6, 5e-3) << probability;
+        const double level_w = 3.6 * (100.0 - quantile_of(mission, probability));
+        const double t = (level_w - 20.0) / sd_w;  // with two degrees of freedom P(T < t) = 1/2 + t / 2 sqrt(2 + t^2)
+        EXPECT_NEAR(0.5 + t / (2.0 * std::sqrt(2.0 + t * t)), probability, 4.0 * standard_error(probability));
     }
-    const FlightUncertainty spreads = collect_uncertainty(mission);
-    mission.reserve_soc_percent = quantile_of(mission, 0.95);
-    const auto chance = failure_probability(mission, spreads, 0.95);
-    EXPECT_NEAR(chance.degrees_of_freedom, 2.0, 1e-9);
-    EXPECT_NEAR(chance.below, 0.05, 1e-4);
-    EXPECT_NEAR(chance.spare_percent(0.8), quantile_of(mission, 0.8) - mission.reserve_soc_percent, 0.01);
+}
+
+TEST(LandingDistribution, RefusesProbabilitiesThatAreNone) {
+    const auto mission = steady_mission();
+    for (const double probability : {0.4, 1.0}) {
+        EXPECT_THROW(draw_landings_until_known(mission, collect_uncertainty(mission), probability),
+                     std::invalid_argument);
+    }
 }
 
 /// The models know nothing of the aircraft but their flights. scripts/bench_probability new-flights has more.
-TEST(LandingQuantile, KeepsItsPromiseInNewFlights) {
+TEST(LandingDistribution, KeepsItsPromiseInNewFlights) {
     const auto kept = test::keep_promises({.flights = 3, .new_flights = 40}, 120, 6999, 3);
     EXPECT_GT(kept.share, 0.93);
     EXPECT_LT(kept.share, 0.97);
@@ -58,7 +66,7 @@ TEST(LandingQuantile, KeepsItsPromiseInNewFlights) {
     EXPECT_LT(as_if_known.share, 0.92) << "normal, and the phases independent";
 }
 
-TEST(LandingQuantile, IsExactForAProductOfPowerAndDuration) {
+TEST(LandingDistribution, IsExactForAProductOfPowerAndDuration) {
     auto mission = steady_mission();
     mission.uncertainty.level_sd_percent[flight::Phase::cruise] = 15.0;
     mission.uncertainty.duration_sd_s[flight::Phase::cruise] = 150.0;
@@ -70,45 +78,48 @@ TEST(LandingQuantile, IsExactForAProductOfPowerAndDuration) {
         const double lost = 20.0 / 0.36 * (1.0 + 0.15 * z);
         below += 0.5 * std::erfc(((100.0 - q) / lost - 1.0) / 0.15 / std::sqrt(2.0)) / 4000.0;
     }
-    EXPECT_NEAR(below, 0.05, 5e-4);  // three times its standard error
+    EXPECT_NEAR(below, 0.05, 4.0 * standard_error(0.95));
 }
 
-TEST(LandingQuantile, IsBelowNothingWhereThatManyFail) {
+TEST(LandingDistribution, IsBelowNothingWhereThatManyFail) {
     auto mission = steady_mission();
     mission.initial_soc_percent = 20.0 / 0.36;  // empty in half of the flights
     mission.uncertainty.level_sd_percent[flight::Phase::cruise] = 5.0;
     EXPECT_LT(quantile_of(mission, 0.95), 0.0);
-    const auto quantile = landing_quantile(mission, collect_uncertainty(mission), 0.5);
-    EXPECT_NEAR(quantile.left_percent, 0.0, 0.01);
+    EXPECT_NEAR(quantile_of(mission, 0.5), 0.0, 0.1);
 }
 
-TEST(LandingChance, IsThatOfTheQuantile) {
+TEST(LandingDistribution, HasTheProbabilityOfItsQuantile) {
     auto mission = steady_mission();
     mission.uncertainty.level_sd_percent[flight::Phase::cruise] = 15.0;
     mission.uncertainty.duration_sd_s[flight::Phase::cruise] = 150.0;
     for (const double probability : {0.8, 0.95, 0.99}) {
         mission.reserve_soc_percent = quantile_of(mission, probability);
-        const auto chance = failure_probability(mission, collect_uncertainty(mission), probability);
-        EXPECT_NEAR(chance.below, 1.0 - probability, 2e-3 * (1.0 - probability));
-        EXPECT_NEAR(chance.spare_percent(probability), 0.0, 1e-3 * chance.sd_percent);
-        EXPECT_LT(chance.spare_percent(std::min(0.999, probability + 0.05)), 0.0);
+        const auto landings = draw_landings_until_known(mission, collect_uncertainty(mission), probability);
+        EXPECT_EQ(landings.left_percent.size(), landing_flights) << "none fewer show it";
+        EXPECT_NEAR(landings.below(), 1.0 - probability, landings.resolution());
+        EXPECT_EQ(landings.spare_percent(probability), 0.0);
+        EXPECT_LT(landings.spare_percent(std::min(0.999, probability + 0.05)), 0.0);
+        mission.reserve_soc_percent -= 2.0 * landings.sd_percent;
+        EXPECT_LT(draw_landings_until_known(mission, collect_uncertainty(mission), probability).left_percent.size(),
+                  landing_flights)
+            << "far from the reserve fewer do";
     }
 }
 
 /// Flights of a pack that is cut off where it is weak or the load high: they fail at once, far above the reserve.
-TEST(LandingChance, AgreesWithDrawnFlightsThatAreCutOff) {
+TEST(LandingDistribution, AgreesWithDrawnFlightsThatAreCutOff) {
     auto mission = steady_mission();
     mission.battery = {"", 10.0, 0.5, 2.0};
     mission.cutoff_voltage_v = 8.78;
     mission.uncertainty.level_sd_percent[flight::Phase::cruise] = 5.0;
     mission.uncertainty.capacity_sd_percent = 5.0;
     mission.reserve_soc_percent = 30.0;
-    const auto chance = failure_probability(mission, collect_uncertainty(mission), 0.95);
+    const auto landings = draw_landings(mission, collect_uncertainty(mission));
     const auto flights = sample_flights(prepare_mission(mission), {}, {20000, 3, 0});
-    EXPECT_GT(chance.below, 0.02);
-    EXPECT_LT(chance.below, 0.3);
-    const double error = std::sqrt(chance.below * (1.0 - chance.below) / 20000.0) + chance.standard_error;
-    EXPECT_NEAR(flights.probability_below_reserve, chance.below, 4.0 * error);
+    EXPECT_GT(landings.below(), 0.02);
+    EXPECT_LT(landings.below(), 0.3);
+    EXPECT_NEAR(flights.probability_below_reserve, landings.below(), 4.0 * std::sqrt(2.0) * landings.standard_error());
 }
 
 /// A mission of few known flights, with a pack so weak that `failing` of its flights are cut off at once in take-off,
@@ -143,8 +154,8 @@ Mission weak_in_takeoff(unsigned seed, double failing) {
 }
 
 /// Levels of three flights are Student t with two degrees of freedom: far out in one way, a flight is far out in others
-/// too, so that lines of flights fail on both of their sides.
-TEST(LandingChanceStudy, AgreesWithDrawnFlightsOfWeakPacks) {
+/// too.
+TEST(LandingDistributionStudy, AgreesWithDrawnFlightsOfWeakPacks) {
     for (unsigned seed = 1; seed <= 6; ++seed) {
         const double failing = seed % 3 == 0 ? 0.1 : seed % 3 == 1 ? 0.02 : 0.04;
         const auto mission = weak_in_takeoff(seed, failing);
@@ -152,21 +163,22 @@ TEST(LandingChanceStudy, AgreesWithDrawnFlightsOfWeakPacks) {
             auto flown = mission;
             flown.duration_s[flight::Phase::cruise] *= part;
             flown.schedule = rescale_to_flown_durations(mission.schedule, mission.duration_s, flown.duration_s);
-            const auto chance = failure_probability(flown, collect_uncertainty(flown), 0.95);
+            const auto landings = draw_landings_until_known(flown, collect_uncertainty(flown), 0.95);
             const auto flights = sample_flights(prepare_mission(flown), {}, {20000, 3, 0});
-            const double drawn = flights.probability_below_reserve;
-            const double error = std::sqrt(drawn * (1.0 - drawn) / 20000.0) + chance.standard_error;
-            EXPECT_NEAR(drawn, chance.below, 4.0 * error) << "seed " << seed << ", cruise times " << part;
+            EXPECT_NEAR(flights.probability_below_reserve, landings.below(),
+                        4.0 * std::sqrt(2.0) * landings.standard_error())
+                << "seed " << seed << ", cruise times " << part;
         }
     }
 }
 
-TEST(LandingQuantile, NeedsNoMarginWhereNothingDiffers) {
+TEST(LandingDistribution, NeedsNoMarginWhereNothingDiffers) {
     const auto mission = steady_mission();
-    const auto quantile = landing_quantile(mission, collect_uncertainty(mission), 0.95);
-    EXPECT_EQ(quantile.margin_percent, 0.0);
-    EXPECT_EQ(quantile.sd_percent, 0.0);
-    EXPECT_NEAR(quantile.left_percent, 100.0 - 20.0 / 0.36, 1e-9);
+    const auto landings = draw_landings(mission, collect_uncertainty(mission));
+    EXPECT_EQ(landings.left_percent.size(), 1U);
+    EXPECT_EQ(landings.sd_percent, 0.0);
+    EXPECT_EQ(landings.standard_error(), 0.0);
+    EXPECT_NEAR(landings.quantile_percent(0.95), 100.0 - 20.0 / 0.36, 1e-9);
 }
 
 }  // namespace

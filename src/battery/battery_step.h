@@ -1,0 +1,214 @@
+#pragma once
+
+#include "battery/battery.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <Eigen/Core>
+
+namespace flightwatt::battery {
+
+/// How many batteries are discharged side by side.
+inline constexpr int lane_count = 32;
+
+/// A number of each of them. Of fixed size, so that what happens in a lane is the same to the last bit whatever the
+/// others do.
+using Lanes = Eigen::Array<double, lane_count, 1>;
+
+/// A quantity over a step of time: the parabola through its start, middle and end.
+struct Parabola {
+    double start = 0.0;
+    double middle = 0.0;
+    double end = 0.0;
+
+    // At a part p of the step, from 0 to 1, it is start + p (slope + p curvature).
+    double curvature() const { return 2.0 * (start - 2.0 * middle + end); }
+    double slope() const { return 4.0 * middle - 3.0 * start - end; }
+    double at(double part) const { return start + part * (slope() + part * curvature()); }
+
+    double minimum() const {
+        const double bend = start - 2.0 * middle + end;
+        const double rise = end - start;
+        return std::abs(rise) < 2.0 * bend ? middle - rise * rise / (8.0 * bend) : std::min(start, end);
+    }
+
+    /// The first part at which it is below 0; infinite if there is none.
+    double first_zero_crossing() const {
+        if (start < 0.0) return 0.0;
+        if (!(middle < 0.0) && !(minimum() < 0.0)) return std::numeric_limits<double>::infinity();
+        const double a = curvature();
+        const double b = slope();
+        const double root = std::sqrt(std::max(0.0, b * b - 4.0 * a * start));
+        // The smaller positive root, without a difference of near numbers.
+        return std::clamp(b < 0.0 ? 2.0 * start / (root - b) : (-b - root) / (2.0 * a), 0.0, 1.0);
+    }
+};
+
+// For a number and for lanes; the other functions are std's and Eigen's.
+inline double at_least(double x, double least) { return std::max(x, least); }
+inline double at_most(double x, double most) { return std::min(x, most); }
+inline bool is_any_positive(double x) { return x > 0.0; }
+template <typename Derived>
+auto at_least(const Eigen::ArrayBase<Derived>& x, double least) {
+    return x.max(least);
+}
+template <typename Derived>
+auto at_most(const Eigen::ArrayBase<Derived>& x, double most) {
+    return x.min(most);
+}
+template <typename Derived>
+bool is_any_positive(const Eigen::ArrayBase<Derived>& x) {
+    return (x > 0.0).any();
+}
+
+/// The constants of a circuit, or of those in lanes.
+template <typename Number>
+struct Circuit {
+    Number resistance_ohm = Number(0.0);
+    Number percent_per_as = Number(1.0);  ///< what a coulomb takes [points]
+    Number rc_resistance_ohm = Number(0.0);
+    Number rc_time_constant_s = Number(1.0);
+};
+
+/// A circuit at one moment.
+template <typename Number>
+struct CircuitMoment {
+    Number soc_percent = Number(0.0);
+    Number rc_voltage_v = Number(0.0);
+    Number power_w = Number(0.0);
+    Number current_a = Number(0.0);
+    Number source_v = Number(0.0);
+    Number terminal_v = Number(0.0);
+    Number spare_v2 = Number(0.0);  ///< below 0 where the power is beyond the limit: U^2 - 4 R P
+};
+
+/// An RC pair over a step, dU/dt = (R I - U) / tau. Of a current that is a parabola the solution is exact, and linear in
+/// the current at the start, the middle and the end.
+template <typename Number>
+struct RcStep {
+    RcStep(const Circuit<Number>& circuit, const Number& length_s) {
+        using std::exp;
+        decay = exp(-length_s / circuit.rc_time_constant_s);
+        const Number c = circuit.rc_time_constant_s / length_s;
+        // What the current holds up, R (I - tau I' + tau^2 I''), and what decays.
+        const auto of_current = [&](const Parabola& current_a) -> Number {
+            const Number bent_a = 2.0 * current_a.curvature() * c * c;
+            const Number first_a = current_a.start - c * current_a.slope() + bent_a;
+            const Number last_a = current_a.end - c * (current_a.slope() + 2.0 * current_a.curvature()) + bent_a;
+            return circuit.rc_resistance_ohm * (last_a - first_a * decay);
+        };
+        of_first_ohm = of_current({1.0, 0.0, 0.0});
+        of_middle_ohm = of_current({0.0, 1.0, 0.0});
+        of_last_ohm = of_current({0.0, 0.0, 1.0});
+    }
+
+    Number decay;
+    Number of_first_ohm;
+    Number of_middle_ohm;
+    Number of_last_ohm;
+};
+
+/// What a step of some length makes of a circuit's constants.
+template <typename Number>
+struct StepLength {
+    StepLength(const Circuit<Number>& circuit, const Number& length_s)
+        : percent_per_a(circuit.percent_per_as * length_s / 6.0),
+          half(circuit, Number(0.5 * length_s)),
+          whole(circuit, length_s) {}
+
+    Number percent_per_a;  ///< [points] for each of Simpson's six parts
+    RcStep<Number> half;
+    RcStep<Number> whole;
+};
+
+/// The open-circuit voltage of charges that follow each other: the line that they are on is remembered.
+class VoltageLine {
+  public:
+    VoltageLine(const OpenCircuitVoltage& curve, double soc_percent) : curve_(&curve) { find(soc_percent); }
+
+    double operator()(double soc_percent) {
+        if (soc_percent < low_percent_ || soc_percent >= high_percent_) find(soc_percent);
+        return offset_v_ + slope_v_ * std::clamp(soc_percent, 0.0, 100.0);
+    }
+
+  private:
+    void find(double soc_percent);
+
+    const OpenCircuitVoltage* curve_;
+    double low_percent_ = 0.0;
+    double high_percent_ = 0.0;
+    double offset_v_ = 0.0;
+    double slope_v_ = 0.0;
+};
+
+/// The one step of a battery under a load, for a number and for lanes: over it the current is a parabola through its
+/// start, middle and end, with which the RC pair's voltage is exact. `OpenCircuit` gives the voltage of a charge.
+template <typename Number, typename OpenCircuit>
+class CircuitRun {
+  public:
+    using Moment = CircuitMoment<Number>;
+
+    CircuitRun(const Circuit<Number>& circuit, OpenCircuit open_circuit)
+        : circuit_(circuit),
+          has_rc_(is_any_positive(circuit.rc_resistance_ohm)),
+          open_circuit_(std::move(open_circuit)) {}
+
+    /// The rest of a moment whose charge, RC voltage and power are known (Eq. 10).
+    void complete(Moment& now) {
+        using std::sqrt;
+        constexpr double min_v = 1e-300;  // no 0 / 0 of what draws nothing
+        now.source_v = at_least(open_circuit_(now.soc_percent) - now.rc_voltage_v, 0.0);
+        now.spare_v2 = now.source_v * now.source_v - 4.0 * circuit_.resistance_ohm * now.power_w;
+        now.current_a = 2.0 * now.power_w / at_least(now.source_v + sqrt(at_least(now.spare_v2, 0.0)), min_v);
+        now.terminal_v = now.source_v - circuit_.resistance_ohm * now.current_a;
+    }
+
+    /// From a start to the middle and the end, whose powers are known.
+    void step(const StepLength<Number>& length, const Moment& start, Moment& middle, Moment& end) {
+        advance_half(length, start, start.current_a, middle);
+        complete(middle);
+        advance_half(length, start, middle.current_a, middle);
+        complete(middle);
+        advance(length, start, middle.current_a, Number(2.0 * middle.current_a - start.current_a), end);
+        complete(end);
+        advance(length, start, middle.current_a, end.current_a, end);
+        complete(end);
+    }
+
+  private:
+    /// Half a step, along which the current rises evenly to the middle.
+    void advance_half(const StepLength<Number>& length, const Moment& start, const Number& middle_a,
+                      Moment& middle) const {
+        middle.soc_percent = start.soc_percent - 1.5 * length.percent_per_a * (start.current_a + middle_a);
+        if (!has_rc_) return;
+        const auto& rc = length.half;
+        middle.rc_voltage_v = start.rc_voltage_v * rc.decay +
+                              (rc.of_first_ohm + 0.5 * rc.of_middle_ohm) * start.current_a +
+                              (rc.of_last_ohm + 0.5 * rc.of_middle_ohm) * middle_a;
+    }
+
+    void advance(const StepLength<Number>& length, const Moment& start, const Number& middle_a, const Number& end_a,
+                 Moment& end) const {
+        end.soc_percent =
+            at_most(start.soc_percent - length.percent_per_a * (start.current_a + 4.0 * middle_a + end_a), 100.0);
+        if (!has_rc_) return;
+        const auto& rc = length.whole;
+        end.rc_voltage_v = start.rc_voltage_v * rc.decay + rc.of_first_ohm * start.current_a +
+                           rc.of_middle_ohm * middle_a + rc.of_last_ohm * end_a;
+    }
+
+    const Circuit<Number>& circuit_;
+    bool has_rc_;
+    OpenCircuit open_circuit_;
+};
+
+/// The circuit of a battery; the paper's has no RC pair.
+Circuit<double> circuit_of(const Battery& battery);
+
+/// Its open-circuit voltage; that of the paper's source is the same at every charge.
+OpenCircuitVoltage open_circuit_of(const Battery& battery);
+
+}  // namespace flightwatt::battery

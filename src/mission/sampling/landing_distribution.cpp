@@ -1,0 +1,107 @@
+#include "mission/sampling/landing_distribution.h"
+
+#include "base/parallel.h"
+#include "base/statistics.h"
+#include "mission/sampling/flight_lanes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+
+namespace flightwatt::mission {
+namespace {
+
+constexpr std::uint64_t seed_of_flights = 0x666c6967687473;
+constexpr std::size_t first_flights = 1250;
+constexpr double far_in_standard_errors = 4.0;
+
+/// Draws flights of a mission, more of them from call to call.
+class LandingSampler {
+  public:
+    LandingSampler(const Mission& mission, const FlightUncertainty& uncertainty)
+        : uncertainty_(uncertainty),
+          setup_(without_model_metadata(mission)),
+          normal_count_(count_normals(setup_)),
+          simulator_(setup_, uncertainty_, mission.schedule) {
+        const std::vector<double> as_stated(normal_count_);
+        result_.nominal_percent = simulator_.simulate_scalar(as_stated).remaining_percent;
+        result_.reserve_percent = mission.reserve_soc_percent;
+        if (uncertainty.sources.varied.empty()) result_.left_percent = {result_.nominal_percent};
+    }
+
+    /// Until there are so many in all; one where nothing differs.
+    const LandingDistribution& draw_until(std::size_t flights) {
+        if (uncertainty_.sources.varied.empty()) return result_;
+        auto& left_percent = result_.left_percent;
+        const auto from = drawn_;
+        left_percent.resize(flights);
+        simulate(from, std::span(left_percent).subspan(from));
+        drawn_ = flights;
+        std::ranges::sort(left_percent);
+        result_.sd_percent = sample_sd(left_percent);
+        return result_;
+    }
+
+  private:
+    void simulate(std::size_t from, std::span<double> left_percent) const {
+        constexpr std::size_t at_once = 256;
+        for_each_in_parallel((left_percent.size() + at_once - 1) / at_once, [&](std::size_t block) {
+            const auto start = block * at_once;
+            const auto own = left_percent.subspan(start, std::min(at_once, left_percent.size() - start));
+            std::vector<std::vector<double>> normals;
+            normals.reserve(own.size());
+            for (std::size_t i = 0; i < own.size(); ++i)
+                normals.push_back(draw_normals(normal_count_, seed_of_flights, from + start + i));
+            std::vector<FlightOutcome> landings(own.size());
+            simulator_.simulate(normals, landings);
+            std::ranges::transform(landings, own.begin(), &FlightOutcome::remaining_percent);
+        });
+    }
+
+    FlightUncertainty uncertainty_;
+    MissionSetup setup_;
+    std::size_t normal_count_;
+    SimdFlightSimulator simulator_;
+    std::size_t drawn_ = 0;
+    LandingDistribution result_;
+};
+
+}  // namespace
+
+double LandingDistribution::below() const {
+    const auto kept = std::ranges::lower_bound(left_percent, reserve_percent);
+    return static_cast<double>(kept - left_percent.begin()) / static_cast<double>(left_percent.size());
+}
+
+double LandingDistribution::standard_error() const {
+    if (sd_percent == 0.0) return 0.0;
+    const auto all = static_cast<double>(left_percent.size());
+    const double likely = (below() * all + 1.0) / (all + 2.0);  // none of a few is not never
+    return std::sqrt(likely * (1.0 - likely) / all);
+}
+
+double LandingDistribution::quantile_percent(double probability) const {
+    const auto last = left_percent.size() - 1;
+    const auto missed = static_cast<std::size_t>((1.0 - probability) * static_cast<double>(left_percent.size()));
+    return left_percent[std::min(missed, last)];
+}
+
+LandingDistribution draw_landings(const Mission& mission, const FlightUncertainty& uncertainty, std::size_t flights) {
+    return LandingSampler(mission, uncertainty).draw_until(flights);
+}
+
+LandingDistribution draw_landings_until_known(const Mission& mission, const FlightUncertainty& uncertainty,
+                                              double probability, std::size_t max_flights) {
+    if (!(probability >= 0.5 && probability < 1.0))
+        throw std::invalid_argument("draw_landings_until_known: the probability is not from 0.5 to below 1");
+    LandingSampler sampler(mission, uncertainty);
+    for (auto flights = std::min(first_flights, max_flights);; flights = std::min(2 * flights, max_flights)) {
+        const auto& landings = sampler.draw_until(flights);
+        const double off = std::abs(landings.below() - (1.0 - probability));
+        if (flights == max_flights || off > far_in_standard_errors * landings.standard_error()) return landings;
+    }
+}
+
+}  // namespace flightwatt::mission
