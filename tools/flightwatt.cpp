@@ -80,12 +80,6 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
     return near.empty() ? otherwise : fmt::format("did you mean '{}'?", near);
 }
 
-int run_stage(const std::string& name, int argc, char** argv) {
-    if (const auto* stage = find_stage(name)) return stage->run(argc, argv);
-    throw UsageError(fmt::format("there is no stage '{}'; {}", name,
-                                 suggestion(name, stage_names(), "flightwatt alone lists them")));
-}
-
 std::filesystem::path documentation() {
     return data_folder("docs", "FLIGHTWATT_DOCS", "the pages of the documentation");
 }
@@ -100,41 +94,41 @@ void list_topics() {
     cli::print(text + stage_list());
 }
 
-int help(const std::string& topic) {
-    if (find_stage(topic)) {
-        std::string words[] = {topic, "--help"};
-        char* arguments[] = {words[0].data(), words[1].data(), nullptr};
-        return run_stage(topic, 2, arguments);
-    }
+int show_help(const Stage& stage) {
+    std::string words[] = {std::string(stage.name), "--help"};
+    char* arguments[] = {words[0].data(), words[1].data(), nullptr};
+    return stage.run(2, arguments);
+}
+
+void show_topic(const std::string& topic) {
     auto known = stage_names();
     for (const auto& page : cli::help_pages(documentation())) {
-        if (page.topic == topic) {
-            cli::show_page(read_file(page.file));
-            return cli::ok;
-        }
+        if (page.topic == topic) return cli::show_page(read_file(page.file));
         known.push_back(page.topic);
     }
     throw UsageError(fmt::format("there is no help on '{}'; {}", topic,
                                  suggestion(topic, known, "flightwatt help lists what there is")));
 }
 
-int run(int argc, char** argv) {
-    const std::string stage = argc > 1 ? argv[1] : "--help";
-    if (stage == "--help" || stage == "-h") {
+/// What the program does where it is called for no stage.
+int run_front(int argc, char** argv) {
+    const std::string word = argc > 1 ? argv[1] : "--help";
+    if (word == "--help" || word == "-h") {
         cli::print(
             "flightwatt: the energy of electric drone missions, flight and on-board computer together\n\n"
             "usage: flightwatt STAGE [arguments]; flightwatt help tells more\n" +
             stage_list());
-    } else if (stage == "--list-stages") {  // for completion and man pages
+    } else if (word == "--list-stages") {  // for completion and man pages
         for (const auto& [name, summary, run] : stage_table) cli::print(fmt::format("{}\t{}\n", name, summary));
-    } else if (stage == "--version") {
+    } else if (word == "--version") {
         cli::print(fmt::format("flightwatt {}\n", cli::version_text()));
-    } else if (stage != "help") {
-        return run_stage(stage, argc - 1, argv + 1);
+    } else if (word != "help") {
+        throw UsageError(fmt::format("there is no stage '{}'; {}", word,
+                                     suggestion(word, stage_names(), "flightwatt alone lists them")));
     } else if (argc > 3) {
         throw UsageError(fmt::format("unexpected argument '{}'; usage: flightwatt help [STAGE|PAGE]", argv[3]));
     } else if (argc == 3) {
-        return help(argv[2]);
+        show_topic(argv[2]);
     } else {
         list_topics();
     }
@@ -145,8 +139,12 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     constexpr std::string_view prefix = "flightwatt-";
-    const auto called = argc > 0 ? std::filesystem::path(argv[0]).filename().string() : "";
-    if (const auto* stage = called.starts_with(prefix) ? find_stage(called.substr(prefix.size())) : nullptr)
-        return stage->run(argc, argv);
-    return cli::run_guarded("flightwatt", [&] { return run(argc, argv); });
+    const std::string called = argc > 0 ? std::filesystem::path(argv[0]).filename().string() : "";
+    const auto* linked = called.starts_with(prefix) ? find_stage(called.substr(prefix.size())) : nullptr;
+    if (linked) return linked->run(argc, argv);
+    const std::string word = argc > 1 ? argv[1] : "";
+    if (const auto* stage = find_stage(word)) return stage->run(argc - 1, argv + 1);
+    if (word == "help" && argc == 3)
+        if (const auto* stage = find_stage(argv[2])) return show_help(*stage);
+    return cli::run_guarded("flightwatt", [&] { return run_front(argc, argv); });
 }

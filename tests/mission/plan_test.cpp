@@ -202,11 +202,11 @@ TEST(Plan, KeepsAMarginForFlightsThatDiffer) {
     const auto plan = plan_mission(mission, 0.95);
     ASSERT_TRUE(plan.plan.feasible);
     // The phases uncorrelated: 0.2 W sqrt(1 + 1/5) for as long as each lasts, in points of 39.35 kJ; the 95 % quantile
-    // of Student's t with 4 degrees of freedom.
+    // of Student's t with 4 degrees of freedom, within four standard errors of 20,000 flights.
     const double sd_j = 0.2 * std::sqrt(1.2) * std::sqrt(28.0 * 28.0 + 600.0 * 600.0 + 60.0 * 60.0);
-    EXPECT_NEAR(plan.margin_percent, 2.1318468 * sd_j / (3.416 * 3.2 * 36.0), 1e-3);
+    EXPECT_NEAR(plan.margin_percent, 2.1318468 * sd_j / (3.416 * 3.2 * 36.0), 0.03);
     EXPECT_GE(*plan.summary.final_soc_percent, 2.0 + plan.margin_percent);
-    EXPECT_NEAR(plan_mission(mission, 0.5).margin_percent, 0.0, 1e-3);
+    EXPECT_NEAR(plan_mission(mission, 0.5).margin_percent, 0.0, 0.012);
     mission.uncertainty.capacity_sd_percent = 3.0;
     const auto wider = plan_mission(mission, 0.95);
     EXPECT_GT(wider.margin_percent, 1.5 * plan.margin_percent) << "what is drawn counts, whatever it is";
