@@ -174,12 +174,12 @@ void IvyAgent::remove(const IvyPeer& peer) {
     peers_.remove_if([&](const auto& other) { return other.get() == &peer; });
 }
 
-void IvyAgent::close_duplicate(IvyPeer& peer) {
+/// Two agents that announce themselves at the same time connect twice.
+void IvyAgent::retire_duplicate(IvyPeer& peer) {
     for (const auto& other : peers_) {
-        if (other.get() == &peer || !other->is_connected_to(peer.address(), peer.service_port())) continue;
-        auto& closed = other->higher_port() > peer.higher_port() ? *other : peer;
-        closed.close();
-        return remove(closed);
+        if (other.get() == &peer || !other->ready() || !other->is_connected_to(peer.address(), peer.service_port()))
+            continue;
+        return other->higher_port() > peer.higher_port() ? other->retire() : peer.retire();
     }
 }
 

@@ -70,7 +70,7 @@ class IvyAgent {
     void accept_later();
     std::shared_ptr<IvyPeer> add_peer();
     void remove(const IvyPeer& peer);
-    void close_duplicate(IvyPeer& peer);
+    void retire_duplicate(IvyPeer& peer);
 
     boost::asio::io_context& context_;
     IvyAgentSetup setup_;

@@ -93,21 +93,23 @@ void IvyPeer::heed(const IvyLine& line) {
         case IvyType::start:
             if (line.id > 0 && line.id <= std::numeric_limits<std::uint16_t>::max())
                 service_port_ = static_cast<std::uint16_t>(line.id);
-            return agent_.close_duplicate(*this);
+            return;
         case IvyType::subscribe:
             return subscribe(line);
         case IvyType::unsubscribe:
             subscriptions_.erase(line.id);
             return;
         case IvyType::end_of_subscriptions:
+            if (retired_) return;
             ready_ = true;
-            return;
+            return agent_.retire_duplicate(*this);
         case IvyType::message:
             return setup.on_message(groups_of(line.arguments));
         case IvyType::ping:
             return write(to_ivy_line(IvyType::pong, line.id));
         case IvyType::bye:
-            return lose();
+            other_said_bye_ = true;
+            return retired_ && waiting_bytes() > 0 ? void() : lose();
         case IvyType::error:
             return setup.on_unusable("errors that other agents report");
         case IvyType::die:
@@ -139,6 +141,12 @@ void IvyPeer::send(std::string_view message) {
     }
 }
 
+void IvyPeer::retire() {
+    retired_ = true;
+    ready_ = false;
+    write(to_ivy_line(IvyType::bye, 0));
+}
+
 void IvyPeer::write(std::string_view text) {
     if (closed_ || !begun_) return;
     if (outgoing_.size() + text.size() > most_waiting_bytes)
@@ -149,7 +157,7 @@ void IvyPeer::write(std::string_view text) {
 
 void IvyPeer::write_next() {
     std::swap(writing_, outgoing_);
-    if (writing_.empty()) return;
+    if (writing_.empty()) return other_said_bye_ ? lose() : void();
     asio::async_write(socket_, asio::buffer(writing_),
                       [self = shared_from_this()](const error_code& error, std::size_t) {
                           self->writing_.clear();

@@ -29,6 +29,9 @@ class IvyPeer : public std::enable_shared_from_this<IvyPeer> {
     /// The connection stands: says what we subscribe to, and listens.
     void begin();
     void send(std::string_view message);
+    /// This connection is one too many: no message is sent on it any more. It stays until the other end has said
+    /// good-bye, too, so that what either has sent before still arrives.
+    void retire();
     /// With a good-bye where there is somebody to hear it.
     void close();
 
@@ -39,7 +42,7 @@ class IvyPeer : public std::enable_shared_from_this<IvyPeer> {
     std::size_t waiting_bytes() const { return outgoing_.size() + writing_.size(); }
     std::uint16_t service_port() const { return service_port_; }
     const boost::asio::ip::address& address() const { return address_; }
-    /// The same number at both ends: of two connections between two agents, the one of the higher is closed.
+    /// The same number at both ends: of two connections between two agents, the one of the higher is retired.
     std::uint16_t higher_port() const;
 
   private:
@@ -56,7 +59,7 @@ class IvyPeer : public std::enable_shared_from_this<IvyPeer> {
     boost::asio::ip::address address_;
     std::string announced_id_;
     std::uint16_t service_port_ = 0;  ///< 0: not known yet
-    bool begun_ = false, ready_ = false, closed_ = false;
+    bool begun_ = false, ready_ = false, retired_ = false, other_said_bye_ = false, closed_ = false;
     std::array<char, 16'384> received_{};
     LineBuffer buffer_;
     std::size_t overlong_ = 0;

@@ -29,7 +29,6 @@ using asio::ip::tcp;
 using asio::ip::udp;
 using std::chrono::milliseconds;
 using testing::ElementsAre;
-using testing::IsEmpty;
 
 /// A connection of the test's own, without any library of Ivy.
 class Connection {
@@ -220,8 +219,11 @@ TEST_F(IvyAgentTest, KeepsOneOfTwoConnectionsWithAnAgentAsTheOtherDoes) {
     outgoing->say(hello);
     ASSERT_FALSE(outgoing->hear_until(hello_end).empty());
     incoming->say(hello);
-    auto& closed = &kept == incoming.get() ? *outgoing : *incoming;
-    EXPECT_TRUE(closed.is_closed());
+    auto& retired = &kept == incoming.get() ? *outgoing : *incoming;
+    EXPECT_FALSE(retired.hear_until("0 0\002\n").empty());
+    retired.say("2 0\00220 ALIVE 0\003\n0 0\002\n");  // what was sent before the other end knew still arrives
+    EXPECT_THAT(texts_of(*source, 1), ElementsAre("20 ALIVE 0"));
+    EXPECT_TRUE(retired.is_closed());
     kept.say("2 0\00220 ALIVE 1\003\n");
     EXPECT_THAT(texts_of(*source, 1), ElementsAre("20 ALIVE 1"));
 }
