@@ -23,7 +23,7 @@ namespace {
 
 using namespace flightwatt;
 
-battery::IdentificationOptions read_options(const cli::StageCall& call) {
+battery::IdentificationOptions identification_options(const cli::StageCall& call) {
     battery::IdentificationOptions options;
     options.capacity_ah = cli::capacity_option(call);
     if (call.has("cells")) options.cells = static_cast<int>(cli::count_option(call, "cells", 1, 24));
@@ -119,7 +119,7 @@ std::pair<battery::BatteryIdentification, std::vector<battery::LeaveOneOutCheck>
 }
 
 int identify(const cli::StageCall& call) {
-    const auto options = read_options(call);
+    const auto options = identification_options(call);
     const auto folds = cli::count_option(call, "folds", 2);
     const auto records = read_records(call);
     cli::note_folds(call, records.size(), folds);

@@ -34,24 +34,26 @@ using namespace flightwatt;
 using mechanical::Difference;
 using mechanical::Estimate;
 
-enum class Kind { model, batch, mission };
+enum class ComparedKind { model, batch, mission };
 
-std::string_view to_string(Kind kind) {
-    return kind == Kind::model ? "a model" : kind == Kind::batch ? "a folder of flightwatt batch" : "a mission";
+std::string_view to_string(ComparedKind kind) {
+    return kind == ComparedKind::model   ? "a model"
+           : kind == ComparedKind::batch ? "a folder of flightwatt batch"
+                                         : "a mission";
 }
 
-Kind kind_of(const std::string& input) {
+ComparedKind compared_kind(const std::string& input) {
     std::error_code none;
-    if (std::filesystem::is_directory(input, none)) return Kind::batch;
+    if (std::filesystem::is_directory(input, none)) return ComparedKind::batch;
     const auto file = parse_toml(read_file(input), input);
-    if (file.has("takeoff") && file.is_table("takeoff") && !file.has("battery")) return Kind::model;
-    if (file.has("battery") || file.has("mechanical") || file.has("components")) return Kind::mission;
+    if (file.has("takeoff") && file.is_table("takeoff") && !file.has("battery")) return ComparedKind::model;
+    if (file.has("battery") || file.has("mechanical") || file.has("components")) return ComparedKind::mission;
     throw InputError({input}, "is neither a mechanical model nor a mission",
                      "give two models, two folders of flightwatt batch, or two missions");
 }
 
-mechanical::MechanicalModel read_model(const std::string& input, Kind kind) {
-    if (kind == Kind::model) return mechanical::read_mechanical_model(input);
+mechanical::MechanicalModel read_model(const std::string& input, ComparedKind kind) {
+    if (kind == ComparedKind::model) return mechanical::read_mechanical_model(input);
     auto fit = batch::read_batch_fit(input);
     if (!fit) throw InputError({input}, "holds no model of a batch", "run flightwatt batch ... -o " + input);
     return std::move(fit->model);
@@ -147,8 +149,8 @@ std::vector<Difference> mission_difference(const mission::Simulation& a, const m
 }
 
 /// "yes", "no", or "-" where nobody can say. A computed difference is one wherever it is more than rounding.
-std::string verdict(const Difference& row, Kind kind) {
-    if (kind != Kind::mission || row.interval) {
+std::string verdict(const Difference& row, ComparedKind kind) {
+    if (kind != ComparedKind::mission || row.interval) {
         const auto significant = is_significant(row);
         return !significant ? "-" : *significant ? "yes" : "no";
     }
@@ -158,12 +160,12 @@ std::string verdict(const Difference& row, Kind kind) {
     return std::abs(*difference) > rounding * std::max(std::abs(row.a->value), std::abs(row.b->value)) ? "yes" : "no";
 }
 
-std::string basis_of(const Difference& row, Kind kind) {
-    return kind == Kind::mission && !row.interval ? "computed" : to_string(row.basis);
+std::string basis_of(const Difference& row, ComparedKind kind) {
+    return kind == ComparedKind::mission && !row.interval ? "computed" : to_string(row.basis);
 }
 
 template <typename Form>
-TextTable difference_table(const std::vector<Difference>& rows, Kind kind, const Form& form) {
+TextTable difference_table(const std::vector<Difference>& rows, ComparedKind kind, const Form& form) {
     TextTable table{{"part", "quantity", "unit", "a", "a_low", "a_high", "b", "b_low", "b_high", "difference", "low",
                      "high", "differs", "basis", "at_s"},
                     {}};
@@ -189,14 +191,14 @@ TextTable difference_table(const std::vector<Difference>& rows, Kind kind, const
     return table;
 }
 
-nlohmann::ordered_json difference_json(const std::vector<Difference>& rows, Kind kind,
+nlohmann::ordered_json difference_json(const std::vector<Difference>& rows, ComparedKind kind,
                                        const std::vector<std::string>& shared) {
     const auto interval = [](const std::optional<mechanical::Interval>& of) {
         return of ? nlohmann::ordered_json::array({of->low, of->high}) : nlohmann::ordered_json(nullptr);
     };
-    nlohmann::ordered_json json{{"kind", kind == Kind::mission ? "missions"
-                                         : kind == Kind::batch ? "batches"
-                                                               : "models"},
+    nlohmann::ordered_json json{{"kind", kind == ComparedKind::mission ? "missions"
+                                         : kind == ComparedKind::batch ? "batches"
+                                                                       : "models"},
                                 {"shared_flights", shared},
                                 {"differences", nlohmann::ordered_json::array()}};
     for (const auto& row : rows) {
@@ -250,14 +252,14 @@ int show_difference(const cli::StageCall& call) {
         throw UsageError("expected two models, two folders of flightwatt batch or two missions");
     const auto& a = call.inputs[0];
     const auto& b = call.inputs[1];
-    const auto kind = kind_of(a);
-    if (const auto other = kind_of(b); other != kind) {
+    const auto kind = compared_kind(a);
+    if (const auto other = compared_kind(b); other != kind) {
         throw UsageError(fmt::format("{} is {} and {} is {}: they have no quantity in common; give two of one kind", a,
                                      to_string(kind), b, to_string(other)));
     }
     std::vector<Difference> rows;
     std::vector<std::string> shared;
-    if (kind == Kind::mission) {
+    if (kind == ComparedKind::mission) {
         const auto missions =
             std::pair(mission::read_mission(a, {true, std::nullopt}), mission::read_mission(b, {true, std::nullopt}));
         cli::warn_of_setup(call, setup_of(missions.first));
@@ -289,7 +291,7 @@ int show_difference(const cli::StageCall& call) {
         cli::write_result(call, to_csv(difference_table(rows, kind, [](double v) { return fmt::format("{}", v); })));
     }
     if (call.json) cli::print(cli::json_text(difference_json(rows, kind, shared)));
-    if (kind != Kind::mission) say_what_differs(call, rows);
+    if (kind != ComparedKind::mission) say_what_differs(call, rows);
     return cli::ok;
 }
 

@@ -158,10 +158,10 @@ class DecisionHook {
 };
 
 /// Shows what is said on a page.
-class Page {
+class LivePage {
   public:
-    Page(const cli::StageCall& call, const compute::ComputeModel& compute,
-         const std::optional<live::PredictionInput>& basis)
+    LivePage(const cli::StageCall& call, const compute::ComputeModel& compute,
+             const std::optional<live::PredictionInput>& basis)
         : compute_(compute), basis_(basis) {
         if (!call.has("serve")) return;
         const auto web = report::read_live_web_files(report::web_folder());
@@ -277,7 +277,7 @@ int watch(const cli::StageCall& call) {
     live::LiveFlight flight(std::move(options), watched.basis, schedule_of(call, watched));
     WatchOutput speaker(call, watched.compute, watched.basis);
     DecisionHook hook(call, watched.compute);
-    Page page(call, watched.compute, watched.basis);
+    LivePage page(call, watched.compute, watched.basis);
     const auto update_flight = [&](double silent_s) -> std::string {
         auto state = flight.update(silent_s);
         for (const auto& [reason, count] : source->report().unusable) state.unusable[reason] += count;
