@@ -2,7 +2,6 @@
 
 #include "flight/flight_series.h"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -20,18 +19,11 @@ struct SketchHash {
     bool operator==(const SketchHash&) const = default;
 };
 
-/// In how many ways values are compared: rounded to 0, 1 and 2 decimals, and exactly.
-inline constexpr std::size_t precisions = 4;
-inline constexpr std::size_t max_decimals = 2;
-
 /// What its samples are, in short: marks of its altitude, voltage, current and power.
 struct FlightSketch {
-    std::array<std::vector<SketchHash>, precisions> hashes;  ///< of each precision those with the least fingerprints
-    std::size_t decimals = max_decimals;                     ///< of what was logged in the fewest, if less
-    bool has_definitions = true;                             ///< its .log is beside it
-    std::size_t samples = 0;                                 ///< of power, or else of altitude
-    std::size_t hash_divisor =
-        1;  ///< of the fingerprints that can be, only the lowest one of so many parts was looked at
+    std::vector<SketchHash> hashes = {};  ///< those with the least fingerprints, rising
+    bool has_definitions = true;          ///< its .log is beside it
+    std::size_t samples = 0;              ///< of power, or else of altitude
 
     bool operator==(const FlightSketch&) const = default;
 };
@@ -45,12 +37,11 @@ struct SketchMatch {
 };
 
 /// Whether two are recordings of one flight: marks of both at one offset of their clocks (docs/guide.md). So are copies
-/// that lost other lines, were rounded, have another clock, begin or end elsewhere, or hold several flights. Two of
-/// which nothing varies are not, nor two that sampled the flight at other moments.
+/// that lost other lines, have another clock, begin or end elsewhere, or hold several flights. Two of which nothing
+/// varies are not, nor two whose values were rounded differently or that sampled the flight at other moments.
 SketchMatch compare_sketches(const FlightSketch& one, const FlightSketch& other);
 
-/// Which of two recordings of one flight is used: one with definitions, then one with more samples, then one with more
-/// decimals.
+/// Which of two recordings of one flight is used: one with definitions, then one with more samples.
 bool is_preferred_duplicate(const FlightSketch& one, const FlightSketch& other);
 
 /// A warning that two flights, which both are used, share a part.
