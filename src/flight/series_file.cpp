@@ -4,22 +4,79 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/number.h"
+#include "base/parallel.h"
 #include "base/toml_reader.h"
 #include "flight/selected_track.h"
 #include "flight/series_file/front_matter.h"
-#include "flight/series_file/series_table.h"
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace flightwatt::flight {
 namespace {
+
+/// What is left of a track within a part of the table.
+struct Cursor {
+    const double* time_s;
+    const double* end_s;
+    const double* value;
+
+    double next_s() const { return time_s == end_s ? std::numeric_limits<double>::infinity() : *time_s; }
+};
+
+/// The rows of a part of the table: one for each time at which any track has a value, with a cell for each track.
+std::string rows_between(const std::vector<Track>& tracks, double from_s, double until_s) {
+    std::vector<Cursor> cursors;
+    cursors.reserve(tracks.size());
+    for (const auto& track : tracks) {
+        const auto first = std::ranges::lower_bound(track.time_s, from_s) - track.time_s.begin();
+        const auto last = std::ranges::lower_bound(track.time_s, until_s) - track.time_s.begin();
+        cursors.push_back({track.time_s.data() + first, track.time_s.data() + last, track.value.data() + first});
+    }
+    std::vector<char> row((tracks.size() + 1) * (number_buffer_size + 1));
+    std::string text;
+    while (true) {
+        double time_s = std::numeric_limits<double>::infinity();
+        for (const auto& cursor : cursors) time_s = std::min(time_s, cursor.next_s());
+        if (!std::isfinite(time_s)) return text;
+        char* to = write_number(row.data(), time_s);
+        for (auto& cursor : cursors) {
+            *to++ = ',';
+            if (cursor.next_s() != time_s) continue;
+            to = write_number(to, *cursor.value);
+            ++cursor.time_s;
+            ++cursor.value;
+        }
+        *to++ = '\n';
+        text.append(row.data(), to);
+    }
+}
+
+/// The rows in parts, made on `max_threads` at most (0: on every core), in order.
+void write_rows(const std::vector<Track>& tracks, const TextSink& sink, std::size_t max_threads) {
+    constexpr std::size_t samples_at_once = 1024;
+    constexpr double infinite_s = std::numeric_limits<double>::infinity();
+    std::vector<double> borders_s{-infinite_s};
+    const auto densest = std::ranges::max_element(tracks, {}, [](const Track& track) { return track.time_s.size(); });
+    if (densest != tracks.end()) {
+        for (auto i = samples_at_once; i < densest->time_s.size(); i += samples_at_once)
+            borders_s.push_back(densest->time_s[i]);
+    }
+    borders_s.push_back(infinite_s);
+    const auto parts = borders_s.size() - 1;
+    std::vector<std::string> texts(threads_for(parts, max_threads));
+    for_each_in_order(
+        parts,
+        [&](std::size_t i, std::size_t place) { texts[place] = rows_between(tracks, borders_s[i], borders_s[i + 1]); },
+        [&](std::size_t, std::size_t place) { sink(texts[place]); }, max_threads);
+}
 
 /// Reads the table behind the front matter row by row.
 class TableReader {
@@ -123,7 +180,7 @@ std::string to_csv(const FlightSeries& series) {
 void write_csv(const FlightSeries& series, const TextSink& sink, std::size_t max_threads) {
     const auto names = column_names(series.tracks);
     sink(fmt::format("{}time_s,{}\n", format_front_matter(series), fmt::join(names, ",")));
-    write_series_rows(series.tracks, sink, max_threads);
+    write_rows(series.tracks, sink, max_threads);
 }
 
 FlightSeries parse_series_csv(std::string_view text, const std::filesystem::path& file) {
