@@ -2,8 +2,10 @@
 
 #include "flight/flight_series.h"
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -11,6 +13,10 @@
 
 /// Which flight of which aircraft a series is of, by what it holds rather than by its name.
 namespace flightwatt::flight {
+
+/// When a log was begun, by the clock of the ground station that named it so: "20_07_05__10_26_44", wherever in the
+/// name that stands. None where it does not, or is no time.
+std::optional<std::chrono::sys_seconds> start_in_name(const std::string& name);
 
 /// Two values of one field, some samples apart, and when: one of many by which a flight is known again.
 struct SketchHash {

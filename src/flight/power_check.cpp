@@ -5,7 +5,6 @@
 #include "base/units.h"
 #include "flight/checks/power_record.h"
 #include "flight/checks/power_warnings.h"
-#include "flight/checks/sample_rules.h"
 #include "flight/phase_statistics.h"
 #include "flight/sources/power_source.h"
 

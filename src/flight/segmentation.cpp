@@ -1,7 +1,6 @@
 #include "flight/segmentation.h"
 
 #include "base/error.h"
-#include "flight/segmentation/activity.h"
 #include "flight/segmentation/flight_grid.h"
 #include "flight/segmentation/flight_rejection.h"
 #include "flight/segmentation/phase_edges.h"

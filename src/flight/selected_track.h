@@ -16,7 +16,7 @@ namespace flightwatt::flight {
 /// first; of throttle a rotorcraft's thrust comes last, and a fraction is made percent; of current and power the sum
 /// over devices where no message tells the whole. Power is the first that measures something (is not 0 throughout) and
 /// is not contradicted by voltage times current. Samples that cannot be are left out, and said in warnings_of: those
-/// beyond physical bounds (physical_bounds.h), of power, voltage and current where the message contradicts itself, and
+/// beyond physical bounds (sources/outliers.h), of power, voltage and current where the message contradicts itself, and
 /// lonely spikes (docs/methods.md). Empty if the log has none. `source` says where it is from:
 /// "ENERGY.voltage * ENERGY.current", "ESC, summed over 4 devices".
 Track select_track(const FlightSeries& series, std::string_view name);

@@ -38,4 +38,13 @@ PowerRecord make_power_record(const SelectedTracks& tracks, const FlightPhases& 
 std::vector<std::size_t> resting_samples(const PowerRecord& record, const std::vector<Rest>& rests,
                                          const SegmentationOptions& options);
 
+/// What the rules for samples of a power record found: faults exclude a flight from fits, warnings do not.
+struct SampleFindings {
+    std::vector<std::string> faults;
+    std::vector<std::string> warnings;
+};
+
+/// Applies the table of rules in power_record.cpp. `resting`: the samples at rest with the motor off, in order.
+SampleFindings apply_sample_rules(const PowerRecord& record, const std::vector<std::size_t>& resting);
+
 }  // namespace flightwatt::flight

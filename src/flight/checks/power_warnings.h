@@ -1,7 +1,6 @@
 #pragma once
 
 #include "flight/checks/power_record.h"
-#include "flight/checks/sample_rules.h"
 #include "flight/flight_phases.h"
 #include "flight/power_check.h"
 

@@ -4,7 +4,7 @@
 #include "base/units.h"
 #include "flight/checks/runs.h"
 #include "flight/phase_statistics.h"
-#include "flight/sources/device_tracks.h"
+#include "flight/sources/device_sum.h"
 
 #include <algorithm>
 #include <charconv>

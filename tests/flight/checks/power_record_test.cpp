@@ -1,4 +1,4 @@
-#include "flight/checks/sample_rules.h"
+#include "flight/checks/power_record.h"
 
 #include "flight/checks/runs.h"
 
