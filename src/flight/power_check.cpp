@@ -170,11 +170,6 @@ void warn_of_short_record(const SelectedTracks& tracks, const std::vector<double
 
 }  // namespace
 
-PowerReport check_power_record(const FlightSeries& series, const FlightPhases& phases,
-                               const SegmentationOptions& options) {
-    return check_power_record(SelectedTracks(series), phases, options);
-}
-
 PowerReport check_power_record(const SelectedTracks& tracks, const FlightPhases& phases,
                                const SegmentationOptions& options) {
     PowerReport report;

@@ -95,10 +95,6 @@ void validate(const SegmentationOptions& options) {
     require(options.hold_s > 0.0, "hold", options.hold_s, "more than 0 s");
 }
 
-FlightPhases segment(const FlightSeries& series, const SegmentationOptions& options) {
-    return segment(SelectedTracks(series), options);
-}
-
 FlightPhases segment(const SelectedTracks& tracks, const SegmentationOptions& options) {
     validate(options);
     const auto grid = make_grid(tracks);

@@ -37,9 +37,10 @@ struct TrackSelection {
 };
 
 /// The chosen tracks of a series, each made when it is first asked for. The series must outlive it, and stay as it is.
+/// What takes selected tracks takes a series too; several calls share the tracks if they are given them.
 class SelectedTracks {
   public:
-    explicit SelectedTracks(const FlightSeries& series) : series_(series) {}
+    SelectedTracks(const FlightSeries& series) : series_(series) {}
 
     const FlightSeries& series() const { return series_; }
     const Track& operator[](std::string_view name) const { return choice(name).track(); }
@@ -59,14 +60,12 @@ inline constexpr double contradicted_s = 30.0;
 inline Track power_track(const FlightSeries& series) { return select_track(series, "power_w"); }
 
 /// Where each chosen track came from, by name.
-std::map<std::string, std::string> track_sources(const FlightSeries& series);
 std::map<std::string, std::string> track_sources(const SelectedTracks& tracks);
 
 /// Above sea level, from the log's NAVIGATION_REF, else as planned; 0 where altitudes are above the ground.
 std::optional<double> ground_altitude_m(const SelectedTracks& tracks);
 
 /// What a user should know: assumed layouts, sources passed over, samples left out, skipped lines.
-std::vector<std::string> warnings_of(const FlightSeries& series);
 std::vector<std::string> warnings_of(const SelectedTracks& tracks);
 
 /// Why no power was measured: what was looked at and what is wrong with it, "ENERGY.power is 0 throughout; ...". Empty

@@ -149,10 +149,6 @@ void fill_record(const flight::SelectedTracks& tracks, const PackRecord& part, D
 
 }  // namespace
 
-DischargeRecords discharge_records(const flight::FlightSeries& series) {
-    return discharge_records(flight::SelectedTracks(series));
-}
-
 DischargeRecords discharge_records(const flight::SelectedTracks& tracks) {
     const auto& series = tracks.series();
     PackRecord whole;

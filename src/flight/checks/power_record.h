@@ -31,6 +31,12 @@ struct PowerRecord {
     double duration_s = 0.0;
 };
 
+template <typename Visit>
+void for_each_in_flight(const PowerRecord& record, Visit&& visit) {
+    for (const auto& [first, last] : record.in_flight)
+        for (auto i = first; i < last; ++i) visit(i);
+}
+
 PowerRecord make_power_record(const SelectedTracks& tracks, const FlightPhases& phases);
 
 /// Indices of the power samples at rest on the ground with the motor off; where no throttle tells that of the motor, at

@@ -132,16 +132,11 @@ bool is_plausible(const Track& track) {
 Track within_bounds(const Track& track) {
     if (is_plausible(track)) return track;
     const auto bounds = physical_bounds(track.name).value();
-    const auto is_possible = [&](double value) { return is_within(bounds, value); };
-    Track kept{track.name, track.source, track.device, track.since_s, {}, {}};
     constexpr double max_beyond = 0.1;
-    const auto beyond = track.value.size() - static_cast<std::size_t>(std::ranges::count_if(track.value, is_possible));
-    if (static_cast<double>(beyond) > max_beyond * static_cast<double>(track.value.size())) return kept;
-    for (std::size_t i = 0; i < track.value.size(); ++i) {
-        if (!is_possible(track.value[i])) continue;
-        kept.time_s.push_back(track.time_s[i]);
-        kept.value.push_back(track.value[i]);
-    }
+    auto kept = track;
+    const auto beyond = erase_samples(kept, [&](std::size_t i) { return !is_within(bounds, track.value[i]); });
+    if (static_cast<double>(beyond) > max_beyond * static_cast<double>(track.value.size()))
+        kept.time_s = kept.value = {};
     return kept;
 }
 
@@ -200,17 +195,11 @@ std::vector<double> dropout_times(const Track& track, const Track& throttle) {
 }
 
 Track without_times(Track track, const std::vector<double>& times_s) {
-    if (times_s.empty()) return track;
-    std::size_t kept = 0;
     auto next = times_s.begin();
-    for (std::size_t i = 0; i < track.time_s.size(); ++i) {
+    erase_samples(track, [&](std::size_t i) {
         while (next != times_s.end() && *next < track.time_s[i]) ++next;
-        if (next != times_s.end() && *next == track.time_s[i]) continue;
-        track.time_s[kept] = track.time_s[i];
-        track.value[kept++] = track.value[i];
-    }
-    track.time_s.resize(kept);
-    track.value.resize(kept);
+        return next != times_s.end() && *next == track.time_s[i];
+    });
     return track;
 }
 

@@ -89,9 +89,6 @@ bool looks_like_two_frames(const char* p, const char* end) {
     return size < end - p && p[size] == sync_byte(framing);
 }
 
-/// The most bytes that a frame has: an escaped one is nearly twice as long.
-constexpr std::size_t max_frame_bytes = 640;
-
 inline ParseStatus parse_card_frame(const char* p, const char* end, Frame& frame) {
     constexpr std::size_t overhead = 8;
     if (end - p < 2) return ParseStatus::incomplete;
