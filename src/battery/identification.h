@@ -4,7 +4,6 @@
 #include "battery/identification/circuit_errors.h"
 #include "battery/identification/circuit_fit.h"
 #include "battery/identification/discharge_record.h"
-#include "battery/identification/flight_resistance.h"
 #include "battery/identification/open_circuit.h"
 #include "battery/identification/pack_changes.h"
 #include "battery/identification/state_of_health.h"

@@ -256,9 +256,9 @@ void SelectedTracks::compute_all() const {
     for (std::size_t i = 0; i < names.size(); ++i) made_.emplace(names[i], std::move(choices[i]));
 }
 
-std::vector<double> sample_selected_track(const FlightSeries& series, std::string_view name,
+std::vector<double> sample_selected_track(const SelectedTracks& tracks, std::string_view name,
                                           const std::vector<double>& time_s) {
-    const auto track = select_track(series, name);
+    const auto& track = tracks[name];
     return track.empty() ? std::vector<double>{} : resample(track, time_s);
 }
 

@@ -21,11 +21,6 @@ namespace flightwatt::flight {
 /// "ENERGY.voltage * ENERGY.current", "ESC, summed over 4 devices".
 Track select_track(const FlightSeries& series, std::string_view name);
 
-/// The track of that name at other times, linear between its points and constant outside; `time_s` must rise.
-/// Empty if the log has none.
-std::vector<double> sample_selected_track(const FlightSeries& series, std::string_view name,
-                                          const std::vector<double>& time_s);
-
 /// A track as it is chosen, and what of the log is not used for it.
 struct TrackSelection {
     const Track* logged = nullptr;                   ///< one of the series' own, where it is taken as it stands
@@ -52,6 +47,11 @@ class SelectedTracks {
     const FlightSeries& series_;
     mutable std::map<std::string, TrackSelection, std::less<>> made_;
 };
+
+/// The track of that name at other times, linear between its points and constant outside; `time_s` must rise.
+/// Empty if the log has none.
+std::vector<double> sample_selected_track(const SelectedTracks& tracks, std::string_view name,
+                                          const std::vector<double>& time_s);
 
 /// A throttle at idle is contradicted by power, or by the commands to the motor, that last so long [s].
 inline constexpr double contradicted_s = 30.0;

@@ -245,19 +245,19 @@ void add_configuration(FlightSeries& series, const telemetry::TelemetryLog& log)
     series.current_origin = aircraft.current_origin;
 }
 
-FlightSeries series_without_tracks(const telemetry::TelemetryLog& log, const std::string& aircraft_id) {
+/// The columns of a log that is not const go into the tracks.
+template <typename Log>
+FlightSeries make_series(Log& log, const std::string& aircraft_id) {
     FlightSeries series;
     series.file = log.data_file.string();
     series.flight = log.flight;
     series.aircraft_id = aircraft_id;
     add_configuration(series, log);
+    const auto sender = std::ranges::find(log.senders, aircraft_id, &telemetry::SenderLog::id);
+    if (sender == log.senders.end()) return series;
+    series.clock_restart = find_clock_restart(*sender);
+    series.tracks = logged_tracks(*sender, series.log_is_missing);
     return series;
-}
-
-template <typename Sender>
-void add_tracks(FlightSeries& series, Sender& sender) {
-    series.clock_restart = find_clock_restart(sender);
-    series.tracks = logged_tracks(sender, series.log_is_missing);
 }
 
 }  // namespace
@@ -314,17 +314,11 @@ std::vector<std::string> telemetry_senders(const telemetry::TelemetryLog& log) {
 }
 
 FlightSeries flight_series(const telemetry::TelemetryLog& log, const std::string& aircraft_id) {
-    auto series = series_without_tracks(log, aircraft_id);
-    const auto sender = std::ranges::find(log.senders, aircraft_id, &telemetry::SenderLog::id);
-    if (sender != log.senders.end()) add_tracks(series, *sender);
-    return series;
+    return make_series(log, aircraft_id);
 }
 
 FlightSeries extract_flight_series(telemetry::TelemetryLog& log, const std::string& aircraft_id) {
-    auto series = series_without_tracks(log, aircraft_id);
-    const auto sender = std::ranges::find(log.senders, aircraft_id, &telemetry::SenderLog::id);
-    if (sender != log.senders.end()) add_tracks(series, *sender);
-    return series;
+    return make_series(log, aircraft_id);
 }
 
 }  // namespace flightwatt::flight

@@ -135,17 +135,7 @@ struct LinkDecoder::State {
 
     void use_framing(Framing framing) {
         counts.framing = framing;
-        switch (framing) {
-            case Framing::card:
-                scanner.emplace<FrameScanner<Framing::card>>(dictionary, version);
-                break;
-            case Framing::link:
-                scanner.emplace<FrameScanner<Framing::link>>(dictionary, version);
-                break;
-            case Framing::xbee:
-                scanner.emplace<FrameScanner<Framing::xbee>>(dictionary, version);
-                break;
-        }
+        with_framing(framing, [&]<Framing of>() { scanner.emplace<FrameScanner<of>>(dictionary, version); });
     }
 
     /// Decides the framing by what has come; true once it is.

@@ -232,10 +232,7 @@ SampleFindings apply_sample_rules(const PowerRecord& record, const std::vector<s
 
 PowerRecord make_power_record(const SelectedTracks& tracks, const FlightPhases& phases) {
     const auto& power = tracks["power_w"];
-    const auto on_clock = [&](const char* name) {
-        const auto& track = tracks[name];
-        return track.empty() ? std::vector<double>{} : resample(track, power.time_s);
-    };
+    const auto on_clock = [&](const char* name) { return sample_selected_track(tracks, name, power.time_s); };
     PowerRecord record;
     record.voltage_v = on_clock("voltage_v");
     record.current_a = on_clock("current_a");
