@@ -3,14 +3,13 @@
 #include "base/piecewise_linear.h"
 #include "base/statistics.h"
 #include "base/units.h"
+#include "flight/flight_identity.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -25,35 +24,15 @@ constexpr double counted_ah = 0.01;         // a counter that begins above did n
 constexpr double unreadable_cell_v = 0.01;  // a cell; a smaller fall tells nothing
 constexpr double max_deviations = 2.5;      // of a resting voltage
 
-/// Of a name like "20_07_10__06_53_03": the wall clock where it was flown, as if that were UTC.
-std::optional<double> named_clock_s(std::string_view name) {
-    constexpr std::string_view form = "00_00_00__00_00_00";
-    if (name.size() < form.size()) return std::nullopt;
-    constexpr std::array<std::size_t, 6> places{0, 3, 6, 10, 13, 16};
-    std::array<int, 6> parts{};
-    for (std::size_t i = 0; i < form.size(); ++i) {
-        const bool is_digit = name[i] >= '0' && name[i] <= '9';
-        if (form[i] == '0' ? !is_digit : name[i] != '_') return std::nullopt;
-    }
-    for (std::size_t i = 0; i < places.size(); ++i)
-        parts[i] = 10 * (name[places[i]] - '0') + (name[places[i] + 1] - '0');
-    const std::chrono::year_month_day date{std::chrono::year(2000 + parts[0]),
-                                           std::chrono::month(static_cast<unsigned>(parts[1])),
-                                           std::chrono::day(static_cast<unsigned>(parts[2]))};
-    if (!date.ok()) return std::nullopt;
-    const auto days = std::chrono::sys_days(date).time_since_epoch();
-    return std::chrono::duration<double>(days).count() + units::seconds_per_hour * parts[3] +
-           units::seconds_per_minute * parts[4] + parts[5];
-}
-
 /// From the last sample of one record to the first of another; negative if that one began before.
 std::optional<double> pause_s(const DischargeRecord& earlier, const DischargeRecord& later) {
     const double length_s = earlier.time_s.back() - earlier.time_s.front();
     if (earlier.start_clock_s && later.start_clock_s) return *later.start_clock_s - *earlier.start_clock_s - length_s;
-    const auto from_s = named_clock_s(earlier.flight);
-    const auto to_s = named_clock_s(later.flight);
-    if (!from_s || !to_s) return std::nullopt;
-    return *to_s + later.time_s.front() - *from_s - earlier.time_s.back();
+    const auto from = flight::start_in_name(earlier.flight);
+    const auto to = flight::start_in_name(later.flight);
+    if (!from || !to) return std::nullopt;
+    const auto seconds = [](auto time) { return std::chrono::duration<double>(time.time_since_epoch()).count(); };
+    return seconds(*to) + later.time_s.front() - seconds(*from) - earlier.time_s.back();
 }
 
 bool is_fallen_as_drawn(const DischargeRecord& later, const AlignedRecord& earlier, const CircuitFit& fit) {
