@@ -1,7 +1,7 @@
 #include "report/flight_facts.h"
 
 #include "base/units.h"
-#include "flight/log_name.h"
+#include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
 #include "flight/selected_track.h"
 

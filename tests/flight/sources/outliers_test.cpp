@@ -1,4 +1,4 @@
-#include "flight/physical_bounds.h"
+#include "flight/sources/outliers.h"
 
 #include "flight/selected_track.h"
 

@@ -1,4 +1,4 @@
-#include "flight/checks/sample_rules.h"
+#include "flight/checks/power_record.h"
 
 #include "flight/checks/runs.h"
 
@@ -152,10 +152,11 @@ TEST(SampleRules, OfPowerOutsideOfTheFlight) {
 
 TEST(Runs, EndWhereARuleDoesOrItsNeighbourDiffers) {
     const std::vector<double> values{1, 1, 2, 2, 2, 3};
-    const auto equal = runs_of_equal(values, {0, values.size()});
-    ASSERT_EQ(equal.size(), 3U);
-    EXPECT_EQ(equal[1].first, 2U);
-    EXPECT_EQ(equal[1].last, 5U);
+    EXPECT_EQ(runs_of_equal(values, 1).size(), 3U);
+    const auto equal = runs_of_equal(values, 3);
+    ASSERT_EQ(equal.size(), 1U);
+    EXPECT_EQ(equal[0].first, 2U);
+    EXPECT_EQ(equal[0].last, 5U);
     const auto even = runs_of({1, 6}, [&](std::size_t i) { return values[i] == 2.0; });
     ASSERT_EQ(even.size(), 1U);
     EXPECT_EQ(even[0].size(), 3U);
