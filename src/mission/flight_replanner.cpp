@@ -2,8 +2,8 @@
 
 #include "base/statistics.h"
 #include "base/units.h"
-#include "mission/sampling/level_deviation.h"
-#include "mission/sampling/student.h"
+#include "mission/sampling/flight_spreads.h"
+#include "mission/sampling/joint_spread.h"
 
 #include <algorithm>
 #include <cmath>

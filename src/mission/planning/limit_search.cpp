@@ -2,7 +2,6 @@
 
 #include "base/units.h"
 #include "mission/planning/depletion_table.h"
-#include "mission/planning/margin_search.h"
 #include "mission/planning/planner.h"
 #include "mission/sampling/landing_distribution.h"
 
