@@ -10,7 +10,6 @@
 #include "cli/stage.h"
 #include "mission/feasibility_limits.h"
 #include "mission/mission_file.h"
-#include "mission/path_limits.h"
 #include "mission/plan.h"
 #include "stages.h"
 

@@ -1,4 +1,4 @@
-#include "mission/planning/margin_search.h"
+#include "mission/planning/limit_search.h"
 
 #include <algorithm>
 #include <cmath>

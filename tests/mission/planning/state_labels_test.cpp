@@ -1,4 +1,4 @@
-#include "mission/planning/heuristic_value.h"
+#include "mission/planning/state_labels.h"
 
 #include "helpers/small_missions.h"
 #include "mission/plan.h"
