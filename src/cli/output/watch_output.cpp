@@ -1,7 +1,6 @@
 #include "cli/output/watch_output.h"
 
 #include "base/units.h"
-#include "cli/output/json_text.h"
 #include "cli/output/prediction_output.h"
 
 #include <algorithm>
@@ -12,8 +11,6 @@
 
 namespace flightwatt::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string phase_text(const live::LiveState& state) {
     if (state.phase) return std::string(to_string(*state.phase));

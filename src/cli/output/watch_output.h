@@ -9,13 +9,11 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 /// What watch says of a flight in the air.
 namespace flightwatt::cli {
 
 /// All of a state; null for what is not known (docs/live.md). `compute` names what its decision runs.
-nlohmann::ordered_json json_of(const live::LiveState& state, const compute::ComputeModel& compute);
+Json json_of(const live::LiveState& state, const compute::ComputeModel& compute);
 
 /// What a page is told.
 struct PageEvent {
