@@ -7,7 +7,7 @@
 #include "base/toml_reader.h"
 #include "cli/screen_table.h"
 #include "cli/terminal.h"
-#include "cli/version.h"
+#include "cli/help.h"
 
 #include <algorithm>
 #include <cerrno>

@@ -219,16 +219,6 @@ std::vector<SimulatedMission> simulate_for_report(const std::vector<mission::Mis
     return simulated;
 }
 
-std::string describe(const compute::ComputeModel& compute, const compute::Configuration& run) {
-    std::string text;
-    for (const auto& running : run) {
-        const auto& component = compute.components[running.component];
-        text += (text.empty() ? "" : ", ") + component.name;
-        if (!running.qos.empty()) text += " " + compute::format_qos(component.profile.parameters, running.qos, " ");
-    }
-    return text.empty() ? "nothing" : text;
-}
-
 MissionAssessment assess_mission(const SimulatedMission& simulated, const mission::MissionLoader& mission_of) {
     MissionAssessment answer;
     const auto mission = ask([&] { return mission_of({.allow_unplanned = true}); });

@@ -33,9 +33,6 @@ struct SimulatedMission {
 std::vector<SimulatedMission> simulate_for_report(const std::vector<mission::MissionVariant>& missions,
                                                   const Progress& progress = {});
 
-/// What a configuration runs: "detection fps 10, encryption key_bits 240", or "nothing".
-std::string describe(const compute::ComputeModel& compute, const compute::Configuration& run);
-
 /// The chance that "likely" means.
 inline constexpr double reach_probability = 0.95;
 

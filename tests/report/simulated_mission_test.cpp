@@ -42,12 +42,6 @@ TEST(SimulateForReport, HasAsManyRowsAsAScreenShows) {
     EXPECT_NEAR(static_cast<double>(missions.front().simulation.curve.rows.size()), 300.0, 30.0);
 }
 
-TEST(Describe, NamesWhatRuns) {
-    const auto mission = test::paper_mission("invariant-10fps-240bit");
-    EXPECT_EQ(describe(mission.compute, mission.schedule.front().run), "detection fps 10, encryption key_bits 240");
-    EXPECT_EQ(describe(mission.compute, {}), "nothing");
-}
-
 using testing::Contains;
 using testing::HasSubstr;
 using testing::StartsWith;

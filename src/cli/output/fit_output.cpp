@@ -36,7 +36,7 @@ mechanical::ManualWeight parse_hand_weight(const std::string& text) {
 Json interval_json(const mechanical::Interval& interval) { return {{"low", interval.low}, {"high", interval.high}}; }
 
 Json interval_json(const std::vector<mechanical::Interval>& intervals) {
-    auto list = nlohmann::ordered_json::array();
+    auto list = Json::array();
     for (const auto& interval : intervals) list.push_back(interval_json(interval));
     return list;
 }
@@ -81,7 +81,7 @@ Json to_json(const mechanical::FlightEnvelope& spread) {
 }
 
 Json validation_json(const mechanical::ModelValidation& validation) {
-    auto scores = nlohmann::ordered_json::array();
+    auto scores = Json::array();
     for (const auto& [model, flights, error_percent] : validation.scores)
         scores.push_back({{"model", model}, {"flights", flights}, {"mean_absolute_error_percent", error_percent}});
     return {{"default_model", default_model(validation)}, {"scores", scores}};

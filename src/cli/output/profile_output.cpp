@@ -40,7 +40,7 @@ Json to_json(const compute::PowerEstimate& estimate) {
 
 Json to_json(const compute::ComponentEstimate& component, const compute::ProfileOutcome& outcome, bool above_idle) {
     Json json{{"name", component.name}, {"parameters", component.parameters}};
-    json["nodes"] = nlohmann::ordered_json::array();
+    json["nodes"] = Json::array();
     for (const auto& node : component.nodes) {
         const auto reported = reported_power(node.total, outcome.idle, above_idle);
         Json entry{{"qos", node.qos}};
@@ -52,7 +52,7 @@ Json to_json(const compute::ComponentEstimate& component, const compute::Profile
         entry["measured"] = node.is_measured;
         json["nodes"].push_back(std::move(entry));
     }
-    json["failures"] = nlohmann::ordered_json::array();
+    json["failures"] = Json::array();
     for (const auto& run : component.failures) {
         json["failures"].push_back({{"configuration", run.configuration},
                                     {"repeat", run.repeat},
@@ -108,7 +108,7 @@ Json to_json(const compute::ProfileOutcome& outcome, bool above_idle) {
     json["sampling_interval"] = {{"mean_s", outcome.jitter.mean_s},
                                  {"standard_deviation_s", outcome.jitter.sd_s},
                                  {"longest_s", outcome.jitter.max_s}};
-    json["components"] = nlohmann::ordered_json::array();
+    json["components"] = Json::array();
     for (const auto& component : outcome.components) {
         json["components"].push_back(to_json(component, outcome, above_idle));
     }

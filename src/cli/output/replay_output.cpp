@@ -156,7 +156,7 @@ Json replay_json(const Replay& replay) {
               {"longest_gap_s", replay.max_gap_s},
               {"bound", replay.bound_is_proven ? optional_json(replay.bound) : nullptr},
               {"notes", replay.notes}};
-    json["schedules"] = nlohmann::ordered_json::array();
+    json["schedules"] = Json::array();
     for (const auto& replayed : replay.schedules) json["schedules"].push_back(schedule_json(replayed));
     return json;
 }
@@ -166,7 +166,7 @@ Json comparison_json(const std::string& mission, ScheduleMethod baseline,
     Json json{{"mission", mission},
               {"baseline", mission::to_string(baseline)},
               {"sentence", sentence(mission, baseline, comparisons)}};
-    json["flights"] = nlohmann::ordered_json::array();
+    json["flights"] = Json::array();
     for (const auto& comparison : comparisons) {
         json["flights"].push_back({{"flight", comparison.flight},
                                    {"verdict", to_string(comparison.verdict)},
