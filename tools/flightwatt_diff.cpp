@@ -5,7 +5,6 @@
 #include "base/toml_reader.h"
 #include "base/units.h"
 #include "batch/batch_fit.h"
-#include "cli/output/json_text.h"
 #include "cli/output/mission_output.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
@@ -191,26 +190,26 @@ TextTable difference_table(const std::vector<Difference>& rows, ComparedKind kin
     return table;
 }
 
-nlohmann::ordered_json difference_json(const std::vector<Difference>& rows, ComparedKind kind,
-                                       const std::vector<std::string>& shared) {
+cli::Json difference_json(const std::vector<Difference>& rows, ComparedKind kind,
+                          const std::vector<std::string>& shared) {
     const auto interval = [](const std::optional<mechanical::Interval>& of) {
-        return of ? nlohmann::ordered_json::array({of->low, of->high}) : nlohmann::ordered_json(nullptr);
+        return of ? cli::Json::array({of->low, of->high}) : cli::Json(nullptr);
     };
-    nlohmann::ordered_json json{{"kind", kind == ComparedKind::mission ? "missions"
-                                         : kind == ComparedKind::batch ? "batches"
-                                                                       : "models"},
-                                {"shared_flights", shared},
-                                {"differences", nlohmann::ordered_json::array()}};
+    cli::Json json{{"kind", kind == ComparedKind::mission ? "missions"
+                            : kind == ComparedKind::batch ? "batches"
+                                                          : "models"},
+                   {"shared_flights", shared},
+                   {"differences", cli::Json::array()}};
     for (const auto& row : rows) {
-        nlohmann::ordered_json item{{"part", row.part}, {"quantity", row.quantity}, {"unit", row.unit}};
+        cli::Json item{{"part", row.part}, {"quantity", row.quantity}, {"unit", row.unit}};
         for (const auto& [name, side] : {std::pair("a", &row.a), std::pair("b", &row.b)}) {
-            item[name] = *side ? nlohmann::ordered_json((*side)->value) : nlohmann::ordered_json(nullptr);
+            item[name] = *side ? cli::Json((*side)->value) : cli::Json(nullptr);
             item[fmt::format("{}_interval", name)] = interval(*side ? (*side)->interval : std::nullopt);
         }
         item["difference"] = cli::optional_json(difference_of(row));
         item["interval"] = interval(row.interval);
         const auto differs = verdict(row, kind);
-        item["differs"] = differs == "-" ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(differs == "yes");
+        item["differs"] = differs == "-" ? cli::Json(nullptr) : cli::Json(differs == "yes");
         item["basis"] = basis_of(row, kind);
         item["at_s"] = cli::optional_json(row.at_s);
         json["differences"].push_back(std::move(item));

@@ -2,14 +2,12 @@
 
 #include "base/error.h"
 #include "base/units.h"
-#include "cli/numeric_options.h"
 #include "cli/output/battery_output.h"
 #include "cli/output/fit_output.h"
 #include "cli/output/flight_options.h"
-#include "cli/output/json_text.h"
 #include "cli/output/mission_output.h"
 #include "cli/output/physical_output.h"
-#include "cli/output/validation_output.h"
+#include "cli/output/prediction_output.h"
 #include "cli/stage.h"
 #include "exchange/autopilot_parameters.h"
 #include "exchange/message_table.h"
@@ -23,7 +21,6 @@
 #include "report/in_flight.h"
 #include "report/missions_section.h"
 #include "report/model_section.h"
-#include "report/replay_section.h"
 #include "report/simulated_mission.h"
 #include "stages.h"
 
@@ -77,7 +74,7 @@ struct Input {
 struct Exported {
     std::string text;
     std::vector<std::string> notes = {};
-    nlohmann::ordered_json facts = nlohmann::ordered_json::object();
+    cli::Json facts = nlohmann::ordered_json::object();
 };
 
 Kind kind_of(const std::string& file) {
@@ -371,7 +368,7 @@ int export_inputs(const cli::StageCall& call) {
     cli::write_result(call, result.text);
     for (const auto& note : result.notes) cli::note(call, note);
     if (!call.json) return cli::ok;
-    nlohmann::ordered_json json{{"inputs", call.inputs}, {"format", format.name}, {"notes", result.notes}};
+    cli::Json json{{"inputs", call.inputs}, {"format", format.name}, {"notes", result.notes}};
     json.update(result.facts);
     cli::print(cli::json_text(json));
     return cli::ok;

@@ -3,23 +3,19 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/parallel.h"
-#include "cli/numeric_options.h"
 #include "cli/output/battery_output.h"
 #include "cli/output/fit_output.h"
-#include "cli/output/json_text.h"
 #include "cli/output/mission_output.h"
-#include "cli/progress.h"
 #include "cli/stage.h"
+#include "cli/terminal.h"
 #include "mechanical/model_check.h"
 #include "mission/mission_file.h"
 #include "report/batch_content.h"
 #include "report/battery_section.h"
-#include "report/figure_files.h"
 #include "report/flights_section.h"
 #include "report/missions_section.h"
 #include "report/model_section.h"
 #include "report/page.h"
-#include "report/replay_section.h"
 #include "report/summary_section.h"
 #include "report/trends_section.h"
 #include "stages.h"
@@ -254,7 +250,7 @@ void add_replay(Page& page, const cli::StageCall& call, const ReportInputs& inpu
         page.sections.push_back(report::replay_section(replays));
 }
 
-nlohmann::ordered_json summary_json(const Page& page) {
+cli::Json summary_json(const Page& page) {
     auto figures = nlohmann::ordered_json::array();
     for (const auto& section : page.sections) {
         for (const auto& figure : section.figures) {

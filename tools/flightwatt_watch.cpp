@@ -3,11 +3,8 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/signal_watch.h"
-#include "cli/numeric_options.h"
-#include "cli/output/basis_options.h"
-#include "cli/output/json_text.h"
+#include "cli/output/live_options.h"
 #include "cli/output/prediction_output.h"
-#include "cli/output/source_options.h"
 #include "cli/output/watch_output.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
@@ -77,7 +74,7 @@ class WatchOutput {
         for (const auto& warning : said_.final_updates(warnings_)) cli::warn(call_, warning);
         const auto& last = flight.last_predicted();
         if (call_.json) {
-            nlohmann::ordered_json json{{"ended", why}, {"last_prediction", nullptr}};
+            cli::Json json{{"ended", why}, {"last_prediction", nullptr}};
             if (last) json["last_prediction"] = cli::json_of(*last, compute_);
             cli::print(json.dump(-1, ' ', false, replace) + "\n");
         } else {

@@ -6,10 +6,10 @@
 #include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
 #include "flight/selected_track.h"
-#include "report/blocks/compressed_block.h"
-#include "report/blocks/packed_tables.h"
+#include "report/batch_content.h"
+#include "report/blocks.h"
 #include "report/figures/flight_figures.h"
-#include "report/flight_facts.h"
+#include "report/html.h"
 
 #include <algorithm>
 #include <atomic>

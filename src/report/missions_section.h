@@ -1,7 +1,8 @@
 #pragma once
 
 #include "base/text_table.h"
-#include "report/figures/published_figures.h"
+#include "mission/replay.h"
+#include "report/figure.h"
 #include "report/html.h"
 #include "report/simulated_mission.h"
 
@@ -26,5 +27,12 @@ std::vector<Section> mission_sections(std::span<const SimulatedMission> missions
 /// The missions whose schedules were planned: their utility and what is proven of it, beside the other missions with
 /// the same flight, software and battery, and what runs when. Without figures where none was planned.
 Section plan_section(std::span<const SimulatedMission> missions);
+
+/// What the missions' schedules came to on the flights' measured power: tables, sentences, and a figure a mission that
+/// is yet to be planned. `replays` is not empty.
+Section replay_section(std::span<const mission::Replay> replays);
+
+/// Its tables.
+std::vector<CaptionedTable> replay_tables(std::span<const mission::Replay> replays);
 
 }  // namespace flightwatt::report

@@ -4,7 +4,7 @@
 #include "batch/batch_fit.h"
 #include "mechanical/model_errors.h"
 #include "mechanical/validation.h"
-#include "report/figures/published_figures.h"
+#include "report/figure.h"
 #include "report/html.h"
 
 #include <optional>

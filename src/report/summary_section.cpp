@@ -2,7 +2,7 @@
 
 #include "base/duration_text.h"
 #include "flight/flight_identity.h"
-#include "report/flight_facts.h"
+#include "report/batch_content.h"
 
 #include <algorithm>
 #include <map>

@@ -3,7 +3,7 @@
 #include "mechanical/validation.h"
 #include "report/batch_content.h"
 #include "report/html.h"
-#include "report/mission_answer.h"
+#include "report/simulated_mission.h"
 
 #include <span>
 #include <vector>

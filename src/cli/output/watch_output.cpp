@@ -1,7 +1,6 @@
 #include "cli/output/watch_output.h"
 
 #include "base/units.h"
-#include "cli/output/json_text.h"
 #include "cli/output/prediction_output.h"
 
 #include <algorithm>
@@ -12,8 +11,6 @@
 
 namespace flightwatt::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string phase_text(const live::LiveState& state) {
     if (state.phase) return std::string(to_string(*state.phase));
@@ -95,8 +92,9 @@ std::string reserve_line(const live::LiveState& state) {
 std::string schedule_line(const live::LiveState& state, const compute::ComputeModel& compute) {
     if (!state.decision) return "";
     const auto& decision = *state.decision;
-    auto text = "runs " + run_text(decision.run, compute);
-    if (decision.next) text += fmt::format(", in {:.0f} s {}", decision.next_in_s, run_text(*decision.next, compute));
+    auto text = "runs " + describe(compute, decision.run, "=");
+    if (decision.next)
+        text += fmt::format(", in {:.0f} s {}", decision.next_in_s, describe(compute, *decision.next, "="));
     if (decision.remaining_utility_per_s)
         text += fmt::format("; utility {:.4g} a second to the end", *decision.remaining_utility_per_s);
     if (!decision.keeps_reserve) text += "; no plan keeps the reserve";
@@ -118,17 +116,6 @@ std::string variable_name(std::string text) {
 }
 
 }  // namespace
-
-std::string run_text(const compute::Configuration& run, const compute::ComputeModel& compute) {
-    std::string text;
-    for (const auto& running : run) {
-        const auto& component = compute.components[running.component];
-        text += (text.empty() ? "" : ", ") + component.name;
-        for (std::size_t i = 0; i < running.qos.size(); ++i)
-            text += fmt::format(" {}={:g}", component.profile.parameters[i], running.qos[i]);
-    }
-    return text.empty() ? "nothing" : text;
-}
 
 Json json_of(const live::LiveState& state, const compute::ComputeModel& compute) {
     Json json{{"time_s", state.time_s},

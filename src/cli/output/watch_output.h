@@ -9,13 +9,11 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 /// What watch says of a flight in the air.
 namespace flightwatt::cli {
 
 /// All of a state; null for what is not known (docs/live.md). `compute` names what its decision runs.
-nlohmann::ordered_json json_of(const live::LiveState& state, const compute::ComputeModel& compute);
+Json json_of(const live::LiveState& state, const compute::ComputeModel& compute);
 
 /// What a page is told.
 struct PageEvent {
@@ -29,9 +27,6 @@ std::string line_of(const live::LiveState& state, const compute::ComputeModel& c
 
 /// A few lines, for a screen; alarms last.
 std::vector<std::string> screen_of(const live::LiveState& state, const compute::ComputeModel& compute);
-
-/// "detection fps=5.8, encryption off"; "nothing".
-std::string run_text(const compute::Configuration& run, const compute::ComputeModel& compute);
 
 /// What --on-decision's command finds in its environment: FLIGHTWATT_TIME_S, FLIGHTWATT_PHASE, FLIGHTWATT_SOC_PERCENT,
 /// FLIGHTWATT_RUN (JSON), and of each component FLIGHTWATT_COMPONENT_NAME (1 or 0) and, where it runs,

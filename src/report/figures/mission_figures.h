@@ -1,7 +1,6 @@
 #pragma once
 
 #include "report/figure.h"
-#include "report/figures/published_figures.h"
 #include "report/simulated_mission.h"
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "cli/help_pages.h"
+#include "cli/help.h"
 
 #include "base/atomic_file.h"
 #include "cli/stage.h"
@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <string_view>
 
+#include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -46,6 +48,11 @@ std::vector<HelpPage> help_pages(const std::filesystem::path& folder) {
 
 void show_page(std::string_view text) {
     if (::isatty(STDOUT_FILENO) == 0 || !page_through(text)) print(text);
+}
+
+std::string version_text() {
+    const std::string_view known = commit != nullptr ? commit() : "";
+    return known.empty() ? FLIGHTWATT_VERSION : fmt::format(FLIGHTWATT_VERSION " ({})", known);
 }
 
 }  // namespace flightwatt::cli

@@ -1,6 +1,6 @@
 // What predict and watch predict from, as options say it.
 
-#include "cli/output/basis_options.h"
+#include "cli/output/live_options.h"
 
 #include "base/error.h"
 #include "helpers/test_paths.h"
