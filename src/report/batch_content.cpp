@@ -5,7 +5,6 @@
 #include "batch/batch_files.h"
 #include "batch/batch_run.h"
 #include "flight/flight_identity.h"
-#include "flight/log_name.h"
 #include "flight/phase_statistics.h"
 #include "flight/selected_track.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mission/path_limits.h"
+#include "mission/feasibility_limits.h"
 #include "mission/simulation.h"
 #include "report/html.h"
 #include "report/simulated_mission.h"

@@ -1,4 +1,3 @@
-#include "mission/file/cruise_toml.h"
 
 #include "helpers/path_missions.h"
 #include "helpers/rejected.h"
