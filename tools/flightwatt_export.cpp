@@ -3,11 +3,8 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "cli/output/battery_output.h"
-#include "cli/output/fit_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/mission_output.h"
-#include "cli/output/physical_output.h"
-#include "cli/output/prediction_output.h"
 #include "cli/stage.h"
 #include "exchange/autopilot_parameters.h"
 #include "exchange/message_table.h"
@@ -15,13 +12,7 @@
 #include "exchange/track_files.h"
 #include "mission/mission_file.h"
 #include "mission/prepared_mission.h"
-#include "report/batch_content.h"
-#include "report/battery_section.h"
-#include "report/flights_section.h"
-#include "report/in_flight.h"
-#include "report/missions_section.h"
-#include "report/model_section.h"
-#include "report/simulated_mission.h"
+#include "report/report.h"
 #include "stages.h"
 
 #include <algorithm>
@@ -233,73 +224,9 @@ Exported export_parameters(const cli::StageCall& call, const std::vector<Input>&
     return {std::move(parameters.text), std::move(parameters.notes)};
 }
 
-std::string model_latex(const mechanical::MechanicalModel& model) {
-    const bool has_errors =
-        std::ranges::any_of(flight::all_phases, [&](auto phase) { return model.phases[phase].errors.has_value(); });
-    auto text = mechanical::to_latex(
-        table_one(model, has_errors ? mechanical::TableIntervals::present : mechanical::TableIntervals::absent));
-    if (model.physical) {
-        text += "\n" + to_latex(cli::constants_table(*model.physical),
-                                "Constants of the physical model, with 95 % intervals", "tab:physical-model");
-    }
-    return text;
-}
-
-/// Of flights that are left out in turn, as the report has them: the work grows with their square.
-std::string validation_latex(const report::BatchContent& content) {
-    constexpr std::size_t max_flights = 30;
-    if (content.measured.size() < 2 || content.measured.size() > max_flights) return "";
-    auto tables = report::physical_tables(content.measured);
-    tables.push_back(
-        {report::predictions_table(predict_each_minute(content, max_flights)),
-         "Energy of each flight as it would have been predicted while it cruised, from what was flown until "
-         "then and a model of the other flights",
-         "tab:predictions"});
-    tables.push_back({cli::scores_table(leave_one_out(content.measured, content.fit->options)),
-                      "Errors of the models on flights that they were not fitted to", "tab:validation"});
-    return to_latex(tables);
-}
-
-std::string identified_battery_latex(const cli::StageCall& call, const report::BatchContent& content,
-                                     const std::vector<mission::MissionVariant>& missions) {
-    constexpr std::size_t max_flights = 12;  // likewise
-    if (!report::aircraft_mix(content).empty()) return "";
-    battery::IdentificationOptions options;
-    options.capacity_ah = cli::capacity_option(call);
-    const auto identified = identify_for_report(content.flights, options, max_flights, missions);
-    if (!identified.identified) cli::note(call, "no table of the battery: " + identified.no_result_reason);
-    return to_latex(battery_tables(identified));
-}
-
-std::string batch_latex(const cli::StageCall& call, const report::BatchContent& content,
-                        const std::vector<mission::MissionVariant>& missions) {
-    for (const auto& damaged : content.damaged) cli::warn(call, damaged);
-    auto text = to_latex(report::flights_tables(content.flights));
-    if (content.fit) text += "\n" + model_latex(content.fit->model) + "\n" + validation_latex(content);
-    return text + "\n" + identified_battery_latex(call, content, missions);
-}
-
-std::string replay_latex(const cli::StageCall& call, const report::BatchContent& content,
-                         const std::vector<mission::MissionVariant>& missions) {
-    mission::ReplayOptions options;
-    if (content.fit) options.fit = content.fit->options;
-    const auto replays = replay_flights(missions, flights_with_power(content), options);
-    for (const auto& left : replays.not_replayed)
-        cli::warn(call, fmt::format("{}: {} is not flown on it: {}", left.flight, left.mission, left.reason));
-    return to_latex(report::replay_tables(replays.replays));
-}
-
-std::string missions_latex(const std::vector<mission::MissionVariant>& missions) {
-    const auto simulated = report::simulate_for_report(missions);
-    auto text = to_latex(report::ranking_table(simulated), "Missions by final state of charge", "tab:missions");
-    const auto plans = report::plans_table(simulated);
-    if (!plans.rows.empty()) text += "\n" + to_latex(plans, "Planned missions", "tab:plans");
-    return text;
-}
-
 Exported export_latex(const cli::StageCall& call, const std::vector<Input>& inputs) {
     const auto& [file, kind] = inputs.front();
-    if (kind == Kind::model) return {model_latex(mechanical::read_mechanical_model(file))};
+    if (kind == Kind::model) return {report::model_latex(mechanical::read_mechanical_model(file))};
     if (kind == Kind::battery) {
         const auto pack = battery::read_battery(file);
         return {to_latex(cli::pack_table(pack), fmt::format("Battery {}", pack.name), "tab:battery")};
@@ -318,10 +245,12 @@ Exported export_latex(const cli::StageCall& call, const std::vector<Input>& inpu
             "--replay flies missions on a batch's flights: give a folder of flightwatt batch and missions");
     if (call.has("capacity") && !content)
         throw UsageError("--capacity is that of the battery of flights: give a folder of flightwatt batch");
+    const report::ReportLog log{[&](const std::string& text) { cli::warn(call, text); },
+                                [&](const std::string& text) { cli::note(call, text); }};
     std::vector<std::string> parts;
-    if (content) parts.push_back(batch_latex(call, *content, missions));
-    if (!missions.empty()) parts.push_back(missions_latex(missions));
-    if (call.has("replay")) parts.push_back(replay_latex(call, *content, missions));
+    if (content) parts.push_back(batch_latex(*content, missions, cli::capacity_option(call), log));
+    if (!missions.empty()) parts.push_back(report::missions_latex(missions));
+    if (call.has("replay")) parts.push_back(replay_latex(*content, missions, log));
     return {fmt::format("{}", fmt::join(parts, "\n"))};
 }
 

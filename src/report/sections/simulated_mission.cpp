@@ -1,4 +1,4 @@
-#include "report/simulated_mission.h"
+#include "report/sections/simulated_mission.h"
 
 #include "base/duration_text.h"
 #include "base/error.h"
