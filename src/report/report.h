@@ -3,7 +3,7 @@
 #include "mechanical/mechanical_model.h"
 #include "mission/mission.h"
 #include "report/batch_content.h"
-#include "report/page.h"
+#include "report/html.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>

@@ -4,7 +4,6 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "cli/output/mission_output.h"
-#include "compute/qos_range.h"
 #include "mission/plan.h"
 #include "mission/prepared_mission.h"
 #include "mission/sampled_flights.h"
