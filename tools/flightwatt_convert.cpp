@@ -9,7 +9,6 @@
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <fstream>
 #include <iterator>

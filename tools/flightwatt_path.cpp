@@ -12,8 +12,6 @@
 #include "mission/mission_file.h"
 #include "stages.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 namespace {

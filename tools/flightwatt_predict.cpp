@@ -11,9 +11,7 @@
 #include "stages.h"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 

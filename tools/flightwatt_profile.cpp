@@ -12,8 +12,6 @@
 #include "compute/profile_reader.h"
 #include "stages.h"
 
-#include <algorithm>
-
 #include <boost/algorithm/string/split.hpp>
 #include <fmt/format.h>
 

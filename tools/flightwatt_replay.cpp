@@ -12,7 +12,6 @@
 #include "mission/replay.h"
 #include "stages.h"
 
-#include <filesystem>
 #include <set>
 
 #include <fmt/format.h>

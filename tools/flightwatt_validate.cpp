@@ -13,7 +13,6 @@
 #include "stages.h"
 
 #include <algorithm>
-#include <iterator>
 
 #include <boost/algorithm/string/split.hpp>
 #include <fmt/format.h>

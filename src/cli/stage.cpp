@@ -9,7 +9,6 @@
 #include "cli/terminal.h"
 #include "cli/help.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <csignal>

@@ -6,7 +6,6 @@
 #include "report/batch_content.h"
 #include "report/html.h"
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>

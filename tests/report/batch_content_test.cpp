@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
-#include "report/model_section.h"
+#include "report/sections/sections.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,6 @@
 #include "base/units.h"
 #include "cli/terminal.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 

@@ -7,7 +7,6 @@
 #include "mechanical/covariates.h"
 #include "mechanical/validation.h"
 
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -2,7 +2,6 @@
 
 #include "base/csv.h"
 #include "base/duration_text.h"
-#include "base/units.h"
 #include "cli/output/mission_output.h"
 #include "cli/stage.h"
 

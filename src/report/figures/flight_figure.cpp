@@ -3,7 +3,6 @@
 #include "flight/selected_track.h"
 #include "report/figures/flight_figures.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 

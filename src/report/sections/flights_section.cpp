@@ -1,5 +1,3 @@
-#include "report/flights_section.h"
-
 #include "base/duration_text.h"
 #include "base/parallel.h"
 #include "base/units.h"
@@ -10,6 +8,7 @@
 #include "report/blocks.h"
 #include "report/figures/flight_figures.h"
 #include "report/html.h"
+#include "report/sections/sections.h"
 
 #include <algorithm>
 #include <atomic>

@@ -3,7 +3,6 @@
 #include "mission/feasibility_limits.h"
 #include "mission/simulation.h"
 #include "report/html.h"
-#include "report/simulated_mission.h"
 
 #include <optional>
 #include <string>

@@ -1,8 +1,7 @@
-#include "report/summary_section.h"
-
 #include "base/duration_text.h"
 #include "flight/flight_identity.h"
 #include "report/batch_content.h"
+#include "report/sections/sections.h"
 
 #include <algorithm>
 #include <map>

@@ -1,7 +1,6 @@
-#include "report/flights_section.h"
-
 #include "flight/load_flight.h"
 #include "helpers/test_paths.h"
+#include "report/sections/sections.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,9 +1,8 @@
-#include "report/battery_section.h"
-
 #include "base/error.h"
 #include "base/units.h"
 #include "cli/output/battery_output.h"
 #include "report/figures/flight_figures.h"
+#include "report/sections/sections.h"
 
 #include <algorithm>
 #include <iterator>
@@ -100,9 +99,6 @@ TextTable excluded_table(const ReportBattery& battery) {
     return table;
 }
 
-constexpr auto parameters_caption = "Parameters of the battery";
-constexpr auto flights_caption = "Flights in the fit of the battery";
-
 void add_identified(Section& section, const ReportBattery& battery, const SectionScope& of) {
     const auto& identified = *battery.identified;
     section.html += paragraph(rests_on(battery));
@@ -124,10 +120,12 @@ void add_identified(Section& section, const ReportBattery& battery, const Sectio
     } else if (identified.errors.rc_resistance_ohm.low == 0.0) {
         section.html += paragraph("The RC pair may be none: its resistance's interval reaches down to 0.");
     }
-    section.html += table_html(parameters_table(identified), {parameters_caption, false, {}});
+    add_table(section, {parameters_table(identified), "Parameters of the battery", "tab:identified-battery"});
     add_figure(section, voltage_figure(identified, battery.records, of.id("battery-voltage")));
-    section.html +=
-        table_html(cli::flights_table(*battery.identified, battery.leave_one_out), {flights_caption, true, {}});
+    add_table(section,
+              {cli::flights_table(identified, battery.leave_one_out), "Flights in the fit of the battery",
+               "tab:battery-flights"},
+              true);
     section.html += paragraph(
         "Missing: from the full pack when the flight began, with its 95 % interval; own ohm: the series resistance that "
         "this flight alone shows, with its own.",
@@ -215,17 +213,6 @@ ReportBattery identify_for_report(std::span<const ReportFlight> flights, const b
     }
 }
 
-std::vector<CaptionedTable> battery_tables(const ReportBattery& battery) {
-    std::vector<CaptionedTable> tables;
-    if (battery.identified) {
-        tables.push_back({parameters_table(*battery.identified), parameters_caption, "tab:identified-battery"});
-        tables.push_back(
-            {cli::flights_table(*battery.identified, battery.leave_one_out), flights_caption, "tab:battery-flights"});
-    }
-    tables.push_back({excluded_table(battery), "Flights not used for the battery, and why", "tab:battery-excluded"});
-    return tables;
-}
-
 Section battery_section(const ReportBattery& battery, const SectionScope& of) {
     Section section{of.id("battery"), of.title("Battery")};
     if (battery.identified) {
@@ -240,9 +227,11 @@ Section battery_section(const ReportBattery& battery, const SectionScope& of) {
         section.html += paragraph("The battery was not identified: " + battery.no_result_reason + ".", "warning");
     }
     if (!battery.notes.empty()) section.html += list_html(battery.notes);
-    if (!battery.excluded.empty())
-        section.html += "<h3>Not used for the battery</h3>\n" +
-                        table_html(excluded_table(battery), {"Flights that were excluded, and why", false, {}});
+    if (battery.excluded.empty()) return section;
+    section.tables.push_back(
+        {excluded_table(battery), "Flights not used for the battery, and why", "tab:battery-excluded"});
+    section.html += "<h3>Not used for the battery</h3>\n" +
+                    table_html(section.tables.back().table, {"Flights that were excluded, and why"});
     return section;
 }
 

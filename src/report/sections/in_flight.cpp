@@ -1,4 +1,4 @@
-#include "report/in_flight.h"
+#include "report/sections/in_flight.h"
 
 #include "base/error.h"
 #include "base/units.h"

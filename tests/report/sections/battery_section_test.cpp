@@ -1,8 +1,7 @@
-#include "report/battery_section.h"
-
 #include "base/error.h"
 #include "helpers/synthetic_discharge.h"
 #include "report/figures/flight_figures.h"
+#include "report/sections/sections.h"
 
 #include <algorithm>
 
@@ -49,10 +48,8 @@ TEST(BatterySection, ShowsVoltagesParametersAndTheCurve) {
     EXPECT_THAT(section.html, HasSubstr("resistance_ohm"));
     EXPECT_THAT(section.html, HasSubstr("identified from voltage, current and charge of 2 flights"));
     EXPECT_THAT(section.html, testing::Not(HasSubstr("Not used for the battery")));
-    const auto tables = battery_tables(battery);
-    ASSERT_EQ(tables.size(), 3U);
-    EXPECT_EQ(tables[1].table.rows.size(), 2U) << "flights";
-    EXPECT_TRUE(tables[2].table.rows.empty()) << "excluded";
+    ASSERT_EQ(section.tables.size(), 2U) << "none is excluded";
+    EXPECT_EQ(section.tables[1].table.rows.size(), 2U) << "flights";
 }
 
 TEST(BatterySection, LimitsTheFlightsAndSaysSo) {

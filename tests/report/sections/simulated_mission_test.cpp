@@ -1,6 +1,6 @@
 // Missions as the report flies them.
 
-#include "report/simulated_mission.h"
+#include "report/sections/simulated_mission.h"
 
 #include "base/error.h"
 #include "helpers/paper_missions.h"

@@ -1,10 +1,9 @@
-#include "report/simulated_mission.h"
+#include "report/sections/simulated_mission.h"
 
 #include "base/duration_text.h"
 #include "base/error.h"
 #include "base/units.h"
 #include "cli/output/mission_output.h"
-#include "compute/qos_range.h"
 #include "mission/plan.h"
 #include "mission/prepared_mission.h"
 #include "mission/sampled_flights.h"

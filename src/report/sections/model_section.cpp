@@ -1,5 +1,3 @@
-#include "report/model_section.h"
-
 #include "base/error.h"
 #include "base/units.h"
 #include "cli/output/fit_output.h"
@@ -8,6 +6,7 @@
 #include "mechanical/model_check.h"
 #include "mechanical/physical_fit.h"
 #include "report/figures/flight_figures.h"
+#include "report/sections/sections.h"
 
 #include <vector>
 
@@ -30,9 +29,6 @@ std::vector<mechanical::BinnedFlight> motions_of(std::span<const mechanical::Mea
         if (!flight.motion.bins.empty()) motions.push_back(flight.motion);
     return motions;
 }
-
-constexpr auto constants_caption = "Constants of the physical model";
-constexpr auto trials_caption = "Terms that were tried, with the error held back";
 
 }  // namespace
 
@@ -87,13 +83,6 @@ Section validation_section(const std::vector<mechanical::ValidatedFlight>& fligh
     return section;
 }
 
-std::vector<CaptionedTable> physical_tables(std::span<const mechanical::MeasuredFlight> flights) {
-    const auto fit = fitted_motion(motions_of(flights));
-    if (!fit) return {};
-    return {{cli::constants_table(fit->model), constants_caption, "tab:physical"},
-            {cli::trials_table(*fit), trials_caption, "tab:physical-terms"}};
-}
-
 std::optional<Section> physical_section(std::span<const mechanical::MeasuredFlight> flights, const SectionScope& of) {
     const auto motions = motions_of(flights);
     const auto fit = fitted_motion(motions);
@@ -103,9 +92,10 @@ std::optional<Section> physical_section(std::span<const mechanical::MeasuredFlig
         "Power as a sum of physical terms of the motion through the air, fitted to the flights that measured airspeed and "
         "altitude, averaged over about 30 s.");
     add_figure(section, physical_figure(fit->model, motions, of.id("physical-power")));
-    section.html += table_html(cli::constants_table(fit->model), {constants_caption, false, {}});
+    add_table(section, {cli::constants_table(fit->model), "Constants of the physical model", "tab:physical"});
     if (fit->model.level_sd) section.html += paragraph("+- is half the 95 % interval.", "soft");
-    section.html += table_html(cli::trials_table(*fit), {trials_caption, false, {}});
+    add_table(section,
+              {cli::trials_table(*fit), "Terms that were tried, with the error held back", "tab:physical-terms"});
     section.html += paragraph(
         fmt::format(
             "RMS error in W of {} held back, without and with the term: a term is kept if it falls by 2.5 % or more"

@@ -1,15 +1,12 @@
-#include "report/missions_section.h"
-
 #include "base/units.h"
 #include "cli/output/replay_output.h"
 #include "mechanical/table_one.h"
 #include "mission/mission_summary.h"
 #include "report/figures/mission_figures.h"
-#include "report/model_section.h"
+#include "report/sections/sections.h"
 
 #include <algorithm>
 #include <iterator>
-#include <map>
 
 #include <fmt/format.h>
 
@@ -261,9 +258,6 @@ Figure replay_figure(const std::vector<const mission::Replay*>& replays, const s
     return figure;
 }
 
-constexpr auto results_caption = "What each schedule came to on each flight";
-constexpr auto basis_caption = "What the replays rest on";
-
 }  // namespace
 
 TextTable plans_table(Missions missions) {
@@ -316,11 +310,6 @@ std::vector<Section> mission_sections(Missions missions, const PublishedFigures&
     return sections;
 }
 
-std::vector<CaptionedTable> replay_tables(std::span<const mission::Replay> replays) {
-    return {{cli::replay_table(replays), results_caption, "tab:replay"},
-            {cli::replay_basis_table(replays), basis_caption, "tab:replay-basis"}};
-}
-
 Section replay_section(std::span<const mission::Replay> replays) {
     Section section{"replay", "Replay"};
     section.html += paragraph(
@@ -337,8 +326,8 @@ Section replay_section(std::span<const mission::Replay> replays) {
         add_figure(section, replay_figure(of_mission, fmt::format("replay-{}", drawn.size())));
     }
     section.html += list_html(cli::replay_sentences(replays));
-    section.html += table_html(cli::replay_table(replays), {results_caption, true, {}});
-    section.html += table_html(cli::replay_basis_table(replays), {basis_caption, true, {}});
+    add_table(section, {cli::replay_table(replays), "What each schedule came to on each flight", "tab:replay"}, true);
+    add_table(section, {cli::replay_basis_table(replays), "What the replays rest on", "tab:replay-basis"}, true);
     std::vector<std::string> notes;
     for (const auto& replay : replays)
         for (const auto& note : replay.notes)

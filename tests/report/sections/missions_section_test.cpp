@@ -1,8 +1,7 @@
-#include "report/missions_section.h"
-
 #include "base/error.h"
 #include "helpers/paper_missions.h"
 #include "report/figures/mission_figures.h"
+#include "report/sections/sections.h"
 
 #include <algorithm>
 
