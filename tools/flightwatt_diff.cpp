@@ -49,7 +49,7 @@ mechanical::MechanicalModel read_model(const std::string& input, ComparedKind ki
 }
 
 /// Of two missions.
-std::vector<mechanical::Difference> compare_missions(const cli::StageCall& call) {
+std::vector<mechanical::Difference> mission_differences(const cli::StageCall& call) {
     const auto a = mission::read_mission(call.inputs[0], {true, std::nullopt});
     const auto b = mission::read_mission(call.inputs[1], {true, std::nullopt});
     cli::warn_of_setup(call, setup_of(a));
@@ -85,7 +85,7 @@ int show_difference(const cli::StageCall& call) {
                                      name_of(kind), b, name_of(other)));
     }
     const auto differences =
-        kind == ComparedKind::missions ? cli::Differences{kind, compare_missions(call)} : compare_models(call, kind);
+        kind == ComparedKind::missions ? cli::Differences{kind, mission_differences(call)} : compare_models(call, kind);
     const auto screen = screen_of(call);
     if (screen.is_terminal && !call.output && !call.json) {
         const auto table = difference_table(differences, [](double value) { return fmt::format("{:.4g}", value); });
