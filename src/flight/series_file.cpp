@@ -297,12 +297,12 @@ class TableReader {
     }
 
     void bind(const CsvRowView& header) {
-        CsvTable table{file_, {}, {}};
-        for (const auto& cell : header.cells) table.columns.emplace_back(cell.text);
-        columns_ = table.columns;
-        time_column_ = column_index(table, "time_s");
+        CsvTable names{file_, {}, {}};
+        for (const auto& cell : header.cells) names.columns.emplace_back(cell.text);
+        columns_ = names.columns;
+        time_column_ = column_index(names, "time_s");
         const bool has_altitude = std::ranges::find(columns_, "altitude_m") != columns_.end();
-        if (!matter_.present && !has_altitude) column_index(table, "power_w");
+        if (!matter_.present && !has_altitude) column_index(names, "power_w");
         is_bound_.assign(matter_.columns.size(), false);
         for (std::size_t i = 0; i < columns_.size(); ++i) {
             const auto here = columns_.begin() + static_cast<std::ptrdiff_t>(i);
