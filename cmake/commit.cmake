@@ -22,7 +22,7 @@ if(GIT)
   endif()
 endif()
 file(CONFIGURE OUTPUT "${OUTPUT}" CONTENT
-"#include \"cli/version.h\"
+"#include \"cli/help.h\"
 
 namespace flightwatt::cli {
 

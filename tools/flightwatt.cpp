@@ -3,9 +3,8 @@
 #include "base/error.h"
 #include "base/input_file.h"
 #include "base/toml_reader.h"
-#include "cli/help_pages.h"
+#include "cli/help.h"
 #include "cli/stage.h"
-#include "cli/version.h"
 #include "stages.h"
 
 #include <algorithm>

@@ -2,18 +2,15 @@
 
 #include "base/error.h"
 #include "battery/identification.h"
-#include "cli/numeric_options.h"
 #include "cli/output/battery_output.h"
 #include "cli/output/flight_options.h"
-#include "cli/output/json_text.h"
-#include "cli/progress.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
+#include "cli/terminal.h"
 #include "stages.h"
 
 #include <algorithm>
 #include <filesystem>
-#include <iterator>
 #include <optional>
 #include <utility>
 

@@ -3,15 +3,12 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/overwrite_guard.h"
-#include "cli/numeric_options.h"
-#include "cli/output/json_text.h"
 #include "cli/stage.h"
 #include "flight/load_flight.h"
 #include "stages.h"
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <fstream>
 #include <iterator>

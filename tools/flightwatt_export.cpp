@@ -2,14 +2,10 @@
 
 #include "base/error.h"
 #include "base/units.h"
-#include "cli/numeric_options.h"
 #include "cli/output/battery_output.h"
-#include "cli/output/fit_output.h"
+#include "cli/output/export_formats.h"
 #include "cli/output/flight_options.h"
-#include "cli/output/json_text.h"
 #include "cli/output/mission_output.h"
-#include "cli/output/physical_output.h"
-#include "cli/output/validation_output.h"
 #include "cli/stage.h"
 #include "exchange/autopilot_parameters.h"
 #include "exchange/message_table.h"
@@ -17,20 +13,12 @@
 #include "exchange/track_files.h"
 #include "mission/mission_file.h"
 #include "mission/prepared_mission.h"
-#include "report/batch_content.h"
-#include "report/battery_section.h"
-#include "report/flights_section.h"
-#include "report/in_flight.h"
-#include "report/missions_section.h"
-#include "report/model_section.h"
-#include "report/replay_section.h"
-#include "report/simulated_mission.h"
+#include "report/report.h"
 #include "stages.h"
 
 #include <algorithm>
 #include <array>
 #include <map>
-#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -38,110 +26,15 @@
 namespace {
 
 using namespace flightwatt;
-
-/// What an input is, by what it holds.
-enum class Kind { flight, model, battery, mission, batch };
-
-constexpr std::array kind_names{"log or series", "mechanical model", "battery", "mission", "folder"};
-
-std::string name_of(Kind kind) { return kind_names.at(static_cast<std::size_t>(kind)); }
-
-struct Format {
-    std::string name;
-    std::string ending;  ///< of -o that means it; may be empty
-    std::set<Kind> kinds;
-};
-
-const std::vector<Format>& formats() {
-    using enum Kind;
-    static const std::vector<Format> all{{"geojson", ".geojson", {flight}},
-                                         {"kml", ".kml", {flight}},
-                                         {"gpx", ".gpx", {flight}},
-                                         {"csv", ".csv", {flight}},
-                                         {"json", ".json", {model, battery}},
-                                         {"c", ".h", {model}},
-                                         {"px4", ".params", {model, battery, mission}},
-                                         {"inav", "", {model, battery, mission}},
-                                         {"paparazzi", "", {model, battery, mission}},
-                                         {"paparazzi-map", "", {battery, mission}},
-                                         {"latex", ".tex", {model, battery, mission, batch}}};
-    return all;
-}
-
-struct Input {
-    std::string file;
-    Kind kind = Kind::flight;
-};
+using cli::ExportInput;
+using cli::ExportKind;
 
 /// The result, and what is said of it.
 struct Exported {
     std::string text;
     std::vector<std::string> notes = {};
-    nlohmann::ordered_json facts = nlohmann::ordered_json::object();
+    cli::Json facts = nlohmann::ordered_json::object();
 };
-
-Kind kind_of(const std::string& file) {
-    std::error_code error;
-    if (std::filesystem::is_directory(file, error)) return Kind::batch;
-    if (std::filesystem::path(file).extension() != ".toml") return Kind::flight;
-    const auto root = read_toml(file);
-    if (root.has("battery") || root.has("mechanical")) return Kind::mission;
-    return root.has("resistance_ohm") || root.has("voltage_v") || root.has("capacity_ah") ? Kind::battery : Kind::model;
-}
-
-std::string format_names() {
-    std::vector<std::string> names;
-    for (const auto& format : formats()) names.push_back(format.name);
-    return fmt::format("{}", fmt::join(names, ", "));
-}
-
-const Format& format_of(const cli::StageCall& call) {
-    const auto name = call.get_optional<std::string>("format");
-    const auto ending = call.output ? std::filesystem::path(*call.output).extension().string() : "";
-    for (const auto& format : formats())
-        if (name ? format.name == *name : !ending.empty() && format.ending == ending) return format;
-    if (name) throw UsageError(fmt::format("--format {}: expected one of {}", *name, format_names()));
-    throw UsageError(
-        fmt::format("expected -o FILE that ends in .geojson, .kml, .gpx, .csv, .json, .h, .params or .tex, or "
-                    "--format NAME, one of {}",
-                    format_names()));
-}
-
-/// What a kind of input can become.
-std::string forms_of(Kind kind) {
-    std::vector<std::string> names;
-    for (const auto& format : formats())
-        if (format.kinds.contains(kind)) names.push_back(format.name);
-    return fmt::format("{}", fmt::join(names, ", "));
-}
-
-void require_fitting(const Input& input, const Format& format) {
-    if (format.kinds.contains(input.kind)) return;
-    auto hint = fmt::format("a {} becomes {}", name_of(input.kind), forms_of(input.kind));
-    if (input.kind == Kind::mission && format.name == "csv")
-        hint = fmt::format("its state of charge over time is: flightwatt simulate {} -o FILE.csv", input.file);
-    if (input.kind == Kind::batch) hint = "one of flightwatt batch becomes latex, and its model is model.toml in it";
-    throw InputError({input.file}, fmt::format("is a {}, of which no {} is made", name_of(input.kind), format.name),
-                     hint);
-}
-
-/// Of options that only some forms heed, those that this one does not.
-void refuse_idle_options(const cli::StageCall& call, const Format& format) {
-    const std::set<std::string> tracks{"geojson", "kml", "gpx"};
-    const std::set<std::string> parameters{"px4", "inav", "paparazzi", "paparazzi-map"};
-    std::map<std::string, std::set<std::string>> heeded{
-        {"colour", tracks},       {"message", {"csv"}},
-        {"cells", parameters},    {"parallel", {"paparazzi", "paparazzi-map"}},
-        {"idle-power", {"inav"}}, {"replay", {"latex"}},
-        {"capacity", {"latex"}}};
-    for (const auto* option : {"aircraft", "sortie", "exclude", "keep", "correct-idle-offset", "messages"})
-        heeded[option] = {"geojson", "kml", "gpx", "csv"};
-    for (const auto& [option, names] : heeded) {
-        if (!call.has(option) || names.contains(format.name)) continue;
-        throw UsageError(
-            fmt::format("--{} is of no use to {}: it is for {}", option, format.name, fmt::join(names, ", ")));
-    }
-}
 
 exchange::TrackColour colour_of(const cli::StageCall& call) {
     const auto name = call.get_optional<std::string>("colour").value_or("phase");
@@ -199,16 +92,16 @@ double compute_w(const mission::MissionVariant& mission) {
     return summary.duration_s > 0.0 ? units::joule_from_wh(summary.compute_energy_wh) / summary.duration_s : 0.0;
 }
 
-exchange::EstimatorInput estimator_input(const cli::StageCall& call, const std::vector<Input>& inputs) {
+exchange::EstimatorInput estimator_input(const cli::StageCall& call, const std::vector<ExportInput>& inputs) {
     exchange::EstimatorInput result;
     for (const auto& [file, kind] : inputs) {
-        if (kind == Kind::model) result.model = mechanical::read_mechanical_model(file);
-        if (kind == Kind::battery) {
+        if (kind == ExportKind::model) result.model = mechanical::read_mechanical_model(file);
+        if (kind == ExportKind::battery) {
             result.battery = battery::read_battery(file);
             for (const auto& warning : battery_warnings(*result.battery))
                 cli::warn(call, fmt::format("{}: {}", file, warning));
         }
-        if (kind != Kind::mission) continue;
+        if (kind != ExportKind::mission) continue;
         const auto mission = mission::read_mission(file, {true, std::nullopt});
         const auto& setup = setup_of(mission);
         cli::warn_of_setup(call, setup);
@@ -226,7 +119,8 @@ exchange::EstimatorInput estimator_input(const cli::StageCall& call, const std::
     return result;
 }
 
-Exported export_parameters(const cli::StageCall& call, const std::vector<Input>& inputs, const std::string& format) {
+Exported export_parameters(const cli::StageCall& call, const std::vector<ExportInput>& inputs,
+                           const std::string& format) {
     using Write = exchange::ParameterText (*)(const exchange::EstimatorInput&);
     static const std::map<std::string, Write> writers{{"px4", exchange::to_px4},
                                                       {"inav", exchange::to_inav},
@@ -236,74 +130,10 @@ Exported export_parameters(const cli::StageCall& call, const std::vector<Input>&
     return {std::move(parameters.text), std::move(parameters.notes)};
 }
 
-std::string model_latex(const mechanical::MechanicalModel& model) {
-    const bool has_errors =
-        std::ranges::any_of(flight::all_phases, [&](auto phase) { return model.phases[phase].errors.has_value(); });
-    auto text = mechanical::to_latex(
-        table_one(model, has_errors ? mechanical::TableIntervals::present : mechanical::TableIntervals::absent));
-    if (model.physical) {
-        text += "\n" + to_latex(cli::constants_table(*model.physical),
-                                "Constants of the physical model, with 95 % intervals", "tab:physical-model");
-    }
-    return text;
-}
-
-/// Of flights that are left out in turn, as the report has them: the work grows with their square.
-std::string validation_latex(const report::BatchContent& content) {
-    constexpr std::size_t max_flights = 30;
-    if (content.measured.size() < 2 || content.measured.size() > max_flights) return "";
-    auto tables = report::physical_tables(content.measured);
-    tables.push_back(
-        {report::predictions_table(predict_each_minute(content, max_flights)),
-         "Energy of each flight as it would have been predicted while it cruised, from what was flown until "
-         "then and a model of the other flights",
-         "tab:predictions"});
-    tables.push_back({cli::scores_table(leave_one_out(content.measured, content.fit->options)),
-                      "Errors of the models on flights that they were not fitted to", "tab:validation"});
-    return to_latex(tables);
-}
-
-std::string identified_battery_latex(const cli::StageCall& call, const report::BatchContent& content,
-                                     const std::vector<mission::MissionVariant>& missions) {
-    constexpr std::size_t max_flights = 12;  // likewise
-    if (!report::aircraft_mix(content).empty()) return "";
-    battery::IdentificationOptions options;
-    options.capacity_ah = cli::capacity_option(call);
-    const auto identified = identify_for_report(content.flights, options, max_flights, missions);
-    if (!identified.identified) cli::note(call, "no table of the battery: " + identified.no_result_reason);
-    return to_latex(battery_tables(identified));
-}
-
-std::string batch_latex(const cli::StageCall& call, const report::BatchContent& content,
-                        const std::vector<mission::MissionVariant>& missions) {
-    for (const auto& damaged : content.damaged) cli::warn(call, damaged);
-    auto text = to_latex(report::flights_tables(content.flights));
-    if (content.fit) text += "\n" + model_latex(content.fit->model) + "\n" + validation_latex(content);
-    return text + "\n" + identified_battery_latex(call, content, missions);
-}
-
-std::string replay_latex(const cli::StageCall& call, const report::BatchContent& content,
-                         const std::vector<mission::MissionVariant>& missions) {
-    mission::ReplayOptions options;
-    if (content.fit) options.fit = content.fit->options;
-    const auto replays = replay_flights(missions, flights_with_power(content), options);
-    for (const auto& left : replays.not_replayed)
-        cli::warn(call, fmt::format("{}: {} is not flown on it: {}", left.flight, left.mission, left.reason));
-    return to_latex(report::replay_tables(replays.replays));
-}
-
-std::string missions_latex(const std::vector<mission::MissionVariant>& missions) {
-    const auto simulated = report::simulate_for_report(missions);
-    auto text = to_latex(report::ranking_table(simulated), "Missions by final state of charge", "tab:missions");
-    const auto plans = report::plans_table(simulated);
-    if (!plans.rows.empty()) text += "\n" + to_latex(plans, "Planned missions", "tab:plans");
-    return text;
-}
-
-Exported export_latex(const cli::StageCall& call, const std::vector<Input>& inputs) {
+Exported export_latex(const cli::StageCall& call, const std::vector<ExportInput>& inputs) {
     const auto& [file, kind] = inputs.front();
-    if (kind == Kind::model) return {model_latex(mechanical::read_mechanical_model(file))};
-    if (kind == Kind::battery) {
+    if (kind == ExportKind::model) return {report::model_latex(mechanical::read_mechanical_model(file))};
+    if (kind == ExportKind::battery) {
         const auto pack = battery::read_battery(file);
         return {to_latex(cli::pack_table(pack), fmt::format("Battery {}", pack.name), "tab:battery")};
     }
@@ -311,7 +141,7 @@ Exported export_latex(const cli::StageCall& call, const std::vector<Input>& inpu
     std::vector<mission::MissionVariant> missions;
     missions.reserve(inputs.size());
     for (const auto& input : inputs) {
-        if (input.kind == Kind::batch)
+        if (input.kind == ExportKind::batch)
             content = report::read_batch_content(input.file);
         else
             missions.push_back(mission::read_mission(input.file, {true, std::nullopt}));
@@ -321,57 +151,34 @@ Exported export_latex(const cli::StageCall& call, const std::vector<Input>& inpu
             "--replay flies missions on a batch's flights: give a folder of flightwatt batch and missions");
     if (call.has("capacity") && !content)
         throw UsageError("--capacity is that of the battery of flights: give a folder of flightwatt batch");
+    const report::ReportLog log{[&](const std::string& text) { cli::warn(call, text); },
+                                [&](const std::string& text) { cli::note(call, text); }};
     std::vector<std::string> parts;
-    if (content) parts.push_back(batch_latex(call, *content, missions));
-    if (!missions.empty()) parts.push_back(missions_latex(missions));
-    if (call.has("replay")) parts.push_back(replay_latex(call, *content, missions));
+    if (content) parts.push_back(batch_latex(*content, missions, cli::capacity_option(call), log));
+    if (!missions.empty()) parts.push_back(report::missions_latex(missions));
+    if (call.has("replay")) parts.push_back(replay_latex(*content, missions, log));
     return {fmt::format("{}", fmt::join(parts, "\n"))};
 }
 
-/// One input, but for tables of several missions with or without a batch, and parameters from a model and a battery.
-void require_few(const std::vector<Input>& inputs, const Format& format) {
-    if (inputs.size() == 1) return;
-    const auto all = [&](Kind kind) {
-        return std::ranges::all_of(inputs, [&](const auto& in) { return in.kind == kind; });
-    };
-    const auto of_kind = [&](Kind kind) {
-        return static_cast<std::size_t>(std::ranges::count(inputs, kind, &Input::kind));
-    };
-    const bool tables = format.name == "latex" && of_kind(Kind::batch) <= 1 &&
-                        of_kind(Kind::batch) + of_kind(Kind::mission) == inputs.size();
-    const std::set<std::string> of_both{"px4", "inav", "paparazzi"};
-    const bool pair = inputs.size() == 2 && of_both.contains(format.name) && inputs[0].kind != inputs[1].kind &&
-                      !all(Kind::mission) && inputs[0].kind != Kind::mission && inputs[1].kind != Kind::mission;
-    if (tables || pair) return;
-    throw UsageError(fmt::format("{} is made of one input{}", format.name,
-                                 format.name == "latex"          ? ", or of missions and one folder of flightwatt batch"
-                                 : of_both.contains(format.name) ? ": a mission, or a model and a battery"
-                                                                 : ""));
-}
-
-Exported exported(const cli::StageCall& call, const std::vector<Input>& inputs, const std::string& format) {
+Exported exported(const cli::StageCall& call, const std::vector<ExportInput>& inputs, const std::string& format) {
     const auto& file = inputs.front().file;
     if (format == "geojson" || format == "kml" || format == "gpx") return export_track(call, file, format);
     if (format == "csv") return export_columns(call, file);
     if (format == "latex") return export_latex(call, inputs);
     if (format == "c") return {exchange::to_c_header(mechanical::read_mechanical_model(file))};
     if (format != "json") return export_parameters(call, inputs, format);
-    return {inputs.front().kind == Kind::battery ? exchange::to_json_text(battery::read_battery(file))
-                                                 : exchange::to_json_text(mechanical::read_mechanical_model(file))};
+    return {inputs.front().kind == ExportKind::battery
+                ? exchange::to_json_text(battery::read_battery(file))
+                : exchange::to_json_text(mechanical::read_mechanical_model(file))};
 }
 
 int export_inputs(const cli::StageCall& call) {
-    const auto& format = format_of(call);
-    refuse_idle_options(call, format);
-    std::vector<Input> inputs;
-    for (const auto& file : call.inputs) inputs.push_back({file, kind_of(file)});
-    for (const auto& input : inputs) require_fitting(input, format);
-    require_few(inputs, format);
-    const auto result = exported(call, inputs, format.name);
+    const auto [format, inputs] = cli::read_export_request(call);
+    const auto result = exported(call, inputs, format);
     cli::write_result(call, result.text);
     for (const auto& note : result.notes) cli::note(call, note);
     if (!call.json) return cli::ok;
-    nlohmann::ordered_json json{{"inputs", call.inputs}, {"format", format.name}, {"notes", result.notes}};
+    cli::Json json{{"inputs", call.inputs}, {"format", format}, {"notes", result.notes}};
     json.update(result.facts);
     cli::print(cli::json_text(json));
     return cli::ok;

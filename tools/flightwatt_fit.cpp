@@ -2,10 +2,8 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "cli/output/fit_options.h"
 #include "cli/output/fit_output.h"
 #include "cli/output/flight_options.h"
-#include "cli/output/json_text.h"
 #include "cli/output/physical_output.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"

@@ -3,7 +3,6 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "cli/output/battery_output.h"
-#include "cli/output/json_text.h"
 #include "cli/stage.h"
 #include "stages.h"
 
@@ -60,7 +59,7 @@ int make_folder(const cli::StageCall& call) {
     for (const auto* folder : folders) make_directories(root / folder);
     write_file_atomically(list, list_of_commands(capacity_ah));
     if (call.json) {
-        nlohmann::ordered_json json{{"folder", root.string()}, {"folders", folders}, {"commands", list.string()}};
+        cli::Json json{{"folder", root.string()}, {"folders", folders}, {"commands", list.string()}};
         cli::print(cli::json_text(json));
     } else {
         cli::print(fmt::format(

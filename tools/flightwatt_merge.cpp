@@ -6,10 +6,9 @@
 #include "batch/batch_fit.h"
 #include "batch/merge.h"
 #include "batch/write_guard.h"
-#include "cli/output/json_text.h"
-#include "cli/progress.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
+#include "cli/terminal.h"
 #include "mechanical/validation.h"
 #include "stages.h"
 

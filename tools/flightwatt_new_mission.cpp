@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "battery/battery.h"
-#include "cli/output/json_text.h"
 #include "cli/output/mission_output.h"
 #include "cli/stage.h"
 #include "compute/profile_reader.h"
@@ -75,7 +74,7 @@ int write_new_mission(const cli::StageCall& call) {
     cli::write_result(call, text);
     cli::warn_of_setup(call, setup_of(read));
     if (call.json) {
-        nlohmann::ordered_json json{{"mission", fresh.name}, {"components", nlohmann::ordered_json::array()}};
+        cli::Json json{{"mission", fresh.name}, {"components", cli::Json::array()}};
         for (const auto& component : fresh.components) json["components"].push_back(component.name);
         json["planned"] = fresh.is_planned;
         cli::print(cli::json_text(json));

@@ -5,15 +5,12 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "cli/output/flight_options.h"
-#include "cli/output/json_text.h"
 #include "cli/output/mission_output.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "flight/flown_path.h"
 #include "mission/mission_file.h"
 #include "stages.h"
-
-#include <algorithm>
 
 #include <fmt/format.h>
 
@@ -32,7 +29,7 @@ void print_summary(const cli::StageCall& call, const mission::MissionSetup& miss
                                     length_m / 1000.0, duration_text(duration_s), energy_wh, mean_power_w(cruise)));
         return;
     }
-    nlohmann::ordered_json json;
+    cli::Json json;
     json["mission"] = mission.name;
     json["length_m"] = length_m;
     json["duration_s"] = duration_s;
@@ -93,7 +90,7 @@ int take_path(const cli::StageCall& call, const std::string& file) {
     }
     write_csv_result(call, csv.text(), {loaded.series.flight + ": where it flew", {}});
     if (call.json) {
-        nlohmann::ordered_json json;
+        cli::Json json;
         json["flight"] = loaded.series.flight;
         json["waypoints"] = path.waypoints.size();
         json["duration_s"] = duration_s;

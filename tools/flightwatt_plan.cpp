@@ -4,13 +4,11 @@
 #include "base/duration_text.h"
 #include "base/error.h"
 #include "base/units.h"
-#include "cli/output/json_text.h"
 #include "cli/output/mission_output.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "mission/feasibility_limits.h"
 #include "mission/mission_file.h"
-#include "mission/path_limits.h"
 #include "mission/plan.h"
 #include "stages.h"
 
@@ -124,7 +122,7 @@ std::string_view beyond(mission::LimitingFactor bound) {
 int answer(const cli::StageCall& call, const mission::MissionSetup& mission, const std::string& question,
            const std::string& unit, const mission::FeasibilityLimit& most) {
     cli::warn_of_setup(call, mission);
-    nlohmann::ordered_json json;
+    cli::Json json;
     json["mission"] = mission.name;
     json[question] = most.value;
     json["final_soc_percent"] = most.final_soc_percent;

@@ -2,8 +2,6 @@
 
 #include "base/error.h"
 #include "base/signal_watch.h"
-#include "cli/numeric_options.h"
-#include "cli/output/json_text.h"
 #include "cli/stage.h"
 #include "live/playback.h"
 #include "stages.h"
@@ -17,7 +15,6 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace {
 
@@ -74,8 +71,8 @@ class OutputTarget : public live::PlaybackTarget {
     bool has_reader_ = true;
 };
 
-nlohmann::ordered_json json_of(const live::PlaybackReport& report) {
-    nlohmann::ordered_json left_out = nlohmann::ordered_json::object();
+cli::Json json_of(const live::PlaybackReport& report) {
+    cli::Json left_out = nlohmann::ordered_json::object();
     for (const auto& [reason, lines] : report.left_out) left_out[reason] = lines;
     return {{"messages", report.messages}, {"left_out", left_out},        {"shortened_gaps", report.shortened_gaps},
             {"log_s", report.log_s},       {"played_s", report.played_s}, {"latest_s", report.max_delay_s},

@@ -1,10 +1,8 @@
 // flightwatt predict: the energy to the end of a flight that is in the air.
 
 #include "base/error.h"
-#include "cli/output/basis_options.h"
 #include "cli/output/flight_options.h"
-#include "cli/output/json_text.h"
-#include "cli/output/moment_option.h"
+#include "cli/output/live_options.h"
 #include "cli/output/prediction_output.h"
 #include "cli/stage.h"
 #include "flight/flight_series.h"
@@ -13,9 +11,7 @@
 #include "stages.h"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 

@@ -5,16 +5,12 @@
 #include "base/signal_watch.h"
 #include "base/toml_reader.h"
 #include "batch/write_guard.h"
-#include "cli/numeric_options.h"
-#include "cli/output/json_text.h"
 #include "cli/output/profile_output.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "compute/profile_interpolation.h"
 #include "compute/profile_reader.h"
 #include "stages.h"
-
-#include <algorithm>
 
 #include <boost/algorithm/string/split.hpp>
 #include <fmt/format.h>
@@ -48,7 +44,7 @@ int check_interpolation(const cli::StageCall& call) {
         const auto errors = compute::interpolation_errors(profile);
         if (!text.empty()) text += "\n";
         text += cli::interpolation_text(file, profile.power_w.size(), errors, screen);
-        nlohmann::ordered_json methods = nlohmann::ordered_json::array();
+        cli::Json methods = nlohmann::ordered_json::array();
         for (const auto& error : errors) methods.push_back(cli::to_json(error));
         json.push_back({{"file", file}, {"nodes", profile.power_w.size()}, {"leave_one_out", methods}});
     }

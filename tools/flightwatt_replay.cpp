@@ -1,9 +1,8 @@
 // flightwatt replay: missions' schedules on the power that flights measured.
 
 #include "base/error.h"
-#include "cli/output/fit_options.h"
+#include "cli/output/fit_output.h"
 #include "cli/output/flight_options.h"
-#include "cli/output/json_text.h"
 #include "cli/output/mission_output.h"
 #include "cli/output/replay_output.h"
 #include "cli/screen_table.h"
@@ -13,7 +12,6 @@
 #include "mission/replay.h"
 #include "stages.h"
 
-#include <filesystem>
 #include <set>
 
 #include <fmt/format.h>

@@ -5,7 +5,6 @@
 #include "base/error.h"
 #include "base/overwrite_guard.h"
 #include "cli/output/flight_options.h"
-#include "cli/output/json_text.h"
 #include "cli/output/segment_output.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
@@ -93,7 +92,7 @@ struct SegmentedFlights {
     std::string title;
     std::string csv;
     std::string explained;
-    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    cli::Json json = nlohmann::ordered_json::array();
 };
 
 /// The rows of a CSV behind a first cell with their flight; its header where `csv` has none yet.

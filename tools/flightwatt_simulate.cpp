@@ -2,7 +2,6 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "cli/output/json_text.h"
 #include "cli/output/mission_output.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"

@@ -5,8 +5,6 @@
 #include "base/duration_text.h"
 #include "base/error.h"
 #include "base/overwrite_guard.h"
-#include "cli/numeric_options.h"
-#include "cli/output/json_text.h"
 #include "cli/stage.h"
 #include "mechanical/mechanical_model.h"
 #include "stages.h"
@@ -22,7 +20,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 namespace {
 
@@ -169,7 +166,7 @@ int synthesize(const cli::StageCall& call) {
     declare_logs(call, name, count, hazard_list);
     make_directories(*call.output);
     const auto flights = draw_flights(model, count, seed, spread);
-    nlohmann::ordered_json written = nlohmann::ordered_json::array();
+    cli::Json written = nlohmann::ordered_json::array();
     for (std::size_t i = 0; i < count; ++i) {
         std::mt19937_64 random(seed + 1000 * (i + 1));
         const auto flight = make_flight(flights[i], random);

@@ -5,10 +5,9 @@
 #include "batch/trend.h"
 #include "cli/output/battery_output.h"
 #include "cli/output/flight_options.h"
-#include "cli/output/json_text.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
-#include "report/figure_files.h"
+#include "report/page.h"
 #include "report/trends_section.h"
 #include "stages.h"
 

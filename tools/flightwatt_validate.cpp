@@ -1,21 +1,18 @@
 // flightwatt validate: leaves each flight out, fits the others and predicts its energy.
 
 #include "base/error.h"
-#include "cli/numeric_options.h"
-#include "cli/output/fit_options.h"
+#include "cli/output/fit_output.h"
 #include "cli/output/flight_options.h"
-#include "cli/output/json_text.h"
-#include "cli/output/validation_output.h"
-#include "cli/progress.h"
+#include "cli/output/prediction_output.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
+#include "cli/terminal.h"
 #include "flight/selected_track.h"
 #include "mechanical/covariates.h"
 #include "mechanical/measured_flight.h"
 #include "stages.h"
 
 #include <algorithm>
-#include <iterator>
 
 #include <boost/algorithm/string/split.hpp>
 #include <fmt/format.h>

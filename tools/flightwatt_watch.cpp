@@ -3,15 +3,9 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/signal_watch.h"
-#include "cli/numeric_options.h"
-#include "cli/output/basis_options.h"
-#include "cli/output/json_text.h"
-#include "cli/output/prediction_output.h"
-#include "cli/output/source_options.h"
+#include "cli/output/live_options.h"
 #include "cli/output/watch_output.h"
 #include "cli/stage.h"
-#include "cli/terminal.h"
-#include "cli/warning_throttle.h"
 #include "live/page_server.h"
 #include "live/recorder.h"
 #include "report/page.h"
@@ -34,94 +28,6 @@ using namespace flightwatt;
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-/// A line in lines of so many columns, broken at blanks; those below are indented as a screen's texts are.
-std::string wrapped(std::string line, std::size_t columns) {
-    const std::string indent(10, ' ');
-    std::string text;
-    while (line.size() > columns) {
-        const auto blank = line.rfind(' ', columns);
-        if (blank == std::string::npos || blank <= indent.size()) break;
-        text += line.substr(0, blank) + "\n";
-        line.replace(0, blank + 1, indent);
-    }
-    return text + line + "\n";
-}
-
-/// What is said, in the way that was asked for.
-class WatchOutput {
-  public:
-    WatchOutput(const cli::StageCall& call, const compute::ComputeModel& compute,
-                const std::optional<live::PredictionInput>& basis)
-        : call_(call), compute_(compute), basis_(basis), plot_(cli::terminal_plot(call, "state of charge, %")) {}
-
-    void print_state(const live::LiveState& state) {
-        warnings_ = state.warnings;
-        const auto to_say = said_.due(warnings_, state.time_s);
-        for (const auto& warning : to_say)
-            if (!plot_) cli::warn(call_, warning);
-        if (state.battery && state.battery->state) soc_.add(state.time_s, state.battery->state->soc_percent);
-        if (plot_) {
-            draw(state);
-        } else if (call_.json) {
-            is_read_ = cli::print_flushed(cli::json_of(state, compute_).dump(-1, ' ', false, replace) + "\n");
-        } else {
-            is_read_ = cli::print_flushed(cli::line_of(state, compute_));
-        }
-    }
-
-    bool is_read() const { return is_read_; }
-
-    /// The last words.
-    void end(const live::LiveFlight& flight, const std::string& why) {
-        for (const auto& warning : said_.final_updates(warnings_)) cli::warn(call_, warning);
-        const auto& last = flight.last_predicted();
-        if (call_.json) {
-            nlohmann::ordered_json json{{"ended", why}, {"last_prediction", nullptr}};
-            if (last) json["last_prediction"] = cli::json_of(*last, compute_);
-            cli::print(json.dump(-1, ' ', false, replace) + "\n");
-        } else {
-            cli::note(call_, why);
-        }
-        const auto text = last ? cli::text_of(*last->prediction) : std::string();
-        if (call_.output || !text.empty()) cli::write_result(call_, text);
-    }
-
-  private:
-    static constexpr auto replace = nlohmann::ordered_json::error_handler_t::replace;
-
-    void draw(const live::LiveState& state) {
-        constexpr double often_s = 0.25;
-        if (drawn_ && seconds_since(*drawn_) < often_s) return;
-        drawn_ = Clock::now();
-        auto lines = cli::screen_of(state, compute_);
-        for (const auto& warning : state.warnings) lines.push_back("          " + cli::one_line(warning));
-        std::string text = "\x1b[H\x1b[J";  // the whole screen anew
-        for (const auto& line : lines) text += wrapped(line, plot_->columns);
-        is_read_ = cli::print_flushed(text + curve(state));
-    }
-
-    std::string curve(const live::LiveState& state) const {
-        std::vector<cli::TerminalLine> curves;
-        if (const auto& flown = soc_.curve(); flown.time_s.size() > 1)
-            curves.push_back({flown.time_s, flown.value, "flown"});
-        if (basis_) {
-            if (auto ahead = live::soc_ahead(state, *basis_); ahead.time_s.size() > 1)
-                curves.push_back({std::move(ahead.time_s), std::move(ahead.value), "ahead"});
-        }
-        return curves.empty() ? "" : cli::draw(*plot_, curves);
-    }
-
-    const cli::StageCall& call_;
-    const compute::ComputeModel& compute_;
-    const std::optional<live::PredictionInput>& basis_;
-    std::optional<cli::TerminalPlot> plot_;
-    live::CurveHistory soc_;
-    cli::WarningThrottle said_;
-    std::vector<std::string> warnings_;  ///< of the latest state
-    std::optional<Clock::time_point> drawn_;
-    bool is_read_ = true;
-};
 
 /// Runs --on-decision's command where what runs changes.
 class DecisionHook {
@@ -275,7 +181,7 @@ int watch(const cli::StageCall& call) {
         options.on_lines = [&](std::string_view lines, bool anew) { recorder->write(lines, anew); };
     }
     live::LiveFlight flight(std::move(options), watched.basis, schedule_of(call, watched));
-    WatchOutput speaker(call, watched.compute, watched.basis);
+    cli::WatchOutput speaker(call, watched.compute, watched.basis);
     DecisionHook hook(call, watched.compute);
     LivePage page(call, watched.compute, watched.basis);
     const auto update_flight = [&](double silent_s) -> std::string {

@@ -38,8 +38,7 @@ void serialize(Archive& archive, FlightRecord& record) {
     archive(record.flight, record.log, record.fingerprint, record.results, record.accepted, record.error,
             record.is_of_other_aircraft, record.aircraft_id, record.aircraft_name, record.power_source,
             record.current_origin, record.phases, record.warnings, record.power_faults, record.no_power_reason,
-            record.not_fitted_reason, record.content.decimals, record.content.has_definitions, record.content.samples,
-            record.content.hash_divisor);
+            record.not_fitted_reason, record.content.has_definitions, record.content.samples);
 }
 
 template <typename Archive>

@@ -76,8 +76,6 @@ template <typename Content, typename Visit>
 void visit_content(Content& content, const Visit& visit) {
     visit("has_definitions", content.has_definitions);
     visit("samples", content.samples);
-    visit("decimals", content.decimals);
-    visit("parts", content.hash_divisor);
 }
 
 template <typename Record, typename Visit>
@@ -145,18 +143,14 @@ struct RecordWriter {
         visit_content(content, RecordWriter{json});
         return json;
     }
-    static Json json_of(const FlightMarks& of_precisions) {
-        Json json = Json::array();
-        for (const auto& marks : of_precisions) {
-            Json fingerprints = Json::array();
-            Json times_s = Json::array();
-            for (const auto& [fingerprint, time_s] : marks) {
-                fingerprints.push_back(fingerprint);
-                times_s.push_back(time_s);
-            }
-            json.push_back({{"fingerprints", fingerprints}, {"times_s", times_s}});
+    static Json json_of(const FlightMarks& marks) {
+        Json fingerprints = Json::array();
+        Json times_s = Json::array();
+        for (const auto& [fingerprint, time_s] : marks) {
+            fingerprints.push_back(fingerprint);
+            times_s.push_back(time_s);
         }
-        return json;
+        return Json::array({{{"fingerprints", fingerprints}, {"times_s", times_s}}});
     }
     static Json json_of(const std::vector<RecordedPhase>& phases) {
         Json json = Json::array();
@@ -238,13 +232,13 @@ struct RecordReader {
         for (const auto& entry : json) visit_bin(bins.emplace_back(), RecordReader{entry});
     }
     static void read(const Json& json, flight::FlightSketch& content) { visit_content(content, RecordReader{json}); }
-    static void read(const Json& json, FlightMarks& of_precisions) {
-        for (std::size_t i = 0; i < of_precisions.size(); ++i) {
-            const auto& fingerprints = json.at(i).at("fingerprints");
-            const auto& times_s = json.at(i).at("times_s");
-            for (std::size_t k = 0; k < fingerprints.size(); ++k)
-                of_precisions[i].push_back({whole<std::uint64_t>(fingerprints.at(k)), times_s.at(k)});
-        }
+    /// The last of the array: earlier versions have those of rounded values before it.
+    static void read(const Json& json, FlightMarks& marks) {
+        const auto& exact = json.at(json.size() - 1);
+        const auto& fingerprints = exact.at("fingerprints");
+        const auto& times_s = exact.at("times_s");
+        for (std::size_t i = 0; i < fingerprints.size(); ++i)
+            marks.push_back({whole<std::uint64_t>(fingerprints.at(i)), times_s.at(i)});
     }
     static void read(const Json& json, std::vector<RecordedPhase>& phases) {
         for (const auto& entry : json) visit_recorded_phase(phases.emplace_back(), RecordReader{entry});

@@ -17,7 +17,6 @@ namespace {
 struct Candidate {
     std::size_t number = 0;  ///< in the batch
     std::size_t samples = 0;
-    std::size_t decimals = 0;
     bool has_definitions = false;
     bool is_fitted = false;
     bool is_kept = false;
@@ -25,7 +24,6 @@ struct Candidate {
     flight::FlightSketch content() const {
         flight::FlightSketch content;
         content.samples = samples;
-        content.decimals = decimals;
         content.has_definitions = has_definitions;
         return content;
     }
@@ -39,8 +37,7 @@ std::vector<Candidate> candidates_among(const BatchFlights& flights) {
         const auto& content = flight.record.content;
         const bool is_fitted = !flight.selection.flights.empty();
         if (is_fitted || !flight.record.no_power_reason.empty())
-            candidates.push_back(
-                {i, content.samples, content.decimals, content.has_definitions, is_fitted, flight.log_is_missing});
+            candidates.push_back({i, content.samples, content.has_definitions, is_fitted, flight.log_is_missing});
     }
     // The one with power is used, of these one that is still there, of these the better copy.
     std::ranges::stable_sort(candidates, [](const Candidate& one, const Candidate& other) {

@@ -2,20 +2,7 @@
 
 #include "base/units.h"
 
-#include <cstddef>
-
 namespace flightwatt::battery {
-
-void VoltageLine::find(double soc_percent) {
-    constexpr double endless = std::numeric_limits<double>::infinity();
-    const auto& [knots, volts] = *curve_;
-    const auto above = std::upper_bound(knots.begin() + 1, knots.end() - 1, soc_percent);
-    const auto upper = static_cast<std::size_t>(above - knots.begin());
-    low_percent_ = upper == 1 ? -endless : knots[upper - 1];
-    high_percent_ = upper + 1 == knots.size() ? endless : knots[upper];
-    slope_v_ = (volts[upper] - volts[upper - 1]) / (knots[upper] - knots[upper - 1]);
-    offset_v_ = volts[upper - 1] - slope_v_ * knots[upper - 1];
-}
 
 Circuit<double> circuit_of(const Battery& battery) {
     Circuit<double> circuit;

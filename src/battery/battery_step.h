@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -124,24 +126,43 @@ struct StepLength {
     RcStep<Number> whole;
 };
 
+/// One of the straight lines of an open-circuit voltage: offset + slope * charge, from one charge to another.
+struct VoltageSegment {
+    double low_percent = 0.0;
+    double high_percent = 0.0;
+    double offset_v = 0.0;
+    double slope_v = 0.0;
+};
+
+/// The line of a charge; the outer ones have no end. `knot_v` gives the voltage at a knot.
+template <typename KnotVoltage>
+VoltageSegment find_voltage_segment(const std::vector<double>& knots_percent, const KnotVoltage& knot_v,
+                                    double soc_percent) {
+    constexpr double endless = std::numeric_limits<double>::infinity();
+    const auto above = std::upper_bound(knots_percent.begin() + 1, knots_percent.end() - 1, soc_percent);
+    const auto upper = static_cast<std::size_t>(above - knots_percent.begin());
+    const double low_percent = knots_percent[upper - 1];
+    const double high_percent = knots_percent[upper];
+    const double slope_v = (knot_v(upper) - knot_v(upper - 1)) / (high_percent - low_percent);
+    return {upper == 1 ? -endless : low_percent, upper + 1 == knots_percent.size() ? endless : high_percent,
+            knot_v(upper - 1) - slope_v * low_percent, slope_v};
+}
+
 /// The open-circuit voltage of charges that follow each other: the line that they are on is remembered.
 class VoltageLine {
   public:
-    VoltageLine(const OpenCircuitVoltage& curve, double soc_percent) : curve_(&curve) { find(soc_percent); }
+    VoltageLine(const OpenCircuitVoltage& curve, double soc_percent) : curve_(&curve) { (*this)(soc_percent); }
 
     double operator()(double soc_percent) {
-        if (soc_percent < low_percent_ || soc_percent >= high_percent_) find(soc_percent);
-        return offset_v_ + slope_v_ * std::clamp(soc_percent, 0.0, 100.0);
+        const auto knot_v = [this](std::size_t knot) { return curve_->voltage_v[knot]; };
+        if (soc_percent < segment_.low_percent || soc_percent >= segment_.high_percent)
+            segment_ = find_voltage_segment(curve_->soc_percent, knot_v, soc_percent);
+        return segment_.offset_v + segment_.slope_v * std::clamp(soc_percent, 0.0, 100.0);
     }
 
   private:
-    void find(double soc_percent);
-
     const OpenCircuitVoltage* curve_;
-    double low_percent_ = 0.0;
-    double high_percent_ = 0.0;
-    double offset_v_ = 0.0;
-    double slope_v_ = 0.0;
+    VoltageSegment segment_;
 };
 
 /// The one step of a battery under a load, for a number and for lanes: over it the current is a parabola through its

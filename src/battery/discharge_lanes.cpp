@@ -1,8 +1,7 @@
 #include "battery/discharge_lanes.h"
 
-#include <algorithm>
-#include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace flightwatt::battery {
 namespace {
@@ -26,16 +25,12 @@ class FallingVoltages {
 
   private:
     void find_line(int lane, double soc_percent) {
-        constexpr double endless = std::numeric_limits<double>::infinity();
-        const auto& knots = batteries_.knots_percent;
-        const auto above = std::upper_bound(knots.begin() + 1, knots.end() - 1, soc_percent);
-        const auto lower = static_cast<std::size_t>(above - knots.begin()) - 1;
-        low_percent_(lane) = lower == 0 ? -endless : knots[lower];
-        high_percent_(lane) = lower + 2 == knots.size() ? endless : knots[lower + 1];
-        const double low_v = batteries_.knots_v[lower](lane);
-        const double rise_v = batteries_.knots_v[lower + 1](lane) - low_v;
-        slope_v_(lane) = rise_v / (knots[lower + 1] - knots[lower]);
-        offset_v_(lane) = low_v - slope_v_(lane) * knots[lower];
+        const auto knot_v = [&](std::size_t knot) { return batteries_.knots_v[knot](lane); };
+        const auto segment = find_voltage_segment(batteries_.knots_percent, knot_v, soc_percent);
+        low_percent_(lane) = segment.low_percent;
+        high_percent_(lane) = segment.high_percent;
+        offset_v_(lane) = segment.offset_v;
+        slope_v_(lane) = segment.slope_v;
     }
 
     const BatteryLanes& batteries_;

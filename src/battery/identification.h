@@ -4,9 +4,8 @@
 #include "battery/identification/circuit_errors.h"
 #include "battery/identification/circuit_fit.h"
 #include "battery/identification/discharge_record.h"
-#include "battery/identification/flight_resistance.h"
 #include "battery/identification/open_circuit.h"
-#include "battery/identification/pack_link.h"
+#include "battery/identification/pack_changes.h"
 #include "battery/identification/state_of_health.h"
 
 #include <functional>
@@ -23,7 +22,7 @@ struct IdentificationOptions {
     std::string name = "identified";
     bool with_capacities = false;  ///< of each flight too, in the same least squares as its resistance
     bool link_packs =
-        true;  ///< take a flight for one on the pack of the flight before it, where all agrees (pack_link.h)
+        true;  ///< take a flight for one on the pack of the flight before it, where all agrees (pack_changes.h)
 };
 
 /// One flight in the fit.
@@ -74,7 +73,7 @@ struct BatteryIdentification {
 double highest_resting_v(const BatteryIdentification& identified);
 
 /// Identifies the Thévenin circuit of a battery from flights. What was missing from the pack is a parameter of each
-/// flight in the same least squares; flights on one pack are chained (aligned_fit.h, pack_link.h). Capacity, and what
+/// flight in the same least squares; flights on one pack are chained (aligned_fit.h, pack_changes.h). Capacity, and what
 /// was missing from the fullest flight, are laid onto the LiPo chart (chart_match.h): a fullest flight that rests as a
 /// full pack may counts as full. The battery holds the flights' own estimate of the capacity even if another is given.
 /// Throws NoResultError where the flights determine no such circuit, and as estimate_capacity and

@@ -9,8 +9,6 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <cstdint>
-#include <numeric>
 #include <utility>
 
 #include <boost/algorithm/string/classification.hpp>

@@ -2,14 +2,15 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/number.h"
 #include "base/overwrite_guard.h"
 #include "base/toml_reader.h"
 #include "cli/screen_table.h"
 #include "cli/terminal.h"
-#include "cli/version.h"
+#include "cli/help.h"
 
-#include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -302,6 +303,30 @@ void warn(const StageCall& call, std::string_view message) {
 
 void note(const StageCall& call, std::string_view message) {
     tell(fmt::format("{}: {}\n", call.program, one_line(message)));
+}
+
+std::uint64_t count_option(const StageCall& call, const std::string& option, std::uint64_t least, std::uint64_t most) {
+    const auto text = call.get<std::string>(option);
+    const auto number = parse_unsigned(text);
+    if (number && *number >= least && *number <= most) return *number;
+    const auto range = most < std::numeric_limits<std::uint64_t>::max() ? fmt::format(" from {} to {}", least, most)
+                       : least > 0                                      ? fmt::format(" from {}", least)
+                                                                        : std::string();
+    throw UsageError(fmt::format("--{} {}: expected a whole number{}", option, one_line(text), range));
+}
+
+double number_option(const StageCall& call, const std::string& option, double least, double most) {
+    const auto value = call.get<double>(option);
+    if (value >= least && value <= most) return value;
+    throw UsageError(fmt::format("--{} {:g}: expected {:g} to {:g}", option, value, least, most));
+}
+
+std::optional<double> positive_option(const StageCall& call, const std::string& option, const std::string& unit,
+                                      double most) {
+    const auto value = call.get_optional<double>(option);
+    if (!value || (*value > 0.0 && *value <= most && std::isfinite(*value))) return value;
+    const auto limit = std::isfinite(most) ? fmt::format(" and at most {:g}", most) : std::string();
+    throw UsageError(fmt::format("--{} {:g}: expected more than 0{} {}", option, *value, limit, unit));
 }
 
 }  // namespace flightwatt::cli

@@ -1,8 +1,11 @@
 #pragma once
 
 #include "base/error.h"
+#include "cli/stage.h"
 
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,8 +13,11 @@
 #include <vector>
 
 #include <boost/program_options.hpp>
+#include <nlohmann/json.hpp>
 
 namespace flightwatt::cli {
+
+using Json = nlohmann::ordered_json;
 
 enum ExitCode : int { ok = 0, internal_error = 1, usage_error = 2, input_rejected = 3, no_answer = 4 };
 
@@ -117,8 +123,33 @@ std::string one_line(std::string_view text);
 /// A file's name as a user types it in a shell: quoted where it has to be.
 std::string shell_quoted(std::string_view file);
 
+/// Indented, with a line break at its end. A name that is not UTF-8 (a file's) does not spoil the answer.
+inline std::string json_text(const Json& json) {
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+/// null for what is not known.
+template <typename T>
+Json optional_json(const std::optional<T>& value) {
+    return value ? Json(*value) : Json(nullptr);
+}
+
 /// A line on the standard error: "flightwatt-fit: warning: ...".
 void warn(const StageCall& call, std::string_view message);
 void note(const StageCall& call, std::string_view message);
+
+/// An option that holds a whole number from `least` to `most`. Throws UsageError "--option TEXT: expected ..." for another
+/// value, as those below. The option's value is a string: program_options would take -1 for a
+/// large number.
+std::uint64_t count_option(const StageCall& call, const std::string& option, std::uint64_t least = 0,
+                           std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
+
+/// A number from `least` to `most`.
+double number_option(const StageCall& call, const std::string& option, double least, double most);
+
+/// A finite number above 0 and at most `most`, or std::nullopt where the option was not given. `unit` is that
+/// of the number, for the message.
+std::optional<double> positive_option(const StageCall& call, const std::string& option, const std::string& unit,
+                                      double most = std::numeric_limits<double>::infinity());
 
 }  // namespace flightwatt::cli

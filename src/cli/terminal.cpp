@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <string_view>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
@@ -122,6 +124,42 @@ std::string axis_text(const TerminalPlot& plot, std::size_t row) {
     return fmt::format("{:>{}.0f} ┤", std::lerp(plot.y_high, plot.y_low, part), axis_columns - 2);
 }
 
+constexpr auto min_interval = std::chrono::milliseconds(100);
+constexpr auto rate_window = std::chrono::seconds(10);
+
+/// "0:07", "12:34", "3:05:09".
+std::string clock_text(double time_s) {
+    constexpr double max_s = 359999.0;  // 99:59:59
+    const std::chrono::seconds whole(static_cast<long>(std::ceil(std::min(time_s, max_s))));
+    const std::chrono::hh_mm_ss clock(whole);
+    const auto [hours, minutes, s] =
+        std::tuple(clock.hours().count(), clock.minutes().count(), clock.seconds().count());
+    return hours == 0 ? fmt::format("{}:{:02}", minutes, s) : fmt::format("{}:{:02}:{:02}", hours, minutes, s);
+}
+
+std::string rate_text(const ProgressState& state, const std::string& unit) {
+    if (!(state.per_s > 0.0)) return "";
+    const auto left_s = static_cast<double>(state.all - std::min(state.done, state.all)) / state.per_s;
+    return fmt::format(", {:.{}f} {}/s, {} left", state.per_s, state.per_s < 100.0 ? 1 : 0, unit, clock_text(left_s));
+}
+
+/// "[###...] ", as wide as `width` if that is enough for a bar that tells anything.
+std::string bar_text(const ProgressState& state, std::size_t width) {
+    constexpr std::size_t frame = 3;  // brackets and a blank
+    constexpr std::size_t least = 5;
+    constexpr std::size_t most = 40;
+    if (width < frame + least || state.all == 0) return "";
+    const auto cells = std::min(width - frame, most);
+    const auto full = cells * std::min(state.done, state.all) / state.all;
+    return "[" + std::string(full, '#') + std::string(cells - full, '.') + "] ";
+}
+
+std::size_t terminal_width(std::FILE* terminal) {
+    constexpr std::size_t usual = 80;
+    winsize size{};
+    return ::ioctl(::fileno(terminal), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : usual;
+}
+
 }  // namespace
 
 TerminalCapabilities detect_capabilities(bool is_terminal, std::size_t columns, const Environment& environment) {
@@ -189,8 +227,75 @@ std::string draw(const TerminalPlot& plot, std::span<const TerminalLine> lines) 
     }
     const auto end = fmt::format("{:.0f} {}", x_high, plot.x_label);
     const auto start = fmt::format("{:.0f}", x_low);
-    const auto gap = canvas.columns > start.size() + end.size() ? canvas.columns - start.size() - end.size() : 1;
-    return text + fmt::format("{:>{}}{}{:>{}}{}\n", "", axis_columns, start, "", gap, end);
+    const auto blanks = canvas.columns > start.size() + end.size() ? canvas.columns - start.size() - end.size() : 1;
+    return text + fmt::format("{:>{}}{}{:>{}}{}\n", "", axis_columns, start, "", blanks, end);
+}
+
+std::string progress_text(const ProgressState& state, const std::string& unit, std::size_t width) {
+    auto text = fmt::format("{}/{}", state.done, state.all);
+    const auto rate = rate_text(state, unit);
+    if (text.size() + rate.size() <= width) text += rate;
+    if (text.size() > width) return "";
+    return bar_text(state, width - text.size()) + text;
+}
+
+ProgressBar::ProgressBar(std::FILE* terminal, std::string unit)
+    : terminal_(terminal), unit_(std::move(unit)), recent_{{Clock::now(), 0}} {}
+
+ProgressBar::~ProgressBar() { clear(); }
+
+void ProgressBar::show(std::size_t done, std::size_t all) {
+    const std::lock_guard lock(mutex_);
+    const auto now = Clock::now();
+    if (cleared_ || now - recent_.back().time < min_interval) return;
+    recent_.push_back({now, done});
+    while (recent_.size() > 2 && now - recent_.front().time > rate_window) recent_.pop_front();
+    const std::chrono::duration<double> window = now - recent_.front().time;
+    const auto per_s = static_cast<double>(done - recent_.front().done) / window.count();
+    // One column less: a full last one makes some terminals wrap.
+    const auto text = progress_text({done, all, per_s}, unit_, terminal_width(terminal_) - 1);
+    erase();
+    std::fwrite(text.data(), 1, text.size(), terminal_);  // a terminal that is gone changes nothing
+    std::fflush(terminal_);
+    drawn_width_ = text.size();
+}
+
+void ProgressBar::hide() {
+    const std::lock_guard lock(mutex_);
+    erase();
+    std::fflush(terminal_);
+}
+
+void ProgressBar::clear() {
+    const std::lock_guard lock(mutex_);
+    erase();
+    std::fflush(terminal_);
+    cleared_ = true;
+}
+
+/// With blanks: every terminal knows them.
+void ProgressBar::erase() {
+    if (drawn_width_ > 0) {
+        const auto blanks = fmt::format("\r{}\r", std::string(drawn_width_, ' '));
+        std::fwrite(blanks.data(), 1, blanks.size(), terminal_);
+    }
+    drawn_width_ = 0;
+}
+
+TerminalProgress::TerminalProgress(const std::string& unit) {
+    if (::isatty(STDERR_FILENO) != 0) bar_.emplace(stderr, unit);
+}
+
+void TerminalProgress::show(std::size_t done, std::size_t all) {
+    if (bar_) bar_->show(done, all);
+}
+
+void TerminalProgress::hide() {
+    if (bar_) bar_->hide();
+}
+
+std::function<void(std::size_t, std::size_t)> TerminalProgress::callback() {
+    return [this](std::size_t done, std::size_t all) { show(done, all); };
 }
 
 }  // namespace flightwatt::cli

@@ -132,4 +132,14 @@ double power_w(const ComputeModel& model, const Configuration& configuration) {
     return power;
 }
 
+std::string describe(const ComputeModel& model, const Configuration& configuration, std::string_view equals) {
+    std::string text;
+    for (const auto& running : configuration) {
+        const auto& component = model.components.at(running.component);
+        text += (text.empty() ? "" : ", ") + component.name;
+        if (!running.qos.empty()) text += " " + format_qos(component.profile.parameters, running.qos, equals);
+    }
+    return text.empty() ? "nothing" : text;
+}
+
 }  // namespace flightwatt::compute

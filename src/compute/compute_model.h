@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace flightwatt::compute {
@@ -69,5 +70,8 @@ using Configuration = std::vector<RunningComponent>;
 /// Power [W] of everything that runs: the components add (section IV-B of the paper). Throws InputError for a
 /// QoS out of range.
 double power_w(const ComputeModel& model, const Configuration& configuration);
+
+/// "detection fps 10, encryption key_bits 240", or with another text between name and value; "nothing" if none runs.
+std::string describe(const ComputeModel& model, const Configuration& configuration, std::string_view equals = " ");
 
 }  // namespace flightwatt::compute

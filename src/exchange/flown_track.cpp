@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "flight/flight_identity.h"
-#include "flight/log_name.h"
 #include "flight/phase_statistics.h"
 #include "flight/selected_track.h"
 

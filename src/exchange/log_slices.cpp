@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "flight/segmentation_clock.h"
+#include "flight/segmentation.h"
 #include "flight/selected_track.h"
 
 #include <algorithm>

@@ -4,14 +4,15 @@
 #include "flight/selected_track.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <iterator>
 #include <limits>
 #include <map>
+#include <regex>
 #include <set>
 #include <string_view>
-#include <tuple>
 #include <utility>
 
 #include <boost/algorithm/string/predicate.hpp>
@@ -26,9 +27,9 @@ namespace {
 constexpr std::size_t farthest_sample = 8;
 constexpr double farthest_s = 10.0;
 constexpr double interval_step_s = 0.25;  // clocks that drift and jitter a little say the same
-constexpr std::array<std::size_t, precisions> max_marks{256, 256, 256, 512};
+constexpr std::size_t max_marks = 512;
 constexpr std::size_t max_candidate_marks = 8192;
-constexpr std::array<std::size_t, precisions> indexed_marks{64, 64, 64, 128};
+constexpr std::size_t indexed_marks = 128;
 constexpr std::size_t max_sharing = 64;  // what more flights have in common tells of none
 constexpr std::size_t min_indexed = 3;
 // Of two recordings of one flight.
@@ -38,11 +39,8 @@ constexpr std::size_t min_told = 10;
 constexpr double min_block_s = 30.0;
 constexpr double max_blocks = 24.0;
 constexpr double min_agreeing = 0.5;
-constexpr std::size_t min_rounded_blocks = 5;
 constexpr double clock_slack_s = 1.0;
 constexpr double clock_drift = 2e-3;
-
-constexpr std::size_t exact = precisions - 1;
 
 std::uint64_t mixed(std::uint64_t state, std::uint64_t word) {
     state = (state ^ word) + 0x9E3779B97F4A7C15U;  // splitmix64
@@ -51,40 +49,18 @@ std::uint64_t mixed(std::uint64_t state, std::uint64_t word) {
     return state ^ (state >> 31);
 }
 
-/// The value as one of so many decimals says it, or exactly.
-std::uint64_t rounded(double value, std::size_t precision) {
-    constexpr double most = 1e12;
-    if (precision == exact || std::abs(value) > most) return std::bit_cast<std::uint64_t>(value + 0.0);
-    const double scale = std::pow(10.0, static_cast<double>(precision));
-    return static_cast<std::uint64_t>(std::llround(value * scale));
-}
-
-/// How many decimals the values have; two if more.
-std::size_t decimals_of(const Track& track) {
-    constexpr double nearly_all = 0.98;
-    constexpr double nearly_whole = 1e-6;
-    for (std::size_t decimals = 0; decimals < max_decimals; ++decimals) {
-        const double scale = std::pow(10.0, static_cast<double>(decimals));
-        const auto whole = std::ranges::count_if(track.value, [&](double value) {
-            return std::abs(value * scale - std::round(value * scale)) < nearly_whole;
-        });
-        if (static_cast<double>(whole) >= nearly_all * static_cast<double>(track.value.size())) return decimals;
-    }
-    return max_decimals;
-}
-
-void add_marks(const Track& track, std::size_t precision, std::uint64_t highest, std::vector<SketchHash>& marks) {
-    auto seed = mixed(0, precision);
+/// Those of the track up to a fingerprint.
+void add_marks(const Track& track, std::uint64_t highest, std::vector<SketchHash>& marks) {
+    auto seed = mixed(0, 3);  // as in the records of earlier batches
     for (const char c : track.name + ' ' + track.source) seed = mixed(seed, static_cast<unsigned char>(c));
     const bool is_altitude = track.name == "altitude_m";
-    std::vector<std::uint64_t> values(track.value.size());
-    std::ranges::transform(track.value, values.begin(), [&](double value) { return rounded(value, precision); });
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        const auto last = std::min(values.size(), i + 1 + farthest_sample);
+    const auto bits = [&](std::size_t i) { return std::bit_cast<std::uint64_t>(track.value[i] + 0.0); };
+    for (std::size_t i = 0; i < track.value.size(); ++i) {
+        const auto last = std::min(track.value.size(), i + 1 + farthest_sample);
         for (auto j = i + 1; j < last && track.time_s[j] - track.time_s[i] <= farthest_s; ++j) {
-            if (values[j] == values[i]) continue;
+            if (track.value[j] == track.value[i]) continue;
             const auto interval = std::llround((track.time_s[j] - track.time_s[i]) / interval_step_s);
-            const auto mark = mixed(mixed(mixed(seed, values[i]), values[j]), static_cast<std::uint64_t>(interval));
+            const auto mark = mixed(mixed(mixed(seed, bits(i)), bits(j)), static_cast<std::uint64_t>(interval));
             if (mark > highest) continue;
             marks.push_back({is_altitude ? mark | 1U : mark & ~std::uint64_t{1}, to_millisecond(track.time_s[i])});
         }
@@ -92,39 +68,36 @@ void add_marks(const Track& track, std::size_t precision, std::uint64_t highest,
 }
 
 /// The least ones, rising, without those that recur.
-void keep_least(std::vector<SketchHash>& marks, std::size_t most) {
-    // Most are beyond. Where too many of those below recur, all are looked at.
-    constexpr std::size_t spare = 2;
-    if (marks.size() > 2 * spare * most) {
-        auto least = marks;
-        const auto nth = least.begin() + static_cast<std::ptrdiff_t>(spare * most);
-        std::ranges::nth_element(least, nth, {}, &SketchHash::fingerprint);
-        const auto highest = nth->fingerprint;
-        std::erase_if(least, [&](const SketchHash& mark) { return mark.fingerprint >= highest; });
-        keep_least(least, most);
-        if (least.size() == most) {
-            marks = std::move(least);
-            return;
-        }
-    }
+void keep_least(std::vector<SketchHash>& marks) {
     std::ranges::sort(marks, {}, [](const SketchHash& mark) { return std::pair(mark.fingerprint, mark.time_s); });
     std::size_t kept = 0;
-    for (std::size_t begin = 0, end = 0; begin < marks.size() && kept < most; begin = end) {
+    for (std::size_t begin = 0, end = 0; begin < marks.size() && kept < max_marks; begin = end) {
         while (end < marks.size() && marks[end].fingerprint == marks[begin].fingerprint) ++end;
         if (end == begin + 1) marks[kept++] = marks[begin];
     }
     marks.resize(kept);
 }
 
-std::uint64_t max_fingerprint(std::size_t parts) { return std::numeric_limits<std::uint64_t>::max() / parts; }
+/// The marks of the tracks with the least fingerprints. Of a long flight only the lowest part of the fingerprints is
+/// searched, unless too many of these recur.
+std::vector<SketchHash> least_marks(const std::vector<const Track*>& tracks) {
+    std::size_t values = 0;
+    for (const auto* track : tracks) values += track->value.size();
+    std::vector<SketchHash> marks;
+    for (auto parts = farthest_sample * values / max_candidate_marks + 1;; parts = 1) {
+        for (const auto* track : tracks) add_marks(*track, std::numeric_limits<std::uint64_t>::max() / parts, marks);
+        keep_least(marks);
+        if (parts == 1 || marks.size() == max_marks) return marks;
+        marks.clear();
+    }
+}
 
-/// The marks that can be in the other too: beyond what was looked at, and the last of a full sketch, nothing is known.
-std::span<const SketchHash> comparable(const FlightSketch& one, const FlightSketch& other, std::size_t precision) {
-    const auto& marks = one.hashes[precision];
-    const auto& others = other.hashes[precision];
-    auto highest = max_fingerprint(other.hash_divisor);
-    if (others.size() >= max_marks[precision]) highest = std::min(highest, others.back().fingerprint);
-    return {marks.begin(), std::ranges::upper_bound(marks, highest, {}, &SketchHash::fingerprint)};
+/// The marks that can be in the other too: beyond the last of a full sketch nothing is known.
+std::span<const SketchHash> comparable(const FlightSketch& one, const FlightSketch& other) {
+    const std::span<const SketchHash> marks = one.hashes;
+    if (other.hashes.size() < max_marks) return marks;
+    return {marks.begin(),
+            std::ranges::upper_bound(marks, other.hashes.back().fingerprint, {}, &SketchHash::fingerprint)};
 }
 
 /// Of marks in both: when, by the clock of the first, and how much later than by that of the second.
@@ -185,9 +158,41 @@ std::vector<SharedMark> shared_marks(std::span<const SketchHash> marks, std::spa
     return shared;
 }
 
-SketchMatch compare_at(const FlightSketch& one, const FlightSketch& other, std::size_t precision) {
-    auto marks = comparable(one, other, precision);
-    auto with = comparable(other, one, precision);
+}  // namespace
+
+std::optional<std::chrono::sys_seconds> start_in_name(const std::string& name) {
+    constexpr int century = 2000;
+    constexpr int hours_a_day = 24;
+    constexpr int sixty = 60;  // minutes, and seconds
+    static const std::regex pattern(
+        "(?:^|[^0-9])([0-9]{2})_([0-9]{2})_([0-9]{2})__([0-9]{2})_([0-9]{2})_([0-9]{2})(?:$|[^0-9])");
+    std::smatch found;
+    if (!std::regex_search(name, found, pattern)) return std::nullopt;
+    const auto part = [&](std::size_t group) { return std::stoi(found[group].str()); };
+    const std::chrono::year_month_day date{std::chrono::year{century + part(1)},
+                                           std::chrono::month{static_cast<unsigned>(part(2))},
+                                           std::chrono::day{static_cast<unsigned>(part(3))}};
+    if (!date.ok() || part(4) >= hours_a_day || part(5) >= sixty || part(6) >= sixty) return std::nullopt;
+    return std::chrono::sys_days{date} + std::chrono::hours{part(4)} + std::chrono::minutes{part(5)} +
+           std::chrono::seconds{part(6)};
+}
+
+FlightSketch make_sketch(const FlightSeries& series) {
+    constexpr std::array<std::string_view, 4> names{"altitude_m", "voltage_v", "current_a", "power_w"};
+    FlightSketch content;
+    content.has_definitions = !series.log_is_missing;
+    content.samples = power_track(series).time_s.size();
+    if (content.samples == 0) content.samples = select_track(series, "altitude_m").time_s.size();
+    std::vector<const Track*> tracks;
+    for (const auto& track : series.tracks)
+        if (std::ranges::find(names, track.name) != names.end() && !is_constant(track)) tracks.push_back(&track);
+    content.hashes = least_marks(tracks);
+    return content;
+}
+
+SketchMatch compare_sketches(const FlightSketch& one, const FlightSketch& other) {
+    auto marks = comparable(one, other);
+    auto with = comparable(other, one);
     if (with.size() < marks.size()) std::swap(marks, with);
     auto shared = shared_marks(marks, with);
     if (shared.size() < min_shared) return {};  // most pairs end here
@@ -197,50 +202,12 @@ SketchMatch compare_at(const FlightSketch& one, const FlightSketch& other, std::
     if (shared.size() < min_shared || !agree_in_kind(marks, with, shared)) return {};
     const double block_s = std::max(min_block_s, span_s / max_blocks);
     const auto agreeing = blocks_of(shared, block_s);
-    if (precision != exact && agreeing < min_rounded_blocks) return {};
     const double part = static_cast<double>(agreeing) / static_cast<double>(blocks_of(marks, block_s));
     return {part >= min_agreeing, static_cast<double>(agreeing) * block_s};
 }
 
-}  // namespace
-
-FlightSketch make_sketch(const FlightSeries& series) {
-    constexpr std::array<std::string_view, 4> names{"altitude_m", "voltage_v", "current_a", "power_w"};
-    FlightSketch content;
-    content.has_definitions = !series.log_is_missing;
-    content.samples = power_track(series).time_s.size();
-    if (content.samples == 0) content.samples = select_track(series, "altitude_m").time_s.size();
-    std::vector<const Track*> tracks;
-    std::size_t values = 0;
-    for (const auto& track : series.tracks) {
-        if (std::ranges::find(names, track.name) == names.end() || is_constant(track)) continue;
-        tracks.push_back(&track);
-        values += track.value.size();
-        if (track.name == "altitude_m" || track.name == "power_w")
-            content.decimals = std::min(content.decimals, decimals_of(track));
-    }
-    content.hash_divisor = farthest_sample * values / max_candidate_marks + 1;
-    for (std::size_t precision = 0; precision < precisions; ++precision) {
-        auto& marks = content.hashes[precision];
-        for (const auto* track : tracks) add_marks(*track, precision, max_fingerprint(content.hash_divisor), marks);
-        keep_least(marks, max_marks[precision]);
-    }
-    return content;
-}
-
-SketchMatch compare_sketches(const FlightSketch& one, const FlightSketch& other) {
-    SketchMatch best;
-    for (auto precision = precisions; precision-- > std::min(one.decimals, other.decimals);) {
-        const auto likeness = compare_at(one, other, precision);
-        if (likeness.is_same) return likeness;
-        best.shared_s = std::max(best.shared_s, precision == exact ? likeness.shared_s : 0.0);
-    }
-    return best;
-}
-
 bool is_preferred_duplicate(const FlightSketch& one, const FlightSketch& other) {
-    return std::tuple(one.has_definitions, one.samples, one.decimals) >
-           std::tuple(other.has_definitions, other.samples, other.decimals);
+    return std::pair(one.has_definitions, one.samples) > std::pair(other.has_definitions, other.samples);
 }
 
 std::string describe_overlap(const std::string& one, const std::string& other, const SketchMatch& likeness) {
@@ -252,15 +219,10 @@ std::string describe_overlap(const std::string& one, const std::string& other, c
 
 std::vector<SketchIndex::Hit> SketchIndex::find(const FlightSketch& content) const {
     std::map<std::size_t, std::size_t> sharing;  // marks with each
-    for (std::size_t precision = 0; precision < precisions; ++precision) {
-        for (const auto& mark : content.hashes[precision]) {
-            const auto [first, last] = with_mark_.equal_range(mark.fingerprint);
-            if (static_cast<std::size_t>(std::distance(first, last)) >= max_sharing) continue;
-            for (auto known = first; known != last; ++known) {
-                const auto& other = contents_[known->second];
-                if (precision >= std::min(content.decimals, other.decimals)) ++sharing[known->second];
-            }
-        }
+    for (const auto& mark : content.hashes) {
+        const auto [first, last] = with_mark_.equal_range(mark.fingerprint);
+        if (static_cast<std::size_t>(std::distance(first, last)) >= max_sharing) continue;
+        for (auto known = first; known != last; ++known) ++sharing[known->second];
     }
     std::vector<Hit> alike;
     for (const auto& [known, marks] : sharing) {
@@ -272,12 +234,9 @@ std::vector<SketchIndex::Hit> SketchIndex::find(const FlightSketch& content) con
 }
 
 void SketchIndex::add(FlightSketch content) {
-    for (std::size_t precision = 0; precision < precisions; ++precision) {
-        const auto& marks = content.hashes[precision];
-        for (const auto& mark : std::span(marks).first(std::min(marks.size(), indexed_marks[precision])))
-            if (with_mark_.count(mark.fingerprint) < max_sharing)
-                with_mark_.emplace(mark.fingerprint, contents_.size());
-    }
+    const std::span<const SketchHash> marks = content.hashes;
+    for (const auto& mark : marks.first(std::min(marks.size(), indexed_marks)))
+        if (with_mark_.count(mark.fingerprint) < max_sharing) with_mark_.emplace(mark.fingerprint, contents_.size());
     contents_.push_back(std::move(content));
 }
 

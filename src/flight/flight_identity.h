@@ -2,9 +2,10 @@
 
 #include "flight/flight_series.h"
 
-#include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -13,6 +14,10 @@
 /// Which flight of which aircraft a series is of, by what it holds rather than by its name.
 namespace flightwatt::flight {
 
+/// When a log was begun, by the clock of the ground station that named it so: "20_07_05__10_26_44", wherever in the
+/// name that stands. None where it does not, or is no time.
+std::optional<std::chrono::sys_seconds> start_in_name(const std::string& name);
+
 /// Two values of one field, some samples apart, and when: one of many by which a flight is known again.
 struct SketchHash {
     std::uint64_t fingerprint = 0;  ///< of the two values and the time between them; odd: of an altitude
@@ -20,18 +25,11 @@ struct SketchHash {
     bool operator==(const SketchHash&) const = default;
 };
 
-/// In how many ways values are compared: rounded to 0, 1 and 2 decimals, and exactly.
-inline constexpr std::size_t precisions = 4;
-inline constexpr std::size_t max_decimals = 2;
-
 /// What its samples are, in short: marks of its altitude, voltage, current and power.
 struct FlightSketch {
-    std::array<std::vector<SketchHash>, precisions> hashes;  ///< of each precision those with the least fingerprints
-    std::size_t decimals = max_decimals;                     ///< of what was logged in the fewest, if less
-    bool has_definitions = true;                             ///< its .log is beside it
-    std::size_t samples = 0;                                 ///< of power, or else of altitude
-    std::size_t hash_divisor =
-        1;  ///< of the fingerprints that can be, only the lowest one of so many parts was looked at
+    std::vector<SketchHash> hashes = {};  ///< those with the least fingerprints, rising
+    bool has_definitions = true;          ///< its .log is beside it
+    std::size_t samples = 0;              ///< of power, or else of altitude
 
     bool operator==(const FlightSketch&) const = default;
 };
@@ -45,12 +43,11 @@ struct SketchMatch {
 };
 
 /// Whether two are recordings of one flight: marks of both at one offset of their clocks (docs/guide.md). So are copies
-/// that lost other lines, were rounded, have another clock, begin or end elsewhere, or hold several flights. Two of
-/// which nothing varies are not, nor two that sampled the flight at other moments.
+/// that lost other lines, have another clock, begin or end elsewhere, or hold several flights. Two of which nothing
+/// varies are not, nor two whose values were rounded differently or that sampled the flight at other moments.
 SketchMatch compare_sketches(const FlightSketch& one, const FlightSketch& other);
 
-/// Which of two recordings of one flight is used: one with definitions, then one with more samples, then one with more
-/// decimals.
+/// Which of two recordings of one flight is used: one with definitions, then one with more samples.
 bool is_preferred_duplicate(const FlightSketch& one, const FlightSketch& other);
 
 /// A warning that two flights, which both are used, share a part.

@@ -2,6 +2,7 @@
 
 #include "telemetry/log_notes.h"
 
+#include <cstddef>
 #include <limits>
 #include <map>
 #include <optional>
@@ -33,6 +34,21 @@ enum class Merge {
 /// A track, without a name, from raw rows: values that are not finite are dropped, times sorted, equal times merged.
 /// `time_s` and `values` are equally long.
 Track make_track(const std::vector<double>& time_s, std::vector<double> values, Merge merge);
+
+/// Takes the samples out of the track for whose number is_out is true. Returns how many.
+template <typename IsOut>
+std::size_t erase_samples(Track& track, const IsOut& is_out) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < track.time_s.size(); ++i) {
+        if (is_out(i)) continue;
+        track.time_s[kept] = track.time_s[i];
+        track.value[kept++] = track.value[i];
+    }
+    const auto erased = track.time_s.size() - kept;
+    track.time_s.resize(kept);
+    track.value.resize(kept);
+    return erased;
+}
 
 /// Linear between the track's points, its first and last value outside. The track must not be empty.
 double value_at(const Track& track, double time_s);

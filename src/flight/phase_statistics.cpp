@@ -98,8 +98,4 @@ PhaseStatistics PowerStatistics::between(double start_s, double end_s) const {
     return statistics;
 }
 
-PhaseStatistics phase_statistics(const FlightSeries& series, double start_s, double end_s) {
-    return PowerStatistics(series).between(start_s, end_s);
-}
-
 }  // namespace flightwatt::flight

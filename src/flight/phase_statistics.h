@@ -33,9 +33,6 @@ class PowerStatistics {
     double gap_s_ = 0.0;
 };
 
-/// PowerStatistics of one phase alone.
-PhaseStatistics phase_statistics(const FlightSeries& series, double start_s, double end_s);
-
 /// Energy [Wh] of the series' power between two times: trapezoids, the ends interpolated.
 double integrated_energy_wh(const FlightSeries& series, double start_s, double end_s);
 /// The same of its power track.

@@ -5,7 +5,6 @@
 #include "base/units.h"
 #include "flight/checks/power_record.h"
 #include "flight/checks/power_warnings.h"
-#include "flight/checks/sample_rules.h"
 #include "flight/phase_statistics.h"
 #include "flight/sources/power_source.h"
 
@@ -170,11 +169,6 @@ void warn_of_short_record(const SelectedTracks& tracks, const std::vector<double
 }
 
 }  // namespace
-
-PowerReport check_power_record(const FlightSeries& series, const FlightPhases& phases,
-                               const SegmentationOptions& options) {
-    return check_power_record(SelectedTracks(series), phases, options);
-}
 
 PowerReport check_power_record(const SelectedTracks& tracks, const FlightPhases& phases,
                                const SegmentationOptions& options) {

@@ -46,9 +46,6 @@ struct PowerReport {
 /// 1 W); a counter that runs back in flight by more than 5 % of what it counted; an integral more than 10 % away from
 /// the counter; power that is negative on average, or does not change at all, in flight. The warnings and their
 /// thresholds stand in docs/methods.md.
-PowerReport check_power_record(const FlightSeries& series, const FlightPhases& phases,
-                               const SegmentationOptions& options = {});
-/// The same of tracks that are asked for more.
 PowerReport check_power_record(const SelectedTracks& tracks, const FlightPhases& phases,
                                const SegmentationOptions& options = {});
 

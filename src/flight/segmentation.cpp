@@ -1,7 +1,6 @@
 #include "flight/segmentation.h"
 
 #include "base/error.h"
-#include "flight/segmentation/activity.h"
 #include "flight/segmentation/flight_grid.h"
 #include "flight/segmentation/flight_rejection.h"
 #include "flight/segmentation/phase_edges.h"
@@ -94,10 +93,6 @@ void validate(const SegmentationOptions& options) {
     require(idle_percent >= 0.0 && idle_percent <= 100.0, "idle throttle", idle_percent, "0 to 100 %");
     require(options.rest_s >= 1.0, "rest", options.rest_s, "1 s or more");
     require(options.hold_s > 0.0, "hold", options.hold_s, "more than 0 s");
-}
-
-FlightPhases segment(const FlightSeries& series, const SegmentationOptions& options) {
-    return segment(SelectedTracks(series), options);
 }
 
 FlightPhases segment(const SelectedTracks& tracks, const SegmentationOptions& options) {

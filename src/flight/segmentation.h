@@ -8,6 +8,9 @@
 
 namespace flightwatt::flight {
 
+/// The segmentation looks at a flight so often [s], from its first sample of power on (without power: of altitude).
+inline constexpr double segmentation_step_s = 0.5;
+
 /// Throws UsageError for thresholds that make no sense.
 void validate(const SegmentationOptions& options);
 
@@ -15,8 +18,6 @@ void validate(const SegmentationOptions& options);
 /// lift-off is where it last leaves the ground on its way up, touchdown where it first is back for good; take-off ends
 /// where it reaches, and landing begins where it leaves, the height that it holds after and before. TAKEOFF, mode and
 /// block are noted as witnesses and decide nothing. Throws InputError where the series has no altitude.
-FlightPhases segment(const FlightSeries& series, const SegmentationOptions& options = {});
-/// The same of tracks that are asked for more.
 FlightPhases segment(const SelectedTracks& tracks, const SegmentationOptions& options = {});
 
 /// Throws InputError saying what the log shows instead, if there is no sortie. `file` is named in it.

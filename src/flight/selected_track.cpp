@@ -30,6 +30,10 @@ constexpr auto any_source = [](const Track&) { return true; };
 
 using Choice = TrackSelection;
 
+void put_first(std::vector<std::string>& notes, const std::vector<std::string>& earlier) {
+    notes.insert(notes.begin(), earlier.begin(), earlier.end());
+}
+
 /// A copy of its own, where it had none.
 Track& to_change(Choice& choice) {
     if (choice.logged != nullptr) choice.derived = *std::exchange(choice.logged, nullptr);
@@ -62,12 +66,10 @@ Choice first_that_varies(const FlightSeries& series, std::string_view name, cons
             constant.removal_notes.insert(constant.removal_notes.end(), sound.removal_notes.begin(),
                                           sound.removal_notes.end());
         } else if (!is_constant(sound.track())) {
-            sound.removal_notes.insert(sound.removal_notes.begin(), constant.removal_notes.begin(),
-                                       constant.removal_notes.end());
+            put_first(sound.removal_notes, constant.removal_notes);
             return sound;
         } else if (constant.track().empty()) {
-            sound.removal_notes.insert(sound.removal_notes.begin(), constant.removal_notes.begin(),
-                                       constant.removal_notes.end());
+            put_first(sound.removal_notes, constant.removal_notes);
             constant = std::move(sound);
         }
     }
@@ -171,8 +173,7 @@ Choice throttle(const FlightSeries& series) {
     });
     if (found.track().empty()) {
         auto thrust = first_that_varies(series, "throttle_percent", is_thrust);
-        thrust.removal_notes.insert(thrust.removal_notes.begin(), found.removal_notes.begin(),
-                                    found.removal_notes.end());
+        put_first(thrust.removal_notes, found.removal_notes);
         found = std::move(thrust);
     }
     scale_fraction(series, found);
@@ -255,14 +256,10 @@ void SelectedTracks::compute_all() const {
     for (std::size_t i = 0; i < names.size(); ++i) made_.emplace(names[i], std::move(choices[i]));
 }
 
-std::vector<double> sample_selected_track(const FlightSeries& series, std::string_view name,
+std::vector<double> sample_selected_track(const SelectedTracks& tracks, std::string_view name,
                                           const std::vector<double>& time_s) {
-    const auto track = select_track(series, name);
+    const auto& track = tracks[name];
     return track.empty() ? std::vector<double>{} : resample(track, time_s);
-}
-
-std::map<std::string, std::string> track_sources(const FlightSeries& series) {
-    return track_sources(SelectedTracks(series));
 }
 
 std::map<std::string, std::string> track_sources(const SelectedTracks& tracks) {
@@ -278,8 +275,6 @@ std::optional<double> ground_altitude_m(const SelectedTracks& tracks) {
     const auto& logged = tracks["ground_altitude_m"];
     return logged.empty() ? tracks.series().planned_ground_altitude_m : logged.value.back();
 }
-
-std::vector<std::string> warnings_of(const FlightSeries& series) { return warnings_of(SelectedTracks(series)); }
 
 std::vector<std::string> warnings_of(const SelectedTracks& tracks) {
     const auto& series = tracks.series();

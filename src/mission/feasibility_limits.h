@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mission/mission_file.h"
 #include "mission/plan.h"
 
 #include <functional>
@@ -8,8 +9,9 @@
 
 namespace flightwatt::mission {
 
-/// The mission with a cruise of so many seconds. May throw InputError where its schedule does not fit.
-using MissionForCruise = std::function<MissionVariant(double cruise_s)>;
+/// The mission with another value of one of its numbers, such as the length of its cruise [s]. May throw InputError
+/// where its schedule does not fit.
+using MissionVariation = std::function<MissionVariant(double value)>;
 
 /// What forbids more.
 enum class LimitingFactor {
@@ -31,15 +33,13 @@ struct FeasibilityLimit {
     LimitingFactor limited_by = LimitingFactor::charge;
 };
 
-/// The limit `at`, whose flights need a margin, of which `beyond` is the mission with a little more.
-FeasibilityLimit limit_at(double value, double margin_percent, const Mission& at, const Mission& beyond);
-
+/// All limits are of the mission's own schedule, or if it is yet to be planned of the one that demands least energy.
 /// With a `probability`, that part of the flights which sampling/flight_draws.h makes of the answer keep the reserve;
 /// and they throw as require_known_spread does.
 
-/// The longest cruise [s] with the mission's schedule, or if it is yet to be planned with the one that demands least
-/// energy. Throws NoResultError if no cruise that the schedule fits into is short enough, or none is too long.
-FeasibilityLimit longest_cruise(const MissionForCruise& mission_of,
+/// The longest cruise [s]. Throws NoResultError if no cruise that the schedule fits into is short enough, or none is
+/// too long.
+FeasibilityLimit longest_cruise(const MissionVariation& with_cruise_s,
                                 const std::optional<double>& probability = std::nullopt);
 
 /// The greatest constant power [W] that the mission can feed besides, all the way. Throws NoResultError if it
@@ -50,10 +50,42 @@ FeasibilityLimit largest_payload(const MissionVariant& mission,
 /// The mission with a constant load besides.
 Mission with_payload(const Mission& mission, double payload_w);
 
-/// The least capacity [Ah] with which the mission lands with its reserve, its battery otherwise as it is,
-/// with the mission's own schedule or the one that demands least energy. None if no capacity is enough.
+/// The least capacity [Ah] with which the mission lands with its reserve, its battery otherwise as it is. None if no
+/// capacity is enough.
 std::optional<double> min_capacity_ah(const MissionVariant& mission,
                                       const std::optional<double>& probability = std::nullopt);
+
+/// The greatest whole number of the path's last circles. Throws NoResultError if the fewest that the schedule fits into
+/// are too many, or 10,000 are not enough to find an end.
+FeasibilityLimit max_circles(const MissionVariation& with_circles,
+                             const std::optional<double>& probability = std::nullopt);
+
+/// The farthest [m] along the legs, which are `length_m` long, after which the mission can turn back along the same
+/// legs; all of them if it returns from their end. Legs behind one whose way back the wind forbids are none to return
+/// from. Throws NoResultError if it does not return from anywhere.
+FeasibilityLimit farthest_return(const MissionVariation& with_return_after_m, double length_m,
+                                 const std::optional<double>& probability = std::nullopt);
+
+/// What the reach of a mission is counted in.
+enum class ReachUnit {
+    cruise_s,  ///< of a mission without a path
+    circles,   ///< of a path that has some
+    return_m   ///< along the legs of another, before it turns back
+};
+
+/// How far a mission can go and still land with its reserve.
+struct Reach {
+    ReachUnit unit = ReachUnit::cruise_s;
+    FeasibilityLimit limit;
+};
+
+ReachUnit reach_unit_of(const MissionSetup& mission);
+
+/// The mission's file, read as it says.
+using MissionLoader = std::function<MissionVariant(const MissionReadOptions&)>;
+
+/// longest_cruise, max_circles or farthest_return; throws as they do.
+Reach find_reach(const MissionLoader& mission_of, const std::optional<double>& probability = std::nullopt);
 
 /// State of charge at the end less the reserve [points]: by tables where they hold, else simulated. Negative
 /// if the reserve is not kept, and the more so the earlier the battery ends.
@@ -78,9 +110,9 @@ struct InfeasibilityReport {
     std::optional<double> capacity_ah;                ///< the least that suffices
 };
 
-/// `plan`, made with `probability`, is infeasible, of the mission that `mission_of` gives for the cruise as it is.
+/// `plan`, made with `probability`, is infeasible, of the mission that `with_cruise_s` gives for the cruise as it is.
 InfeasibilityReport infeasibility_report(const PlanningProblem& problem, const MissionPlan& plan,
-                                         const MissionForCruise& mission_of,
+                                         const MissionVariation& with_cruise_s,
                                          const std::optional<double>& probability = std::nullopt);
 
 /// For people: "short by 2.1 points (0.23 Wh); ...".

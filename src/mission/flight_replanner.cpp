@@ -1,15 +1,29 @@
 #include "mission/flight_replanner.h"
 
+#include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "mission/sampling/level_deviation.h"
-#include "mission/sampling/student.h"
+#include "mission/sampling/flight_spreads.h"
+#include "mission/sampling/joint_spread.h"
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
 
 namespace flightwatt::mission {
 namespace {
+
+void require_few_decisions(const PlanningProblem& known) {
+    constexpr double most = 20000.0;
+    const double decisions = timeline_of(known.duration_s).duration_s / known.adaptive->decide_every_s;
+    if (decisions <= most) return;
+    throw InputError({known.file},
+                     fmt::format("a plan every {:.6g} s makes {:.3g} plans, more than {:.0f}",
+                                 known.adaptive->decide_every_s, decisions, most),
+                     "make decide_every_s in [policy] longer");
+}
 
 /// Of tables: the relaxation's plan leaves at most what one slot could spend, and the next decision spends it; only
 /// near the end does a search pay. Where the battery's state counts, a few labels follow it all the way.
@@ -57,6 +71,18 @@ Schedule rest_of(Schedule schedule, const PhaseTime& moment) {
 }
 
 }  // namespace
+
+AdaptivePlanner make_adaptive_planner(const PlanningProblem& problem) {
+    if (!problem.adaptive) throw std::invalid_argument("make_adaptive_planner: the policy is not adaptive");
+    require_few_decisions(problem);
+    AdaptivePlanner planner{problem, make_planning_tables(problem)};
+    if (auto& step_s = planner.planner.step_s) {
+        double quick_s = 2.0;  // what that is off is far below what flights differ by
+        if (problem.battery.thevenin) quick_s = std::min(quick_s, problem.battery.thevenin->rc_time_constant_s / 2.0);
+        step_s = std::max(*step_s, quick_s);
+    }
+    return planner;
+}
 
 FlightReplanner::FlightReplanner(const AdaptivePlanner& planner)
     : adaptive_(planner),

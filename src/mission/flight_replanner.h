@@ -1,12 +1,21 @@
 #pragma once
 
 #include "battery/battery.h"
-#include "mission/replanning/adaptive_flight.h"
+#include "mission/planning/planner.h"
 #include "mission/simulation/load_segments.h"
 
 #include <optional>
 
 namespace flightwatt::mission {
+
+/// What a flight controller knows beforehand: the mission as it was stated, and how that depletes the battery.
+struct AdaptivePlanner {
+    PlanningProblem nominal;
+    PlanningTables planner;
+};
+
+/// Throws as make_planning_tables does, and std::invalid_argument for a problem without a policy.
+AdaptivePlanner make_adaptive_planner(const PlanningProblem& problem);
 
 /// A time of a phase, in seconds since the phase began.
 struct PhaseTime {

@@ -88,7 +88,7 @@ struct PlanSettings {
     PerPhase<double> slot_scale{{1.0, 1.0, 1.0}};  ///< of slot_s, where a phase takes another time than was planned
 };
 
-/// How a schedule is made in flight; mission/replanning/adaptive_flight.h says what the numbers do.
+/// How a schedule is made in flight; mission/prepared_mission.h says what the numbers do.
 struct AdaptivePolicy {
     double decide_every_s = 0.0;  ///< of each phase; by default the slot of the plan
     /// How far flights' mechanical power is expected from the model's; by default as its flights differ.

@@ -1,11 +1,11 @@
 #include "mission/plan.h"
 
 #include "base/units.h"
-#include "mission/planning/margin_search.h"
+#include "mission/planning/limit_search.h"
 #include "mission/planning/planner.h"
 #include "mission/sampled_flights.h"
+#include "mission/sampling/flight_spreads.h"
 #include "mission/sampling/landing_distribution.h"
-#include "mission/sampling/level_deviation.h"
 
 #include <algorithm>
 #include <numeric>

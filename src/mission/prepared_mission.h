@@ -1,6 +1,7 @@
 #pragma once
 
-#include "mission/replanning/adaptive_flight.h"
+#include "mission/disturbance.h"
+#include "mission/flight_replanner.h"
 #include "mission/simulation.h"
 
 #include <optional>
@@ -27,5 +28,19 @@ struct SimulatedFlight {
 /// Flies a mission, under disturbances that nobody knew of beforehand.
 SimulatedFlight simulate_prepared(const PreparedMission& prepared, const SimulationOptions& steps = {},
                                   const Disturbances& disturbances = {});
+
+struct AdaptiveResult {
+    Schedule schedule;  ///< that came about
+    AdaptiveDecisions decisions;
+};
+
+/// Flies `actual`, the mission as it really is (other durations, battery, powers), under disturbances that the policy
+/// does not know. At each decision it makes the best plan of the rest anew, from the state of charge reached, the RC
+/// voltage (which charge, voltage and current tell), the part of the phase flown (an aircraft knows how much of its way
+/// lies behind it), and the factor of mechanical power learned (docs/methods.md, Eqs. 36 and 37). Where no plan keeps
+/// the reserve, and stays above the cut-off voltage, with its margin, what demands least energy is run; fixed segments
+/// are kept in any case.
+AdaptiveResult simulate_adaptive(const AdaptivePlanner& planner, const MissionSetup& actual,
+                                 const Disturbances& disturbances);
 
 }  // namespace flightwatt::mission

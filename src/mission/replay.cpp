@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "mission/plan.h"
-#include "mission/replanning/adaptive_flight.h"
+#include "mission/prepared_mission.h"
 #include "mission/replanning/flown_mission.h"
 
 #include <algorithm>

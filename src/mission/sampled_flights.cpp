@@ -6,7 +6,6 @@
 #include "base/units.h"
 #include "mission/sampling/flight_draws.h"
 #include "mission/sampling/flight_lanes.h"
-#include "mission/sampling/flight_outcome.h"
 
 #include <algorithm>
 #include <cmath>

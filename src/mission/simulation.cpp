@@ -2,7 +2,6 @@
 
 #include "base/csv.h"
 #include "base/units.h"
-#include "mission/simulation/least_power.h"
 #include "mission/simulation/load_segments.h"
 
 #include <algorithm>

@@ -1,13 +1,205 @@
 #include "report/batch_content.h"
 
+#include "base/error.h"
+#include "base/units.h"
 #include "batch/batch_files.h"
 #include "batch/batch_run.h"
 #include "flight/flight_identity.h"
+#include "flight/phase_statistics.h"
+#include "flight/selected_track.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <map>
+#include <set>
+#include <utility>
+
+#include <boost/geometry/algorithms/distance.hpp>
+#include <boost/geometry/geometries/point.hpp>
+#include <boost/geometry/strategies/geographic/distance.hpp>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::report {
+namespace {
+
+using Names = std::vector<std::string>;
+
+bool are_distinct(const Names& names) {
+    return std::set<std::string>(names.begin(), names.end()).size() == names.size();
+}
+
+/// The folders' own names where they tell them apart, else their paths as given.
+Names names_of_folders(std::span<const std::filesystem::path> outs) {
+    Names names;
+    Names paths;
+    for (const auto& out : outs) {
+        const auto path = out.lexically_normal();
+        paths.push_back(path.string());
+        names.push_back((path.has_filename() ? path : path.parent_path()).filename().string());
+    }
+    return are_distinct(names) ? names : paths;
+}
+
+void refuse_one_folder_twice(std::span<const std::filesystem::path> outs) {
+    for (std::size_t i = 0; i < outs.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            std::error_code error;
+            if (std::filesystem::equivalent(outs[i], outs[j], error))
+                throw UsageError(fmt::format("the folder {} is given twice{}", outs[j].string(),
+                                             outs[i] == outs[j] ? "" : ", also as " + outs[i].string()));
+        }
+    }
+}
+
+/// Marks flights that an earlier folder holds too; says which.
+Names share_flights(std::vector<BatchContent>& batches) {
+    flight::SketchIndex known;
+    std::vector<ReportFlight*> places;
+    Names shared;
+    for (auto& batch : batches) {
+        for (auto& flight : batch.flights) {
+            flight.folders = {batch.folder};
+            if (!flight.rejected.empty()) continue;
+            auto content = make_sketch(flight.series);
+            const auto alike = known.find(content);
+            const auto same = std::ranges::find_if(alike, [&](const auto& like) {
+                return like.likeness.is_same && places[like.number]->batch != flight.batch;
+            });
+            if (same == alike.end()) {
+                places.push_back(&flight);
+                known.add(std::move(content));
+                continue;
+            }
+            auto& first = *places[same->number];
+            flight.is_shown_elsewhere = true;
+            first.folders.push_back(flight.name == first.name ? batch.folder
+                                                              : fmt::format("{} as {}", batch.folder, flight.name));
+        }
+    }
+    for (const auto* flight : places)
+        if (flight->folders.size() > 1)
+            shared.push_back(fmt::format("{} ({})", flight->name, fmt::join(flight->folders, ", ")));
+    return shared;
+}
+
+void rename(BatchContent& batch, ReportFlight& flight) {
+    const auto renamed = fmt::format("{} ({})", flight.name, batch.folder);
+    for (auto& measured : batch.measured) {
+        auto& name = measured.samples.flight;
+        if (name == flight.name || name.starts_with(flight.name + "#")) name.replace(0, flight.name.size(), renamed);
+    }
+    for (auto& text : flight.exclusions)
+        if (text.starts_with(flight.name + ": ")) text.replace(0, flight.name.size(), renamed);
+    flight.name = flight.series.flight = renamed;
+}
+
+/// Renames flights of one name that are not one flight; says which.
+Names rename_namesakes(std::vector<BatchContent>& batches) {
+    std::map<std::string, std::size_t> shown;
+    for (const auto& batch : batches)
+        for (const auto& flight : batch.flights)
+            if (!flight.is_shown_elsewhere) ++shown[flight.name];
+    std::erase_if(shown, [](const auto& named) { return named.second < 2; });
+    for (auto& batch : batches)
+        for (auto& flight : batch.flights)
+            if (!flight.is_shown_elsewhere && shown.contains(flight.name)) rename(batch, flight);
+    Names names;
+    for (const auto& [name, times] : shown) names.push_back(name);
+    return names;
+}
+
+std::string aircraft_of(const BatchContent& batch) {
+    std::set<std::string> aircraft;
+    for (const auto& flight : batch.flights)
+        if (flight.rejected.empty())
+            aircraft.insert(flight::describe_aircraft(flight.series.aircraft_id, flight.series.aircraft_name));
+    return fmt::format("{}", fmt::join(aircraft, " and "));
+}
+
+/// What the fit was told, but for which flights it was to use.
+std::vector<std::pair<std::string, std::string>> told_options(const batch::BatchFit& fit) {
+    const auto& options = fit.options;
+    Names by_hand;
+    for (const auto& weight : options.weights.by_hand)
+        by_hand.push_back(fmt::format("{} {:.6g}", weight.flight, weight.weight));
+    return {{"order", fmt::format("{}", options.phases.order)},
+            {"lowest frequency", fmt::format("{:.6g} rad a phase", options.phases.min_theta_rad)},
+            {"most periods", fmt::format("{:.6g} a phase", options.phases.max_periods)},
+            {"weights", std::string(to_string(options.weights.weighting))},
+            {"weights by hand", by_hand.empty() ? "none" : fmt::format("{}", fmt::join(by_hand, " and "))}};
+}
+
+/// "order 3 (a), 2 (b)" for each option in which the fits differ.
+Names differing_options(const std::vector<BatchContent>& batches) {
+    std::vector<std::pair<std::string, std::vector<std::pair<std::string, std::string>>>> told;
+    for (const auto& batch : batches)
+        if (batch.fit) told.emplace_back(batch.folder, told_options(*batch.fit));
+    Names differing;
+    for (std::size_t i = 0; told.size() > 1 && i < told.front().second.size(); ++i) {
+        const auto differs = [&](const auto& one) { return one.second[i] != told.front().second[i]; };
+        if (std::ranges::none_of(told, differs)) continue;
+        Names values;
+        for (const auto& [folder, options] : told) values.push_back(fmt::format("{} ({})", options[i].second, folder));
+        differing.push_back(fmt::format("{} {}", told.front().second[i].first, fmt::join(values, ", ")));
+    }
+    return differing;
+}
+
+std::optional<double> start_clock_s(const ReportFlight& flight) {
+    const auto& logged_s = flight.series.start_clock_s;
+    if (logged_s && *logged_s > 0.0) return logged_s;
+    const auto start = flight::start_in_name(flight.name);
+    if (!start) return std::nullopt;
+    return static_cast<double>(start->time_since_epoch().count());
+}
+
+std::string date_of(const std::optional<double>& clock_s) {
+    return clock_s ? fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(static_cast<std::time_t>(*clock_s))) : "";
+}
+
+using Place = boost::geometry::model::point<double, 2, boost::geometry::cs::geographic<boost::geometry::degree>>;
+
+/// Over ground between two times, from the track's metres or else its degrees; none where it has neither.
+std::optional<double> flown_m(const flight::FlightSeries& series, double start_s, double end_s) {
+    const bool in_metres = !select_track(series, "east_m").empty();
+    const auto east = select_track(series, in_metres ? "east_m" : "longitude_deg");
+    const auto north = sample_selected_track(series, in_metres ? "north_m" : "latitude_deg", east.time_s);
+    if (north.empty()) return std::nullopt;
+    double length_m = 0.0;
+    for (std::size_t i = 1; i < east.time_s.size(); ++i) {
+        if (east.time_s[i - 1] < start_s || east.time_s[i] > end_s) continue;
+        length_m += in_metres ? std::hypot(east.value[i] - east.value[i - 1], north[i] - north[i - 1])
+                              : boost::geometry::distance(Place(east.value[i - 1], north[i - 1]),
+                                                          Place(east.value[i], north[i]));
+    }
+    return length_m;
+}
+
+std::optional<double> max_m(const flight::Track& altitude, double start_s, double end_s) {
+    if (altitude.empty()) return std::nullopt;
+    double max_m = value_at(altitude, start_s);
+    for (std::size_t i = 0; i < altitude.time_s.size(); ++i) {
+        if (altitude.time_s[i] >= start_s && altitude.time_s[i] <= end_s) max_m = std::max(max_m, altitude.value[i]);
+    }
+    return max_m - value_at(altitude, start_s);
+}
+
+/// All that were flown in one log.
+struct Cruises {
+    double energy_wh = 0.0;
+    double duration_s = 0.0;
+};
+
+/// The sum where both are known.
+void add(std::optional<double>& sum, const std::optional<double>& more) {
+    if (!more) sum.reset();
+    if (sum) *sum += *more;
+}
+
+}  // namespace
 
 std::string_view fitted_part(const ReportFlight& flight) {
     if (flight.exclusions.empty()) return "all";
@@ -68,6 +260,85 @@ std::string aircraft_mix(const BatchContent& content) {
         flown.push_back({flight.name, flight.series.aircraft_id, flight.series.aircraft_name});
     }
     return content.fit ? "" : describe_mixed_aircraft(flown);
+}
+
+BatchContents read_batch_contents(std::span<const std::filesystem::path> outs) {
+    refuse_one_folder_twice(outs);
+    BatchContents contents;
+    for (const auto& out : outs) contents.batches.push_back(read_batch_content(out));
+    if (outs.size() < 2) return contents;
+    auto& [batches, notes] = contents;
+    const auto names = names_of_folders(outs);
+    for (std::size_t i = 0; i < batches.size(); ++i) {
+        batches[i].folder = names[i];
+        for (auto& flight : batches[i].flights) flight.batch = i;
+    }
+    if (const auto shared = share_flights(batches); !shared.empty())
+        notes.push_back(fmt::format("In several folders, and shown once: {}.", fmt::join(shared, "; ")));
+    if (const auto namesakes = rename_namesakes(batches); !namesakes.empty())
+        notes.push_back(
+            fmt::format("Flights of one name in several folders, which are not the same flight, have their "
+                        "folder behind their name: {}.",
+                        fmt::join(namesakes, ", ")));
+    std::set<std::string> aircraft;
+    Names flown;
+    for (const auto& batch : batches) {
+        const auto& name = *aircraft.insert(aircraft_of(batch)).first;
+        if (!name.empty()) flown.push_back(fmt::format("{} ({})", name, batch.folder));
+    }
+    aircraft.erase("");
+    if (aircraft.size() > 1)
+        notes.push_back(
+            fmt::format("The folders are of different aircraft, each with its own model: {}.", fmt::join(flown, ", ")));
+    if (const auto options = differing_options(batches); !options.empty())
+        notes.push_back(
+            fmt::format("The folders' models were fitted with different options: {}.", fmt::join(options, "; ")));
+    return contents;
+}
+
+std::vector<ReportFlight> take_shown_flights(std::vector<BatchContent>& batches) {
+    std::vector<ReportFlight> flights;
+    for (auto& batch : batches) {
+        std::erase_if(batch.flights, [](const auto& flight) { return flight.is_shown_elsewhere; });
+        std::ranges::move(batch.flights, std::back_inserter(flights));
+        batch.flights.clear();
+    }
+    std::ranges::stable_sort(flights, {}, [](const auto& flight) { return !flight.unusable_power.empty(); });
+    return flights;
+}
+
+FlightSummary summarize_flight(const ReportFlight& flight, std::optional<std::size_t> sortie) {
+    const auto& series = flight.series;
+    const flight::PowerStatistics power(series);
+    const auto altitude = select_track(series, "altitude_m");
+    const auto airspeed = select_track(series, "airspeed_m_per_s");
+    FlightSummary facts;
+    facts.start_clock_s = start_clock_s(flight);
+    facts.date = date_of(facts.start_clock_s);
+    facts.distance_m = 0.0;
+    if (!airspeed.empty()) facts.air_distance_m = 0.0;
+    if (power.has_power()) facts.energy_wh = 0.0;
+    Cruises cruises;
+    for (std::size_t s = 0; s < flight.phases.sorties.size(); ++s) {
+        if (sortie && s != *sortie) continue;
+        const double start_s = flight.phases.sorties[s].phases.front().start.time_s;
+        const double end_s = flight.phases.sorties[s].phases.back().end.time_s;
+        facts.in_air_s += end_s - start_s;
+        add(facts.distance_m, flown_m(series, start_s, end_s));
+        if (const auto height_m = max_m(altitude, start_s, end_s))
+            facts.height_m = std::max(*height_m, facts.height_m.value_or(*height_m));
+        if (facts.air_distance_m)
+            *facts.air_distance_m += flight::integrated(airspeed.time_s, airspeed.value, start_s, end_s);
+        if (facts.energy_wh) *facts.energy_wh += power.between(start_s, end_s).energy_wh;
+        for (const auto& span : flight.phases.sorties[s].phases) {
+            if (span.phase != flight::Phase::cruise) continue;
+            cruises.energy_wh += power.between(span.start.time_s, span.end.time_s).energy_wh;
+            cruises.duration_s += span.duration_s();
+        }
+    }
+    if (power.has_power() && cruises.duration_s > 0.0)
+        facts.cruise_power_w = units::joule_from_wh(cruises.energy_wh) / cruises.duration_s;
+    return facts;
 }
 
 }  // namespace flightwatt::report

@@ -105,6 +105,11 @@ void add_figure(Section& section, Figure figure) {
     section.figures.push_back(std::move(figure));
 }
 
+void add_table(Section& section, CaptionedTable table, bool sortable) {
+    section.html += table_html(table.table, {table.caption, sortable});
+    section.tables.push_back(std::move(table));
+}
+
 std::string paragraph(std::string_view text, std::string_view css_class) {
     if (css_class.empty()) return fmt::format("<p>{}</p>\n", html_escaped(text));
     return fmt::format("<p class=\"{}\">{}</p>\n", css_class, html_escaped(text));

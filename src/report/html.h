@@ -44,16 +44,20 @@ struct SectionScope {
 /// Called as long work goes on, from any thread: how much of it is done, of how much.
 using Progress = std::function<void(std::size_t done, std::size_t all)>;
 
-/// A part of the page. Its figures stand in its HTML already; they are kept to be rendered as files.
+/// A part of the page. Its figures and tables stand in its HTML already; they are kept to be written as files.
 struct Section {
     std::string id;
     std::string title;
     std::string html = {};
     std::vector<Figure> figures = {};
+    std::vector<CaptionedTable> tables = {};
 };
 
 /// Puts a figure at the end of a section.
 void add_figure(Section& section, Figure figure);
+
+/// Puts a table at the end of a section, under its caption.
+void add_table(Section& section, CaptionedTable table, bool sortable = false);
 
 /// A paragraph of plain text.
 std::string paragraph(std::string_view text, std::string_view css_class = "");

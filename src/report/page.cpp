@@ -3,11 +3,21 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/input_file.h"
+#include "base/number.h"
+#include "base/overwrite_guard.h"
 
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <map>
 #include <optional>
+#include <string>
 
 #include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace flightwatt::report {
 namespace {
@@ -80,6 +90,60 @@ std::string closing_html(const PageHead& head) {
            "figure's corner saves it.</p>\n</footer>\n";
 }
 
+/// Runs a program of the PATH with its output on our standard error; false if it is not there. Throws OutputError where
+/// it fails.
+bool ran(const std::vector<std::string>& command) {
+    std::vector<char*> arguments;
+    arguments.reserve(command.size() + 1);
+    for (const auto& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
+    arguments.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    ::posix_spawn_file_actions_init(&actions);
+    ::posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
+    pid_t process = 0;
+    const int failure = ::posix_spawnp(&process, arguments.front(), &actions, nullptr, arguments.data(), environ);
+    ::posix_spawn_file_actions_destroy(&actions);
+    if (failure == ENOENT) return false;
+    if (failure != 0) {
+        throw OutputError(fmt::format("cannot run {}: {}", command.front(), std::strerror(failure)));
+    }
+    int status = 0;
+    while (::waitpid(process, &status, 0) < 0) {
+        if (errno != EINTR) {
+            throw OutputError(fmt::format("lost sight of {}: {}", command.front(), std::strerror(errno)));
+        }
+    }
+    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    constexpr int not_there = 127;  // of a shell's
+    if (code == not_there) return false;
+    if (code != 0) throw OutputError(fmt::format("{} failed with exit code {}", command.front(), code));
+    return true;
+}
+
+/// In CSS pixels of 1/96 inch, which are Vega's.
+constexpr double px_per_pt = 96.0 / 72.0;
+constexpr double default_width_px = 720.0;
+
+/// The theme with all type at 8 points: figures of a column are not scaled any more.
+VegaJson in_type_of_papers(VegaJson theme) {
+    constexpr double type_pt = 8.0;
+    const auto set = [](VegaJson& part, const auto& self) -> void {
+        for (auto& [key, value] : part.items()) {
+            if (value.is_structured()) self(value, self);
+            if (value.is_number() && (key.ends_with("FontSize") || key == "fontSize")) value = type_pt * px_per_pt;
+        }
+    };
+    set(theme, set);
+    return theme;
+}
+
+/// The specification with the light theme in it: a file that any Vega-Lite draws.
+std::string standalone(const Figure& figure, const VegaJson& light_theme) {
+    auto spec = figure.spec;
+    spec["config"] = light_theme;
+    return spec.dump(1, ' ', false, VegaJson::error_handler_t::replace) + "\n";
+}
+
 }  // namespace
 
 std::filesystem::path web_folder() { return data_folder("web", "FLIGHTWATT_WEB", "the report's web files"); }
@@ -145,6 +209,59 @@ std::string live_page_html(const WebFiles& web) {
             script_json(VegaJson::parse(web.theme)) + "</script>\n";
     if (!web.libraries.empty()) html += inline_script(web.libraries);
     return html + inline_script(web.script) + "</body>\n</html>\n";
+}
+
+FigureFiles write_figures(const std::vector<Section>& sections, const WebFiles& web,
+                          const std::filesystem::path& folder, const std::optional<double>& width_pt) {
+    for (const auto& section : sections) {
+        for (const auto& figure : section.figures) {
+            for (const auto* ending : {".vl.json", ".svg", ".pdf"}) register_output(folder / (figure.id + ending));
+        }
+    }
+    make_directories(folder);
+    auto theme = VegaJson::parse(web.theme).at("light");
+    if (width_pt) theme = in_type_of_papers(std::move(theme));
+    FigureFiles files;
+    for (const auto& section : sections) {
+        for (const auto& figure : section.figures) {
+            write_file_atomically(folder / (figure.id + ".vl.json"), standalone(figure, theme));
+            ++files.figures;
+        }
+    }
+    // These alone: the folder may hold others' figures.
+    const double width_px = width_pt ? *width_pt * px_per_pt : default_width_px;
+    std::vector<std::string> render{"node", (web.folder / "render.mjs").string(), folder.string(),
+                                    fmt::format("{}", width_px)};
+    for (const auto& section : sections)
+        for (const auto& figure : section.figures) render.push_back(figure.id);
+    files.has_svg = ran(render);
+    if (!files.has_svg) return files;
+    for (const auto& section : sections) {
+        for (const auto& figure : section.figures) {
+            const auto svg = (folder / (figure.id + ".svg")).string();
+            const auto pdf = (folder / (figure.id + ".pdf")).string();
+            files.has_pdf = ran({"rsvg-convert", "--format", "pdf", "--output", pdf, svg});
+            if (!files.has_pdf) return files;
+        }
+    }
+    return files;
+}
+
+double parse_figure_width_pt(const std::string& text) {
+    static const std::map<std::string, double> points_of{
+        {"in", 72.0}, {"cm", 72.0 / 2.54}, {"mm", 7.2 / 2.54}, {"pt", 1.0}};
+    constexpr double min_pt = 1.5 * 72.0;
+    constexpr double max_pt = 20.0 * 72.0;
+    const auto unit_at = std::min(text.find_first_not_of("0123456789."), text.size());
+    const auto unit = points_of.find(text.substr(unit_at));
+    const auto number = parse_number(std::string_view(text).substr(0, unit_at));
+    if (!number || unit == points_of.end())
+        throw UsageError(
+            fmt::format("--figure-width {}: expected a width with its unit: 3.5in, 89mm, 9cm or 252pt", text));
+    const double width_pt = *number * unit->second;
+    if (!(width_pt >= min_pt && width_pt <= max_pt))
+        throw UsageError(fmt::format("--figure-width {}: expected 1.5in to 20in", text));
+    return width_pt;
 }
 
 }  // namespace flightwatt::report

@@ -1,8 +1,10 @@
 #pragma once
 
 #include "report/html.h"
+#include "report/page.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,5 +43,22 @@ WebFiles read_live_web_files(const std::filesystem::path& folder);
 /// The page of a flight in the air, which listens to its server's events (docs/live.md) and asks nothing else. Without
 /// the libraries that draw it shows the same without charts, and says so.
 std::string live_page_html(const WebFiles& web);
+
+/// Which files were made of every figure, beside its specification.
+struct FigureFiles {
+    std::size_t figures = 0;
+    bool has_svg = false;
+    bool has_pdf = false;
+};
+
+/// Writes every figure's specification to FOLDER/ID.vl.json, renders them to ID.svg with node, and to ID.pdf with
+/// rsvg-convert; what of both programs is not there makes no files. With `width_pt` (points of 1/72 inch) they are so
+/// wide, and their type is set at 8 points. Throws OutputError where the folder cannot be written or a program that is
+/// there fails.
+FigureFiles write_figures(const std::vector<Section>& sections, const WebFiles& web,
+                          const std::filesystem::path& folder, const std::optional<double>& width_pt = std::nullopt);
+
+/// "3.5in", "89mm", "9cm" or "252pt" in points. Throws UsageError for what is none, or not from 1.5 to 20 inches.
+double parse_figure_width_pt(const std::string& text);
 
 }  // namespace flightwatt::report

@@ -1,13 +1,90 @@
 #include "report/trends_section.h"
 
+#include "base/error.h"
 #include "base/statistics.h"
+#include "base/units.h"
+#include "flight/flight_identity.h"
 
 #include <algorithm>
+#include <string_view>
 
 #include <fmt/format.h>
 
 namespace flightwatt::report {
 namespace {
+
+std::optional<double> per(const std::optional<double>& energy_wh, const std::optional<double>& much) {
+    if (!energy_wh || !much || *much <= 0.0) return std::nullopt;
+    return *energy_wh / *much;
+}
+
+constexpr double metres_per_km = 1000.0;
+
+constexpr std::array<TrendQuantity, 6> quantities{{
+    {"energy_wh_per_min", "energy [Wh/min]",
+     [](const FlightTrendData& f) { return per(f.facts.energy_wh, units::minute_from_second(f.facts.in_air_s)); }},
+    {"energy_wh_per_km", "ground [Wh/km]",
+     [](const FlightTrendData& f) { return per(f.facts.energy_wh, f.facts.distance_m.value_or(0.0) / metres_per_km); }},
+    {"energy_wh_per_air_km", "air [Wh/km]",
+     [](const FlightTrendData& f) {
+         return per(f.facts.energy_wh, f.facts.air_distance_m.value_or(0.0) / metres_per_km);
+     }},
+    {"cruise_power_w", "cruise [W]", [](const FlightTrendData& f) { return f.facts.cruise_power_w; }},
+    {"resistance_ohm", "pack [ohm]",
+     [](const FlightTrendData& f) { return f.resistance ? std::optional(f.resistance->value_ohm) : std::nullopt; }},
+    {"capacity_ah", "pack [Ah]", [](const FlightTrendData& f) { return f.capacity_ah; }},
+}};
+
+std::vector<std::string> aircraft_names(std::span<const FlightTrendData> flights) {
+    std::vector<std::string> names;
+    names.reserve(flights.size());
+    for (const auto& flight : flights) names.push_back(flight.aircraft);
+    std::ranges::sort(names);
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    return names;
+}
+
+/// Of one aircraft's flights; what is not known of them and why, or empty.
+std::string add_wear_of(std::span<FlightTrendData* const> flown, std::size_t most,
+                        const std::optional<double>& capacity_ah) {
+    if (flown.empty()) return "";
+    constexpr auto single = "no capacity of a single flight: it is told by how flights differ";
+    if (flown.size() > most)
+        return fmt::format("no resistance and no capacity of {} flights, expected {} at most", flown.size(), most);
+    std::vector<battery::DischargeRecord> records;
+    records.reserve(flown.size());
+    for (const auto* flight : flown) records.push_back(flight->records.front());
+    battery::BatteryIdentification identified;
+    try {
+        identified =
+            identify_battery(records, {.capacity_ah = capacity_ah, .cells = {}, .name = "", .with_capacities = true});
+    } catch (const NoResultError& error) {
+        return fmt::format("no resistances and no capacities: {}", error.what());
+    }
+    const bool is_guess = identified.capacity.origin == battery::CapacityOrigin::chart;
+    std::size_t without = 0;
+    for (std::size_t i = 0; i < flown.size(); ++i) {
+        flown[i]->resistance = identified.flights.at(i).resistance;
+        const auto& capacity = identified.flights.at(i).capacity;
+        if (!capacity) {
+            ++without;
+            continue;
+        }
+        const double mean_ah = identified.capacity.value_ah;
+        flown[i]->capacity_ah = mean_ah * capacity->ratio;
+        flown[i]->capacity_level_is_guess = is_guess;
+        flown[i]->capacity_interval_ah = {mean_ah * capacity->ratio_interval.low,
+                                          mean_ah * capacity->ratio_interval.high};
+    }
+    if (without == 0) {
+        return is_guess ? "the level of the capacities is a guess after the usual chart of LiPo cells: their trend is "
+                          "in percent of it; give the pack's capacity with --capacity"
+                        : "";
+    }
+    if (flown.size() == 1) return single;
+    return fmt::format("no capacity of {} of {} flights: what they draw does not tell it within 15 %", without,
+                       flown.size());
+}
 
 constexpr double ms_per_day = 86400.0 * 1000.0;
 
@@ -88,6 +165,91 @@ Figure trend_figure(std::span<const AircraftTrend> trends, const std::string& ai
 }
 
 }  // namespace
+
+std::span<const TrendQuantity> trend_quantities() { return quantities; }
+
+FlightTrendData extract_trend_data(const ReportFlight& flight) {
+    FlightTrendData flown;
+    flown.name = flight.name;
+    flown.aircraft = flight::describe_aircraft(flight.series.aircraft_id, flight.series.aircraft_name);
+    flown.facts = summarize_flight(flight);
+    try {
+        flown.records = battery::discharge_records(flight.series).records;
+    } catch (const InputError& error) {
+        flown.no_record = error.what();
+    }
+    for (const auto& record : flown.records) flown.charge_ah = flown.charge_ah.value_or(0.0) + record.charge_ah.back();
+    return flown;
+}
+
+std::vector<std::string> add_state_of_health(std::vector<FlightTrendData>& flights, std::size_t most,
+                                             std::optional<double> capacity_ah) {
+    std::vector<std::string> notes;
+    for (const auto& aircraft : aircraft_names(flights)) {
+        std::vector<FlightTrendData*> flown;
+        for (auto& flight : flights)
+            if (flight.aircraft == aircraft && !flight.records.empty()) flown.push_back(&flight);
+        const auto note = add_wear_of(flown, most, capacity_ah);
+        if (!note.empty()) notes.push_back(fmt::format("{}: {}", aircraft, note));
+    }
+    return notes;
+}
+
+std::vector<AircraftTrend> trends_of(std::span<const FlightTrendData> flights) {
+    constexpr double seconds_per_day = 86400.0;
+    std::vector<AircraftTrend> trends;
+    for (const auto& aircraft : aircraft_names(flights)) {
+        for (const auto& [name, title, of] : quantities) {
+            AircraftTrend trend{aircraft, name, {}, {}};
+            const bool is_capacity = std::string_view(name) == "capacity_ah";
+            for (const auto& flight : flights) {
+                const auto value = of(flight);
+                if (flight.aircraft == aircraft && flight.facts.start_clock_s && value)
+                    trend.values.push_back({*flight.facts.start_clock_s / seconds_per_day, *value});
+                trend.level_is_guess = trend.level_is_guess ||
+                                       (is_capacity && flight.aircraft == aircraft && flight.capacity_level_is_guess);
+            }
+            trend.answer = estimate_trend(trend.values);
+            if (trend.values.empty()) trend.answer.no_trend_reason = "of no flight with a date is it known";
+            trends.push_back(std::move(trend));
+        }
+    }
+    return trends;
+}
+
+std::string trend_direction(const AircraftTrend& trend) {
+    const auto& told = trend.answer.trend;
+    if (!told) return "none: " + trend.answer.no_trend_reason;
+    if (!is_significant(*told)) return "none to be seen";
+    return told->per_day > 0.0 ? "rises" : "falls";
+}
+
+ShownSlope shown_slope(const AircraftTrend& trend) {
+    const auto& told = trend.answer.trend.value();
+    const auto relative = trend.level_is_guess ? relative_trend(told) : std::nullopt;
+    if (relative)
+        return {trend_days * relative->percent_per_day, trend_days * relative->low_percent_per_day,
+                trend_days * relative->high_percent_per_day, " %"};
+    return {trend_days * told.per_day, trend_days * told.low_per_day, trend_days * told.high_per_day, ""};
+}
+
+TextTable trend_table(std::span<const AircraftTrend> trends) {
+    TextTable table{{"aircraft", "quantity", "flights", "median", "in 30 days", "low", "high", "verdict"}, {}};
+    for (const auto& row : trends) {
+        std::vector<std::string> cells{row.aircraft, row.quantity};
+        if (const auto& trend = row.answer.trend) {
+            cells.push_back(fmt::format("{}", trend->flights));
+            const auto [slope, low, high, unit] = shown_slope(row);
+            cells.push_back(fmt::format("{:.3g}", trend->median));
+            for (const double value : {slope, low, high}) cells.push_back(fmt::format("{:.3g}{}", value, unit));
+        } else {
+            cells.insert(cells.end(), 5, "-");
+        }
+        cells.push_back(trend_direction(row));
+        table.rows.push_back(std::move(cells));
+    }
+    return table;
+}
 
 std::optional<Section> trends_section(std::span<const AircraftTrend> trends) {
     std::vector<std::string> aircraft;

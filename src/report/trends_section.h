@@ -4,10 +4,8 @@
 #include "batch/trend.h"
 #include "battery/identification.h"
 #include "report/batch_content.h"
-#include "report/flight_facts.h"
 #include "report/html.h"
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>

@@ -2,9 +2,8 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "telemetry/binary/frame.h"
 #include "telemetry/binary/frame_clock.h"
-#include "telemetry/binary/framing.h"
-#include "telemetry/binary/link_time.h"
 #include "telemetry/binary/wire_value.h"
 #include "telemetry/columns/message_plan.h"
 #include "telemetry/text/skip_counter.h"

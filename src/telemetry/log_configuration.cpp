@@ -3,7 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/number.h"
-#include "telemetry/files/protocol_xml.h"
+#include "telemetry/message_definition.h"
 
 #include <algorithm>
 #include <fstream>

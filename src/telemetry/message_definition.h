@@ -2,11 +2,16 @@
 
 #include "base/units.h"
 
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+namespace pugi {
+class xml_node;
+}
 
 namespace flightwatt::telemetry {
 
@@ -46,5 +51,20 @@ std::optional<std::size_t> field_index(const MessageDefinition& definition, std:
 /// Built-in definitions of the messages that FlightWatt reads, for logs that come without a .log: every
 /// layout of `message` that Paparazzi has had, told apart by their numbers of fields. Empty if unknown.
 const std::vector<MessageDefinition>& builtin_definitions(std::string_view message);
+
+/// A message of a <protocol>, with what it and its class are called and numbered; numbers as they stand there.
+struct ProtocolMessage {
+    std::string class_name;
+    std::string class_id;  ///< empty in older logs
+    std::string id;
+    MessageDefinition definition;
+};
+
+/// An attribute by its name in lower case; it may be upper case in the file.
+std::string xml_attribute(const pugi::xml_node& node, std::string_view lower);
+
+/// The messages of the <protocol> element of a .log or messages.xml, in their order. Only it is read as XML. Throws
+/// InputError where there is none, it is no XML, or it defines no message.
+std::vector<ProtocolMessage> parse_protocol(const std::string& text, const std::filesystem::path& file);
 
 }  // namespace flightwatt::telemetry

@@ -2,8 +2,8 @@
 
 #include "base/atomic_file.h"
 #include "base/number.h"
-#include "telemetry/files/protocol_xml.h"
 #include "telemetry/log_configuration.h"
+#include "telemetry/message_definition.h"
 
 #include <algorithm>
 #include <charconv>

@@ -37,10 +37,8 @@ BatchFlight flight_of(const std::string& name) {
     record.power_faults = {"fault"};
     record.no_power_reason = "lacks";
     record.not_fitted_reason = "why";
-    record.content.decimals = 1;
     record.content.has_definitions = false;
     record.content.samples = 77;
-    record.content.hash_divisor = 4;
     flight.was_up_to_date = true;
     flight.is_of_this_run = false;
     flight.log_is_missing = true;

@@ -5,11 +5,20 @@
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
 
+#include <array>
+#include <chrono>
+#include <cstdlib>
 #include <map>
+#include <stdexcept>
 #include <string>
+#include <thread>
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 namespace flightwatt::cli {
 namespace {
@@ -118,6 +127,152 @@ TEST_F(OnATerminal, SegmentDrawsTheAltitude) {
     EXPECT_THAT(picture, HasSubstr("cruise 92 to 662 s"));
     EXPECT_THAT(printed(utf8, segment, false), Not(HasSubstr(braille_start)));
     EXPECT_THAT(printed(utf8, segment + " --json", true), Not(HasSubstr(braille_start)));
+}
+
+using testing::EndsWith;
+
+constexpr auto beyond_interval = std::chrono::milliseconds(120);
+
+TEST(ProgressText, TellsBarCountRateAndRemainingTime) {
+    EXPECT_EQ(progress_text({512, 1000, 42.14}, "logs", 60),
+              "[############.............] 512/1000, 42.1 logs/s, 0:12 left");
+    EXPECT_EQ(progress_text({0, 8, 0.0}, "logs", 20), "[..............] 0/8");
+    EXPECT_EQ(progress_text({8, 8, 250.6}, "logs", 42), "[#############] 8/8, 251 logs/s, 0:00 left");
+}
+
+TEST(ProgressText, CountsMinutesAndHours) {
+    EXPECT_THAT(progress_text({1, 602, 1.0}, "logs", 60), EndsWith("1.0 logs/s, 10:01 left"));
+    EXPECT_THAT(progress_text({0, 11109, 1.0}, "logs", 60), EndsWith("3:05:09 left"));
+    EXPECT_THAT(progress_text({0, 1000000, 0.001}, "logs", 60), EndsWith("99:59:59 left"));
+}
+
+TEST(ProgressText, KeepsToTheWidth) {
+    for (std::size_t width = 0; width <= 200; ++width) {
+        for (const std::size_t done : {0U, 1U, 999U, 1000U}) {
+            const auto text = progress_text({done, 1000, 3.5}, "logs", width);
+            EXPECT_LE(text.size(), width);
+            if (width < 9) continue;
+            EXPECT_THAT(text, HasSubstr(std::to_string(done) + "/1000"));
+        }
+    }
+    EXPECT_EQ(progress_text({7, 1000, 3.5}, "logs", 12), "7/1000");  // no room for a bar
+    EXPECT_EQ(progress_text({7, 1000, 3.5}, "logs", 5), "");
+}
+
+/// A terminal of our own, and what was printed on it.
+class Terminal {
+  public:
+    explicit Terminal(unsigned short columns) : master_(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)) {
+        if (master_ < 0 || ::grantpt(master_) != 0 || ::unlockpt(master_) != 0) {
+            throw std::runtime_error("no terminal");
+        }
+        stream_ = std::fopen(::ptsname(master_), "w");
+        if (stream_ == nullptr) throw std::runtime_error("no terminal");
+        winsize size{};
+        size.ws_col = columns;
+        ::ioctl(::fileno(stream_), TIOCSWINSZ, &size);
+    }
+    ~Terminal() {
+        std::fclose(stream_);
+        ::close(master_);
+    }
+    Terminal(const Terminal&) = delete;
+    Terminal& operator=(const Terminal&) = delete;
+
+    std::FILE* stream() { return stream_; }
+    /// What was printed since the last call. The kernel brings it to this end when it has time: a mark behind it shows
+    /// that all of it has come.
+    std::string printed() {
+        constexpr char mark = '\1';
+        std::string text;
+        if (::write(::fileno(stream_), &mark, 1) != 1) throw std::runtime_error("the terminal takes nothing");
+        constexpr int limit_ms = 60'000;
+        for (::pollfd line{master_, POLLIN, 0}; !text.ends_with(mark) && ::poll(&line, 1, limit_ms) == 1;) {
+            std::array<char, 4096> part{};
+            const auto n = ::read(master_, part.data(), part.size());
+            if (n > 0) text.append(part.data(), static_cast<std::size_t>(n));
+        }
+        if (!text.ends_with(mark)) throw std::runtime_error("what was printed never came");
+        text.pop_back();
+        return text;
+    }
+
+  private:
+    int master_;
+    std::FILE* stream_ = nullptr;
+};
+
+/// A container may have no pseudo-terminals.
+bool has_terminals() {
+    const int master = ::posix_openpt(O_RDWR | O_NOCTTY);
+    if (master < 0) return false;
+    const bool usable = ::grantpt(master) == 0 && ::unlockpt(master) == 0 && ::access(::ptsname(master), W_OK) == 0;
+    ::close(master);
+    return usable;
+}
+
+TEST(ProgressBar, DrawsAtMostTenTimesASecond) {
+    constexpr double most_per_s = 10.0;
+    if (!has_terminals()) GTEST_SKIP() << "no pseudo-terminal here";
+    Terminal terminal(60);
+    const auto start = std::chrono::steady_clock::now();
+    ProgressBar bar(terminal.stream(), "logs");
+    for (std::size_t i = 1; i <= 50; ++i) bar.show(i, 1000);
+    std::this_thread::sleep_for(beyond_interval);
+    for (std::size_t i = 51; i <= 100; ++i) bar.show(i, 1000);
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+    const auto printed = terminal.printed();
+    EXPECT_THAT(printed, HasSubstr(" 51/1000, "));
+    EXPECT_THAT(printed, HasSubstr(" logs/s, "));
+    int drawn = 0;
+    for (auto at = printed.find("/1000"); at != std::string::npos; at = printed.find("/1000", at + 1)) ++drawn;
+    EXPECT_LE(drawn, most_per_s * taken.count()) << "of 100 calls";
+}
+
+std::string first_drawn(ProgressBar& bar, Terminal& terminal) {
+    std::this_thread::sleep_for(beyond_interval);
+    bar.show(3, 8);
+    return terminal.printed();
+}
+
+TEST(ProgressBar, StaysOnOneLineAndIsGoneInTheEnd) {
+    if (!has_terminals()) GTEST_SKIP() << "no pseudo-terminal here";
+    Terminal terminal(30);
+    ProgressBar bar(terminal.stream(), "logs");
+    const auto drawn = first_drawn(bar, terminal);
+    EXPECT_THAT(drawn, HasSubstr("3/8"));
+    EXPECT_LT(drawn.size(), 30U);
+    bar.clear();
+    EXPECT_EQ(terminal.printed(), "\r" + std::string(drawn.size(), ' ') + "\r");
+    std::this_thread::sleep_for(beyond_interval);
+    bar.show(4, 8);
+    bar.clear();
+    EXPECT_EQ(terminal.printed(), "");
+}
+
+TEST(ProgressBar, GoesOnAfterItWasHidden) {
+    if (!has_terminals()) GTEST_SKIP() << "no pseudo-terminal here";
+    Terminal terminal(30);
+    ProgressBar bar(terminal.stream(), "logs");
+    const auto drawn = first_drawn(bar, terminal);
+    bar.hide();
+    EXPECT_EQ(terminal.printed(), "\r" + std::string(drawn.size(), ' ') + "\r");
+    std::this_thread::sleep_for(beyond_interval);
+    bar.show(4, 8);
+    EXPECT_THAT(terminal.printed(), HasSubstr("4/8"));
+}
+
+TEST(TerminalProgress, SaysNothingWhereTheStandardErrorIsNoTerminal) {
+    if (::isatty(STDERR_FILENO) != 0) GTEST_SKIP() << "the standard error is a terminal here";
+    testing::internal::CaptureStderr();
+    {
+        TerminalProgress progress("logs");
+        const auto show = progress.callback();
+        std::this_thread::sleep_for(beyond_interval);
+        show(1, 2);
+        progress.hide();
+    }
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
 }  // namespace

@@ -160,5 +160,12 @@ TEST(ComputeModel, HoldsThePaperProfile) {
     EXPECT_EQ(model.components[1].profile.parameters, std::vector<std::string>{"key_bits"});
 }
 
+TEST(Describe, NamesWhatRuns) {
+    const auto model = paper_model();
+    EXPECT_EQ(describe(model, {{0, {10.0}}, {1, {240.0}}}), "detection fps 10, encryption key_bits 240");
+    EXPECT_EQ(describe(model, {{0, {5.8}}}, "="), "detection fps=5.8");
+    EXPECT_EQ(describe(model, {}), "nothing");
+}
+
 }  // namespace
 }  // namespace flightwatt::compute

@@ -30,13 +30,13 @@ TEST(PhaseStatistics, IntegratesLinearlyBetweenSamplesAndEdges) {
 }
 
 TEST(PhaseStatistics, CountsSamplesAndGaps) {
-    const auto statistics = phase_statistics(ramp(), 30, 60);
+    const auto statistics = PowerStatistics(ramp()).between(30, 60);
     EXPECT_EQ(statistics.samples, 22u);
     EXPECT_EQ(statistics.gaps, 1u);
     EXPECT_EQ(statistics.max_gap_s, 10.0);
     EXPECT_FALSE(statistics.counter_energy_wh.has_value());
     EXPECT_EQ(median_interval_s(power_track(ramp()).time_s), 1.0);
-    EXPECT_EQ(phase_statistics(ramp(), 43, 45).samples, 0u);
+    EXPECT_EQ(PowerStatistics(ramp()).between(43, 45).samples, 0u);
 }
 
 TEST(PhaseStatistics, AgreesWithTheOnBoardCounterOfTheRealFlights) {
@@ -50,9 +50,9 @@ TEST(PhaseStatistics, AgreesWithTheOnBoardCounterOfTheRealFlights) {
         SCOPED_TRACE(name);
         const auto series = read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"));
         const auto phases = segment(series).sorties.at(0).phases;
-        const auto cruise = phase_statistics(series, phases[1].start.time_s, phases[1].end.time_s);
+        const auto cruise = PowerStatistics(series).between(phases[1].start.time_s, phases[1].end.time_s);
         EXPECT_NEAR(cruise.mean_power_w, cruise_power_w, 0.3);
-        const auto flight = phase_statistics(series, phases[0].start.time_s, phases[2].end.time_s);
+        const auto flight = PowerStatistics(series).between(phases[0].start.time_s, phases[2].end.time_s);
         ASSERT_TRUE(flight.counter_energy_wh.has_value());
         EXPECT_NEAR(flight.energy_wh / *flight.counter_energy_wh, 1.0, 0.005);
     }

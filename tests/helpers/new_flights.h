@@ -4,7 +4,7 @@
 #include "base/units.h"
 #include "mechanical/model_fit.h"
 #include "mission/plan.h"
-#include "mission/sampling/flight_outcome.h"
+#include "mission/sampling/flight_lanes.h"
 #include "mission/sampling/landing_distribution.h"
 #include "mission/simulation.h"
 

@@ -1,7 +1,7 @@
 #include "mission/flight_replanner.h"
 
 #include "helpers/paper_missions.h"
-#include "mission/sampling/level_deviation.h"
+#include "mission/sampling/flight_spreads.h"
 
 #include <cmath>
 #include <optional>

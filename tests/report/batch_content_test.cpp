@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
-#include "report/model_section.h"
+#include "report/sections/sections.h"
 
 #include <gtest/gtest.h>
 
@@ -106,6 +106,83 @@ TEST(BatchContents, TellNamesakesApart) {
     ASSERT_EQ(notes.size(), 2U);
     EXPECT_NE(notes[0].find("have their folder behind their name: opterra_synthetic_01."), std::string::npos);
     EXPECT_EQ(notes[1], "The folders' models were fitted with different options: order 3 (a), 2 (namesake).");
+}
+
+flight::Track track(const std::string& name, std::vector<double> time_s, std::vector<double> value) {
+    return {name, "TEST", "", 0.0, std::move(time_s), std::move(value)};
+}
+
+/// In the air from 10 to 30 s, along a square of 100 m a side in between.
+ReportFlight square_flight() {
+    ReportFlight flight;
+    flight.name = "20_07_03__12_17_45";
+    flight.series.tracks = {track("altitude_m", {0, 10, 20, 30, 40}, {200, 200, 260, 205, 200}),
+                            track("power_w", {0, 10, 20, 30, 40}, {0, 36, 36, 36, 0}),
+                            track("east_m", {0, 10, 15, 20, 25, 30, 40}, {-500, 0, 100, 100, 0, 0, 900}),
+                            track("north_m", {0, 10, 15, 20, 25, 30, 40}, {0, 0, 0, 100, 100, 0, 0})};
+    flight::Sortie sortie;
+    for (const auto phase : flight::all_phases) {
+        flight::PhaseSpan span;
+        span.phase = phase;
+        span.start.time_s = phase == flight::Phase::takeoff ? 10.0 : phase == flight::Phase::cruise ? 15.0 : 25.0;
+        span.end.time_s = phase == flight::Phase::takeoff ? 15.0 : phase == flight::Phase::cruise ? 25.0 : 30.0;
+        sortie.phases.push_back(span);
+    }
+    flight.phases.sorties = {sortie};
+    return flight;
+}
+
+TEST(FlightFacts, AreThoseOfTheTimeInTheAir) {
+    const auto facts = summarize_flight(square_flight());
+    EXPECT_EQ(facts.in_air_s, 20.0);
+    ASSERT_TRUE(facts.distance_m && facts.height_m && facts.energy_wh);
+    EXPECT_DOUBLE_EQ(*facts.distance_m, 400.0);
+    EXPECT_DOUBLE_EQ(*facts.height_m, 60.0);
+    EXPECT_DOUBLE_EQ(*facts.energy_wh, 36.0 * 20.0 / 3600.0);
+    EXPECT_DOUBLE_EQ(facts.cruise_power_w.value(), 36.0);
+    EXPECT_FALSE(facts.air_distance_m) << "no airspeed was measured";
+}
+
+TEST(FlightFacts, MeasureTheWayThroughTheAirByAirspeed) {
+    auto flight = square_flight();
+    flight.series.tracks.push_back(track("airspeed_m_per_s", {0, 10, 20, 30, 40}, {50, 10, 12, 10, 50}));
+    EXPECT_DOUBLE_EQ(summarize_flight(flight).air_distance_m.value(), 220.0) << "11 m/s for 20 s";
+}
+
+TEST(FlightFacts, HaveNoCruisePowerWithoutACruise) {
+    auto flight = square_flight();
+    flight.phases.sorties[0].phases.erase(flight.phases.sorties[0].phases.begin() + 1);
+    EXPECT_FALSE(summarize_flight(flight).cruise_power_w);
+}
+
+TEST(FlightFacts, MeasureDegreesOnTheEarth) {
+    auto flight = square_flight();
+    flight.series.tracks.resize(2);
+    flight.series.tracks.push_back(track("latitude_deg", {10, 30}, {43.0, 43.01}));
+    flight.series.tracks.push_back(track("longitude_deg", {10, 30}, {1.0, 1.0}));
+    const auto facts = summarize_flight(flight);
+    ASSERT_TRUE(facts.distance_m);
+    EXPECT_NEAR(*facts.distance_m, 1111.1, 1.0) << "a hundredth of a degree of latitude";
+}
+
+TEST(FlightFacts, HaveTheDateOfTheClockOrElseOfTheName) {
+    auto flight = square_flight();
+    EXPECT_EQ(summarize_flight(flight).date, "2020-07-03 12:17");
+    flight.series.start_clock_s = 1593771465.0;
+    EXPECT_EQ(summarize_flight(flight).date, "2020-07-03 10:17") << "UTC";
+    EXPECT_EQ(summarize_flight(flight).start_clock_s, 1593771465.0);
+    flight.series.start_clock_s.reset();
+    flight.name = "survey";
+    EXPECT_EQ(summarize_flight(flight).date, "");
+}
+
+TEST(FlightFacts, SayNothingOfWhatWasNotLogged) {
+    auto flight = square_flight();
+    flight.series.tracks.resize(1);
+    const auto facts = summarize_flight(flight);
+    EXPECT_FALSE(facts.distance_m);
+    EXPECT_FALSE(facts.energy_wh);
+    EXPECT_TRUE(facts.height_m);
 }
 
 }  // namespace

@@ -24,12 +24,6 @@ constexpr std::size_t min_samples = 50;
 
 constexpr auto needed = "a battery is identified from measured voltage and current";
 
-std::vector<double> chosen_on(const flight::SelectedTracks& tracks, const char* name,
-                              const std::vector<double>& time_s) {
-    const auto& track = tracks[name];
-    return track.empty() ? std::vector<double>{} : resample(track, time_s);
-}
-
 void require_samples(const flight::FlightSeries& series, std::size_t samples) {
     if (samples >= min_samples) return;
     throw InputError({series.file},
@@ -100,13 +94,6 @@ void mark_used(const std::vector<double>& throttle_percent, DischargeRecord& rec
     }
 }
 
-/// The upper one of an even number's two middle values: one that was measured.
-double median_of(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 void add_rest(const flight::FlightSeries& series, DischargeRecord& record) {
     double max_a = 0.0;
     for (std::size_t i = 0; i < record.used.size(); ++i)
@@ -127,8 +114,8 @@ void add_rest(const flight::FlightSeries& series, DischargeRecord& record) {
         currents_a.push_back(record.current_a[i]);
     }
     record.rest_samples = end;
-    record.resting_voltage_v = median_of(std::move(voltages_v));
-    record.resting_current_a = median_of(std::move(currents_a));
+    record.resting_voltage_v = median_high(std::move(voltages_v));
+    record.resting_current_a = median_high(std::move(currents_a));
 }
 
 void fill_record(const flight::SelectedTracks& tracks, const PackRecord& part, DischargeRecord& record) {
@@ -143,25 +130,21 @@ void fill_record(const flight::SelectedTracks& tracks, const PackRecord& part, D
     record.resolution_v = min_difference(record.voltage_v);
     if (series.start_clock_s) record.start_clock_s = *series.start_clock_s + record.time_s.front();
     if (!part.counter_ah.empty()) record.counter_ah = Interval{part.counter_ah.front(), part.counter_ah.back()};
-    const auto temperature_c = chosen_on(tracks, "air_temperature_c", record.time_s);
+    const auto temperature_c = sample_selected_track(tracks, "air_temperature_c", record.time_s);
     if (!temperature_c.empty()) record.air_temperature_c = mean(temperature_c);
 }
 
 }  // namespace
 
-DischargeRecords discharge_records(const flight::FlightSeries& series) {
-    return discharge_records(flight::SelectedTracks(series));
-}
-
 DischargeRecords discharge_records(const flight::SelectedTracks& tracks) {
     const auto& series = tracks.series();
     PackRecord whole;
     whole.time_s = tracks["power_w"].time_s;
-    whole.voltage_v = chosen_on(tracks, "voltage_v", whole.time_s);
-    whole.current_a = chosen_on(tracks, "current_a", whole.time_s);
+    whole.voltage_v = sample_selected_track(tracks, "voltage_v", whole.time_s);
+    whole.current_a = sample_selected_track(tracks, "current_a", whole.time_s);
     require_channels(series, whole);
-    whole.counter_ah = chosen_on(tracks, "charge_ah", whole.time_s);
-    whole.throttle_percent = chosen_on(tracks, "throttle_percent", whole.time_s);
+    whole.counter_ah = sample_selected_track(tracks, "charge_ah", whole.time_s);
+    whole.throttle_percent = sample_selected_track(tracks, "throttle_percent", whole.time_s);
     DischargeRecords found;
     const auto parts = split_at_pack_changes(std::move(whole), found.notes);
     for (std::size_t p = 0; p < parts.size(); ++p) {

@@ -45,8 +45,6 @@ struct DischargeRecords {
 /// the autopilot's current has bursts on the ground that the voltage knows nothing of. Throws InputError, naming the
 /// flight, where voltage or current is missing or constant, where the current was computed from throttle, and where no
 /// record begins at rest.
-DischargeRecords discharge_records(const flight::FlightSeries& series);
-/// The same of tracks that are asked for more.
 DischargeRecords discharge_records(const flight::SelectedTracks& tracks);
 
 std::ptrdiff_t used_sample_count(const DischargeRecord& record);

@@ -45,10 +45,6 @@ double lipo_chart_voltage_v(double soc_percent) {
     return interpolate_clamped(chart_soc_percent, chart_cell_v, soc_percent);
 }
 
-double lipo_chart_soc_percent(double cell_voltage_v) {
-    return interpolate_clamped(chart_cell_v, chart_soc_percent, cell_voltage_v);
-}
-
 int lipo_cells(double resting_voltage_v) {
     return static_cast<int>(std::max(1.0, std::ceil(resting_voltage_v / max_charged_cell_v)));
 }

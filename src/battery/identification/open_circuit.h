@@ -18,9 +18,6 @@ namespace flightwatt::battery {
 /// [V] a cell at a state of charge, 0 to 100.
 double lipo_chart_voltage_v(double soc_percent);
 
-/// The inverse; 0 below and 100 above the chart.
-double lipo_chart_soc_percent(double cell_voltage_v);
-
 /// How many cells a pack has that rests at this voltage, if it is charged: at most 4.25 V a cell.
 int lipo_cells(double resting_voltage_v);
 

@@ -146,8 +146,6 @@ std::string provenance(const battery::BatteryIdentification& identified) {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
 
 Json interval(const std::optional<battery::Interval>& range) {
@@ -177,8 +175,7 @@ Json flight_json(const battery::IdentifiedFlight& flight) {
 
 }  // namespace
 
-nlohmann::ordered_json to_json(const battery::BatteryIdentification& identified,
-                               const std::vector<battery::LeaveOneOutCheck>& left_out) {
+Json to_json(const battery::BatteryIdentification& identified, const std::vector<battery::LeaveOneOutCheck>& left_out) {
     const auto& [fit, errors] = std::tie(identified.fit, identified.errors);
     Json json;
     json["capacity_ah"] = identified.capacity.value_ah;

@@ -7,8 +7,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 /// What `flightwatt battery` says of an identified battery.
 namespace flightwatt::cli {
 
@@ -42,8 +40,7 @@ TextTable flights_table(const battery::BatteryIdentification& identified,
 std::string provenance(const battery::BatteryIdentification& identified);
 
 /// The stage's JSON: units are in the keys, null stands for what is not known.
-nlohmann::ordered_json to_json(const battery::BatteryIdentification& identified,
-                               const std::vector<battery::LeaveOneOutCheck>& left_out);
+Json to_json(const battery::BatteryIdentification& identified, const std::vector<battery::LeaveOneOutCheck>& left_out);
 
 /// --capacity [Ah] of a pack, or std::nullopt where it was not given. Throws UsageError for one that no pack has.
 std::optional<double> capacity_option(const StageCall& call);

@@ -1,29 +1,47 @@
 #include "cli/output/fit_output.h"
 
 #include "base/error.h"
-#include "cli/output/json_text.h"
+#include "base/number.h"
+#include "base/units.h"
 #include "mechanical/model_check.h"
 #include "mechanical/model_fit.h"
 #include "mechanical/prediction.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <vector>
 
 #include <fmt/format.h>
 
 namespace flightwatt::cli {
 namespace {
 
-nlohmann::ordered_json interval_json(const mechanical::Interval& interval) {
-    return {{"low", interval.low}, {"high", interval.high}};
+/// "FLIGHT=0.4" or "FLIGHT:cruise=0.4".
+mechanical::ManualWeight parse_hand_weight(const std::string& text) {
+    const auto equals = text.rfind('=');
+    const auto value = equals == std::string::npos ? std::nullopt : parse_number(text.substr(equals + 1));
+    if (!value) throw UsageError(fmt::format("--weight {}: expected FLIGHT=NUMBER or FLIGHT:PHASE=NUMBER", text));
+    mechanical::ManualWeight weight{text.substr(0, equals), std::nullopt, *value};
+    if (const auto colon = weight.flight.rfind(':'); colon != std::string::npos) {
+        weight.phase = flight::phase_from(weight.flight.substr(colon + 1));
+        if (!weight.phase) {
+            throw UsageError(fmt::format("--weight {}: no phase '{}', expected takeoff, cruise or landing", text,
+                                         weight.flight.substr(colon + 1)));
+        }
+        weight.flight.resize(colon);
+    }
+    return weight;
 }
 
-nlohmann::ordered_json interval_json(const std::vector<mechanical::Interval>& intervals) {
-    auto list = nlohmann::ordered_json::array();
+Json interval_json(const mechanical::Interval& interval) { return {{"low", interval.low}, {"high", interval.high}}; }
+
+Json interval_json(const std::vector<mechanical::Interval>& intervals) {
+    auto list = Json::array();
     for (const auto& interval : intervals) list.push_back(interval_json(interval));
     return list;
 }
 
-nlohmann::ordered_json to_json(const mechanical::PhaseModel& phase, const mechanical::PhaseErrors& errors) {
+Json to_json(const mechanical::PhaseModel& phase, const mechanical::PhaseErrors& errors) {
     const auto intervals = coefficient_intervals(phase);
     return {{"standard_error",
              {{"omega_rad_per_s", errors.omega_rad_per_s},
@@ -45,7 +63,7 @@ nlohmann::ordered_json to_json(const mechanical::PhaseModel& phase, const mechan
             {"noise_lasts", errors.noise_lasts}};
 }
 
-nlohmann::ordered_json to_json(const mechanical::FrequencyProfile& profile) {
+Json to_json(const mechanical::FrequencyProfile& profile) {
     return {{"omega_duration_rad", profile.theta_rad},
             {"rms_w", profile.rms_w},
             {"interval_95",
@@ -55,15 +73,15 @@ nlohmann::ordered_json to_json(const mechanical::FrequencyProfile& profile) {
               {"high_is_open", profile.high_is_open}}}};
 }
 
-nlohmann::ordered_json to_json(const mechanical::FlightEnvelope& spread) {
+Json to_json(const mechanical::FlightEnvelope& spread) {
     return {{"low_w", spread.low_w},
             {"high_w", spread.high_w},
             {"standard_deviation_w", spread.standard_deviation_w},
             {"counted_flights", spread.effective_flights}};
 }
 
-nlohmann::ordered_json validation_json(const mechanical::ModelValidation& validation) {
-    auto scores = nlohmann::ordered_json::array();
+Json validation_json(const mechanical::ModelValidation& validation) {
+    auto scores = Json::array();
     for (const auto& [model, flights, error_percent] : validation.scores)
         scores.push_back({{"model", model}, {"flights", flights}, {"mean_absolute_error_percent", error_percent}});
     return {{"default_model", default_model(validation)}, {"scores", scores}};
@@ -84,6 +102,57 @@ std::string describe(const mechanical::ModelValidation& validation, bool has_phy
 }
 
 }  // namespace
+
+void add_fit_options(boost::program_options::options_description& options, AutoOrder automatic) {
+    auto add = options.add_options();
+    add("order", value("N")->default_value("3"),
+        automatic == AutoOrder::accepted
+            ? "order of the Fourier series, 0 to 8, or auto: chosen for each phase by how well it predicts "
+              "a flight that was not fitted (blocks of time of a single flight)"
+            : "order of the Fourier series, 0 to 8");
+    add("weights", value("HOW")->default_value("agreement"), "uniform, inverse-variance or agreement");
+    add("weight", value<std::vector<std::string>>("FLIGHT[:PHASE]=W")->composing(),
+        "a weight by hand; then every flight needs one");
+    add("min-periods", value<double>("X")->default_value(0.5, "0.5"),
+        "least periods of the series in a phase; fewer make its basis collinear");
+    add("max-periods", value<double>("X")->default_value(120.0, "120"),
+        "most periods in a phase; the sampling may allow fewer");
+}
+
+std::optional<int> read_order(const StageCall& call, AutoOrder automatic) {
+    const auto text = call.get<std::string>("order");
+    if (text == "auto" && automatic == AutoOrder::accepted) return std::nullopt;
+    const auto number = parse_unsigned(text);
+    if (!number || *number > static_cast<std::uint64_t>(mechanical::max_order)) {
+        throw UsageError(fmt::format("--order {}: expected 0 to {}{}", text, mechanical::max_order,
+                                     automatic == AutoOrder::accepted ? " or auto"
+                                     : text == "auto"                 ? "; 'flightwatt fit' can choose it"
+                                                                      : ""));
+    }
+    return static_cast<int>(*number);
+}
+
+mechanical::ModelFitOptions read_fit_options(const StageCall& call, AutoOrder automatic) {
+    mechanical::ModelFitOptions options;
+    options.phases.order = read_order(call, automatic).value_or(options.phases.order);
+    options.phases.min_theta_rad = units::rad_from_turns(call.get<double>("min-periods"));
+    options.phases.max_periods = call.get<double>("max-periods");
+    admissible_frequencies({}, options.phases);  // refuses bad options before any log is read
+    const auto name = call.get<std::string>("weights");
+    const auto weighting = mechanical::weighting_from(name);
+    if (!weighting || *weighting == mechanical::Weighting::manual) {
+        throw UsageError(fmt::format("--weights {}: expected uniform, inverse-variance or agreement{}", name,
+                                     weighting ? "; give weights by hand with --weight" : ""));
+    }
+    options.weights.weighting = *weighting;
+    if (const auto weights = call.get_optional<std::vector<std::string>>("weight")) {
+        if (!call.options["weights"].defaulted())
+            throw UsageError("--weights and --weight exclude each other: give one of them");
+        options.weights.weighting = mechanical::Weighting::manual;
+        for (const auto& text : *weights) options.weights.by_hand.push_back(parse_hand_weight(text));
+    }
+    return options;
+}
 
 std::optional<mechanical::MechanicalModel> read_published(const StageCall& call) {
     const auto file = call.get_optional<std::string>("published");
@@ -119,8 +188,7 @@ std::string table_text(const TextTable& table, const std::filesystem::path& file
     throw UsageError(fmt::format("{}: expected a name that ends in .txt, .csv, .md or .tex", file.string()));
 }
 
-nlohmann::ordered_json to_json(const mechanical::MechanicalModel& model) {
-    using Json = nlohmann::ordered_json;
+Json to_json(const mechanical::MechanicalModel& model) {
     Json json{
         {"name", model.name}, {"weighting", model.weighting}, {"phases", Json::object()}, {"flights", Json::array()}};
     for (const auto phase : flight::all_phases) {
@@ -182,7 +250,7 @@ void warn_of_model(const StageCall& call, const mechanical::MechanicalModel& mod
     if (model.validation) note(call, describe(*model.validation, model.physical.has_value()));
 }
 
-void add_errors_json(nlohmann::ordered_json& json, const mechanical::MechanicalModel& model,
+void add_errors_json(Json& json, const mechanical::MechanicalModel& model,
                      const flight::PerPhase<mechanical::PhaseErrorReport>& reports) {
     for (const auto phase : flight::all_phases) {
         auto& entry = json["phases"][std::string(to_string(phase))];
@@ -193,8 +261,7 @@ void add_errors_json(nlohmann::ordered_json& json, const mechanical::MechanicalM
     }
 }
 
-void add_loss_json(nlohmann::ordered_json& json, const mechanical::ModelFit& fit) {
-    using Json = nlohmann::ordered_json;
+void add_loss_json(Json& json, const mechanical::ModelFit& fit) {
     for (const auto phase : flight::all_phases) {
         Json samples = Json::array();
         for (const auto& sample : down_weighted_samples(fit.samples[phase], fit.fits[phase])) {
@@ -209,8 +276,7 @@ void add_loss_json(nlohmann::ordered_json& json, const mechanical::ModelFit& fit
     }
 }
 
-void add_order_json(nlohmann::ordered_json& json, flight::Phase phase, const mechanical::OrderSelection& choice) {
-    using Json = nlohmann::ordered_json;
+void add_order_json(Json& json, flight::Phase phase, const mechanical::OrderSelection& choice) {
     Json errors = Json::array();
     for (const auto& error : choice.errors) {
         errors.push_back({{"order", error.order},

@@ -3,6 +3,7 @@
 #include "base/text_table.h"
 #include "cli/stage.h"
 #include "mechanical/model_errors.h"
+#include "mechanical/model_fit.h"
 #include "mechanical/order_selection.h"
 #include "mechanical/table_one.h"
 
@@ -10,10 +11,21 @@
 #include <optional>
 #include <string>
 
-#include <nlohmann/json.hpp>
-
-/// What a fit says: Table I, and as JSON the model with its errors, its outliers and its order.
+/// Options of a fit, and its output: Table I, and as JSON the model with its errors, its outliers and its order.
 namespace flightwatt::cli {
+
+/// Whether a stage can choose the order by itself ("--order auto").
+enum class AutoOrder { refused, accepted };
+
+/// The options of a fit, which several stages share.
+void add_fit_options(boost::program_options::options_description& options, AutoOrder automatic = AutoOrder::refused);
+
+/// --order as a number; std::nullopt for "auto" where that is accepted. Throws UsageError for another text.
+std::optional<int> read_order(const StageCall& call, AutoOrder automatic);
+
+/// What the user gave of them. Where the order is to be chosen it is left at the default. Throws UsageError
+/// for options that make no sense or exclude each other.
+mechanical::ModelFitOptions read_fit_options(const StageCall& call, AutoOrder automatic = AutoOrder::refused);
 
 /// The model that --published names.
 std::optional<mechanical::MechanicalModel> read_published(const StageCall& call);
@@ -30,20 +42,20 @@ TextTable mean_power_table(const mechanical::MechanicalModel& model);
 std::string table_text(const TextTable& table, const std::filesystem::path& file);
 
 /// The fitted model as the stages' JSON.
-nlohmann::ordered_json to_json(const mechanical::MechanicalModel& model);
+Json to_json(const mechanical::MechanicalModel& model);
 
 /// Warns of a frequency at the edge of what it could be, and of what model_warnings says.
 void warn_of_model(const StageCall& call, const mechanical::MechanicalModel& model);
 
 /// Adds errors, frequency_profile and spread to each phase of the stage's JSON.
-void add_errors_json(nlohmann::ordered_json& json, const mechanical::MechanicalModel& model,
+void add_errors_json(Json& json, const mechanical::MechanicalModel& model,
                      const flight::PerPhase<mechanical::PhaseErrorReport>& reports);
 
 /// Adds each phase's loss and the samples that it gives less than half weight.
-void add_loss_json(nlohmann::ordered_json& json, const mechanical::ModelFit& fit);
+void add_loss_json(Json& json, const mechanical::ModelFit& fit);
 
 /// Adds the chosen order of a phase with the error of every order that was tried.
-void add_order_json(nlohmann::ordered_json& json, flight::Phase phase, const mechanical::OrderSelection& choice);
+void add_order_json(Json& json, flight::Phase phase, const mechanical::OrderSelection& choice);
 
 /// Notes the chosen order and the prediction error of every order.
 void note_order(const StageCall& call, flight::Phase phase, const mechanical::OrderSelection& choice);

@@ -7,7 +7,7 @@
 #include "batch/log_files.h"
 #include "batch/manifest.h"
 #include "cli/output/flight_options.h"
-#include "flight/log_name.h"
+#include "flight/flight_identity.h"
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>

@@ -3,8 +3,8 @@
 #include "base/error.h"
 #include "base/toml_reader.h"
 #include "base/units.h"
-#include "cli/numeric_options.h"
-#include "cli/progress.h"
+#include "cli/stage.h"
+#include "cli/terminal.h"
 #include "flight/flight_identity.h"
 
 #include <algorithm>

@@ -2,8 +2,7 @@
 
 #include "base/csv.h"
 #include "base/error.h"
-#include "cli/numeric_options.h"
-#include "cli/output/json_text.h"
+#include "cli/stage.h"
 #include "mechanical/model_check.h"
 
 #include <algorithm>
@@ -16,14 +15,14 @@ namespace flightwatt::cli {
 namespace {
 
 /// Nothing where it is not known.
-void add_to_json(const std::optional<mechanical::HeldOutScore>& power_model, nlohmann::ordered_json& json) {
+void add_to_json(const std::optional<mechanical::HeldOutScore>& power_model, Json& json) {
     if (!power_model) return;
     json["power_model"] = {{"model", power_model->model},
                            {"flights", power_model->flights},
                            {"mean_absolute_error_percent", power_model->mean_absolute_error_percent}};
 }
 
-void add_to_json(const mission::MonteCarloResult& flights, nlohmann::ordered_json& json) {
+void add_to_json(const mission::MonteCarloResult& flights, Json& json) {
     json["probability_below_reserve"] = flights.probability_below_reserve;
     json["probability_below_reserve_standard_error"] = flights.probability_below_reserve_standard_error;
     json["probability_below_reserve_low"] = flights.probability_below_reserve_95.low;
@@ -42,7 +41,7 @@ void add_to_json(const mission::MonteCarloResult& flights, nlohmann::ordered_jso
 
 }  // namespace
 
-void add_sources(const mission::UncertaintySources& sources, nlohmann::ordered_json& json) {
+void add_sources(const mission::UncertaintySources& sources, Json& json) {
     json["drawn"] = sources.varied;
     json["not_drawn"] = sources.fixed;
 }
@@ -93,8 +92,8 @@ void note_power_model(const StageCall& call, const mission::MissionSetup& missio
     if (mission.power_model) note(call, fmt::format("{}: {}", mission.name, mission::describe(*mission.power_model)));
 }
 
-nlohmann::ordered_json to_json(const mission::MissionSummary& summary) {
-    nlohmann::ordered_json json;
+Json to_json(const mission::MissionSummary& summary) {
+    Json json;
     json["mission"] = summary.mission;
     if (summary.schedule != mission::ScheduleOrigin::given) json["schedule"] = to_string(summary.schedule);
     json["final_soc_percent"] = optional_json(summary.final_soc_percent);
@@ -120,7 +119,7 @@ nlohmann::ordered_json to_json(const mission::MissionSummary& summary) {
     return json;
 }
 
-nlohmann::ordered_json to_json(const mission::EstimatedLanding& landing) {
+Json to_json(const mission::EstimatedLanding& landing) {
     return {{"capacity_ah", landing.capacity_ah},
             {"final_soc_percent", optional_json(landing.final_soc_percent)},
             {"fails_at_s", optional_json(landing.fails_at_s)},
@@ -144,13 +143,13 @@ std::string comparison_csv(const std::vector<mission::MissionSummary>& ranked) {
     return csv.text();
 }
 
-nlohmann::ordered_json to_json(const mission::MissionPlan& plan, const mission::MissionSetup& mission) {
+Json to_json(const mission::MissionPlan& plan, const mission::MissionSetup& mission) {
     const bool feasible = plan.plan.feasible;
-    nlohmann::ordered_json json;
+    Json json;
     json["mission"] = mission.name;
     json["feasible"] = feasible;
-    json["utility"] = feasible ? nlohmann::ordered_json(*plan.summary.utility) : nullptr;
-    json["bound"] = feasible && plan.plan.bound_is_proven ? nlohmann::ordered_json(plan.plan.utility_bound) : nullptr;
+    json["utility"] = feasible ? Json(*plan.summary.utility) : nullptr;
+    json["bound"] = feasible && plan.plan.bound_is_proven ? Json(plan.plan.utility_bound) : nullptr;
     json["final_soc_percent"] = optional_json(plan.summary.final_soc_percent);
     json["reserve_soc_percent"] = mission.reserve_soc_percent;
     json["margin_percent"] = plan.margin_percent;
@@ -160,8 +159,8 @@ nlohmann::ordered_json to_json(const mission::MissionPlan& plan, const mission::
     return json;
 }
 
-nlohmann::ordered_json to_json(const mission::InfeasibilityReport& report) {
-    nlohmann::ordered_json json;
+Json to_json(const mission::InfeasibilityReport& report) {
+    Json json;
     json["short_percent"] = report.shortfall_percent;
     json["short_wh"] = report.shortfall_wh;
     json["cut_off_at_s"] = optional_json(report.cut_off_at_s);

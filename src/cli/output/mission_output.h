@@ -12,8 +12,6 @@
 #include <optional>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 /// What simulate, compare and plan have in common: drawing flights, and their answers as JSON.
 namespace flightwatt::cli {
 
@@ -37,23 +35,23 @@ void note_power_model(const StageCall& call, const mission::MissionSetup& missio
 void warn_of_lost_comments(const StageCall& call, const mission::PlannedMissionText& written);
 
 /// What differs between flights and what does not, as "drawn" and "not_drawn".
-void add_sources(const mission::UncertaintySources& sources, nlohmann::ordered_json& json);
+void add_sources(const mission::UncertaintySources& sources, Json& json);
 
 /// The summary as simulate and compare print it; null stands for "never".
-nlohmann::ordered_json to_json(const mission::MissionSummary& summary);
+Json to_json(const mission::MissionSummary& summary);
 
 /// rank,mission,schedule,... (docs/formats.md): a row a mission in their order, all columns whatever the missions are.
 std::string comparison_csv(const std::vector<mission::MissionSummary>& ranked);
 
 /// The same landing with the capacity that the flights of the pack indicate.
-nlohmann::ordered_json to_json(const mission::EstimatedLanding& landing);
+Json to_json(const mission::EstimatedLanding& landing);
 inline constexpr auto by_flights_key =
     "with_capacity_of_flights";  ///< of that, where a mission's capacity contradicts it
 
 /// A plan; null stands for what an infeasible one does not have.
-nlohmann::ordered_json to_json(const mission::MissionPlan& plan, const mission::MissionSetup& mission);
+Json to_json(const mission::MissionPlan& plan, const mission::MissionSetup& mission);
 
-nlohmann::ordered_json to_json(const mission::InfeasibilityReport& report);
+Json to_json(const mission::InfeasibilityReport& report);
 
 /// A mission's curve under its rank.
 TerminalLine soc_line(const mission::SocCurve& curve, std::size_t rank);

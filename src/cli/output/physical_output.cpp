@@ -3,10 +3,8 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "cli/output/json_text.h"
-#include "cli/progress.h"
+#include "cli/terminal.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -96,8 +94,7 @@ std::string physical_text(const mechanical::PhysicalFit& fit, const Screen& scre
            screen_text(trials_table(fit), screen);
 }
 
-nlohmann::ordered_json physical_json(const mechanical::PhysicalFit& fit) {
-    using Json = nlohmann::ordered_json;
+Json physical_json(const mechanical::PhysicalFit& fit) {
     const auto& model = fit.model;
     Json terms = Json::array();
     for (std::size_t i = 0; i < model.terms.size(); ++i) {

@@ -9,8 +9,6 @@
 #include <span>
 #include <string>
 
-#include <nlohmann/json.hpp>
-
 /// What a physical model says: its constants, and how they were chosen.
 namespace flightwatt::cli {
 
@@ -23,7 +21,7 @@ TextTable trials_table(const mechanical::PhysicalFit& fit);
 /// Both tables, what the model rests on, and how far an unseen flight may be off.
 std::string physical_text(const mechanical::PhysicalFit& fit, const Screen& screen);
 
-nlohmann::ordered_json physical_json(const mechanical::PhysicalFit& fit);
+Json physical_json(const mechanical::PhysicalFit& fit);
 
 /// Warns of flights that are not in the model, and of what it does not know.
 void warn_of_physical(const StageCall& call, const mechanical::PhysicalFit& fit);

@@ -32,19 +32,18 @@ std::string component_table(const compute::ComponentEstimate& component, const c
     return screen_text(table, screen, shown);
 }
 
-nlohmann::ordered_json to_json(const compute::PowerEstimate& estimate) {
+Json to_json(const compute::PowerEstimate& estimate) {
     return {{"power_w", estimate.power_w},       {"standard_error_w", estimate.standard_error_w},
             {"duration_s", estimate.duration_s}, {"energy_j", estimate.energy_j},
             {"samples", estimate.samples},       {"repeats", estimate.repeats}};
 }
 
-nlohmann::ordered_json to_json(const compute::ComponentEstimate& component, const compute::ProfileOutcome& outcome,
-                               bool above_idle) {
-    nlohmann::ordered_json json{{"name", component.name}, {"parameters", component.parameters}};
-    json["nodes"] = nlohmann::ordered_json::array();
+Json to_json(const compute::ComponentEstimate& component, const compute::ProfileOutcome& outcome, bool above_idle) {
+    Json json{{"name", component.name}, {"parameters", component.parameters}};
+    json["nodes"] = Json::array();
     for (const auto& node : component.nodes) {
         const auto reported = reported_power(node.total, outcome.idle, above_idle);
-        nlohmann::ordered_json entry{{"qos", node.qos}};
+        Json entry{{"qos", node.qos}};
         entry.update(to_json(node.total));
         entry["power_w"] = reported.power_w;
         entry["standard_error_w"] = reported.standard_error_w;
@@ -53,7 +52,7 @@ nlohmann::ordered_json to_json(const compute::ComponentEstimate& component, cons
         entry["measured"] = node.is_measured;
         json["nodes"].push_back(std::move(entry));
     }
-    json["failures"] = nlohmann::ordered_json::array();
+    json["failures"] = Json::array();
     for (const auto& run : component.failures) {
         json["failures"].push_back({{"configuration", run.configuration},
                                     {"repeat", run.repeat},
@@ -66,7 +65,7 @@ nlohmann::ordered_json to_json(const compute::ComponentEstimate& component, cons
 
 }  // namespace
 
-nlohmann::ordered_json to_json(const compute::LeaveOneOutErrors& error) {
+Json to_json(const compute::LeaveOneOutErrors& error) {
     return {{"method", error.method},
             {"nodes", error.nodes},
             {"mean_absolute_error_w", error.mean_absolute_w},
@@ -103,13 +102,13 @@ std::string profile_text(const compute::ProfileOutcome& outcome, bool above_idle
     return text;
 }
 
-nlohmann::ordered_json to_json(const compute::ProfileOutcome& outcome, bool above_idle) {
-    nlohmann::ordered_json json{{"sampler", outcome.sampler}, {"above_idle", above_idle}};
+Json to_json(const compute::ProfileOutcome& outcome, bool above_idle) {
+    Json json{{"sampler", outcome.sampler}, {"above_idle", above_idle}};
     if (outcome.idle) json["idle"] = to_json(*outcome.idle);
     json["sampling_interval"] = {{"mean_s", outcome.jitter.mean_s},
                                  {"standard_deviation_s", outcome.jitter.sd_s},
                                  {"longest_s", outcome.jitter.max_s}};
-    json["components"] = nlohmann::ordered_json::array();
+    json["components"] = Json::array();
     for (const auto& component : outcome.components) {
         json["components"].push_back(to_json(component, outcome, above_idle));
     }

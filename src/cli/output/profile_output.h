@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 /// What flightwatt profile prints.
 namespace flightwatt::cli {
 
@@ -18,9 +16,9 @@ namespace flightwatt::cli {
 std::string profile_text(const compute::ProfileOutcome& outcome, bool above_idle, const Screen& screen = {});
 
 /// The same as JSON.
-nlohmann::ordered_json to_json(const compute::ProfileOutcome& outcome, bool above_idle);
+Json to_json(const compute::ProfileOutcome& outcome, bool above_idle);
 
-nlohmann::ordered_json to_json(const compute::LeaveOneOutErrors& error);
+Json to_json(const compute::LeaveOneOutErrors& error);
 
 /// The errors of interpolating a profile as a table under its name.
 std::string interpolation_text(const std::string& file, std::size_t nodes,

@@ -2,9 +2,8 @@
 
 #include "base/csv.h"
 #include "base/duration_text.h"
-#include "base/units.h"
-#include "cli/output/json_text.h"
 #include "cli/output/mission_output.h"
+#include "cli/stage.h"
 
 #include <algorithm>
 #include <numeric>
@@ -123,14 +122,14 @@ std::string sentence(const std::string& mission, ScheduleMethod baseline,
     return text + ".";
 }
 
-nlohmann::ordered_json phases_json(const mission::PerPhase<double>& values) {
-    nlohmann::ordered_json json;
+Json phases_json(const mission::PerPhase<double>& values) {
+    Json json;
     for (const auto phase : mission::all_phases) json[std::string(flight::to_string(phase))] = values[phase];
     return json;
 }
 
-nlohmann::ordered_json schedule_json(const ReplayedSchedule& replayed) {
-    nlohmann::ordered_json json{{"way", mission::to_string(replayed.way)}};
+Json schedule_json(const ReplayedSchedule& replayed) {
+    Json json{{"way", mission::to_string(replayed.way)}};
     auto summary = cli::to_json(replayed.summary);
     summary.erase("mission");
     json.update(summary);
@@ -140,33 +139,33 @@ nlohmann::ordered_json schedule_json(const ReplayedSchedule& replayed) {
     return json;
 }
 
-nlohmann::ordered_json replay_json(const Replay& replay) {
+Json replay_json(const Replay& replay) {
     constexpr std::array<std::string_view, 3> seen{"no", "yes", "unknown"};
-    nlohmann::ordered_json json{{"flight", replay.flight},
-                                {"mission", replay.mission},
-                                {"model", replay.model},
-                                {"model_flights", replay.model_flights},
-                                {"model_saw_flight", seen.at(static_cast<std::size_t>(replay.model_saw_flight))},
-                                {"planned_s", phases_json(replay.planned_s)},
-                                {"flown_s", phases_json(replay.flown_s)},
-                                {"expected_mechanical_wh", replay.expected_mechanical_wh},
-                                {"measured_mechanical_wh", replay.measured_mechanical_wh},
-                                {"counter_energy_wh", optional_json(replay.counter_energy_wh)},
-                                {"gaps", replay.gaps},
-                                {"longest_gap_s", replay.max_gap_s},
-                                {"bound", replay.bound_is_proven ? optional_json(replay.bound) : nullptr},
-                                {"notes", replay.notes}};
-    json["schedules"] = nlohmann::ordered_json::array();
+    Json json{{"flight", replay.flight},
+              {"mission", replay.mission},
+              {"model", replay.model},
+              {"model_flights", replay.model_flights},
+              {"model_saw_flight", seen.at(static_cast<std::size_t>(replay.model_saw_flight))},
+              {"planned_s", phases_json(replay.planned_s)},
+              {"flown_s", phases_json(replay.flown_s)},
+              {"expected_mechanical_wh", replay.expected_mechanical_wh},
+              {"measured_mechanical_wh", replay.measured_mechanical_wh},
+              {"counter_energy_wh", optional_json(replay.counter_energy_wh)},
+              {"gaps", replay.gaps},
+              {"longest_gap_s", replay.max_gap_s},
+              {"bound", replay.bound_is_proven ? optional_json(replay.bound) : nullptr},
+              {"notes", replay.notes}};
+    json["schedules"] = Json::array();
     for (const auto& replayed : replay.schedules) json["schedules"].push_back(schedule_json(replayed));
     return json;
 }
 
-nlohmann::ordered_json comparison_json(const std::string& mission, ScheduleMethod baseline,
-                                       const std::vector<mission::Comparison>& comparisons) {
-    nlohmann::ordered_json json{{"mission", mission},
-                                {"baseline", mission::to_string(baseline)},
-                                {"sentence", sentence(mission, baseline, comparisons)}};
-    json["flights"] = nlohmann::ordered_json::array();
+Json comparison_json(const std::string& mission, ScheduleMethod baseline,
+                     const std::vector<mission::Comparison>& comparisons) {
+    Json json{{"mission", mission},
+              {"baseline", mission::to_string(baseline)},
+              {"sentence", sentence(mission, baseline, comparisons)}};
+    json["flights"] = Json::array();
     for (const auto& comparison : comparisons) {
         json["flights"].push_back({{"flight", comparison.flight},
                                    {"verdict", to_string(comparison.verdict)},
@@ -254,10 +253,8 @@ std::string replay_csv(Replays replays) {
     return csv.text();
 }
 
-nlohmann::ordered_json to_json(const mission::Replays& replays) {
-    nlohmann::ordered_json json{{"replays", nlohmann::ordered_json::array()},
-                                {"comparisons", nlohmann::ordered_json::array()},
-                                {"not_replayed", nlohmann::ordered_json::array()}};
+Json to_json(const mission::Replays& replays) {
+    Json json{{"replays", Json::array()}, {"comparisons", Json::array()}, {"not_replayed", Json::array()}};
     for (const auto& replay : replays.replays) json["replays"].push_back(replay_json(replay));
     for (const auto& name : missions_of(replays.replays)) {
         for (const auto baseline : baselines) {

@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 /// What flightwatt replay shows, and the report of it.
 namespace flightwatt::cli {
 
@@ -31,6 +29,6 @@ std::string replay_text(std::span<const mission::Replay> replays, const Screen& 
 /// flight,mission,schedule,... (docs/formats.md), one row a flight, mission and schedule.
 std::string replay_csv(std::span<const mission::Replay> replays);
 
-nlohmann::ordered_json to_json(const mission::Replays& replays);
+Json to_json(const mission::Replays& replays);
 
 }  // namespace flightwatt::cli

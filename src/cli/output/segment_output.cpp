@@ -1,7 +1,7 @@
 #include "cli/output/segment_output.h"
 
 #include "base/duration_text.h"
-#include "cli/output/json_text.h"
+#include "cli/stage.h"
 #include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
 #include "flight/selected_track.h"
@@ -12,8 +12,6 @@
 
 namespace flightwatt::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json to_json(const flight::PhaseEdge& edge) {
     return {{"altitude_m", edge.altitude_m},

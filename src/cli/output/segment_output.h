@@ -10,8 +10,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 /// What flightwatt segment says of a flight.
 namespace flightwatt::cli {
 
@@ -30,8 +28,8 @@ std::string explanation(const flight::FlightSeries& series, const flight::Flight
 
 /// What `segment --json` prints: sorties with phases and edges, what is no flight, the power check and the
 /// warnings. null stands for what is not known.
-nlohmann::ordered_json to_json(const flight::FlightSeries& series, const flight::FlightPhases& phases,
-                               const flight::PowerReport& power, const std::vector<std::string>& warnings);
+Json to_json(const flight::FlightSeries& series, const flight::FlightPhases& phases, const flight::PowerReport& power,
+             const std::vector<std::string>& warnings);
 
 /// Altitude over the log, and below it where the phases are.
 std::string altitude_profile(TerminalPlot plot, const flight::FlightSeries& series, const flight::FlightPhases& phases);

@@ -1,7 +1,6 @@
 #include "cli/output/watch_output.h"
 
 #include "base/units.h"
-#include "cli/output/json_text.h"
 #include "cli/output/prediction_output.h"
 
 #include <algorithm>
@@ -12,8 +11,6 @@
 
 namespace flightwatt::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string phase_text(const live::LiveState& state) {
     if (state.phase) return std::string(to_string(*state.phase));
@@ -95,8 +92,9 @@ std::string reserve_line(const live::LiveState& state) {
 std::string schedule_line(const live::LiveState& state, const compute::ComputeModel& compute) {
     if (!state.decision) return "";
     const auto& decision = *state.decision;
-    auto text = "runs " + run_text(decision.run, compute);
-    if (decision.next) text += fmt::format(", in {:.0f} s {}", decision.next_in_s, run_text(*decision.next, compute));
+    auto text = "runs " + describe(compute, decision.run, "=");
+    if (decision.next)
+        text += fmt::format(", in {:.0f} s {}", decision.next_in_s, describe(compute, *decision.next, "="));
     if (decision.remaining_utility_per_s)
         text += fmt::format("; utility {:.4g} a second to the end", *decision.remaining_utility_per_s);
     if (!decision.keeps_reserve) text += "; no plan keeps the reserve";
@@ -117,18 +115,22 @@ std::string variable_name(std::string text) {
     return text;
 }
 
-}  // namespace
+constexpr auto replace_invalid = Json::error_handler_t::replace;
 
-std::string run_text(const compute::Configuration& run, const compute::ComputeModel& compute) {
+/// A line in lines of so many columns, broken at blanks; those below are indented as a screen's texts are.
+std::string wrapped(std::string line, std::size_t columns) {
+    const std::string indent(10, ' ');
     std::string text;
-    for (const auto& running : run) {
-        const auto& component = compute.components[running.component];
-        text += (text.empty() ? "" : ", ") + component.name;
-        for (std::size_t i = 0; i < running.qos.size(); ++i)
-            text += fmt::format(" {}={:g}", component.profile.parameters[i], running.qos[i]);
+    while (line.size() > columns) {
+        const auto blank = line.rfind(' ', columns);
+        if (blank == std::string::npos || blank <= indent.size()) break;
+        text += line.substr(0, blank) + "\n";
+        line.replace(0, blank + 1, indent);
     }
-    return text.empty() ? "nothing" : text;
+    return text + line + "\n";
 }
+
+}  // namespace
 
 Json json_of(const live::LiveState& state, const compute::ComputeModel& compute) {
     Json json{{"time_s", state.time_s},
@@ -168,7 +170,6 @@ Json json_of(const live::LiveState& state, const compute::ComputeModel& compute)
 }
 
 PageEvent page_event(const live::LiveState& state, const compute::ComputeModel& compute, const live::TimeCurve& ahead) {
-    constexpr auto replace = Json::error_handler_t::replace;
     const auto soc = state.battery ? state.battery->soc_percent : std::nullopt;
     const auto by_voltage = state.battery ? state.battery->soc_by_voltage_percent : std::nullopt;
     const Json point{{"t", state.time_s},
@@ -181,7 +182,7 @@ PageEvent page_event(const live::LiveState& state, const compute::ComputeModel& 
     auto json = json_of(state, compute);
     json["ahead"] = {{"time_s", ahead.time_s}, {"soc_percent", ahead.value}};
     json["point"] = point;
-    return {json.dump(-1, ' ', false, replace), point.dump(-1, ' ', false, replace)};
+    return {json.dump(-1, ' ', false, replace_invalid), point.dump(-1, ' ', false, replace_invalid)};
 }
 
 std::string line_of(const live::LiveState& state, const compute::ComputeModel& compute) {
@@ -232,6 +233,62 @@ live::DecisionCommand::Environment decision_environment(const live::LiveState& s
             variables[name + "_" + variable_name(component.profile.parameters[i])] = fmt::format("{}", running->qos[i]);
     }
     return variables;
+}
+
+WatchOutput::WatchOutput(const StageCall& call, const compute::ComputeModel& compute,
+                         const std::optional<live::PredictionInput>& basis)
+    : call_(call), compute_(compute), basis_(basis), plot_(terminal_plot(call, "state of charge, %")) {}
+
+void WatchOutput::print_state(const live::LiveState& state) {
+    warnings_ = state.warnings;
+    const auto to_say = said_.due(warnings_, state.time_s);
+    for (const auto& warning : to_say)
+        if (!plot_) warn(call_, warning);
+    if (state.battery && state.battery->state) soc_.add(state.time_s, state.battery->state->soc_percent);
+    if (plot_) {
+        draw(state);
+    } else if (call_.json) {
+        is_read_ = print_flushed(json_of(state, compute_).dump(-1, ' ', false, replace_invalid) + "\n");
+    } else {
+        is_read_ = print_flushed(line_of(state, compute_));
+    }
+}
+
+void WatchOutput::end(const live::LiveFlight& flight, const std::string& why) {
+    for (const auto& warning : said_.final_updates(warnings_)) warn(call_, warning);
+    const auto& last = flight.last_predicted();
+    if (call_.json) {
+        Json json{{"ended", why}, {"last_prediction", nullptr}};
+        if (last) json["last_prediction"] = json_of(*last, compute_);
+        print(json.dump(-1, ' ', false, replace_invalid) + "\n");
+    } else {
+        note(call_, why);
+    }
+    const auto text = last ? text_of(*last->prediction) : std::string();
+    if (call_.output || !text.empty()) write_result(call_, text);
+}
+
+void WatchOutput::draw(const live::LiveState& state) {
+    constexpr std::chrono::milliseconds min_interval{250};
+    const auto now = std::chrono::steady_clock::now();
+    if (drawn_ && now - *drawn_ < min_interval) return;
+    drawn_ = now;
+    auto lines = screen_of(state, compute_);
+    for (const auto& warning : state.warnings) lines.push_back("          " + one_line(warning));
+    std::string text = "\x1b[H\x1b[J";  // the whole screen anew
+    for (const auto& line : lines) text += wrapped(line, plot_->columns);
+    is_read_ = print_flushed(text + curve(state));
+}
+
+std::string WatchOutput::curve(const live::LiveState& state) const {
+    std::vector<TerminalLine> curves;
+    if (const auto& flown = soc_.curve(); flown.time_s.size() > 1)
+        curves.push_back({flown.time_s, flown.value, "flown"});
+    if (basis_) {
+        if (auto ahead = live::soc_ahead(state, *basis_); ahead.time_s.size() > 1)
+            curves.push_back({std::move(ahead.time_s), std::move(ahead.value), "ahead"});
+    }
+    return curves.empty() ? "" : cli::draw(*plot_, curves);
 }
 
 }  // namespace flightwatt::cli

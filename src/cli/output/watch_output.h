@@ -1,21 +1,23 @@
 #pragma once
 
 #include "cli/stage.h"
+#include "cli/terminal.h"
+#include "cli/warning_throttle.h"
 #include "compute/compute_model.h"
 #include "live/decision_command.h"
 #include "live/live_curves.h"
 #include "live/live_flight.h"
 
+#include <chrono>
+#include <optional>
 #include <string>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 /// What watch says of a flight in the air.
 namespace flightwatt::cli {
 
 /// All of a state; null for what is not known (docs/live.md). `compute` names what its decision runs.
-nlohmann::ordered_json json_of(const live::LiveState& state, const compute::ComputeModel& compute);
+Json json_of(const live::LiveState& state, const compute::ComputeModel& compute);
 
 /// What a page is told.
 struct PageEvent {
@@ -30,13 +32,37 @@ std::string line_of(const live::LiveState& state, const compute::ComputeModel& c
 /// A few lines, for a screen; alarms last.
 std::vector<std::string> screen_of(const live::LiveState& state, const compute::ComputeModel& compute);
 
-/// "detection fps=5.8, encryption off"; "nothing".
-std::string run_text(const compute::Configuration& run, const compute::ComputeModel& compute);
-
 /// What --on-decision's command finds in its environment: FLIGHTWATT_TIME_S, FLIGHTWATT_PHASE, FLIGHTWATT_SOC_PERCENT,
 /// FLIGHTWATT_RUN (JSON), and of each component FLIGHTWATT_COMPONENT_NAME (1 or 0) and, where it runs,
 /// FLIGHTWATT_COMPONENT_NAME_PARAMETER. The state has a decision.
 live::DecisionCommand::Environment decision_environment(const live::LiveState& state,
                                                         const compute::ComputeModel& compute);
+
+/// The standard output of watch: a screen with a plot on a terminal that shows one, else a line or with --json an object
+/// a state. What it is made from has to outlive it.
+class WatchOutput {
+  public:
+    WatchOutput(const StageCall& call, const compute::ComputeModel& compute,
+                const std::optional<live::PredictionInput>& basis);
+
+    void print_state(const live::LiveState& state);
+    bool is_read() const { return is_read_; }
+    /// The last prediction, and why the stage ends.
+    void end(const live::LiveFlight& flight, const std::string& why);
+
+  private:
+    void draw(const live::LiveState& state);
+    std::string curve(const live::LiveState& state) const;
+
+    const StageCall& call_;
+    const compute::ComputeModel& compute_;
+    const std::optional<live::PredictionInput>& basis_;
+    std::optional<TerminalPlot> plot_;
+    live::CurveHistory soc_;
+    WarningThrottle said_;
+    std::vector<std::string> warnings_;  ///< of the latest state
+    std::optional<std::chrono::steady_clock::time_point> drawn_;
+    bool is_read_ = true;
+};
 
 }  // namespace flightwatt::cli

@@ -1,5 +1,5 @@
 #include "base/statistics.h"
-#include "flight/checks/flown_power.h"
+#include "flight/checks/power_warnings.h"
 #include "flight/phase_statistics.h"
 
 #include <algorithm>
@@ -91,8 +91,8 @@ std::map<int, std::vector<std::size_t>> samples_by_throttle(const PowerRecord& r
 
 }  // namespace
 
-void warn_of_power_beside_throttle(const InFlightPower& flown, Warnings& warnings) {
-    const auto& record = flown.record;
+void warn_of_power_beside_throttle(const PowerCheckInput& input, Warnings& warnings) {
+    const auto& record = input.record;
     if (record.throttle_percent.empty()) return;
     const auto by_throttle = samples_by_throttle(record);
     if (by_throttle.size() < 2) return;  // a switch, or a throttle that stands still
@@ -113,15 +113,16 @@ void warn_of_power_beside_throttle(const InFlightPower& flown, Warnings& warning
             ++samples;
         }
     }
-    if (lacking_j + beyond_j <= doubtful_beside_throttle_fraction * flown.energy_j) return;
-    warnings.push_back(fmt::format(
-        "power is far from what it usually is at the same throttle in {} samples in flight: {} % "
-        "of the energy less, {} % more",
-        samples, percent_of_whole(lacking_j / flown.energy_j), percent_of_whole(beyond_j / flown.energy_j)));
+    if (lacking_j + beyond_j <= doubtful_beside_throttle_fraction * input.record.energy_j) return;
+    warnings.push_back(
+        fmt::format("power is far from what it usually is at the same throttle in {} samples in flight: {} % "
+                    "of the energy less, {} % more",
+                    samples, percent_of_whole(lacking_j / input.record.energy_j),
+                    percent_of_whole(beyond_j / input.record.energy_j)));
 }
 
-void warn_of_brief_changes(const InFlightPower& flown, Warnings& warnings) {
-    const auto& record = flown.record;
+void warn_of_brief_changes(const PowerCheckInput& input, Warnings& warnings) {
+    const auto& record = input.record;
     const auto& power_w = record.power_w;
     const double max_s = gap_threshold_s(record.time_s);
     BriefChangeDetector judge{record};
@@ -142,7 +143,7 @@ void warn_of_brief_changes(const InFlightPower& flown, Warnings& warnings) {
             }
         }
     }
-    const double part = carried_j / flown.energy_j;
+    const double part = carried_j / input.record.energy_j;
     if (part <= doubtful_change_fraction) return;
     warnings.push_back(fmt::format("{} time{} the power rises or falls for up to {} samples{}: {} % of the energy",
                                    changes, changes == 1 ? "" : "s", max_change,

@@ -31,11 +31,26 @@ struct PowerRecord {
     double duration_s = 0.0;
 };
 
+template <typename Visit>
+void for_each_in_flight(const PowerRecord& record, Visit&& visit) {
+    for (const auto& [first, last] : record.in_flight)
+        for (auto i = first; i < last; ++i) visit(i);
+}
+
 PowerRecord make_power_record(const SelectedTracks& tracks, const FlightPhases& phases);
 
 /// Indices of the power samples at rest on the ground with the motor off; where no throttle tells that of the motor, at
 /// rest outside of the sorties.
 std::vector<std::size_t> resting_samples(const PowerRecord& record, const std::vector<Rest>& rests,
                                          const SegmentationOptions& options);
+
+/// What the rules for samples of a power record found: faults exclude a flight from fits, warnings do not.
+struct SampleFindings {
+    std::vector<std::string> faults;
+    std::vector<std::string> warnings;
+};
+
+/// Applies the table of rules in power_record.cpp. `resting`: the samples at rest with the motor off, in order.
+SampleFindings apply_sample_rules(const PowerRecord& record, const std::vector<std::size_t>& resting);
 
 }  // namespace flightwatt::flight

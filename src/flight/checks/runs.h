@@ -39,10 +39,13 @@ double time_where(const std::vector<double>& time_s, SampleRange within, double 
     return together_s;
 }
 
-/// The runs of samples that repeat one value.
-inline std::vector<SampleRange> runs_of_equal(const std::vector<double>& values, SampleRange within) {
-    return runs_of(
-        within, [](std::size_t) { return true; }, [&](std::size_t i) { return values[i] == values[i - 1]; });
+/// The runs of at least so many samples that repeat one value.
+inline std::vector<SampleRange> runs_of_equal(const std::vector<double>& values, std::size_t min_samples) {
+    auto runs = runs_of(
+        {0, values.size()}, [](std::size_t) { return true; },
+        [&](std::size_t i) { return values[i] == values[i - 1]; });
+    std::erase_if(runs, [&](const SampleRange& run) { return run.size() < min_samples; });
+    return runs;
 }
 
 }  // namespace flightwatt::flight

@@ -27,20 +27,6 @@ void take_out_spikes(std::vector<double>& values) {
     }
 }
 
-/// Leaves out the samples that are marked. Returns how many.
-std::size_t leave_out(Track& track, const std::vector<bool>& out) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < track.time_s.size(); ++i) {
-        if (out[i]) continue;
-        track.time_s[kept] = track.time_s[i];
-        track.value[kept++] = track.value[i];
-    }
-    const auto left_out = track.time_s.size() - kept;
-    track.time_s.resize(kept);
-    track.value.resize(kept);
-    return left_out;
-}
-
 void mark(std::vector<bool>& out, std::size_t begin, std::size_t end) {
     std::fill(out.begin() + static_cast<std::ptrdiff_t>(begin), out.begin() + static_cast<std::ptrdiff_t>(end), true);
 }
@@ -48,10 +34,8 @@ void mark(std::vector<bool>& out, std::size_t begin, std::size_t end) {
 /// Which samples repeat one value for long.
 std::vector<bool> stuck_samples(const Track& track) {
     std::vector<bool> stuck(track.value.size(), false);
-    for (const auto& run : runs_of_equal(track.value, {0, track.value.size()})) {
-        if (run.size() >= stuck_count && track.time_s[run.last - 1] - track.time_s[run.first] >= stuck_s)
-            mark(stuck, run.first, run.last);
-    }
+    for (const auto& run : runs_of_equal(track.value, stuck_count))
+        if (track.time_s[run.last - 1] - track.time_s[run.first] >= stuck_s) mark(stuck, run.first, run.last);
     return stuck;
 }
 
@@ -90,7 +74,7 @@ std::size_t leave_out_excursions(Track& track) {
             break;
         }
     }
-    return leave_out(track, out);
+    return erase_samples(track, [&](std::size_t i) { return out[i]; });
 }
 
 /// The pieces between jumps: where each begins, and at last where the track ends.
@@ -111,7 +95,7 @@ std::size_t leave_out_short_pieces(Track& track) {
         const auto [begin, end] = std::pair{bounds[p], bounds[p + 1]};
         if (track.time_s[end - 1] - track.time_s[begin] < shortest_piece_s) mark(out, begin, end);
     }
-    return leave_out(track, out);
+    return erase_samples(track, [&](std::size_t i) { return out[i]; });
 }
 
 /// Whether an altitude that moves on both sides, and for a while, jumps further than any estimator that gets its fix.

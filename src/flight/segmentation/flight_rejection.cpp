@@ -2,9 +2,9 @@
 
 #include "base/statistics.h"
 #include "base/units.h"
-#include "flight/physical_bounds.h"
 #include "flight/selected_track.h"
 #include "flight/series_file.h"
+#include "flight/sources/outliers.h"
 
 #include <algorithm>
 #include <cmath>

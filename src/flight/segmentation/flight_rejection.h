@@ -2,8 +2,8 @@
 
 #include "flight/flight_phases.h"
 #include "flight/flight_series.h"
-#include "flight/segmentation/activity.h"
 #include "flight/segmentation/flight_grid.h"
+#include "flight/segmentation/phase_edges.h"
 #include "flight/selected_track.h"
 
 #include <string>

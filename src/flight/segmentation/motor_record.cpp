@@ -86,8 +86,7 @@ std::size_t take_out_glitches(Track& throttle, const Track& power, const PowerLe
 std::string follow_power(const SelectedTracks& tracks, Track& throttle, const Track& power, const PowerLevels& levels,
                          double idle_percent) {
     const auto& time_s = throttle.time_s;
-    const auto& speed = tracks["ground_speed_m_per_s"];
-    const auto speed_m_per_s = speed.empty() ? std::vector<double>{} : resample(speed, time_s);
+    const auto speed_m_per_s = sample_selected_track(tracks, "ground_speed_m_per_s", time_s);
     const auto moves = [&](std::size_t i) {
         return speed_m_per_s.empty() || speed_m_per_s[i] > SegmentationOptions{}.rest_speed_m_per_s;
     };

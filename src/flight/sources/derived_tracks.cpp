@@ -35,7 +35,7 @@ struct MadeTrack {
     std::vector<const char*> fields;
     std::optional<Quantity> quantity;  ///< that the first field must have
     const char* source;
-    std::function<double(const Row&)> make;
+    double (*make)(const Row& row);
 };
 
 struct Position {
@@ -84,35 +84,28 @@ double wind_speed(const Row& east_north) {
     return speed > 0.0 ? speed : unknown;
 }
 
+double percent_of_command(const Row& row) { return units::percent_from_pprz(row[0]); }
+
+double speed_of_components(const Row& row) { return std::hypot(row[0], row[1], row[2]); }
+
 const std::vector<MadeTrack>& made_tracks() {
     static const std::vector<MadeTrack> made{
         // Rotorcraft before 2018: thrust, without a unit, on Paparazzi's command scale.
-        {"throttle_percent",
-         "ROTORCRAFT_FP",
-         {"thrust"},
-         {},
-         "ROTORCRAFT_FP.thrust",
-         [](const Row& row) { return units::percent_from_pprz(row[0]); }},
+        {"throttle_percent", "ROTORCRAFT_FP", {"thrust"}, {}, "ROTORCRAFT_FP.thrust", percent_of_command},
         // What the motor is commanded, also in manual mode.
-        {"throttle_percent",
-         "COMMANDS",
-         {"values"},
-         {},
-         commanded_throttle,
-         [](const Row& row) { return units::percent_from_pprz(row[0]); }},
+        {"throttle_percent", "COMMANDS", {"values"}, {}, commanded_throttle, percent_of_command},
         {"ground_speed_m_per_s",
          "GPS_INT",
          {"ecef_xd", "ecef_yd", "ecef_zd"},
          {},
          "GPS_INT.ecef velocity",
-         [](const Row& row) { return std::hypot(row[0], row[1], row[2]); }},
+         speed_of_components},
         {"wind_speed_m_per_s",
          "WIND_INFO",
          {"east", "north"},
          Quantity::metre_per_second,
          "WIND_INFO.east, north",
-         wind_speed},
-    };
+         wind_speed}};
     return made;
 }
 

@@ -4,7 +4,7 @@
 #include "base/units.h"
 #include "flight/checks/runs.h"
 #include "flight/phase_statistics.h"
-#include "flight/sources/device_tracks.h"
+#include "flight/sources/device_sum.h"
 
 #include <algorithm>
 #include <charconv>
@@ -53,19 +53,6 @@ double energy_j(const DeviceTable& table, const std::vector<double>& power_w, do
     return std::transform_reduce(power_w.begin(), power_w.end(), table.step_s.begin(), before_j);
 }
 
-/// From `from_s` to `to_s` a device reported one value.
-struct StuckInterval {
-    double from_s;
-    double to_s;
-};
-
-std::vector<StuckInterval> standstills_of(const Track& track) {
-    std::vector<StuckInterval> found;
-    for (const auto& run : runs_of_equal(track.value, {0, track.value.size()}))
-        if (run.size() >= alike_reports) found.push_back({track.time_s[run.first], track.time_s[run.last - 1]});
-    return found;
-}
-
 /// What one device does beside the others, sample by sample.
 struct DeviceComparison {
     const std::vector<double>& own_w;
@@ -84,9 +71,9 @@ DeviceComparison beside_others(const DeviceTable& table, std::size_t device, con
         beside.median_w.push_back(median(std::move(others)));
     }
     for (const auto& track : reported) {
-        for (const auto& standstill : standstills_of(track)) {
-            const auto first = std::ranges::lower_bound(table.time_s, standstill.from_s) - table.time_s.begin();
-            const auto last = std::ranges::upper_bound(table.time_s, standstill.to_s) - table.time_s.begin();
+        for (const auto& run : runs_of_equal(track.value, alike_reports)) {
+            const auto first = std::ranges::lower_bound(table.time_s, track.time_s[run.first]) - table.time_s.begin();
+            const auto last = std::ranges::upper_bound(table.time_s, track.time_s[run.last - 1]) - table.time_s.begin();
             std::fill(beside.stands.begin() + first, beside.stands.begin() + std::max(first, last), true);
         }
     }

@@ -1,9 +1,9 @@
 #include "flight/sources/outliers.h"
 
 #include "base/statistics.h"
-#include "flight/physical_bounds.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -12,6 +12,28 @@
 
 namespace flightwatt::flight {
 namespace {
+
+struct NamedBounds {
+    std::string_view name;
+    PhysicalBounds bounds;
+};
+
+constexpr std::array bounds_by_name{NamedBounds{"altitude_m", {-500.0, 2e4}},
+                                    NamedBounds{"throttle_percent", {-5.0, 105.0}},
+                                    NamedBounds{"voltage_v", {0.0, 500.0}},
+                                    NamedBounds{"current_a", {-2e3, 2e3}},
+                                    NamedBounds{"power_w", {-1e5, 1e5}},
+                                    NamedBounds{"charge_ah", {-1e4, 1e4}},
+                                    NamedBounds{"energy_wh", {-1e5, 1e5}},
+                                    NamedBounds{"ground_speed_m_per_s", {-1.0, 300.0}},
+                                    NamedBounds{"airspeed_m_per_s", {-50.0, 300.0}},
+                                    NamedBounds{"wind_speed_m_per_s", {0.0, 100.0}},
+                                    NamedBounds{"wind_east_m_per_s", {-100.0, 100.0}},
+                                    NamedBounds{"wind_north_m_per_s", {-100.0, 100.0}},
+                                    NamedBounds{"climb_m_per_s", {-300.0, 300.0}},
+                                    NamedBounds{"air_temperature_c", {-80.0, 100.0}}};
+
+bool is_within(const PhysicalBounds& bounds, double value) { return value >= bounds.low && value <= bounds.high; }
 
 constexpr double contradicting_part = 0.10;
 constexpr double contradicting_w = 1.0;  // power may be a whole number
@@ -97,6 +119,27 @@ std::vector<double> counter_spikes(const Track& track) {
 
 }  // namespace
 
+std::optional<PhysicalBounds> physical_bounds(std::string_view track_name) {
+    const auto* const found = std::ranges::find(bounds_by_name, track_name, &NamedBounds::name);
+    return found == bounds_by_name.end() ? std::nullopt : std::optional(found->bounds);
+}
+
+bool is_plausible(const Track& track) {
+    const auto bounds = physical_bounds(track.name);
+    return !bounds || std::ranges::all_of(track.value, [&](double value) { return is_within(*bounds, value); });
+}
+
+Track within_bounds(const Track& track) {
+    if (is_plausible(track)) return track;
+    const auto bounds = physical_bounds(track.name).value();
+    constexpr double max_beyond = 0.1;
+    auto kept = track;
+    const auto beyond = erase_samples(kept, [&](std::size_t i) { return !is_within(bounds, track.value[i]); });
+    if (static_cast<double>(beyond) > max_beyond * static_cast<double>(track.value.size()))
+        kept.time_s = kept.value = {};
+    return kept;
+}
+
 std::vector<double> inconsistent_times(const Track& power, const Track& product) {
     const auto pairs = compared(power, product);
     std::vector<double> parts;
@@ -152,17 +195,11 @@ std::vector<double> dropout_times(const Track& track, const Track& throttle) {
 }
 
 Track without_times(Track track, const std::vector<double>& times_s) {
-    if (times_s.empty()) return track;
-    std::size_t kept = 0;
     auto next = times_s.begin();
-    for (std::size_t i = 0; i < track.time_s.size(); ++i) {
+    erase_samples(track, [&](std::size_t i) {
         while (next != times_s.end() && *next < track.time_s[i]) ++next;
-        if (next != times_s.end() && *next == track.time_s[i]) continue;
-        track.time_s[kept] = track.time_s[i];
-        track.value[kept++] = track.value[i];
-    }
-    track.time_s.resize(kept);
-    track.value.resize(kept);
+        return next != times_s.end() && *next == track.time_s[i];
+    });
     return track;
 }
 

@@ -1,6 +1,5 @@
 #include "flight/sources/power_source.h"
 
-#include "flight/physical_bounds.h"
 #include "flight/sources/derived_tracks.h"
 #include "flight/sources/device_sum.h"
 #include "flight/sources/outliers.h"

@@ -1,15 +1,13 @@
 #include "base/atomic_file.h"
 #include "base/toml_reader.h"
 #include "compute/profile_reader.h"
-#include "mission/file/conditions_toml.h"
-#include "mission/file/named_file.h"
-#include "mission/file/path_toml.h"
-#include "mission/file/planning_toml.h"
+#include "mission/file/mission_tables.h"
 #include "mission/file/schedule_toml.h"
 #include "mission/mission_file.h"
 
 #include <algorithm>
 #include <string>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -198,6 +196,20 @@ MissionVariant with_read_schedule(const TomlTable& root, const MissionReadOption
 }
 
 }  // namespace
+
+std::filesystem::path file_of(const TomlTable& table, std::string_view key) {
+    auto path = std::filesystem::path(table.file()).parent_path() / table.string(key);
+    const auto error = open_error(path);
+    if (error == std::errc::no_such_file_or_directory) {
+        throw InputError(table.where(key), fmt::format("{}: there is no file {}", key, path.string()),
+                         "paths are relative to the mission file");
+    }
+    if (error) {
+        throw InputError(table.where(key),
+                         fmt::format("{}: {} cannot be read: {}", key, path.string(), error.message()));
+    }
+    return path;
+}
 
 MissionVariant parse_mission(std::string_view text, const std::filesystem::path& path,
                              const MissionReadOptions& reading) {

@@ -1,7 +1,6 @@
 #include "mission/planning/schedule_search.h"
 
-#include "mission/planning/heuristic_value.h"
-#include "mission/planning/label_merge.h"
+#include "mission/planning/state_labels.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "mission/planning/concave_curve.h"
-#include "mission/planning/knapsack_graph.h"
+#include "mission/planning/knapsack.h"
 #include "mission/planning/slot_dynamics.h"
 
 #include <cstddef>

@@ -3,9 +3,9 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "mechanical/prediction.h"
-#include "mission/sampling/level_deviation.h"
-#include "mission/sampling/student.h"
-#include "mission/simulation/least_power.h"
+#include "mission/sampling/flight_spreads.h"
+#include "mission/sampling/joint_spread.h"
+#include "mission/simulation/load_segments.h"
 
 #include <algorithm>
 #include <array>

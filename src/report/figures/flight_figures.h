@@ -6,8 +6,7 @@
 #include "mechanical/validation.h"
 #include "report/batch_content.h"
 #include "report/figure.h"
-#include "report/figures/published_figures.h"
-#include "report/in_flight.h"
+#include "report/sections/in_flight.h"
 
 #include <optional>
 #include <span>

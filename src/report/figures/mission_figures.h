@@ -1,8 +1,7 @@
 #pragma once
 
 #include "report/figure.h"
-#include "report/figures/published_figures.h"
-#include "report/simulated_mission.h"
+#include "report/sections/simulated_mission.h"
 
 #include <cstddef>
 #include <optional>

@@ -7,10 +7,32 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <string_view>
 
 /// Single frames of each framing, by checksum alone (docs/formats.md, "Binary logs and links").
 namespace flightwatt::telemetry {
+
+/// The framing whose frames with right checksums follow each other in most of the bytes; nothing where none does.
+/// `is_unchanged`: nothing comes behind, so that a single frame is enough which fills them.
+std::optional<Framing> detect_framing(std::string_view bytes, bool is_whole);
+
+/// The header that most frames fit, of the first few thousand; nothing where none fits.
+std::optional<LinkVersion> detect_version(std::string_view bytes, Framing framing, const MessageDictionary& dictionary);
+
+/// Calls use.template operator()<framing>().
+template <typename Use>
+auto with_framing(Framing framing, Use&& use) {
+    switch (framing) {
+        case Framing::card:
+            return use.template operator()<Framing::card>();
+        case Framing::link:
+            return use.template operator()<Framing::link>();
+        case Framing::xbee:
+            break;
+    }
+    return use.template operator()<Framing::xbee>();
+}
 
 /// A frame whose checksum is right.
 struct Frame {
@@ -66,9 +88,6 @@ bool looks_like_two_frames(const char* p, const char* end) {
     const std::ptrdiff_t size = byte_at(p + 1) + (framing == Framing::card ? 8 : 0);
     return size < end - p && p[size] == sync_byte(framing);
 }
-
-/// The most bytes that a frame has: an escaped one is nearly twice as long.
-constexpr std::size_t max_frame_bytes = 640;
 
 inline ParseStatus parse_card_frame(const char* p, const char* end, Frame& frame) {
     constexpr std::size_t overhead = 8;

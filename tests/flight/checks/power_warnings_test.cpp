@@ -301,7 +301,7 @@ TEST(PowerWarnings, KnowACounterByItsDecimalsHoweverSeldomItIsLogged) {
     });
     EXPECT_THAT(seldom.warnings, testing::Contains(HasSubstr("away from the on-board energy counter")));
     const auto& sortie = seldom.phases.sorties.at(0);
-    EXPECT_GT(phase_statistics(seldom.series, sortie.start_s(), sortie.end_s()).gaps, 10U) << "counted in time";
+    EXPECT_GT(PowerStatistics(seldom.series).between(sortie.start_s(), sortie.end_s()).gaps, 10U) << "counted in time";
 }
 
 TEST(PowerWarnings, TellOfAGainThatDriftsAgainstTheCounter) {

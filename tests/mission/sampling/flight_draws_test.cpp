@@ -4,8 +4,8 @@
 #include "battery/identification.h"
 #include "helpers/paper_missions.h"
 #include "helpers/steady_mission.h"
-#include "mission/sampling/student.h"
-#include "mission/simulation/least_power.h"
+#include "mission/sampling/joint_spread.h"
+#include "mission/simulation/load_segments.h"
 
 #include <cmath>
 #include <optional>

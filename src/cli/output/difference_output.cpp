@@ -1,0 +1,211 @@
+#include "cli/output/difference_output.h"
+
+#include "base/units.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <map>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flightwatt::cli {
+namespace {
+
+using mechanical::Difference;
+using mechanical::Estimate;
+
+/// What a mission comes to is computed, and has no interval of its own.
+Difference computed(std::string part, std::string quantity, std::string unit, const std::optional<double>& a,
+                    const std::optional<double>& b) {
+    const auto estimate = [](const std::optional<double>& value) {
+        return value ? std::optional(Estimate{*value, {}}) : std::nullopt;
+    };
+    return {std::move(part), std::move(quantity), std::move(unit), estimate(a), estimate(b)};
+}
+
+double phase_energy_wh(const mission::SocCurve& curve, mission::Phase phase) {
+    double energy_j = 0.0;
+    for (std::size_t i = 1; i < curve.rows.size(); ++i) {
+        const auto& from = curve.rows[i - 1];
+        const auto& to = curve.rows[i];
+        if (from.phase == phase) energy_j += (to.time_s - from.time_s) * (from.power_w + to.power_w) / 2.0;
+    }
+    return units::wh_from_joule(energy_j);
+}
+
+double soc_at(const mission::SocCurve& curve, double time_s) {
+    const auto after = std::ranges::lower_bound(curve.rows, time_s, {}, &mission::SocRow::time_s);
+    if (after == curve.rows.begin()) return curve.rows.front().soc_percent;
+    if (after == curve.rows.end()) return curve.rows.back().soc_percent;
+    const auto& before = *std::prev(after);
+    const auto part = (time_s - before.time_s) / (after->time_s - before.time_s);
+    return std::lerp(before.soc_percent, after->soc_percent, part);
+}
+
+/// Where the states of charge are furthest apart, as long as both fly.
+std::optional<Difference> soc_difference(const mission::SocCurve& a, const mission::SocCurve& b) {
+    if (a.rows.empty() || b.rows.empty()) return std::nullopt;
+    const auto end_s = std::min(a.rows.back().time_s, b.rows.back().time_s);
+    double max_s = 0.0;
+    double largest = -1.0;
+    for (const auto* curve : {&a, &b}) {
+        for (const auto& row : curve->rows) {
+            if (row.time_s > end_s) break;
+            const auto apart = std::abs(soc_at(b, row.time_s) - soc_at(a, row.time_s));
+            if (apart > largest) std::tie(largest, max_s) = std::pair(apart, row.time_s);
+        }
+    }
+    auto row = computed("mission", "soc_percent", "%", soc_at(a, max_s), soc_at(b, max_s));
+    row.at_s = max_s;
+    return row;
+}
+
+/// By how flights differ, where both missions say it: as drawn for both.
+void add_intervals(const mission::SampledDifference& drawn, std::vector<Difference>& rows) {
+    const std::map<std::string_view, const mission::DrawnIntervals*> intervals{
+        {"duration_s", &drawn.duration_s},
+        {"mechanical_energy_wh", &drawn.mechanical_energy_wh},
+        {"compute_energy_wh", &drawn.compute_energy_wh},
+        {"energy_wh", &drawn.energy_wh},
+        {"final_soc_percent", &drawn.final_soc_percent}};
+    const auto of = [](const battery::Interval& from) { return mechanical::Interval{from.low, from.high}; };
+    for (auto& row : rows) {
+        const auto found = intervals.find(row.quantity);
+        if (row.part != "mission" || found == intervals.end() || !row.a || !row.b) continue;
+        row.a->interval = of(found->second->a);
+        row.b->interval = of(found->second->b);
+        row.interval = of(found->second->difference);
+        row.basis = mechanical::DifferenceBasis::flights;
+    }
+}
+
+/// "yes", "no", or "-" where nobody can say. A computed difference is one wherever it is more than rounding.
+std::string verdict(const Differences& of, const Difference& row) {
+    if (of.kind != DifferenceKind::missions || row.interval) {
+        const auto significant = is_significant(row);
+        return !significant ? "-" : *significant ? "yes" : "no";
+    }
+    const auto difference = difference_of(row);
+    if (!difference) return "-";  // only one of them has it
+    constexpr double rounding = 1e-9;
+    return std::abs(*difference) > rounding * std::max(std::abs(row.a->value), std::abs(row.b->value)) ? "yes" : "no";
+}
+
+std::string basis_of(const Differences& of, const Difference& row) {
+    return of.kind == DifferenceKind::missions && !row.interval ? "computed" : to_string(row.basis);
+}
+
+}  // namespace
+
+std::vector<Difference> mission_difference(const mission::Simulation& a, const mission::Simulation& b,
+                                           const std::optional<mission::SampledDifference>& drawn) {
+    std::vector<Difference> all;
+    all.reserve(mission::all_phases.size() + 8);  // and of the whole mission
+    for (const auto phase : mission::all_phases) {
+        all.push_back(computed(std::string(to_string(phase)), "energy_wh", "Wh", phase_energy_wh(a.curve, phase),
+                               phase_energy_wh(b.curve, phase)));
+    }
+    const auto add = [&](const char* quantity, const char* unit, const std::optional<double>& of_a,
+                         const std::optional<double>& of_b) {
+        if (of_a || of_b) all.push_back(computed("mission", quantity, unit, of_a, of_b));
+    };
+    const auto& x = a.summary;
+    const auto& y = b.summary;
+    add("duration_s", "s", x.duration_s, y.duration_s);
+    add("mechanical_energy_wh", "Wh", x.mechanical_energy_wh, y.mechanical_energy_wh);
+    add("compute_energy_wh", "Wh", x.compute_energy_wh, y.compute_energy_wh);
+    add("energy_wh", "Wh", x.energy_wh, y.energy_wh);
+    add("final_soc_percent", "%", x.final_soc_percent, y.final_soc_percent);
+    add("depleted_at_s", "s", x.depleted_at_s, y.depleted_at_s);
+    add("utility", "", x.utility, y.utility);
+    if (const auto curve = soc_difference(a.curve, b.curve)) all.push_back(*curve);
+    if (drawn) add_intervals(*drawn, all);
+    return all;
+}
+
+TextTable difference_table(const Differences& differences, const std::function<std::string(double)>& form) {
+    TextTable table{{"part", "quantity", "unit", "a", "a_low", "a_high", "b", "b_low", "b_high", "difference", "low",
+                     "high", "differs", "basis", "at_s"},
+                    {}};
+    for (const auto& row : differences.rows) {
+        std::vector<std::string> cells{row.part, row.quantity, row.unit};
+        const auto number = [&](const std::optional<double>& value) { cells.push_back(value ? form(*value) : "-"); };
+        const auto interval = [&](const std::optional<mechanical::Interval>& of) {
+            number(of ? std::optional(of->low) : std::nullopt);
+            number(of ? std::optional(of->high) : std::nullopt);
+        };
+        for (const auto* side : {&row.a, &row.b}) {
+            number(*side ? std::optional((*side)->value) : std::nullopt);
+            interval(*side ? (*side)->interval : std::nullopt);
+        }
+        number(difference_of(row));
+        interval(row.interval);
+        cells.push_back(verdict(differences, row));
+        const auto basis = basis_of(differences, row);
+        cells.push_back(basis.empty() ? "-" : basis);
+        number(row.at_s);
+        table.rows.push_back(std::move(cells));
+    }
+    return table;
+}
+
+Json to_json(const Differences& differences) {
+    constexpr std::array kinds{"models", "batches", "missions"};
+    const auto interval = [](const std::optional<mechanical::Interval>& of) {
+        return of ? Json::array({of->low, of->high}) : Json(nullptr);
+    };
+    Json json{{"kind", kinds.at(static_cast<std::size_t>(differences.kind))},
+              {"shared_flights", differences.shared_flights},
+              {"differences", Json::array()}};
+    for (const auto& row : differences.rows) {
+        Json item{{"part", row.part}, {"quantity", row.quantity}, {"unit", row.unit}};
+        for (const auto& [name, side] : {std::pair("a", &row.a), std::pair("b", &row.b)}) {
+            item[name] = *side ? Json((*side)->value) : Json(nullptr);
+            item[fmt::format("{}_interval", name)] = interval(*side ? (*side)->interval : std::nullopt);
+        }
+        item["difference"] = optional_json(difference_of(row));
+        item["interval"] = interval(row.interval);
+        const auto differs = verdict(differences, row);
+        item["differs"] = differs == "-" ? Json(nullptr) : Json(differs == "yes");
+        item["basis"] = basis_of(differences, row);
+        item["at_s"] = optional_json(row.at_s);
+        json["differences"].push_back(std::move(item));
+    }
+    return json;
+}
+
+void note_differences(const StageCall& call, const std::vector<Difference>& rows) {
+    std::vector<std::string> beyond_noise;
+    std::vector<std::string> beyond_flights;
+    std::size_t judged = 0;
+    for (const auto& row : rows) {
+        const auto significant = is_significant(row);
+        if (significant) ++judged;
+        if (!significant.value_or(false)) continue;
+        auto& differing = row.basis == mechanical::DifferenceBasis::noise ? beyond_noise : beyond_flights;
+        differing.push_back(row.part + " " + row.quantity);
+    }
+    if (judged == 0) {
+        note(call, "nothing can be judged: these models hold no intervals; `flightwatt fit --errors` writes them");
+    } else if (beyond_noise.empty() && beyond_flights.empty()) {
+        note(call, fmt::format("none of {} quantities differs by more than its 95 % interval", judged));
+    }
+    if (!beyond_flights.empty()) {
+        note(call, fmt::format("differ by more than flights of one aircraft do (of {} judged, one in 20 by chance): {}",
+                               judged, fmt::join(beyond_flights, ", ")));
+    }
+    if (!beyond_noise.empty()) {
+        note(call, fmt::format("differ by more than the noise of their samples, as other flights of the same "
+                               "aircraft may: {}",
+                               fmt::join(beyond_noise, ", ")));
+    }
+}
+
+}  // namespace flightwatt::cli

@@ -1,0 +1,348 @@
+#include "mission/file/mission_tables.h"
+#include "mission/path/path_entries.h"
+#include "mission/path/waypoint_files.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace flightwatt::mission {
+namespace {
+
+/// A law through the origin reaches beyond what its flights showed, up to so many times their power and down to its
+/// inverse.
+constexpr double max_power_ratio = 2.0;
+
+const mechanical::CovariateRegression& law_of(const TomlTable& conditions,
+                                              const std::optional<mechanical::MechanicalModel>& mechanical) {
+    if (!mechanical) {
+        throw InputError(conditions.where(), "conditions have no meaning with mechanical = \"none\"", "leave them out");
+    }
+    const auto& law = mechanical->phases[Phase::cruise].level_law;
+    if (law) return *law;
+    throw InputError(
+        conditions.where(),
+        fmt::format("the cruise level of the mechanical model '{}' follows no condition", mechanical->name),
+        "fit it with one: flightwatt fit --level-covariate NAME FLIGHT...; or leave the conditions out");
+}
+
+/// Shifts the model's cruise so that its mean over the model's own duration is this power.
+void set_cruise_level(const mechanical::ConstantPower& level, MissionSetup& mission) {
+    auto& cruise = mission.mechanical->phases[Phase::cruise];
+    const double model_mean_w = energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s;
+    cruise.fourier.a0_w += level.mean_w - model_mean_w;
+    mission.cruise_level = level;
+}
+
+/// What the flights of the law did not show is refused: a plan can be changed, and a power that nothing supports should
+/// not look like a result.
+void apply_stated_conditions(const TomlTable& conditions, MissionSetup& mission) {
+    const auto& law = law_of(conditions, mission.mechanical);
+    const auto name = to_string(law.covariate);
+    for (const auto& key : conditions.keys()) {
+        if (key == name) continue;
+        throw InputError(conditions.where(key),
+                         fmt::format("the cruise level of this mechanical model does not follow '{}'", key),
+                         fmt::format("it follows {}, from {:.4g} to {:.4g}", name, law.least, law.most));
+    }
+    const double value = conditions.number(name);
+    const auto level = predict_mean_power(law, value);
+    if (!level.within_flights) {
+        throw InputError(
+            conditions.where(name), fmt::format("{} = {} is beyond what the model's flights showed", name, value),
+            fmt::format("the {} flights of its level law were from {:.4g} to {:.4g}; give one of these, or "
+                        "fit a model to flights that were flown so",
+                        law.flights, law.least, law.most));
+    }
+    set_cruise_level(constant_power(level), mission);
+}
+
+/// Level flight at an airspeed by the physical model.
+void apply_physical(double airspeed_m_per_s, const mechanical::PhysicalModel& physical, MissionSetup& mission) {
+    const mechanical::FlightState motion{airspeed_m_per_s};
+    if (!is_within_flown_range(physical, motion)) {
+        mission.notes.push_back(fmt::format(
+            "airspeed_m_per_s = {} is beyond what the model's flights flew ({:.4g} to {:.4g} m/s): its power is extrapolated",
+            airspeed_m_per_s, physical.airspeed_m_per_s.low, physical.airspeed_m_per_s.high));
+    }
+    mechanical::ConstantPower level{power_w(physical, motion), std::nullopt, 0.0};
+    const double duration_s = mission.mechanical->phases[Phase::cruise].duration_s;
+    if (const auto uncertainty = prediction_uncertainty(physical, term_values(motion), duration_s)) {
+        level.sd_w = uncertainty->sd_w;
+        level.degrees_of_freedom = uncertainty->degrees_of_freedom;
+    }
+    set_cruise_level(level, mission);
+}
+
+/// By drag's law of the flights that measured their airspeed, else by the covariate that the model was fitted with.
+const mechanical::CovariateRegression* airspeed_law_of(const mechanical::PhaseModel& cruise) {
+    if (cruise.airspeed_law) return &*cruise.airspeed_law;
+    if (!cruise.level_law) return nullptr;
+    const bool follows_airspeed = cruise.level_law->covariate == mechanical::Covariate::airspeed ||
+                                  cruise.level_law->covariate == mechanical::Covariate::airspeed_cubed;
+    return follows_airspeed ? &*cruise.level_law : nullptr;
+}
+
+void apply_airspeed(const TomlTable& root, MissionSetup& mission) {
+    constexpr std::string_view key = "airspeed_m_per_s";
+    const double airspeed = number_in(more_than_up_to(0.0, 300.0), root, "airspeed_m_per_s");
+    const auto refuse = [&](const std::string& message, const std::string& hint) {
+        throw InputError(root.where(key), message, hint);
+    };
+    if (!mission.mechanical) refuse("airspeed_m_per_s has no meaning with mechanical = \"none\"", "leave it out");
+    if (root.has("conditions"))
+        refuse("airspeed_m_per_s and conditions both state the level of the cruise", "give one");
+    if (mission.mechanical->physical) {
+        const auto physical = *mission.mechanical->physical;
+        const double power = power_w(physical, {airspeed});
+        if (power > max_power_ratio * power_w(physical, {physical.airspeed_m_per_s.high}) ||
+            power * max_power_ratio < power_w(physical, {physical.airspeed_m_per_s.low})) {
+            refuse(fmt::format("airspeed_m_per_s = {} is beyond what the model's flights flew", airspeed),
+                   fmt::format("they flew {:.4g} to {:.4g} m/s; give an airspeed near these, or fit a model to flights "
+                               "that were flown so",
+                               physical.airspeed_m_per_s.low, physical.airspeed_m_per_s.high));
+        }
+        apply_physical(airspeed, physical, mission);
+        return;
+    }
+    const auto* law = airspeed_law_of(mission.mechanical->phases[Phase::cruise]);
+    if (law == nullptr) {
+        refuse(fmt::format("the cruise of the mechanical model '{}' does not know airspeed", mission.mechanical->name),
+               "fit it to two flights or more that measured their airspeed (AIRSPEED or AIR_DATA in their logs)");
+    }
+    const bool is_drag = is_through_origin(law->covariate);
+    const double value = is_drag ? airspeed * airspeed * airspeed : airspeed;
+    const double low = is_drag ? std::cbrt(law->least) : law->least;
+    const double high = is_drag ? std::cbrt(law->most) : law->most;
+    const auto level = predict_mean_power(*law, value);
+    const bool is_near = is_drag && value <= max_power_ratio * law->most && value >= law->least / max_power_ratio;
+    const auto beyond = fmt::format("airspeed_m_per_s = {} is beyond what the model's flights flew", airspeed);
+    const auto flown = fmt::format("the {} flights of its law flew {:.4g} to {:.4g} m/s", law->flights, low, high);
+    if (!level.within_flights && !is_near) {
+        refuse(beyond, flown + "; give an airspeed near these, or fit a model to flights that were flown so");
+    }
+    if (!level.within_flights) mission.notes.push_back(beyond + ": " + flown + ", and drag's law reaches further");
+    set_cruise_level(constant_power(level), mission);
+}
+
+constexpr double max_wind_m_per_s = 100.0;
+constexpr auto altitudes = between(-1e5, 1e5);
+constexpr auto times = more_than_up_to(0.0, 1e7);
+
+Wind read_wind(const TomlTable& root) {
+    Wind wind;
+    const auto table = root.optional_table("wind");
+    if (!table) return wind;
+    table->refuse_keys_except({"speed_m_per_s", "from_deg", "speed_sd_m_per_s", "direction_sd_deg"});
+    wind.speed_m_per_s = number_in(between(0.0, max_wind_m_per_s), *table, "speed_m_per_s");
+    wind.speed_sd_m_per_s = number_in_or(between(0.0, max_wind_m_per_s), *table, "speed_sd_m_per_s", 0.0);
+    const bool is_calm = wind.speed_m_per_s == 0.0 && wind.speed_sd_m_per_s == 0.0;
+    wind.from_deg = is_calm ? number_in_or(between(-360.0, 360.0), *table, "from_deg", 0.0)
+                            : number_in(between(-360.0, 360.0), *table, "from_deg");
+    wind.direction_sd_deg = number_in_or(between(0.0, 360.0), *table, "direction_sd_deg", 0.0);
+    return wind;
+}
+
+ClimbRates read_rates(const TomlTable& table) {
+    const auto rates = more_than_up_to(0.0, max_m_per_s);
+    return {optional_number_in(rates, table, "climb_m_per_s"), optional_number_in(rates, table, "descent_m_per_s")};
+}
+
+/// The place that a table gives, in either coordinates.
+struct StatedPlace {
+    std::optional<LocalPosition> local;
+    std::optional<GeodeticPosition> geographic;
+};
+
+StatedPlace read_place(const TomlTable& table) {
+    StatedPlace place;
+    const auto metres = between(-1e7, 1e7);
+    if (table.has("east_m") || table.has("north_m"))
+        place.local = LocalPosition{number_in(metres, table, "east_m"), number_in(metres, table, "north_m")};
+    if (table.has("latitude_deg") || table.has("longitude_deg")) {
+        place.geographic = GeodeticPosition{number_in(between(-90.0, 90.0), table, "latitude_deg"),
+                                            number_in(between(-180.0, 180.0), table, "longitude_deg")};
+    }
+    if (place.local && place.geographic)
+        throw InputError(table.where(), "a place in metres and in degrees", "give one of them");
+    return place;
+}
+
+PathEntry read_leg(const TomlTable& leg, std::size_t number) {
+    leg.refuse_keys_except({"east_m", "north_m", "latitude_deg", "longitude_deg", "length_m", "course_deg",
+                            "duration_s", "altitude_m", "airspeed_m_per_s", "climb_m_per_s", "descent_m_per_s",
+                            "circles", "radius_m", "turn", "hold_s"});
+    PathEntry entry;
+    entry.name = fmt::format("leg {}", number);
+    entry.where = leg.where();
+    const auto place = read_place(leg);
+    entry.place = place.local;
+    entry.geographic = place.geographic;
+    entry.length_m = optional_number_in(more_than_up_to(0.0, max_leg_m), leg, "length_m");
+    entry.course_deg = optional_number_in(between(-360.0, 360.0), leg, "course_deg");
+    entry.duration_s = optional_number_in(times, leg, "duration_s");
+    entry.altitude_m = optional_number_in(altitudes, leg, "altitude_m");
+    entry.airspeed_m_per_s = optional_number_in(more_than_up_to(0.0, max_m_per_s), leg, "airspeed_m_per_s");
+    entry.rates = read_rates(leg);
+    entry.circles = optional_number_in(more_than_up_to(0.0, largest_circle_count), leg, "circles");
+    entry.radius_m = optional_number_in(between(min_radius_m, max_radius_m), leg, "radius_m");
+    entry.hold_s = optional_number_in(times, leg, "hold_s");
+    if (const auto turn = leg.optional_string("turn")) {
+        if (*turn != "left" && *turn != "right")
+            throw InputError(leg.where("turn"), fmt::format("there is no turn '{}'", *turn),
+                             "it is \"left\" or \"right\"");
+        if (!entry.circles) throw InputError(leg.where("turn"), "turn belongs to circles", "leave it out");
+        entry.to_right = *turn == "right";
+    }
+    return entry;
+}
+
+PathDefaults read_defaults(const TomlTable& path) {
+    PathDefaults defaults;
+    defaults.where = path.where();
+    defaults.airspeed_m_per_s = number_in(more_than_up_to(0.0, max_m_per_s), path, "airspeed_m_per_s");
+    defaults.altitude_m = optional_number_in(altitudes, path, "altitude_m");
+    defaults.rates = read_rates(path);
+    defaults.return_to_start = path.optional_boolean("return_to_start").value_or(false);
+    if (const auto start = path.optional_table("start")) {
+        start->refuse_keys_except({"east_m", "north_m", "latitude_deg", "longitude_deg"});
+        const auto place = read_place(*start);
+        if (!place.local && !place.geographic)
+            throw InputError(start->where(), "start is no place",
+                             "give east_m and north_m, or latitude_deg and longitude_deg");
+        defaults.start = place.local;
+        defaults.geographic_start = place.geographic;
+    }
+    return defaults;
+}
+
+/// Those of a file first, then the legs.
+std::vector<PathEntry> read_entries(const TomlTable& path) {
+    std::vector<PathEntry> entries;
+    const bool has_waypoints = path.has("waypoints");
+    if (has_waypoints && path.has("flight_plan"))
+        throw InputError(path.where("flight_plan"), "waypoints and flight_plan are two paths", "give one");
+    if (path.has("flight_plan") != path.has("waypoint_order")) {
+        throw InputError(
+            path.where(), "flight_plan and waypoint_order belong together",
+            "a flight plan's blocks are a program that is not run: say which of its waypoints are flown, in "
+            "order, waypoint_order = [\"1\", \"2\"]");
+    }
+    if (has_waypoints) entries = read_waypoints(file_of(path, "waypoints"));
+    if (path.has("flight_plan"))
+        entries = read_flight_plan(file_of(path, "flight_plan"), path.strings("waypoint_order"));
+    std::size_t number = 0;
+    for (const auto& leg : path.tables("leg")) entries.push_back(read_leg(leg, ++number));
+    if (entries.empty())
+        throw InputError(path.where(), "the path has no legs", "add [[path.leg]], waypoints or flight_plan");
+    return entries;
+}
+
+void refuse_what_the_path_decides(const TomlTable& root) {
+    const auto refuse = [&](const Location& where, const std::string& message, const std::string& hint) {
+        throw InputError(where, message, hint);
+    };
+    if (const auto durations = root.optional_table("duration_s"); durations && durations->has("cruise"))
+        refuse(durations->where("cruise"), "the duration of the cruise follows from [path]",
+               "leave it out, or the path");
+    for (const std::string_view key : {"conditions", "airspeed_m_per_s"}) {
+        if (!root.has(key)) continue;
+        refuse(root.where(key), fmt::format("{} and [path] both say how the cruise is flown", key),
+               "leave it out: [path] has airspeed_m_per_s of its own, and [wind] stands beside it");
+    }
+    const auto uncertainty = root.optional_table("uncertainty");
+    if (!uncertainty) return;
+    if (const auto durations = uncertainty->optional_table("duration_sd_s"); durations && durations->has("cruise"))
+        refuse(durations->where("cruise"), "the duration of the cruise follows from [path] and [wind]",
+               "state how the wind differs: speed_sd_m_per_s and direction_sd_deg in [wind]");
+}
+
+/// What the motion takes: by the model's own terms, else by drag's law for a level path.
+mechanical::PhysicalModel power_model(const TomlTable& path, const MissionSetup& mission, bool is_level) {
+    if (!mission.mechanical)
+        throw InputError(path.where(), "a path has no meaning with mechanical = \"none\"", "leave it out");
+    if (mission.mechanical->physical) return *mission.mechanical->physical;
+    const auto& law = mission.mechanical->phases[Phase::cruise].airspeed_law;
+    const std::string fit =
+        "fit one: flightwatt fit --model physical FLIGHT... -o MODEL.toml, of flights that measured "
+        "their airspeed";
+    if (!law) {
+        throw InputError(path.where(),
+                         fmt::format("the mechanical model '{}' does not know what motion takes: it has no [physical]",
+                                     mission.mechanical->name),
+                         fit);
+    }
+    if (!is_level) {
+        throw InputError(path.where(),
+                         fmt::format("the mechanical model '{}' knows airspeed and not climb: it has no [physical]",
+                                     mission.mechanical->name),
+                         "fly at one altitude, or " + fit);
+    }
+    return physical_model_from_drag(*law);
+}
+
+/// The entry whose circles may be repeated: the last that has some.
+PathEntry* repeated_circles(std::vector<PathEntry>& entries) {
+    const auto last = std::find_if(entries.rbegin(), entries.rend(), [](const auto& entry) { return !!entry.circles; });
+    return last == entries.rend() ? nullptr : &*last;
+}
+
+FlightPath read_path(const TomlTable& table, const MissionReadOptions& reading) {
+    table.refuse_keys_except({"airspeed_m_per_s", "altitude_m", "climb_m_per_s", "descent_m_per_s", "start",
+                              "return_to_start", "waypoints", "flight_plan", "waypoint_order", "leg"});
+    const auto defaults = read_defaults(table);
+    auto entries = read_entries(table);
+    if (reading.circles) {
+        auto* repeated = repeated_circles(entries);
+        if (repeated == nullptr) throw NoResultError("the path has no circles");
+        repeated->circles = *reading.circles;
+    }
+    auto path = path_of(entries, defaults);
+    if (reading.return_after_m) path = out_and_back(path, *reading.return_after_m, defaults.rates);
+    return path;
+}
+
+/// The level of the cruise and how flights differ about it.
+mechanical::ConstantPower level_of(const mechanical::PhysicalModel& model, const PathTrajectory& flown, double mean_w) {
+    mechanical::ConstantPower level{mean_w, std::nullopt, 0.0};
+    if (const auto uncertainty = prediction_uncertainty(model, mean_terms(model, flown), flown.duration_s)) {
+        level.sd_w = uncertainty->sd_w;
+        level.degrees_of_freedom = uncertainty->degrees_of_freedom;
+    }
+    return level;
+}
+
+}  // namespace
+
+void apply_conditions(const TomlTable& mission_table, MissionSetup& mission) {
+    const auto conditions = mission_table.optional_table("conditions");
+    if (mission_table.has("airspeed_m_per_s")) apply_airspeed(mission_table, mission);
+    if (conditions) apply_stated_conditions(*conditions, mission);
+}
+
+void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& reading, MissionSetup& mission) {
+    const auto table = mission_table.optional_table("path");
+    if (!table) {
+        if (mission_table.has("wind"))
+            throw InputError(mission_table.where("wind"), "[wind] belongs to a [path]", "leave it out, or add one");
+        return;
+    }
+    if (reading.cruise_s) throw NoResultError("the duration of the cruise follows from its path");
+    refuse_what_the_path_decides(mission_table);
+    PlannedPath plan;
+    plan.path = read_path(*table, reading);
+    plan.wind = read_wind(mission_table);
+    const bool is_level =
+        std::ranges::all_of(plan.path.elements, [](const auto& element) { return element.altitude_change_m == 0.0; });
+    plan.power = power_model(*table, mission, is_level);
+    const auto flown = compute_trajectory(plan.path, plan.wind);
+    for (auto& warning : path_warnings(plan, flown)) mission.notes.push_back(std::move(warning));
+    const auto shared = std::make_shared<const PlannedPath>(std::move(plan));
+    mission.cruise_path = compute_cruise(shared, shared->wind, InfeasibleLegPolicy::refuse);
+    mission.cruise_level = level_of(shared->power, flown, mean_power_w(*mission.cruise_path));
+    mission.duration_s[Phase::cruise] = duration_s(*mission.cruise_path);
+    mission.duration_is_stated[Phase::cruise] = true;
+}
+
+}  // namespace flightwatt::mission

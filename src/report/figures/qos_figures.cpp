@@ -1,0 +1,371 @@
+#include "base/statistics.h"
+#include "mission/simulation.h"
+#include "report/figures/mission_figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flightwatt::report {
+namespace {
+
+constexpr auto map_soc_title = "final state of charge [%]";
+
+/// The profiled values, and two more between each of them: the paper's grid.
+std::vector<double> with_thirds(const std::vector<double>& profiled) {
+    std::vector<double> nodes{profiled.front()};
+    for (std::size_t i = 1; i < profiled.size(); ++i) {
+        for (int third = 1; third <= 3; ++third) nodes.push_back(std::lerp(profiled[i - 1], profiled[i], third / 3.0));
+    }
+    return nodes;
+}
+
+std::vector<QosAxis> axes_of(const compute::ComputeModel& compute) {
+    std::vector<QosAxis> axes;
+    for (std::size_t c = 0; c < compute.components.size(); ++c) {
+        const auto& [name, profile] = compute.components[c];
+        for (std::size_t p = 0; p < profile.parameters.size(); ++p) {
+            axes.push_back({c, p, name + " " + profile.parameters[p], with_thirds(profile.axes[p])});
+        }
+    }
+    return axes;
+}
+
+/// Everything at its greatest quality.
+compute::Configuration greatest(const compute::ComputeModel& compute) {
+    compute::Configuration run;
+    for (std::size_t c = 0; c < compute.components.size(); ++c) {
+        compute::RunningComponent running{c, {}};
+        for (const auto& axis : compute.components[c].profile.axes) running.qos.push_back(axis.back());
+        run.push_back(std::move(running));
+    }
+    return run;
+}
+
+std::vector<mission::ScheduleSegment> throughout(const mission::MissionSetup& mission,
+                                                 const compute::Configuration& run) {
+    std::vector<mission::ScheduleSegment> schedule;
+    for (const auto phase : flight::all_phases) {
+        if (mission.duration_s[phase] > 0.0) schedule.push_back({phase, 0.0, mission.duration_s[phase], run});
+    }
+    return schedule;
+}
+
+double cell_soc(const QosMap& map, std::size_t i, std::size_t j) {
+    return (map.at(i, j) + map.at(i + 1, j) + map.at(i, j + 1) + map.at(i + 1, j + 1)) / 4.0;
+}
+
+VegaJson axis(const std::string& field, const QosAxis& qos) {
+    return numeric_channel(
+        field, valid_utf8(qos.name),
+        {{"scale", {{"domain", {qos.nodes.front(), qos.nodes.back()}}, {"nice", false}, {"zero", false}}},
+         {"axis", {{"grid", false}}}});
+}
+
+VegaJson soc_color() {
+    return numeric_channel("soc_percent", map_soc_title,
+                           vega(R"({"scale": {"range": "heatmap"}, "legend": {"gradientLength": 200}})"));
+}
+
+VegaJson cell_layer(const QosMap& map) {
+    FigureData data({"x_low", "x_high", "y_low", "y_high", "soc_percent"});
+    for (std::size_t j = 0; j + 1 < map.y.nodes.size(); ++j) {
+        for (std::size_t i = 0; i + 1 < map.x.nodes.size(); ++i) {
+            data.add({map.x.nodes[i], map.x.nodes[i + 1], map.y.nodes[j], map.y.nodes[j + 1], cell_soc(map, i, j)});
+        }
+    }
+    return layer(data.json(), R"({"type": "rect"})",
+                 {{"x", axis("x_low", map.x)},
+                  {"x2", {{"field", "x_high"}}},
+                  {"y", axis("y_low", map.y)},
+                  {"y2", {{"field", "y_high"}}},
+                  {"color", soc_color()},
+                  {"tooltip",
+                   {numeric_channel("x_low", valid_utf8(map.x.name) + " from"), numeric_channel("x_high", "to"),
+                    numeric_channel("y_low", valid_utf8(map.y.name) + " from"), numeric_channel("y_high", "to"),
+                    tooltip_number("soc_percent", map_soc_title, ".2f")}}});
+}
+
+/// The configurations that the missions run with both components on, and who runs them.
+std::map<std::pair<double, double>, std::string> configurations(const QosMap& map,
+                                                                std::span<const SimulatedMission> missions) {
+    std::map<std::pair<double, double>, std::string> marked;
+    for (const auto& mission : missions) {
+        for (const auto& segment : mission.mission.schedule) {
+            std::optional<double> x;
+            std::optional<double> y;
+            for (const auto& running : segment.run) {
+                if (running.component == map.x.component) x = running.qos[map.x.parameter];
+                if (running.component == map.y.component) y = running.qos[map.y.parameter];
+            }
+            if (!x || !y) continue;
+            auto& who = marked[{*x, *y}];
+            if (who.ends_with(mission.title)) continue;
+            who += (who.empty() ? "" : ", ") + mission.title;
+        }
+    }
+    return marked;
+}
+
+VegaJson marker_layer(const QosMap& map, std::span<const SimulatedMission> missions) {
+    FigureData data({"x", "y"}, {"missions"});
+    for (const auto& [place, who] : configurations(map, missions)) data.add({place.first, place.second}, {who});
+    return layer(data.json(),
+                 R"({"type": "point", "shape": "diamond", "style": "marker", "filled": true, "opacity": 1,
+                     "size": 130, "strokeWidth": 1.5})",
+                 {{"x", axis("x", map.x)},
+                  {"y", axis("y", map.y)},
+                  {"tooltip",
+                   {nominal_channel("missions", "run by"), numeric_channel("x", valid_utf8(map.x.name)),
+                    numeric_channel("y", valid_utf8(map.y.name))}}});
+}
+
+VegaJson published_layer(const QosMap& map, const std::vector<PublishedCell>& cells) {
+    FigureData data({"x", "y", "soc_percent"});
+    for (const auto& cell : cells) {
+        data.add({std::midpoint(cell.fps_low, cell.fps_high), std::midpoint(cell.key_bits_low, cell.key_bits_high),
+                  cell.soc_percent});
+    }
+    return layer(data.json(),
+                 R"({"type": "circle", "size": 80, "opacity": 1, "stroke": "#ffffff", "strokeWidth": 0.8,
+                     "strokeOpacity": 0.8, "aria": false})",
+                 {{"x", axis("x", map.x)},
+                  {"y", axis("y", map.y)},
+                  {"color", soc_color()},
+                  {"tooltip",
+                   {numeric_channel("x", valid_utf8(map.x.name)), numeric_channel("y", valid_utf8(map.y.name)),
+                    tooltip_number("soc_percent", "published, Fig. 4 [%]", ".2f")}}});
+}
+
+/// The least and the greatest of what can be delivered; both 0 if nothing can.
+std::pair<double, double> range_of(const QosMap& map) {
+    std::vector<double> known;
+    std::ranges::copy_if(map.soc_percent, std::back_inserter(known), [](double soc) { return std::isfinite(soc); });
+    if (known.empty()) return {0.0, 0.0};
+    const auto [least, greatest] = std::ranges::minmax_element(known);
+    return {*least, *greatest};
+}
+
+/// Of the published cells that are cells of the map; std::nullopt if one is not.
+std::optional<double> rms_to_published(const QosMap& map, const std::vector<PublishedCell>& cells) {
+    const auto index = [](const std::vector<double>& nodes, double low) -> std::optional<std::size_t> {
+        for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+            if (std::abs(nodes[i] - low) < 0.02 * (nodes.back() - nodes.front())) return i;
+        }
+        return std::nullopt;
+    };
+    double squares = 0.0;
+    for (const auto& cell : cells) {
+        const auto i = index(map.x.nodes, cell.fps_low);
+        const auto j = index(map.y.nodes, cell.key_bits_low);
+        if (!i || !j) return std::nullopt;
+        squares += std::pow(cell_soc(map, *i, *j) - cell.soc_percent, 2);
+    }
+    if (cells.empty()) return std::nullopt;
+    return std::sqrt(squares / static_cast<double>(cells.size()));
+}
+
+/// Every node's QoS: the last parameter runs fastest, as in PowerProfile.
+std::vector<double> qos_of_node(const compute::PowerProfile& profile, std::size_t node) {
+    std::vector<double> qos(profile.axes.size());
+    for (std::size_t p = profile.axes.size(); p-- > 0;) {
+        qos[p] = profile.axes[p][node % profile.axes[p].size()];
+        node /= profile.axes[p].size();
+    }
+    return qos;
+}
+
+/// The line that a node belongs to: its parameters but the first.
+std::string line_name(const compute::PowerProfile& profile, const std::vector<double>& qos) {
+    std::vector<std::string> parts;
+    for (std::size_t p = 1; p < qos.size(); ++p) {
+        parts.push_back(fmt::format("{} {:g}", profile.parameters[p], qos[p]));
+    }
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+bool is_measured(const compute::PowerProfile& profile, std::size_t node) {
+    return profile.is_measured.empty() || profile.is_measured[node];
+}
+
+bool all_measured(const compute::PowerProfile& profile) {
+    return std::ranges::all_of(profile.is_measured, [](bool measured) { return measured; });
+}
+
+/// The nodes: interpolated ones are hollow where there are any.
+VegaJson points_layer(const compute::PowerProfile& profile) {
+    auto points = layer(R"({"type": "point", "style": "measured", "size": 45, "opacity": 1})", VegaJson::object());
+    if (all_measured(profile)) {
+        points["mark"]["filled"] = true;
+    } else {
+        points["encoding"]["shape"] = nominal_channel("origin", "", vega(R"({"scale":
+            {"domain": ["measured", "interpolated"], "range": ["circle", "cross"]}})"));
+    }
+    return points;
+}
+
+FigureData node_rows(const compute::PowerProfile& profile) {
+    FigureData data({"qos", "power_w", "error_w", "low_w", "high_w"}, {"line", "origin"});
+    for (std::size_t node = 0; node < profile.power_w.size(); ++node) {
+        const auto qos = qos_of_node(profile, node);
+        const double power_w = profile.power_w[node];
+        const double error_w = profile.standard_error_w.empty() ? std::nan("") : profile.standard_error_w[node];
+        const double reach_w = normal_half_width() * error_w;
+        data.add({qos.empty() ? 0.0 : qos.front(), power_w, error_w, power_w - reach_w, power_w + reach_w},
+                 {line_name(profile, qos), is_measured(profile, node) ? "measured" : "interpolated"});
+    }
+    return data;
+}
+
+VegaJson panel_of(const compute::Component& component) {
+    const auto& profile = component.profile;
+    const auto title = profile.parameters.empty() ? "no parameter" : valid_utf8(profile.parameters.front());
+    VegaJson encoding{{"x", numeric_channel("qos", title, {{"scale", {{"zero", false}}}})},
+                      {"y", numeric_channel("power_w", "power [W]")},
+                      {"tooltip", {numeric_channel("qos", title), tooltip_number("power_w", "power [W]", ".2f")}}};
+    if (profile.parameters.size() > 1) {
+        encoding["color"] = nominal_channel("line", "", {{"sort", nullptr}});
+        encoding["tooltip"].push_back(nominal_channel("line", "also"));
+    }
+    auto layers = vega(R"([{"mark": {"type": "line", "style": "measured"}}])");
+    if (!profile.standard_error_w.empty()) {
+        encoding["tooltip"].push_back(tooltip_number("error_w", "standard error [W]", ".3f"));
+        layers.push_back(layer(R"({"type": "rule", "style": "measured", "strokeWidth": 1.4})",
+                               {{"y", numeric_channel("low_w", "power [W]")}, {"y2", {{"field", "high_w"}}}}));
+    }
+    if (!all_measured(profile)) encoding["tooltip"].push_back(nominal_channel("origin", "node"));
+    layers.push_back(points_layer(profile));
+    const VegaJson nodes{{"data", node_rows(profile).json()}, {"encoding", encoding}, {"layer", layers}};
+    return {{"width", 280}, {"height", 190}, {"layer", {nodes, panel_name(component.name)}}};
+}
+
+std::string profile_described(const compute::ComputeModel& compute) {
+    std::string text = "Profiled power of the software on board.";
+    for (const auto& [name, profile] : compute.components) {
+        const auto [least, greatest] = std::ranges::minmax_element(profile.power_w);
+        text += fmt::format(" {}: {:.2f} to {:.2f} W in {} configurations.", name, *least, *greatest,
+                            profile.power_w.size());
+    }
+    return text;
+}
+
+std::string profile_caption(const compute::ComputeModel& compute) {
+    const auto any = [&](const auto& holds) {
+        return std::ranges::any_of(compute.components,
+                                   [&](const compute::Component& component) { return holds(component.profile); });
+    };
+    const bool interpolated = any([](const auto& profile) { return !all_measured(profile); });
+    std::string text = interpolated ? "Circles were measured, crosses found between them;" : "Points were profiled,";
+    text += " lines are interpolated between them, and nothing is extrapolated.";
+    if (any([](const auto& profile) { return !profile.standard_error_w.empty(); })) {
+        text += " Bars are 95 % intervals, of the standard errors that the profile has.";
+    }
+    if (any([](const auto& profile) { return profile.standard_error_w.empty(); })) {
+        text += " A component without bars has a profile without standard errors.";
+    }
+    return text +
+           " The powers of the components that run add up; a component that runs on top of another is "
+           "profiled as what it adds.";
+}
+
+}  // namespace
+
+std::optional<QosMap> qos_map(const mission::MissionSetup& mission) {
+    const auto axes = axes_of(mission.compute);
+    if (axes.size() < 2) return std::nullopt;
+    QosMap map{axes[0], axes[1], {}, ""};
+    auto run = greatest(mission.compute);
+    for (std::size_t a = 2; a < axes.size(); ++a) {
+        map.others += fmt::format("{}{} {:g}", map.others.empty() ? "" : ", ", axes[a].name, axes[a].nodes.back());
+    }
+    mission::SimulationOptions steps;
+    steps.integration_s = 1.0;  // constant or smooth power: the error is far below a hundredth of a percent
+    for (const auto phase : flight::all_phases) steps.output_s = std::max(steps.output_s, mission.duration_s[phase]);
+    for (const double y : map.y.nodes) {
+        run[map.y.component].qos[map.y.parameter] = y;
+        for (const double x : map.x.nodes) {
+            run[map.x.component].qos[map.x.parameter] = x;
+            const auto summary = simulate(mission, throughout(mission, run), steps).summary;
+            map.soc_percent.push_back(summary.final_soc_percent.value_or(std::numeric_limits<double>::quiet_NaN()));
+        }
+    }
+    return map;
+}
+
+bool have_same_model(const mission::MissionSetup& a, const mission::MissionSetup& b) {
+    const auto text = [](const mission::MissionSetup& mission) {
+        return mission.mechanical ? to_toml(*mission.mechanical) : std::string();
+    };
+    return text(a) == text(b);
+}
+
+bool have_same_software(const mission::MissionSetup& a, const mission::MissionSetup& b) {
+    return std::ranges::equal(
+        a.compute.components, b.compute.components, [](const compute::Component& one, const compute::Component& other) {
+            return one.name == other.name && one.profile.parameters == other.profile.parameters &&
+                   one.profile.axes == other.profile.axes && one.profile.power_w == other.profile.power_w;
+        });
+}
+
+/// The cruise along the same pieces of power, or both by their models' curves.
+bool have_same_path(const mission::MissionSetup& a, const mission::MissionSetup& b) {
+    if (!a.cruise_path || !b.cruise_path) return !a.cruise_path && !b.cruise_path;
+    return std::ranges::equal(*a.cruise_path->pieces, *b.cruise_path->pieces, [](const auto& one, const auto& other) {
+        return one.end_s == other.end_s && one.power_w == other.power_w;
+    });
+}
+
+bool have_same_map(const mission::MissionSetup& a, const mission::MissionSetup& b) {
+    const auto nameless = [](battery::Battery battery) {
+        battery.name.clear();
+        return to_toml(battery);
+    };
+    return a.duration_s.values == b.duration_s.values && a.initial_soc_percent == b.initial_soc_percent &&
+           nameless(a.battery) == nameless(b.battery) && have_same_software(a, b) && a.phase_clock == b.phase_clock &&
+           have_same_model(a, b) && have_same_path(a, b);
+}
+
+Figure qos_map_figure(const QosMap& map, std::span<const SimulatedMission> missions,
+                      const std::vector<PublishedCell>& published, const std::string& id) {
+    const auto [least, greatest] = range_of(map);
+    std::string caption =
+        "State of charge at the end if one configuration ran throughout. A cell is the mean of its corners; "
+        "diamonds are the configurations that the missions run.";
+    if (!map.others.empty()) caption += fmt::format(" With {}.", map.others);
+    const auto rms = rms_to_published(map, published);
+    if (rms) {
+        caption += fmt::format(
+            " Discs: the paper's Fig. 4, digitised, on the same colours: one that agrees is seen by its rim "
+            "alone. RMS difference over {} cells {:.2f} points.",
+            published.size(), *rms);
+    }
+    auto figure = new_figure(
+        id, caption,
+        fmt::format("Final state of charge over {} and {}: from {:.1f} % to {:.1f} % where one configuration runs "
+                    "throughout.",
+                    map.x.name, map.y.name, least, greatest));
+    figure.spec["width"] = 560;
+    figure.spec["height"] = 320;
+    figure.spec["layer"] = VegaJson::array({cell_layer(map)});
+    if (rms) figure.spec["layer"].push_back(published_layer(map, published));
+    figure.spec["layer"].push_back(marker_layer(map, missions));
+    return figure;
+}
+
+Figure profile_figure(const compute::ComputeModel& compute, const std::string& id) {
+    auto figure = new_figure(id, profile_caption(compute), profile_described(compute));
+    auto panels = VegaJson::array();
+    for (const auto& component : compute.components) panels.push_back(panel_of(component));
+    set_panels(figure, 2, 72, panels);
+    figure.spec["resolve"] = vega(R"({"scale": {"color": "independent"}})");
+    return figure;
+}
+
+}  // namespace flightwatt::report

@@ -1,0 +1,100 @@
+// The pages of the documentation: which there are, and how they are shown.
+
+#include "cli/help.h"
+
+#include "base/atomic_file.h"
+#include "helpers/running_program.h"
+#include "helpers/test_paths.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::cli {
+namespace {
+
+using testing::HasSubstr;
+
+std::filesystem::path folder_with_pages() {
+    auto folder = test::scratch_dir() / "pages";
+    make_directories(folder);
+    write_file_atomically(folder / "missions.md", "Above.\n\n# Mission files\n\nKeys.\n## More\n");
+    write_file_atomically(folder / "battery.md", "# Batteries\n");
+    write_file_atomically(folder / "bare.md", "no heading\n");
+    write_file_atomically(folder / "plan.svg", "# not a page\n");
+    return folder;
+}
+
+TEST(HelpPages, AreTheFoldersMarkdownFilesByTopic) {
+    const auto pages = help_pages(folder_with_pages());
+    ASSERT_EQ(pages.size(), 3U);
+    EXPECT_EQ(pages[0].topic, "bare");
+    EXPECT_EQ(pages[0].title, "");
+    EXPECT_EQ(pages[1].topic, "battery");
+    EXPECT_EQ(pages[1].title, "Batteries");
+    EXPECT_EQ(pages[2].topic, "missions");
+    EXPECT_EQ(pages[2].title, "Mission files");
+}
+
+TEST(HelpPages, AreNoneWithoutTheFolder) { EXPECT_TRUE(help_pages(test::scratch_dir() / "absent").empty()); }
+
+/// What `flightwatt help missions` prints, on a terminal of script(1)'s or into a file.
+std::string shown(const std::string& environment, bool on_terminal) {
+    const auto folder = folder_with_pages();
+    const auto out = folder / "shown";
+    const auto help = (test::programs_dir() / "flightwatt").string() + " help missions";
+    const auto run = on_terminal ? "script -qec '" + help + "' /dev/null" : help;
+    const auto line = "FLIGHTWATT_DOCS=" + folder.string() + " TERM=xterm " + environment + " " + run + " > " +
+                      out.string() + " 2>&1 < /dev/null";
+    return std::system(line.c_str()) == 0 ? read_file(out) : "";
+}
+
+TEST(ShowPage, IsPlainWhereThereIsNoTerminal) {
+    EXPECT_EQ(shown("PAGER='sed s/^/paged:/'", false), "Above.\n\n# Mission files\n\nKeys.\n## More\n");
+}
+
+TEST(ShowPage, GoesThroughThePagerOnATerminal) {
+    if (std::system("script -qec true /dev/null > /dev/null 2>&1 < /dev/null") != 0) {
+        GTEST_SKIP() << "no pseudo-terminal here, or no script(1)";
+    }
+    EXPECT_THAT(shown("PAGER='sed s/^/paged:/'", true), HasSubstr("paged:# Mission files"));
+    const auto without = shown("PAGER=no-such-pager-here", true);
+    EXPECT_THAT(without, HasSubstr("# Mission files"));
+    EXPECT_THAT(without, HasSubstr("## More"));
+}
+
+TEST(VersionText, IsTheVersionAloneWhereNoCommitIsKnown) { EXPECT_EQ(version_text(), FLIGHTWATT_VERSION); }
+
+/// The source that the build makes of the commit of a tree.
+std::string commit_source(const std::filesystem::path& tree) {
+    const auto run = test::run_shell("cmake -D SOURCE=" + test::shell_quoted(tree) + " -D OUTPUT=commit.cpp -P " +
+                                         test::shell_quoted(test::source_dir() / "cmake/commit.cmake"),
+                                     tree);
+    EXPECT_EQ(run.code, 0) << run.err;
+    return read_file(tree / "commit.cpp");
+}
+
+TEST(CommitSource, HasTheCommitOfARepositoryOfItsOwnAlone) {
+    const auto folder = test::scratch_dir();
+    const auto git = [&](const std::string& arguments) {
+        const auto run = test::run_shell("git -c user.name=a -c user.email=a@example.org " + arguments, folder);
+        EXPECT_EQ(run.code, 0) << arguments << ": " << run.err;
+        return run.out.substr(0, run.out.find('\n'));
+    };
+    git("init --quiet outer");
+    std::filesystem::create_directory(folder / "outer/unpacked");
+    const auto unknown = HasSubstr("commit() { return \"\"; }");
+    EXPECT_THAT(commit_source(folder / "outer"), unknown) << "nothing is committed yet";
+    git("-C outer commit --quiet --allow-empty --message first");
+    const auto known = HasSubstr("commit() { return \"" + git("-C outer rev-parse --short HEAD") + "\"; }");
+    EXPECT_THAT(commit_source(folder / "outer"), known);
+    EXPECT_THAT(commit_source(folder / "outer/unpacked"), unknown) << "it only lies in a repository";
+    git("-C outer worktree add --quiet ../worktree");  // .git is a file there
+    EXPECT_THAT(commit_source(folder / "worktree"), known);
+}
+
+}  // namespace
+}  // namespace flightwatt::cli

@@ -1,0 +1,150 @@
+#include "base/error.h"
+#include "helpers/synthetic_discharge.h"
+#include "report/figures/flight_figures.h"
+#include "report/sections/sections.h"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::report {
+namespace {
+
+using testing::HasSubstr;
+
+ReportFlight flight_on(const battery::Battery& pack, std::uint64_t seed) {
+    ReportFlight flight;
+    flight.series = test::synthetic_discharge(pack, {}, seed);
+    flight.name = flight.series.flight;
+    return flight;
+}
+
+std::vector<ReportFlight> flights_on(const battery::Battery& pack, std::uint64_t count) {
+    std::vector<ReportFlight> flights;
+    for (std::uint64_t seed = 1; seed <= count; ++seed) flights.push_back(flight_on(pack, seed));
+    return flights;
+}
+
+battery::IdentificationOptions with_capacity(const battery::Battery& pack) {
+    battery::IdentificationOptions options;
+    options.capacity_ah = pack.capacity_ah;
+    return options;
+}
+
+TEST(BatterySection, ShowsVoltagesParametersAndTheCurve) {
+    const auto pack = test::known_pack();
+    const auto battery = identify_for_report(flights_on(pack, 2), with_capacity(pack), 12);
+    ASSERT_TRUE(battery.identified) << battery.no_result_reason;
+    EXPECT_EQ(battery.leave_one_out.size(), 2U);
+    const auto section = battery_section(battery);
+    ASSERT_EQ(section.figures.size(), 2U);
+    EXPECT_EQ(section.figures[0].spec["concat"].size(), 2U);
+    const auto rows = section.figures[0].spec["concat"][0]["layer"][0]["data"]["values"].get<std::string>();
+    for (const auto* curve : {",measured", ",model"}) EXPECT_THAT(rows, HasSubstr(curve));
+    const auto knots = section.figures[1].spec["data"]["values"].get<std::string>();
+    EXPECT_EQ(static_cast<std::size_t>(std::count(knots.begin(), knots.end(), '\n')),
+              battery.identified->battery.thevenin->open_circuit.soc_percent.size());
+    EXPECT_THAT(section.html, HasSubstr("resistance_ohm"));
+    EXPECT_THAT(section.html, HasSubstr("identified from voltage, current and charge of 2 flights"));
+    EXPECT_THAT(section.html, testing::Not(HasSubstr("Not used for the battery")));
+    ASSERT_EQ(section.tables.size(), 2U) << "none is excluded";
+    EXPECT_EQ(section.tables[1].table.rows.size(), 2U) << "flights";
+}
+
+TEST(BatterySection, LimitsTheFlightsAndSaysSo) {
+    const auto pack = test::known_pack();
+    const auto battery = identify_for_report(flights_on(pack, 5), with_capacity(pack), 2);
+    EXPECT_EQ(battery.usable, 5U);
+    ASSERT_EQ(battery.records.size(), 2U);
+    EXPECT_EQ(battery.records[0].flight, "synthetic_1");
+    EXPECT_EQ(battery.records[1].flight, "synthetic_5");
+    EXPECT_THAT(battery_section(battery).html, HasSubstr("among the 5 that could be used"));
+}
+
+TEST(BatterySection, SaysWhyThereIsNone) {
+    const auto pack = test::known_pack();
+    auto computed = flight_on(pack, 1);
+    computed.series.current_origin = flight::CurrentOrigin::throttle;
+    auto voltless = flight_on(pack, 2);
+    std::erase_if(voltless.series.tracks, [](const auto& track) { return track.name == "voltage_v"; });
+    auto faulty = flight_on(pack, 3);
+    faulty.unusable_power = "its power record is <faulty>";
+    ReportFlight rejected;
+    rejected.name = "rejected";
+    rejected.rejected = "no flight in it";
+    const std::vector<ReportFlight> flights{computed, voltless, faulty, rejected};
+    const auto battery = identify_for_report(flights, {}, 12);
+    EXPECT_FALSE(battery.identified);
+    const auto section = battery_section(battery);
+    EXPECT_TRUE(section.figures.empty());
+    for (const auto* reason :
+         {"was not identified", "computed from throttle", "has no voltage", "is &lt;faulty&gt;", "no flight in it"}) {
+        EXPECT_THAT(section.html, HasSubstr(reason));
+    }
+}
+
+/// A mission on the pack that was identified from flights, with the capacity that was given for it.
+mission::MissionVariant mission_on(const std::vector<ReportFlight>& flights, double given_ah) {
+    mission::Mission mission;
+    battery::IdentificationOptions options;
+    options.capacity_ah = given_ah;
+    options.name = "pack";
+    mission.battery = identify_for_report(flights, options, 12).identified.value().battery;
+    return mission;
+}
+
+TEST(BatterySection, IsAboutThePackOfTheMissions) {
+    const auto flights = flights_on(test::known_pack(), 2);
+    const std::vector missions{mission_on(flights, 10.0), mission_on(flights, 10.0)};
+    const auto battery = identify_for_report(flights, {}, 12, missions);
+    ASSERT_TRUE(battery.identified);
+    EXPECT_EQ(battery.identified->battery.capacity_ah, 10.0);
+    const auto html = battery_section(battery).html;
+    EXPECT_THAT(html, HasSubstr("The capacity is that of &#39;pack&#39;, which the missions fly on."));
+    EXPECT_THAT(html, HasSubstr("the capacity of 10 Ah contradicts the flights"));
+    EXPECT_THAT(html, testing::Not(HasSubstr("with --capacity")));
+    battery::IdentificationOptions other;
+    other.capacity_ah = 5.0;
+    EXPECT_THROW(identify_for_report(flights, other, 12, missions), UsageError) << "a page has one pack";
+    other.capacity_ah = 10.0;
+    EXPECT_TRUE(identify_for_report(flights, other, 12, missions).identified);
+}
+
+TEST(BatterySection, IsNotAboutPacksOfOtherFlights) {
+    const auto flights = flights_on(test::known_pack(), 2);
+    const std::vector missions{mission_on({flight_on(test::known_pack(), 7)}, 10.0)};
+    const auto battery = identify_for_report(flights, {}, 12, missions);
+    EXPECT_NE(battery.identified.value().battery.capacity_ah, 10.0);
+    EXPECT_TRUE(battery.notes.empty());
+    auto stated = std::get<mission::Mission>(mission_on(flights, 10.0));
+    stated.capacity_is_stated = true;
+    const auto by_flights = identify_for_report(flights, {}, 12, std::vector<mission::MissionVariant>{stated});
+    EXPECT_NE(by_flights.identified.value().battery.capacity_ah, 10.0) << "that is the mission's alone";
+}
+
+TEST(BatterySection, SaysWhereTheMissionsFlyOnSeveralPacks) {
+    const auto flights = flights_on(test::known_pack(), 1);
+    const std::vector missions{mission_on(flights, 2.4), mission_on(flights, 10.0)};
+    const auto battery = identify_for_report(flights, {}, 12, missions);
+    EXPECT_EQ(battery.identified.value().capacity.origin, battery::CapacityOrigin::chart);
+    EXPECT_THAT(battery.notes, testing::ElementsAre(HasSubstr("packs of these flights with different capacities")));
+}
+
+TEST(BatterySection, GoesOnWhereNewFlightsDrewMoreThanThePackHas) {
+    const auto flights = flights_on(test::known_pack(), 1);
+    auto mission = std::get<mission::Mission>(mission_on(flights, 2.4));
+    mission.battery.capacity_ah = 0.1;
+    const auto battery = identify_for_report(flights, {}, 12, std::vector<mission::MissionVariant>{mission});
+    EXPECT_TRUE(battery.identified);
+    EXPECT_THAT(battery.notes, testing::ElementsAre(HasSubstr("is not used: --capacity is 0.1 Ah")));
+}
+
+TEST(BatterySection, RefusesACapacityThatAFlightExceeds) {
+    battery::IdentificationOptions options;
+    options.capacity_ah = 0.01;
+    EXPECT_THROW(identify_for_report(flights_on(test::known_pack(), 1), options, 12), UsageError);
+}
+
+}  // namespace
+}  // namespace flightwatt::report

@@ -1,0 +1,68 @@
+#include "flight/load_flight.h"
+#include "helpers/test_paths.h"
+#include "report/sections/sections.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::report {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+ReportFlight sample_flight(const std::string& path) {
+    ReportFlight flight;
+    flight.series = flight::read_flight(test::source_dir() / (path + ".data"));
+    flight.phases = segment(flight.series);
+    flight.name = flight.series.flight;
+    return flight;
+}
+
+TEST(FlightsSection, NamesEveryReasonOnceWithItsFlights) {
+    auto whole = sample_flight("logs/opterra_synthetic_01");
+    auto one = sample_flight("tests/data/hazards/hazard_01_run-up");
+    auto two = sample_flight("tests/data/hazards/hazard_01_two-sorties");
+    for (auto* flight : {&one, &two}) {
+        flight->unusable_power = "made for <segmentation>";
+        flight->exclusions = {flight->name + ": it is excluded: made for <segmentation>"};
+    }
+    const std::vector<ReportFlight> flights{whole, one, two};
+    const auto section = flights_section(flights, {});
+    EXPECT_THAT(section.html, HasSubstr("hazard_01_run-up, hazard_01_two-sorties"));
+    EXPECT_THAT(section.html, HasSubstr(">it is excluded: made for &lt;segmentation&gt;<"));
+    EXPECT_THAT(section.html, HasSubstr(">no</td>"));
+    EXPECT_THAT(section.html, HasSubstr(">all</td>"));
+    EXPECT_THAT(section.html, Not(HasSubstr(">in part</td>")));
+    EXPECT_EQ(section.figures.size(), 6U) << "a figure over time and a track each";
+}
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+    std::size_t count = 0;
+    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++count;
+    return count;
+}
+
+TEST(FlightsSection, CompressesManyFlightsButTheFirst) {
+    std::vector<ReportFlight> flights(20, sample_flight("logs/opterra_synthetic_01"));
+    for (std::size_t f = 0; f < flights.size(); ++f) flights[f].name = "flight_" + std::to_string(f);
+    const auto few = flights_section(flights, {});
+    EXPECT_THAT(few.html, Not(HasSubstr("class=\"block\"")));
+    EXPECT_EQ(count_of(few.html, "data-spec="), 40U);
+
+    auto rejected = flights.front();
+    rejected.name = "flight_20";
+    rejected.rejected = "it is made up";
+    flights.insert(flights.begin(), rejected);
+    const auto many = flights_section(flights, {});
+    EXPECT_EQ(count_of(many.html, "<details class=\"flight\""), 20U);
+    EXPECT_EQ(count_of(many.html, "class=\"block\""), 19U) << "the first one shown is open, and plain";
+    EXPECT_EQ(count_of(many.html, "data-spec="), 2U);
+    EXPECT_THAT(many.html, HasSubstr("they open with JavaScript"));
+    EXPECT_EQ(many.figures.size(), few.figures.size()) << "files of figures hold all of them";
+    EXPECT_EQ(many.figures.back().spec, few.figures.back().spec);
+    EXPECT_LT(many.html.size(), few.html.size() / 3);
+}
+
+}  // namespace
+}  // namespace flightwatt::report

@@ -1,0 +1,190 @@
+// Missions as the report flies them.
+
+#include "report/sections/simulated_mission.h"
+
+#include "base/error.h"
+#include "helpers/paper_missions.h"
+#include "mission/feasibility_limits.h"
+
+#include <memory>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::report {
+namespace {
+
+TEST(SimulateForReport, TellsMissionsOfOneNameApart) {
+    const auto missions = simulate_for_report({test::paper_mission("phased"), test::paper_mission("phased")});
+    EXPECT_EQ(missions[0].title, "phased");
+    EXPECT_EQ(missions[1].title, "phased (2)");
+}
+
+TEST(SimulateForReport, TellsHowFarItIs) {
+    std::vector<std::pair<std::size_t, std::size_t>> told;
+    simulate_for_report({test::paper_mission("phased"), test::paper_mission("phased")},
+                        [&](std::size_t done, std::size_t all) { told.emplace_back(done, all); });
+    EXPECT_EQ(told, (std::vector<std::pair<std::size_t, std::size_t>>{{0, 2}, {1, 2}}));
+}
+
+TEST(SimulateForReport, EndsTheCurveWhereTheBatteryCannotDeliver) {
+    auto weak = test::paper_mission("phased");
+    weak.battery.resistance_ohm = 1.0;
+    const auto missions = simulate_for_report({weak});
+    const auto& [mission, simulation, title, planned] = missions.front();
+    ASSERT_TRUE(simulation.summary.undeliverable);
+    EXPECT_LE(simulation.curve.rows.back().time_s, simulation.summary.undeliverable->time_s);
+    EXPECT_FALSE(planned) << "it gave its schedule";
+}
+
+TEST(SimulateForReport, HasAsManyRowsAsAScreenShows) {
+    const auto missions = simulate_for_report({test::paper_mission("phased")});
+    EXPECT_NEAR(static_cast<double>(missions.front().simulation.curve.rows.size()), 300.0, 30.0);
+}
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+mission::MissionLoader reading_of(const std::string& name) {
+    const auto path = test::paper_mission_path(name);
+    return [path](const mission::MissionReadOptions& reading) { return mission::read_mission(path, reading); };
+}
+
+SimulatedMission flown(const std::string& name) {
+    return simulate_for_report({reading_of(name)({.allow_unplanned = true})}).front();
+}
+
+TEST(MissionAnswer, IsWhatPlanSaysOfTheLongestCruise) {
+    const auto answer = assess_mission(flown("phased"), reading_of("phased"));
+    const auto of_cruise = [&](double cruise_s) {
+        return reading_of("phased")({.allow_unplanned = true, .cruise_s = cruise_s});
+    };
+    ASSERT_TRUE(answer.reach && answer.reach_at_95_percent);
+    EXPECT_EQ(answer.reach->unit, mission::ReachUnit::cruise_s);
+    EXPECT_EQ(answer.reach->limit.value, mission::longest_cruise(of_cruise).value);
+    EXPECT_EQ(answer.reach_at_95_percent->limit.value, mission::longest_cruise(of_cruise, reach_probability).value);
+    EXPECT_LT(answer.reach_at_95_percent->limit.value, answer.reach->limit.value);
+    EXPECT_FALSE(answer.is_unplanned);
+}
+
+TEST(MissionAnswer, SaysWhatWouldKeepTheReserve) {
+    const auto simulated = flown("invariant-32fps-448bit");
+    EXPECT_EQ(verdict_of(simulated), ReserveStatus::fails);
+    const auto answer = assess_mission(simulated, reading_of("invariant-32fps-448bit"));
+    ASSERT_TRUE(answer.capacity_ah);
+    EXPECT_GT(*answer.capacity_ah, simulated.mission.battery.capacity_ah);
+    const auto lines = card_lines(simulated, answer);
+    EXPECT_THAT(lines.front(), StartsWith("Runs empty after 9 min"));
+    EXPECT_THAT(lines.back(), StartsWith("For a chance of 95 %: fly 7 min"));
+    EXPECT_THAT(lines.back(), HasSubstr("or take a battery of"));
+}
+
+TEST(MissionAnswer, KnowsNoChanceWhereNothingSaysHowFlightsDiffer) {
+    const auto simulated = flown("computing-only");
+    const auto answer = assess_mission(simulated, reading_of("computing-only"));
+    EXPECT_FALSE(answer.reach_at_95_percent);
+    EXPECT_EQ(verdict_of(simulated), ReserveStatus::keeps);
+    EXPECT_THAT(card_lines(simulated, answer), Contains(HasSubstr("nobody knows the chance")));
+    EXPECT_TRUE(to_json(simulated, answer)["probability_below_reserve"].is_null());
+}
+
+/// "computing-only", whose pack of 3.2 Ah is of flights that indicate another capacity.
+mission::Mission on_pack_of_flights(double indicated_ah) {
+    auto mission = test::paper_mission("computing-only");
+    mission.battery.flight_estimate = std::make_shared<battery::FlightEstimate>(
+        battery::FlightEstimate{indicated_ah, {0.9 * indicated_ah, 1.1 * indicated_ah}});
+    return mission;
+}
+
+TEST(MissionAnswer, WarnsOfACapacityThatContradictsTheFlights) {
+    const auto lines_of = [](double indicated_ah) {
+        const auto simulated = simulate_for_report({on_pack_of_flights(indicated_ah)}).front();
+        return card_lines(simulated, assess_mission(simulated, reading_of("computing-only")));
+    };
+    EXPECT_THAT(lines_of(3.2), testing::Each(testing::Not(HasSubstr("flights indicate"))));
+    const auto lines = lines_of(6.4);
+    EXPECT_THAT(lines[0], testing::MatchesRegex("Lands with [0-9.]+ % \\([0-9]+\\.[0-9] % with the 6.4 Ah that the "
+                                                "flights indicate\\)"));
+    EXPECT_THAT(lines[1], StartsWith("Warning: the capacity of 3.2 Ah contradicts the flights, which indicate 6.4 Ah"));
+}
+
+TEST(MissionAnswer, IsNotSureOfALandingThatTheFlightsContradict) {
+    const auto simulated = simulate_for_report({on_pack_of_flights(6.4)}).front();
+    EXPECT_EQ(verdict_of(simulated), ReserveStatus::keeps) << "with their capacity too";
+    const auto fails = simulate_for_report({on_pack_of_flights(0.8)}).front();
+    EXPECT_EQ(verdict_of(fails), ReserveStatus::may_keep);
+    const auto answer = assess_mission(fails, reading_of("computing-only"));
+    EXPECT_THAT(card_lines(fails, answer).front(), HasSubstr("(the battery fails after "));
+    const auto json = to_json(fails, answer);
+    EXPECT_EQ(json["with_capacity_of_flights"]["keeps_reserve"], false);
+    EXPECT_FALSE(to_json(flown("computing-only"), answer).contains("with_capacity_of_flights"));
+}
+
+TEST(MissionAnswer, OffersAPlanWithAMarginWhereOneIsInReach) {
+    const auto reading_with = [](double reserve_percent) -> mission::MissionLoader {
+        return [reserve_percent](const mission::MissionReadOptions& how) {
+            auto problem = std::get<mission::PlanningProblem>(reading_of("plan")(how));
+            problem.reserve_soc_percent = reserve_percent;
+            return mission::MissionVariant(std::move(problem));
+        };
+    };
+    const auto last_line = [](const mission::MissionLoader& reading) {
+        const auto simulated = simulate_for_report({reading({.allow_unplanned = true})}).front();
+        EXPECT_EQ(verdict_of(simulated), ReserveStatus::may_keep);
+        const auto answer = assess_mission(simulated, reading);
+        EXPECT_TRUE(answer.is_unplanned);
+        return card_lines(simulated, answer).back();
+    };
+    EXPECT_THAT(last_line(reading_with(3.0)), HasSubstr("plan it with --probability 0.95"));
+    EXPECT_THAT(last_line(reading_of("plan")),
+                testing::AllOf(HasSubstr("fly 9 min 34 s of cruise at most"), testing::Not(HasSubstr("plan it with"))));
+}
+
+TEST(MissionAnswer, SaysThatALengthHasToBeStatedWhereFlightsDifferInIt) {
+    const auto simulated = simulate_for_report({reading_of("plan")({.allow_unplanned = true})}).front();
+    auto answer = assess_mission(simulated, reading_of("plan"));
+    ASSERT_TRUE(answer.reach_at_95_percent);
+    answer.cruise_differs_now = false;
+    EXPECT_THAT(card_lines(simulated, answer).back(), HasSubstr("fly 9 min 34 s of cruise at most"));
+    answer.cruise_differs_now = true;
+    const auto lines = card_lines(simulated, answer);
+    EXPECT_THAT(lines.back(), HasSubstr("fly a stated cruise of at most 9 min 34 s (duration_s = { cruise = 57"));
+    EXPECT_THAT(lines.back(), HasSubstr("of the model's flights differ from flight to flight)"));
+    EXPECT_THAT(lines, Contains(HasSubstr("with a chance of 95 % if that is stated")));
+}
+
+TEST(MissionAnswer, CountsCirclesOfAPath) {
+    const auto path = test::source_dir() / "missions/synthetic/survey-path.toml";
+    const mission::MissionLoader reading = [&](const mission::MissionReadOptions& how) {
+        return mission::read_mission(path, how);
+    };
+    auto simulated = simulate_for_report({reading({.allow_unplanned = true})}).front();
+    simulated.simulation.summary.samples.reset();  // its chance takes a second
+    const auto answer = assess_mission(simulated, reading);
+    ASSERT_TRUE(answer.reach);
+    EXPECT_EQ(answer.reach->unit, mission::ReachUnit::circles);
+    EXPECT_TRUE(to_json(simulated, answer)["reach"].contains("most_circles"));
+    EXPECT_THAT(card_lines(simulated, answer), Contains(HasSubstr("circles as modelled")));
+}
+
+TEST(MissionAnswer, SaysWhichModelIsUsedAndHowItPredicts) {
+    auto simulated = flown("computing-only");
+    const auto answer = assess_mission(simulated, reading_of("computing-only"));
+    EXPECT_THAT(card_lines(simulated, answer), testing::Not(Contains(HasSubstr("left out of the fit"))));
+    simulated.mission.power_model = mechanical::HeldOutScore{"constant_mean", 4, 18.6};
+    EXPECT_THAT(card_lines(simulated, answer),
+                Contains("Power by each phase's mean: 18.6 % off on 4 flights left out of the fit"));
+}
+
+TEST(MissionAnswer, SaysWhyThereIsNone) {
+    auto simulated = flown("phased");
+    const auto answer = assess_mission(simulated, [](const mission::MissionReadOptions&) -> mission::MissionVariant {
+        throw InputError({"gone.toml"}, "it is gone", "look for it");
+    });
+    EXPECT_FALSE(answer.reach);
+    EXPECT_THAT(card_lines(simulated, answer), Contains(HasSubstr("cannot be read again")));
+}
+
+}  // namespace
+}  // namespace flightwatt::report
