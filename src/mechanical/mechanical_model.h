@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flight/flight_phases.h"
-#include "mechanical/covariate_regression.h"
+#include "mechanical/covariates.h"
 #include "mechanical/physical_model.h"
 
 #include <filesystem>

@@ -4,8 +4,8 @@
 #include "base/parallel.h"
 #include "base/statistics.h"
 #include "base/units.h"
+#include "mechanical/fit/flight_variation.h"
 #include "mechanical/physical_fit.h"
-#include "mechanical/validation/baselines.h"
 
 #include <algorithm>
 #include <cmath>

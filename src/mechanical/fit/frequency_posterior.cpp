@@ -3,11 +3,9 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/statistics.h"
-#include "mechanical/fit/density_nodes.h"
 #include "mechanical/fit/fourier_basis.h"
-#include "mechanical/fit/frequency_scan.h"
-#include "mechanical/fit/frequency_screen.h"
-#include "mechanical/fit/node_likelihood.h"
+#include "mechanical/fit/frequency_likelihood.h"
+#include "mechanical/fit/least_squares.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mechanical/fit/frequency_scan.h"
+#include "mechanical/fit/least_squares.h"
 #include "mechanical/fit/phase_samples.h"
 #include "mechanical/mechanical_model.h"
 

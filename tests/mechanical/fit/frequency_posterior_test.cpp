@@ -1,9 +1,8 @@
 #include "mechanical/fit/frequency_posterior.h"
 
 #include "helpers/interval_coverage.h"
-#include "mechanical/fit/density_nodes.h"
-#include "mechanical/fit/frequency_scan.h"
-#include "mechanical/fit/node_likelihood.h"
+#include "mechanical/fit/frequency_likelihood.h"
+#include "mechanical/fit/least_squares.h"
 
 #include <algorithm>
 #include <cmath>

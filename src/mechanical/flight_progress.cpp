@@ -1,4 +1,4 @@
-#include "mechanical/prediction/flight_progress.h"
+#include "mechanical/flight_progress.h"
 
 #include "base/error.h"
 #include "flight/phase_statistics.h"

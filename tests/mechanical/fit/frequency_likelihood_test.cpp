@@ -1,4 +1,4 @@
-#include "mechanical/fit/frequency_screen.h"
+#include "mechanical/fit/frequency_likelihood.h"
 
 #include "helpers/interval_coverage.h"
 #include "mechanical/fit/frequency_posterior.h"

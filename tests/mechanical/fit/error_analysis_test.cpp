@@ -1,15 +1,15 @@
-#include "mechanical/uncertainty/error_analysis.h"
+#include "mechanical/fit/error_analysis.h"
 
 #include "helpers/made_up_flights.h"
 #include "mechanical/fit/flight_weights.h"
 #include "mechanical/fit/fourier_basis.h"
-#include "mechanical/uncertainty/frequency_profile.h"
 
 #include <cmath>
 #include <numbers>
 #include <string>
 #include <utility>
 
+#include <Eigen/Core>
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
@@ -149,6 +149,33 @@ TEST(FrequencyProfile, OfANoisyLandingIsOpenBelow) {
     const auto profile = frequency_profile(fit.flights, fit.fit, fit.analysis);
     EXPECT_TRUE(profile.low_is_open);
     EXPECT_NEAR(profile.low_rad, std::numbers::pi, 0.1);
+}
+
+const std::vector<double> with_gaps{0.0, 0.1, 0.2, 0.5, 0.55, 0.9, 1.0};
+
+/// The correlation matrix, entry by entry.
+Eigen::MatrixXd full_matrix(const std::vector<double>& tau, double step, double autocorrelation) {
+    const auto count = static_cast<Eigen::Index>(tau.size());
+    Eigen::MatrixXd matrix(count, count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+        for (Eigen::Index j = 0; j < count; ++j) {
+            const double gap = std::abs(tau[static_cast<std::size_t>(i)] - tau[static_cast<std::size_t>(j)]);
+            matrix(i, j) = std::pow(autocorrelation, gap / step);
+        }
+    }
+    return matrix;
+}
+
+TEST(ResidualCorrelation, EffectiveSamplesAreThoseOfTheWholeMatrix) {
+    const auto correlation = sample_correlation(with_gaps, 0.1, 0.6);
+    EXPECT_NEAR(effective_samples(correlation), 49.0 / full_matrix(with_gaps, 0.1, 0.6).sum(), 1e-12);
+}
+
+TEST(ResidualCorrelation, EffectiveSamplesAreThoseOfTheTextbookWithoutGaps) {
+    std::vector<double> tau;
+    for (int i = 0; i < 20000; ++i) tau.push_back(i / 20000.0);
+    EXPECT_NEAR(effective_samples(sample_correlation(tau, 1.0 / 20000.0, 0.5)), 20000.0 / 3.0, 2.0);
+    EXPECT_DOUBLE_EQ(effective_samples(sample_correlation(tau, 1.0 / 20000.0, 0.0)), 20000.0);
 }
 
 }  // namespace

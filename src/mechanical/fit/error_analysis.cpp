@@ -1,14 +1,14 @@
-#include "mechanical/uncertainty/error_analysis.h"
+#include "mechanical/fit/error_analysis.h"
 
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
 #include "mechanical/fit/fourier_basis.h"
-#include "mechanical/uncertainty/residual_correlation.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace flightwatt::mechanical {
@@ -36,6 +36,19 @@ void describe_fit(PhaseErrors& errors, std::span<const PhaseSamples> flights, co
     }
     errors.r2 = about_means > 0.0 ? 1.0 - left / about_means : 1.0;
     errors.frequency_is_fixed = fit.flights.front().fourier.cos_w.empty() || is_constant(flights);
+}
+
+/// What the nodes say of a linear function of the coefficients which depends on theta: row(theta) c.
+template <typename Row>
+StudentMixture mixture_of(std::span<const MeanCurveNode> nodes, const Row& row) {
+    StudentMixture mixture;
+    for (const auto& node : nodes) {
+        const Eigen::VectorXd at = row(node.theta_rad);
+        mixture.weight.push_back(node.weight);
+        mixture.location.push_back(at.dot(node.coefficients));
+        mixture.scale.push_back(std::sqrt(std::max(0.0, at.dot(node.scale * at))));
+    }
+    return mixture;
 }
 
 /// The row of the mean curve at tau for a frequency.
@@ -144,7 +157,29 @@ std::shared_ptr<const FrequencyPosterior> posterior_of_fit(std::span<const Phase
         frequency_posterior(values, {order, fit.range, fit.theta_rad, fit.scan.get()}));
 }
 
+constexpr int points_a_side = 20;
+
+/// The flights' least common sum of squares at one frequency [W^2].
+double square_sum_w2(std::span<const PhaseSamples> flights, int order, double theta_rad) {
+    double sum = 0.0;
+    for (const auto& flight : flights) {
+        const auto fit = solve_least_squares(fourier_basis(flight.tau, order, theta_rad), as_vector(flight.power_w));
+        if (!fit) return std::numeric_limits<double>::infinity();
+        sum += fit->residual_square_sum;
+    }
+    return sum;
+}
+
+/// At a bound of the range the density is so much of its peak: the data do not end the interval there.
+constexpr double open_density = 0.1;
+
 }  // namespace
+
+double degrees_of_freedom(std::span<const MeanCurveNode> nodes) {
+    double sum = 0.0;
+    for (const auto& node : nodes) sum += node.weight * node.degrees_of_freedom;
+    return std::max(1.0, sum);
+}
 
 ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseFit& fit,
                              std::span<const double> weights) {
@@ -187,6 +222,53 @@ std::vector<Interval> curve_intervals_w(const ErrorAnalysis& analysis, std::span
         intervals.push_back(around(mixture_interval(curve_mixture(analysis, at), cdf), fitted));
     }
     return intervals;
+}
+
+FrequencyProfile frequency_profile(std::span<const PhaseSamples> flights, const PhaseFit& fit,
+                                   const ErrorAnalysis& analysis) {
+    const auto order = static_cast<int>(fit.flights.front().fourier.cos_w.size());
+    FrequencyProfile profile{{}, {}, fit.range.low_rad, fit.range.high_rad, true, true};
+    if (order == 0 || analysis.errors.frequency_is_fixed) return profile;
+
+    const auto& density = analysis.posterior->density;
+    const auto [low, high] = frequency_interval(*analysis.posterior);
+    profile.low_rad = std::min(low, fit.theta_rad);
+    profile.high_rad = std::max(high, fit.theta_rad);
+    const auto& places = analysis.posterior->theta_rad;
+    profile.low_is_open = places.front() <= fit.range.low_rad && density.front() >= open_density;
+    profile.high_is_open = places.back() >= fit.range.high_rad && density.back() >= open_density;
+    const auto square_sum = [&](double theta_rad) { return square_sum_w2(flights, order, theta_rad); };
+
+    const double first = std::max(fit.range.low_rad, 2.0 * profile.low_rad - fit.theta_rad);
+    const double last = std::min(fit.range.high_rad, 2.0 * profile.high_rad - fit.theta_rad);
+    for (int i = -points_a_side; i <= points_a_side; ++i) {
+        const double part = static_cast<double>(i) / points_a_side;
+        const double reach = i < 0 ? fit.theta_rad - first : last - fit.theta_rad;
+        if (reach <= 0.0 && i != 0) continue;
+        const double theta_rad = fit.theta_rad + part * reach;
+        profile.theta_rad.push_back(theta_rad);
+        profile.rms_w.push_back(std::sqrt(square_sum(theta_rad) / static_cast<double>(fit.samples)));
+    }
+    return profile;
+}
+
+std::vector<double> sample_correlation(std::span<const double> tau, double step, double autocorrelation) {
+    std::vector<double> correlation(tau.size(), 0.0);
+    for (std::size_t j = 1; j < tau.size(); ++j) {
+        correlation[j] = std::pow(autocorrelation, (tau[j] - tau[j - 1]) / step);
+    }
+    return correlation;
+}
+
+double effective_samples(std::span<const double> correlation) {
+    const auto count = static_cast<double>(correlation.size());
+    double earlier = 0.0;  // the correlations of sample j with all before it
+    double sum = count;
+    for (const double decay : correlation) {
+        earlier = decay * (1.0 + earlier);
+        sum += 2.0 * earlier;
+    }
+    return count * count / sum;
 }
 
 }  // namespace flightwatt::mechanical

@@ -1,4 +1,4 @@
-#include "mechanical/physical/student_t_fit.h"
+#include "mechanical/fit/student_t.h"
 
 #include "base/statistics.h"
 

@@ -1,11 +1,12 @@
-#include "mechanical/fit/refinement.h"
+#include "mechanical/fit/least_squares.h"
 
 #include "base/error.h"
 #include "helpers/made_up_flights.h"
+#include "mechanical/fit/fourier_basis.h"
 #include "mechanical/fit/phase_fit.h"
-#include "mechanical/fit/projected_fit.h"
 #include "mechanical/mechanical_model.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -13,6 +14,88 @@
 
 namespace flightwatt::mechanical {
 namespace {
+
+std::vector<ScaledSamples> one_flight(const PhaseModel& phase, double noise_w, unsigned seed) {
+    std::mt19937 random(seed);
+    return {test::centred(test::record(phase, {phase.duration_s, 0.1, noise_w, 0.0}, random))};
+}
+
+double found_frequency(std::span<const ScaledSamples> flights, const FrequencyRange& range) {
+    return find_frequency(flights, 3, range, scan_frequencies(flights, 3, range));
+}
+
+TEST(FrequencyScan, CoversTheRangeAndAgreesWithTheExactSums) {
+    const auto flights = one_flight(test::cruise_of(4.2, {2.0, 0.6, 0.3}, {1.0, -0.2, 0.4}), 1.0, 1);
+    const FrequencyRange range{std::numbers::pi, 200.0};
+    const auto scan = scan_frequencies(flights, 3, range);
+    EXPECT_LE(scan.step_rad * 3.0, 1.0);
+    EXPECT_LT(scan.theta_rad.front() - range.low_rad, scan.step_rad);
+    EXPECT_NEAR(scan.theta_rad.back(), range.high_rad, 1e-9);
+    for (std::size_t i = 0; i < scan.theta_rad.size(); i += 7) {
+        const double exact = projected_square_sum(flights, 3, scan.theta_rad[i]);
+        EXPECT_NEAR(scan.square_sum[i], exact, 1e-8 * exact) << scan.theta_rad[i];
+    }
+}
+
+TEST(FrequencyScan, FindsTheLeastOfAFineAndExactSearch) {
+    const auto flights = one_flight(test::cruise_of(2.7, {2.0, 0.6, 0.3}, {1.0, -0.2, 0.4}), 1.0, 2);
+    const FrequencyRange range{std::numbers::pi, 60.0};
+    double least = 1e300;
+    double at_rad = 0.0;
+    for (double theta_rad = range.low_rad; theta_rad < range.high_rad; theta_rad += 0.01) {
+        const double sum = projected_square_sum(flights, 3, theta_rad);
+        if (sum < least) {
+            least = sum;
+            at_rad = theta_rad;
+        }
+    }
+    const double found_rad = found_frequency(flights, range);
+    EXPECT_NEAR(found_rad, at_rad, 0.01);
+    EXPECT_LE(projected_square_sum(flights, 3, found_rad), least);
+}
+
+// theta / 2 and theta / 3 hold a plain oscillation too, as their second and third harmonic.
+TEST(FrequencyScan, TakesAPlainOscillationForItsOwnFundamental) {
+    const FrequencyRange range{std::numbers::pi, 500.0};
+    for (const double periods : {4.2, 10.0, 47.3}) {
+        for (unsigned seed = 1; seed <= 10; ++seed) {
+            const auto noisy = one_flight(test::cruise_of(periods, {3.0}, {2.0}), 1.5, seed);
+            EXPECT_NEAR(found_frequency(noisy, range), 2.0 * std::numbers::pi * periods, 0.1);
+        }
+        const auto exact = one_flight(test::cruise_of(periods, {3.0}, {2.0}), 0.0, 1);
+        EXPECT_NEAR(found_frequency(exact, range), 2.0 * std::numbers::pi * periods, 1e-4);
+    }
+}
+
+TEST(FrequencyScan, DoesNotTakeOddHarmonicsForNoise) {
+    // The second harmonic is by far the strongest: theta is half of what stands out.
+    const FrequencyRange range{std::numbers::pi, 500.0};
+    const auto flights = one_flight(test::cruise_of(5.0, {0.4, 3.0, 0.0}, {0.0, 2.0, 0.4}), 1.5, 4);
+    EXPECT_NEAR(found_frequency(flights, range), 10.0 * std::numbers::pi, 0.1);
+    EXPECT_NEAR(resolve_subharmonic(flights, 3, range, 10.0 * std::numbers::pi), 10.0 * std::numbers::pi, 0.1);
+}
+
+TEST(FrequencyScan, MovesASubharmonicToTheSimplestFrequency) {
+    const FrequencyRange range{std::numbers::pi, 500.0};
+    const double theta_rad = 2.0 * std::numbers::pi * 12.0;
+    const auto flights = one_flight(test::cruise_of(12.0, {3.0}, {2.0}), 1.5, 5);
+    EXPECT_NEAR(resolve_subharmonic(flights, 3, range, theta_rad / 2.0), theta_rad, 0.05);
+    EXPECT_NEAR(resolve_subharmonic(flights, 3, range, theta_rad / 3.0), theta_rad, 0.05);
+    EXPECT_EQ(resolve_subharmonic(flights, 3, range, theta_rad), theta_rad);
+}
+
+TEST(FrequencyScan, KeepsTheTrendOfAShortTakeOff) {
+    // Few samples do not tell 2 theta from theta by significance alone.
+    int doubled = 0;
+    for (unsigned seed = 1; seed <= 50; ++seed) {
+        std::vector<ScaledSamples> flights;
+        for (const auto& samples : test::record_flights(flight::Phase::takeoff, 6, 0.5, seed)) {
+            flights.push_back(test::centred(samples));
+        }
+        doubled += found_frequency(flights, {std::numbers::pi, 25.0}) > 6.5;
+    }
+    EXPECT_LE(doubled, 2);
+}
 
 const FrequencyRange wide{std::numbers::pi, 500.0};
 

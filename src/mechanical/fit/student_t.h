@@ -1,11 +1,9 @@
 #pragma once
 
-#include "mechanical/fit/frequency_posterior.h"
+#include "mechanical/mechanical_model.h"
 
 #include <span>
 #include <vector>
-
-#include <Eigen/Core>
 
 namespace flightwatt::mechanical {
 
@@ -34,20 +32,14 @@ double mixture_sd(const StudentMixture& mixture, double degrees_of_freedom);
 /// Where the mixture's distribution function is 2.5 % and 97.5 %.
 Interval mixture_interval(const StudentMixture& mixture, const StudentCdf& cdf);
 
-/// The weighted mean of the nodes' degrees of freedom, for which all are computed.
-double degrees_of_freedom(std::span<const MeanCurveNode> nodes);
+struct StudentT {
+    double scale = 0.0;
+    double degrees_of_freedom = 0.0;
+};
 
-/// What the nodes say of a linear function of the coefficients which depends on theta: row(theta) c.
-template <typename Row>
-StudentMixture mixture_of(std::span<const MeanCurveNode> nodes, const Row& row) {
-    StudentMixture mixture;
-    for (const auto& node : nodes) {
-        const Eigen::VectorXd at = row(node.theta_rad);
-        mixture.weight.push_back(node.weight);
-        mixture.location.push_back(at.dot(node.coefficients));
-        mixture.scale.push_back(std::sqrt(std::max(0.0, at.dot(node.scale * at))));
-    }
-    return mixture;
-}
+/// The Student's t about 0 that is nearest to a mixture of normal distributions about 0: it has the mixture's central
+/// 68 and 95 %. `sds` and `weights` are equally long, the weights sum to 1. Of a mixture that is no wider in its tails
+/// than a normal one, 200 degrees of freedom.
+StudentT fit_student_t(std::span<const double> sds, std::span<const double> weights);
 
 }  // namespace flightwatt::mechanical

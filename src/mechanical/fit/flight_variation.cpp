@@ -1,4 +1,4 @@
-#include "mechanical/prediction/variance_components.h"
+#include "mechanical/fit/flight_variation.h"
 
 #include "base/statistics.h"
 
@@ -9,6 +9,51 @@
 
 namespace flightwatt::mechanical {
 namespace {
+
+/// The flights' values of a covariate and their mean powers.
+struct Points {
+    std::vector<double> covariate;
+    std::vector<double> power_w;
+};
+
+Points points_of(std::span<const PhaseSamples> flights, Covariate covariate) {
+    Points points;
+    for (const auto& flight : flights) {
+        const auto& value =
+            is_through_origin(covariate) ? flight.airspeed_cubed_m3_per_s3 : flight.covariates[covariate];
+        if (!value || (is_through_origin(covariate) && *value <= 0.0)) continue;
+        points.covariate.push_back(*value);
+        points.power_w.push_back(mean_power_w(flight));
+    }
+    return points;
+}
+
+/// Each flight's own coefficient counts the same.
+void fit_through_origin(CovariateRegression& law, const Points& points) {
+    std::vector<double> coefficients;
+    for (std::size_t i = 0; i < points.covariate.size(); ++i) {
+        coefficients.push_back(points.power_w[i] / points.covariate[i]);
+    }
+    law.mean_power_w = mean(coefficients) * law.mean;
+    law.slope_w = mean(coefficients) * law.sd;
+    law.residual_sd_w = sample_sd(coefficients) * law.mean;
+}
+
+void fit_line(CovariateRegression& law, const Points& points) {
+    const auto flights = static_cast<double>(law.flights);
+    double product_sum = 0.0;
+    for (std::size_t i = 0; i < points.covariate.size(); ++i) {
+        product_sum += (points.covariate[i] - law.mean) / law.sd * (points.power_w[i] - law.mean_power_w);
+    }
+    law.slope_w = product_sum / flights;
+    if (law.flights < min_regression_flights(law.covariate)) return;
+    double residual_square_sum = 0.0;
+    for (std::size_t i = 0; i < points.covariate.size(); ++i) {
+        const double fitted_w = law.mean_power_w + law.slope_w * (points.covariate[i] - law.mean) / law.sd;
+        residual_square_sum += std::pow(points.power_w[i] - fitted_w, 2);
+    }
+    law.residual_sd_w = std::sqrt(residual_square_sum / (flights - 2.0));
+}
 
 constexpr double block_s = 30.0;
 constexpr std::size_t min_blocks = 10;  // of the shortest flight
@@ -104,22 +149,44 @@ DriftProcess drift_of(const BlockSums& sums, double length_s, double duration_s)
     return {std::sqrt(std::max(by_blocks, by_halves)), unit.correlation_s};
 }
 
-}  // namespace
-
-double variance_of_mean_w2(const DriftProcess& drift, double duration_s) {
-    const double x = duration_s / drift.correlation_s;
-    const double variance = drift.sd_w * drift.sd_w;
-    // The closed form cancels for short durations: 2 (x - 1 + exp(-x)) / x^2 = 1 - x/3 + ...
-    if (x < 1e-4) return variance * (1.0 - x / 3.0);
-    return variance * 2.0 * (x + std::expm1(-x)) / (x * x);
+std::vector<double> mean_powers_w(std::span<const PhaseSamples> flights) {
+    std::vector<double> powers_w;
+    for (const auto& flight : flights) powers_w.push_back(mean_power_w(flight));
+    return powers_w;
 }
 
-double covariance_of_means_w2(const DriftProcess& drift, double first_s, double second_s) {
-    const auto part = [&](double duration_s) {
-        const double x = duration_s / drift.correlation_s;
-        return x < 1e-12 ? 1.0 : -std::expm1(-x) / x;
-    };
-    return drift.sd_w * drift.sd_w * part(first_s) * part(second_s);
+/// With the flights' standard deviation times `factor`, where there are two or more.
+ConstantPower with_spread(double mean_w, const std::vector<double>& powers_w, double factor) {
+    ConstantPower power{mean_w, std::nullopt, 0.0};
+    if (powers_w.size() < 2) return power;
+    power.sd_w = sample_sd(powers_w) * factor;
+    power.degrees_of_freedom = static_cast<double>(powers_w.size() - 1);
+    return power;
+}
+
+}  // namespace
+
+std::optional<CovariateRegression> fit_covariate_regression(std::span<const PhaseSamples> flights,
+                                                            Covariate covariate) {
+    const auto points = points_of(flights, covariate);
+    if (points.covariate.size() < 2 || !(sample_sd(points.covariate) > 0.0)) return std::nullopt;
+    const auto [least, most] = std::ranges::minmax(points.covariate);
+    CovariateRegression law{covariate,
+                            points.covariate.size(),
+                            mean(points.covariate),
+                            sample_sd(points.covariate),
+                            least,
+                            most,
+                            mean(points.power_w),
+                            0.0,
+                            {}};
+    if (!is_through_origin(covariate)) {
+        fit_line(law, points);
+        return law;
+    }
+    fit_through_origin(law, points);
+    if (!(law.mean_power_w > 0.0)) return std::nullopt;
+    return law;
 }
 
 std::optional<VarianceComponents> estimate_variance_components(const PhaseModel& model,
@@ -141,6 +208,47 @@ std::optional<VarianceComponents> estimate_variance_components(const PhaseModel&
     }
     const auto drift = drift_of(sums, length_s, sum_s / static_cast<double>(flights.size()));
     return VarianceComponents{flights.size(), sample_sd(levels_w), drift.sd_w, drift.correlation_s};
+}
+
+ConstantPower constant_mean(std::span<const PhaseSamples> flights) {
+    const auto powers_w = mean_powers_w(flights);
+    return with_spread(mean(powers_w), powers_w, std::sqrt(1.0 + 1.0 / static_cast<double>(flights.size())));
+}
+
+ConstantPower single_flight_power(std::span<const PhaseSamples> flights, std::size_t index) {
+    const auto powers_w = mean_powers_w(flights);
+    return with_spread(powers_w[index], powers_w, std::sqrt(2.0));
+}
+
+std::optional<ConstantPower> power_by_covariate(std::span<const PhaseSamples> flights, Covariate covariate,
+                                                const std::optional<double>& value) {
+    const auto law = fit_covariate_regression(flights, covariate);
+    if (!value || !law) return std::nullopt;
+    return constant_power(predict_mean_power(*law, *value));
+}
+
+std::optional<std::size_t> nearest_flight(std::span<const FlightSamples> flights, flight::Phase phase,
+                                          const FlightSamples& other) {
+    std::optional<std::size_t> nearest;
+    double least = 0.0;
+    std::size_t index = 0;
+    for (const auto& flight : flights) {
+        if (!flight.phases[phase]) continue;
+        double square_sum = 0.0;
+        int common = 0;
+        for (const auto p : flight::all_phases) {
+            if (!flight.phases[p] || !other.phases[p]) continue;
+            square_sum += std::pow(std::log(other.phases[p]->duration_s / flight.phases[p]->duration_s), 2);
+            ++common;
+        }
+        const double distance = square_sum / common;
+        if (common > 0 && (!nearest || distance < least)) {
+            nearest = index;
+            least = distance;
+        }
+        ++index;
+    }
+    return nearest;
 }
 
 }  // namespace flightwatt::mechanical
