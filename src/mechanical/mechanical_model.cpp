@@ -68,11 +68,17 @@ FourierModel time_scaled_model(const PhaseModel& phase, double flown_s, PhaseTim
     return flown;
 }
 
+Interval student_t_interval(double value, double standard_error, double degrees_of_freedom) {
+    const double half = student_t_half_width(degrees_of_freedom) * standard_error;
+    return {value - half, value + half};
+}
+
 CoefficientIntervals coefficient_intervals(const PhaseModel& phase) {
     const auto& errors = phase.errors.value();
     if (errors.intervals) return *errors.intervals;
-    const double wide = student_t_half_width(errors.degrees_of_freedom);
-    const auto about = [&](double value, double error) { return Interval{value - wide * error, value + wide * error}; };
+    const auto about = [&](double value, double error) {
+        return student_t_interval(value, error, errors.degrees_of_freedom);
+    };
     CoefficientIntervals intervals{
         about(phase.fourier.omega_rad_per_s, errors.omega_rad_per_s), about(phase.fourier.a0_w, errors.a0_w), {}, {}};
     for (std::size_t n = 0; n < phase.fourier.cos_w.size(); ++n) {

@@ -47,6 +47,9 @@ struct Interval {
     double high = 0.0;
 };
 
+/// Of a value with this standard error, by Student's t.
+Interval student_t_interval(double value, double standard_error, double degrees_of_freedom);
+
 /// 95 % intervals of a phase's coefficients; not symmetric about them.
 struct CoefficientIntervals {
     Interval omega_rad_per_s;
