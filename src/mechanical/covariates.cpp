@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <fmt/ranges.h>
@@ -43,10 +44,7 @@ std::optional<double> resting_voltage_v(const flight::SelectedTracks& tracks, do
         if (value_at(throttle, time_s[i]) <= idle_percent) voltages.push_back(value_at(voltage, time_s[i]));
     }
     if (voltages.empty()) return std::nullopt;
-    // Of an even number the higher of the middle two: a voltage that was measured.
-    const auto middle = voltages.begin() + static_cast<std::ptrdiff_t>(voltages.size() / 2);
-    std::ranges::nth_element(voltages, middle);
-    return *middle;
+    return median_high(std::move(voltages));  // of an even number: one that was measured
 }
 
 }  // namespace

@@ -10,8 +10,6 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
 namespace flightwatt::mechanical {
 namespace {
 
@@ -40,35 +38,6 @@ Eigen::MatrixXd whitened_gram(const Eigen::MatrixXd& rows, const std::vector<dou
     return white.transpose() * white;
 }
 
-/// What the likelihood is made of.
-struct WhitenedFit {
-    Eigen::LLT<Eigen::MatrixXd> cholesky;  ///< of the basis's gram matrix
-    Eigen::VectorXd shift;                 ///< of the coordinates from those of least squares
-    double square_sum = 0.0;
-    double degrees_of_freedom = 0.0;
-    double log_likelihood = 0.0;
-};
-
-WhitenedFit whitened_fit(const FrequencyProjection& flight, double autocorrelation) {
-    const Eigen::Index size = flight.columns.cols() - 1;
-    double log_determinant = 0.0;
-    Eigen::MatrixXd gram;
-    if (autocorrelation > 0.0) {
-        gram = whitened_gram(flight.columns, flight.gap, autocorrelation, log_determinant);
-    } else {
-        gram = Eigen::MatrixXd::Identity(size + 1, size + 1);
-        gram(size, size) = flight.columns.col(size).squaredNorm();
-    }
-    WhitenedFit fit;
-    fit.cholesky.compute(gram.topLeftCorner(size, size));
-    fit.shift = fit.cholesky.solve(gram.col(size).head(size));
-    fit.square_sum = std::max(gram(size, size) - fit.shift.dot(gram.col(size).head(size)), flight.rounding);
-    fit.degrees_of_freedom = static_cast<double>(flight.columns.rows() - size);
-    const double log_of_basis = 2.0 * fit.cholesky.matrixLLT().diagonal().array().log().sum();
-    fit.log_likelihood = -0.5 * (log_determinant + log_of_basis + fit.degrees_of_freedom * std::log(fit.square_sum));
-    return fit;
-}
-
 /// By so much the logarithm of a likelihood may be behind the best for its frequency to be computed.
 constexpr double slack = 15.0;
 
@@ -86,6 +55,8 @@ double noise_spectrum(double autocorrelation, double angle_rad) {
 
 /// What the screen knows of one flight.
 struct ScreenedFlight {
+    int order = 0;
+    ScanGrid grid;
     double samples = 0.0;
     double step = 0.0;                  ///< median gap
     double square_sum = 0.0;            ///< of the residuals at the frequency found
@@ -94,22 +65,17 @@ struct ScreenedFlight {
     TrigonometricSums sums;             ///< of the residuals
 };
 
-struct ScreenGrid {
-    double step_rad = 0.0;
-    std::size_t first = 0;
-    std::size_t last = 0;
-    int order = 0;
-};
-
-ScreenedFlight screened(const ScaledSamples& samples, const ScreenGrid& grid, const FrequencyRange& range,
-                        double found_rad, const std::vector<double>& autocorrelations) {
+ScreenedFlight screened(const ScaledSamples& samples, int order, const FrequencyRange& range, double found_rad,
+                        const std::vector<double>& autocorrelations) {
     ScreenedFlight flight;
-    const auto count = 2 * static_cast<std::size_t>(grid.order) * grid.last + 1;
-    for (const double sum : scan_flight(samples, grid.order, range).square_sum)
+    flight.order = order;
+    flight.grid = scan_grid(range, order);
+    const auto count = 2 * static_cast<std::size_t>(order) * flight.grid.last + 1;
+    for (const double sum : scan_flight(samples, order, range).square_sum)
         flight.projected.push_back(std::max(0.0, sum));
     const double total = as_vector(samples.value).squaredNorm();
     auto residuals = samples;
-    if (const auto at = project_at_frequency(samples, grid.order, found_rad)) {
+    if (const auto at = project_at_frequency(samples, order, found_rad)) {
         const auto last_column = at->columns.rightCols(1);
         std::copy(last_column.data(), last_column.data() + last_column.size(), residuals.value.begin());
     }
@@ -119,18 +85,17 @@ ScreenedFlight screened(const ScaledSamples& samples, const ScreenGrid& grid, co
     for (const double r : autocorrelations) {
         flight.whitened.push_back(whitened_sum(residuals.value, normalised_gaps(samples), r));
     }
-    flight.sums = sum_by_fft(residuals, grid.step_rad, count);
+    flight.sums = sum_by_fft(residuals, flight.grid.step_rad, count);
     return flight;
 }
 
 /// Logarithm of the likelihood at frequency i of the grid for the autocorrelation of that place, about.
-double screened_log_likelihood(const ScreenedFlight& flight, const ScreenGrid& grid, std::size_t i, std::size_t place,
-                               double autocorrelation) {
+double screened_log_likelihood(const ScreenedFlight& flight, std::size_t i, std::size_t place, double autocorrelation) {
     double gained = 0.0;           // of the residuals' square sum, by the harmonics here
     double gained_whitened = 0.0;  // of the whitened one
     double log_spectrum = 0.0;
-    for (std::size_t k = 1; k <= static_cast<std::size_t>(grid.order); ++k) {
-        const double angle = static_cast<double>(k * i) * grid.step_rad * flight.step;
+    for (std::size_t k = 1; k <= static_cast<std::size_t>(flight.order); ++k) {
+        const double angle = static_cast<double>(k * i) * flight.grid.step_rad * flight.step;
         const double spectrum = noise_spectrum(autocorrelation, angle);
         const double power = 2.0 * std::norm(flight.sums.value[k * i]) / flight.samples;
         gained += power;
@@ -138,11 +103,11 @@ double screened_log_likelihood(const ScreenedFlight& flight, const ScreenGrid& g
         log_spectrum += std::log(spectrum);
     }
     const auto& whitened = flight.whitened[place];
-    const double lost = std::max(0.0, flight.projected[i - grid.first] - flight.square_sum + gained);
+    const double lost = std::max(0.0, flight.projected[i - flight.grid.first] - flight.square_sum + gained);
     const double least = 1e-3 * whitened.square_sum;
     const double square_sum =
         std::max(least, whitened.square_sum + lost / noise_spectrum(autocorrelation, 0.0) - gained_whitened);
-    const double freedom = flight.samples - coefficient_count(grid.order);
+    const double freedom = flight.samples - coefficient_count(flight.order);
     return -0.5 * (whitened.log_determinant + freedom * std::log(std::max(square_sum, 1e-300))) + log_spectrum;
 }
 
@@ -222,18 +187,23 @@ std::optional<FrequencyProjection> project_at_frequency(const ScaledSamples& sam
 
 RestrictedLikelihood restricted_likelihood(const FrequencyProjection& flight, double autocorrelation) {
     const Eigen::Index size = flight.columns.cols() - 1;
-    const auto fit = whitened_fit(flight, autocorrelation);
-    RestrictedLikelihood evidence;
-    evidence.coordinates = flight.coordinates + fit.shift;
-    evidence.covariance = fit.cholesky.solve(Eigen::MatrixXd::Identity(size, size));
-    evidence.square_sum = fit.square_sum;
-    evidence.degrees_of_freedom = fit.degrees_of_freedom;
-    evidence.log_likelihood = fit.log_likelihood;
-    return evidence;
-}
-
-double restricted_log_likelihood(const FrequencyProjection& flight, double autocorrelation) {
-    return whitened_fit(flight, autocorrelation).log_likelihood;
+    double log_determinant = 0.0;
+    Eigen::MatrixXd gram;
+    if (autocorrelation > 0.0) {
+        gram = whitened_gram(flight.columns, flight.gap, autocorrelation, log_determinant);
+    } else {
+        gram = Eigen::MatrixXd::Identity(size + 1, size + 1);
+        gram(size, size) = flight.columns.col(size).squaredNorm();
+    }
+    RestrictedLikelihood fit;
+    fit.cholesky.compute(gram.topLeftCorner(size, size));
+    const Eigen::VectorXd shift = fit.cholesky.solve(gram.col(size).head(size));
+    fit.coordinates = flight.coordinates + shift;
+    fit.square_sum = std::max(gram(size, size) - shift.dot(gram.col(size).head(size)), flight.rounding);
+    fit.degrees_of_freedom = static_cast<double>(flight.columns.rows() - size);
+    const double log_of_basis = 2.0 * fit.cholesky.matrixLLT().diagonal().array().log().sum();
+    fit.log_likelihood = -0.5 * (log_determinant + log_of_basis + fit.degrees_of_freedom * std::log(fit.square_sum));
+    return fit;
 }
 
 WhitenedSum whitened_sum(std::span<const double> values, const std::vector<double>& gap, double autocorrelation) {
@@ -281,13 +251,10 @@ std::vector<double> coarse_autocorrelations(double highest) {
 
 std::vector<double> candidate_frequencies(std::span<const ScaledSamples> flights, int order,
                                           const FrequencyRange& range, double found_rad, double highest) {
-    const auto scan_step = frequency_scan_step(range, order);
-    ScreenGrid grid{scan_step, 0, 0, order};
-    grid.first = static_cast<std::size_t>(std::ceil(range.low_rad / scan_step));
-    grid.last = static_cast<std::size_t>(std::round(range.high_rad / scan_step));
+    const auto grid = scan_grid(range, order);
     const auto autocorrelations = coarse_autocorrelations(highest);
     std::vector<ScreenedFlight> known;
-    for (const auto& samples : flights) known.push_back(screened(samples, grid, range, found_rad, autocorrelations));
+    for (const auto& samples : flights) known.push_back(screened(samples, order, range, found_rad, autocorrelations));
 
     std::vector<std::pair<double, double>> found;  // likelihood, frequency
     double best = -std::numeric_limits<double>::infinity();
@@ -306,7 +273,7 @@ std::vector<double> candidate_frequencies(std::span<const ScaledSamples> flights
         for (std::size_t place = 0; place < autocorrelations.size(); ++place) {
             double sum = -2.0 * std::log(theta_rad / found_rad);
             for (const auto& flight : known) {
-                sum += screened_log_likelihood(flight, grid, i, place, autocorrelations[place]);
+                sum += screened_log_likelihood(flight, i, place, autocorrelations[place]);
             }
             likeliest = std::max(likeliest, sum);
         }

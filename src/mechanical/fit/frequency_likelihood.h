@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 namespace flightwatt::mechanical {
@@ -33,19 +34,20 @@ std::vector<double> normalised_gaps(const ScaledSamples& samples);
 
 /// What one flight says of an autocorrelation r of its noise (R_jk = r^(gaps between), docs/methods.md, Eq. 13).
 struct RestrictedLikelihood {
-    double log_likelihood = 0.0;      ///< coefficients and the noise's variance integrated out
-    double square_sum = 0.0;          ///< e'R^-1 e of generalised least squares
-    double degrees_of_freedom = 0.0;  ///< samples less coefficients
-    Eigen::VectorXd coordinates;      ///< generalised least squares, in the orthonormal basis
-    Eigen::MatrixXd covariance;       ///< of the coordinates, for noise of variance 1
+    double log_likelihood = 0.0;           ///< coefficients and the noise's variance integrated out
+    double square_sum = 0.0;               ///< e'R^-1 e of generalised least squares
+    double degrees_of_freedom = 0.0;       ///< samples less coefficients
+    Eigen::VectorXd coordinates;           ///< generalised least squares, in the orthonormal basis
+    Eigen::LLT<Eigen::MatrixXd> cholesky;  ///< of the whitened basis's gram matrix
+    /// Of the coordinates, for noise of variance 1.
+    Eigen::MatrixXd covariance() const {
+        return cholesky.solve(Eigen::MatrixXd::Identity(coordinates.size(), coordinates.size()));
+    }
 };
 
 /// Restricted likelihood |R|^-1/2 |Q'R^-1 Q|^-1/2 SSE^(-(n - k)/2), Q the orthonormal basis: the prior of the
 /// coefficients is flat on that basis, so that a frequency does not count more because its harmonics are alike.
 RestrictedLikelihood restricted_likelihood(const FrequencyProjection& flight, double autocorrelation);
-
-/// Its log_likelihood alone: most places of a search need no more.
-double restricted_log_likelihood(const FrequencyProjection& flight, double autocorrelation);
 
 /// x'R^-1 x and log |R|.
 struct WhitenedSum {

@@ -79,19 +79,6 @@ std::vector<Candidate> minima(const FrequencyScan& scan) {
     return found;
 }
 
-/// The thetas of a scan, in steps.
-struct ScanGrid {
-    double step_rad = 0.0;
-    std::size_t first = 0;
-    std::size_t last = 0;
-};
-
-ScanGrid grid_of(const FrequencyRange& range, int order) {
-    const double step_rad = frequency_scan_step(range, order);
-    return {step_rad, static_cast<std::size_t>(std::ceil(range.low_rad / step_rad)),
-            static_cast<std::size_t>(std::round(range.high_rad / step_rad))};
-}
-
 /// From the median of absolute values to the standard deviation, for normal noise.
 constexpr double deviations_per_median = 1.4826;
 
@@ -196,12 +183,14 @@ void minimise(std::span<const ScaledSamples> flights, const FrequencyRange& rang
 
 }  // namespace
 
-double frequency_scan_step(const FrequencyRange& range, int order) {
-    return range.high_rad / std::ceil(range.high_rad * order / turn_between_rad);
+ScanGrid scan_grid(const FrequencyRange& range, int order) {
+    const double step_rad = range.high_rad / std::ceil(range.high_rad * order / turn_between_rad);
+    return {step_rad, static_cast<std::size_t>(std::ceil(range.low_rad / step_rad)),
+            static_cast<std::size_t>(std::round(range.high_rad / step_rad))};
 }
 
 FlightScan scan_flight(const ScaledSamples& samples, int order, const FrequencyRange& range) {
-    const auto [step_rad, first, last] = grid_of(range, order);
+    const auto [step_rad, first, last] = scan_grid(range, order);
     if (const auto* known = samples.scan.get(); known && known->order == order && known->step_rad == step_rad &&
                                                 known->first == first && known->square_sum.size() == last - first + 1) {
         auto scan = *known;
@@ -217,7 +206,7 @@ FlightScan scan_flight(const ScaledSamples& samples, int order, const FrequencyR
 }
 
 FrequencyScan scan_frequencies(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range) {
-    const auto [step_rad, first, last] = grid_of(range, order);
+    const auto [step_rad, first, last] = scan_grid(range, order);
     FrequencyScan scan{{}, std::vector<double>(last - first + 1, 0.0), step_rad};
     for (auto i = first; i <= last; ++i) scan.theta_rad.push_back(static_cast<double>(i) * step_rad);
     // A block at a time, because those of thousands of flights would fill the memory.

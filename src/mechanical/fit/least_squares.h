@@ -32,9 +32,14 @@ struct FrequencyScan {
     double step_rad = 0.0;
 };
 
-/// Spacing of the scan: the highest harmonic turns by at most 1 rad over the phase from one theta to the next; a whole
-/// number of steps reaches the range's high end.
-double frequency_scan_step(const FrequencyRange& range, int order);
+/// The thetas of a scan, in steps: the highest harmonic turns by at most 1 rad over the phase from one to the next, and a
+/// whole number of steps reaches the range's high end.
+struct ScanGrid {
+    double step_rad = 0.0;
+    std::size_t first = 0;
+    std::size_t last = 0;
+};
+ScanGrid scan_grid(const FrequencyRange& range, int order);
 
 /// Scans the whole range, finely enough that the highest harmonic turns by at most 1 rad over the phase from
 /// one theta to the next, so that no minimum falls between two of them. Flights are
