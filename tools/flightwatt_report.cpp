@@ -10,7 +10,7 @@
 #include "cli/output/mission_output.h"
 #include "cli/progress.h"
 #include "cli/stage.h"
-#include "mechanical/model_check.h"
+#include "mechanical/mechanical_model.h"
 #include "mission/mission_file.h"
 #include "report/batch_content.h"
 #include "report/battery_section.h"

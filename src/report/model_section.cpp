@@ -3,7 +3,7 @@
 #include "base/units.h"
 #include "cli/output/fit_output.h"
 #include "cli/output/validation_output.h"
-#include "mechanical/model_check.h"
+#include "mechanical/mechanical_model.h"
 #include "report/figures/flight_figures.h"
 
 #include <fmt/format.h>

@@ -5,7 +5,7 @@
 #include "cli/numeric_options.h"
 #include "cli/output/mission_output.h"
 #include "live/prediction_basis.h"
-#include "mechanical/model_check.h"
+#include "mechanical/mechanical_model.h"
 #include "mission/mission_file.h"
 
 #include <map>

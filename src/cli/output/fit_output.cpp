@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "cli/output/json_text.h"
-#include "mechanical/model_check.h"
+#include "mechanical/mechanical_model.h"
 #include "mechanical/model_fit.h"
 #include "mechanical/prediction.h"
 

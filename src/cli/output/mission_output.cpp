@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "cli/numeric_options.h"
 #include "cli/output/json_text.h"
-#include "mechanical/model_check.h"
+#include "mechanical/mechanical_model.h"
 
 #include <algorithm>
 #include <iterator>
