@@ -21,7 +21,7 @@ struct FlightScan {
     std::vector<double> square_sum;
 };
 
-/// The one that is known, if it is of this order and range; else it is made.
+/// The flight's own if it is of this order and range; else it is made.
 FlightScan scan_flight(const ScaledSamples& samples, int order, const FrequencyRange& range);
 
 /// The flights' common residual sum of squares over theta = omega * duration, each flight with its own best
@@ -32,8 +32,8 @@ struct FrequencyScan {
     double step_rad = 0.0;
 };
 
-/// The thetas of a scan, in steps: the highest harmonic turns by at most 1 rad over the phase from one to the next, and a
-/// whole number of steps reaches the range's high end.
+/// The thetas of a scan, in steps: the highest harmonic turns by at most 1 rad over the phase from one to the next, so
+/// that no minimum is between two; a whole number of steps reaches the range's high end.
 struct ScanGrid {
     double step_rad = 0.0;
     std::size_t first = 0;
@@ -41,9 +41,7 @@ struct ScanGrid {
 };
 ScanGrid scan_grid(const FrequencyRange& range, int order);
 
-/// Scans the whole range, finely enough that the highest harmonic turns by at most 1 rad over the phase from
-/// one theta to the next, so that no minimum falls between two of them. Flights are
-/// scanned on all cores.
+/// Scans the whole range, flights on all cores.
 FrequencyScan scan_frequencies(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range);
 
 /// The frequency [rad per phase] that the flights have in common: the lowest minimum of the scan, refined,

@@ -30,10 +30,9 @@ struct PhaseSamples {
     /// Of a cruise: the same in each of airspeed_parts equal parts of it; empty unless it was measured in all.
     std::vector<double> airspeed_cubed_parts = {};
     Covariates covariates = {};  ///< of the cruise, for a level that follows one
-    /// Samples at the phase's ends that are not among these: their power is the neighbouring phase's (edge_samples.h).
+    /// Samples at the phase's ends that are not among these: their power is the neighbouring phase's (count_neighbour_samples).
     std::size_t edge_samples = 0;
-    std::shared_ptr<const FlightScan> scan =
-        {};  ///< of these samples, if it is kept for several fits (frequency_scan.h)
+    std::shared_ptr<const FlightScan> scan = {};  ///< of these samples, if it is kept for several fits (scan_flight)
 };
 
 /// Mean power [W] of a phase over time: trapezoids between the samples, the first and last value up to the
