@@ -6,6 +6,7 @@
 #include "cli/output/mission_output.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
+#include "mechanical/mechanical_model.h"
 #include "mission/mission_file.h"
 #include "report/page.h"
 #include "report/report.h"

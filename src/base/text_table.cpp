@@ -202,25 +202,31 @@ std::string latex_number(std::string_view number) {
     return fmt::format("{} \\times 10^{{{:g}}}", number.substr(0, e), exponent.value_or(0.0));
 }
 
+std::string latex_table(const LatexFrame& frame, const TextTable& cells) {
+    const auto line_of = [](const std::vector<std::string>& row) {
+        return fmt::format("{} \\\\\n", fmt::join(row, " & "));
+    };
+    auto text = fmt::format("{}\n\\begin{{table}}\n\\centering\n\\caption{{{}}}\n\\label{{{}}}\n", frame.needs,
+                            frame.caption, frame.label);
+    if (!frame.width.empty()) text += fmt::format("\\resizebox{{{}}}{{!}}{{%\n", frame.width);
+    text += fmt::format("\\begin{{tabular}}{{{}}}\n\\toprule\n{}\\midrule\n", frame.columns, line_of(cells.header));
+    for (const auto& row : cells.rows) text += line_of(row);
+    return text + "\\bottomrule\n\\end{tabular}" + (frame.width.empty() ? "" : "}") + "\n\\end{table}\n";
+}
+
 std::string to_latex(const TextTable& table, std::string_view caption, std::string_view label) {
     constexpr std::size_t columns_that_fit = 3;
     const bool scaled = table.header.size() > columns_that_fit;
-    std::string columns;
+    LatexFrame frame{
+        scaled ? "% needs \\usepackage{booktabs} and \\usepackage{graphicx}" : "% needs \\usepackage{booktabs}",
+        latex_escaped(caption), std::string(label), "",
+        scaled ? "\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi" : ""};
     for (std::size_t column = 0; column < table.header.size(); ++column)
-        columns += is_numeric_column(table, column) ? 'r' : 'l';
-    const auto row_of = [](const std::vector<std::string>& cells, const auto& spell) {
-        std::vector<std::string> spelt;
-        std::ranges::transform(cells, std::back_inserter(spelt), spell);
-        return fmt::format("{} \\\\\n", fmt::join(spelt, " & "));
-    };
-    std::string text = fmt::format(
-        "% needs \\usepackage{{booktabs}}{}\n\\begin{{table}}\n\\centering\n\\caption{{{}}}\n\\label{{{}}}\n",
-        scaled ? " and \\usepackage{graphicx}" : "", latex_escaped(caption), label);
-    if (scaled) text += "\\resizebox{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}{!}{%\n";
-    text += fmt::format("\\begin{{tabular}}{{{}}}\n\\toprule\n", columns);
-    text += row_of(table.header, latex_escaped) + "\\midrule\n";
-    for (const auto& row : table.rows) text += row_of(row, latex_cell);
-    return text + "\\bottomrule\n\\end{tabular}" + (scaled ? "}" : "") + "\n\\end{table}\n";
+        frame.columns += is_numeric_column(table, column) ? 'r' : 'l';
+    auto cells = table;
+    std::ranges::transform(table.header, cells.header.begin(), latex_escaped);
+    for (auto& row : cells.rows) std::ranges::transform(row, row.begin(), latex_cell);
+    return latex_table(frame, cells);
 }
 
 std::string to_latex(const std::vector<CaptionedTable>& tables) {

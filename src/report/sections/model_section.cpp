@@ -3,7 +3,7 @@
 #include "cli/output/fit_output.h"
 #include "cli/output/physical_output.h"
 #include "cli/output/prediction_output.h"
-#include "mechanical/model_check.h"
+#include "mechanical/mechanical_model.h"
 #include "mechanical/physical_fit.h"
 #include "report/figures/flight_figures.h"
 #include "report/sections/sections.h"
