@@ -103,6 +103,15 @@ std::string file_name_of(std::string name) {
 
 }  // namespace
 
+bool path_less(std::string_view one, std::string_view other) {
+    const bool is_one_whole = one.starts_with('/');
+    const bool is_other_whole = other.starts_with('/');
+    if (is_one_whole != is_other_whole) return is_other_whole;
+    // The end of a part comes before whatever could go on there.
+    const auto rank = [](char c) { return c == '/' ? 0 : 1 + static_cast<unsigned char>(c); };
+    return std::ranges::lexicographical_compare(one, other, {}, rank, rank);
+}
+
 std::string CanonicalPathCache::operator()(const std::string& log) {
     const std::filesystem::path path(log);
     auto folder = path.has_parent_path() ? path.parent_path().string() : std::string(".");

@@ -24,7 +24,6 @@ using testing::IsEmpty;
 std::vector<DuplicateFlight> copies_of(BatchFlights& flights, const std::filesystem::path& out) {
     const auto repeated = find_duplicates(flights, out);
     exclude_duplicates(flights, repeated);
-    EXPECT_EQ(excluded_duplicates(flights), repeated.copies);
     return repeated.copies;
 }
 
