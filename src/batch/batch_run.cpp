@@ -205,6 +205,10 @@ BatchFlight without_samples(FlightRecord record, std::size_t min_samples, const 
     record.verdicts = {};
     record.content.hashes = {};
     record.phases.shrink_to_fit();
+    for (auto* text : {&record.log, &record.current_origin}) {
+        text->clear();
+        text->shrink_to_fit();
+    }
     done.record = std::move(record);
     return done;
 }
