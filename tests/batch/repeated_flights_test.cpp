@@ -87,10 +87,10 @@ TEST(RepeatedFlights, KnowsThatFlightsAreOfSeveralAircraft) {
     EXPECT_EQ(mixed_aircraft_reason(flights), "");
     auto first = flights[0];
     first.record.aircraft_id = "8";
-    flights.put(0, first);
+    flights[0] = first;
     EXPECT_THAT(mixed_aircraft_reason(flights), HasSubstr("; 8 Opterra_synthetic (SYNTHETIC): opterra_synthetic_01"));
     first.selection.flights.clear();
-    flights.put(0, first);
+    flights[0] = first;
     EXPECT_EQ(mixed_aircraft_reason(flights), "") << "what is not fitted does not count";
 }
 
