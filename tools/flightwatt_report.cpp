@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/parallel.h"
+#include "base/utf8.h"
 #include "cli/numeric_options.h"
 #include "cli/output/battery_output.h"
 #include "cli/output/fit_output.h"
@@ -310,7 +311,7 @@ int write_page(const cli::StageCall& call) {
     if (wants_page || call.has("figures")) web = report::read_web_files(report::web_folder());
     Page page;
     page.head.title = "FlightWatt report";
-    if (const auto title = call.get_optional<std::string>("title")) page.head.title = report::valid_utf8(*title);
+    if (const auto title = call.get_optional<std::string>("title")) page.head.title = valid_utf8(*title);
     auto& facts = page.head.facts;
     facts = {{"computed", time_of_report()}, {"by", "flightwatt " FLIGHTWATT_VERSION}};
     report::PublishedFigures published;

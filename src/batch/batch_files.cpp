@@ -5,6 +5,7 @@
 #include "base/fingerprint.h"
 #include "base/overwrite_guard.h"
 #include "base/parallel.h"
+#include "base/utf8.h"
 #include "batch/manifest.h"
 #include "flight/phases_file.h"
 #include "flight/series_file.h"
@@ -69,7 +70,7 @@ IntactFlight read_intact(const std::filesystem::path& out, const std::string& fl
         throw InputError({file.string()},
                          "this is no record of a flight as this version wrote it: it was changed, or damaged", hint);
     }
-    if (record->flight != to_valid_utf8(flight)) {
+    if (record->flight != valid_utf8(flight)) {
         throw InputError({file.string()}, fmt::format("this is the record of {}: it was renamed", record->flight),
                          hint);
     }

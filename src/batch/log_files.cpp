@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/fingerprint.h"
+#include "base/utf8.h"
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
@@ -97,7 +98,7 @@ std::string file_name_of(std::string name) {
     Fingerprint fingerprint;
     fingerprint.add(name);
     auto size = kept;
-    while ((static_cast<unsigned char>(name[size]) & 0xC0U) == 0x80U) --size;  // whole characters
+    while (continues_character(name[size])) --size;  // whole characters
     return name.substr(0, size) + "~" + fingerprint.hex();
 }
 

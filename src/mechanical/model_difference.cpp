@@ -1,6 +1,7 @@
 #include "mechanical/model_difference.h"
 
 #include "base/statistics.h"
+#include "base/units.h"
 
 #include <algorithm>
 #include <cmath>
@@ -128,7 +129,6 @@ void add_means(std::vector<Difference>& all, const PhasePair& pair) {
         all.push_back(row);
     };
     const auto energy = [](const PhaseModel& phase) { return energy_j(phase.fourier, phase.duration_s); };
-    constexpr double j_per_wh = 3600.0;
     add(
         "duration_s", "s", [](const PhaseModel& phase) { return phase.duration_s; },
         [](const PhaseContribution& flight) { return std::optional(flight.duration_s); });
@@ -136,10 +136,10 @@ void add_means(std::vector<Difference>& all, const PhasePair& pair) {
         "mean_power_w", "W", [&](const PhaseModel& phase) { return energy(phase) / phase.duration_s; },
         [](const PhaseContribution& flight) { return flight.mean_power_w; });
     add(
-        "energy_wh", "Wh", [&](const PhaseModel& phase) { return energy(phase) / j_per_wh; },
+        "energy_wh", "Wh", [&](const PhaseModel& phase) { return units::wh_from_joule(energy(phase)); },
         [&](const PhaseContribution& flight) -> std::optional<double> {
             if (!flight.mean_power_w) return std::nullopt;
-            return *flight.mean_power_w * flight.duration_s / j_per_wh;
+            return units::wh_from_joule(*flight.mean_power_w * flight.duration_s);
         });
 }
 

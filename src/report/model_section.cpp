@@ -1,6 +1,7 @@
 #include "report/model_section.h"
 
 #include "base/units.h"
+#include "base/utf8.h"
 #include "cli/output/fit_output.h"
 #include "cli/output/validation_output.h"
 #include "mechanical/model_check.h"

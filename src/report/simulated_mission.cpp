@@ -1,5 +1,6 @@
 #include "report/simulated_mission.h"
 
+#include "base/utf8.h"
 #include "compute/qos_range.h"
 #include "mission/plan.h"
 #include "mission/prepared_mission.h"

@@ -18,12 +18,6 @@ namespace {
 
 constexpr std::array origins{CurrentOrigin::unknown, CurrentOrigin::sensor, CurrentOrigin::throttle};
 
-std::string strings(const std::vector<std::string>& texts) {
-    std::vector<std::string> quoted(texts.size());
-    std::ranges::transform(texts, quoted.begin(), toml_string);
-    return fmt::format("[{}]", fmt::join(quoted, ", "));
-}
-
 /// Counters of lines; what stands behind the last message has no time, so `time_s` is then one shorter.
 std::string skipped_text(const telemetry::SkippedLines& skipped) {
     std::vector<double> time_s;
@@ -144,7 +138,7 @@ std::string format_front_matter(const FlightSeries& series) {
     }
     if (series.start_clock_s) toml += fmt::format("start_clock_s = {}\n", toml_real(*series.start_clock_s));
     if (series.log_is_missing) toml += "lacks_log = true\n";
-    if (!series.notes.empty()) toml += fmt::format("notes = {}\n", strings(series.notes));
+    if (!series.notes.empty()) toml += fmt::format("notes = {}\n", toml_strings(series.notes));
     if (!series.block_names.empty()) toml += "[block_names]\n";
     for (const auto& [number, name] : series.block_names) {
         toml += fmt::format("{} = {}\n", number, toml_string(name));

@@ -1,3 +1,4 @@
+#include "base/utf8.h"
 #include "mission/simulation.h"
 #include "report/figures/mission_figures.h"
 
