@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "base/utf8.h"
+#include "base/text.h"
 #include "cli/output/battery_output.h"
 #include "cli/output/mission_output.h"
 #include "cli/stage.h"

@@ -5,7 +5,7 @@
 #include "base/fingerprint.h"
 #include "base/overwrite_guard.h"
 #include "base/parallel.h"
-#include "base/utf8.h"
+#include "base/text.h"
 #include "batch/manifest.h"
 #include "flight/phases_file.h"
 #include "flight/series_file.h"

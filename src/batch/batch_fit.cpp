@@ -4,8 +4,8 @@
 #include "base/error.h"
 #include "base/fingerprint.h"
 #include "base/overwrite_guard.h"
+#include "base/text.h"
 #include "base/toml_reader.h"
-#include "base/utf8.h"
 #include "batch/batch_files.h"
 #include "batch/manifest.h"
 

@@ -3,7 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/fingerprint.h"
-#include "base/utf8.h"
+#include "base/text.h"
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>

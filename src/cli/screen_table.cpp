@@ -3,7 +3,7 @@
 #include "base/csv.h"
 #include "base/duration_text.h"
 #include "base/number.h"
-#include "base/utf8.h"
+#include "base/text.h"
 #include "cli/terminal.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "exchange/model_text.h"
 
-#include "base/toml_text.h"
+#include "base/text.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #include "exchange/track_files.h"
 
 #include "base/number.h"
-#include "base/utf8.h"
+#include "base/text.h"
 
 #include <algorithm>
 #include <set>

@@ -2,7 +2,7 @@
 
 #include "base/csv.h"
 #include "base/number.h"
-#include "base/utf8.h"
+#include "base/text.h"
 
 #include <algorithm>
 #include <array>

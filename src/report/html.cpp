@@ -1,7 +1,7 @@
 #include "report/html.h"
 
 #include "base/number.h"
-#include "base/utf8.h"
+#include "base/text.h"
 
 #include <algorithm>
 #include <map>

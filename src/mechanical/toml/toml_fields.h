@@ -1,7 +1,7 @@
 #pragma once
 
+#include "base/text.h"
 #include "base/toml_reader.h"
-#include "base/toml_text.h"
 
 #include <cstddef>
 #include <optional>

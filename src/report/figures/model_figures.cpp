@@ -1,4 +1,4 @@
-#include "base/utf8.h"
+#include "base/text.h"
 #include "mechanical/validation.h"
 #include "report/figures/flight_figures.h"
 

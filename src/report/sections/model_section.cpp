@@ -1,6 +1,6 @@
 #include "base/error.h"
+#include "base/text.h"
 #include "base/units.h"
-#include "base/utf8.h"
 #include "cli/output/fit_output.h"
 #include "cli/output/physical_output.h"
 #include "cli/output/prediction_output.h"

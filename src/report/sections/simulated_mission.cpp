@@ -2,8 +2,8 @@
 
 #include "base/duration_text.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "base/units.h"
-#include "base/utf8.h"
 #include "cli/output/mission_output.h"
 #include "mission/plan.h"
 #include "mission/prepared_mission.h"

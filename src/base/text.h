@@ -3,8 +3,9 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
-/// Texts in UTF-8. Names of files may be any bytes.
+/// Texts in UTF-8, and values as TOML spells them. Names of files may be any bytes.
 namespace flightwatt {
 
 struct Utf8Character {
@@ -24,5 +25,13 @@ inline bool continues_character(char byte) { return (static_cast<unsigned char>(
 
 /// How many characters a text has.
 std::size_t character_count(std::string_view text);
+
+/// A basic string, quoted and escaped; bytes that are not UTF-8 become U+FFFD.
+std::string toml_string(std::string_view text);
+
+/// The shortest text that reads back as the same double, and as a float rather than an integer.
+std::string toml_real(double value);
+std::string toml_reals(const std::vector<double>& values);
+std::string toml_strings(const std::vector<std::string>& texts);
 
 }  // namespace flightwatt
