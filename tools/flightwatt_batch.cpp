@@ -221,7 +221,6 @@ int finish(const cli::StageCall& call, batch::BatchFlights flights, const batch:
     auto known = is_known ? std::optional(known_fit(options.out)) : std::nullopt;
     auto repeated = known ? std::move(known->fit.repeated) : find_duplicates(flights, options.out);
     exclude_duplicates(flights, repeated);
-    repeated.copies = {};  // of an archive, too many to be held beside the fit
     report_notes(call, flights);
     {
         const batch::WriteGate::WriterGuard pass(*options.gate);
@@ -250,7 +249,7 @@ int finish(const cli::StageCall& call, batch::BatchFlights flights, const batch:
         refuse_mix(call, flights, options.out);
         auto [fit, physical] = known ? *std::move(known) : fit_batch(call, flights, options);
         ::malloc_trim(0);  // the samples
-        fit.repeated = {excluded_duplicates(flights), std::move(repeated.overlaps)};
+        fit.repeated = std::move(repeated);
         fit.excluded = options.load.excluded;
         fit.keep = options.load.keep;
         fit.input_fingerprint = made_from;
@@ -307,7 +306,8 @@ batch::BatchPlan make_plan(const cli::StageCall& call, batch::BatchOptions& opti
     auto plan = batch::plan_batch(std::move(logs), options.out, call.has("prune"));
     refuse_foreign_files(plan, options.out);
     std::vector<std::string> names;
-    for (std::size_t i = 0; i < plan.logs.size(); ++i) names.emplace_back(plan.logs.flight(i));
+    names.reserve(plan.logs.size());
+    for (const auto& log : plan.logs) names.push_back(log.flight);
     options.load.excluded = cli::expand_patterns(options.load.excluded, "exclude", names);
     cli::refuse_unknown_flights(options.load, names);
     return plan;
@@ -322,19 +322,15 @@ void tell_plan(const cli::StageCall& call, const batch::BatchPlan& plan) {
     for (const auto& dropped : plan.dropped) {
         cli::note(call, fmt::format("dropped: {}, {}", dropped.flight, dropped.reason));
     }
-    std::vector<batch::LogFile> gone;
-    std::size_t earlier = 0;
-    for (std::size_t i = 0; i < plan.logs.size(); ++i) {
-        const auto log = plan.logs[i];
-        if (!log.is_of_this_run) ++earlier;
-        if (log.is_missing) gone.push_back(log);
-    }
+    const auto earlier = std::ranges::count(plan.logs, false, &batch::LogFile::is_of_this_run);
     if (earlier == 0) return;
     cli::note(call,
               fmt::format("{} flights of earlier runs stay in {}; --prune drops what is not among this run's logs",
                           earlier, *call.output));
-    for (const auto& log : gone)
-        cli::note(call, fmt::format("{}: its log {} is gone; its results are kept as they are", log.flight, log.path));
+    for (const auto& log : plan.logs)
+        if (log.is_missing)
+            cli::note(call,
+                      fmt::format("{}: its log {} is gone; its results are kept as they are", log.flight, log.path));
 }
 
 int run_over_logs(const cli::StageCall& call) {

@@ -37,7 +37,7 @@ struct Summary {
 Summary summary_of(const batch::MergePlan& plan, const batch::BatchFlights& flights) {
     Summary summary;
     for (std::size_t i = 0; i < flights.size(); ++i) {
-        const auto flight = flights[i];
+        const auto& flight = flights[i];
         ++(flight.record.accepted ? summary.accepted : summary.rejected);
         if (flight.was_up_to_date) ++summary.already_there;
         if (plan.sources[i].flight != flight.record.flight) ++summary.renamed;
@@ -57,7 +57,7 @@ Json json_of(const cli::StageCall& call, const batch::MergePlan& plan, const bat
         json["batches"].push_back({{"folder", call.inputs[i]}, {"flights", plan.flights_per_batch[i]}});
     for (std::size_t i = 0; i < flights.size(); ++i) {
         const auto& [from, before] = plan.sources[i];
-        const auto name = plan.folder.logs.flight(i);
+        const auto& name = plan.folder.logs[i].flight;
         if (before != name) json["renamed"].push_back({{"folder", from}, {"before", before}, {"flight", name}});
     }
     for (const auto& [flight, same_as, has_power] : repeated.copies)

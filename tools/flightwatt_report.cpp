@@ -2,10 +2,12 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "base/text.h"
 #include "cli/output/battery_output.h"
 #include "cli/output/mission_output.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
+#include "mechanical/mechanical_model.h"
 #include "mission/mission_file.h"
 #include "report/page.h"
 #include "report/report.h"
@@ -96,7 +98,7 @@ int write_page(const cli::StageCall& call) {
     if (wants_page || call.has("figures")) web = report::read_web_files(report::web_folder());
     report::PageHead head{"FlightWatt report",
                           {{"computed", time_of_report()}, {"by", "flightwatt " FLIGHTWATT_VERSION}}};
-    if (const auto title = call.get_optional<std::string>("title")) head.title = report::valid_utf8(*title);
+    if (const auto title = call.get_optional<std::string>("title")) head.title = valid_utf8(*title);
     if (const auto folder = call.get_optional<std::string>("reference-figures")) {
         input.figures = report::read_published_figures(*folder);
         head.facts.emplace_back("beside", "the paper's Figs. 2 (c-e), 3 (a, b) and 4, digitised");

@@ -150,6 +150,12 @@ std::string csv_cell(std::string_view text) {
     return fmt::format("\"{}\"", boost::replace_all_copy(std::string(text), "\"", "\"\""));
 }
 
+std::string csv_line(const std::vector<std::string>& cells) {
+    std::vector<std::string> quoted(cells.size());
+    std::ranges::transform(cells, quoted.begin(), csv_cell);
+    return fmt::format("{}\n", fmt::join(quoted, ","));
+}
+
 CsvWriter::CsvWriter(const std::vector<std::string_view>& columns, int digits)
     : columns_(columns.size()), digits_(digits), text_(fmt::format("{}\n", fmt::join(columns, ","))) {}
 

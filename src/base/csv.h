@@ -60,6 +60,9 @@ double cell_number(const CsvTable& table, const CsvTable::Row& row, std::size_t 
 /// `text` as one CSV cell: quoted if it holds a comma, a quote or a line break.
 std::string csv_cell(std::string_view text);
 
+/// The cells as a line, with its end.
+std::string csv_line(const std::vector<std::string>& cells);
+
 /// A CSV text, written row by row.
 class CsvWriter {
   public:

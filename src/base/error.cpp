@@ -1,5 +1,7 @@
 #include "base/error.h"
 
+#include "base/text.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -7,12 +9,6 @@
 #include <fmt/ranges.h>
 
 namespace flightwatt {
-namespace {
-
-/// Whether a UTF-8 character goes on here.
-bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
-
-}  // namespace
 
 std::string to_string(const Location& where) {
     std::string text = where.file;

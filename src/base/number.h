@@ -50,7 +50,7 @@ inline double number_or_nan(std::string_view text) {
 
 /// How many characters a number's text has at most: "-1.7976931348623157e+308".
 inline constexpr std::size_t max_number_chars = 24;
-/// Room for it: whole words of memory are written, of which not all count.
+/// Room for it, and more.
 inline constexpr std::size_t number_buffer_size = 48;
 
 /// Writes a finite number as fmt's "{}" does, in the shortest way that reads back as the same, and returns where it

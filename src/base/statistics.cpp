@@ -11,7 +11,8 @@
 namespace flightwatt {
 namespace {
 
-constexpr double upper_tail = 0.5 + confidence_level / 2.0;
+/// Where an interval of that probability about 0 ends.
+constexpr double upper_tail(double probability) { return 0.5 + probability / 2.0; }
 
 }  // namespace
 
@@ -44,11 +45,11 @@ double normal_quantile(double probability) {
     return boost::math::quantile(boost::math::normal_distribution<double>(), probability);
 }
 
-double normal_half_width() { return normal_quantile(upper_tail); }
+double normal_half_width() { return normal_quantile(upper_tail(confidence_level)); }
 
-double student_t_half_width(double degrees_of_freedom) {
+double student_t_half_width(double degrees_of_freedom, double probability) {
     const boost::math::students_t_distribution<double> distribution(std::max(1.0, degrees_of_freedom));
-    return boost::math::quantile(distribution, upper_tail);
+    return boost::math::quantile(distribution, upper_tail(probability));
 }
 
 std::vector<std::vector<std::size_t>> make_folds(std::size_t count, std::size_t most) {

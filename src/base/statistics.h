@@ -35,7 +35,7 @@ double normal_half_width();
 
 /// The same in standard errors, for Student's t; `degrees_of_freedom`, whole or not, count as at least one.
 /// 12.7 for 1, 1.96 for many.
-double student_t_half_width(double degrees_of_freedom);
+double student_t_half_width(double degrees_of_freedom, double probability = confidence_level);
 
 /// For cross-validation: which of `count` things are left out together. Each alone, or, of more than `most`, in so many
 /// groups of almost equal size in which no two neighbours are. Within a group they rise.

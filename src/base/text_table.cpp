@@ -2,6 +2,7 @@
 
 #include "base/csv.h"
 #include "base/number.h"
+#include "base/text.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -15,11 +16,6 @@
 
 namespace flightwatt {
 namespace {
-
-std::size_t width_of(std::string_view text) {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
 
 bool is_numeric_column(const TextTable& table, std::size_t column) {
     return std::ranges::all_of(table.rows, [&](const auto& row) {
@@ -40,25 +36,6 @@ TextTable without_controls(TextTable table) {
     clean(table.header);
     for (auto& row : table.rows) clean(row);
     return table;
-}
-
-/// The character at the beginning of a UTF-8 text; U+FFFD and one byte for what is none.
-struct DecodedCharacter {
-    unsigned code = 0xFFFD;
-    std::size_t bytes = 1;
-};
-
-DecodedCharacter first_character(std::string_view text) {
-    const auto byte = [&](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(text[i])); };
-    if (byte(0) < 0x80) return {byte(0), 1};
-    const std::size_t bytes = byte(0) >= 0xF0 ? 4 : byte(0) >= 0xE0 ? 3 : byte(0) >= 0xC2 ? 2 : 1;
-    if (bytes == 1 || text.size() < bytes) return {};
-    unsigned code = byte(0) & (0x7Fu >> bytes);
-    for (std::size_t i = 1; i < bytes; ++i) {
-        if ((byte(i) & 0xC0) != 0x80) return {};
-        code = code << 6 | (byte(i) & 0x3F);
-    }
-    return {code, bytes};
 }
 
 /// How LaTeX spells an ASCII character that it would read otherwise; empty for those that stand for themselves. '[' and
@@ -108,7 +85,7 @@ std::string latex_cell(std::string_view cell) {
 }
 
 std::string padded(const std::string& cell, std::size_t width, bool right) {
-    const std::string blanks(width - std::min(width, width_of(cell)), ' ');
+    const std::string blanks(width - std::min(width, character_count(cell)), ' ');
     return right ? blanks + cell : cell + blanks;
 }
 
@@ -123,8 +100,8 @@ std::string to_text(TextTable raw) {
     std::vector<std::size_t> widths;
     std::vector<bool> right;
     for (std::size_t column = 0; column < table.header.size(); ++column) {
-        std::size_t width = width_of(table.header[column]);
-        for (const auto& row : table.rows) width = std::max(width, width_of(row[column]));
+        std::size_t width = character_count(table.header[column]);
+        for (const auto& row : table.rows) width = std::max(width, character_count(row[column]));
         widths.push_back(width);
         right.push_back(is_numeric_column(table, column));
     }
@@ -162,20 +139,15 @@ std::string to_markdown(TextTable raw) {
 }
 
 std::string to_csv(const TextTable& table) {
-    const auto line_of = [](const std::vector<std::string>& row) {
-        std::vector<std::string> cells;
-        std::ranges::transform(row, std::back_inserter(cells), csv_cell);
-        return fmt::format("{}\n", fmt::join(cells, ","));
-    };
-    auto text = line_of(table.header);
-    for (const auto& row : table.rows) text += line_of(row);
+    auto text = csv_line(table.header);
+    for (const auto& row : table.rows) text += csv_line(row);
     return text;
 }
 
 std::string latex_escaped(std::string_view text) {
-    constexpr unsigned first_latin = 0xA0;
-    constexpr unsigned last_latin = 0x17F;
-    constexpr unsigned fixed_hyphen = 0x2011;
+    constexpr char32_t first_latin = 0xA0;
+    constexpr char32_t last_latin = 0x17F;
+    constexpr char32_t fixed_hyphen = 0x2011;
     std::string result;
     while (!text.empty()) {
         const auto [code, bytes] = first_character(text);
@@ -202,25 +174,31 @@ std::string latex_number(std::string_view number) {
     return fmt::format("{} \\times 10^{{{:g}}}", number.substr(0, e), exponent.value_or(0.0));
 }
 
+std::string latex_table(const LatexFrame& frame, const TextTable& cells) {
+    const auto line_of = [](const std::vector<std::string>& row) {
+        return fmt::format("{} \\\\\n", fmt::join(row, " & "));
+    };
+    auto text = fmt::format("{}\n\\begin{{table}}\n\\centering\n\\caption{{{}}}\n\\label{{{}}}\n", frame.needs,
+                            frame.caption, frame.label);
+    if (!frame.width.empty()) text += fmt::format("\\resizebox{{{}}}{{!}}{{%\n", frame.width);
+    text += fmt::format("\\begin{{tabular}}{{{}}}\n\\toprule\n{}\\midrule\n", frame.columns, line_of(cells.header));
+    for (const auto& row : cells.rows) text += line_of(row);
+    return text + "\\bottomrule\n\\end{tabular}" + (frame.width.empty() ? "" : "}") + "\n\\end{table}\n";
+}
+
 std::string to_latex(const TextTable& table, std::string_view caption, std::string_view label) {
     constexpr std::size_t columns_that_fit = 3;
     const bool scaled = table.header.size() > columns_that_fit;
-    std::string columns;
+    LatexFrame frame{
+        scaled ? "% needs \\usepackage{booktabs} and \\usepackage{graphicx}" : "% needs \\usepackage{booktabs}",
+        latex_escaped(caption), std::string(label), "",
+        scaled ? "\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi" : ""};
     for (std::size_t column = 0; column < table.header.size(); ++column)
-        columns += is_numeric_column(table, column) ? 'r' : 'l';
-    const auto row_of = [](const std::vector<std::string>& cells, const auto& spell) {
-        std::vector<std::string> spelt;
-        std::ranges::transform(cells, std::back_inserter(spelt), spell);
-        return fmt::format("{} \\\\\n", fmt::join(spelt, " & "));
-    };
-    std::string text = fmt::format(
-        "% needs \\usepackage{{booktabs}}{}\n\\begin{{table}}\n\\centering\n\\caption{{{}}}\n\\label{{{}}}\n",
-        scaled ? " and \\usepackage{graphicx}" : "", latex_escaped(caption), label);
-    if (scaled) text += "\\resizebox{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}{!}{%\n";
-    text += fmt::format("\\begin{{tabular}}{{{}}}\n\\toprule\n", columns);
-    text += row_of(table.header, latex_escaped) + "\\midrule\n";
-    for (const auto& row : table.rows) text += row_of(row, latex_cell);
-    return text + "\\bottomrule\n\\end{tabular}" + (scaled ? "}" : "") + "\n\\end{table}\n";
+        frame.columns += is_numeric_column(table, column) ? 'r' : 'l';
+    auto cells = table;
+    std::ranges::transform(table.header, cells.header.begin(), latex_escaped);
+    for (auto& row : cells.rows) std::ranges::transform(row, row.begin(), latex_cell);
+    return latex_table(frame, cells);
 }
 
 std::string to_latex(const std::vector<CaptionedTable>& tables) {

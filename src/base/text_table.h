@@ -35,6 +35,18 @@ std::string latex_escaped(std::string_view text);
 /// A number as mathematical mode takes it: 1.5 \times 10^{-5} for "1.5e-05".
 std::string latex_number(std::string_view number);
 
+/// What surrounds the cells of a LaTeX table.
+struct LatexFrame {
+    std::string needs;  ///< comment: the packages
+    std::string caption;
+    std::string label;
+    std::string columns;  ///< "lrr"
+    std::string width;    ///< to which the table is scaled; empty: it is not
+};
+
+/// A table environment whose caption and cells are TeX already.
+std::string latex_table(const LatexFrame& frame, const TextTable& cells);
+
 /// A table environment with the rules of the package booktabs; a comment says what packages it needs. Columns that are
 /// all numbers, or '-', stand to the right. A table that is wider than a page's text is scaled to it.
 std::string to_latex(const TextTable& table, std::string_view caption, std::string_view label);

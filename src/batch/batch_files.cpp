@@ -5,6 +5,7 @@
 #include "base/fingerprint.h"
 #include "base/overwrite_guard.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "batch/manifest.h"
 #include "flight/phases_file.h"
 #include "flight/series_file.h"
@@ -30,13 +31,11 @@ std::vector<std::string> file_names(const std::filesystem::path& folder) {
 
 /// The flights that the batch's manifest lists and that have a record.
 std::vector<LogFile> stored_flights(const std::filesystem::path& out) {
-    const auto listed = read_manifest(out).flights;
-    std::vector<LogFile> flights;
-    for (std::size_t i = 0; i < listed.size(); ++i) {
-        std::error_code none;
-        const auto record = result_path(out, listed.flight(i), record_suffix);
-        if (std::filesystem::exists(record, none)) flights.push_back(listed[i]);
-    }
+    auto flights = read_manifest(out).flights;
+    std::error_code none;
+    std::erase_if(flights, [&](const LogFile& flight) {
+        return !std::filesystem::exists(result_path(out, flight.flight, record_suffix), none);
+    });
     return flights;
 }
 
@@ -47,17 +46,13 @@ struct Results {
 };
 
 Results read_results(const std::filesystem::path& out, const std::string& flight) {
-    Results results;
-    Fingerprint fingerprint;
-    for (const auto* ending : {series_suffix, phases_suffix}) {
-        const auto path = result_path(out, flight, ending);
-        std::error_code none;
+    const auto series_path = result_path(out, flight, series_suffix);
+    const auto phases_path = result_path(out, flight, phases_suffix);
+    std::error_code none;
+    for (const auto& path : {series_path, phases_path})
         if (!std::filesystem::is_regular_file(path, none)) return {};
-        auto text = read_file(path);
-        fingerprint.add(text);
-        if (ending == series_suffix) results.series_csv = std::move(text);
-    }
-    results.fingerprint = fingerprint.hex();
+    Results results{read_file(series_path), {}};
+    results.fingerprint = results_fingerprint(results.series_csv, read_file(phases_path));
     return results;
 }
 
@@ -75,7 +70,7 @@ IntactFlight read_intact(const std::filesystem::path& out, const std::string& fl
         throw InputError({file.string()},
                          "this is no record of a flight as this version wrote it: it was changed, or damaged", hint);
     }
-    if (record->flight != to_valid_utf8(flight)) {
+    if (record->flight != valid_utf8(flight)) {
         throw InputError({file.string()}, fmt::format("this is the record of {}: it was renamed", record->flight),
                          hint);
     }
@@ -160,8 +155,11 @@ void remove_results(const std::filesystem::path& out, const std::string& flight)
     for (const auto* ending : result_suffixes) std::filesystem::remove(result_path(out, flight, ending), ignored);
 }
 
-std::string results_fingerprint(const std::filesystem::path& out, const std::string& flight) {
-    return read_results(out, flight).fingerprint;
+std::string results_fingerprint(std::string_view series_csv, std::string_view phases_csv) {
+    Fingerprint fingerprint;
+    fingerprint.add(series_csv);
+    fingerprint.add(phases_csv);
+    return fingerprint.hex();
 }
 
 FlightRecord read_verified_record(const std::filesystem::path& out, const std::string& flight) {

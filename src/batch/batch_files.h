@@ -35,8 +35,8 @@ std::vector<std::string> recorded_flights(const std::filesystem::path& folder);
 /// Removes what a batch wrote of a flight.
 void remove_results(const std::filesystem::path& out, const std::string& flight);
 
-/// Of the files that an accepted log left; empty if one is missing.
-std::string results_fingerprint(const std::filesystem::path& out, const std::string& flight);
+/// Of the files that an accepted log leaves.
+std::string results_fingerprint(std::string_view series_csv, std::string_view phases_csv);
 
 /// The record of a flight whose files are all as the batch wrote them. Throws InputError for others.
 FlightRecord read_verified_record(const std::filesystem::path& out, const std::string& flight);

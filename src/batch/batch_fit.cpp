@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/fingerprint.h"
 #include "base/overwrite_guard.h"
+#include "base/text.h"
 #include "base/toml_reader.h"
 #include "batch/batch_files.h"
 #include "batch/manifest.h"
@@ -174,7 +175,7 @@ std::string fit_fingerprint(const BatchFlights& flights, const mechanical::Model
     add(text_of(options));
     add(more);
     for (const auto& [record, was_up_to_date, is_of_this_run, is_kept, selection] : flights) {
-        if (to_valid_utf8(record.flight) != record.flight) return "";  // its JSON cannot name the flights
+        if (valid_utf8(record.flight) != record.flight) return "";  // its JSON cannot name the flights
         add(is_kept ? "kept" : "");
         add(record.flight);
         add(record.results);

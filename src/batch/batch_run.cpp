@@ -17,6 +17,7 @@
 #include <iterator>
 #include <mutex>
 #include <new>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -88,51 +89,49 @@ FlightRecord do_accepted(const flight::FlightFile& file, const LogFile& log, con
     loaded.series.flight = log.flight;
     auto record = record_of(loaded);
     record.not_fitted_reason = log.why_not_fitted;
-    write_result(options, log.flight, series_suffix, to_csv(loaded.series));
-    write_result(options, log.flight, phases_suffix, flight::phases_csv(loaded.series, loaded.phases));
+    const auto series_csv = to_csv(loaded.series);
+    const auto phases_csv = flight::phases_csv(loaded.series, loaded.phases);
+    record.results = results_fingerprint(series_csv, phases_csv);
+    write_result(options, log.flight, series_suffix, series_csv);
+    write_result(options, log.flight, phases_suffix, phases_csv);
     return record;
 }
 
-/// Writes the record of what became of the log.
-void conclude(BatchFlight& done, const LogFile& log, const std::string& fingerprint, const BatchOptions& options) {
-    done.record.flight = log.flight;
-    done.record.log = log.path;
-    done.record.fingerprint = fingerprint;
-    const auto text = to_json_text(done.record);
+/// Writes the record of what became of the log, and leaves it as later runs read it: both report the same.
+void conclude(FlightRecord& record, const LogFile& log, const std::string& fingerprint, const BatchOptions& options) {
+    record.flight = log.flight;
+    record.log = log.path;
+    record.fingerprint = fingerprint;
+    const auto text = to_json_text(record);
     write_result(options, log.flight, record_suffix, text);
-    done.record = record_from_json(text).value();  // what later runs remember: both must report the same
-    done.record.flight = log.flight;
+    constexpr std::string_view replacement_character = "\xEF\xBF\xBD";
+    if (text.find(replacement_character) == std::string::npos) return;
+    record = record_from_json(text).value();  // a name that is not UTF-8 is another one in JSON
+    record.flight = log.flight;
 }
 
 /// A log that is there; `fingerprint` is set as soon as it is known. Throws whatever is wrong with the log.
 BatchFlight do_existing(const LogFile& log, const BatchOptions& options, std::string& fingerprint) {
-    BatchFlight done;
     const flight::FlightFile file(log.path, options.load.max_log_bytes, options.load.messages);
     fingerprint = fingerprint_of(file, log, options);
     file.require_unchanged();
-    if (auto record = remembered(options, log, fingerprint)) {
-        done.was_up_to_date = true;
-        done.record = std::move(*record);
-    } else {
+    auto record = remembered(options, log, fingerprint);
+    const bool was_up_to_date = record.has_value();
+    if (!record) {
         remove_results(options.out, log.flight);
-        done.record = do_accepted(file, log, options);
-        {
-            const OverwriteExemption own;
-            done.record.results = results_fingerprint(options.out, log.flight);
-        }
-        conclude(done, log, fingerprint, options);
+        record = do_accepted(file, log, options);
+        conclude(*record, log, fingerprint, options);
     }
-    done.selection = select_without_samples(select_for_fit(done.record, options.min_samples, options.load));
+    auto done = without_samples(*std::move(record), options.min_samples, options.load);
+    done.was_up_to_date = was_up_to_date;
     return done;
 }
 
 /// What an earlier run left of a log that is gone. Throws InputError where that is not as it was written.
 BatchFlight do_gone(const LogFile& log, const BatchOptions& options) {
     const OverwriteExemption own;
-    BatchFlight kept;
+    auto kept = without_samples(read_verified_record(options.out, log.flight), options.min_samples, options.load);
     kept.was_up_to_date = kept.log_is_missing = true;
-    kept.record = read_verified_record(options.out, log.flight);
-    kept.selection = select_without_samples(select_for_fit(kept.record, options.min_samples, options.load));
     return kept;
 }
 
@@ -167,7 +166,7 @@ BatchFlight reject(const LogFile& log, const std::string& why, bool is_of_other_
     rejected.record.log = log.path;
     if (!log.problem.empty() || log.is_missing) return rejected;  // there is nothing of it to write, or all to keep
     remove_results(options.out, log.flight);
-    conclude(rejected, log, fingerprint, options);
+    conclude(rejected.record, log, fingerprint, options);
     return rejected;
 }
 
@@ -193,28 +192,37 @@ BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
 
 }  // namespace
 
-Selection select_without_samples(mechanical::MeasuredFlights measured) {
-    Selection selection;
+BatchFlight without_samples(FlightRecord record, std::size_t min_samples, const flight::LoadOptions& options) {
+    BatchFlight done;
+    auto measured = select_for_fit(record, min_samples, options);
+    done.selection.flights.reserve(measured.flights.size());
     for (auto& flight : measured.flights) {
         SelectedSortie sortie{std::move(flight.samples.flight), {}};
         for (const auto phase : flight::all_phases) sortie.phases[phase] = flight.samples.phases[phase].has_value();
-        selection.flights.push_back(std::move(sortie));
+        done.selection.flights.push_back(std::move(sortie));
     }
-    selection.exclusions = std::move(measured.exclusions);
-    return selection;
+    done.selection.exclusions = std::move(measured.exclusions);
+    record.verdicts = {};
+    record.content.hashes = {};
+    record.phases.shrink_to_fit();
+    for (auto* text : {&record.log, &record.current_origin}) {
+        text->clear();
+        text->shrink_to_fit();
+    }
+    done.record = std::move(record);
+    return done;
 }
 
-BatchFlights run_batch(const LogList& logs, const BatchOptions& options, const BatchProgress& progress) {
+BatchFlights run_batch(const std::vector<LogFile>& logs, const BatchOptions& options, const BatchProgress& progress) {
     make_directories(options.out / "flights");
     make_directories(options.out / temporary_folder);
-    BatchFlights flights(logs.size(), options.out / temporary_folder);
+    BatchFlights flights(logs.size());
     std::mutex mutex;  // guards what follows
     std::size_t done = 0;
     const auto work = [&](std::size_t i) {
-        const auto flight = do_log(logs[i], options);
-        flights.put(i, flight);
+        flights[i] = do_log(logs[i], options);
         const std::lock_guard lock(mutex);
-        progress(++done, logs.size(), flight);
+        progress(++done, logs.size(), flights[i]);
     };
     for_each_in_parallel(logs.size(), work, options.jobs);
     return flights;
@@ -226,7 +234,7 @@ std::vector<mechanical::MeasuredFlight> read_samples(const BatchFlights& flights
         if (!flights[i].selection.flights.empty()) selected.push_back(i);
     std::vector<std::vector<mechanical::MeasuredFlight>> of_logs(selected.size());
     for_each_in_parallel(selected.size(), [&](std::size_t i) {
-        const auto flight = flights[selected[i]];
+        const auto& flight = flights[selected[i]];
         const OverwriteExemption own;
         const auto file = result_path(options.out, flight.record.flight, record_suffix);
         auto record = record_from_json(read_file(file));

@@ -2,7 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/text_table.h"
-#include "batch/batch_flights.h"
+#include "batch/flight_record.h"
 #include "batch/log_files.h"
 
 #include <cstddef>
@@ -15,6 +15,31 @@
 namespace flightwatt::batch {
 
 class WriteGate;
+
+/// A sortie that a fit takes, and which of its phases.
+struct SelectedSortie {
+    std::string flight;  ///< see sortie_name
+    flight::PerPhase<bool> phases;
+};
+
+/// What a fit takes from a log. Its samples stay in the record until they are needed (read_samples).
+struct Selection {
+    std::vector<SelectedSortie> flights;  ///< none if the log was rejected
+    std::vector<mechanical::Exclusion> exclusions;
+};
+
+/// One log of a batch, done or found up to date. Of its record without what its file alone holds: samples, marks,
+/// verdicts, path and origin of the current. A hundred thousand take 150 to 180 MB.
+struct BatchFlight {
+    FlightRecord record;
+    bool was_up_to_date = false;
+    bool is_of_this_run = true;   ///< see LogFile
+    bool log_is_missing = false;  ///< its log is gone: it is as an earlier run left it
+    Selection selection;
+};
+
+/// In the order of the batch's logs.
+using BatchFlights = std::vector<BatchFlight>;
 
 struct BatchOptions {
     std::filesystem::path out;
@@ -33,13 +58,13 @@ using BatchProgress = std::function<void(std::size_t done, std::size_t all, cons
 /// results. Logs that cannot be used, whatever is wrong with them, are recorded as rejected; the rest goes on. Returned
 /// in the order of `logs`. Throws OutputError where OUT cannot be written. The folder is to be prepared before
 /// (manifest.h).
-BatchFlights run_batch(const LogList& logs, const BatchOptions& options, const BatchProgress& progress);
+BatchFlights run_batch(const std::vector<LogFile>& logs, const BatchOptions& options, const BatchProgress& progress);
 
 /// Every flight that is selected, with its samples. Throws InputError where a record is no longer as it was.
 std::vector<mechanical::MeasuredFlight> read_samples(const BatchFlights& flights, const BatchOptions& options);
 
-/// What select_for_fit selected, without its samples.
-Selection select_without_samples(mechanical::MeasuredFlights measured);
+/// A log that is done: what select_for_fit selects of its record, without the samples.
+BatchFlight without_samples(FlightRecord record, std::size_t min_samples, const flight::LoadOptions& options);
 
 /// A flight that is another one under a second name.
 struct DuplicateFlight {
@@ -64,9 +89,6 @@ const std::string* original_of(const std::string& flight, const Duplicates& repe
 
 /// Takes copies out of what is fitted, and says so; warns of overlaps.
 void exclude_duplicates(BatchFlights& flights, const Duplicates& repeated);
-
-/// The copies that exclude_duplicates took out. Nobody has to hold a hundred thousand of them meanwhile.
-std::vector<DuplicateFlight> excluded_duplicates(const BatchFlights& flights);
 
 /// Why a flight is not fitted that is a copy of another.
 std::string duplicate_reason(const std::string& other);

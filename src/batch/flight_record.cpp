@@ -361,10 +361,6 @@ std::optional<FlightMarks> marks_from_json(const std::string& text) {
     }
 }
 
-std::string to_valid_utf8(const std::string& name) {
-    return Json::parse(Json(name).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
-}
-
 std::string exclusion_reason(const FlightRecord& record, const flight::LoadOptions& options) {
     if (options.excluded.contains(record.flight)) return "--exclude names it";
     if (!record.no_power_reason.empty()) return record.no_power_reason;

@@ -67,9 +67,6 @@ std::optional<FlightRecord> record_from_json(const std::string& text);
 /// The marks of the record that this is the text of: most of it.
 std::optional<FlightMarks> marks_from_json(const std::string& text);
 
-/// The name as a record holds it: JSON has none that is not UTF-8.
-std::string to_valid_utf8(const std::string& name);
-
 /// Why a batch uses nothing of the flight: its power record, its folder or --exclude; empty if it does.
 std::string exclusion_reason(const FlightRecord& record, const flight::LoadOptions& options);
 

@@ -116,7 +116,7 @@ TextTable flights_table(const BatchFlights& flights, std::size_t max_logs) {
                     "take-off W", "cruise W",  "landing W", "energy Wh",    "counter Wh", "samples",
                     "gaps",       "longest s", "warnings",  "phases fitted"};
     for (std::size_t i = 0; i < std::min(flights.size(), max_logs); ++i) {
-        const auto flight = flights[i];
+        const auto& flight = flights[i];
         if (!flight.record.accepted) {
             std::vector<std::string> row{flight.record.flight, "-"};
             row.resize(table.header.size(), "-");

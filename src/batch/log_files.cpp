@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/fingerprint.h"
+#include "base/text.h"
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
@@ -97,11 +98,20 @@ std::string file_name_of(std::string name) {
     Fingerprint fingerprint;
     fingerprint.add(name);
     auto size = kept;
-    while ((static_cast<unsigned char>(name[size]) & 0xC0U) == 0x80U) --size;  // whole characters
+    while (continues_character(name[size])) --size;  // whole characters
     return name.substr(0, size) + "~" + fingerprint.hex();
 }
 
 }  // namespace
+
+bool path_less(std::string_view one, std::string_view other) {
+    const bool is_one_whole = one.starts_with('/');
+    const bool is_other_whole = other.starts_with('/');
+    if (is_one_whole != is_other_whole) return is_other_whole;
+    // The end of a part comes before whatever could go on there.
+    const auto rank = [](char c) { return c == '/' ? 0 : 1 + static_cast<unsigned char>(c); };
+    return std::ranges::lexicographical_compare(one, other, {}, rank, rank);
+}
 
 std::string CanonicalPathCache::operator()(const std::string& log) {
     const std::filesystem::path path(log);

@@ -1,7 +1,5 @@
 #pragma once
 
-#include "batch/log_list.h"
-
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -11,6 +9,21 @@
 #include <vector>
 
 namespace flightwatt::batch {
+
+/// A log that a batch is to do or did, and the name that its results go by: flights/NAME.series.csv, .phases.csv and
+/// .record.json.
+struct LogFile {
+    std::string path;                 ///< as it was given
+    std::string flight = {};          ///< empty: not named yet
+    std::string why_not_fitted = {};  ///< empty: it is fitted
+    std::string problem = {};         ///< why it cannot be read at all: a folder that cannot be listed
+    bool is_of_this_run = true;       ///< false: a log of an earlier run into the same folder
+    bool is_missing = false;          ///< of an earlier run, and no longer there
+    std::string place = {};           ///< the path from the root (canonical_path)
+};
+
+/// Whether a path is the earlier one of two, part by part as std::filesystem::path orders them.
+bool path_less(std::string_view one, std::string_view other);
 
 /// The path of a log from the root, its folder without links: one log, one place, however it is written.
 std::string canonical_path(const std::string& log);

@@ -7,6 +7,7 @@
 #include "batch/batch_files.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -40,7 +41,7 @@ std::string bytes_from(const ManifestJson& json) {
 }
 
 /// Adds a flight to a list; false for what is none.
-bool add_flight(const ManifestJson& json, LogList& flights) {
+bool add_flight(const ManifestJson& json, std::vector<LogFile>& flights) {
     try {
         LogFile flight{bytes_from(json.at("log")), bytes_from(json.at("flight")),
                        bytes_from(json.at("why_not_fitted"))};
@@ -48,7 +49,7 @@ bool add_flight(const ManifestJson& json, LogList& flights) {
         constexpr std::string_view in_no_name("/\0", 2);
         if (flight.flight.empty() || flight.flight.find_first_of(in_no_name) != std::string::npos) return false;
         if ((flight.path + flight.place).find('\0') != std::string::npos) return false;
-        flights.push_back(flight);
+        flights.push_back(std::move(flight));
         return true;
     } catch (const std::exception&) {
         return false;
@@ -67,9 +68,9 @@ std::string flight_text(const LogFile& flight) {
     return indent + boost::algorithm::replace_all_copy(json.dump(1, ' '), "\n", "\n" + indent);
 }
 
-std::unordered_set<std::string_view> names_of(const LogList& flights) {
+std::unordered_set<std::string_view> names_of(const std::vector<LogFile>& flights) {
     std::unordered_set<std::string_view> names;
-    for (std::size_t i = 0; i < flights.size(); ++i) names.insert(flights.flight(i));
+    for (const auto& flight : flights) names.insert(flight.flight);
     return names;
 }
 
@@ -104,8 +105,8 @@ std::optional<LogFile> flight_of_record(const std::filesystem::path& file, const
 Manifest manifest_of_records(const std::filesystem::path& out) {
     Manifest manifest;
     for (const auto& name : recorded_flights(out / "flights")) {
-        const auto flight = flight_of_record(result_path(out, name, record_suffix), name);
-        if (flight) manifest.flights.push_back(*flight);
+        auto flight = flight_of_record(result_path(out, name, record_suffix), name);
+        if (flight) manifest.flights.push_back(*std::move(flight));
     }
     manifest.is_of_earlier_version = !manifest.flights.empty();
     if (manifest.is_of_earlier_version && begins_with(out / catalogue_name, "flight,sortie,phase,")) {
@@ -119,42 +120,42 @@ Manifest manifest_of_records(const std::filesystem::path& out) {
 /// folders).
 class EarlierFlights {
   public:
-    explicit EarlierFlights(const LogList& flights) : flights_(flights) {
-        for (std::size_t i = 0; i < flights.size(); ++i) {
-            by_place_.emplace(flights.place(i), i);
-            by_path_.emplace(flights.path(i), i);
+    explicit EarlierFlights(const std::vector<LogFile>& flights) {
+        for (const auto& flight : flights) {
+            by_place_.emplace(flight.place, &flight);
+            by_path_.emplace(flight.path, &flight);
         }
     }
-    std::optional<std::size_t> find(const LogFile& log) const {
+    /// nullptr where there is none.
+    const LogFile* find(const LogFile& log) const {
         if (const auto same = by_place_.find(log.place); same != by_place_.end()) return same->second;
         const auto moved = by_path_.find(log.path);
-        if (moved == by_path_.end() || is_there(flights_.place(moved->second))) return std::nullopt;
-        return moved->second;
+        return moved == by_path_.end() || is_there(moved->second->place) ? nullptr : moved->second;
     }
 
   private:
-    const LogList& flights_;
-    std::unordered_map<std::string_view, std::size_t> by_place_;
-    std::unordered_map<std::string_view, std::size_t> by_path_;
+    std::unordered_map<std::string_view, const LogFile*> by_place_;
+    std::unordered_map<std::string_view, const LogFile*> by_path_;
 };
 
 /// Names this run's logs. Returns the names of the earlier flights that are among them.
-std::unordered_set<std::string_view> name_logs(std::vector<LogFile>& logs, const LogList& earlier, bool prune) {
+std::unordered_set<std::string_view> name_logs(std::vector<LogFile>& logs, const std::vector<LogFile>& earlier,
+                                               bool prune) {
     const EarlierFlights flights(earlier);
     std::unordered_set<std::string_view> known;
     UniqueNames names;
     std::vector<LogFile*> without_name;
     for (auto& log : logs) {
-        const auto before = log.problem.empty() ? flights.find(log) : std::nullopt;
-        if (before && known.insert(earlier.flight(*before)).second) {
-            log.flight = earlier.flight(*before);
+        const auto* before = log.problem.empty() ? flights.find(log) : nullptr;
+        if (before != nullptr && known.insert(before->flight).second) {
+            log.flight = before->flight;
             names.reserve(log.flight);
         } else {
             without_name.push_back(&log);
         }
     }
     if (!prune)
-        for (std::size_t i = 0; i < earlier.size(); ++i) names.reserve(std::string(earlier.flight(i)));
+        for (const auto& flight : earlier) names.reserve(flight.flight);
     for (auto* log : without_name) log->flight = names.assign(log->path);
     return known;
 }
@@ -171,7 +172,7 @@ bool was_usable(const std::filesystem::path& out, const std::string& flight) {
 
 /// An earlier flight that is not among this run's logs.
 void add_earlier(LogFile flight, const std::filesystem::path& out, CanonicalPathCache& find_place, bool prune,
-                 BatchPlan& plan, LogList& logs) {
+                 BatchPlan& plan, std::vector<LogFile>& logs) {
     if (find_place(flight.path) != flight.place) flight.path = flight.place;  // run from another folder
     flight.is_of_this_run = false;
     flight.is_missing = !is_there(flight.path);
@@ -181,7 +182,7 @@ void add_earlier(LogFile flight, const std::filesystem::path& out, CanonicalPath
     } else if (flight.is_missing && !was_usable(out, flight.flight)) {
         plan.dropped.push_back({flight.flight, fmt::format("its log {} is gone, and nothing came of it", flight.path)});
     } else {
-        logs.push_back(flight);
+        logs.push_back(std::move(flight));
     }
 }
 
@@ -274,8 +275,10 @@ void write_manifest(const Manifest& manifest, const std::filesystem::path& out) 
         auto text = json.dump(1, ' ');
         const std::string_view end = "]\n}";
         text.resize(text.size() - end.size());
-        for (std::size_t i = 0; i < manifest.flights.size(); ++i) {
-            text += (i == 0 ? "\n" : ",\n") + flight_text(manifest.flights[i]);
+        const auto* separator = "\n";
+        for (const auto& flight : manifest.flights) {
+            text += separator + flight_text(flight);
+            separator = ",\n";
             if (text.size() < piece_of_list_bytes) continue;
             sink(text);
             text.clear();
@@ -295,17 +298,16 @@ BatchPlan plan_batch(std::vector<LogFile> logs, const std::filesystem::path& out
     for (auto& log : logs)
         if (log.place.empty()) log.place = find_place(log.path);
     const auto known = name_logs(logs, earlier, prune);
-    LogList all(logs);
-    logs = std::vector<LogFile>();
-    for (std::size_t i = 0; i < earlier.size(); ++i)
-        if (!known.contains(earlier.flight(i))) add_earlier(earlier[i], out, find_place, prune, plan, all);
-    for (const auto number : all.by_path()) plan.logs.push_back(all[number]);
+    for (const auto& flight : earlier)
+        if (!known.contains(flight.flight)) add_earlier(flight, out, find_place, prune, plan, logs);
+    std::ranges::stable_sort(logs, path_less, &LogFile::path);
     plan.manifest.files = {model_names.begin(), model_names.end()};
     plan.manifest.files.insert(catalogue_name);
-    for (const auto number : plan.logs.by_flight()) {
-        const auto log = plan.logs[number];
-        if (log.problem.empty()) plan.manifest.flights.push_back(log);  // else it leaves no file
-    }
+    // A log with a problem leaves no file.
+    std::ranges::copy_if(logs, std::back_inserter(plan.manifest.flights),
+                         [](const LogFile& log) { return log.problem.empty(); });
+    std::ranges::stable_sort(plan.manifest.flights, {}, &LogFile::flight);
+    plan.logs = std::move(logs);
     return plan;
 }
 
@@ -319,12 +321,11 @@ void refuse_foreign_files(const BatchPlan& plan, const std::filesystem::path& ou
     for (const auto& dropped : plan.dropped)
         for (const auto* ending : result_suffixes) check_overwrite(result_path(out, dropped.flight, ending));
     const auto earlier = names_of(plan.earlier.flights);
-    const auto& flights = plan.manifest.flights;
-    for (std::size_t i = 0; i < flights.size(); ++i) {
+    for (const auto& flight : plan.manifest.flights) {
         for (const auto* ending : result_suffixes) {
-            const auto file = result_path(out, flights.flight(i), ending);
+            const auto file = result_path(out, flight.flight, ending);
             check_overwrite(file);  // a log, say
-            refuse_if_in_the_way(file, earlier.contains(flights.flight(i)));
+            refuse_if_in_the_way(file, earlier.contains(flight.flight));
         }
     }
 }
@@ -339,12 +340,10 @@ void prepare_folder(const BatchPlan& plan, const std::filesystem::path& out) {
     make_directories(out / temporary_folder);
     remove_unfinished(out / temporary_folder);
     const auto stay = names_of(plan.manifest.flights);
-    std::vector<LogFile> others;
-    for (std::size_t i = 0; i < plan.earlier.flights.size(); ++i)
-        if (!stay.contains(plan.earlier.flights.flight(i))) others.push_back(plan.earlier.flights[i]);
-    if (!others.empty()) {
-        auto listed = plan.manifest;
-        for (const auto& flight : others) listed.flights.push_back(flight);
+    auto listed = plan.manifest;
+    std::ranges::copy_if(plan.earlier.flights, std::back_inserter(listed.flights),
+                         [&](const LogFile& flight) { return !stay.contains(flight.flight); });
+    if (listed.flights.size() > plan.manifest.flights.size()) {
         write_manifest(listed, out);
         for (const auto& dropped : plan.dropped)
             if (!stay.contains(dropped.flight)) remove_results(out, dropped.flight);

@@ -16,7 +16,7 @@ inline constexpr auto temporary_folder = ".flightwatt-unfinished";
 
 struct Manifest {
     std::set<std::string> files;         ///< in OUT itself
-    LogList flights;                     ///< whose files are the batch's, by name
+    std::vector<LogFile> flights;        ///< whose files are the batch's, by name
     bool is_of_earlier_version = false;  ///< there is none: it was made up from the records
 };
 
@@ -34,7 +34,7 @@ struct DroppedFlight {
 
 /// What a run is to do.
 struct BatchPlan {
-    LogList logs;  ///< this run's and those of earlier runs, by path
+    std::vector<LogFile> logs;  ///< this run's and those of earlier runs, by path
     std::vector<DroppedFlight> dropped;
     Manifest manifest;  ///< once it is done
     Manifest earlier;

@@ -35,9 +35,9 @@ std::vector<ListedFlight> flights_of(const std::filesystem::path& batch) {
                          "make it with: flightwatt batch LOGS --no-fit -o FOLDER");
     }
     std::vector<ListedFlight> flights;
-    const auto listed_flights = read_manifest(batch).flights;
-    for (std::size_t i = 0; i < listed_flights.size(); ++i) {
-        auto listed = listed_flights[i];
+    auto manifest = read_manifest(batch);
+    flights.reserve(manifest.flights.size());
+    for (auto& listed : manifest.flights) {
         if (!std::filesystem::exists(result_path(batch, listed.flight, record_suffix), none)) {
             throw InputError({batch.string()},
                              fmt::format("this batch was not finished: {} has no record", listed.flight),
@@ -87,8 +87,7 @@ std::size_t keep_each_once(std::vector<ListedFlight>& flights) {
 
 /// Throws UsageError for a flight of `out` that is in none of the batches and is not to be dropped.
 void drop_others(const std::set<std::string>& places, const std::filesystem::path& out, bool prune, BatchPlan& plan) {
-    for (std::size_t i = 0; i < plan.earlier.flights.size(); ++i) {
-        const auto flight = plan.earlier.flights[i];
+    for (const auto& flight : plan.earlier.flights) {
         if (places.contains(flight.place)) continue;
         plan.dropped.push_back({flight.flight, fmt::format("its log {} is in none of the batches", flight.path)});
     }
@@ -120,18 +119,18 @@ class FlightMerger {
     BatchFlight merge(std::size_t number) const {
         const OverwriteExemption own;  // its batches' results, which are no inputs that a result could replace
         const auto& [from, flight] = plan_.sources[number];
-        const std::string name(plan_.folder.logs.flight(number));
-        BatchFlight merged;
+        const auto& name = plan_.folder.logs[number].flight;
         const auto text = read_file(result_path(from, flight, record_suffix));
-        merged.record = read_verified_record(from, flight);
-        merged.was_up_to_date = name == flight ? is_there(name, text) : false;
-        if (name == flight) {
-            if (!merged.was_up_to_date) take_over(from, name, merged.record.accepted);
-        } else {
-            merged.record.content.hashes = marks_from_json(text).value();  // sealed with the rest
-            take_over_as(name, from, flight, merged.record);
+        auto record = read_verified_record(from, flight);
+        const bool is_up_to_date = name == flight && is_there(name, text);
+        if (name != flight) {
+            record.content.hashes = marks_from_json(text).value();  // sealed with the rest
+            take_over_as(name, from, flight, record);
+        } else if (!is_up_to_date) {
+            take_over(from, name, record.accepted);
         }
-        merged.selection = select_without_samples(select_for_fit(merged.record, options_.needed_samples, {}));
+        auto merged = without_samples(std::move(record), options_.needed_samples, {});
+        merged.was_up_to_date = is_up_to_date;
         return merged;
     }
 
@@ -171,12 +170,12 @@ class FlightMerger {
             phases_text = flight::phases_csv(series, phases);
         }
         record = renamed(std::move(record), name);
+        if (record.accepted) record.results = results_fingerprint(series_text, phases_text);
         const WriteGate::WriterGuard inside(options_.gate);
         remove_results(options_.out, name);
         if (record.accepted) {
             write(name, series_suffix, series_text);
             write(name, phases_suffix, phases_text);
-            record.results = results_fingerprint(options_.out, name);
         }
         write(name, record_suffix, to_json_text(record));
     }
@@ -214,24 +213,24 @@ MergePlan plan_merge(const std::vector<std::filesystem::path>& batches, const st
         places.insert(listed.place);
         plan.sources.push_back({from.string(), std::move(listed.flight)});
         listed.flight = names.assign(listed.path);
-        folder.logs.push_back(listed);
+        folder.logs.push_back(std::move(listed));
     }
-    for (const auto number : folder.logs.by_flight()) folder.manifest.flights.push_back(folder.logs[number]);
+    folder.manifest.flights = folder.logs;
+    std::ranges::stable_sort(folder.manifest.flights, {}, &LogFile::flight);
     drop_others(places, out, prune, folder);
     return plan;
 }
 
 BatchFlights merge_flights(const MergePlan& plan, const MergeOptions& options, const BatchProgress& progress) {
     make_directories(options.out / temporary_folder);
-    BatchFlights flights(plan.sources.size(), options.out / temporary_folder);
+    BatchFlights flights(plan.sources.size());
     const FlightMerger merger(plan, options);
     std::mutex mutex;  // guards what follows
     std::size_t done = 0;
     for_each_in_parallel(flights.size(), [&](std::size_t i) {
-        const auto flight = merger.merge(i);
-        flights.put(i, flight);
+        flights[i] = merger.merge(i);
         const std::lock_guard lock(mutex);
-        progress(++done, flights.size(), flight);
+        progress(++done, flights.size(), flights[i]);
     });
     return flights;
 }

@@ -13,37 +13,20 @@
 namespace flightwatt::batch {
 namespace {
 
-/// A flight that may be another one, or another one it: no more of each than their order takes.
-struct Candidate {
-    std::size_t number = 0;  ///< in the batch
-    std::size_t samples = 0;
-    bool has_definitions = false;
-    bool is_fitted = false;
-    bool is_kept = false;
-
-    flight::FlightSketch content() const {
-        flight::FlightSketch content;
-        content.samples = samples;
-        content.has_definitions = has_definitions;
-        return content;
-    }
-};
-
-/// Those to be used first.
-std::vector<Candidate> candidates_among(const BatchFlights& flights) {
-    std::vector<Candidate> candidates;
-    for (std::size_t i = 0; i < flights.size(); ++i) {
-        const auto flight = flights[i];
-        const auto& content = flight.record.content;
-        const bool is_fitted = !flight.selection.flights.empty();
-        if (is_fitted || !flight.record.no_power_reason.empty())
-            candidates.push_back({i, content.samples, content.has_definitions, is_fitted, flight.log_is_missing});
-    }
+/// Those that may be another one, or another one it: those to be used first come first.
+std::vector<const BatchFlight*> candidates_among(const BatchFlights& flights) {
+    const auto is_fitted = [](const BatchFlight& flight) { return !flight.selection.flights.empty(); };
+    std::vector<const BatchFlight*> candidates;
+    candidates.reserve(flights.size());
+    for (const auto& flight : flights)
+        if (is_fitted(flight) || !flight.record.no_power_reason.empty()) candidates.push_back(&flight);
     // The one with power is used, of these one that is still there, of these the better copy.
-    std::ranges::stable_sort(candidates, [](const Candidate& one, const Candidate& other) {
-        const auto rank = [](const Candidate& flight) { return std::pair(!flight.is_fitted, flight.is_kept); };
+    std::ranges::stable_sort(candidates, [&](const BatchFlight* one, const BatchFlight* other) {
+        const auto rank = [&](const BatchFlight* flight) {
+            return std::pair(!is_fitted(*flight), flight->log_is_missing);
+        };
         if (rank(one) != rank(other)) return rank(one) < rank(other);
-        return is_preferred_duplicate(one.content(), other.content());
+        return is_preferred_duplicate(one->record.content, other->record.content);
     });
     return candidates;
 }
@@ -79,9 +62,8 @@ Duplicates find_duplicates(const BatchFlights& flights, const std::filesystem::p
     std::vector<NamedContent> contents(at_once);
     for (std::size_t i = 0; i < candidates.size(); ++i) {
         if (i % at_once == 0) {
-            for_each_in_parallel(std::min(at_once, candidates.size() - i), [&](std::size_t k) {
-                contents[k] = content_of(flights[candidates[i + k].number].record, out);
-            });
+            for_each_in_parallel(std::min(at_once, candidates.size() - i),
+                                 [&](std::size_t k) { contents[k] = content_of(candidates[i + k]->record, out); });
         }
         auto& [name, has_power, content] = contents[i % at_once];
         const auto alike = known.find(content);
@@ -95,7 +77,6 @@ Duplicates find_duplicates(const BatchFlights& flights, const std::filesystem::p
         known.add(std::move(content));
         used.push_back(name);
     }
-    repeated.copies.shrink_to_fit();
     std::ranges::sort(repeated.copies, {}, &DuplicateFlight::flight);
     return repeated;
 }
@@ -110,8 +91,7 @@ void exclude_duplicates(BatchFlights& flights, const Duplicates& repeated) {
     if (repeated.copies.empty() && repeated.overlaps.empty()) return;
     auto overlaps = repeated.overlaps;
     std::ranges::stable_sort(overlaps, {}, &std::pair<std::string, std::string>::first);
-    for (std::size_t i = 0; i < flights.size(); ++i) {
-        auto flight = flights[i];
+    for (auto& flight : flights) {
         const auto& name = flight.record.flight;
         const auto copy = std::ranges::lower_bound(repeated.copies, name, {}, &DuplicateFlight::flight);
         const bool is_copy = copy != repeated.copies.end() && copy->flight == name;
@@ -120,25 +100,13 @@ void exclude_duplicates(BatchFlights& flights, const Duplicates& repeated) {
         if (!is_copy && !has_part) continue;
         for (; part != overlaps.end() && part->first == name; ++part) flight.record.warnings.push_back(part->second);
         if (is_copy) {
-            flight.selection.flights.clear();
-            flight.selection.same_as = copy->same_as;
+            flight.selection.flights = {};
             flight.selection.exclusions.push_back({name, std::nullopt,
                                                    copy->has_power
                                                        ? duplicate_reason(copy->same_as)
                                                        : fmt::format("it is the same flight as {}", copy->same_as)});
         }
-        flights.put(i, flight);
     }
-}
-
-std::vector<DuplicateFlight> excluded_duplicates(const BatchFlights& flights) {
-    std::vector<DuplicateFlight> copies;
-    for (auto&& flight : flights) {
-        if (flight.selection.same_as.empty()) continue;
-        copies.push_back({flight.record.flight, flight.selection.same_as, flight.record.no_power_reason.empty()});
-    }
-    std::ranges::sort(copies, {}, &DuplicateFlight::flight);
-    return copies;
 }
 
 }  // namespace flightwatt::batch

@@ -1,8 +1,8 @@
 #include "battery/battery.h"
 
 #include "base/piecewise_linear.h"
+#include "base/text.h"
 #include "base/toml_reader.h"
-#include "base/toml_text.h"
 #include "base/units.h"
 
 #include <algorithm>

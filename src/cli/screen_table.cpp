@@ -3,6 +3,7 @@
 #include "base/csv.h"
 #include "base/duration_text.h"
 #include "base/number.h"
+#include "base/text.h"
 #include "cli/terminal.h"
 
 #include <algorithm>
@@ -55,17 +56,12 @@ bool is_duration(std::string_view column) {
     return (column.starts_with("duration") && column.ends_with("_s")) || std::ranges::count(others, column) > 0;
 }
 
-std::size_t characters_of(std::string_view text) {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-}
-
 /// The first `count` characters of `text`, in bytes.
 std::size_t bytes_of_characters(std::string_view text, std::size_t count) {
     std::size_t at = 0;
     while (at < text.size() && count > 0) {
         ++at;
-        while (at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0U) == 0x80U) ++at;
+        while (at < text.size() && continues_character(text[at])) ++at;
         --count;
     }
     return at;
@@ -88,9 +84,9 @@ std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
         line.clear();
     };
     for (std::string word : words_of(text)) {
-        if (!line.empty() && characters_of(line) + 1 + characters_of(word) > width) end_line();
+        if (!line.empty() && character_count(line) + 1 + character_count(word) > width) end_line();
         if (!line.empty()) line += ' ';
-        while (characters_of(line) + characters_of(word) > width) {
+        while (character_count(line) + character_count(word) > width) {
             end_line();
             auto cut = bytes_of_characters(word, width);
             const auto joint = std::string_view(word).substr(0, cut).find_last_of("_/-");
@@ -134,15 +130,15 @@ ShownColumn shown_column(const TextTable& table, std::size_t index) {
     if (is_duration(table.header[index]) && head.ends_with(" s")) head.remove_suffix(2);
     column.name = std::string(head);
     std::ranges::replace(column.name, '_', ' ');
-    std::size_t widest = characters_of(column.unit);
+    std::size_t widest = character_count(column.unit);
     std::size_t numbers = 0;
     for (const auto& row : table.rows) {
-        widest = std::max(widest, characters_of(row[index]));
+        widest = std::max(widest, character_count(row[index]));
         if (row[index].empty() || is_number_like(row[index])) ++numbers;
     }
     column.is_text = numbers * 2 < table.rows.size() || table.rows.empty();
     std::size_t max_word = 0;
-    for (const auto& word : words_of(column.name)) max_word = std::max(max_word, characters_of(word));
+    for (const auto& word : words_of(column.name)) max_word = std::max(max_word, character_count(word));
     column.natural = std::max(widest, max_word);
     column.least = column.is_text ? std::max(std::min(widest, text_wraps_from), max_word) : column.natural;
     return column;
@@ -221,7 +217,7 @@ std::string line_of(const std::vector<ShownColumn>& columns, const std::vector<s
     std::string line;
     std::size_t pending = 0;  // blanks: none at the end of a line
     for (std::size_t i = 0; i < columns.size(); ++i) {
-        const auto blanks = columns[i].width - std::min(columns[i].width, characters_of(parts[i]));
+        const auto blanks = columns[i].width - std::min(columns[i].width, character_count(parts[i]));
         if (i > 0) pending += gap;
         if (!columns[i].is_text) pending += blanks;
         if (!parts[i].empty()) {

@@ -3,7 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "compute/qos_range.h"
-#include "compute/sensors/open_sampler.h"
+#include "compute/sensors/power_sampler.h"
 
 #include <algorithm>
 #include <chrono>

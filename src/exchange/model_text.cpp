@@ -1,9 +1,9 @@
 #include "exchange/model_text.h"
 
-#include "base/toml_text.h"
+#include "base/text.h"
 
 #include <algorithm>
-#include <sstream>
+#include <cstdint>
 #include <string_view>
 #include <vector>
 
@@ -15,12 +15,27 @@
 namespace flightwatt::exchange {
 namespace {
 
-/// TOML of ours as JSON: numbers as they are, whole numbers whole.
-std::string json_of(const std::string& toml_text) {
-    std::ostringstream stream;
-    stream << toml::json_formatter(toml::parse(toml_text));
-    return nlohmann::json::parse(stream.str()).dump(2) + "\n";
+/// A value of our TOML as JSON: numbers as they are, whole numbers whole.
+nlohmann::json json_of(const toml::node& node) {
+    nlohmann::json json;
+    if (const auto* table = node.as_table()) {
+        for (const auto& [key, value] : *table) json[std::string(key.str())] = json_of(value);
+    } else if (const auto* array = node.as_array()) {
+        json = nlohmann::json::array();
+        for (const auto& value : *array) json.push_back(json_of(value));
+    } else if (const auto whole = node.value_exact<std::int64_t>()) {
+        json = *whole;
+    } else if (const auto real = node.value_exact<double>()) {
+        json = *real;
+    } else if (const auto flag = node.value_exact<bool>()) {
+        json = *flag;
+    } else {
+        json = node.value_or(std::string());
+    }
+    return json;
 }
+
+std::string json_text(const std::string& toml_text) { return json_of(toml::parse(toml_text)).dump(2) + "\n"; }
 
 bool is_letter(char c) { return c >= 'a' && c <= 'z'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -151,9 +166,9 @@ std::string motion_function(const mechanical::PhysicalModel& physical, const std
 
 }  // namespace
 
-std::string to_json_text(const mechanical::MechanicalModel& model) { return json_of(to_toml(model)); }
+std::string to_json_text(const mechanical::MechanicalModel& model) { return json_text(to_toml(model)); }
 
-std::string to_json_text(const battery::Battery& battery) { return json_of(to_toml(battery)); }
+std::string to_json_text(const battery::Battery& battery) { return json_text(to_toml(battery)); }
 
 std::string c_prefix(const std::string& name) {
     std::string prefix;

@@ -5,8 +5,8 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "base/toml_reader.h"
-#include "base/toml_text.h"
 #include "flight/selected_track.h"
 #include "telemetry/log_configuration.h"
 

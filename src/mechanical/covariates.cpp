@@ -6,6 +6,8 @@
 #include "flight/selected_track.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 #include <fmt/ranges.h>
@@ -42,10 +44,7 @@ std::optional<double> resting_voltage_v(const flight::SelectedTracks& tracks, do
         if (value_at(throttle, time_s[i]) <= idle_percent) voltages.push_back(value_at(voltage, time_s[i]));
     }
     if (voltages.empty()) return std::nullopt;
-    // Of an even number the higher of the middle two: a voltage that was measured.
-    const auto middle = voltages.begin() + static_cast<std::ptrdiff_t>(voltages.size() / 2);
-    std::ranges::nth_element(voltages, middle);
-    return *middle;
+    return median_high(std::move(voltages));  // of an even number: one that was measured
 }
 
 }  // namespace
@@ -82,6 +81,35 @@ Covariates covariates_of(const flight::SelectedTracks& tracks, const flight::Sor
         found[Covariate::airspeed_cubed] = mean_cubed_airspeed_m3_per_s3(airspeed, start_s, start_s + early_s);
     }
     return found;
+}
+
+RegressionPrediction predict_mean_power(const CovariateRegression& law, double value) {
+    const auto flights = static_cast<double>(law.flights);
+    RegressionPrediction level;
+    level.within_flights = value >= law.least && value <= law.most;
+    level.sd_w = law.residual_sd_w;
+    if (is_through_origin(law.covariate)) {
+        const double ratio = value / law.mean;
+        level.power_w = std::max(0.0, law.mean_power_w * ratio);
+        level.law_variance = 1.0 / flights;
+        level.degrees_of_freedom = flights - 1.0;
+        if (level.sd_w) *level.sd_w *= ratio;
+        return level;
+    }
+    const double z = (std::clamp(value, law.least, law.most) - law.mean) / law.sd;
+    level.power_w = std::max(0.0, law.mean_power_w + law.slope_w * z);
+    // The ridge adds a flight one standard deviation off, so the squares of the standardised values sum to n.
+    level.law_variance = (1.0 + z * z) / flights;
+    level.degrees_of_freedom = flights - 2.0;
+    return level;
+}
+
+ConstantPower constant_power(const RegressionPrediction& level) {
+    ConstantPower power{level.power_w, std::nullopt, 0.0};
+    if (!level.sd_w) return power;
+    power.sd_w = *level.sd_w * std::sqrt(1.0 + level.law_variance);
+    power.degrees_of_freedom = level.degrees_of_freedom;
+    return power;
 }
 
 }  // namespace flightwatt::mechanical

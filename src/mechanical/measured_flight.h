@@ -1,13 +1,36 @@
 #pragma once
 
+#include "flight/flight_phases.h"
 #include "flight/load_flight.h"
-#include "mechanical/validation.h"
+#include "flight/phase_statistics.h"
+#include "mechanical/fit/phase_samples.h"
+#include "mechanical/flight_progress.h"
+#include "mechanical/physical/flight_bins.h"
 
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace flightwatt::mechanical {
+
+/// The power measured over one phase, whatever is fitted of it: straight lines between the samples, as statistics and
+/// fit have them.
+struct PhasePower {
+    std::vector<double> time_s;  ///< since the phase began: rises from 0 to the phase's duration
+    std::vector<double> power_w;
+    flight::PhaseStatistics statistics;
+};
+
+/// One flight as the validation needs it: what may be fitted, and the measured truth of the same phases.
+struct MeasuredFlight {
+    FlightSamples samples;
+    flight::PerPhase<std::optional<double>> energy_wh;          ///< integral of the measured power
+    flight::PerPhase<std::optional<double>> counter_energy_wh;  ///< what the on-board counter said
+    std::optional<FlightProgress> flown;                        ///< only for a validation in flight
+    BinnedFlight motion = {};                                   ///< as it was flown
+    std::vector<FlightBin> remaining_cruise = {};               ///< of `motion`'s kind, from `flown` to the landing
+    flight::PerPhase<std::optional<PhasePower>> power = {};     ///< of its complete phases
+};
 
 /// What is not fitted, and why.
 struct Exclusion {

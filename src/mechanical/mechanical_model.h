@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flight/flight_phases.h"
-#include "mechanical/covariate_regression.h"
+#include "mechanical/covariates.h"
 #include "mechanical/physical_model.h"
 
 #include <filesystem>
@@ -46,6 +46,9 @@ struct Interval {
     double low = 0.0;
     double high = 0.0;
 };
+
+/// Of a value with this standard error, by Student's t.
+Interval student_t_interval(double value, double standard_error, double degrees_of_freedom);
 
 /// 95 % intervals of a phase's coefficients; not symmetric about them.
 struct CoefficientIntervals {
@@ -189,5 +192,14 @@ std::vector<double> curve_w(const FourierModel& model, double duration_s, std::s
 /// The root mean square of the difference between two phases' curves [W], each over its own duration: the
 /// curves are compared at equal parts of the phase, whatever the seconds.
 double rms_difference_w(const PhaseModel& a, const PhaseModel& b);
+
+/// What a user should know of a model before it is used, a line each: a phase whose curve falls below 0 W, where a
+/// drone takes no energy back; a phase whose errors are no more than a bound, because the noise of its samples is alike
+/// for as long as the phase lasts (autocorrelation at max_autocorrelation).
+std::vector<std::string> model_warnings(const MechanicalModel& model);
+
+/// How the fit came to its curves where that is not least squares of all samples, a line each: samples that were left
+/// out, a mean over frequencies, a curve that was held above 0 W.
+std::vector<std::string> fit_notes(const MechanicalModel& model);
 
 }  // namespace flightwatt::mechanical

@@ -1,11 +1,12 @@
 #include "mechanical/model_difference.h"
 
-#include "base/statistics.h"
+#include "base/units.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -69,8 +70,7 @@ Estimate mean_of_flights(double value, const Contributions& flights,
     double variance = 0.0;
     for (const auto& [name, flight] : flights)
         variance += flight.weight * std::pow(*own(flight) - mean, 2) / (1.0 - squares);
-    const auto half = student_t_half_width(1.0 / squares - 1.0) * std::sqrt(variance * squares);
-    return {value, Interval{value - half, value + half}};
+    return {value, student_t_interval(value, std::sqrt(variance * squares), 1.0 / squares - 1.0)};
 }
 
 /// Two models' views of one phase.
@@ -82,39 +82,42 @@ struct PhasePair {
     std::string part;
 };
 
+/// Adds the row, with its interval if both estimates have theirs.
+void add_row(std::vector<Difference>& all, Difference row, double correlation, DifferenceBasis basis) {
+    if (row.a && row.b) row.interval = interval_of_difference(*row.a, *row.b, correlation);
+    if (row.interval) row.basis = basis;
+    all.push_back(std::move(row));
+}
+
+/// a0, a1, b1, ... to that order, absent beyond the phase's own, and the frequency.
+std::vector<std::optional<Estimate>> coefficients_of(const PhaseModel& phase, std::size_t order) {
+    const auto& fourier = phase.fourier;
+    std::optional<CoefficientIntervals> intervals;
+    if (phase.errors) intervals = coefficient_intervals(phase);
+    const auto estimate = [&](double value, const auto& interval_of) {
+        return Estimate{value, intervals ? std::optional(interval_of(*intervals)) : std::nullopt};
+    };
+    std::vector<std::optional<Estimate>> found{estimate(fourier.a0_w, [](const auto& of) { return of.a0_w; })};
+    found.resize(2 * order + 2);
+    for (std::size_t n = 0; n < fourier.cos_w.size(); ++n) {
+        found[2 * n + 1] = estimate(fourier.cos_w[n], [n](const auto& of) { return of.cos_w[n]; });
+        found[2 * n + 2] = estimate(fourier.sin_w[n], [n](const auto& of) { return of.sin_w[n]; });
+    }
+    found.back() = estimate(fourier.omega_rad_per_s, [](const auto& of) { return of.omega_rad_per_s; });
+    if (phase.errors && phase.errors->frequency_is_fixed) found.back()->interval.reset();
+    return found;
+}
+
 void add_coefficients(std::vector<Difference>& all, const PhasePair& pair) {
     const auto correlation = correlation_of(pair.flights_a, pair.flights_b, noise_variance);
-    const auto intervals = [](const PhaseModel& phase) {
-        return phase.errors ? std::optional(coefficient_intervals(phase)) : std::nullopt;
-    };
-    const auto intervals_a = intervals(pair.a);
-    const auto intervals_b = intervals(pair.b);
-    const auto add = [&](std::string quantity, const char* unit, std::optional<Estimate> a, std::optional<Estimate> b) {
-        Difference row{pair.part, std::move(quantity), unit, a, b};
-        if (a && b) row.interval = interval_of_difference(*a, *b, correlation);
-        if (row.interval) row.basis = DifferenceBasis::noise;
-        all.push_back(row);
-    };
-    const auto a0 = [](const PhaseModel& phase, const auto& of) {
-        return Estimate{phase.fourier.a0_w, of ? std::optional(of->a0_w) : std::nullopt};
-    };
-    const auto nth = [](const std::vector<double>& values, const std::vector<Interval>* of,
-                        std::size_t n) -> std::optional<Estimate> {
-        if (n >= values.size()) return std::nullopt;
-        return Estimate{values[n], of != nullptr && n < of->size() ? std::optional((*of)[n]) : std::nullopt};
-    };
-    const auto omega = [](const PhaseModel& phase, const auto& of) {
-        const bool is_known = of && !phase.errors->frequency_is_fixed;
-        return Estimate{phase.fourier.omega_rad_per_s, is_known ? std::optional(of->omega_rad_per_s) : std::nullopt};
-    };
-    add("a0_w", "W", a0(pair.a, intervals_a), a0(pair.b, intervals_b));
-    for (std::size_t n = 0; n < std::max(pair.a.fourier.cos_w.size(), pair.b.fourier.cos_w.size()); ++n) {
-        add(fmt::format("a{}_w", n + 1), "W", nth(pair.a.fourier.cos_w, intervals_a ? &intervals_a->cos_w : nullptr, n),
-            nth(pair.b.fourier.cos_w, intervals_b ? &intervals_b->cos_w : nullptr, n));
-        add(fmt::format("b{}_w", n + 1), "W", nth(pair.a.fourier.sin_w, intervals_a ? &intervals_a->sin_w : nullptr, n),
-            nth(pair.b.fourier.sin_w, intervals_b ? &intervals_b->sin_w : nullptr, n));
+    const auto order = std::max(pair.a.fourier.cos_w.size(), pair.b.fourier.cos_w.size());
+    const auto a = coefficients_of(pair.a, order);
+    const auto b = coefficients_of(pair.b, order);
+    for (std::size_t i = 0; i + 1 < a.size(); ++i) {
+        auto quantity = fmt::format("{}{}_w", i > 0 && i % 2 == 0 ? 'b' : 'a', (i + 1) / 2);
+        add_row(all, {pair.part, std::move(quantity), "W", a[i], b[i]}, correlation, DifferenceBasis::noise);
     }
-    add("omega_rad_per_s", "rad/s", omega(pair.a, intervals_a), omega(pair.b, intervals_b));
+    add_row(all, {pair.part, "omega_rad_per_s", "rad/s", a.back(), b.back()}, correlation, DifferenceBasis::noise);
 }
 
 void add_means(std::vector<Difference>& all, const PhasePair& pair) {
@@ -122,13 +125,9 @@ void add_means(std::vector<Difference>& all, const PhasePair& pair) {
     const auto add = [&](const char* quantity, const char* unit, const auto& of_model, const auto& of_flight) {
         const auto a = mean_of_flights(of_model(pair.a), pair.flights_a, of_flight);
         const auto b = mean_of_flights(of_model(pair.b), pair.flights_b, of_flight);
-        Difference row{pair.part, quantity, unit, a, b};
-        row.interval = interval_of_difference(a, b, correlation);
-        if (row.interval) row.basis = DifferenceBasis::flights;
-        all.push_back(row);
+        add_row(all, {pair.part, quantity, unit, a, b}, correlation, DifferenceBasis::flights);
     };
     const auto energy = [](const PhaseModel& phase) { return energy_j(phase.fourier, phase.duration_s); };
-    constexpr double j_per_wh = 3600.0;
     add(
         "duration_s", "s", [](const PhaseModel& phase) { return phase.duration_s; },
         [](const PhaseContribution& flight) { return std::optional(flight.duration_s); });
@@ -136,10 +135,10 @@ void add_means(std::vector<Difference>& all, const PhasePair& pair) {
         "mean_power_w", "W", [&](const PhaseModel& phase) { return energy(phase) / phase.duration_s; },
         [](const PhaseContribution& flight) { return flight.mean_power_w; });
     add(
-        "energy_wh", "Wh", [&](const PhaseModel& phase) { return energy(phase) / j_per_wh; },
-        [&](const PhaseContribution& flight) -> std::optional<double> {
+        "energy_wh", "Wh", [&](const PhaseModel& phase) { return units::wh_from_joule(energy(phase)); },
+        [](const PhaseContribution& flight) -> std::optional<double> {
             if (!flight.mean_power_w) return std::nullopt;
-            return *flight.mean_power_w * flight.duration_s / j_per_wh;
+            return units::wh_from_joule(*flight.mean_power_w * flight.duration_s);
         });
 }
 
@@ -164,8 +163,7 @@ std::optional<Estimate> term_of(const std::optional<PhysicalModel>& model, Power
     const auto i = static_cast<std::size_t>(found - model->terms.begin());
     const auto value = model->coefficients[term];
     if (!model->level_sd) return Estimate{value, std::nullopt};  // a single flight's covariance tells too little
-    const auto half = student_t_half_width(model->degrees_of_freedom) * std::sqrt(model->covariance[i][i]);
-    return Estimate{value, Interval{value - half, value + half}};
+    return Estimate{value, student_t_interval(value, std::sqrt(model->covariance[i][i]), model->degrees_of_freedom)};
 }
 
 /// `both` are the flights that both models rest on.
@@ -186,9 +184,7 @@ void add_physical(std::vector<Difference>& all, const std::optional<PhysicalMode
         const auto of_b = term_of(b, term);
         if (!of_a && !of_b) continue;
         Difference row{"physical", std::string(to_string(term)), std::string(unit_of(term)), of_a, of_b};
-        if (of_a && of_b) row.interval = interval_of_difference(*of_a, *of_b, correlation);
-        if (row.interval) row.basis = DifferenceBasis::flights;
-        all.push_back(row);
+        add_row(all, std::move(row), correlation, DifferenceBasis::flights);
     }
 }
 
@@ -212,15 +208,7 @@ std::optional<Interval> interval_of_difference(const Estimate& a, const Estimate
 }
 
 std::string to_string(DifferenceBasis basis) {
-    switch (basis) {
-        case DifferenceBasis::noise:
-            return "noise";
-        case DifferenceBasis::flights:
-            return "flights";
-        case DifferenceBasis::none:
-            return "";
-    }
-    return "";
+    return basis == DifferenceBasis::noise ? "noise" : basis == DifferenceBasis::flights ? "flights" : "";
 }
 
 std::optional<double> difference_of(const Difference& difference) {

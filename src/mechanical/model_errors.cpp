@@ -12,19 +12,22 @@
 namespace flightwatt::mechanical {
 namespace {
 
-/// Part i of a phase, of `points` from its begin to its end.
-double part_at(std::size_t i, std::size_t points) { return static_cast<double>(i) / static_cast<double>(points - 1); }
+/// So many parts of a phase from its begin to its end, 0 to 1.
+std::vector<double> even_parts(std::size_t points) {
+    std::vector<double> parts(points);
+    for (std::size_t i = 0; i < points; ++i) parts[i] = static_cast<double>(i) / static_cast<double>(points - 1);
+    return parts;
+}
 
 void add_curve(CsvWriter& csv, const ModelFit& fit, flight::Phase phase, const ErrorAnalysis& analysis) {
     const auto& model = fit.model.phases[phase];
     const auto points = curve_point_count(model.fourier, model.duration_s) / 5 + 1;
     const auto spread = compute_envelope(fit.fits[phase], fit.weights[phase], points);
-    std::vector<double> taus;
-    for (std::size_t i = 0; i < points; ++i) taus.push_back(part_at(i, points));
+    const auto taus = even_parts(points);
     const auto intervals = curve_intervals_w(analysis, taus);
     const double population_wide = spread ? student_t_half_width(spread->effective_flights - 1.0) : 0.0;
     for (std::size_t i = 0; i < points; ++i) {
-        const double tau = part_at(i, points);
+        const double tau = taus[i];
         const double time_s = tau * model.duration_s;
         const double power = power_w(model.fourier, time_s);
         const double error = curve_standard_error_w(analysis, tau);
@@ -48,8 +51,7 @@ std::optional<FlightEnvelope> compute_envelope(const PhaseFit& fit, std::span<co
     if (std::ranges::count_if(weights, [](double weight) { return weight > 0.0; }) < 2) return std::nullopt;
     FlightEnvelope spread;
     spread.effective_flights = 1.0 / squares;
-    for (std::size_t i = 0; i < points; ++i) {
-        const double tau = part_at(i, points);
+    for (const double tau : even_parts(points)) {
         std::vector<double> powers;
         std::vector<double> counts;
         double mean = 0.0;
@@ -101,11 +103,8 @@ flight::PerPhase<CurveBand> curve_bands(const ModelFit& fit, const flight::PerPh
         const auto& fitted = fit.model.phases[phase];
         const auto& analysis = analyses[phase];
         auto& band = bands[phase];
-        std::vector<double> taus;
-        for (std::size_t i = 0; i < points; ++i) {
-            taus.push_back(part_at(i, points));
-            band.time_s.push_back(fitted.duration_s * taus.back());
-        }
+        const auto taus = even_parts(points);
+        for (const double tau : taus) band.time_s.push_back(fitted.duration_s * tau);
         for (const auto& [low, high] : curve_intervals_w(analysis, taus)) {
             band.low_95_w.push_back(low);
             band.high_95_w.push_back(high);

@@ -1,10 +1,9 @@
 #pragma once
 
+#include "mechanical/fit/error_analysis.h"
 #include "mechanical/fit/phase_fit.h"
 #include "mechanical/mechanical_model.h"
 #include "mechanical/model_fit.h"
-#include "mechanical/uncertainty/error_analysis.h"
-#include "mechanical/uncertainty/frequency_profile.h"
 
 #include <optional>
 #include <span>

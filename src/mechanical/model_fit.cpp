@@ -3,10 +3,10 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/statistics.h"
-#include "mechanical/covariate_regression.h"
+#include "mechanical/covariates.h"
+#include "mechanical/fit/flight_variation.h"
 #include "mechanical/fit/fourier_basis.h"
-#include "mechanical/fit/frequency_scan.h"
-#include "mechanical/prediction/variance_components.h"
+#include "mechanical/fit/least_squares.h"
 
 #include <algorithm>
 #include <memory>

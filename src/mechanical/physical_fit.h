@@ -10,15 +10,6 @@
 
 namespace flightwatt::mechanical {
 
-/// A term that the fit tried, and what became of it.
-struct TermTrial {
-    std::string term;  ///< as to_string(PowerTerm), or "throttle"
-    bool kept = false;
-    std::optional<double> rms_before_w;  ///< error of what was held back, without the term; absent if it was not tried
-    std::optional<double> rms_after_w;   ///< and with it
-    std::string reason;                  ///< why it was dropped, or could not be tried; empty if it was kept
-};
-
 /// A flight that is not in the fit.
 struct SkippedFlight {
     std::string flight;
@@ -33,9 +24,6 @@ struct PhysicalFit {
     bool phases_decided = true;     ///< false: trials have the error of bins, not of whole phases
     std::size_t folds = 0;
 };
-
-/// So much less must the mean square error of what was held back be for a term to be kept.
-inline constexpr double min_mse_reduction = 0.05;
 
 /// Fits power to the motion of flights of one aircraft (docs/methods.md, Power from airspeed and climb). Each flight is
 /// held back in turn (ten groups of more than ten), or each fifth of a single flight's time. Terms:

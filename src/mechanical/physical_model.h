@@ -92,6 +92,19 @@ struct PowerUncertainty {
     double degrees_of_freedom = 0.0;
 };
 
+/// A stationary deviation with exponential correlation (Ornstein-Uhlenbeck):
+/// covariance(t, t + lag) = sd^2 exp(-lag / correlation_s) (docs/methods.md, Eqs. 17 and 18).
+struct DriftProcess {
+    double sd_w = 0.0;
+    double correlation_s = 1.0;
+};
+
+/// Variance [W^2] of the mean over `duration_s` (docs/methods.md, Eq. 17).
+double variance_of_mean_w2(const DriftProcess& drift, double duration_s);
+
+/// Covariance [W^2] of the means over two durations, the second of which follows the first.
+double covariance_of_means_w2(const DriftProcess& drift, double first_s, double second_s);
+
 /// How far the mean power of a flight not seen may be from what the model says, over `duration_s` with these mean
 /// values of the terms: the flight's own level, its drift, and that the coefficients come from few flights
 /// (docs/methods.md, Power from airspeed and climb). std::nullopt for a model of a single flight.
@@ -100,5 +113,14 @@ std::optional<PowerUncertainty> prediction_uncertainty(const PhysicalModel& mode
 
 /// Whether the model's flights flew so: what lies outside is extrapolated.
 bool is_within_flown_range(const PhysicalModel& model, const FlightState& motion);
+
+/// A term that the fit tried, and what became of it.
+struct TermTrial {
+    std::string term;  ///< as to_string(PowerTerm), or "throttle"
+    bool kept = false;
+    std::optional<double> rms_before_w;  ///< error of what was held back, without the term; absent if it was not tried
+    std::optional<double> rms_after_w;   ///< and with it
+    std::string reason;                  ///< why it was dropped, or could not be tried; empty if it was kept
+};
 
 }  // namespace flightwatt::mechanical

@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "mechanical/physical/path_prediction.h"
+#include "mechanical/physical/power_regression.h"
 
 #include <algorithm>
 #include <cmath>
@@ -206,6 +206,15 @@ std::optional<MeanPower> mean_power(const MechanicalModel& model, flight::Phase 
 
 EnergyEstimate predict_before_flight(const WeightedPhase& phase, double duration_s) {
     return predict_remaining_before_flight(phase, 0.0, duration_s);
+}
+
+EnergyEstimate energy_of(const ConstantPower& power, double duration_s) {
+    EnergyEstimate estimate{units::wh_from_joule(power.mean_w * duration_s), power.sd_w.has_value(), 0.0, 0.0};
+    if (power.sd_w) {
+        const double sd_wh = units::wh_from_joule(*power.sd_w * duration_s);
+        add_variance(estimate, {sd_wh * sd_wh, power.degrees_of_freedom});
+    }
+    return estimate;
 }
 
 EnergyEstimate predict_remaining_before_flight(const WeightedPhase& phase, double flown_s, double remaining_s) {

@@ -1,9 +1,8 @@
 #pragma once
 
+#include "mechanical/flight_progress.h"
 #include "mechanical/mechanical_model.h"
 #include "mechanical/physical_model.h"
-#include "mechanical/prediction/flight_progress.h"
-#include "mechanical/prediction/variance_components.h"
 
 #include <cstddef>
 #include <optional>
@@ -68,6 +67,9 @@ std::optional<MeanPower> mean_power(const MechanicalModel& model, flight::Phase 
 /// interval holds the spread of the flights' mean powers (which contains what a flight drifts in a phase)
 /// and that of their average (docs/methods.md, Eq. 16).
 EnergyEstimate predict_before_flight(const WeightedPhase& phase, double duration_s);
+
+/// Of a phase with a constant power.
+EnergyEstimate energy_of(const ConstantPower& power, double duration_s);
 
 /// The same from `flown_s` on, without regard to what was measured until then.
 EnergyEstimate predict_remaining_before_flight(const WeightedPhase& phase, double flown_s, double remaining_s);

@@ -36,40 +36,42 @@ std::vector<std::string> row_names(std::size_t order) {
     return names;
 }
 
-/// A column as long as row_names(order).
-std::vector<std::string> column_of(const PhaseModel& phase, std::size_t order) {
-    const auto& of = phase.fourier;
-    std::vector<std::string> cells{as_printed(of.a0_w)};
+/// Separator of the ends of an asymmetric interval.
+constexpr std::string_view between_ends = " to ";
+
+std::string as_printed(const Interval& interval) {
+    return as_printed(interval.low) + std::string(between_ends) + as_printed(interval.high);
+}
+
+/// The cells of a0, a1, b1, ...: of numbers, or of their intervals.
+template <typename Value>
+std::vector<std::string> coefficient_cells(const Value& a0, const std::vector<Value>& cos,
+                                           const std::vector<Value>& sin, std::size_t order) {
+    std::vector<std::string> cells{as_printed(a0)};
     for (std::size_t n = 0; n < order; ++n) {
-        const bool there = n < of.cos_w.size();
-        cells.push_back(there ? as_printed(of.cos_w[n]) : "-");
-        cells.push_back(there ? as_printed(of.sin_w[n]) : "-");
+        cells.push_back(n < cos.size() ? as_printed(cos[n]) : "-");
+        cells.push_back(n < sin.size() ? as_printed(sin[n]) : "-");
     }
-    const double theta_rad = of.omega_rad_per_s * phase.duration_s;
-    cells.push_back(of.cos_w.empty() ? "-" : as_printed(units::table_one_xi_from_rad(theta_rad)));
     return cells;
 }
 
-/// Between the ends of an interval, which are not as far from the coefficient the one as the other.
-constexpr std::string_view between_ends = " to ";
-
-std::string interval_text(const Interval& interval) {
-    return as_printed(interval.low) + std::string(between_ends) + as_printed(interval.high);
+/// A column as long as row_names(order).
+std::vector<std::string> column_of(const PhaseModel& phase, std::size_t order) {
+    const auto& of = phase.fourier;
+    auto cells = coefficient_cells(of.a0_w, of.cos_w, of.sin_w, order);
+    const double theta_rad = of.omega_rad_per_s * phase.duration_s;
+    cells.push_back(of.cos_w.empty() ? "-" : as_printed(units::table_one_xi_from_rad(theta_rad)));
+    return cells;
 }
 
 /// The 95 % intervals of column_of's cells.
 std::vector<std::string> intervals_of(const PhaseModel& phase, std::size_t order) {
     if (!phase.errors) return std::vector<std::string>(2 * order + 2, "-");
     const auto intervals = coefficient_intervals(phase);
-    std::vector<std::string> cells{interval_text(intervals.a0_w)};
-    for (std::size_t n = 0; n < order; ++n) {
-        const bool there = n < intervals.cos_w.size();
-        cells.push_back(there ? interval_text(intervals.cos_w[n]) : "-");
-        cells.push_back(there ? interval_text(intervals.sin_w[n]) : "-");
-    }
+    auto cells = coefficient_cells(intervals.a0_w, intervals.cos_w, intervals.sin_w, order);
     const auto xi = [&](double omega) { return units::table_one_xi_from_rad(omega * phase.duration_s); };
     const auto& [low, high] = intervals.omega_rad_per_s;
-    cells.push_back(phase.errors->frequency_is_fixed ? "-" : interval_text({xi(low), xi(high)}));
+    cells.push_back(phase.errors->frequency_is_fixed ? "-" : as_printed(Interval{xi(low), xi(high)}));
     return cells;
 }
 
@@ -152,27 +154,23 @@ TextTable table_one_comparison(const MechanicalModel& published, const Mechanica
 
 std::string to_latex(const TextTable& table) {
     const bool intervals = std::ranges::any_of(table.header, is_interval);
-    std::string text =
-        "% needs \\usepackage{booktabs}\n\\begin{table}\n\\centering\n\\caption{Constants for the mechanical energy model";
-    if (intervals) text += " (in brackets: 95\\,\\% intervals)";
-    text += "}\n\\label{tab:mechanical-energy-model}\n";
-    // Beside published constants, or with intervals, the columns are wider than a page's text.
+    // With published constants or intervals the columns are wider than a page's text.
     constexpr std::size_t columns_that_fit = 4;
     const bool scaled = table.header.size() > columns_that_fit;
-    if (scaled) text = "% needs \\usepackage{graphicx}\n" + text + "\\resizebox{\\linewidth}{!}{%\n";
-    text += fmt::format("\\begin{{tabular}}{{l{}}}\n\\toprule\n", std::string(table.header.size() - 1, 'r'));
-    for (std::size_t column = 1; column < table.header.size(); ++column) {
-        text += " & " + heading_cell(table.header[column]);
+    auto cells = table;
+    std::ranges::transform(table.header, cells.header.begin(), heading_cell);
+    cells.header.front().clear();
+    for (auto& row : cells.rows) {
+        row.front() = row_name(row.front());
+        for (std::size_t column = 1; column < row.size(); ++column)
+            row[column] = cell(row[column], table.header[column]);
     }
-    text += " \\\\\n\\midrule\n";
-    for (const auto& row : table.rows) {
-        text += row_name(row[0]);
-        for (std::size_t column = 1; column < row.size(); ++column) {
-            text += " & " + cell(row[column], table.header[column]);
-        }
-        text += " \\\\\n";
-    }
-    return text + "\\bottomrule\n\\end{tabular}" + (scaled ? "}" : "") + "\n\\end{table}\n";
+    return latex_table(
+        {scaled ? "% needs \\usepackage{graphicx}\n% needs \\usepackage{booktabs}" : "% needs \\usepackage{booktabs}",
+         fmt::format("Constants for the mechanical energy model{}",
+                     intervals ? " (in brackets: 95\\,\\% intervals)" : ""),
+         "tab:mechanical-energy-model", "l" + std::string(table.header.size() - 1, 'r'), scaled ? "\\linewidth" : ""},
+        cells);
 }
 
 }  // namespace flightwatt::mechanical

@@ -4,8 +4,8 @@
 #include "base/parallel.h"
 #include "base/statistics.h"
 #include "base/units.h"
+#include "mechanical/fit/flight_variation.h"
 #include "mechanical/physical_fit.h"
-#include "mechanical/validation/baselines.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,14 +53,12 @@ EnergyEstimate after(double known_wh, EnergyEstimate rest) {
     return rest;
 }
 
-void add_covariates(Estimates& estimates, const Fold& fold, std::span<const Covariate> covariates) {
-    const double duration_s = fold.flown.duration_s;
-    for (const auto covariate : covariates) {
-        const auto power = fold.phase == flight::Phase::cruise
-                               ? power_by_covariate(fold.others, covariate, fold.flown.covariates[covariate])
-                               : constant_mean(fold.others);
-        if (power) estimates.emplace_back(fmt::format("by_{}", to_string(covariate)), energy_of(*power, duration_s));
-    }
+/// The cruise by the covariate's value, where it is known and the others tell its effect; other phases by their mean.
+void add_by_covariate(Estimates& estimates, const Fold& fold, const std::string& model, Covariate covariate,
+                      const std::optional<double>& value) {
+    const auto power = fold.phase == flight::Phase::cruise ? power_by_covariate(fold.others, covariate, value)
+                                                           : constant_mean(fold.others);
+    if (power) estimates.emplace_back(model, energy_of(*power, fold.flown.duration_s));
 }
 
 /// By the motion that was flown.
@@ -75,16 +73,10 @@ std::optional<EnergyEstimate> physical_estimate(const MeasuredFlight& flight, co
 
 Estimates predict_phase(const Fold& fold) {
     const double duration_s = fold.flown.duration_s;
-    const auto mean = constant_mean(fold.others);
     Estimates estimates{{"fourier", predict_before_flight(forecast_of_others(fold), duration_s)},
-                        {"constant_mean", energy_of(mean, duration_s)},
+                        {"constant_mean", energy_of(constant_mean(fold.others), duration_s)},
                         {"nearest_flight", energy_of(single_flight_power(fold.others, fold.nearest), duration_s)}};
-    if (fold.phase != flight::Phase::cruise) {
-        estimates.emplace_back("airspeed_cubed", energy_of(mean, duration_s));
-    } else if (const auto power =
-                   power_by_covariate(fold.others, Covariate::airspeed_cubed, fold.flown.airspeed_cubed_m3_per_s3)) {
-        estimates.emplace_back("airspeed_cubed", energy_of(*power, duration_s));
-    }
+    add_by_covariate(estimates, fold, "airspeed_cubed", Covariate::airspeed_cubed, fold.flown.airspeed_cubed_m3_per_s3);
     return estimates;
 }
 
@@ -130,7 +122,9 @@ Estimates estimates_of(const MeasuredFlight& excluded, const Fold& fold, std::sp
     if (!excluded.flown) {
         auto estimates = predict_phase(fold);
         if (const auto physical = physical_estimate(excluded, fold)) estimates.emplace_back("physical", *physical);
-        add_covariates(estimates, fold, covariates);
+        for (const auto covariate : covariates)
+            add_by_covariate(estimates, fold, fmt::format("by_{}", to_string(covariate)), covariate,
+                             fold.flown.covariates[covariate]);
         return estimates;
     }
     if (fold.phase == flight::Phase::takeoff) return {};

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mechanical/covariate_regression.h"
+#include "mechanical/covariates.h"
 #include "mechanical/physical_model.h"
 #include "mission/path.h"
 

@@ -2,6 +2,7 @@
 
 #include "base/csv.h"
 #include "base/number.h"
+#include "base/text.h"
 
 #include <algorithm>
 #include <array>
@@ -213,12 +214,6 @@ VegaJson shown_by_legend() { return vega(R"({"filter": {"param": "shown"}})"); }
 VegaJson phase_names(const VegaJson& data, std::string_view time_title) {
     return layer(data, R"({"type": "text", "style": "note", "baseline": "bottom", "dy": -3, "y": 0, "clip": false})",
                  {{"x", numeric_channel("middle_s", time_title)}, {"text", nominal_channel("word", "phase")}});
-}
-
-std::string valid_utf8(std::string_view text) {
-    if (std::ranges::all_of(text, [](char c) { return static_cast<unsigned char>(c) < 0x80; }))
-        return std::string(text);
-    return VegaJson::parse(dumped(VegaJson(std::string(text)))).get<std::string>();
 }
 
 std::string script_json(const VegaJson& json) {

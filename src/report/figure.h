@@ -109,9 +109,6 @@ constexpr std::string_view phase_word(flight::Phase phase) {
 /// The layer of phases' names (column "word") above a panel, at "middle_s".
 VegaJson phase_names(const VegaJson& data, std::string_view time_title);
 
-/// Replaces what is not UTF-8 (names of files) by U+FFFD.
-std::string valid_utf8(std::string_view text);
-
 /// As JSON that may stand in an HTML script element, whatever its texts hold.
 std::string script_json(const VegaJson& json);
 

@@ -1,6 +1,7 @@
 #include "report/html.h"
 
 #include "base/number.h"
+#include "base/text.h"
 
 #include <algorithm>
 #include <map>

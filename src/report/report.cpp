@@ -3,7 +3,7 @@
 #include "base/parallel.h"
 #include "cli/output/physical_output.h"
 #include "cli/output/prediction_output.h"
-#include "mechanical/model_check.h"
+#include "mechanical/mechanical_model.h"
 #include "mechanical/table_one.h"
 #include "mission/mission_file.h"
 #include "mission/replay.h"

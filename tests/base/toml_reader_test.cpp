@@ -1,6 +1,6 @@
 #include "base/toml_reader.h"
 
-#include "base/toml_text.h"
+#include "base/text.h"
 #include "helpers/rejected.h"
 
 #include <cmath>

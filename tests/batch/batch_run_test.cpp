@@ -289,7 +289,7 @@ TEST(Batch, TellsItsProgressOfEveryLogOnce) {
     for (int number = 1; number <= 4; ++number) copy_sample(number, folder / "in");
     std::vector<std::size_t> counts;
     std::vector<std::string> names;
-    run_batch(LogList(find_logs({(folder / "in").string()})), {folder / "out", {}, 3, 8},
+    run_batch(find_logs({(folder / "in").string()}), {folder / "out", {}, 3, 8},
               [&](std::size_t done, std::size_t all, const BatchFlight& flight) {
                   EXPECT_EQ(all, 4U);
                   counts.push_back(done);
@@ -324,7 +324,7 @@ TEST(Batch, KeepsFlightsOfOneNameApart) {
 TEST(Batch, ReadsTheNamedAircraft) {
     const auto folder = test::scratch_dir();
     copy_sample(1, folder / "in");
-    const LogList logs(find_logs({(folder / "in").string()}));
+    const auto logs = find_logs({(folder / "in").string()});
     const auto silent = [](std::size_t, std::size_t, const BatchFlight&) {};
     const auto right = run_batch(logs, {folder / "out", "7", 1, 8}, silent);
     EXPECT_TRUE(right[0].record.accepted);

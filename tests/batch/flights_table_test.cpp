@@ -46,10 +46,7 @@ BatchFlight rejected_flight() {
     return flight;
 }
 
-BatchFlights both_flights() {
-    const std::vector<BatchFlight> flights{two_sorties(), rejected_flight()};
-    return {flights, test::scratch_dir()};
-}
+BatchFlights both_flights() { return {two_sorties(), rejected_flight()}; }
 
 TEST(Catalogue, HasARowAPhaseAndARejectedLog) {
     const auto flights = both_flights();

@@ -93,7 +93,7 @@ TEST(Manifest, PassesOverWhatALaterVersionAdds) {
         "rest": [{"flight": "ghost"}]})");
     const auto flights = read_manifest(out).flights;
     ASSERT_EQ(flights.size(), 1U);
-    EXPECT_EQ(flights.flight(0), "x");
+    EXPECT_EQ(flights[0].flight, "x");
 }
 
 TEST(Manifest, IsMadeOfTheRecordsOfAnEarlierVersion) {

@@ -24,7 +24,6 @@ using testing::IsEmpty;
 std::vector<DuplicateFlight> copies_of(BatchFlights& flights, const std::filesystem::path& out) {
     const auto repeated = find_duplicates(flights, out);
     exclude_duplicates(flights, repeated);
-    EXPECT_EQ(excluded_duplicates(flights), repeated.copies);
     return repeated.copies;
 }
 
@@ -88,10 +87,10 @@ TEST(RepeatedFlights, KnowsThatFlightsAreOfSeveralAircraft) {
     EXPECT_EQ(mixed_aircraft_reason(flights), "");
     auto first = flights[0];
     first.record.aircraft_id = "8";
-    flights.put(0, first);
+    flights[0] = first;
     EXPECT_THAT(mixed_aircraft_reason(flights), HasSubstr("; 8 Opterra_synthetic (SYNTHETIC): opterra_synthetic_01"));
     first.selection.flights.clear();
-    flights.put(0, first);
+    flights[0] = first;
     EXPECT_EQ(mixed_aircraft_reason(flights), "") << "what is not fitted does not count";
 }
 

@@ -55,13 +55,6 @@ TEST(ScriptJson, CannotEndItsElement) {
     EXPECT_EQ(VegaJson::parse(text), json);
 }
 
-TEST(ValidUtf8, ReplacesWhatIsNone) {
-    EXPECT_EQ(valid_utf8("αβγ"), "αβγ");
-    EXPECT_EQ(valid_utf8("a\xff"
-                         "b"),
-              "a\uFFFDb");
-}
-
 TEST(VisibleRows, AreAllOfAShortLine) {
     const std::vector<double> time_s{0.0, 1.0, 5.0};
     EXPECT_EQ(downsample_m4(time_s, {3.0, 1.0, 2.0}, 1), (std::vector<std::size_t>{0, 1, 2}));

@@ -8,7 +8,7 @@
 #include "live/prediction_basis.h"
 #include "live/sources.h"
 #include "live/text_sources.h"
-#include "mechanical/model_check.h"
+#include "mechanical/mechanical_model.h"
 #include "mechanical/prediction.h"
 #include "mission/mission_file.h"
 #include "telemetry/binary_log.h"

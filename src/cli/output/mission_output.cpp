@@ -3,7 +3,7 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "cli/stage.h"
-#include "mechanical/model_check.h"
+#include "mechanical/mechanical_model.h"
 
 #include <algorithm>
 #include <iterator>

@@ -1,12 +1,26 @@
 #pragma once
 
-#include "compute/processes/supervisor.h"
-
 #include <chrono>
+#include <cstddef>
 #include <string>
 #include <vector>
 
+#include <sys/types.h>
+
 namespace flightwatt::compute {
+
+struct SupervisionOptions {
+    int output = -1;  ///< an open file for what the commands print
+    int errors = -1;  ///< and for what they say
+    std::chrono::milliseconds kill_timeout{2000};
+};
+
+/// What was found when the commands were ended.
+struct ShutdownReport {
+    std::size_t orphans = 0;    ///< processes that were alive beside the commands themselves
+    bool killed = false;        ///< SIGTERM was not enough
+    std::size_t survivors = 0;  ///< processes that not even SIGKILL ended
+};
 
 /// A command that has ended, or that could not be started.
 struct FinishedCommand {

@@ -1,6 +1,5 @@
-#include "compute/sensors/open_sampler.h"
-
 #include "compute/sensors/power_rails.h"
+#include "compute/sensors/power_sampler.h"
 
 #include <algorithm>
 #include <iterator>

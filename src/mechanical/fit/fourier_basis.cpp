@@ -1,11 +1,82 @@
 #include "mechanical/fit/fourier_basis.h"
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 
 #include <Eigen/QR>
 #include <Eigen/SVD>
+#include <unsupported/Eigen/FFT>
 
 namespace flightwatt::mechanical {
+namespace {
+
+using Complex = std::complex<double>;
+
+/// Cells of the grid that a sample reaches on each side; 12 at twofold oversampling give about 12 digits.
+constexpr std::size_t reach = 12;
+
+/// Samples spread on one turn of the circle, its angle being step * tau. Real part: weights; imaginary part:
+/// values. One complex transform then serves both.
+struct SpreadGrid {
+    std::vector<Complex> cells;
+    double width = 0.0;  ///< the Gaussian is exp(-angle^2 / (4 width))
+};
+
+SpreadGrid spread(const ScaledSamples& samples, double step_rad, std::size_t count) {
+    // Modes run from -count to count; twice as many cells keep the Gaussian's images apart.
+    const std::size_t cells = std::bit_ceil(std::max<std::size_t>(4 * count, 4 * reach));
+    const double modes = 2.0 * static_cast<double>(count);
+    const double oversampling = static_cast<double>(cells) / modes;
+    const double cell = 2.0 * std::numbers::pi / static_cast<double>(cells);
+
+    SpreadGrid grid;
+    grid.cells.assign(cells, Complex(0.0, 0.0));
+    grid.width = std::numbers::pi * static_cast<double>(reach) / (modes * modes * oversampling * (oversampling - 0.5));
+    std::array<double, 2 * reach> fixed_factor{};  // exp(-(offset cell)^2 / (4 width))
+    for (std::size_t k = 0; k < fixed_factor.size(); ++k) {
+        const double offset = (static_cast<double>(k) - static_cast<double>(reach - 1)) * cell;
+        fixed_factor[k] = std::exp(-offset * offset / (4.0 * grid.width));
+    }
+    for (std::size_t i = 0; i < samples.tau.size(); ++i) {
+        const double angle = step_rad * samples.tau[i];
+        const auto nearest = static_cast<std::size_t>(angle / cell);
+        const double rest = angle - static_cast<double>(nearest) * cell;
+        const double ratio = std::exp(rest * cell / (2.0 * grid.width));
+        double factor = std::exp(-rest * rest / (4.0 * grid.width)) * std::pow(ratio, 1.0 - static_cast<double>(reach));
+        const Complex sample(1.0, samples.value[i]);
+        for (std::size_t k = 0; k < fixed_factor.size(); ++k) {
+            const std::size_t place = (nearest + cells + k - (reach - 1)) & (cells - 1);
+            grid.cells[place] += sample * (factor * fixed_factor[k]);
+            factor *= ratio;
+        }
+    }
+    return grid;
+}
+
+/// A pivot below this part of its diagonal is rounding: the sums are good to 11 digits.
+constexpr double smallest_pivot = 1e-9;
+
+constexpr std::size_t max_columns = 2 * max_order + 1;
+
+/// The inner product of two columns of the basis: column 0 is cos(0), 2n - 1 is cos(n .), 2n is sin(n .).
+double inner_product(const TrigonometricSums& sums, std::size_t stride, std::size_t a, std::size_t b) {
+    const std::size_t n = (std::max(a, b) + 1) / 2;
+    const std::size_t k = (std::min(a, b) + 1) / 2;
+    const auto& sum = sums.weight[(n + k) * stride];
+    const auto& difference = sums.weight[(n - k) * stride];
+    const bool a_is_sine = a > 0 && a % 2 == 0;
+    const bool b_is_sine = b > 0 && b % 2 == 0;
+    if (a_is_sine && b_is_sine) return (difference.real() - sum.real()) / 2.0;
+    if (!a_is_sine && !b_is_sine) return (difference.real() + sum.real()) / 2.0;
+    const bool sine_is_higher = (a_is_sine ? a : b) == std::max(a, b);
+    return (sum.imag() + (sine_is_higher ? difference.imag() : -difference.imag())) / 2.0;
+}
+
+}  // namespace
 
 Eigen::VectorXd coefficients_of(const FourierModel& model) {
     Eigen::VectorXd coefficients(coefficient_count(static_cast<int>(model.cos_w.size())));
@@ -85,6 +156,84 @@ std::optional<LinearFit> solve_least_squares(const Eigen::MatrixXd& matrix, cons
     fit.coefficients = qr.solve(values).cwiseQuotient(lengths);
     fit.residual_square_sum = (matrix * fit.coefficients - values).squaredNorm();
     return fit;
+}
+
+TrigonometricSums sum_directly(const ScaledSamples& samples, double step_rad, std::size_t count) {
+    TrigonometricSums sums{std::vector<Complex>(count), std::vector<Complex>(count)};
+    for (std::size_t i = 0; i < samples.tau.size(); ++i) {
+        const double angle = step_rad * samples.tau[i];
+        const Complex turn(std::cos(angle), std::sin(angle));
+        Complex power(1.0, 0.0);
+        for (std::size_t m = 0; m < count; ++m) {
+            sums.weight[m] += power;
+            sums.value[m] += samples.value[i] * power;
+            power *= turn;
+        }
+    }
+    return sums;
+}
+
+TrigonometricSums sum_by_fft(const ScaledSamples& samples, double step_rad, std::size_t count) {
+    const SpreadGrid grid = spread(samples, step_rad, count);
+    const std::size_t cells = grid.cells.size();
+    std::vector<Complex> modes;
+    thread_local Eigen::FFT<double> fft;  // which remembers its factors
+    fft.fwd(modes, grid.cells);
+
+    TrigonometricSums sums{std::vector<Complex>(count), std::vector<Complex>(count)};
+    const double scale = std::sqrt(std::numbers::pi / grid.width) / static_cast<double>(cells);
+    for (std::size_t m = 0; m < count; ++m) {
+        // fwd has exp(-i m angle): conjugate. Real and imaginary input part from the modes m and -m.
+        const Complex forward = modes[m];
+        const Complex mirrored = std::conj(modes[(cells - m) & (cells - 1)]);
+        const double index = static_cast<double>(m);
+        const double deconvolution = scale * std::exp(index * index * grid.width);
+        sums.weight[m] = deconvolution * std::conj(0.5 * (forward + mirrored));
+        sums.value[m] = deconvolution * std::conj(Complex(0.0, -0.5) * (forward - mirrored));
+    }
+    return sums;
+}
+
+double explained_square_sum(const TrigonometricSums& sums, std::size_t stride, int order) {
+    const auto columns = 2 * static_cast<std::size_t>(order) + 1;
+    // L D L^T of the Gram matrix, row by row, with the right-hand side carried along: the sum explained is
+    // sum z_j^2 / d_j with L z = rhs.
+    std::array<std::array<double, max_columns>, max_columns> lower;
+    std::array<double, max_columns> inverse_pivot{};
+    std::array<double, max_columns> z{};
+    double explained = 0.0;
+    for (std::size_t row = 0; row < columns; ++row) {
+        auto& scaled = lower[row];  // L_row,k d_k until its turn
+        for (std::size_t column = 0; column < row; ++column) {
+            double entry = inner_product(sums, stride, row, column);
+            for (std::size_t k = 0; k < column; ++k) entry -= scaled[k] * lower[column][k];
+            scaled[column] = entry;
+        }
+        const double diagonal = inner_product(sums, stride, row, row);
+        const auto& rhs = sums.value[(row + 1) / 2 * stride];
+        double pivot = diagonal;
+        z[row] = row > 0 && row % 2 == 0 ? rhs.imag() : rhs.real();
+        for (std::size_t k = 0; k < row; ++k) {
+            const double factor = scaled[k] * inverse_pivot[k];
+            pivot -= scaled[k] * factor;
+            z[row] -= factor * z[k];
+            scaled[k] = factor;
+        }
+        inverse_pivot[row] = pivot > smallest_pivot * diagonal ? 1.0 / pivot : 0.0;
+        explained += z[row] * z[row] * inverse_pivot[row];
+    }
+    return explained;
+}
+
+double projected_square_sum(std::span<const ScaledSamples> flights, int order, double theta_rad) {
+    double sum = 0.0;
+    for (const auto& flight : flights) {
+        const auto sums = sum_directly(flight, theta_rad, 2 * static_cast<std::size_t>(order) + 1);
+        const auto& value = flight.value;
+        const double total = std::inner_product(value.begin(), value.end(), value.begin(), 0.0);
+        sum += std::max(0.0, total - explained_square_sum(sums, 1, order));
+    }
+    return sum;
 }
 
 }  // namespace flightwatt::mechanical

@@ -3,11 +3,9 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/statistics.h"
-#include "mechanical/fit/density_nodes.h"
 #include "mechanical/fit/fourier_basis.h"
-#include "mechanical/fit/frequency_scan.h"
-#include "mechanical/fit/frequency_screen.h"
-#include "mechanical/fit/node_likelihood.h"
+#include "mechanical/fit/frequency_likelihood.h"
+#include "mechanical/fit/least_squares.h"
 
 #include <algorithm>
 #include <array>
@@ -63,7 +61,9 @@ FlightsAt flights_at(std::span<const ScaledSamples> flights, int order, double t
 
 double log_likelihood(const FlightsAt& flights, double autocorrelation) {
     std::vector<double> parts(flights.size());
-    const auto work = [&](std::size_t i) { parts[i] = restricted_log_likelihood(flights[i], autocorrelation); };
+    const auto work = [&](std::size_t i) {
+        parts[i] = restricted_likelihood(flights[i], autocorrelation).log_likelihood;
+    };
     for_each_in_parallel(flights.size(), work, threads_for(sample_count(flights)));
     return std::accumulate(parts.begin(), parts.end(), 0.0);
 }
@@ -90,7 +90,7 @@ FrequencyNode node_at(std::span<const ScaledSamples> flights, const PosteriorOpt
 /// The peak of the density near a frequency, for the autocorrelation that is likeliest there.
 double climbed(std::span<const ScaledSamples> flights, const PosteriorOptions& options, double theta_rad,
                double autocorrelation) {
-    const double reach = frequency_scan_step(options.range, options.order);
+    const double reach = scan_grid(options.range, options.order).step_rad;
     const double low = std::max(options.range.low_rad, theta_rad - reach);
     const double high = std::min(options.range.high_rad, theta_rad + reach);
     const auto behind = [&](double theta) {
@@ -221,7 +221,7 @@ QuadratureNode posterior_node(const FlightsAt& flights, double theta_rad, double
         const auto& back = flights[i].from_orthonormal;
         const double variance = evidence.square_sum / evidence.degrees_of_freedom;
         parts[i] = evidence.log_likelihood;
-        node.flights[i] = {back * evidence.coordinates, variance * back * evidence.covariance * back.transpose(),
+        node.flights[i] = {back * evidence.coordinates, variance * back * evidence.covariance() * back.transpose(),
                            evidence.degrees_of_freedom};
     };
     for_each_in_parallel(flights.size(), work, threads_for(sample_count(flights)));

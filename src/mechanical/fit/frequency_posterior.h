@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mechanical/fit/frequency_scan.h"
+#include "mechanical/fit/least_squares.h"
 #include "mechanical/fit/phase_samples.h"
 #include "mechanical/mechanical_model.h"
 
@@ -49,7 +49,7 @@ struct PosteriorOptions {
 double autocorrelation_limit(std::span<const ScaledSamples> flights);
 
 /// Integrates over theta in the range and r in [0, highest]: density ~ 1 / theta^2 times the restricted likelihood of
-/// each flight (node_likelihood.h; each has a noise variance of its own, theta and r are common). Theta is first
+/// each flight (restricted_likelihood; each has a noise variance of its own, theta and r are common). Theta is first
 /// screened (candidate_frequencies), then nodes are put where the density is. Order 0 has no frequency: one theta.
 /// Throws NoResultError if the samples determine no series at any frequency.
 FrequencyPosterior frequency_posterior(std::span<const ScaledSamples> flights, const PosteriorOptions& options);

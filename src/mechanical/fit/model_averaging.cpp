@@ -1,9 +1,10 @@
-#include "mechanical/fit/model_averaging.h"
+// The curves of a phase whose samples leave the frequency open.
 
 #include "base/statistics.h"
 #include "mechanical/fit/fourier_basis.h"
+#include "mechanical/fit/frequency_likelihood.h"
 #include "mechanical/fit/frequency_posterior.h"
-#include "mechanical/fit/frequency_screen.h"
+#include "mechanical/fit/phase_fit.h"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "mechanical/fit/model_averaging.h"
 
 #include <algorithm>
 #include <cmath>

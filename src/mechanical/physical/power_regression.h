@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mechanical/physical/flight_bins.h"
+#include "mechanical/physical_model.h"
 
 #include <optional>
 #include <span>
@@ -30,6 +31,9 @@ struct NormalEquations {
 
 /// The typical sizes of the columns, which make them alike.
 ColumnVector column_scale();
+
+/// The columns of terms.
+std::vector<int> columns_of(const std::vector<PowerTerm>& terms);
 
 /// The columns of one bin, over `scale`.
 ColumnVector column_values(const FlightBin& bin, const ColumnVector& scale);
@@ -75,17 +79,30 @@ class PowerRegression {
     /// has no spread. std::nullopt where the columns are not determined.
     std::optional<PowerPosterior> posterior(const std::vector<int>& columns) const;
 
-    std::size_t bins() const { return bins_; }
-    std::size_t flights() const { return flights_; }
-
   private:
     std::vector<std::vector<NormalEquations>> by_correlation_;
-    std::size_t bins_ = 0;
     std::size_t flights_ = 0;
 };
 
 /// The prior of the spread between flights is half a Student's t of 3 degrees of freedom with this scale: air density,
 /// load, and above all a few percent of airspeed sensor, which count three times in its cube, make about a tenth.
 inline constexpr double level_prior_scale = 0.1;
+
+/// The mean power of what is still to fly, where its motion is known.
+struct PosteriorPower {
+    double mean_w = 0.0;          ///< not below 0
+    double model_w = 0.0;         ///< what the model says without regard to this flight
+    double level = 0.0;           ///< this flight's own level as it was learned: a part of the power
+    double parameter_sd_w = 0.0;  ///< of level and coefficients, and
+    double parameter_degrees_of_freedom = 1.0;
+    double drift_sd_w = 0.0;  ///< of what will drift
+    double drift_degrees_of_freedom = 1.0;
+};
+
+/// What was flown moves level and coefficients as far as they are uncertain (Bayes' rule for normal errors), and the
+/// last drift dies away (docs/methods.md, Power from airspeed and climb). `ahead`: means of the terms over the next
+/// `remaining_s` seconds, more than 0. The model has a level spread; bins of `flown` lie before `now_s`, on one clock.
+PosteriorPower predict_posterior_power(const PhysicalModel& model, std::span<const FlightBin> flown, double now_s,
+                                       const TermValues& ahead, double remaining_s);
 
 }  // namespace flightwatt::mechanical

@@ -25,14 +25,14 @@ struct HeldPhase {
 };
 
 /// What is held back at once.
-struct Fold {
+struct TermFold {
     std::vector<NormalEquations> flights;  ///< their drift taken out
     NormalEquations plain;                 ///< of all bins as they are
     std::vector<HeldPhase> phases;         ///< empty where bins decide
 };
 
 struct Folds {
-    std::vector<Fold> folds;
+    std::vector<TermFold> folds;
     double level_sd = working_level_sd;
     bool bank_measured = true;
     bool throttle_measured = true;
@@ -48,7 +48,7 @@ void add_to(NormalEquations& sum, const NormalEquations& other) {
     sum.bins += other.bins;
 }
 
-void add_bins(Fold& fold, std::span<const FlightBin> bins) {
+void add_bins(TermFold& fold, std::span<const FlightBin> bins) {
     fold.flights.push_back(accumulate_normal_equations(bins, working_correlation_s));
     add_to(fold.plain, accumulate_normal_equations(bins, 0.0));
 }
@@ -297,13 +297,6 @@ std::optional<Candidate> first_term(const Folds& of) {
 }
 
 }  // namespace
-
-std::vector<int> columns_of(const std::vector<PowerTerm>& terms) {
-    std::vector<int> columns;
-    columns.reserve(terms.size());
-    for (const auto term : terms) columns.push_back(static_cast<int>(term));
-    return columns;
-}
 
 bool are_physical(const std::vector<PowerTerm>& terms, const ColumnVector& coefficients) {
     double climb = 0.0;

@@ -1,12 +1,15 @@
 #pragma once
 
 #include "mechanical/physical/power_regression.h"
-#include "mechanical/physical_fit.h"
+#include "mechanical/physical_model.h"
 
 #include <span>
 #include <vector>
 
 namespace flightwatt::mechanical {
+
+/// So much less must the mean square error of what was held back be for a term to be kept.
+inline constexpr double min_mse_reduction = 0.05;
 
 struct TermSelection {
     std::vector<PowerTerm> terms;  ///< in the order of all_power_terms; empty where none is determined
@@ -20,8 +23,5 @@ TermSelection select_terms(std::span<const BinnedFlight> flights, const PowerReg
 
 /// Whether physics lets these coefficients be, in the order of `terms`.
 bool are_physical(const std::vector<PowerTerm>& terms, const ColumnVector& coefficients);
-
-/// The columns of terms.
-std::vector<int> columns_of(const std::vector<PowerTerm>& terms);
 
 }  // namespace flightwatt::mechanical

@@ -1,4 +1,4 @@
-#include "base/toml_text.h"
+#include "base/text.h"
 #include "mission/file/toml_keys.h"
 #include "mission/mission_file.h"
 

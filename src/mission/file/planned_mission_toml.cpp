@@ -1,5 +1,5 @@
+#include "base/text.h"
 #include "base/toml_reader.h"
-#include "base/toml_text.h"
 #include "mission/file/toml_keys.h"
 #include "mission/mission_file.h"
 

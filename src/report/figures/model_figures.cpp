@@ -1,3 +1,4 @@
+#include "base/text.h"
 #include "mechanical/validation.h"
 #include "report/figures/flight_figures.h"
 

@@ -1,4 +1,5 @@
 #include "base/statistics.h"
+#include "base/text.h"
 #include "mission/simulation.h"
 #include "report/figures/mission_figures.h"
 

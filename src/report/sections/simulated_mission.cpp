@@ -2,6 +2,7 @@
 
 #include "base/duration_text.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "base/units.h"
 #include "cli/output/mission_output.h"
 #include "mission/plan.h"

@@ -1,8 +1,7 @@
 // Sensor trees as the boards' kernels lay them out, made by the test.
 
-#include "compute/sensors/open_sampler.h"
-
 #include "compute/sensors/power_rails.h"
+#include "compute/sensors/power_sampler.h"
 #include "helpers/rejected.h"
 
 #include <thread>

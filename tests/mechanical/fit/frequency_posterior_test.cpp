@@ -1,9 +1,8 @@
 #include "mechanical/fit/frequency_posterior.h"
 
 #include "helpers/interval_coverage.h"
-#include "mechanical/fit/density_nodes.h"
-#include "mechanical/fit/frequency_scan.h"
-#include "mechanical/fit/node_likelihood.h"
+#include "mechanical/fit/frequency_likelihood.h"
+#include "mechanical/fit/least_squares.h"
 
 #include <algorithm>
 #include <cmath>
@@ -56,7 +55,7 @@ TEST(NodeLikelihood, IsThatOfTheWholeMatrices) {
     EXPECT_NEAR(evidence.square_sum, square_sum, 1e-8 * square_sum);
     EXPECT_LT((flight.from_orthonormal * evidence.coordinates - coefficients).norm(), 1e-6 * coefficients.norm());
     const Eigen::MatrixXd covariance =
-        flight.from_orthonormal * evidence.covariance * flight.from_orthonormal.transpose();
+        flight.from_orthonormal * evidence.covariance() * flight.from_orthonormal.transpose();
     EXPECT_LT((covariance - information.inverse()).norm(), 1e-6 * covariance.norm());
     const double ratio = information.determinant() / (basis.transpose() * basis).determinant();
     const double freedom = static_cast<double>(count) - 7.0;

@@ -1,6 +1,5 @@
-#include "mechanical/fit/model_averaging.h"
-
 #include "helpers/made_up_flights.h"
+#include "mechanical/fit/phase_fit.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,85 @@
+#include "base/text.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flightwatt {
+namespace {
+
+/// The bytes that may follow the first one: others would be an overlong form, a surrogate or beyond Unicode.
+bool may_follow(unsigned lead, unsigned second) {
+    const unsigned low = lead == 0xE0 ? 0xA0 : lead == 0xF0 ? 0x90 : 0x80;
+    const unsigned high = lead == 0xED ? 0x9F : lead == 0xF4 ? 0x8F : 0xBF;
+    return second >= low && second <= high;
+}
+
+}  // namespace
+
+Utf8Character first_character(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(text[i])); };
+    const unsigned lead = byte(0);
+    if (lead < 0x80) return {lead, 1};
+    if (lead < 0xC2 || lead > 0xF4) return {};
+    const std::size_t length = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
+    char32_t code = lead & (0x7FU >> length);
+    for (std::size_t i = 1; i < length; ++i) {
+        const bool goes_on = i < text.size() && (i == 1 ? may_follow(lead, byte(1)) : continues_character(text[i]));
+        if (!goes_on) return {Utf8Character{}.code, i};
+        code = code << 6U | (byte(i) & 0x3FU);
+    }
+    return {code, length};
+}
+
+std::string valid_utf8(std::string_view text) {
+    std::string result;
+    while (!text.empty()) {
+        const auto [code, bytes] = first_character(text);
+        result += code == Utf8Character{}.code ? std::string_view("\xEF\xBF\xBD") : text.substr(0, bytes);
+        text.remove_prefix(bytes);
+    }
+    return result;
+}
+
+std::size_t character_count(std::string_view text) {
+    return text.size() - static_cast<std::size_t>(std::ranges::count_if(text, continues_character));
+}
+
+std::string toml_string(std::string_view text) {
+    std::string result = "\"";
+    const auto valid = valid_utf8(text);
+    for (const char c : valid) {
+        if (c == '"' || c == '\\') {
+            result += '\\';
+            result += c;
+        } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
+            result += fmt::format("\\u{:04X}", static_cast<unsigned>(static_cast<unsigned char>(c)));
+        } else {
+            result += c;
+        }
+    }
+    return result + '"';
+}
+
+std::string toml_real(double value) {
+    auto text = fmt::format("{}", value);
+    if (text.find_first_of(".en") == std::string::npos) text += ".0";
+    return text;
+}
+
+std::string toml_reals(const std::vector<double>& values) {
+    std::vector<std::string> texts;
+    texts.reserve(values.size());
+    for (const double value : values) texts.push_back(toml_real(value));
+    return fmt::format("[{}]", fmt::join(texts, ", "));
+}
+
+std::string toml_strings(const std::vector<std::string>& texts) {
+    std::vector<std::string> quoted;
+    quoted.reserve(texts.size());
+    for (const auto& text : texts) quoted.push_back(toml_string(text));
+    return fmt::format("[{}]", fmt::join(quoted, ", "));
+}
+
+}  // namespace flightwatt

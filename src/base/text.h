@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Texts in UTF-8, and values as TOML spells them. Names of files may be any bytes.
+namespace flightwatt {
+
+struct Utf8Character {
+    char32_t code = U'\uFFFD';  ///< where the bytes are no character
+    std::size_t bytes = 1;
+};
+
+/// The character that a text begins with, which is not empty. Bytes that begin a character and do not complete it are
+/// one U+FFFD; so is each other byte that is none.
+Utf8Character first_character(std::string_view text);
+
+/// The text with U+FFFD for what is not UTF-8.
+std::string valid_utf8(std::string_view text);
+
+/// Whether a character that began before goes on with this byte.
+inline bool continues_character(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; }
+
+/// How many characters a text has.
+std::size_t character_count(std::string_view text);
+
+/// A basic string, quoted and escaped; bytes that are not UTF-8 become U+FFFD.
+std::string toml_string(std::string_view text);
+
+/// The shortest text that reads back as the same double, and as a float rather than an integer.
+std::string toml_real(double value);
+std::string toml_reals(const std::vector<double>& values);
+std::string toml_strings(const std::vector<std::string>& texts);
+
+}  // namespace flightwatt

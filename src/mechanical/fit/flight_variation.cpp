@@ -1,0 +1,254 @@
+#include "mechanical/fit/flight_variation.h"
+
+#include "base/statistics.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace flightwatt::mechanical {
+namespace {
+
+/// The flights' values of a covariate and their mean powers.
+struct Points {
+    std::vector<double> covariate;
+    std::vector<double> power_w;
+};
+
+Points points_of(std::span<const PhaseSamples> flights, Covariate covariate) {
+    Points points;
+    for (const auto& flight : flights) {
+        const auto& value =
+            is_through_origin(covariate) ? flight.airspeed_cubed_m3_per_s3 : flight.covariates[covariate];
+        if (!value || (is_through_origin(covariate) && *value <= 0.0)) continue;
+        points.covariate.push_back(*value);
+        points.power_w.push_back(mean_power_w(flight));
+    }
+    return points;
+}
+
+/// Each flight's own coefficient counts the same.
+void fit_through_origin(CovariateRegression& law, const Points& points) {
+    std::vector<double> coefficients;
+    for (std::size_t i = 0; i < points.covariate.size(); ++i) {
+        coefficients.push_back(points.power_w[i] / points.covariate[i]);
+    }
+    law.mean_power_w = mean(coefficients) * law.mean;
+    law.slope_w = mean(coefficients) * law.sd;
+    law.residual_sd_w = sample_sd(coefficients) * law.mean;
+}
+
+void fit_line(CovariateRegression& law, const Points& points) {
+    const auto flights = static_cast<double>(law.flights);
+    double product_sum = 0.0;
+    for (std::size_t i = 0; i < points.covariate.size(); ++i) {
+        product_sum += (points.covariate[i] - law.mean) / law.sd * (points.power_w[i] - law.mean_power_w);
+    }
+    law.slope_w = product_sum / flights;
+    if (law.flights < min_regression_flights(law.covariate)) return;
+    double residual_square_sum = 0.0;
+    for (std::size_t i = 0; i < points.covariate.size(); ++i) {
+        const double fitted_w = law.mean_power_w + law.slope_w * (points.covariate[i] - law.mean) / law.sd;
+        residual_square_sum += std::pow(points.power_w[i] - fitted_w, 2);
+    }
+    law.residual_sd_w = std::sqrt(residual_square_sum / (flights - 2.0));
+}
+
+constexpr double block_s = 30.0;
+constexpr std::size_t min_blocks = 10;  // of the shortest flight
+
+/// One flight's deviation from the model's curve at the flight's own level, in blocks; empty blocks (gaps in
+/// the telemetry) are absent.
+std::vector<std::optional<double>> block_deviations_w(const PhaseModel& model, const PhaseSamples& flight,
+                                                      std::size_t blocks) {
+    const auto curve = time_scaled_model(model, flight.duration_s, PhaseTimeScaling::stretched);
+    std::vector<double> sum(blocks, 0.0);
+    std::vector<std::size_t> samples(blocks, 0);
+    for (std::size_t i = 0; i < flight.tau.size(); ++i) {
+        const auto block = std::min(static_cast<std::size_t>(flight.tau[i] * static_cast<double>(blocks)), blocks - 1);
+        sum[block] += flight.power_w[i] - power_w(curve, flight.tau[i] * flight.duration_s);
+        ++samples[block];
+    }
+    double total = 0.0;
+    std::size_t filled = 0;
+    for (std::size_t b = 0; b < blocks; ++b) {
+        if (samples[b] == 0) continue;
+        sum[b] /= static_cast<double>(samples[b]);
+        total += sum[b];
+        ++filled;
+    }
+    std::vector<std::optional<double>> deviations(blocks);
+    for (std::size_t b = 0; b < blocks; ++b) {
+        if (samples[b] > 0) deviations[b] = sum[b] - total / static_cast<double>(filled);
+    }
+    return deviations;
+}
+
+/// Sums over all flights' blocks.
+struct BlockSums {
+    double square = 0.0;
+    double product = 0.0;  ///< of neighbours
+    std::size_t blocks = 0;
+    std::size_t neighbours = 0;
+    double half_difference_square = 0.0;  ///< second half of the phase less the first, over the flights
+    std::size_t flights = 0;
+};
+
+void add_blocks(BlockSums& sums, const std::vector<std::optional<double>>& deviations) {
+    std::array<double, 2> half_sum{};
+    std::array<std::size_t, 2> half_blocks{};
+    for (std::size_t b = 0; b < deviations.size(); ++b) {
+        if (!deviations[b]) continue;
+        sums.square += *deviations[b] * *deviations[b];
+        ++sums.blocks;
+        const std::size_t half = 2 * b < deviations.size() ? 0 : 1;
+        half_sum[half] += *deviations[b];
+        ++half_blocks[half];
+        if (b == 0 || !deviations[b - 1]) continue;
+        sums.product += *deviations[b] * *deviations[b - 1];
+        ++sums.neighbours;
+    }
+    if (half_blocks[0] == 0 || half_blocks[1] == 0) return;
+    const double difference =
+        half_sum[1] / static_cast<double>(half_blocks[1]) - half_sum[0] / static_cast<double>(half_blocks[0]);
+    sums.half_difference_square += difference * difference;
+    ++sums.flights;
+}
+
+/// The correlation time at which means over neighbouring blocks, less their mean over a phase, have that
+/// correlation, found by bisection (it rises with the time), from a tenth of a block, where neighbours are
+/// nearly independent, to the duration of a phase, beyond which no flight can tell.
+double correlation_time_s(double correlation_of_means, double length_s, double duration_s) {
+    double low_s = 0.1 * length_s;
+    double high_s = duration_s;
+    constexpr int halvings = 50;
+    for (int i = 0; i < halvings; ++i) {
+        const DriftProcess drift{1.0, 0.5 * (low_s + high_s)};
+        const double of_level_w2 = variance_of_mean_w2(drift, duration_s);
+        const double correlation = (covariance_of_means_w2(drift, length_s, length_s) - of_level_w2) /
+                                   (variance_of_mean_w2(drift, length_s) - of_level_w2);
+        (correlation < correlation_of_means ? low_s : high_s) = drift.correlation_s;
+    }
+    return 0.5 * (low_s + high_s);
+}
+
+/// The drift that the blocks show: its means over blocks, less their mean over a phase, have the correlation
+/// of neighbours and the variance that were found, or a larger variance if the halves of the phases differ by
+/// more than that explains, as they do where a flight's power rises or falls throughout.
+DriftProcess drift_of(const BlockSums& sums, double length_s, double duration_s) {
+    if (!(sums.square > 0.0) || sums.neighbours == 0 || sums.flights < 2) return {0.0, length_s};
+    const double variance = sums.square / static_cast<double>(sums.blocks);
+    const double correlation = sums.product / static_cast<double>(sums.neighbours) / variance;
+    const DriftProcess unit{1.0, correlation_time_s(correlation, length_s, duration_s)};
+    const double by_blocks = variance / (variance_of_mean_w2(unit, length_s) - variance_of_mean_w2(unit, duration_s));
+    // The model's curve is the flights' own average, which takes a part of their differences from it.
+    const double half_difference = sums.half_difference_square / static_cast<double>(sums.flights - 1);
+    const double by_halves = half_difference / (2.0 * variance_of_mean_w2(unit, 0.5 * duration_s) -
+                                                2.0 * covariance_of_means_w2(unit, 0.5 * duration_s, 0.5 * duration_s));
+    return {std::sqrt(std::max(by_blocks, by_halves)), unit.correlation_s};
+}
+
+std::vector<double> mean_powers_w(std::span<const PhaseSamples> flights) {
+    std::vector<double> powers_w;
+    for (const auto& flight : flights) powers_w.push_back(mean_power_w(flight));
+    return powers_w;
+}
+
+/// With the flights' standard deviation times `factor`, where there are two or more.
+ConstantPower with_spread(double mean_w, const std::vector<double>& powers_w, double factor) {
+    ConstantPower power{mean_w, std::nullopt, 0.0};
+    if (powers_w.size() < 2) return power;
+    power.sd_w = sample_sd(powers_w) * factor;
+    power.degrees_of_freedom = static_cast<double>(powers_w.size() - 1);
+    return power;
+}
+
+}  // namespace
+
+std::optional<CovariateRegression> fit_covariate_regression(std::span<const PhaseSamples> flights,
+                                                            Covariate covariate) {
+    const auto points = points_of(flights, covariate);
+    if (points.covariate.size() < 2 || !(sample_sd(points.covariate) > 0.0)) return std::nullopt;
+    const auto [least, most] = std::ranges::minmax(points.covariate);
+    CovariateRegression law{covariate,
+                            points.covariate.size(),
+                            mean(points.covariate),
+                            sample_sd(points.covariate),
+                            least,
+                            most,
+                            mean(points.power_w),
+                            0.0,
+                            {}};
+    if (!is_through_origin(covariate)) {
+        fit_line(law, points);
+        return law;
+    }
+    fit_through_origin(law, points);
+    if (!(law.mean_power_w > 0.0)) return std::nullopt;
+    return law;
+}
+
+std::optional<VarianceComponents> estimate_variance_components(const PhaseModel& model,
+                                                               std::span<const PhaseSamples> flights) {
+    if (flights.size() < 2) return std::nullopt;
+    std::vector<double> levels_w;
+    double shortest_s = flights.front().duration_s;
+    double sum_s = 0.0;
+    for (const auto& flight : flights) {
+        levels_w.push_back(mean_power_w(flight));
+        shortest_s = std::min(shortest_s, flight.duration_s);
+        sum_s += flight.duration_s;
+    }
+    const double length_s = std::min(block_s, shortest_s / static_cast<double>(min_blocks));
+    BlockSums sums;
+    for (const auto& flight : flights) {
+        const auto blocks = static_cast<std::size_t>(std::floor(flight.duration_s / length_s));
+        add_blocks(sums, block_deviations_w(model, flight, blocks));
+    }
+    const auto drift = drift_of(sums, length_s, sum_s / static_cast<double>(flights.size()));
+    return VarianceComponents{flights.size(), sample_sd(levels_w), drift.sd_w, drift.correlation_s};
+}
+
+ConstantPower constant_mean(std::span<const PhaseSamples> flights) {
+    const auto powers_w = mean_powers_w(flights);
+    return with_spread(mean(powers_w), powers_w, std::sqrt(1.0 + 1.0 / static_cast<double>(flights.size())));
+}
+
+ConstantPower single_flight_power(std::span<const PhaseSamples> flights, std::size_t index) {
+    const auto powers_w = mean_powers_w(flights);
+    return with_spread(powers_w[index], powers_w, std::sqrt(2.0));
+}
+
+std::optional<ConstantPower> power_by_covariate(std::span<const PhaseSamples> flights, Covariate covariate,
+                                                const std::optional<double>& value) {
+    const auto law = fit_covariate_regression(flights, covariate);
+    if (!value || !law) return std::nullopt;
+    return constant_power(predict_mean_power(*law, *value));
+}
+
+std::optional<std::size_t> nearest_flight(std::span<const FlightSamples> flights, flight::Phase phase,
+                                          const FlightSamples& other) {
+    std::optional<std::size_t> nearest;
+    double least = 0.0;
+    std::size_t index = 0;
+    for (const auto& flight : flights) {
+        if (!flight.phases[phase]) continue;
+        double square_sum = 0.0;
+        int common = 0;
+        for (const auto p : flight::all_phases) {
+            if (!flight.phases[p] || !other.phases[p]) continue;
+            square_sum += std::pow(std::log(other.phases[p]->duration_s / flight.phases[p]->duration_s), 2);
+            ++common;
+        }
+        const double distance = square_sum / common;
+        if (common > 0 && (!nearest || distance < least)) {
+            nearest = index;
+            least = distance;
+        }
+        ++index;
+    }
+    return nearest;
+}
+
+}  // namespace flightwatt::mechanical

@@ -1,0 +1,108 @@
+#pragma once
+
+#include "mechanical/fit/phase_samples.h"
+#include "mechanical/mechanical_model.h"
+
+#include <cmath>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace flightwatt::mechanical {
+
+/// What one flight contributes to a scan: its least sum of squares at every theta.
+struct FlightScan {
+    int order = 0;
+    double step_rad = 0.0;
+    std::size_t first = 0;  ///< the lowest theta, in steps
+    std::vector<double> square_sum;
+};
+
+/// The flight's own if it is of this order and range; else it is made.
+FlightScan scan_flight(const ScaledSamples& samples, int order, const FrequencyRange& range);
+
+/// The flights' common residual sum of squares over theta = omega * duration, each flight with its own best
+/// coefficients at every theta.
+struct FrequencyScan {
+    std::vector<double> theta_rad;  ///< evenly spaced; the last is the range's high end
+    std::vector<double> square_sum;
+    double step_rad = 0.0;
+};
+
+/// The thetas of a scan, in steps: the highest harmonic turns by at most 1 rad over the phase from one to the next, so
+/// that no minimum is between two; a whole number of steps reaches the range's high end.
+struct ScanGrid {
+    double step_rad = 0.0;
+    std::size_t first = 0;
+    std::size_t last = 0;
+};
+ScanGrid scan_grid(const FrequencyRange& range, int order);
+
+/// Scans the whole range, flights on all cores.
+FrequencyScan scan_frequencies(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range);
+
+/// The frequency [rad per phase] that the flights have in common: the lowest minimum of the scan, refined,
+/// unless it is the subharmonic of a simpler answer (see resolve_subharmonic).
+double find_frequency(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
+                      const FrequencyScan& scan);
+
+/// A series of order p at theta holds the series of order p/m at m theta, so a signal whose harmonics are weak is
+/// fitted as well by theta/2 and theta/3. Returns m * theta_rad, refined, for the largest m in 2..order at which
+/// the harmonics that get lost are both insignificant (F test at 0.1 %) and, less what noise would give them,
+/// below 2 % of what the series explains (which keeps trends of less than a period); else theta_rad itself.
+double resolve_subharmonic(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
+                           double theta_rad);
+
+/// How a residual far from the curve counts.
+enum class Loss {
+    none,  ///< squared
+    huber  ///< squared to 1.345 scales, beyond that as its size
+};
+
+constexpr std::string_view to_string(Loss loss) { return loss == Loss::huber ? "huber" : "none"; }
+
+constexpr std::optional<Loss> loss_from(std::string_view name) {
+    for (const auto loss : {Loss::none, Loss::huber})
+        if (name == to_string(loss)) return loss;
+    return std::nullopt;
+}
+
+/// Where Huber's loss turns from squared to linear, in standard deviations of the noise: 95 % as efficient as
+/// least squares if the noise is normal after all.
+inline constexpr double huber_threshold = 1.345;
+
+/// What a sample counts, in (0, 1], at `residual` in scales of the noise: half the loss's slope over it.
+inline double sample_weight(Loss loss, double residual) {
+    const double size = std::abs(residual);
+    return loss == Loss::none || size <= huber_threshold ? 1.0 : huber_threshold / size;
+}
+
+/// The derivative of residual * sample_weight: how far the fit follows a sample that moves.
+inline double sample_influence(Loss loss, double residual) {
+    return loss == Loss::none || std::abs(residual) <= huber_threshold ? 1.0 : 0.0;
+}
+
+/// The frequency all flights share and each flight's own coefficients.
+struct JointFit {
+    double theta_rad = 0.0;
+    std::vector<Eigen::VectorXd> coefficients;  ///< a0, a1, b1, ... a flight, in scaled values
+    std::vector<double> square_sum;             ///< a flight, of the plain residuals
+    double noise_scale = 0.0;  ///< 1.4826 times the median of the absolute residuals, for a robust loss
+};
+
+/// Levenberg-Marquardt (Ceres) over theta and all coefficients at once, from `start_rad`, within the range:
+/// the least common sum of squares near where the search began. Throws NoResultError if it does not converge,
+/// or if a flight's samples do not determine its coefficients.
+JointFit refine_jointly(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
+                        double start_rad);
+
+/// Moves a least-squares fit to the least Huber loss of all flights' residuals (an M-estimate), theta and all
+/// coefficients together, sample by sample. The scale of the noise is taken from the residuals anew until it
+/// stays. If more than half of the residuals are 0 there is nothing to weigh and the fit stays. Throws
+/// NoResultError if it does not converge.
+JointFit refine_robustly(std::span<const ScaledSamples> flights, const FrequencyRange& range, JointFit fit);
+
+}  // namespace flightwatt::mechanical

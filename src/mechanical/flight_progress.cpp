@@ -1,0 +1,119 @@
+#include "mechanical/flight_progress.h"
+
+#include "base/error.h"
+#include "flight/phase_statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace flightwatt::mechanical {
+namespace {
+
+constexpr double max_log_gap_s = 60.0;
+
+/// What the segmentation looks at.
+flight::FlightSeries tracks_for_segmentation(const flight::FlightSeries& series) {
+    flight::FlightSeries slim = series;
+    std::erase_if(slim.tracks, [](const flight::Track& track) {
+        return track.name != "power_w" && track.name != "altitude_m" && track.name != "throttle_percent" &&
+               track.name != "ground_speed_m_per_s" && track.name != "ground_altitude_m" && track.name != "rover_mode";
+    });
+    return slim;
+}
+
+/// The sortie as it looks from what is known; std::nullopt before its lift-off.
+std::optional<flight::Sortie> sortie_of(const flight::SelectedTracks& known, std::size_t index,
+                                        const flight::SegmentationOptions& options) {
+    if (known["power_w"].time_s.size() < 2 || known["altitude_m"].empty()) return std::nullopt;
+    auto phases = segment(known, options);
+    if (index >= phases.sorties.size()) return std::nullopt;
+    return std::move(phases.sorties[index]);
+}
+
+/// Of any power sample, whatever source will be chosen later.
+double first_sample_s(const flight::FlightSeries& series) {
+    double first_s = std::numeric_limits<double>::infinity();
+    for (const auto& track : series.tracks) {
+        if (track.name == "power_w" && !track.empty()) first_s = std::min(first_s, track.time_s.front());
+    }
+    return first_s;
+}
+
+}  // namespace
+
+double last_time_s(const flight::FlightSeries& series) {
+    double end_s = -std::numeric_limits<double>::infinity();
+    for (const auto& track : series.tracks) {
+        const bool counts = track.name == "power_w" || track.name == "altitude_m";
+        if (counts && !track.empty()) end_s = std::max(end_s, track.time_s.back());
+    }
+    return end_s;
+}
+
+double log_time_after_lift_off(const flight::FlightSeries& series, double since_s, std::size_t sortie,
+                               const flight::SegmentationOptions& options) {
+    constexpr double look_again_s = 5.0;
+    constexpr double same_s = 1e-3;
+    const auto slim = tracks_for_segmentation(series);
+    double time_s = first_sample_s(slim) + since_s;
+    const double last_s = last_time_s(slim) + max_log_gap_s;
+    while (time_s <= last_s) {
+        const auto cut = truncate_series(slim, time_s);
+        const auto found = sortie_of(flight::SelectedTracks(cut), sortie, options);
+        const double due_s =
+            found && !found->phases.empty() ? found->phases.front().start.time_s + since_s : time_s + look_again_s;
+        if (due_s <= time_s + same_s) return time_s;
+        time_s = due_s;
+    }
+    throw NoResultError(fmt::format("{}: the log ends at {:.0f} s, before {:.0f} s after a lift-off", series.flight,
+                                    last_time_s(slim), since_s));
+}
+
+FlightProgress progress_at(const flight::FlightSeries& series, double until_s, std::size_t sortie_index,
+                           const flight::SegmentationOptions& options) {
+    const auto known = truncate_series(series, until_s);
+    const flight::SelectedTracks tracks(known);
+    const auto sortie = sortie_of(tracks, sortie_index, options);
+    return progress_of(tracks, sortie ? &*sortie : nullptr, until_s, options);
+}
+
+FlightProgress progress_of(const flight::SelectedTracks& known, const flight::Sortie* sortie, double until_s,
+                           const flight::SegmentationOptions& options) {
+    const auto& series = known.series();
+    FlightProgress flown;
+    flown.until_s = until_s;
+    if (const double end_s = last_time_s(series); std::isfinite(end_s) && until_s > end_s + max_log_gap_s) {
+        throw NoResultError(
+            fmt::format("{}: the log ends at {:.1f} s, before {:.1f} s", series.flight, end_s, until_s));
+    }
+    const auto refuse = [&](std::string_view what) {
+        throw NoResultError(fmt::format("{}: at {:.1f} s of the log the aircraft {}", series.flight, until_s, what));
+    };
+    if (sortie == nullptr || sortie->phases.empty()) refuse("has not taken off");
+    const auto& first = sortie->phases.front();
+    if (first.phase != flight::Phase::takeoff || !first.complete) {
+        refuse("is in the air, but its take-off is not in the log");
+    }
+    const auto& last = sortie->phases.back();
+    if (last.phase == flight::Phase::landing && last.complete) refuse("has landed");
+    flown.lift_off_s = first.start.time_s;
+    flown.cruise_start_s = first.end.time_s;
+    // Whoever still climbs has just reached 90 % of the height so far: that is no cruise yet.
+    if (last.phase == flight::Phase::takeoff || flown.cruise_s() < options.hold_s) {
+        refuse(fmt::format("has not held its height for {:.0f} s: expected a moment in cruise", options.hold_s));
+    }
+    const auto& power = known["power_w"];
+    flown.cruise_energy_wh = integrated_energy_wh(power, flown.cruise_start_s, until_s);
+    flown.energy_wh = integrated_energy_wh(power, flown.lift_off_s, flown.cruise_start_s) + flown.cruise_energy_wh;
+    flown.airspeed_cubed_m3_per_s3 =
+        mean_cubed_airspeed_m3_per_s3(known["airspeed_m_per_s"], flown.cruise_start_s, until_s);
+    flown.covariates = covariates_of(known, *sortie);
+    flown.motion = bin_flight(known, {{flight::Phase::takeoff, flown.lift_off_s, flown.cruise_start_s},
+                                      {flight::Phase::cruise, flown.cruise_start_s, until_s}});
+    return flown;
+}
+
+}  // namespace flightwatt::mechanical

@@ -1,0 +1,120 @@
+#pragma once
+
+#include "base/text.h"
+#include "base/toml_reader.h"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/ranges.h>
+
+namespace flightwatt::mechanical {
+
+/// How a table of a file is written.
+enum class TomlLayout {
+    inline_table,  ///< key = { a = 1.0, b = 2.0 }
+    dotted_keys,   ///< key.a = 1.0, a line each
+    section        ///< [path.key] and a line each
+};
+
+/// The keys of one table that is read or written. A record names each of its fields once, with one of these calls: they
+/// set the field while reading, and only look at it while writing. Reading throws InputError with its place.
+class TomlFields {
+  public:
+    explicit TomlFields(const TomlTable& table) : table_(&table) {}
+    /// Writes the table of that path, "cruise.errors"; empty: the whole file.
+    explicit TomlFields(std::string path) : path_(std::move(path)) {}
+
+    /// What is read; nullptr while writing.
+    const TomlTable* source() const { return table_; }
+    /// While writing: a line as it is.
+    void line(std::string_view text) {
+        if (table_ == nullptr) lines_.emplace_back(text);
+    }
+    std::string lines() const { return fmt::format("{}", fmt::join(lines_, "\n")); }
+    /// Whether a key that may be missing is to be listed: it is in the file, or, while writing, its field is set.
+    bool has(std::string_view key, bool is_set) const { return table_ != nullptr ? table_->has(key) : is_set; }
+
+    void real(std::string_view key, double& value, NumberRange range = {}, std::string_view hint = "") {
+        if (table_ == nullptr) return write(key, toml_real(value));
+        value = number_in(range, *table_, key, hint);
+    }
+    void optional_real(std::string_view key, std::optional<double>& value, NumberRange range = {}) {
+        if (has(key, value.has_value())) real(key, value ? *value : value.emplace(), range);
+    }
+    void reals(std::string_view key, std::vector<double>& values) {
+        if (table_ == nullptr) return write(key, toml_reals(values));
+        values = table_->numbers(key);
+    }
+    void text(std::string_view key, std::string& value) {
+        if (table_ == nullptr) return write(key, toml_string(value));
+        value = table_->string(key);
+    }
+    void texts(std::string_view key, std::vector<std::string>& values) {
+        if (table_ == nullptr) return write(key, toml_strings(values));
+        values = table_->strings(key);
+    }
+    void count(std::string_view key, std::size_t& value, std::size_t least = 0) {
+        if (table_ == nullptr) return write(key, fmt::format("{}", value));
+        value = count_in(*table_, key, least);
+    }
+    void flag(std::string_view key, bool& value) {
+        if (table_ == nullptr) return write(key, fmt::format("{}", value));
+        value = table_->optional_boolean(key).value_or(false);
+    }
+    /// A value that is written as its to_string.
+    template <typename Value, typename Read>
+    void name(std::string_view key, Value& value, const Read& read) {
+        if (table_ == nullptr) return write(key, toml_string(to_string(value)));
+        value = read(*table_);
+    }
+
+    template <typename Record, typename List>
+    void table(std::string_view key, Record& record, const List& list, TomlLayout layout = TomlLayout::inline_table) {
+        if (table_ != nullptr) return read(table_->table(key), record, list);
+        TomlFields fields(path_of(key));
+        list(fields, record);
+        if (layout == TomlLayout::section) line(fmt::format("[{}]\n{}", fields.path_, fields.lines()));
+        if (layout == TomlLayout::inline_table) write(key, fmt::format("{{ {} }}", fmt::join(fields.lines_, ", ")));
+        if (layout != TomlLayout::dotted_keys) return;
+        for (const auto& of_table : fields.lines_) line(fmt::format("{}.{}", key, of_table));
+    }
+    template <typename Record, typename List>
+    void optional_table(std::string_view key, std::optional<Record>& record, const List& list,
+                        TomlLayout layout = TomlLayout::inline_table) {
+        if (has(key, record.has_value())) table(key, record ? *record : record.emplace(), list, layout);
+    }
+    /// An array of tables, [[path.key]], `before` each an empty line or none.
+    template <typename Record, typename List>
+    void tables(std::string_view key, std::vector<Record>& records, const List& list, std::string_view before = "\n") {
+        if (table_ != nullptr) {
+            for (const auto& element : table_->tables(key)) read(element, records.emplace_back(), list);
+            return;
+        }
+        for (auto& record : records) {
+            TomlFields fields(path_of(key));
+            list(fields, record);
+            line(fmt::format("{}[[{}]]\n{}", before, fields.path_, fields.lines()));
+        }
+    }
+
+  private:
+    template <typename Record, typename List>
+    static void read(const TomlTable& table, Record& record, const List& list) {
+        TomlFields fields(table);
+        list(fields, record);
+        table.refuse_unknown_keys();
+    }
+    void write(std::string_view key, std::string_view value) { line(fmt::format("{} = {}", key, value)); }
+    std::string path_of(std::string_view key) const { return path_ + (path_.empty() ? "" : ".") + std::string(key); }
+
+    const TomlTable* table_ = nullptr;
+    std::string path_;
+    std::vector<std::string> lines_;
+};
+
+}  // namespace flightwatt::mechanical

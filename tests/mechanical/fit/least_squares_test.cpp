@@ -1,0 +1,209 @@
+#include "mechanical/fit/least_squares.h"
+
+#include "base/error.h"
+#include "helpers/made_up_flights.h"
+#include "mechanical/fit/fourier_basis.h"
+#include "mechanical/fit/phase_fit.h"
+#include "mechanical/mechanical_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::mechanical {
+namespace {
+
+std::vector<ScaledSamples> one_flight(const PhaseModel& phase, double noise_w, unsigned seed) {
+    std::mt19937 random(seed);
+    return {test::centred(test::record(phase, {phase.duration_s, 0.1, noise_w, 0.0}, random))};
+}
+
+double found_frequency(std::span<const ScaledSamples> flights, const FrequencyRange& range) {
+    return find_frequency(flights, 3, range, scan_frequencies(flights, 3, range));
+}
+
+TEST(FrequencyScan, CoversTheRangeAndAgreesWithTheExactSums) {
+    const auto flights = one_flight(test::cruise_of(4.2, {2.0, 0.6, 0.3}, {1.0, -0.2, 0.4}), 1.0, 1);
+    const FrequencyRange range{std::numbers::pi, 200.0};
+    const auto scan = scan_frequencies(flights, 3, range);
+    EXPECT_LE(scan.step_rad * 3.0, 1.0);
+    EXPECT_LT(scan.theta_rad.front() - range.low_rad, scan.step_rad);
+    EXPECT_NEAR(scan.theta_rad.back(), range.high_rad, 1e-9);
+    for (std::size_t i = 0; i < scan.theta_rad.size(); i += 7) {
+        const double exact = projected_square_sum(flights, 3, scan.theta_rad[i]);
+        EXPECT_NEAR(scan.square_sum[i], exact, 1e-8 * exact) << scan.theta_rad[i];
+    }
+}
+
+TEST(FrequencyScan, FindsTheLeastOfAFineAndExactSearch) {
+    const auto flights = one_flight(test::cruise_of(2.7, {2.0, 0.6, 0.3}, {1.0, -0.2, 0.4}), 1.0, 2);
+    const FrequencyRange range{std::numbers::pi, 60.0};
+    double least = 1e300;
+    double at_rad = 0.0;
+    for (double theta_rad = range.low_rad; theta_rad < range.high_rad; theta_rad += 0.01) {
+        const double sum = projected_square_sum(flights, 3, theta_rad);
+        if (sum < least) {
+            least = sum;
+            at_rad = theta_rad;
+        }
+    }
+    const double found_rad = found_frequency(flights, range);
+    EXPECT_NEAR(found_rad, at_rad, 0.01);
+    EXPECT_LE(projected_square_sum(flights, 3, found_rad), least);
+}
+
+// theta / 2 and theta / 3 hold a plain oscillation too, as their second and third harmonic.
+TEST(FrequencyScan, TakesAPlainOscillationForItsOwnFundamental) {
+    const FrequencyRange range{std::numbers::pi, 500.0};
+    for (const double periods : {4.2, 10.0, 47.3}) {
+        for (unsigned seed = 1; seed <= 10; ++seed) {
+            const auto noisy = one_flight(test::cruise_of(periods, {3.0}, {2.0}), 1.5, seed);
+            EXPECT_NEAR(found_frequency(noisy, range), 2.0 * std::numbers::pi * periods, 0.1);
+        }
+        const auto exact = one_flight(test::cruise_of(periods, {3.0}, {2.0}), 0.0, 1);
+        EXPECT_NEAR(found_frequency(exact, range), 2.0 * std::numbers::pi * periods, 1e-4);
+    }
+}
+
+TEST(FrequencyScan, DoesNotTakeOddHarmonicsForNoise) {
+    // The second harmonic is by far the strongest: theta is half of what stands out.
+    const FrequencyRange range{std::numbers::pi, 500.0};
+    const auto flights = one_flight(test::cruise_of(5.0, {0.4, 3.0, 0.0}, {0.0, 2.0, 0.4}), 1.5, 4);
+    EXPECT_NEAR(found_frequency(flights, range), 10.0 * std::numbers::pi, 0.1);
+    EXPECT_NEAR(resolve_subharmonic(flights, 3, range, 10.0 * std::numbers::pi), 10.0 * std::numbers::pi, 0.1);
+}
+
+TEST(FrequencyScan, MovesASubharmonicToTheSimplestFrequency) {
+    const FrequencyRange range{std::numbers::pi, 500.0};
+    const double theta_rad = 2.0 * std::numbers::pi * 12.0;
+    const auto flights = one_flight(test::cruise_of(12.0, {3.0}, {2.0}), 1.5, 5);
+    EXPECT_NEAR(resolve_subharmonic(flights, 3, range, theta_rad / 2.0), theta_rad, 0.05);
+    EXPECT_NEAR(resolve_subharmonic(flights, 3, range, theta_rad / 3.0), theta_rad, 0.05);
+    EXPECT_EQ(resolve_subharmonic(flights, 3, range, theta_rad), theta_rad);
+}
+
+TEST(FrequencyScan, KeepsTheTrendOfAShortTakeOff) {
+    // Few samples do not tell 2 theta from theta by significance alone.
+    int doubled = 0;
+    for (unsigned seed = 1; seed <= 50; ++seed) {
+        std::vector<ScaledSamples> flights;
+        for (const auto& samples : test::record_flights(flight::Phase::takeoff, 6, 0.5, seed)) {
+            flights.push_back(test::centred(samples));
+        }
+        doubled += found_frequency(flights, {std::numbers::pi, 25.0}) > 6.5;
+    }
+    EXPECT_LE(doubled, 2);
+}
+
+const FrequencyRange wide{std::numbers::pi, 500.0};
+
+TEST(JointRefinement, StandsAtAMinimum) {
+    std::vector<ScaledSamples> flights;
+    for (const auto& samples : test::record_flights(flight::Phase::cruise, 4, 0.5, 1))
+        flights.push_back(test::centred(samples));
+    const auto fit = refine_jointly(flights, 3, wide, 5.0);
+    double sum = 0.0;
+    for (const double part : fit.square_sum) sum += part;
+    EXPECT_NEAR(sum, projected_square_sum(flights, 3, fit.theta_rad), 1e-9 * sum);
+    EXPECT_LT(sum, projected_square_sum(flights, 3, fit.theta_rad - 1e-3));
+    EXPECT_LT(sum, projected_square_sum(flights, 3, fit.theta_rad + 1e-3));
+}
+
+TEST(JointRefinement, StaysInTheRange) {
+    std::mt19937 random(1);
+    const auto phase = test::cruise_of(2.0, {3.0}, {2.0});
+    const std::vector flights{test::centred(test::record(phase, {600.0, 1.0, 0.1, 0.0}, random))};
+    const auto fit = refine_jointly(flights, 1, {12.8, 20.0}, 13.0);  // the answer is 12.57
+    EXPECT_DOUBLE_EQ(fit.theta_rad, 12.8);
+}
+
+// What the scan is for: one period is where a plain search would begin.
+TEST(JointRefinement, FromOnePeriodTheFasterFrequenciesAreMissed) {
+    int missed = 0;
+    for (const double periods : {1.0, 1.3, 4.2, 10.0}) {
+        std::mt19937 random(1);
+        const auto phase = test::cruise_of(periods, {1.5, 2.6, 2.0}, {4.8, 1.2, -1.1});
+        const std::vector flights{test::centred(test::record(phase, {600.0, 0.1, 1.5, 0.0}, random))};
+        try {
+            const auto fit = refine_jointly(flights, 3, wide, 2.0 * std::numbers::pi);
+            missed += std::abs(fit.theta_rad / test::theta_rad(phase) - 1.0) > 0.01;
+        } catch (const NoResultError&) {
+            ++missed;
+        }
+    }
+    EXPECT_GE(missed, 2);
+}
+
+TEST(JointRefinement, RefusesTimesThatDetermineNothing) {
+    ScaledSamples samples;
+    for (int i = 0; i < 30; ++i) {
+        samples.tau.push_back(0.5 * (i % 3));
+        samples.value.push_back(i % 2 == 0 ? 1.0 : -1.0);
+    }
+    EXPECT_THROW(refine_jointly(std::vector{samples}, 3, wide, 5.0), NoResultError);
+}
+
+/// Two cruises of 0.1 W noise; every 25th sample of the second is 8 W too high.
+std::vector<PhaseSamples> with_outliers() {
+    auto flights = test::record_flights(flight::Phase::cruise, 2, 0.1, 1);
+    flights[1].start_s = 1000.0;
+    for (std::size_t j = 5; j < flights[1].tau.size(); j += 25) flights[1].power_w[j] += 8.0;
+    return flights;
+}
+
+double off_by_w(const PhaseFit& fit, std::size_t flight) {
+    const auto& curve = fit.flights[flight];
+    const PhaseModel found{curve.fourier, curve.duration_s, {}, {}, 0, 0, {}, {}};
+    return rms_difference_w(found, test::published_model().phases[flight::Phase::cruise]);
+}
+
+TEST(RobustRefinement, OutliersHardlyMoveTheCurve) {
+    const auto flights = with_outliers();
+    EXPECT_GT(off_by_w(fit_phase(flight::Phase::cruise, flights), 1), 0.2);
+    EXPECT_LT(off_by_w(fit_phase(flight::Phase::cruise, flights, {.loss = Loss::huber}), 1), 0.04);
+}
+
+TEST(RobustRefinement, KnowsTheNoiseInSpiteOfThem) {
+    const auto fit = fit_phase(flight::Phase::cruise, with_outliers(), {.loss = Loss::huber});
+    EXPECT_NEAR(fit.loss_scale_w, 0.1, 0.015);
+    EXPECT_GT(fit.rms_w, 0.5);  // that of all samples, the outliers among them
+}
+
+TEST(RobustRefinement, StandsAtTheLeastLoss) {
+    const auto flights = with_outliers();
+    const auto fit = fit_phase(flight::Phase::cruise, flights, {.loss = Loss::huber});
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        // The weighted residuals are orthogonal to the constant and to the first cosine.
+        double constant = 0.0;
+        double cosine = 0.0;
+        for (std::size_t j = 0; j < flights[i].tau.size(); ++j) {
+            const double time_s = flights[i].tau[j] * flights[i].duration_s;
+            const double residual_w = flights[i].power_w[j] - power_w(fit.flights[i].fourier, time_s);
+            const double push_w = residual_w * sample_weight(Loss::huber, residual_w / fit.loss_scale_w);
+            constant += push_w;
+            cosine += push_w * std::cos(fit.theta_rad * flights[i].tau[j]);
+        }
+        EXPECT_NEAR(constant, 0.0, 1e-2);
+        EXPECT_NEAR(cosine, 0.0, 1e-2);
+    }
+}
+
+TEST(RobustRefinement, ExactSamplesStayExact) {
+    const auto flights = test::record_flights(flight::Phase::cruise, 2, 0.0, 2);
+    const auto fit = fit_phase(flight::Phase::cruise, flights, {.loss = Loss::huber});
+    EXPECT_LT(fit.rms_w, 1e-9);
+}
+
+TEST(RobustLoss, TheInfluenceIsTheDerivativeOfThePush) {
+    for (const auto loss : {Loss::none, Loss::huber}) {
+        for (const double at : {-5.0, -1.0, 0.2, 1.2, 3.0}) {
+            const auto push = [&](double residual) { return residual * sample_weight(loss, residual); };
+            EXPECT_NEAR(sample_influence(loss, at), (push(at + 1e-6) - push(at - 1e-6)) / 2e-6, 1e-6);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace flightwatt::mechanical

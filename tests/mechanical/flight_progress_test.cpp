@@ -1,0 +1,75 @@
+#include "mechanical/flight_progress.h"
+
+#include "base/error.h"
+#include "flight/flight_series.h"
+#include "flight/load_flight.h"
+#include "flight/phase_statistics.h"
+#include "flight/segmentation.h"
+#include "helpers/test_paths.h"
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::mechanical {
+namespace {
+
+flight::FlightSeries sample_flight() {
+    return flight::read_flight(test::source_dir() / "logs" / "opterra_synthetic_01.data");
+}
+
+FlightProgress progress_since(const flight::FlightSeries& series, double since_s, std::size_t sortie = 0) {
+    return progress_at(series, log_time_after_lift_off(series, since_s, sortie), sortie);
+}
+
+TEST(FlightProgress, CountsFromLiftOff) {
+    const auto series = sample_flight();
+    const auto flown = progress_since(series, 300.0);
+    const auto phases = segment(series).sorties.at(0).phases;
+    EXPECT_NEAR(flown.lift_off_s, phases.at(0).start.time_s, 1.0);
+    EXPECT_NEAR(flown.cruise_start_s, phases.at(1).start.time_s, 1.0);
+    EXPECT_NEAR(flown.until_s - flown.lift_off_s, 300.0, 1.0);
+    EXPECT_NEAR(flown.energy_wh, integrated_energy_wh(series, flown.lift_off_s, flown.until_s), 0.01);
+}
+
+TEST(FlightProgress, IsTheSameOnTheLogsClock) {
+    const auto series = sample_flight();
+    const auto by_flight = progress_since(series, 300.0);
+    const auto by_log = progress_at(series, by_flight.until_s);
+    EXPECT_EQ(by_flight.energy_wh, by_log.energy_wh);
+    EXPECT_EQ(by_flight.cruise_start_s, by_log.cruise_start_s);
+}
+
+/// The later part of the log changes nothing, bit by bit.
+void expect_no_hindsight(const flight::FlightSeries& series, double since_s) {
+    const auto whole = progress_since(series, since_s);
+    const auto cut = progress_since(truncate_series(series, whole.until_s), since_s);
+    EXPECT_EQ(whole.until_s, cut.until_s);
+    EXPECT_EQ(whole.lift_off_s, cut.lift_off_s);
+    EXPECT_EQ(whole.cruise_start_s, cut.cruise_start_s);
+    EXPECT_EQ(whole.energy_wh, cut.energy_wh);
+    EXPECT_EQ(whole.airspeed_cubed_m3_per_s3, cut.airspeed_cubed_m3_per_s3);
+    EXPECT_EQ(whole.covariates.values, cut.covariates.values);
+}
+
+TEST(FlightProgress, HasNoHindsight) {
+    for (const double since_s : {70.0, 300.0, 500.0}) expect_no_hindsight(sample_flight(), since_s);
+}
+
+TEST(FlightProgress, HasNoHindsightOnRealFlights) {
+    FLIGHTWATT_NEEDS_SHARED();
+    for (const auto* name : {"20_07_03__12_17_45", "20_07_05__10_26_44", "20_07_10__06_53_03"}) {
+        const auto series = flight::read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"));
+        for (const double since_s : {120.0, 300.0, 500.0}) expect_no_hindsight(series, since_s);
+    }
+}
+
+TEST(FlightProgress, RefusesMomentsOutsideOfTheCruise) {
+    const auto series = sample_flight();
+    EXPECT_THROW(progress_at(series, 40.0), NoResultError);         // on the ground
+    EXPECT_THROW(progress_at(series, 74.0), NoResultError);         // climbing
+    EXPECT_THROW(progress_at(series, 740.0), NoResultError);        // landed
+    EXPECT_THROW(progress_since(series, 5000.0), NoResultError);    // the log ends before
+    EXPECT_THROW(progress_since(series, 300.0, 1), NoResultError);  // no second sortie
+}
+
+}  // namespace
+}  // namespace flightwatt::mechanical
