@@ -5,9 +5,9 @@
 #include "base/number.h"
 #include "base/overwrite_guard.h"
 #include "base/toml_reader.h"
+#include "cli/help.h"
 #include "cli/screen_table.h"
 #include "cli/terminal.h"
-#include "cli/help.h"
 
 #include <cerrno>
 #include <cmath>
