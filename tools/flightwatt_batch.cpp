@@ -229,6 +229,7 @@ int finish(const cli::StageCall& call, batch::BatchFlights flights, const batch:
     }
     const auto shown = flights_text(call, flights, options);
     const auto totals = totals_of(flights);
+    release_details(flights);
     try {
         if (totals.accepted == 0) {
             remove_model(call, options.out);

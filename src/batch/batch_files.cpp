@@ -12,9 +12,11 @@
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <string_view>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace flightwatt::batch {
 namespace {
@@ -135,6 +137,15 @@ std::vector<StoredFlight> read_stored(const std::filesystem::path& out, bool wit
 }
 
 }  // namespace
+
+nlohmann::ordered_json parse_json(const std::string& text) {
+    using Json = nlohmann::ordered_json;
+    return Json::parse(text, [](int depth, Json::parse_event_t /*event*/, Json& /*parsed*/) {
+        constexpr int deepest = 20;
+        if (depth > deepest) throw std::runtime_error("nested too deep");
+        return true;
+    });
+}
 
 std::filesystem::path result_path(const std::filesystem::path& out, std::string_view flight, const char* ending) {
     return out / "flights" / (std::string(flight) + ending);

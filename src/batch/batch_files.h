@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 namespace flightwatt::batch {
 
 /// What a batch writes of a flight, after its name: OUT/flights/NAME.series.csv, ...
@@ -48,6 +50,10 @@ struct StoredFlight {
     flight::FlightPhases phases;     ///< with the evidence at their edges, which the record does not hold
     std::string damage_reason = {};  ///< why its files are not used: they are not as the batch wrote them
 };
+
+/// A JSON file of a batch. Throws std::exception for what is none, or nests deeper than ours: it would take a hundred
+/// times its size in memory.
+nlohmann::ordered_json parse_json(const std::string& text);
 
 /// What a batch wrote into OUT, flight by flight, by name. Throws InputError where OUT is no batch's folder, or the
 /// files of a flight are missing, damaged or changed; where its log is gone too, so that no batch could mend that, the

@@ -99,17 +99,10 @@ Json json_of(const BatchFit& fit) {
 
 std::string text_of(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
-/// A file that nests without end would take a hundred times its size in memory.
-bool require_shallow(int depth, Json::parse_event_t /*event*/, Json& /*parsed*/) {
-    constexpr int deepest = 20;
-    if (depth > deepest) throw std::runtime_error("nested too deep");
-    return true;
-}
-
 void read_fit_json(const std::filesystem::path& file, BatchFit& fit) {
     const std::string again = "run flightwatt batch again";
     try {
-        const auto json = Json::parse(read_file(file, max_fit_bytes), require_shallow);
+        const auto json = parse_json(read_file(file, max_fit_bytes));
         if (json.at("format").get<double>() > format_version) {
             throw InputError(
                 {file.string()},
@@ -192,7 +185,7 @@ bool is_fit_current(const std::filesystem::path& out, const std::string& made_fr
     if (made_from.empty()) return false;
     const OverwriteExemption own;
     try {
-        auto json = Json::parse(read_file(out / fit_name, max_fit_bytes), require_shallow);
+        auto json = parse_json(read_file(out / fit_name, max_fit_bytes));
         const auto seal = json.at("seal").get<std::string>();
         json.erase("seal");
         return json.at("made_from").get<std::string>() == made_from && seal == seal_of(out, json);

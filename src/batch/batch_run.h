@@ -93,6 +93,10 @@ void exclude_duplicates(BatchFlights& flights, const Duplicates& repeated);
 /// Why a flight is not fitted that is a copy of another.
 std::string duplicate_reason(const std::string& other);
 
+/// Drops what the table, the catalogue and the notes alone need: phases, warnings and exclusions. Of many logs that is
+/// half of their memory, which the fit needs.
+void release_details(BatchFlights& flights);
+
 /// Why the flights that are fitted are not of one aircraft (describe_mixed_aircraft); empty if they may be.
 std::string mixed_aircraft_reason(const BatchFlights& flights);
 

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/overwrite_guard.h"
 #include "base/toml_reader.h"
+#include "base/utf8.h"
 #include "batch/batch_files.h"
 
 #include <algorithm>
@@ -16,7 +17,6 @@
 #include <utility>
 
 #include <boost/algorithm/hex.hpp>
-#include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -27,45 +27,30 @@ using ManifestJson = nlohmann::ordered_json;
 
 /// Names of files need not be UTF-8, as JSON is.
 ManifestJson bytes_json(const std::string& bytes) {
-    try {
-        ManifestJson text = bytes;
-        (void)text.dump();
-        return text;
-    } catch (const ManifestJson::exception&) {
-        return {{"hex", boost::algorithm::hex(bytes)}};
-    }
+    if (valid_utf8(bytes) == bytes) return bytes;
+    return {{"hex", boost::algorithm::hex(bytes)}};
 }
 
 std::string bytes_from(const ManifestJson& json) {
     return json.is_object() ? boost::algorithm::unhex(json.at("hex").get<std::string>()) : json.get<std::string>();
 }
 
-/// Adds a flight to a list; false for what is none.
-bool add_flight(const ManifestJson& json, std::vector<LogFile>& flights) {
-    try {
-        LogFile flight{bytes_from(json.at("log")), bytes_from(json.at("flight")),
-                       bytes_from(json.at("why_not_fitted"))};
-        flight.place = bytes_from(json.at("place"));
-        constexpr std::string_view in_no_name("/\0", 2);
-        if (flight.flight.empty() || flight.flight.find_first_of(in_no_name) != std::string::npos) return false;
-        if ((flight.path + flight.place).find('\0') != std::string::npos) return false;
-        flights.push_back(std::move(flight));
-        return true;
-    } catch (const std::exception&) {
-        return false;
-    }
+/// Throws std::exception for what is no flight.
+LogFile flight_from(const ManifestJson& json) {
+    LogFile flight{bytes_from(json.at("log")), bytes_from(json.at("flight")), bytes_from(json.at("why_not_fitted"))};
+    flight.place = bytes_from(json.at("place"));
+    constexpr std::string_view in_no_name("/\0", 2);
+    const bool is_name = !flight.flight.empty() && flight.flight.find_first_of(in_no_name) == std::string::npos;
+    const bool is_path = (flight.path + flight.place).find('\0') == std::string::npos;
+    if (!is_name || !is_path) throw std::invalid_argument("no names of a flight");
+    return flight;
 }
 
-constexpr std::size_t piece_of_list_bytes = 65'536;
-
-/// As it stands in the list of flights.
-std::string flight_text(const LogFile& flight) {
-    const ManifestJson json{{"flight", bytes_json(flight.flight)},
-                            {"log", bytes_json(flight.path)},
-                            {"place", bytes_json(flight.place)},
-                            {"why_not_fitted", bytes_json(flight.why_not_fitted)}};
-    const std::string indent = "  ";
-    return indent + boost::algorithm::replace_all_copy(json.dump(1, ' '), "\n", "\n" + indent);
+ManifestJson json_of(const LogFile& flight) {
+    return {{"flight", bytes_json(flight.flight)},
+            {"log", bytes_json(flight.path)},
+            {"place", bytes_json(flight.place)},
+            {"why_not_fitted", bytes_json(flight.why_not_fitted)}};
 }
 
 std::unordered_set<std::string_view> names_of(const std::vector<LogFile>& flights) {
@@ -237,17 +222,7 @@ Manifest read_manifest(const std::filesystem::path& out) {
         "choose another folder with -o; if a batch made this one, remove that file: its records then say what is its";
     try {
         Manifest manifest;
-        bool is_whole = true;
-        bool are_flights = false;
-        const auto json = ManifestJson::parse(read_file(file), [&](int depth, auto event, ManifestJson& parsed) {
-            constexpr int deepest = 20;
-            if (depth > deepest) throw std::runtime_error("nested too deep");
-            using Event = ManifestJson::parse_event_t;
-            if (depth == 1 && event == Event::key) are_flights = parsed == "flights";
-            const bool is_flight = are_flights && depth == 2 && event == Event::object_end;
-            if (is_flight) is_whole = add_flight(parsed, manifest.flights) && is_whole;
-            return !is_flight;  // a hundred thousand need not stay as JSON
-        });
+        const auto json = parse_json(read_file(file));
         if (json.at("format").get<double>() > format_version) {
             throw InputError(
                 {file.string()},
@@ -255,8 +230,10 @@ Manifest read_manifest(const std::filesystem::path& out) {
                 "use a newer FlightWatt, or another folder with -o");
         }
         manifest.files = json.at("files").get<std::set<std::string>>();
-        const auto& rest = json.at("flights");
-        if (!is_whole || !rest.is_array() || !rest.empty()) throw std::invalid_argument("no list of flights");
+        const auto& flights = json.at("flights");
+        if (!flights.is_array()) throw std::invalid_argument("no list of flights");
+        manifest.flights.reserve(flights.size());
+        std::ranges::transform(flights, std::back_inserter(manifest.flights), flight_from);
         if (names_of(manifest.flights).size() < manifest.flights.size()) throw std::invalid_argument("a name twice");
         return manifest;
     } catch (const InputError&) {
@@ -267,27 +244,12 @@ Manifest read_manifest(const std::filesystem::path& out) {
 }
 
 void write_manifest(const Manifest& manifest, const std::filesystem::path& out) {
-    const ManifestJson json{{"format", format_version},
-                            {"files", manifest.files},
-                            {"unfinished", temporary_folder},
-                            {"flights", ManifestJson::array()}};
-    const TextWriter write = [&](const TextSink& sink) {
-        auto text = json.dump(1, ' ');
-        const std::string_view end = "]\n}";
-        text.resize(text.size() - end.size());
-        const auto* separator = "\n";
-        for (const auto& flight : manifest.flights) {
-            text += separator + flight_text(flight);
-            separator = ",\n";
-            if (text.size() < piece_of_list_bytes) continue;
-            sink(text);
-            text.clear();
-        }
-        if (!manifest.flights.empty()) text += "\n ";
-        sink(text + std::string(end) + "\n");
-    };
+    auto flights = ManifestJson::array();
+    for (const auto& flight : manifest.flights) flights.push_back(json_of(flight));
+    ManifestJson json{{"format", format_version}, {"files", manifest.files}, {"unfinished", temporary_folder}};
+    json["flights"] = std::move(flights);
     const OverwriteExemption own;  // written before the work and after
-    write_file_atomically(out / manifest_name, write, out / temporary_folder);
+    write_file_atomically(out / manifest_name, json.dump(1, ' ') + "\n", out / temporary_folder);
 }
 
 BatchPlan plan_batch(std::vector<LogFile> logs, const std::filesystem::path& out, bool prune) {

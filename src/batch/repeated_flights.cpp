@@ -100,7 +100,8 @@ void exclude_duplicates(BatchFlights& flights, const Duplicates& repeated) {
         if (!is_copy && !has_part) continue;
         for (; part != overlaps.end() && part->first == name; ++part) flight.record.warnings.push_back(part->second);
         if (is_copy) {
-            flight.selection.flights = {};
+            flight.selection.flights.clear();
+            flight.selection.flights.shrink_to_fit();
             flight.selection.exclusions.push_back({name, std::nullopt,
                                                    copy->has_power
                                                        ? duplicate_reason(copy->same_as)

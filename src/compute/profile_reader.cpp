@@ -3,8 +3,7 @@
 #include "base/csv.h"
 #include "base/number.h"
 #include "base/statistics.h"
-#include "compute/powprofiler/powprofiler_config.h"
-#include "compute/powprofiler/powprofiler_csv.h"
+#include "compute/powprofiler/powprofiler.h"
 
 #include <algorithm>
 #include <numeric>

@@ -22,7 +22,7 @@ struct ProfileNaming {
 ///   - our own CSV: a header of the parameters' names and then power_w, '#' begins a comment line; on what it
 ///     rests may follow, as `flightwatt profile` writes it: standard_error_w is kept, and
 ///     whether a node was measured or interpolated
-///   - powprofiler layer 2: a header of flags (powprofiler_csv.h), names from `naming.parameters`
+///   - powprofiler layer 2: a header of flags (powprofiler.h), names from `naming.parameters`
 ///   - a CSV without header (powprofiler's and gnuplot's), names from `naming.columns`
 ///   - powprofiler layer 1, the recording of one configuration: constant power, its mean
 ///   - powprofiler .cfg with [combinations]: each node is the mean of a layer 1 file

@@ -5,7 +5,7 @@
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/number.h"
-#include "compute/powprofiler/powprofiler_csv.h"
+#include "compute/powprofiler/powprofiler.h"
 #include "compute/profile_reader.h"
 #include "compute/profile_tables.h"
 #include "helpers/rejected.h"

@@ -1,8 +1,12 @@
 #include "compute/sensors/power_sampler.h"
 
 #include "base/toml_reader.h"
+#include "compute/sensors/power_rails.h"
 
 #include <algorithm>
+#include <iterator>
+#include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -70,6 +74,138 @@ SamplerSettings read_sampler_settings(const TomlTable& root, const std::filesyst
     if (settings.kind == SamplerKind::recorded) settings.file = table.string("file");
     settings.idle_file = table.optional_string("idle_file").value_or("");
     return settings;
+}
+
+namespace {
+
+struct Sensor {
+    SamplerKind kind;
+    std::vector<PowerRail> rails;         ///< either
+    std::vector<EnergyCounter> counters;  ///< or
+
+    std::vector<std::string> names() const {
+        std::vector<std::string> all;
+        for (const auto& rail : rails) all.push_back(rail.name);
+        for (const auto& counter : counters) all.push_back(counter.name);
+        return all;
+    }
+
+    bool is_asked_for(SamplerKind asked) const {
+        const bool is_ina3221 = kind == SamplerKind::ina3221_iio || kind == SamplerKind::ina3221_hwmon;
+        return asked == SamplerKind::automatic || asked == kind || (asked == SamplerKind::ina3221 && is_ina3221);
+    }
+};
+
+std::vector<Sensor> probe(const std::filesystem::path& sysfs) {
+    return {{SamplerKind::ina238, ina238_rails(sysfs), {}},
+            {SamplerKind::ina3221_iio, iio_rails(sysfs), {}},
+            {SamplerKind::ina3221_hwmon, hwmon_rails(sysfs), {}},
+            {SamplerKind::rapl, {}, energy_counters(sysfs)},
+            {SamplerKind::power_supply, power_supply_rails(sysfs), {}}};
+}
+
+PowerSampler sampler_of_rails(const Sensor& sensor, const std::vector<std::string>& wanted) {
+    std::vector<PowerRail> chosen;
+    std::vector<std::string> sources;
+    for (const auto index : rails_of_total(sensor.names(), wanted)) {
+        chosen.push_back(sensor.rails[index]);
+        sources.push_back(fmt::format("{} ({})", chosen.back().name, chosen.back().source));
+    }
+    PowerSampler sampler;
+    sampler.kind = sensor.kind;
+    sampler.source = fmt::format("{}", fmt::join(sources, " + "));
+    sampler.read = [chosen] {
+        const auto before = std::chrono::steady_clock::now();
+        double power_w = 0.0;
+        for (const auto& rail : chosen) power_w += rail.read();
+        // Stamped with the middle of the time that the reading took.
+        return std::vector<PowerReading>{{before + (std::chrono::steady_clock::now() - before) / 2, power_w}};
+    };
+    return sampler;
+}
+
+/// Core and uncore are parts of packages, and psys contains them.
+std::vector<EnergyCounter> counters_of_total(const Sensor& sensor, const std::vector<std::string>& wanted) {
+    std::vector<EnergyCounter> chosen;
+    if (wanted.empty()) {
+        std::ranges::copy_if(sensor.counters, std::back_inserter(chosen), &EnergyCounter::is_package);
+        return chosen.empty() ? std::vector{sensor.counters.front()} : chosen;
+    }
+    for (const auto index : rails_of_total(sensor.names(), wanted)) chosen.push_back(sensor.counters[index]);
+    return chosen;
+}
+
+/// The counters as they were at the last call.
+struct CounterState {
+    std::vector<EnergyCounter> counters;
+    std::vector<double> energy_uj;
+    std::chrono::steady_clock::time_point time;
+};
+
+std::vector<PowerReading> read_counters(CounterState& state) {
+    std::vector<double> now_uj;
+    const auto time = std::chrono::steady_clock::now();
+    for (const auto& counter : state.counters) now_uj.push_back(counter.read_uj());
+    std::vector<PowerReading> readings;
+    const double time_s = std::chrono::duration<double>(time - state.time).count();
+    if (!state.energy_uj.empty() && time_s > 0.0) {
+        PowerReading reading{time, 0.0};
+        for (std::size_t i = 0; i < now_uj.size(); ++i) {
+            reading.power_w += power_of_counter_w(state.energy_uj[i], now_uj[i], state.counters[i].range_uj, time_s);
+        }
+        readings.push_back(reading);
+    }
+    state.energy_uj = std::move(now_uj);
+    state.time = time;
+    return readings;
+}
+
+/// Of mean power between calls: the first call gives no reading.
+PowerSampler sampler_of_counters(const Sensor& sensor, const std::vector<std::string>& wanted) {
+    auto state = std::make_shared<CounterState>();
+    state->counters = counters_of_total(sensor, wanted);
+    std::vector<std::string> sources;
+    for (const auto& counter : state->counters) {
+        sources.push_back(fmt::format("{} ({})", counter.name, counter.source));
+    }
+    PowerSampler sampler;
+    sampler.kind = sensor.kind;
+    sampler.source = fmt::format("{}", fmt::join(sources, " + "));
+    sampler.read = [state] { return read_counters(*state); };
+    return sampler;
+}
+
+std::vector<std::string> lines_of(const std::vector<Sensor>& sensors) {
+    std::vector<std::string> lines;
+    for (const auto& sensor : sensors) {
+        if (sensor.names().empty()) continue;
+        lines.push_back(fmt::format("{}: {}", to_string(sensor.kind), fmt::join(sensor.names(), ", ")));
+    }
+    return lines;
+}
+
+}  // namespace
+
+PowerSampler open_sampler(const SamplerSettings& settings) {
+    if (settings.kind == SamplerKind::command) return open_command_sampler(settings);
+    std::error_code none;
+    const auto inner = settings.sysfs / "sys";
+    const auto sysfs = std::filesystem::is_directory(inner, none) ? inner : settings.sysfs;
+    const auto sensors = probe(sysfs);
+    for (const auto& sensor : sensors) {
+        if (!sensor.is_asked_for(settings.kind) || sensor.names().empty()) continue;
+        auto sampler = sensor.counters.empty() ? sampler_of_rails(sensor, settings.rails)
+                                               : sampler_of_counters(sensor, settings.rails);
+        sampler.found = lines_of(sensors);
+        return sampler;
+    }
+    throw NoResultError(fmt::format(
+        "there is no {} below {} that can be read; looked for INA238 and INA3221 (bus/i2c/drivers/ina*, bus/iio, "
+        "class/hwmon), RAPL (class/powercap, often for root alone) and class/power_supply; a [sampler] of "
+        "kind \"command\" reads any other meter",
+        settings.kind == SamplerKind::automatic ? "power sensor"
+                                                : fmt::format("sensor of kind {}", to_string(settings.kind)),
+        sysfs.string()));
 }
 
 }  // namespace flightwatt::compute

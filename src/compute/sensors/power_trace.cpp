@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/units.h"
-#include "compute/powprofiler/powprofiler_csv.h"
+#include "compute/powprofiler/powprofiler.h"
 #include "compute/sensors/power_rails.h"
 
 #include <ctime>
