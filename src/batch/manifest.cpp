@@ -3,8 +3,8 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/overwrite_guard.h"
+#include "base/text.h"
 #include "base/toml_reader.h"
-#include "base/utf8.h"
 #include "batch/batch_files.h"
 
 #include <algorithm>
