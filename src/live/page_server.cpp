@@ -2,9 +2,7 @@
 
 #include "base/error.h"
 #include "live/serve/page_session.h"
-#include "live/sources/close_on_exec.h"
-#include "live/sources/host_and_port.h"
-#include "live/sources/signal_free_thread.h"
+#include "live/sources/endpoints.h"
 
 #include <algorithm>
 #include <atomic>

@@ -2,11 +2,12 @@
 
 #include "base/error.h"
 #include "live/source.h"
-#include "live/sources/link_tally.h"
+#include "live/sources/message_readers.h"
 #include "telemetry/binary_log.h"
 #include "telemetry/data_file.h"
 
 #include <algorithm>
+#include <memory>
 #include <thread>
 #include <utility>
 
@@ -18,6 +19,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
+constexpr const char* no_time = "they are no messages with a time";
 constexpr std::chrono::milliseconds max_wait{50};  // until somebody asks whether to stop
 
 /// Waits in short steps; false: it was stopped.
@@ -47,14 +49,18 @@ class LogClock {
 };
 
 /// One log on its way to a target.
-class Player {
+class Player : public MessageSink {
   public:
     Player(double speed, PlaybackTarget& target, const std::function<bool()>& stop)
         : speed_(speed), target_(target), stop_(stop) {}
 
     bool is_stopped() const { return report_.stopped; }
-    void leave_out(const char* reason, std::size_t times) {
-        if (times > 0) report_.left_out[reason] += times;
+    void push(IncomingMessage message) override {
+        if (!message.time_s) return count(no_time, 1);
+        play({*message.time_s, fmt::to_string(*message.time_s), message.text});
+    }
+    void count(std::string_view reason, std::size_t times) override {
+        if (times > 0 && !report_.stopped) report_.left_out[std::string(reason)] += times;
     }
     /// Waits until the message is due, and sends it.
     void play(const PlayedMessage& message) {
@@ -93,29 +99,21 @@ void play_text(std::string_view text, Player& player) {
         if (const auto message = message_of_line(line)) {
             player.play({*message->time_s, line.substr(0, line.find(' ')), message->text});
         } else {
-            player.leave_out("they are no messages with a time", 1);
+            player.count(no_time, 1);
         }
     }
 }
 
 /// Throws InputError where its messages have other lengths than they are defined with.
 void play_binary(const telemetry::BinaryLog& log, Player& player) {
-    telemetry::LinkDecoder decoder(*log.messages, log.framing, link_version(log));
-    const auto sink = [&](const telemetry::LinkMessage& message) {
-        if (message.class_id != telemetry::MessageDictionary::telemetry_class) return player.leave_out(other_class, 1);
-        if (!message.time_s) return player.leave_out("they are no messages with a time", 1);
-        player.play({*message.time_s, fmt::to_string(*message.time_s), message.text});
-    };
+    LinkReader reader(player, std::make_shared<const telemetry::MessageDictionary>(*log.messages), log.framing,
+                      link_version(log));
     constexpr std::size_t piece = 4096;
-    for (auto rest = log.bytes; !rest.empty() && !player.is_stopped();
-         rest.remove_prefix(std::min(piece, rest.size()))) {
-        decoder.push(rest.substr(0, piece), sink);
-    }
+    for (auto rest = log.bytes; !rest.empty() && !player.is_stopped(); rest.remove_prefix(std::min(piece, rest.size())))
+        reader.push(rest.substr(0, piece));
     if (player.is_stopped()) return;
-    decoder.flush(sink);
-    require_fitting(decoder.counts(), log);
-    report_unusable(decoder.counts(), {},
-                    [&](const char* reason, std::size_t times) { player.leave_out(reason, times); });
+    reader.flush();
+    require_fitting(reader.counts(), log);
 }
 
 /// What was sent gets out, if it is fetched.

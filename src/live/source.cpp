@@ -8,6 +8,15 @@
 
 namespace flightwatt::live {
 
+void SourceReport::count(std::string_view reason, std::size_t times) {
+    if (times == 0) return;
+    if (const auto known = unusable.find(reason); known != unusable.end()) {
+        known->second += times;
+    } else {
+        unusable.emplace(reason, times);
+    }
+}
+
 std::optional<IncomingMessage> message_of_line(std::string_view line) {
     const auto blank = line.find(' ');
     if (blank == std::string_view::npos || blank + 1 >= line.size()) return std::nullopt;

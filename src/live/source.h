@@ -26,6 +26,8 @@ struct SourceReport {
     std::size_t messages = 0;
     std::map<std::string, std::size_t, std::less<>> unusable;  ///< lines, frames, bytes by reason
     std::size_t restarts = 0;
+
+    void count(std::string_view reason, std::size_t times);
 };
 
 /// Where telemetry comes from. One thread calls it. What goes wrong after it was opened (a file that is gone for a

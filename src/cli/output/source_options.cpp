@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "cli/numeric_options.h"
 #include "live/sources.h"
-#include "live/text_sources.h"
 #include "telemetry/binary_log.h"
 #include "telemetry/log_configuration.h"
 

@@ -31,44 +31,44 @@ std::string_view id_after(std::string_view prefix, std::string_view word) {
 
 }  // namespace
 
-void IvyMessages::handle(std::string_view said) {
-    const auto first = said.find_first_not_of(' ');
-    if (first == std::string_view::npos) return void(++no_messages_);
-    said.remove_prefix(first);
-    const auto blank = said.find(' ');
-    if (blank == std::string_view::npos) return void(++no_messages_);
-    const auto sender = said.substr(0, blank);
-    const auto rest = said.substr(blank);  // with its blank
-    if (const auto id = id_after(time_prefix, sender); !id.empty()) {
-        const auto time_s = parse_number(rest.substr(std::min(rest.find_first_not_of(' '), rest.size())));
-        if (!time_s || !std::isfinite(*time_s)) return void(++no_messages_);
-        ++times_;
-        if (const auto replay = replays_.find(id); !has_aircraft_ && replay != replays_.end()) {
-            replay->second.time_s = time_s;
-            latest_time_s_ = time_s;
-            hand_on(replay->second);
-        }
-        return;
-    }
+void IvyMessages::handle(std::string_view text) {
+    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+    const auto blank = text.find(' ');
+    if (blank == std::string_view::npos) return count_malformed();
+    const auto sender = text.substr(0, blank);
+    const auto rest = text.substr(blank);  // with its blank
+    if (const auto id = id_after(time_prefix, sender); !id.empty()) return handle_time(id, rest);
     const auto id = id_after(replay_prefix, sender);
     if (id.empty()) {
         if (is_id(sender)) has_aircraft_ = true;
-        // What the ground says beside a replay is said on its clock.
-        return sink_({has_aircraft_ ? std::nullopt : latest_time_s_, std::string(said)});
+        // Messages from the ground next to a replay are on its clock.
+        return sink_.push({has_aircraft_ ? std::nullopt : latest_time_s_, std::string(text)});
     }
-    if (has_aircraft_ || (replays_.size() >= max_aircraft && !replays_.contains(id))) return void(++unheeded_replays_);
+    if (has_aircraft_ || (replays_.size() >= max_aircraft && !replays_.contains(id)))
+        return sink_.count("messages of a replay while an aircraft itself is on the bus", 1);
     auto& replay = replays_[std::string(id)];
     replay.waiting.push_back(fmt::format("{}{}", id, rest));
-    if (replay.waiting.size() > max_waiting) hand_on(replay);
+    if (replay.waiting.size() > max_waiting) forward(replay);
 }
 
-void IvyMessages::hand_on(Replay& replay) {
-    for (auto& text : replay.waiting) sink_({replay.time_s, std::move(text)});
+void IvyMessages::handle_time(std::string_view id, std::string_view text) {
+    const auto time_s = parse_number(text.substr(std::min(text.find_first_not_of(' '), text.size())));
+    if (!time_s || !std::isfinite(*time_s)) return count_malformed();
+    ++times_;
+    const auto replay = replays_.find(id);
+    if (has_aircraft_ || replay == replays_.end()) return;
+    replay->second.time_s = time_s;
+    latest_time_s_ = time_s;
+    forward(replay->second);
+}
+
+void IvyMessages::forward(Replay& replay) {
+    for (auto& text : replay.waiting) sink_.push({replay.time_s, std::move(text)});
     replay.waiting.clear();
 }
 
 void IvyMessages::release() {
-    for (auto& [id, replay] : replays_) hand_on(replay);
+    for (auto& [id, replay] : replays_) forward(replay);
 }
 
 bool IvyMessages::has_pending() const {
