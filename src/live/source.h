@@ -19,6 +19,8 @@ struct IncomingMessage {
     /// The first since its source began anew (a file that was replaced, a link that was opened again): its clock may
     /// have begun anew, too.
     bool is_after_restart = false;
+    /// Of the fields, NaN for what is no single number; empty where `text` alone has them.
+    std::vector<double> values = {};
 };
 
 /// What a source has seen beside messages, for warnings and the page. Counts only grow.

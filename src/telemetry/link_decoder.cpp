@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 namespace flightwatt::telemetry {
 namespace {
@@ -86,7 +87,9 @@ struct LinkDecoder::State {
             ++counts.messages;
             text.clear();
             append_message_text(found, text);
-            LinkMessage message{found.sender, found.class_id, found.message->definition.name, std::nullopt, text};
+            read_message_values(found, values);
+            LinkMessage message{found.sender, found.class_id, found.message->definition.name,
+                                std::nullopt, text,           values};
             message.time_s = counts.framing == Framing::card ? clock.time_s(frame.time_100us) : time.time_s(found);
             sink(message);
         }
@@ -122,6 +125,7 @@ struct LinkDecoder::State {
     LinkTime time;
     std::string buffer;
     std::string text;
+    std::vector<double> values;
     LinkCounts counts;
 };
 

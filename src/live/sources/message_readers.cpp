@@ -53,7 +53,7 @@ void LinkReader::restart() {
 void LinkReader::forward(const telemetry::LinkMessage& message) {
     if (message.class_id != telemetry::MessageDictionary::telemetry_class)
         return sink_.count("messages of other classes than telemetry", 1);
-    sink_.push({message.time_s, std::string(message.text)});
+    sink_.push({message.time_s, std::string(message.text), false, {message.values.begin(), message.values.end()}});
 }
 
 void LinkReader::count_unusable() {

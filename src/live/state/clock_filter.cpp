@@ -5,8 +5,8 @@
 
 namespace flightwatt::live {
 
-bool ClockFilter::push(double time_s, std::string text, std::vector<Line>& accepted, std::optional<double> arrival_s) {
-    Line line{time_s + offset_s_, std::move(text), arrival_s};
+bool ClockFilter::push(Line line, std::vector<Line>& accepted) {
+    line.time_s += offset_s_;
     const double ahead_s = line.time_s - latest_s_;
     if (started_ && (ahead_s > max_ahead_s || ahead_s < -max_step_s)) return hold(std::move(line), accepted);
     unconfirmed_ += held_.size();

@@ -26,9 +26,10 @@ class ClockFilter {
     static constexpr std::size_t late_lines = 10;
 
     struct Line {
-        double time_s = 0.0;  ///< on a clock that never goes back
-        std::string text;     ///< behind the time
-        std::optional<double> arrival_s = {};
+        double time_s = 0.0;                   ///< when accepted: on a clock that never goes back
+        std::string text;                      ///< behind the time
+        std::optional<double> arrival_s = {};  ///< on a clock that is never set; none where it is of no use
+        std::vector<double> values = {};       ///< of the fields, where `text` has none
     };
 
     ClockFilter() = default;
@@ -36,8 +37,8 @@ class ClockFilter {
     explicit ClockFilter(double about_s) : started_(true), is_guess_(true), latest_s_(about_s) {}
 
     /// Takes a line, and appends those that are believed now. True where the first of them belongs to a clock that
-    /// began anew. `arrival_s`: on a clock that nobody sets; none where it says nothing.
-    bool push(double time_s, std::string text, std::vector<Line>& accepted, std::optional<double> arrival_s = {});
+    /// began anew.
+    bool push(Line line, std::vector<Line>& accepted);
     /// Whether a line of that time would be late.
     bool is_late(double time_s) const { return started_ && time_s + offset_s_ < latest_s_ - late_s; }
     /// Nothing more will come: what was held ahead of the latest is believed.

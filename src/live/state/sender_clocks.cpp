@@ -18,18 +18,17 @@ SenderClocks::Clock& SenderClocks::clock_of(std::string_view sender) {
     return clocks_.emplace(name, Clock{ClockFilter(latest_s()), 0, 0.0}).first->second;
 }
 
-SenderClocks::RestartScope SenderClocks::push(double time_s, std::string text, bool restarted,
-                                              std::vector<ClockFilter::Line>& believed,
-                                              std::optional<double> arrival_s) {
-    const std::string sender(sender_of(text));
-    const bool all = restarted && started() && clock_of(sender).filter.is_late(time_s);
+SenderClocks::RestartScope SenderClocks::push(ClockFilter::Line line, bool restarted,
+                                              std::vector<ClockFilter::Line>& believed) {
+    const std::string sender(sender_of(line.text));
+    const bool all = restarted && started() && clock_of(sender).filter.is_late(line.time_s);
     if (all) {
         unconfirmed_before_ = unconfirmed();
         clocks_.clear();
         others_s_ = 0.0;
     }
     auto& clock = clock_of(sender);
-    const bool anew = clock.filter.push(time_s, std::move(text), believed, arrival_s);
+    const bool anew = clock.filter.push(std::move(line), believed);
     if (!believed.empty()) advance(sender, anew, clock);
     return all ? RestartScope::all : anew ? RestartScope::sender : RestartScope::none;
 }

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <functional>
 #include <map>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,9 +21,7 @@ class SenderClocks {
 
     /// Takes a line, and appends those that are believed now. Whether the clock of their sender began anew before them,
     /// or all did: `restarted` says that the source of the line began anew, so that no other lines have to agree.
-    /// `arrival_s`: as ClockFilter.
-    RestartScope push(double time_s, std::string text, bool restarted, std::vector<ClockFilter::Line>& believed,
-                      std::optional<double> arrival_s = {});
+    RestartScope push(ClockFilter::Line line, bool restarted, std::vector<ClockFilter::Line>& believed);
     /// Nothing more will come.
     void flush(std::vector<ClockFilter::Line>& believed);
 

@@ -98,4 +98,18 @@ void append_message_text(const FoundFrame& found, std::string& text) {
     }
 }
 
+void read_message_values(const FoundFrame& found, std::vector<double>& values) {
+    values.clear();
+    const char* p = found.fields.data();
+    for (const auto& field : found.message->fields) {
+        std::size_t elements = field.elements;
+        if (field.count == WireCount::counted) elements = wire_number<std::uint8_t>(p++);
+        int decimals = 4;  // often enough
+        const bool is_number = elements == 1 && field.type != WireType::text;
+        const double value = is_number ? wire_value(field.type, p, decimals) : std::nan("");
+        values.push_back(std::isfinite(value) ? value : std::nan(""));
+        p += elements * size_of(field.type);
+    }
+}
+
 }  // namespace flightwatt::telemetry

@@ -3,6 +3,7 @@
 #include "telemetry/binary/frame_scanner.h"
 
 #include <string>
+#include <vector>
 
 namespace flightwatt::telemetry {
 
@@ -10,5 +11,8 @@ namespace flightwatt::telemetry {
 /// joined by commas, char[] in quotes (a quote or control character in it becomes '?'), floats in as few digits as give
 /// them back, with a point or an exponent.
 void append_message_text(const FoundFrame& found, std::string& text);
+
+/// The values of its fields; NaN for what is no single finite number.
+void read_message_values(const FoundFrame& found, std::vector<double>& values);
 
 }  // namespace flightwatt::telemetry

@@ -17,7 +17,7 @@ std::vector<double> times_of(const std::vector<ClockFilter::Line>& lines) {
 
 std::vector<double> pushed(ClockFilter& filter, const std::vector<double>& times) {
     std::vector<ClockFilter::Line> believed;
-    for (const double time_s : times) filter.push(time_s, "20 PONG", believed);
+    for (const double time_s : times) filter.push({time_s, "20 PONG"}, believed);
     return times_of(believed);
 }
 
@@ -59,7 +59,7 @@ struct Link {
     std::vector<ClockFilter::Line> believed;
     double arrival_s = 1000.0;
     void go_on(double clock_s, double for_s, double pace = 1.0) {
-        for (double t = 0.0; t < for_s; t += 0.1) filter.push(clock_s + t, "20 PONG", believed, arrival_s + pace * t);
+        for (double t = 0.0; t < for_s; t += 0.1) filter.push({clock_s + t, "20 PONG", arrival_s + pace * t}, believed);
         arrival_s += pace * for_s;
     }
 };
@@ -104,8 +104,8 @@ TEST(ClockFilter, ALogThatBeginsAnewIsARestart) {
     ClockFilter filter;
     pushed(filter, {1000.0, 1001.0});
     std::vector<ClockFilter::Line> believed;
-    for (int i = 0; i < 4; ++i) EXPECT_FALSE(filter.push(1.0 + i, "20 PONG", believed));
-    EXPECT_TRUE(filter.push(5.0, "20 PONG", believed));
+    for (int i = 0; i < 4; ++i) EXPECT_FALSE(filter.push({1.0 + i, "20 PONG"}, believed));
+    EXPECT_TRUE(filter.push({5.0, "20 PONG"}, believed));
     EXPECT_EQ(times_of(believed), (std::vector<double>{1.0, 2.0, 3.0, 4.0, 5.0}));
     EXPECT_EQ(filter.latest_s(), 5.0);
 }
@@ -116,7 +116,7 @@ TEST(ClockFilter, AGuessGivesWayToWhatTheFirstLinesSay) {
     EXPECT_EQ(near.latest_s(), 70.1);
     ClockFilter far(100.0);
     std::vector<ClockFilter::Line> believed;
-    for (int i = 0; i < 5; ++i) EXPECT_FALSE(far.push(1.0 + i, "20 PONG", believed)) << "nothing was known of it";
+    for (int i = 0; i < 5; ++i) EXPECT_FALSE(far.push({1.0 + i, "20 PONG"}, believed)) << "nothing was known of it";
     EXPECT_EQ(times_of(believed), (std::vector<double>{1.0, 2.0, 3.0, 4.0, 5.0}));
     EXPECT_EQ(far.latest_s(), 5.0);
     EXPECT_EQ(far.unconfirmed(), 0U);

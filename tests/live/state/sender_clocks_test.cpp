@@ -17,7 +17,7 @@ class SenderClocksTest : public testing::Test {
 
     Anew push(double time_s, const std::string& sender, bool restarted = false) {
         believed.clear();
-        return clocks.push(time_s, sender + " PONG", restarted, believed);
+        return clocks.push({time_s, sender + " PONG"}, restarted, believed);
     }
 };
 
