@@ -7,7 +7,6 @@
 #include "live/state/airborne_start.h"
 #include "live/state/aircraft_choice.h"
 #include "live/state/alarms.h"
-#include "live/state/carried_flight.h"
 #include "live/state/flight_clock.h"
 #include "live/state/path_tracker.h"
 #include "live/state/sender_clocks.h"

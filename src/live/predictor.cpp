@@ -3,7 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "live/live_flight.h"
-#include "live/prediction_basis.h"
+#include "live/prediction.h"
 #include "mission/mission_file.h"
 #include "telemetry/link_decoder.h"
 #include "telemetry/log_configuration.h"

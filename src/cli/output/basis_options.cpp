@@ -4,7 +4,7 @@
 #include "base/units.h"
 #include "cli/numeric_options.h"
 #include "cli/output/mission_output.h"
-#include "live/prediction_basis.h"
+#include "live/prediction.h"
 #include "mechanical/model_check.h"
 #include "mission/mission_file.h"
 
