@@ -3,7 +3,7 @@
 #include "flight/flight_phases.h"
 #include "live/live_schedule.h"
 #include "live/prediction.h"
-#include "live/source.h"
+#include "live/sources.h"
 #include "live/turn_home.h"
 #include "telemetry/log_configuration.h"
 

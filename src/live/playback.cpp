@@ -1,7 +1,7 @@
 #include "live/playback.h"
 
 #include "base/error.h"
-#include "live/source.h"
+#include "live/sources.h"
 #include "live/sources/message_readers.h"
 #include "telemetry/binary_log.h"
 #include "telemetry/data_file.h"
@@ -32,22 +32,6 @@ bool wait_for(Clock::time_point then, PlaybackTarget& target, const std::functio
     }
 }
 
-/// When a message is due: [s] of the log's time since its first.
-class LogClock {
-  public:
-    /// Returns the time since the first message that it was told of.
-    double advance_to(double time_s, PlaybackReport& report) {
-        const double step_s = last_s_ ? std::max(0.0, time_s - *last_s_) : 0.0;
-        if (step_s > max_played_gap_s) ++report.shortened_gaps;
-        report.log_s += std::min(step_s, max_played_gap_s);
-        last_s_ = time_s;
-        return report.log_s;
-    }
-
-  private:
-    std::optional<double> last_s_;
-};
-
 /// One log on its way to a target.
 class Player : public MessageSink {
   public:
@@ -65,8 +49,11 @@ class Player : public MessageSink {
     /// Waits until the message is due, and sends it.
     void play(const PlayedMessage& message) {
         if (report_.stopped) return;
-        const auto due = begin_ + std::chrono::duration_cast<Clock::duration>(
-                                      Seconds(clock_.advance_to(message.time_s, report_) / speed_));
+        const double step_s = last_s_ ? std::max(0.0, message.time_s - *last_s_) : 0.0;
+        if (step_s > max_played_gap_s) ++report_.shortened_gaps;
+        report_.log_s += std::min(step_s, max_played_gap_s);
+        last_s_ = message.time_s;
+        const auto due = begin_ + std::chrono::duration_cast<Clock::duration>(Seconds(report_.log_s / speed_));
         report_.stopped = !wait_for(due, target_, stop_);
         if (report_.stopped) return;
         report_.max_delay_s = std::max(report_.max_delay_s, Seconds(Clock::now() - due).count());
@@ -87,7 +74,7 @@ class Player : public MessageSink {
     PlaybackTarget& target_;
     const std::function<bool()>& stop_;
     PlaybackReport report_;
-    LogClock clock_;
+    std::optional<double> last_s_;  ///< of the message before, on the log's clock
     Clock::time_point begin_ = Clock::now();
 };
 

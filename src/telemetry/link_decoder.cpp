@@ -5,6 +5,7 @@
 #include "telemetry/binary/framing.h"
 #include "telemetry/binary/link_time.h"
 #include "telemetry/binary/message_text.h"
+#include "telemetry/columns/message_plan.h"
 
 #include <algorithm>
 #include <string>
@@ -135,6 +136,7 @@ LinkDecoder::LinkDecoder(MessageDictionary dictionary, std::optional<Framing> fr
     constexpr std::size_t max_text = 4096;
     state_->buffer.reserve(step_bytes + max_undecided_bytes);
     state_->text.reserve(max_text);
+    state_->values.reserve(max_fields);
     state_->counts.version = version;
     if (framing) state_->use_framing(*framing);
 }

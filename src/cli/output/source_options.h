@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cli/stage.h"
-#include "live/source.h"
+#include "live/sources.h"
 
 #include <memory>
 #include <optional>

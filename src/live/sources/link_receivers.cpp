@@ -139,7 +139,7 @@ class SerialReceiver : public Receiver {
     bool stopped_ = false;
 };
 
-LinkReader::Definitions shared(telemetry::MessageDictionary definitions) {
+LinkReader::Definitions share(telemetry::MessageDictionary definitions) {
     return std::make_shared<const telemetry::MessageDictionary>(std::move(definitions));
 }
 
@@ -148,15 +148,14 @@ LinkReader::Definitions shared(telemetry::MessageDictionary definitions) {
 std::unique_ptr<MessageSource> open_udp(std::string_view at, telemetry::MessageDictionary definitions,
                                         double clock_factor) {
     return std::make_unique<ReceivingSource>(clock_factor, [&](auto& context, auto& queue) {
-        return std::make_unique<UdpReceiver>(context, queue, parse_udp_address(at), shared(std::move(definitions)));
+        return std::make_unique<UdpReceiver>(context, queue, parse_udp_address(at), share(std::move(definitions)));
     });
 }
 
 std::unique_ptr<MessageSource> open_serial(std::string_view line, telemetry::MessageDictionary definitions,
                                            double clock_factor) {
     return std::make_unique<ReceivingSource>(clock_factor, [&](auto& context, auto& queue) {
-        return std::make_unique<SerialReceiver>(context, queue, parse_serial_line(line),
-                                                shared(std::move(definitions)));
+        return std::make_unique<SerialReceiver>(context, queue, parse_serial_line(line), share(std::move(definitions)));
     });
 }
 

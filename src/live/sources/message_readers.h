@@ -1,6 +1,6 @@
 #pragma once
 
-#include "live/source.h"
+#include "live/sources.h"
 #include "telemetry/link_decoder.h"
 
 #include <cstddef>

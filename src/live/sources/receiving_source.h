@@ -1,6 +1,6 @@
 #pragma once
 
-#include "live/source.h"
+#include "live/sources.h"
 #include "live/sources/message_readers.h"
 
 #include <chrono>

@@ -2,7 +2,7 @@
 
 #include "flight/selected_track.h"
 #include "flight/telemetry_series.h"
-#include "live/source.h"
+#include "live/sources.h"
 
 #include <sstream>
 #include <string>

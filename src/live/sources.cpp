@@ -1,10 +1,8 @@
-#include "live/source.h"
+#include "live/sources.h"
 
 #include "base/number.h"
 
 #include <cmath>
-
-#include <fmt/format.h>
 
 namespace flightwatt::live {
 
@@ -23,10 +21,6 @@ std::optional<IncomingMessage> message_of_line(std::string_view line) {
     const auto time_s = parse_number(line.substr(0, blank));
     if (!time_s || !std::isfinite(*time_s)) return std::nullopt;
     return IncomingMessage{time_s, std::string(line.substr(blank + 1))};
-}
-
-std::string line_of(const IncomingMessage& message, double time_s) {
-    return fmt::format("{} {}", message.time_s.value_or(time_s), message.text);
 }
 
 }  // namespace flightwatt::live

@@ -1,4 +1,4 @@
-#include "live/sources/ivy_messages.h"
+#include "live/sources/ivy_receiver.h"
 
 #include <cstddef>
 #include <map>
