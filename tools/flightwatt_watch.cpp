@@ -125,7 +125,7 @@ void take_what_waits(live::MessageSource& source, live::LiveFlight& flight, doub
     do {
         messages.clear();
         source.receive(std::chrono::milliseconds(0), messages);
-        for (const auto& message : messages) flight.receive(message, now_s);
+        for (auto& message : messages) flight.receive(std::move(message), now_s);
     } while (!messages.empty() && seconds_since(start) < max_s);
 }
 
@@ -142,8 +142,8 @@ std::string watch_source(live::MessageSource& source, live::LiveFlight& flight, 
     while (true) {
         messages.clear();
         source.receive(wait, messages);
-        for (const auto& message : messages) {
-            flight.receive(message, seconds_since(start));
+        for (auto& message : messages) {
+            flight.receive(std::move(message), seconds_since(start));
             const auto clock_s = flight.clock_s();
             const bool is_due = clock_s && (!looked_at_s || std::abs(*clock_s - *looked_at_s) >= 1.0);
             if (!is_due) continue;

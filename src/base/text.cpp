@@ -1,6 +1,7 @@
 #include "base/text.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -80,6 +81,17 @@ std::string toml_strings(const std::vector<std::string>& texts) {
     quoted.reserve(texts.size());
     for (const auto& text : texts) quoted.push_back(toml_string(text));
     return fmt::format("[{}]", fmt::join(quoted, ", "));
+}
+
+std::string toml_key(const std::string& name) {
+    const bool bare = !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
+        return c < 0x80 && (std::isalnum(c) != 0 || c == '_' || c == '-');
+    });
+    return bare ? name : toml_string(name);
+}
+
+std::string toml_inline_table(const std::vector<std::string>& pairs) {
+    return pairs.empty() ? "{}" : fmt::format("{{ {} }}", fmt::join(pairs, ", "));
 }
 
 }  // namespace flightwatt

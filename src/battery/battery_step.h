@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/units.h"
 #include "battery/battery.h"
 
 #include <algorithm>
@@ -227,9 +228,20 @@ class CircuitRun {
 };
 
 /// The circuit of a battery; the paper's has no RC pair.
-Circuit<double> circuit_of(const Battery& battery);
+inline Circuit<double> circuit_of(const Battery& battery) {
+    Circuit<double> circuit;
+    circuit.resistance_ohm = battery.resistance_ohm;
+    circuit.percent_per_as = units::percentage(1.0, units::coulomb_from_ah(battery.capacity_ah));
+    if (!battery.thevenin || battery.thevenin->rc_resistance_ohm == 0.0) return circuit;
+    circuit.rc_resistance_ohm = battery.thevenin->rc_resistance_ohm;
+    circuit.rc_time_constant_s = battery.thevenin->rc_time_constant_s;
+    return circuit;
+}
 
 /// Its open-circuit voltage; that of the paper's source is the same at every charge.
-OpenCircuitVoltage open_circuit_of(const Battery& battery);
+inline OpenCircuitVoltage open_circuit_of(const Battery& battery) {
+    if (battery.thevenin) return battery.thevenin->open_circuit;
+    return {{0.0, units::percent_per_whole}, {battery.voltage_v, battery.voltage_v}};
+}
 
 }  // namespace flightwatt::battery

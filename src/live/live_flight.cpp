@@ -7,7 +7,6 @@
 #include "live/state/airborne_start.h"
 #include "live/state/aircraft_choice.h"
 #include "live/state/alarms.h"
-#include "live/state/carried_flight.h"
 #include "live/state/flight_clock.h"
 #include "live/state/path_tracker.h"
 #include "live/state/sender_clocks.h"
@@ -53,18 +52,18 @@ class LiveFlight::Impl {
             battery_warnings_.push_back(fmt::format("{}: {}", basis_->battery_file, warning));
     }
 
-    void receive(const IncomingMessage& message, double arrival_s) {
+    void receive(IncomingMessage message, double arrival_s) {
         ++messages_;
         choice_.count(message.text);
+        const std::string sender(sender_of(message.text));
         believed_.clear();
-        const auto clock_restarted = clocks_.push(message.time_s.value_or(arrival_s), message.text,
-                                                  message.is_after_restart, believed_, arrival_s);
-        const bool is_restart =
-            clock_restarted == SenderClocks::RestartScope::all ||
-            (clock_restarted == SenderClocks::RestartScope::sender && clocks_.is_followed(sender_of(message.text)));
-        if (clock_restarted != SenderClocks::RestartScope::none) store_pending();
-        if (clock_restarted == SenderClocks::RestartScope::sender) store_.drop(std::string(sender_of(message.text)));
-        if (clock_restarted == SenderClocks::RestartScope::all) store_.clear();
+        using Scope = SenderClocks::RestartScope;
+        const auto scope = clocks_.push(
+            {message.time_s.value_or(arrival_s), std::move(message.text), arrival_s, std::move(message.values)},
+            message.is_after_restart, believed_);
+        const bool is_restart = scope == Scope::all || (scope == Scope::sender && clocks_.is_followed(sender));
+        if (scope == Scope::sender) store_.drop(sender);
+        if (scope == Scope::all) store_.clear();
         if (is_restart) restart();
         take(is_restart);
     }
@@ -85,19 +84,12 @@ class LiveFlight::Impl {
 
   private:
     void take(bool clock_restarted) {
-        const auto begin = pending_.size();
-        for (const auto& line : believed_)
-            fmt::format_to(std::back_inserter(pending_), "{} {}\n", line.time_s, line.text);
-        if (options_.on_lines && !believed_.empty())
-            options_.on_lines(std::string_view(pending_).substr(begin), clock_restarted);
-        constexpr std::size_t max_pending_bytes = 1'000'000;
-        if (pending_.size() > max_pending_bytes) store_pending();
-    }
-
-    void store_pending() {
-        store_.add(pending_);
-        pending_.clear();
+        for (const auto& line : believed_) store_.add(line.time_s, line.text, line.values);
         while (store_.rows() > 2 * options_.most_rows) store_.thin();
+        if (!options_.on_lines || believed_.empty()) return;
+        std::string lines;
+        for (const auto& line : believed_) fmt::format_to(std::back_inserter(lines), "{} {}\n", line.time_s, line.text);
+        options_.on_lines(lines, clock_restarted);
     }
 
     void restart() {
@@ -131,7 +123,6 @@ class LiveFlight::Impl {
     AircraftSelector choice_;
     std::optional<PathTracker> places_;        ///< where the path is to go on from
     std::vector<ClockFilter::Line> believed_;  ///< of the last message: its memory is used again
-    std::string pending_;
     std::size_t messages_ = 0;
     std::size_t restarts_ = 0;
     std::size_t sorties_before_ = 0;  ///< those that are not kept any more
@@ -152,7 +143,6 @@ class LiveFlight::Impl {
 };
 
 LiveState LiveFlight::Impl::look(double silent_s) {
-    store_pending();
     LiveState state;
     state.messages = messages_;
     state.restarts = restarts_;
@@ -181,7 +171,7 @@ LiveState LiveFlight::Impl::look(double silent_s) {
     decide(state);
     state.warnings.insert(state.warnings.begin(), warnings_.begin(), warnings_.end());
     state.warnings.insert(state.warnings.begin(), battery_warnings_.begin(), battery_warnings_.end());
-    state.unusable.insert(store_.skipped().begin(), store_.skipped().end());
+    state.unusable = store_.skipped();
     if (clocks_.unconfirmed() > 0) state.unusable["a time that no other line confirms"] = clocks_.unconfirmed();
     if (const auto steps = clocks_.steps_back(); steps > 0)
         state.warnings.push_back(
@@ -380,7 +370,7 @@ LiveFlight::LiveFlight(LiveOptions options, std::optional<PredictionInput> basis
 
 LiveFlight::~LiveFlight() = default;
 
-void LiveFlight::receive(const IncomingMessage& message, double arrival_s) { watch_->receive(message, arrival_s); }
+void LiveFlight::receive(IncomingMessage message, double arrival_s) { watch_->receive(std::move(message), arrival_s); }
 
 std::optional<double> LiveFlight::clock_s() const { return watch_->clock_s(); }
 

@@ -3,7 +3,7 @@
 #include "flight/flight_phases.h"
 #include "live/live_schedule.h"
 #include "live/prediction.h"
-#include "live/source.h"
+#include "live/sources.h"
 #include "live/turn_home.h"
 #include "telemetry/log_configuration.h"
 
@@ -95,7 +95,7 @@ class LiveFlight {
 
     /// Takes a message; `arrival_s` is its time if its source has none, and tells a clock that was set ahead from a gap
     /// where it goes on as the times do.
-    void receive(const IncomingMessage& message, double arrival_s);
+    void receive(IncomingMessage message, double arrival_s);
     /// The time of the latest message that is believed; none before the first.
     std::optional<double> clock_s() const;
     /// No more messages will come.

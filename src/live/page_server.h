@@ -34,6 +34,7 @@ class PageServer {
 
   private:
     class Server;
+    class Session;
     std::unique_ptr<Server> server_;
 };
 

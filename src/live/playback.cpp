@@ -1,12 +1,13 @@
 #include "live/playback.h"
 
 #include "base/error.h"
-#include "live/source.h"
-#include "live/sources/link_tally.h"
+#include "live/sources.h"
+#include "live/sources/message_readers.h"
 #include "telemetry/binary_log.h"
 #include "telemetry/data_file.h"
 
 #include <algorithm>
+#include <memory>
 #include <thread>
 #include <utility>
 
@@ -18,6 +19,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
+constexpr const char* no_time = "they are no messages with a time";
 constexpr std::chrono::milliseconds max_wait{50};  // until somebody asks whether to stop
 
 /// Waits in short steps; false: it was stopped.
@@ -30,37 +32,28 @@ bool wait_for(Clock::time_point then, PlaybackTarget& target, const std::functio
     }
 }
 
-/// When a message is due: [s] of the log's time since its first.
-class LogClock {
-  public:
-    /// Returns the time since the first message that it was told of.
-    double advance_to(double time_s, PlaybackReport& report) {
-        const double step_s = last_s_ ? std::max(0.0, time_s - *last_s_) : 0.0;
-        if (step_s > max_played_gap_s) ++report.shortened_gaps;
-        report.log_s += std::min(step_s, max_played_gap_s);
-        last_s_ = time_s;
-        return report.log_s;
-    }
-
-  private:
-    std::optional<double> last_s_;
-};
-
 /// One log on its way to a target.
-class Player {
+class Player : public MessageSink {
   public:
     Player(double speed, PlaybackTarget& target, const std::function<bool()>& stop)
         : speed_(speed), target_(target), stop_(stop) {}
 
     bool is_stopped() const { return report_.stopped; }
-    void leave_out(const char* reason, std::size_t times) {
-        if (times > 0) report_.left_out[reason] += times;
+    void push(IncomingMessage message) override {
+        if (!message.time_s) return count(no_time, 1);
+        play({*message.time_s, fmt::to_string(*message.time_s), message.text});
+    }
+    void count(std::string_view reason, std::size_t times) override {
+        if (times > 0 && !report_.stopped) report_.left_out[std::string(reason)] += times;
     }
     /// Waits until the message is due, and sends it.
     void play(const PlayedMessage& message) {
         if (report_.stopped) return;
-        const auto due = begin_ + std::chrono::duration_cast<Clock::duration>(
-                                      Seconds(clock_.advance_to(message.time_s, report_) / speed_));
+        const double step_s = last_s_ ? std::max(0.0, message.time_s - *last_s_) : 0.0;
+        if (step_s > max_played_gap_s) ++report_.shortened_gaps;
+        report_.log_s += std::min(step_s, max_played_gap_s);
+        last_s_ = message.time_s;
+        const auto due = begin_ + std::chrono::duration_cast<Clock::duration>(Seconds(report_.log_s / speed_));
         report_.stopped = !wait_for(due, target_, stop_);
         if (report_.stopped) return;
         report_.max_delay_s = std::max(report_.max_delay_s, Seconds(Clock::now() - due).count());
@@ -81,7 +74,7 @@ class Player {
     PlaybackTarget& target_;
     const std::function<bool()>& stop_;
     PlaybackReport report_;
-    LogClock clock_;
+    std::optional<double> last_s_;  ///< of the message before, on the log's clock
     Clock::time_point begin_ = Clock::now();
 };
 
@@ -93,29 +86,21 @@ void play_text(std::string_view text, Player& player) {
         if (const auto message = message_of_line(line)) {
             player.play({*message->time_s, line.substr(0, line.find(' ')), message->text});
         } else {
-            player.leave_out("they are no messages with a time", 1);
+            player.count(no_time, 1);
         }
     }
 }
 
 /// Throws InputError where its messages have other lengths than they are defined with.
 void play_binary(const telemetry::BinaryLog& log, Player& player) {
-    telemetry::LinkDecoder decoder(*log.messages, log.framing, link_version(log));
-    const auto sink = [&](const telemetry::LinkMessage& message) {
-        if (message.class_id != telemetry::MessageDictionary::telemetry_class) return player.leave_out(other_class, 1);
-        if (!message.time_s) return player.leave_out("they are no messages with a time", 1);
-        player.play({*message.time_s, fmt::to_string(*message.time_s), message.text});
-    };
+    LinkReader reader(player, std::make_shared<const telemetry::MessageDictionary>(*log.messages), log.framing,
+                      link_version(log));
     constexpr std::size_t piece = 4096;
-    for (auto rest = log.bytes; !rest.empty() && !player.is_stopped();
-         rest.remove_prefix(std::min(piece, rest.size()))) {
-        decoder.push(rest.substr(0, piece), sink);
-    }
+    for (auto rest = log.bytes; !rest.empty() && !player.is_stopped(); rest.remove_prefix(std::min(piece, rest.size())))
+        reader.push(rest.substr(0, piece));
     if (player.is_stopped()) return;
-    decoder.flush(sink);
-    require_fitting(decoder.counts(), log);
-    report_unusable(decoder.counts(), {},
-                    [&](const char* reason, std::size_t times) { player.leave_out(reason, times); });
+    reader.flush();
+    require_fitting(reader.counts(), log);
 }
 
 /// What was sent gets out, if it is fetched.

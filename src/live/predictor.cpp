@@ -3,8 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "live/live_flight.h"
-#include "live/prediction_basis.h"
-#include "live/state/waiting_input.h"
+#include "live/prediction.h"
 #include "mission/mission_file.h"
 #include "telemetry/link_decoder.h"
 #include "telemetry/log_configuration.h"
@@ -12,7 +11,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <exception>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -23,7 +25,7 @@ namespace {
 
 constexpr std::string_view no_memory = "there is not enough memory";
 
-/// What samples are written as.
+/// The messages of samples.
 telemetry::LogConfiguration sample_configuration() {
     const auto definition = [](const char* name, std::vector<telemetry::FieldDefinition> fields) {
         return std::pair{std::string(name), telemetry::MessageDefinition{name, std::move(fields), "samples"}};
@@ -138,6 +140,61 @@ ScheduleState decision_of(const LiveDecision& of) {
     return decision;
 }
 
+/// Input since the last update, in memory that is allocated once.
+class InputBuffer {
+  public:
+    enum class Kind : std::uint8_t { line, message, frames, sample };
+
+    explicit InputBuffer(std::size_t max_bytes) : bytes_(max_bytes) {}
+
+    /// False where it does not fit.
+    bool push(Kind kind, double time_s, std::string_view bytes) {
+        const Head head{time_s, bytes.size(), kind};
+        if (bytes.size() > bytes_.size() || used_ + sizeof(head) > bytes_.size() - bytes.size()) return false;
+        std::memcpy(bytes_.data() + used_, &head, sizeof(head));
+        if (!bytes.empty()) std::memcpy(bytes_.data() + used_ + sizeof(head), bytes.data(), bytes.size());
+        used_ += sizeof(head) + bytes.size();
+        return true;
+    }
+
+    bool push(const Sample& sample) {
+        char bytes[sizeof(Sample)];
+        std::memcpy(bytes, &sample, sizeof(sample));
+        return push(Kind::sample, sample.time_s, {bytes, sizeof(bytes)});
+    }
+
+    static Sample sample_of(std::string_view bytes) {
+        Sample sample;
+        std::memcpy(&sample, bytes.data(), sizeof(sample));
+        return sample;
+    }
+
+    /// Hands out all of it, in its order, and is empty.
+    template <typename Visit>
+    void take(const Visit& visit) {
+        const auto end = used_;
+        used_ = 0;
+        for (std::size_t at = 0; at < end;) {
+            Head head;
+            std::memcpy(&head, bytes_.data() + at, sizeof(head));
+            at += sizeof(head);
+            visit(head.kind, head.time_s, std::string_view(bytes_.data() + at, head.size));
+            at += head.size;
+        }
+    }
+
+  private:
+    struct Head {
+        double time_s = 0.0;
+        std::size_t size = 0;
+        Kind kind = Kind::line;
+    };
+    static_assert(std::is_trivially_copyable_v<Sample> && std::is_trivially_copyable_v<Head>);
+
+    std::vector<char> bytes_;
+    std::size_t used_ = 0;
+};
+
 }  // namespace
 
 class Predictor::State {
@@ -193,22 +250,23 @@ class Predictor::State {
 };
 
 void Predictor::State::receive(const Sample& sample) {
-    const auto number = [](double value) { return std::isfinite(value) ? fmt::format("{}", value) : std::string("-"); };
-    const auto any = [](auto... values) { return (std::isfinite(values) || ...); };
-    const auto send = [&](std::string text) { flight_.receive({sample.time_s, std::move(text)}, sample.time_s); };
-    if (any(sample.voltage_v, sample.current_a, sample.power_w, sample.charge_ah, sample.throttle_percent)) {
-        send(fmt::format("1 ENERGY {} {} {} {} {}", number(sample.throttle_percent), number(sample.voltage_v),
-                         number(sample.current_a), number(sample.power_w), number(sample.charge_ah)));
-    }
-    if (any(sample.altitude_m, sample.climb_m_per_s))
-        send(fmt::format("1 ESTIMATOR {} {}", number(sample.altitude_m), number(sample.climb_m_per_s)));
-    if (any(sample.airspeed_m_per_s)) send(fmt::format("1 AIRSPEED {}", sample.airspeed_m_per_s));
-    if (any(sample.bank_deg)) send(fmt::format("1 ATTITUDE {}", sample.bank_deg));
+    const auto send = [&](const char* message, std::vector<double> values) {
+        for (auto& value : values)
+            if (!std::isfinite(value)) value = Sample::unknown;
+        const auto is_known = [](double value) { return !std::isnan(value); };
+        if (std::ranges::any_of(values, is_known))
+            flight_.receive({sample.time_s, message, false, std::move(values)}, sample.time_s);
+    };
+    send("1 ENERGY", {sample.throttle_percent, sample.voltage_v, sample.current_a, sample.power_w, sample.charge_ah});
+    send("1 ESTIMATOR", {sample.altitude_m, sample.climb_m_per_s});
+    send("1 AIRSPEED", {sample.airspeed_m_per_s});
+    send("1 ATTITUDE", {sample.bank_deg});
 }
 
 void Predictor::State::receive(const telemetry::LinkMessage& message, double time_s) {
     if (message.class_id != telemetry::MessageDictionary::telemetry_class) return;
-    flight_.receive({message.time_s, std::string(message.text)}, time_s);
+    flight_.receive({message.time_s, std::string(message.text), false, {message.values.begin(), message.values.end()}},
+                    time_s);
 }
 
 void Predictor::State::ingest() {
@@ -219,8 +277,8 @@ void Predictor::State::ingest() {
         if (kind == Kind::frames) {
             return decoder_->push(bytes, [&](const telemetry::LinkMessage& message) { receive(message, time_s); });
         }
-        const auto message = message_of_line(bytes);
-        if (message) return flight_.receive(*message, 0.0);
+        auto message = message_of_line(bytes);
+        if (message) return flight_.receive(std::move(*message), 0.0);
         ++not_lines_;
     });
 }

@@ -4,6 +4,7 @@
 #include "telemetry/binary/frame_clock.h"
 #include "telemetry/binary/frame_scanner.h"
 #include "telemetry/binary/wire_value.h"
+#include "telemetry/columns/message_plan.h"
 
 #include <algorithm>
 #include <array>
@@ -13,6 +14,7 @@
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 namespace flightwatt::telemetry {
 namespace {
@@ -97,6 +99,21 @@ void append_message_text(const FoundFrame& found, std::string& text) {
     }
 }
 
+/// The values of its fields; NaN for what is no single finite number.
+void read_message_values(const FoundFrame& found, std::vector<double>& values) {
+    values.clear();
+    const char* p = found.fields.data();
+    for (const auto& field : found.message->fields) {
+        std::size_t elements = field.elements;
+        if (field.count == WireCount::counted) elements = wire_number<std::uint8_t>(p++);
+        int decimals = 4;  // often enough
+        const bool is_number = elements == 1 && field.type != WireType::text;
+        const double value = is_number ? wire_value(field.type, p, decimals) : std::nan("");
+        values.push_back(std::isfinite(value) ? value : std::nan(""));
+        p += elements * size_of(field.type);
+    }
+}
+
 /// So many bytes are looked at in one go.
 constexpr std::size_t step_bytes = 4096;
 /// So many may tell no framing before the first half of them is given up.
@@ -168,7 +185,9 @@ struct LinkDecoder::State {
             ++counts.messages;
             text.clear();
             append_message_text(found, text);
-            LinkMessage message{found.sender, found.class_id, found.message->definition.name, std::nullopt, text};
+            read_message_values(found, values);
+            LinkMessage message{found.sender, found.class_id, found.message->definition.name,
+                                std::nullopt, text,           values};
             message.time_s = counts.framing == Framing::card ? clock.time_s(frame.time_100us) : time.time_s(found);
             sink(message);
         }
@@ -204,6 +223,7 @@ struct LinkDecoder::State {
     LinkTime time;
     std::string buffer;
     std::string text;
+    std::vector<double> values;
     LinkCounts counts;
 };
 
@@ -213,6 +233,7 @@ LinkDecoder::LinkDecoder(MessageDictionary dictionary, std::optional<Framing> fr
     constexpr std::size_t max_text = 4096;
     state_->buffer.reserve(step_bytes + max_undecided_bytes);
     state_->text.reserve(max_text);
+    state_->values.reserve(max_fields);
     state_->counts.version = version;
     if (framing) state_->use_framing(*framing);
 }

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -31,8 +32,9 @@ struct LinkMessage {
     std::uint8_t sender = 0;
     std::uint8_t class_id = MessageDictionary::telemetry_class;
     std::string_view name;
-    std::optional<double> time_s;  ///< of card frames, and of links with TIMESTAMP messages between
-    std::string_view text;         ///< a .data line without its time and line break: "20 ENERGY 57 11.62 1.64"
+    std::optional<double> time_s;         ///< of card frames, and of links with TIMESTAMP messages between
+    std::string_view text;                ///< a .data line without its time and line break: "20 ENERGY 57 11.62 1.64"
+    std::span<const double> values = {};  ///< of its fields; NaN for what is no single finite number
 };
 
 /// What a decoder saw. Each byte is one of a frame, skipped, zero or pending.

@@ -2,11 +2,14 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "telemetry/columns/message_plan.h"
 #include "telemetry/text/line_scanner.h"
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -56,6 +59,72 @@ std::vector<std::pair<std::string, std::size_t>> count_messages(std::string_view
     std::vector<std::pair<std::string, std::size_t>> census(names.begin(), names.end());
     std::stable_sort(census.begin(), census.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
     return census;
+}
+
+/// A wanted message, and its last row.
+struct MessageDecoder::Message {
+    DecodePlan plan;
+    MessageTable row;
+};
+
+MessageDecoder::MessageDecoder(const std::optional<LogConfiguration>& configuration,
+                               const std::vector<MessageRequest>& wanted) {
+    messages_.reserve(wanted.size());
+    for (const auto& request : wanted) messages_.push_back({make_decode_plan(request, configuration), {}});
+}
+
+MessageDecoder::~MessageDecoder() = default;
+
+void MessageDecoder::restart() {
+    assumed_.clear();
+    for (auto& message : messages_) {
+        message.plan.definition = nullptr;
+        message.plan.targets.clear();
+        message.plan.units.clear();
+    }
+}
+
+const MessageTable* MessageDecoder::decode(double time_s, std::string_view message, std::span<const double> values) {
+    if (message.ends_with('\r')) message.remove_suffix(1);
+    words_.clear();
+    for (auto rest = message; !rest.empty();) {
+        words_.push_back(rest.substr(0, rest.find(' ')));
+        rest.remove_prefix(std::min(words_.back().size() + 1, rest.size()));
+    }
+    if (words_.empty()) {
+        ++skipped_["not a message (TIME SENDER NAME ...)"];
+        return nullptr;
+    }
+    const auto found = std::ranges::find(messages_, words_.front(),
+                                         [](const auto& of) -> std::string_view { return of.plan.request.message; });
+    if (found == messages_.end()) return nullptr;
+    auto& plan = found->plan;
+    auto& row = found->row;
+    const auto skip = [&](SkipReason reason, std::size_t field = 0) {
+        ++skipped_[describe_skipped(reason, plan, field)];
+    };
+    const auto count = values.empty() ? std::min(words_.size() - 1, max_fields) : values.size();
+    if (plan.definition == nullptr && choose_definition(plan, count)) {
+        row = empty_table(plan);
+        row.time_s.resize(1);
+        for (auto& column : row.columns) column.values.resize(1);
+        if (auto text = assumption_of(plan); !text.empty()) assumed_.push_back({std::move(text), time_s});
+    }
+    if (plan.definition == nullptr || count != plan.definition->fields.size()) {
+        skip(plan.candidates.empty() ? SkipReason::unknown_message : SkipReason::other_field_count);
+        return nullptr;
+    }
+    row.time_s.front() = time_s;
+    for (std::size_t i = 0; i < plan.targets.size(); ++i) {
+        const auto& target = plan.targets[i];
+        const auto& word = words_[std::min(target.field + 1, words_.size() - 1)];
+        const auto element = target.is_first_element ? word.substr(0, word.find(',')) : word;
+        const bool is_text = values.empty() || target.is_first_element;
+        const double number = is_text ? number_or_nan(element) : values[target.field];
+        if (std::isnan(number)) skip(SkipReason::not_a_number, target.field);
+        row.columns[i].values.front() = number * target.factor;
+    }
+    return &row;
 }
 
 }  // namespace flightwatt::telemetry

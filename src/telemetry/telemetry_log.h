@@ -6,8 +6,11 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace flightwatt::telemetry {
@@ -68,6 +71,36 @@ TelemetryLog read_telemetry(std::string_view text, const std::filesystem::path& 
 TelemetryLog parse_telemetry(std::string_view text, const std::filesystem::path& data_file,
                              std::optional<LogConfiguration> configuration, const std::vector<MessageRequest>& wanted,
                              std::size_t parts = 0);
+
+/// Single messages to rows of a log's tables, as they come in: the same values that reading a whole log gives.
+class MessageDecoder {
+  public:
+    using Skipped = std::map<std::string, std::size_t, std::less<>>;
+
+    MessageDecoder(const std::optional<LogConfiguration>& configuration, const std::vector<MessageRequest>& wanted);
+    ~MessageDecoder();
+    MessageDecoder(const MessageDecoder&) = delete;
+    MessageDecoder& operator=(const MessageDecoder&) = delete;
+
+    /// Takes "ENERGY 57 11.62 1.64". Where `values` of its fields are given (NaN for what is no single number), of the
+    /// text only the name and arrays count. The table has one row and is valid until the next call; nullptr for a
+    /// message that is not wanted, or is not usable and counted.
+    const MessageTable* decode(double time_s, std::string_view message, std::span<const double> values = {});
+    /// Another log begins: without a .log its messages may have other built-in definitions.
+    void restart();
+
+    /// Messages and values that could not be used, by reason.
+    const Skipped& skipped() const { return skipped_; }
+    const std::vector<AssumedDefinition>& assumed_definitions() const { return assumed_; }
+
+  private:
+    struct Message;
+
+    std::vector<Message> messages_;
+    std::vector<std::string_view> words_;  ///< of the last message: its memory is used again
+    Skipped skipped_;
+    std::vector<AssumedDefinition> assumed_;
+};
 
 /// Names of the messages in a .data text, with their counts, most frequent first: for explaining what a log
 /// holds when it lacks what is wanted. Of more than a thousand names, the first thousand.

@@ -5,7 +5,7 @@
 // processor; every 30 s a look judges the whole record, and with --decide one a slot plans.
 
 #include "live/live_flight.h"
-#include "live/prediction_basis.h"
+#include "live/prediction.h"
 #include "live/turn_home.h"
 #include "mission/mission_file.h"
 #include "mission/remaining_path.h"

@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "helpers/free_port.h"
 #include "helpers/running_program.h"
-#include "live/serve/request_rules.h"
 
 #include <cstdint>
 #include <memory>
@@ -165,14 +164,17 @@ TEST(PageServer, CanTakeItsPortAgainAtOnce) {
     }
 }
 
-TEST(RequestRules, KnowTheirOwnHosts) {
+TEST_F(PageServerTest, KnowsItsOwnHosts) {
+    const auto status_for = [this](const std::string& host) {
+        return answer_to("GET /state", "Host: " + host + "\r\n").substr(0, 12);
+    };
     for (const auto* own :
          {"localhost", "LocalHost:8080", "127.0.0.1", "127.0.0.1:8080", "[::1]", "[::1]:8080", "192.168.1.7:80"}) {
-        EXPECT_TRUE(is_own_host(own)) << own;
+        EXPECT_EQ(status_for(own), "HTTP/1.1 200") << own;
     }
     for (const auto* other : {"", "evil.example", "localhost.evil.example", "127.0.0.1.evil.example",
                               "localhost:", "localhost:x", "[::1", ":80"}) {
-        EXPECT_FALSE(is_own_host(other)) << other;
+        EXPECT_EQ(status_for(other), "HTTP/1.1 403") << other;
     }
 }
 

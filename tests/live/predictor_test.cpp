@@ -4,7 +4,7 @@
 #include "helpers/sample_logs.h"
 #include "helpers/test_paths.h"
 #include "live/live_flight.h"
-#include "live/prediction_basis.h"
+#include "live/prediction.h"
 #include "mission/mission_file.h"
 #include "telemetry/link_encoder.h"
 

@@ -197,5 +197,17 @@ TEST(BinaryLogSource, FollowsACardThroughItsRoomAndAnotherThatTakesItsName) {
 
 TEST(IvySource, IsRefusedForWhatIsNoBus) { EXPECT_THROW(open_ivy_bus("somewhere"), UsageError); }
 
+TEST(Source, ALineIsATimeAndAMessage) {
+    const auto message = message_of_line("335.149 20 ENERGY 69 11.7 3.1 36.6 0.03 0.31");
+    ASSERT_TRUE(message);
+    EXPECT_EQ(message->time_s, 335.149);
+    EXPECT_EQ(message->text, "20 ENERGY 69 11.7 3.1 36.6 0.03 0.31");
+}
+
+TEST(Source, WhatHasNoTimeIsNoMessage) {
+    for (const auto* line : {"", " ", "335.149", "335.149 ", "nan 20 PONG", "inf 20 PONG", "12abc 20 PONG", "<html>"})
+        EXPECT_FALSE(message_of_line(line)) << line;
+}
+
 }  // namespace
 }  // namespace flightwatt::live

@@ -1,6 +1,7 @@
 #include "telemetry/link_decoder.h"
 
 #include "base/atomic_file.h"
+#include "base/number.h"
 #include "helpers/binary_definitions.h"
 #include "helpers/binary_frames.h"
 #include "helpers/test_paths.h"
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -82,6 +84,30 @@ TEST(LinkDecoder, DecodesEveryTypeInEveryFramingAndVersion) {
         EXPECT_EQ(decoded(framed(Framing::xbee, version)), messages) << to_string(version);
         EXPECT_EQ(decoded(framed(Framing::xbee, version, true)), messages) << to_string(version);
     }
+}
+
+/// The numbers that the words of its text are; NaN for arrays, texts and what is not finite.
+TEST(LinkDecoder, GivesTheValuesOfFields) {
+    LinkDecoder decoder(binary_dictionary(), Framing::link, LinkVersion::v2);
+    std::size_t count = 0;
+    const auto sink = [&](const LinkMessage& message) {
+        ++count;
+        if (message.name == "ARRAYS") {
+            for (const double value : message.values) EXPECT_TRUE(std::isnan(value));
+            return;
+        }
+        std::istringstream words{std::string(message.text)};
+        std::string word;
+        words >> word >> word;
+        for (const double value : message.values) {
+            words >> word;
+            EXPECT_THAT(value, testing::NanSensitiveDoubleEq(number_or_nan(word))) << message.text;
+        }
+        EXPECT_FALSE(words >> word) << message.text;
+    };
+    decoder.push(framed(Framing::link, LinkVersion::v2), sink);
+    decoder.flush(sink);
+    EXPECT_EQ(count, messages.size());
 }
 
 TEST(LinkDecoder, TellsFramingAndVersion) {

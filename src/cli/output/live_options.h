@@ -4,7 +4,7 @@
 #include "flight/flight_series.h"
 #include "flight/segmentation.h"
 #include "live/prediction.h"
-#include "live/source.h"
+#include "live/sources.h"
 #include "mission/mission.h"
 
 #include <cstddef>

@@ -120,6 +120,18 @@ std::vector<bool> gliding_points(const ResampledFlight& grid, double idle_percen
     return gliding;
 }
 
+/// The marked points that follow each other, none across a jump of the altitude.
+std::vector<GridSpan> spans_of(const ResampledFlight& grid, const std::vector<bool>& marked) {
+    std::vector<GridSpan> spans;
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+        if (!marked[i]) continue;
+        const bool begins_piece = std::ranges::binary_search(grid.pieces, i, {}, &GridSpan::begin);
+        if (spans.empty() || spans.back().end != i || begins_piece) spans.push_back({i, i});
+        spans.back().end = i + 1;
+    }
+    return spans;
+}
+
 /// How many points the grid has. Throws InputError where its times are none.
 std::size_t size_until(const FlightSeries& series, const ResampledFlight& grid, double end_s) {
     const double span_s = end_s - grid.start_s;
@@ -247,13 +259,7 @@ std::vector<GridSpan> find_rests(const ResampledFlight& grid, const Segmentation
             mark(piece.end - edge, piece.end);
     }
     const auto gliding = gliding_points(grid, idle_percent, options.flight_height_m);
-    std::vector<GridSpan> rests;
-    for (std::size_t i = 0; i < grid.size(); ++i) {
-        if (!resting[i]) continue;
-        const bool begins_piece = std::ranges::binary_search(grid.pieces, i, {}, &GridSpan::begin);
-        if (rests.empty() || rests.back().end != i || begins_piece) rests.push_back({i, i});
-        rests.back().end = i + 1;
-    }
+    auto rests = spans_of(grid, resting);
     std::erase_if(rests, [&](const GridSpan& rest) { return gliding[rest.end - 1]; });
     return rests;
 }

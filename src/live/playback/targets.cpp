@@ -2,9 +2,8 @@
 #include "base/number.h"
 #include "base/overwrite_guard.h"
 #include "live/playback.h"
-#include "live/sources/host_and_port.h"
+#include "live/sources/endpoints.h"
 #include "live/sources/ivy_agent.h"
-#include "live/sources/serial_line.h"
 #include "telemetry/link_encoder.h"
 
 #include <cerrno>

@@ -1,16 +1,21 @@
 #include "live/sources/ivy_agent.h"
 
 #include "base/error.h"
-#include "live/sources/close_on_exec.h"
-#include "live/sources/ivy_peer.h"
+#include "live/sources/endpoints.h"
+#include "live/sources/message_readers.h"
 
 #include <algorithm>
+#include <limits>
+#include <map>
 #include <random>
 #include <utility>
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/ip/multicast.hpp>
+#include <boost/asio/write.hpp>
 #include <fmt/format.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <sys/socket.h>
 
 namespace flightwatt::live {
@@ -24,7 +29,6 @@ using boost::system::error_code;
 /// An announcement is a single datagram, which may be lost: while nobody has answered it is said again. Never to those
 /// who have: Ivy's C library would connect once more.
 constexpr std::chrono::seconds announce_again{1};
-constexpr std::size_t max_peers = 64;
 
 using ReusePort = asio::detail::socket_option::boolean<SOL_SOCKET, SO_REUSEPORT>;
 
@@ -57,7 +61,210 @@ std::string new_id(std::uint16_t port) {
     return fmt::format("flightwatt:{:08x}{:08x}:{}", random(), random(), port);
 }
 
+/// An agent whose machine is gone says nothing any more: the system finds out within a minute.
+void keep_alive(tcp::socket& socket) {
+    error_code ignored;
+    socket.set_option(asio::socket_base::keep_alive(true), ignored);
+    socket.set_option(asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPIDLE>(20), ignored);
+    socket.set_option(asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPINTVL>(10), ignored);
+    socket.set_option(asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPCNT>(3), ignored);
+    socket.set_option(asio::ip::tcp::no_delay(true), ignored);
+}
+
 }  // namespace
+
+/// The connection with another agent.
+class IvyAgent::Peer : public std::enable_shared_from_this<Peer> {
+  public:
+    Peer(IvyAgent& agent, tcp::socket socket) : agent_(agent), socket_(std::move(socket)) {}
+
+    /// Connects to an agent that was announced.
+    void connect(const tcp::endpoint& to, std::string announced_id) {
+        address_ = to.address();
+        service_port_ = to.port();
+        announced_id_ = std::move(announced_id);
+        socket_.async_connect(to, [self = shared_from_this()](const error_code& error) {
+            if (self->closed_) return;
+            if (error) return self->lose();
+            self->begin();
+        });
+    }
+
+    /// The connection stands: sends our subscriptions, and listens.
+    void begin() {
+        error_code error;
+        const auto remote = socket_.remote_endpoint(error);
+        if (error) return lose();
+        address_ = remote.address();
+        begun_ = true;
+        keep_alive(socket_);
+        close_on_exec(socket_);
+        auto hello = to_ivy_line(IvyType::start, agent_.port_, agent_.setup_.name);
+        int id = 0;
+        for (const auto& subscription : agent_.setup_.subscriptions)
+            hello += to_ivy_line(IvyType::subscribe, id++, subscription);
+        write(hello + to_ivy_line(IvyType::end_of_subscriptions, 0));
+        listen();
+    }
+
+    void send(std::string_view message) {
+        if (!ready_) return;
+        for (const auto& [id, regexp] : subscriptions_) {
+            const auto groups = regexp.groups_in(message);
+            if (!groups) continue;
+            std::string arguments;
+            for (const auto group : *groups) arguments.append(group).push_back('\003');
+            write(to_ivy_line(IvyType::message, id, arguments));
+        }
+    }
+
+    /// This connection is one too many: no message is sent on it any more. It stays until the other end has said
+    /// good-bye, too, so that what either has sent before still arrives.
+    void retire() {
+        retired_ = true;
+        ready_ = false;
+        write(to_ivy_line(IvyType::bye, 0));
+    }
+
+    /// With a good-bye where it can be sent.
+    void close() {
+        if (std::exchange(closed_, true)) return;
+        error_code ignored;
+        if (begun_ && writing_.empty()) {
+            socket_.non_blocking(true, ignored);
+            socket_.write_some(asio::buffer(to_ivy_line(IvyType::bye, 0)), ignored);
+        }
+        socket_.shutdown(tcp::socket::shutdown_both, ignored);
+        socket_.close(ignored);
+    }
+
+    /// Whether this is the connection with the agent that takes connections there; `id`: as it was announced.
+    bool is_of(const IvyAnnouncement& announcement, const asio::ip::address& from) const {
+        return address_ == from && service_port_ == announcement.port &&
+               (announced_id_.empty() || announced_id_ == announcement.id);
+    }
+    bool is_duplicate_of(const Peer& other) const {
+        return this != &other && address_ == other.address_ && service_port_ == other.service_port_;
+    }
+    bool ready() const { return ready_; }
+    std::size_t waiting_bytes() const { return outgoing_.size() + writing_.size(); }
+    /// The same number at both ends: of two connections between two agents, the one of the higher is retired.
+    std::uint16_t higher_port() const {
+        error_code ignored;
+        return std::max(socket_.local_endpoint(ignored).port(), socket_.remote_endpoint(ignored).port());
+    }
+
+  private:
+    void listen() {
+        socket_.async_read_some(asio::buffer(received_),
+                                [self = shared_from_this()](const error_code& error, std::size_t n) {
+                                    if (!self->closed_) self->handle({self->received_.data(), n});
+                                    if (self->closed_) return;
+                                    if (error) return self->lose();
+                                    self->listen();
+                                });
+    }
+
+    void handle(std::string_view bytes) {
+        lines_.clear();
+        for (auto overlong = buffer_.push(bytes, lines_); overlong > 0; --overlong)
+            agent_.setup_.on_unusable("lines longer than any message");
+        for (const auto& line : lines_) {
+            if (closed_) return;
+            if (line.empty()) continue;
+            if (const auto parsed = parse_ivy_line(line)) {
+                handle(*parsed);
+            } else {
+                agent_.setup_.on_unusable("lines that are not of the Ivy protocol");
+            }
+        }
+    }
+
+    void handle(const IvyLine& line) {
+        const auto& setup = agent_.setup_;
+        switch (static_cast<IvyType>(line.type)) {
+            case IvyType::start:
+                if (line.id > 0 && line.id <= std::numeric_limits<std::uint16_t>::max())
+                    service_port_ = static_cast<std::uint16_t>(line.id);
+                return;
+            case IvyType::subscribe:
+                return subscribe(line);
+            case IvyType::unsubscribe:
+                subscriptions_.erase(line.id);
+                return;
+            case IvyType::end_of_subscriptions:
+                if (retired_) return;
+                ready_ = true;
+                return agent_.retire_duplicate(*this);
+            case IvyType::message:
+                return setup.on_message(groups_of(line.arguments));
+            case IvyType::ping:
+                return write(to_ivy_line(IvyType::pong, line.id));
+            case IvyType::bye:
+                other_said_bye_ = true;
+                return retired_ && waiting_bytes() > 0 ? void() : lose();
+            case IvyType::error:
+                return setup.on_unusable("errors that other agents report");
+            case IvyType::die:
+                return setup.on_unusable("requests to end, which are not followed");
+            case IvyType::direct:
+                return setup.on_unusable("messages to this agent alone, of which none is telemetry");
+            case IvyType::pong:
+                return;
+        }
+        setup.on_unusable("lines of a type that the Ivy protocol does not know");
+    }
+
+    void subscribe(const IvyLine& line) {
+        constexpr std::size_t max_subscriptions = 4096;  // of one agent; Paparazzi's have some dozens
+        if (!agent_.setup_.sends) return;
+        const auto regexp = PerlRegexp::compile(std::string(line.arguments));
+        if (!regexp) return write(to_ivy_line(IvyType::error, line.id, "no regular expression"));
+        if (subscriptions_.size() >= max_subscriptions && !subscriptions_.contains(line.id)) return;
+        subscriptions_.insert_or_assign(line.id, *regexp);
+    }
+
+    void write(std::string_view text) {
+        constexpr std::size_t max_waiting_bytes = 4'000'000;
+        if (closed_ || !begun_) return;
+        if (outgoing_.size() + text.size() > max_waiting_bytes)
+            return agent_.setup_.on_unusable("messages too many to send");
+        outgoing_ += text;
+        if (writing_.empty()) write_next();
+    }
+
+    void write_next() {
+        std::swap(writing_, outgoing_);
+        if (writing_.empty()) return other_said_bye_ ? lose() : void();
+        asio::async_write(socket_, asio::buffer(writing_),
+                          [self = shared_from_this()](const error_code& error, std::size_t) {
+                              self->writing_.clear();
+                              if (self->closed_) return;
+                              if (error) return self->lose();
+                              self->write_next();
+                          });
+    }
+
+    void lose() {
+        const auto self = shared_from_this();
+        const bool was_ready = ready_;
+        close();
+        if (was_ready) agent_.setup_.on_peer_lost();
+        agent_.peers_.remove(self);
+    }
+
+    IvyAgent& agent_;
+    tcp::socket socket_;
+    asio::ip::address address_;
+    std::string announced_id_;
+    std::uint16_t service_port_ = 0;  ///< 0: not known yet
+    bool begun_ = false, ready_ = false, retired_ = false, other_said_bye_ = false, closed_ = false;
+    std::array<char, 16'384> received_{};
+    LineBuffer buffer_;
+    std::vector<std::string> lines_;
+    std::map<int, PerlRegexp> subscriptions_;
+    std::string outgoing_, writing_;
+};
 
 IvyAgent::IvyAgent(asio::io_context& context, IvyAgentSetup setup)
     : context_(context),
@@ -134,22 +341,15 @@ void IvyAgent::listen_for_announcements() {
 
 void IvyAgent::handle_announcement(const IvyAnnouncement& announcement, const asio::ip::address& from) {
     if (announcement.id == id_ || (setup_.bus.is_local() && !from.is_loopback())) return;
-    const bool known = std::any_of(peers_.begin(), peers_.end(), [&](const auto& peer) {
-        const bool may_be = peer->announced_id().empty() || peer->announced_id() == announcement.id;
-        return may_be && peer->is_connected_to(from, announcement.port);
-    });
-    if (known) return;
-    if (const auto peer = add_peer()) peer->connect({from, announcement.port}, announcement.id);
+    if (std::ranges::any_of(peers_, [&](const auto& peer) { return peer->is_of(announcement, from); })) return;
+    if (const auto peer = add_peer(tcp::socket(context_))) peer->connect({from, announcement.port}, announcement.id);
 }
 
 void IvyAgent::accept() {
     acceptor_.async_accept([this](const error_code& error, tcp::socket socket) {
         if (stopped_) return;
         if (error) return accept_later();
-        if (const auto peer = add_peer()) {
-            peer->socket() = std::move(socket);
-            peer->begin();
-        }
+        if (const auto peer = add_peer(std::move(socket))) peer->begin();
         accept();
     });
 }
@@ -162,24 +362,20 @@ void IvyAgent::accept_later() {
     });
 }
 
-std::shared_ptr<IvyPeer> IvyAgent::add_peer() {
+std::shared_ptr<IvyAgent::Peer> IvyAgent::add_peer(tcp::socket socket) {
+    constexpr std::size_t max_peers = 64;
     if (peers_.size() >= max_peers) {
         setup_.on_unusable("agents too many to connect with");
         return nullptr;
     }
-    return peers_.emplace_back(std::make_shared<IvyPeer>(*this, tcp::socket(context_)));
-}
-
-void IvyAgent::remove(const IvyPeer& peer) {
-    peers_.remove_if([&](const auto& other) { return other.get() == &peer; });
+    return peers_.emplace_back(std::make_shared<Peer>(*this, std::move(socket)));
 }
 
 /// Two agents that announce themselves at the same time connect twice.
-void IvyAgent::retire_duplicate(IvyPeer& peer) {
+void IvyAgent::retire_duplicate(Peer& peer) {
     for (const auto& other : peers_) {
-        if (other.get() == &peer || !other->ready() || !other->is_connected_to(peer.address(), peer.service_port()))
-            continue;
-        return other->higher_port() > peer.higher_port() ? other->retire() : peer.retire();
+        if (other->ready() && other->is_duplicate_of(peer))
+            return other->higher_port() > peer.higher_port() ? other->retire() : peer.retire();
     }
 }
 
@@ -188,8 +384,7 @@ void IvyAgent::send(std::string_view message) {
 }
 
 std::size_t IvyAgent::ready_peers() const {
-    return static_cast<std::size_t>(
-        std::count_if(peers_.begin(), peers_.end(), [](const auto& peer) { return peer->ready(); }));
+    return static_cast<std::size_t>(std::ranges::count_if(peers_, [](const auto& peer) { return peer->ready(); }));
 }
 
 std::size_t IvyAgent::waiting_bytes() const {

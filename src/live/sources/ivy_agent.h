@@ -3,8 +3,8 @@
 #include "live/sources/ivy_protocol.h"
 
 #include <array>
-#include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <list>
 #include <memory>
@@ -18,8 +18,6 @@
 #include <boost/asio/steady_timer.hpp>
 
 namespace flightwatt::live {
-
-class IvyPeer;
 
 /// What an agent on an Ivy bus is and does.
 struct IvyAgentSetup {
@@ -60,7 +58,7 @@ class IvyAgent {
     std::uint16_t port() const { return port_; }
 
   private:
-    friend class IvyPeer;
+    class Peer;
 
     void announce();
     void announce_while_alone();
@@ -68,9 +66,8 @@ class IvyAgent {
     void handle_announcement(const IvyAnnouncement& announcement, const boost::asio::ip::address& from);
     void accept();
     void accept_later();
-    std::shared_ptr<IvyPeer> add_peer();
-    void remove(const IvyPeer& peer);
-    void retire_duplicate(IvyPeer& peer);
+    std::shared_ptr<Peer> add_peer(boost::asio::ip::tcp::socket socket);
+    void retire_duplicate(Peer& peer);
 
     boost::asio::io_context& context_;
     IvyAgentSetup setup_;
@@ -81,7 +78,7 @@ class IvyAgent {
     std::array<char, 4096> datagram_{};
     std::uint16_t port_ = 0;
     std::string id_;
-    std::list<std::shared_ptr<IvyPeer>> peers_;
+    std::list<std::shared_ptr<Peer>> peers_;
     bool stopped_ = false;
 };
 

@@ -1,35 +1,47 @@
 #pragma once
 
-#include "live/sources/ivy_agent.h"
-#include "live/sources/ivy_messages.h"
-#include "live/sources/receiving_source.h"
+#include "live/sources/message_readers.h"
 
 #include <cstddef>
+#include <map>
+#include <optional>
 #include <string>
-
-#include <boost/asio/steady_timer.hpp>
+#include <string_view>
+#include <vector>
 
 namespace flightwatt::live {
 
-/// Telemetry from an Ivy bus.
-class IvyReceiver : public Receiver {
+/// Telemetry out of the texts on an Ivy bus. An aircraft's messages are forwarded at once; they have no time.
+/// Paparazzi's log player sends "replay20 ENERGY ..." and after it "time20 13.9": this becomes the message with its
+/// time, which is forwarded with that time or, where none follows, by release(). While an aircraft itself is on the bus
+/// replays are ignored: there is one clock.
+class IvyMessages {
   public:
-    IvyReceiver(boost::asio::io_context& context, MessageQueue& queue, IvyBus bus);
+    explicit IvyMessages(MessageSink& sink) : sink_(sink) {}
 
-    std::string description() const override;
-    void start() override { agent_.start(); }
-    void stop() override;
+    void handle(std::string_view text);
+    /// Messages have waited long enough: no time follows.
+    void release();
+    bool has_pending() const;
+
+    /// How many times came.
+    std::size_t times() const { return times_; }
 
   private:
-    void heed(std::string_view said);
-    void release_soon();
+    struct Replay {
+        std::optional<double> time_s;  ///< the latest
+        std::vector<std::string> waiting;
+    };
 
-    MessageQueue& queue_;
-    IvyMessages messages_;
-    IvyAgent agent_;
-    boost::asio::steady_timer timer_;
-    std::size_t unheeded_replays_ = 0, no_messages_ = 0;
-    bool release_is_due_ = false;
+    void handle_time(std::string_view id, std::string_view text);
+    void forward(Replay& replay);
+    void count_malformed() { sink_.count("messages of a single word", 1); }
+
+    MessageSink& sink_;
+    std::map<std::string, Replay, std::less<>> replays_;  ///< by aircraft
+    std::optional<double> latest_time_s_;                 ///< of any replay
+    bool has_aircraft_ = false;                           ///< itself is on the bus
+    std::size_t times_ = 0;
 };
 
 }  // namespace flightwatt::live

@@ -3,7 +3,6 @@
 #include "flight/selected_track.h"
 #include "live/prediction.h"
 #include "live/state/path_filter.h"
-#include "live/state/path_grid.h"
 #include "mission/remaining_path.h"
 
 #include <cstddef>

@@ -1,16 +1,117 @@
 #pragma once
 
-#include "live/state/clock_filter.h"
-
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace flightwatt::live {
+
+/// Whether lines come in as fast as their clock goes, as over a link, and not a log at once or in bursts: over the last
+/// half a minute to a minute their times and their arrivals went on together.
+class ArrivalMonitor {
+  public:
+    static constexpr double window_s = 30.0;
+    static constexpr double max_spread_s = 3.0;
+
+    /// A line that is believed, both on clocks in seconds.
+    void add(double time_s, double arrival_s) {
+        const double lag_s = arrival_s - time_s;
+        if (!begin_s_ || time_s > *begin_s_ + window_s) {
+            before_ = begin_s_ ? std::optional(now_) : std::nullopt;
+            now_ = {lag_s, lag_s};
+            begin_s_ = time_s;
+        }
+        now_ = {std::min(now_.min_s, lag_s), std::max(now_.max_s, lag_s)};
+        arrival_s_ = arrival_s;
+    }
+
+    /// Of the last line; none where that is not known, or the two do not go together.
+    std::optional<double> last_arrival_s() const {
+        if (!before_) return std::nullopt;
+        const double spread_s = std::max(before_->max_s, now_.max_s) - std::min(before_->min_s, now_.min_s);
+        return spread_s < max_spread_s ? std::optional(arrival_s_) : std::nullopt;
+    }
+
+  private:
+    struct Lag {
+        double min_s = 0.0;
+        double max_s = 0.0;
+    };
+
+    std::optional<double> begin_s_;  ///< of the window that `now_` is of
+    Lag now_;
+    std::optional<Lag> before_;  ///< of the window before
+    double arrival_s_ = 0.0;
+};
+
+/// What to believe of the times that come in. A time more than 10 s ahead of the latest one, or a minute behind it,
+/// counts when four more behind it agree (a single one is a damaged line): forwards it is a gap, backwards the log or
+/// the aircraft began anew. Ten lines in a row more than 2 s behind the latest say that the clock went back: it goes on
+/// from where it was, unless within a minute a line is ahead by as much: then the lines only came out of order; or,
+/// where fewer than five lines had come near the latest, that the latest was damaged. Where lines arrive as fast as
+/// their clock goes, a clock that runs more than 10 s further ahead than the arrivals was set: it goes on after as long
+/// as nothing arrived.
+class ClockFilter {
+  public:
+    static constexpr double max_step_s = 60.0;
+    static constexpr double max_ahead_s = 10.0;
+    static constexpr std::size_t min_confirmations = 5;
+    static constexpr double late_s = 2.0;
+    static constexpr std::size_t late_lines = 10;
+
+    struct Line {
+        double time_s = 0.0;                   ///< when accepted: on a clock that never goes back
+        std::string text;                      ///< behind the time
+        std::optional<double> arrival_s = {};  ///< on a clock that is never set; none where it is of no use
+        std::vector<double> values = {};       ///< of the fields, where `text` has none
+    };
+
+    ClockFilter() = default;
+    /// Of a sender whose clock is thought to be near that time: further lines show whether it is.
+    explicit ClockFilter(double about_s) : started_(true), is_guess_(true), latest_s_(about_s) {}
+
+    /// Takes a line, and appends those that are believed now. True where the first of them belongs to a clock that
+    /// began anew.
+    bool push(Line line, std::vector<Line>& accepted);
+    /// Whether a line of that time would be late.
+    bool is_late(double time_s) const { return started_ && time_s + offset_s_ < latest_s_ - late_s; }
+    /// Nothing more will come: what was held ahead of the latest is believed.
+    void flush(std::vector<Line>& accepted);
+
+    std::size_t unconfirmed() const { return unconfirmed_; }
+    std::size_t steps_back() const { return steps_back_; }
+    /// [s] by which the clock was set ahead, in all.
+    double set_ahead_s() const { return set_ahead_s_; }
+    bool started() const { return started_; }
+    double latest_s() const { return latest_s_; }
+
+  private:
+    bool hold(Line line, std::vector<Line>& accepted);
+    void handle_late_line(Line& line);
+    void handle_recovery(Line& line);
+    void undo_step();
+    void accept_line(Line line, std::vector<Line>& accepted);
+
+    bool started_ = false;
+    bool is_guess_ = false;  ///< `latest_s_`, of no line
+    double latest_s_ = 0.0;
+    double offset_s_ = 0.0;
+    std::size_t late_ = 0;
+    std::size_t near_latest_ = 0;  ///< lines since it was reached that are not late
+    std::vector<Line> held_;
+    std::size_t unconfirmed_ = 0;
+    std::size_t steps_back_ = 0;
+    double stepped_back_s_ = 0.0;  ///< by the last step, as long as it may have been none
+    double stepped_at_s_ = 0.0;
+    ArrivalMonitor pace_;
+    double set_ahead_s_ = 0.0;
+};
 
 /// A clock for each sender: what is wrong with one says nothing of the others. One of them is followed, and its clock
 /// is the telemetry's.
@@ -22,9 +123,7 @@ class SenderClocks {
 
     /// Takes a line, and appends those that are believed now. Whether the clock of their sender began anew before them,
     /// or all did: `restarted` says that the source of the line began anew, so that no other lines have to agree.
-    /// `arrival_s`: as ClockFilter.
-    RestartScope push(double time_s, std::string text, bool restarted, std::vector<ClockFilter::Line>& believed,
-                      std::optional<double> arrival_s = {});
+    RestartScope push(ClockFilter::Line line, bool restarted, std::vector<ClockFilter::Line>& believed);
     /// Nothing more will come.
     void flush(std::vector<ClockFilter::Line>& believed);
 

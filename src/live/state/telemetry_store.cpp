@@ -1,12 +1,10 @@
 #include "live/state/telemetry_store.h"
 
-#include "base/error.h"
 #include "flight/telemetry_series.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <iterator>
 #include <set>
 
 #include <fmt/format.h>
@@ -45,12 +43,6 @@ std::vector<double> device_of(const telemetry::MessageTable& table, std::size_t 
     return device;
 }
 
-bool same_layout(const telemetry::MessageTable& a, const telemetry::MessageTable& b) {
-    return std::ranges::equal(a.columns, b.columns, [](const auto& left, const auto& right) {
-        return left.field == right.field && left.quantity == right.quantity;
-    });
-}
-
 /// Keeps the rows for which `keep` is true.
 void filter_rows(telemetry::MessageTable& table, const std::function<bool(std::size_t)>& keep) {
     std::size_t kept = 0;
@@ -68,84 +60,47 @@ void filter_rows(telemetry::MessageTable& table, const std::function<bool(std::s
 
 TelemetryStore::TelemetryStore(std::string flight, std::optional<telemetry::LogConfiguration> configuration,
                                TelemetryFilter wanted)
-    : wanted_(predicting_messages(wanted)) {
+    : decoder_(configuration, predicting_messages(wanted)) {
     log_.data_file = flight;
     log_.flight = std::move(flight);
     log_.configuration = std::move(configuration);
     if (!log_.configuration) return;
-    // It is handed on with every second's lines: without what is not asked for.
-    std::erase_if(log_.configuration->messages, [&](const auto& message) {
-        return std::ranges::find(wanted_, message.first, &telemetry::MessageRequest::message) == wanted_.end();
-    });
+    log_.configuration->messages.clear();  // its decoder has them
     for (auto& aircraft : log_.configuration->aircraft) aircraft.second.block_names.clear();
 }
 
-void TelemetryStore::add(std::string_view lines) {
-    telemetry::TelemetryLog part;
-    try {
-        part = telemetry::parse_telemetry(lines, log_.data_file, log_.configuration, wanted_);
-    } catch (const InputError&) {
-        ++skipped_["seconds with more senders than a network has"];
-        return;
-    }
-    for (const auto& skipped : part.skipped) skipped_[skipped.reason] += skipped.count();
-    for (auto& assumed : part.assumed_definitions) {
-        const auto is_known = [&](const auto& known) { return known.text == assumed.text; };
-        if (std::ranges::none_of(log_.assumed_definitions, is_known) && log_.assumed_definitions.size() < 100)
-            log_.assumed_definitions.push_back(std::move(assumed));
-    }
-    for (auto& sender : part.senders) {
-        if (only_ && sender.id != *only_) continue;
-        for (auto& table : sender.tables) append(sender.id, std::move(table));
-    }
+void TelemetryStore::add(double time_s, std::string_view message, std::span<const double> values) {
+    const auto sender = message.substr(0, message.find(' '));
+    message.remove_prefix(std::min(sender.size() + 1, message.size()));
+    const auto* row = decoder_.decode(time_s, message, values);
+    if (row != nullptr && (!only_ || sender == *only_)) append(std::string(sender), *row);
 }
 
-telemetry::SenderLog* TelemetryStore::sender_of(const std::string& id) {
-    const auto found = std::ranges::find(log_.senders, id, &telemetry::SenderLog::id);
-    if (found != log_.senders.end()) return &*found;
-    if (log_.senders.size() == max_senders) return nullptr;
-    log_.senders.push_back({id, {}});
-    return &log_.senders.back();
-}
-
-void TelemetryStore::append(const std::string& sender, telemetry::MessageTable&& rows) {
-    auto* of = sender_of(sender);
-    if (of == nullptr) {
-        ++skipped_[fmt::format("of more than {} senders", max_senders)];
-        return;
+void TelemetryStore::append(const std::string& sender, const telemetry::MessageTable& row) {
+    auto of = std::ranges::find(log_.senders, sender, &telemetry::SenderLog::id);
+    if (of == log_.senders.end()) {
+        if (log_.senders.size() == max_senders)
+            return void(++not_kept_[fmt::format("of more than {} senders", max_senders)]);
+        of = log_.senders.insert(of, {sender, {}});
     }
-    auto table = std::ranges::find(of->tables, rows.message, &telemetry::MessageTable::message);
+    auto& thinning = thinning_[{sender, row.message}];
+    auto device = device_of(row, 0);
+    if (thinning.rows_of.size() >= max_devices && !thinning.rows_of.contains(device))
+        return void(++not_kept_[fmt::format("{}: of more than {} devices", row.message, max_devices)]);
+    auto table = std::ranges::find(of->tables, row.message, &telemetry::MessageTable::message);
     if (table == of->tables.end()) {
-        auto empty = rows;
-        filter_rows(empty, [](std::size_t) { return false; });
-        of->tables.push_back(std::move(empty));
-        table = std::prev(of->tables.end());
+        table = of->tables.insert(table, row);
+        filter_rows(*table, [](std::size_t) { return false; });
     }
-    if (!same_layout(*table, rows)) {
-        skipped_[rows.message + ": another number of fields than before"] += rows.time_s.size();
-        return;
-    }
-    append_rows(*table, rows, thinning_[{sender, rows.message}]);
-}
-
-void TelemetryStore::append_rows(telemetry::MessageTable& table, const telemetry::MessageTable& rows,
-                                 Thinning& thinning) {
-    for (std::size_t row = 0; row < rows.time_s.size(); ++row) {
-        auto device = device_of(rows, row);
-        if (thinning.rows_of.size() >= max_devices && !thinning.rows_of.contains(device)) {
-            ++skipped_[fmt::format("{}: of more than {} devices", rows.message, max_devices)];
-            continue;
-        }
-        if (thinning.rows_of[std::move(device)]++ % thinning.stride != 0) continue;
-        table.time_s.push_back(rows.time_s[row]);
-        for (std::size_t c = 0; c < table.columns.size(); ++c)
-            table.columns[c].values.push_back(rows.columns[c].values[row]);
-    }
+    if (thinning.rows_of[std::move(device)]++ % thinning.stride != 0) return;
+    table->time_s.push_back(row.time_s.front());
+    for (std::size_t c = 0; c < table->columns.size(); ++c)
+        table->columns[c].values.push_back(row.columns[c].values.front());
 }
 
 void TelemetryStore::clear() {
     log_.senders.clear();
-    log_.assumed_definitions.clear();
+    decoder_.restart();
     thinning_.clear();
 }
 
@@ -192,10 +147,18 @@ std::size_t TelemetryStore::rows() const {
     return rows;
 }
 
+std::map<std::string, std::size_t> TelemetryStore::skipped() const {
+    auto skipped = not_kept_;
+    skipped.insert(decoder_.skipped().begin(), decoder_.skipped().end());
+    return skipped;
+}
+
 std::vector<std::string> TelemetryStore::senders() const { return flight::telemetry_senders(log_); }
 
 flight::FlightSeries TelemetryStore::series(const std::string& sender) const {
-    return flight::flight_series(log_, sender);
+    auto series = flight::flight_series(log_, sender);
+    series.assumed_definitions = decoder_.assumed_definitions();
+    return series;
 }
 
 std::map<std::string, std::size_t> TelemetryStore::thinned() const {

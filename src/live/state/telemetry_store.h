@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -19,8 +20,8 @@ struct TelemetryFilter {
     bool places = true;  ///< positions, which cost most to make
 };
 
-/// What was received of the messages that tell of energy, as columns, in bounded memory: what it keeps is dropped from
-/// its beginning, or thinned evenly. Reads lines as the log reader does.
+/// The messages on energy that were received, as columns, in bounded memory: what it keeps is dropped from its
+/// beginning, or thinned evenly. Its columns are those of a log with the same messages.
 class TelemetryStore {
   public:
     static constexpr std::size_t max_senders = 8;   ///< aircraft of which rows are kept
@@ -29,9 +30,8 @@ class TelemetryStore {
     TelemetryStore(std::string flight, std::optional<telemetry::LogConfiguration> configuration,
                    TelemetryFilter wanted = {});
 
-    /// Whole .data lines, each with its break.
-    void add(std::string_view lines);
-    /// What was received; how lines are read stays.
+    /// A message without its time: "20 ENERGY 57 11.62 1.64", or "20 ENERGY" with `values` of its fields.
+    void add(double time_s, std::string_view message, std::span<const double> values = {});
     void clear();
     void drop_before(double time_s);
     /// What was received of one sender.
@@ -44,8 +44,8 @@ class TelemetryStore {
     std::size_t rows() const;
     std::vector<std::string> senders() const;
     flight::FlightSeries series(const std::string& sender) const;
-    /// Lines and values that could not be used, by reason.
-    const std::map<std::string, std::size_t, std::less<>>& skipped() const { return skipped_; }
+    /// Messages and values that could not be used, by reason.
+    std::map<std::string, std::size_t> skipped() const;
     /// Of every how many rows one is kept, of the messages that were thinned.
     std::map<std::string, std::size_t> thinned() const;
 
@@ -56,15 +56,13 @@ class TelemetryStore {
     };
     using TableName = std::pair<std::string, std::string>;  ///< sender, message
 
-    void append(const std::string& sender, telemetry::MessageTable&& rows);
-    void append_rows(telemetry::MessageTable& table, const telemetry::MessageTable& rows, Thinning& thinning);
-    telemetry::SenderLog* sender_of(const std::string& id);
+    void append(const std::string& sender, const telemetry::MessageTable& row);
 
     telemetry::TelemetryLog log_;
     std::optional<std::string> only_;
-    std::vector<telemetry::MessageRequest> wanted_;
+    telemetry::MessageDecoder decoder_;
     std::map<TableName, Thinning> thinning_;
-    std::map<std::string, std::size_t, std::less<>> skipped_;
+    std::map<std::string, std::size_t> not_kept_;  ///< by reason
 };
 
 }  // namespace flightwatt::live

@@ -1,5 +1,4 @@
 #include "base/text.h"
-#include "mission/file/toml_keys.h"
 #include "mission/mission_file.h"
 
 #include <algorithm>

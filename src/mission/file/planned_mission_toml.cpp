@@ -1,10 +1,8 @@
 #include "base/text.h"
 #include "base/toml_reader.h"
-#include "mission/file/toml_keys.h"
 #include "mission/mission_file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -183,17 +181,6 @@ std::string schedule_text(const compute::ComputeModel& compute, const Schedule& 
 }
 
 }  // namespace
-
-std::string toml_key(const std::string& name) {
-    const bool bare = !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
-        return c < 0x80 && (std::isalnum(c) != 0 || c == '_' || c == '-');
-    });
-    return bare ? name : toml_string(name);
-}
-
-std::string toml_inline_table(const std::vector<std::string>& pairs) {
-    return pairs.empty() ? "{}" : fmt::format("{{ {} }}", fmt::join(pairs, ", "));
-}
 
 PlannedMissionText planned_mission_toml(std::string_view text, const std::filesystem::path& path,
                                         const compute::ComputeModel& compute, const Schedule& schedule,

@@ -3,6 +3,7 @@
 #include "base/error.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -52,10 +53,12 @@ DecodePlan make_decode_plan(const MessageRequest& request, const std::optional<L
     plan.from_log = configuration.has_value();
     if (!plan.from_log) {
         plan.candidates = builtin_definitions(request.message);
-    } else if (const auto found = configuration->messages.find(request.message);
-               found != configuration->messages.end()) {
-        plan.candidates = {found->second};
+        return plan;
     }
+    const auto& file = configuration->file;
+    plan.definitions = file.extension() == ".xml" ? file.filename().string() : "the .log";
+    const auto found = configuration->messages.find(request.message);
+    if (found != configuration->messages.end()) plan.candidates = {found->second};
     return plan;
 }
 
@@ -79,12 +82,42 @@ bool choose_definition(DecodePlan& plan, std::size_t field_count) {
     return true;
 }
 
+std::string assumption_of(const DecodePlan& plan) {
+    if (plan.definition == nullptr || (plan.from_log && plan.units.empty())) return {};
+    const auto text = plan.from_log ? fmt::format("{}", fmt::join(plan.units, ", ")) : plan.definition->origin;
+    return fmt::format("{}: {}", plan.request.message, text);
+}
+
+std::string describe_skipped(SkipReason reason, const DecodePlan& plan, std::size_t field) {
+    const auto& message = plan.request.message;
+    switch (reason) {
+        case SkipReason::no_time:
+            return message + ": the time is not a number";
+        case SkipReason::unknown_message:
+            return message + (plan.from_log ? ": not defined in " + plan.definitions : ": its fields are not known");
+        case SkipReason::other_field_count:
+            return fmt::format("{}: another number of fields than {}", message,
+                               plan.from_log ? plan.definitions + " defines" : "is known");
+        case SkipReason::not_a_number:
+            return fmt::format("{}.{}: not a finite number", message, plan.definition->fields[field].name);
+        default:
+            break;
+    }
+    return "not a message (TIME SENDER NAME ...)";
+}
+
+MessageTable empty_table(const DecodePlan& plan) {
+    MessageTable table{plan.request.message, {}, {}};
+    table.columns.reserve(plan.targets.size());
+    for (const auto& target : plan.targets)
+        table.columns.push_back({plan.definition->fields[target.field].name, target.quantity, {}});
+    return table;
+}
+
 void note_assumptions(const std::vector<DecodePlan>& plans, TelemetryLog& log) {
     for (const auto& plan : plans) {
-        const auto& message = plan.request.message;
-        if (plan.definition == nullptr || (plan.from_log && plan.units.empty())) continue;
-        const auto text = plan.from_log ? fmt::format("{}", fmt::join(plan.units, ", ")) : plan.definition->origin;
-        log.assumed_definitions.push_back({fmt::format("{}: {}", message, text), first_time_s(log, message)});
+        if (auto text = assumption_of(plan); !text.empty())
+            log.assumed_definitions.push_back({std::move(text), first_time_s(log, plan.request.message)});
     }
 }
 
@@ -104,9 +137,7 @@ std::size_t LogTables::sender_index(std::string_view sender, std::size_t line) {
 MessageTable& LogTables::new_table(std::size_t sender, std::size_t plan_index, const DecodePlan& plan) {
     auto& tables = log_.senders[sender].tables;
     slots_[sender][plan_index] = tables.size();
-    tables.push_back({plan.request.message, {}, {}});
-    for (const auto& target : plan.targets)
-        tables.back().columns.push_back({plan.definition->fields[target.field].name, target.quantity, {}});
+    tables.push_back(empty_table(plan));
     return tables.back();
 }
 

@@ -2,6 +2,7 @@
 
 #include "telemetry/message_definition.h"
 #include "telemetry/telemetry_log.h"
+#include "telemetry/text/skip_counter.h"
 
 #include <cstddef>
 #include <limits>
@@ -21,6 +22,7 @@ struct DecodePlan {
     MessageRequest request;
     std::vector<MessageDefinition> candidates;  ///< the .log's one, or the built-in ones
     bool from_log = false;
+    std::string definitions;                        ///< "the .log" or "messages.xml"
     const MessageDefinition* definition = nullptr;  ///< chosen at the first message that fits
     struct Target {
         std::size_t field;
@@ -37,6 +39,15 @@ DecodePlan make_decode_plan(const MessageRequest& request, const std::optional<L
 
 /// Chooses the definition by the number of fields; false if none has it.
 bool choose_definition(DecodePlan& plan, std::size_t field_count);
+
+/// What is assumed of the message, for want of a .log or of its units; empty if nothing is.
+std::string assumption_of(const DecodePlan& plan);
+
+/// Why a message, or its `field`, cannot be used.
+std::string describe_skipped(SkipReason reason, const DecodePlan& plan, std::size_t field);
+
+/// The table of the plan's message, without rows.
+MessageTable empty_table(const DecodePlan& plan);
 
 /// Adds to the log what was assumed of its messages, and since when.
 void note_assumptions(const std::vector<DecodePlan>& plans, TelemetryLog& log);

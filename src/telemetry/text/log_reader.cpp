@@ -159,29 +159,10 @@ class LogReader {
         return static_cast<std::size_t>(std::ranges::find_if(plans_, is_its) - plans_.begin());
     }
 
-    std::string definitions() const {
-        const auto& file = log_.configuration->file;
-        return file.extension() == ".xml" ? file.filename().string() : "the .log";
-    }
-
     std::string describe(const SkipKind& skip) const {
-        const auto& plan = plans_[skip.reason == Reason::not_a_number ? skip.detail / max_fields : skip.detail];
-        const auto& message = plan.request.message;
-        switch (skip.reason) {
-            case Reason::no_time:
-                return message + ": the time is not a number";
-            case Reason::unknown_message:
-                return message + (plan.from_log ? ": not defined in " + definitions() : ": its fields are not known");
-            case Reason::other_field_count:
-                return fmt::format("{}: another number of fields than {}", message,
-                                   plan.from_log ? definitions() + " defines" : "is known");
-            case Reason::not_a_number:
-                return fmt::format("{}.{}: not a finite number", message,
-                                   plan.definition->fields[skip.detail % max_fields].name);
-            default:
-                break;
-        }
-        return "not a message (TIME SENDER NAME ...)";
+        const bool is_value = skip.reason == Reason::not_a_number;
+        return describe_skipped(skip.reason, plans_[is_value ? skip.detail / max_fields : skip.detail],
+                                skip.detail % max_fields);
     }
 
     TelemetryLog& log_;

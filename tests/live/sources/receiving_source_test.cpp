@@ -1,4 +1,4 @@
-#include "live/sources/message_queue.h"
+#include "live/sources/receiving_source.h"
 
 #include <chrono>
 #include <string>
@@ -45,23 +45,6 @@ TEST(MessageQueue, DropsTheOldestOfTooManyAndSaysSo) {
     EXPECT_EQ(report.messages, MessageQueue::max_waiting + 3);
     EXPECT_EQ(report.unusable.at("messages that came in faster than they were looked at"), 3U);
     EXPECT_EQ(report.unusable.at("bytes"), 7U);
-}
-
-TEST(MessageQueue, MarksTheFirstMessageOfANewClock) {
-    MessageQueue queue(1.0);
-    queue.count_restart(false);
-    queue.push({1.0, "1 A"});
-    queue.count_restart(true);
-    queue.push({2.0, "1 A"});
-    queue.push({3.0, "1 A"});
-    std::vector<IncomingMessage> messages;
-    SourceReport report;
-    queue.take(milliseconds(0), messages, report);
-    ASSERT_EQ(messages.size(), 3U);
-    EXPECT_FALSE(messages[0].is_after_restart);
-    EXPECT_TRUE(messages[1].is_after_restart);
-    EXPECT_FALSE(messages[2].is_after_restart);
-    EXPECT_EQ(report.restarts, 2U);
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
-#include "live/text_sources.h"
-
 #include "base/error.h"
 #include "helpers/test_paths.h"
+#include "live/sources.h"
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -25,7 +25,7 @@ std::vector<IncomingMessage> received(MessageSource& source) {
     return messages;
 }
 
-TEST(TextSources, AFileIsReadFromItsBeginningAndAsItGrows) {
+TEST(FollowedFiles, AFileIsReadFromItsBeginningAndAsItGrows) {
     const auto path = test::scratch_dir() / "a.data";
     append(path, "1.0 20 PONG\n2.0 20 PO");
     const auto source = follow_data_file(path);
@@ -43,7 +43,7 @@ TEST(TextSources, AFileIsReadFromItsBeginningAndAsItGrows) {
     EXPECT_EQ(source->report().unusable.size(), 1U);
 }
 
-TEST(TextSources, AFileThatIsCutOrReplacedBeginsAnew) {
+TEST(FollowedFiles, AFileThatIsCutOrReplacedBeginsAnew) {
     const auto folder = test::scratch_dir();
     const auto path = folder / "a.data";
     append(path, "1000.0 20 PONG\n1001.0 20 PONG\n");
@@ -63,7 +63,7 @@ TEST(TextSources, AFileThatIsCutOrReplacedBeginsAnew) {
     EXPECT_EQ(source->report().restarts, 2U);
 }
 
-TEST(TextSources, AFileThatIsGoneForAWhileIsWaitedFor) {
+TEST(FollowedFiles, AFileThatIsGoneForAWhileIsWaitedFor) {
     const auto path = test::scratch_dir() / "a.data";
     append(path, "1.0 20 PONG\n");
     const auto source = follow_data_file(path);
@@ -74,7 +74,7 @@ TEST(TextSources, AFileThatIsGoneForAWhileIsWaitedFor) {
     EXPECT_EQ(received(*source).size(), 1U);
 }
 
-TEST(TextSources, RefusesWhatIsNoFile) {
+TEST(FollowedFiles, RefusesWhatIsNoFile) {
     EXPECT_THROW(follow_data_file(test::scratch_dir() / "none.data"), InputError);
     EXPECT_THROW(follow_data_file(test::scratch_dir()), InputError);
     EXPECT_THROW(follow_data_file("/dev/null"), InputError);

@@ -1,7 +1,11 @@
-#include "live/sources/ivy_messages.h"
+#include "live/sources/ivy_receiver.h"
 
+#include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -9,10 +13,14 @@
 namespace flightwatt::live {
 namespace {
 
-class IvyMessagesTest : public testing::Test {
+class IvyMessagesTest : public testing::Test, public MessageSink {
   protected:
+    void push(IncomingMessage message) override { came.push_back(std::move(message)); }
+    void count(std::string_view reason, std::size_t times) override { unusable[std::string(reason)] += times; }
+
     std::vector<IncomingMessage> came;
-    IvyMessages messages{[this](IncomingMessage message) { came.push_back(std::move(message)); }};
+    std::map<std::string, std::size_t> unusable;
+    IvyMessages messages{*this};
 };
 
 TEST_F(IvyMessagesTest, HandOnAnAircraftsMessagesAtOnce) {
@@ -28,7 +36,7 @@ TEST_F(IvyMessagesTest, HandOnAnAircraftsMessagesAtOnce) {
     EXPECT_EQ(came[3].text, "replays_of_mine START now");
     messages.handle("");
     messages.handle("word");
-    EXPECT_EQ(messages.malformed_lines(), 2U);
+    EXPECT_EQ(unusable.at("messages of a single word"), 2U);
 }
 
 TEST_F(IvyMessagesTest, GiveAReplayTheTimeThatIsSaidAfterIt) {
@@ -58,7 +66,7 @@ TEST_F(IvyMessagesTest, HandOnWhatNoTimeFollows) {
     ASSERT_EQ(came.size(), 2U);
     EXPECT_EQ(came[1].time_s, 10.0);
     messages.handle("time20 noon");
-    EXPECT_EQ(messages.malformed_lines(), 1U);
+    EXPECT_EQ(unusable.at("messages of a single word"), 1U);
 }
 
 TEST_F(IvyMessagesTest, HeedNoReplayWhileAnAircraftIsOnTheBus) {
@@ -71,7 +79,7 @@ TEST_F(IvyMessagesTest, HeedNoReplayWhileAnAircraftIsOnTheBus) {
     ASSERT_EQ(came.size(), 2U);
     EXPECT_EQ(came[1].text, "ground WIND 20 1 2");
     EXPECT_EQ(came[1].time_s, std::nullopt);
-    EXPECT_EQ(messages.ignored_replays(), 2U);
+    EXPECT_EQ(unusable.at("messages of a replay while an aircraft itself is on the bus"), 2U);
 }
 
 TEST_F(IvyMessagesTest, TakeWhatTheGroundSaysBesideAReplayOnItsClock) {

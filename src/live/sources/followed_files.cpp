@@ -1,0 +1,232 @@
+#include "base/error.h"
+#include "base/overwrite_guard.h"
+#include "live/sources.h"
+#include "live/sources/message_readers.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <thread>
+#include <utility>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace flightwatt::live {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::size_t bytes_per_read = 65'536;  // a thousand messages
+
+/// The bytes of a file from its beginning, and those that are written to it from then on. Where the file gets shorter
+/// or another takes its name, that is read from its beginning; where it is missing for a while, it is waited for.
+class FileTail {
+  public:
+    /// `expected` says what file it should be. Throws InputError where there is no such file, or it is no regular one.
+    FileTail(std::filesystem::path path, const char* expected) : path_(std::move(path)), bytes_(bytes_per_read) {
+        register_input(path_);
+        if (std::filesystem::is_directory(path_) || !open()) {
+            throw InputError({path_.string()},
+                             std::filesystem::exists(path_) ? "cannot be read" : "there is no such file", expected);
+        }
+        struct stat status {};
+        if (::fstat(file_, &status) == 0 && S_ISREG(status.st_mode)) return;
+        close();
+        throw InputError({path_.string()}, "is no regular file", expected);
+    }
+    ~FileTail() { close(); }
+    FileTail(const FileTail&) = delete;
+    FileTail& operator=(const FileTail&) = delete;
+
+    struct Piece {
+        std::string_view bytes;  ///< until the next call; none: nothing was written
+        bool anew = false;       ///< the first of another file
+    };
+    /// What was written, waited for at most so long. Zeros at the end of it wait, too, where they are padding: room set
+    /// aside for what is still to be written.
+    Piece read(milliseconds timeout, bool zeros_are_padding) {
+        using Clock = std::chrono::steady_clock;
+        constexpr milliseconds poll_interval{20};
+        const auto until = Clock::now() + timeout;
+        for (;;) {
+            if (const auto count = read_more(zeros_are_padding); count > 0)
+                return {{bytes_.data(), count}, std::exchange(anew_, false)};
+            reopen_if_replaced();
+            const auto left = until - Clock::now();
+            if (left <= Clock::duration::zero()) return {};
+            std::this_thread::sleep_for(std::min<Clock::duration>(left, poll_interval));
+        }
+    }
+
+    const std::filesystem::path& path() const { return path_; }
+
+  private:
+    bool open() {
+        file_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+        offset_ = 0;
+        return file_ >= 0;
+    }
+
+    void close() {
+        if (file_ >= 0) ::close(file_);
+        file_ = -1;
+    }
+
+    std::size_t read_more(bool zeros_are_padding) {
+        if (file_ < 0) return 0;
+        struct stat status {};
+        if (::fstat(file_, &status) == 0 && status.st_size < offset_) {  // it was cut and is written again
+            offset_ = 0;
+            anew_ = true;
+        }
+        const auto count = ::pread(file_, bytes_.data(), bytes_.size(), offset_);
+        if (count <= 0) return 0;
+        auto written = static_cast<std::size_t>(count);
+        while (zeros_are_padding && written > 0 && bytes_[written - 1] == '\0') --written;
+        offset_ += static_cast<::off_t>(written);
+        return written;
+    }
+
+    void reopen_if_replaced() {
+        struct stat named {};
+        if (::stat(path_.c_str(), &named) != 0) return;  // missing for a while: what is open is still read
+        struct stat opened {};
+        const bool is_same = file_ >= 0 && ::fstat(file_, &opened) == 0 && opened.st_ino == named.st_ino &&
+                             opened.st_dev == named.st_dev;
+        if (is_same) return;
+        close();
+        if (open()) anew_ = true;
+    }
+
+    std::filesystem::path path_;
+    int file_ = -1;
+    ::off_t offset_ = 0;
+    bool anew_ = false;
+    std::vector<char> bytes_;
+};
+
+/// Messages out of the lines of a .data file.
+class TextReader {
+  public:
+    static constexpr bool zeros_are_padding = false;
+
+    explicit TextReader(MessageSink& sink) : sink_(sink) {}
+
+    void push(std::string_view bytes) {
+        std::vector<std::string> lines;
+        sink_.count("lines longer than any message", buffer_.push(bytes, lines));
+        for (const auto& line : lines) read(line);
+    }
+    /// The last line, if it lacks its break.
+    void flush() { read(buffer_.take_partial_line()); }
+    void restart() { sink_.count("lines cut off by a restart", buffer_.take_partial_line().empty() ? 0 : 1); }
+
+  private:
+    void read(const std::string& line) {
+        if (line.empty()) return;
+        if (auto message = message_of_line(line)) {
+            sink_.push(std::move(*message));
+        } else {
+            sink_.count("lines that are no message (TIME SENDER NAME ...)", 1);
+        }
+    }
+
+    MessageSink& sink_;
+    LineBuffer buffer_;
+};
+
+class BinaryReader : public LinkReader {
+  public:
+    static constexpr bool zeros_are_padding = true;
+    using LinkReader::LinkReader;
+};
+
+/// A source that reads in the thread of the one who asks.
+class DirectSource : public MessageSource, protected MessageSink {
+  public:
+    const SourceReport& report() const override { return report_; }
+
+  protected:
+    void push(IncomingMessage message) override {
+        message.is_after_restart = std::exchange(restarted_, false);
+        ++report_.messages;
+        messages_->push_back(std::move(message));
+    }
+    void count(std::string_view reason, std::size_t times) override { report_.count(reason, times); }
+    void count_restart() {
+        ++report_.restarts;
+        restarted_ = true;
+    }
+
+    std::vector<IncomingMessage>* messages_ = nullptr;  ///< of the call to receive()
+
+  private:
+    SourceReport report_;
+    bool restarted_ = false;
+};
+
+class StandardInput : public DirectSource {
+  public:
+    void receive(milliseconds timeout, std::vector<IncomingMessage>& messages) override {
+        messages_ = &messages;
+        pollfd wanted{STDIN_FILENO, POLLIN, 0};
+        if (at_end_ || ::poll(&wanted, 1, static_cast<int>(timeout.count())) <= 0) return;
+        std::vector<char> bytes(bytes_per_read);
+        const auto count = ::read(STDIN_FILENO, bytes.data(), bytes.size());
+        if (count > 0) {
+            reader_.push({bytes.data(), static_cast<std::size_t>(count)});
+        } else if (count == 0 || (errno != EINTR && errno != EAGAIN)) {
+            reader_.flush();
+            at_end_ = true;
+        }
+    }
+    bool at_end() const override { return at_end_; }
+    std::string description() const override { return "the standard input"; }
+
+  private:
+    TextReader reader_{*this};
+    bool at_end_ = false;
+};
+
+template <typename Reader>
+class FollowedFile : public DirectSource {
+  public:
+    template <typename... Arguments>
+    FollowedFile(const std::filesystem::path& path, const char* expected, Arguments... arguments)
+        : tail_(path, expected), reader_(*this, std::move(arguments)...) {}
+
+    void receive(milliseconds timeout, std::vector<IncomingMessage>& messages) override {
+        messages_ = &messages;
+        const auto piece = tail_.read(timeout, Reader::zeros_are_padding);
+        if (piece.anew) {
+            reader_.restart();
+            count_restart();
+        }
+        reader_.push(piece.bytes);
+    }
+    std::string description() const override { return "following " + tail_.path().string(); }
+
+  private:
+    FileTail tail_;
+    Reader reader_;
+};
+
+}  // namespace
+
+std::unique_ptr<MessageSource> standard_input() { return std::make_unique<StandardInput>(); }
+
+std::unique_ptr<MessageSource> follow_data_file(const std::filesystem::path& path) {
+    return std::make_unique<FollowedFile<TextReader>>(
+        path, "expected the .data file that the ground station writes; of a pipe: flightwatt watch - < PIPE");
+}
+
+std::unique_ptr<MessageSource> follow_binary_log(const std::filesystem::path& path,
+                                                 telemetry::MessageDictionary definitions) {
+    return std::make_unique<FollowedFile<BinaryReader>>(
+        path, "expected the log that an autopilot or a modem's program writes",
+        std::make_shared<const telemetry::MessageDictionary>(std::move(definitions)));
+}
+
+}  // namespace flightwatt::live
