@@ -140,6 +140,8 @@ ScheduleState decision_of(const LiveDecision& of) {
     return decision;
 }
 
+}  // namespace
+
 /// Input since the last update, in memory that is allocated once.
 class InputBuffer {
   public:
@@ -194,8 +196,6 @@ class InputBuffer {
     std::vector<char> bytes_;
     std::size_t used_ = 0;
 };
-
-}  // namespace
 
 class Predictor::State {
   public:

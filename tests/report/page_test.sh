@@ -19,11 +19,11 @@ chromium=$(command -v chromium || command -v chromium-browser) || skip chromium
 
 rm -rf "$pages"
 mkdir -p "$pages/hostile"
-quiet() { "$@" >/dev/null 2>"$pages/stderr" || { cat "$pages/stderr" >&2 && exit 1; }; }
+quiet() { "$@" >"$pages/stdout" 2>"$pages/stderr" || { cat "$pages/stderr" >&2 && exit 1; }; }
 
 quiet "$bin/flightwatt-batch" "$source/logs" -o "$pages/six"
-quiet "$bin/flightwatt-report" "$pages/six" "$source"/missions/paper/*.toml -o "$pages/six.html"
-"$bin/flightwatt-report" "$pages/six" "$source"/missions/paper/*.toml --json >"$pages/six.json" 2>/dev/null
+quiet "$bin/flightwatt-report" "$pages/six" "$source"/missions/paper/*.toml -o "$pages/six.html" --json
+mv "$pages/stdout" "$pages/six.json"
 
 browse() {
     PAGES=$pages FLIGHTS=$flights FLIGHTWATT_WEB=$web CHROMIUM=$chromium \
