@@ -29,7 +29,7 @@ struct PredictorSetup {
     bool replan = false;                             ///< plans the rest anew at every slot of the mission's plan
     PredictorInput input = PredictorInput::messages;
     std::size_t max_rows = 30'000;              ///< of messages that are kept; of more every second one goes
-    std::size_t max_pending_bytes = 1'000'000;  ///< pushed between two looks; what does not fit is dropped
+    std::size_t max_pending_bytes = 1'000'000;  ///< pushed between two updates; what does not fit is dropped
 };
 
 /// What was measured at a time; NaN: not known. Power is voltage times current where it is not known itself.
@@ -84,7 +84,7 @@ struct ComponentState {
     std::span<const double> quality = {};  ///< one value a parameter of its quality of service; 0 where it is off
 };
 
-/// What is known at a moment. Texts are valid until the next look.
+/// What is known at a moment. Texts are valid until the next update.
 struct PredictorState {
     double time_s = 0.0;  ///< of the latest message
     FlightPhase phase = FlightPhase::ground;
@@ -102,7 +102,7 @@ struct PredictorState {
     std::size_t rows = 0;           ///< kept
     std::size_t dropped = 0;        ///< what was pushed and did not fit, since the start
     std::size_t unusable = 0;       ///< lines, frames and values, since the start
-    std::string_view failure = {};  ///< why this look is none: memory ran out; else empty
+    std::string_view failure = {};  ///< why this update is none: memory ran out; else empty
 };
 
 struct AlarmText {
@@ -130,13 +130,13 @@ class Predictor {
     bool push_sample(const Sample& sample) noexcept;
 
     /// Takes in what was pushed, and computes anew: once a second of flight is often enough. `silent_s`: for how long
-    /// nothing has come. Valid until the next look.
+    /// nothing has come. Valid until the next update.
     const PredictorState& update(double silent_s = 0.0) noexcept;
-    /// Nothing more will come: what was held back, as no other message confirmed its time, counts now. Looks.
+    /// Nothing more will come: what was held back, as no other message confirmed its time, counts now. Updates.
     const PredictorState& end() noexcept;
     /// The last one.
     const PredictorState& state() const noexcept;
-    /// All components of the mission, with what the last look's decision says of them.
+    /// All components of the mission, with what the last update's decision says of them.
     std::span<const ComponentState> component_states() const noexcept;
     std::span<const AlarmText> alarms() const noexcept;
 

@@ -33,6 +33,25 @@ TEST(Methods, NameFunctionsThatExist) {
     EXPECT_GT(functions, 40U);
 }
 
+TEST(Library, IsDocumentedWithFunctionsThatExist) {
+    const auto header = read_file(source_dir() / "src" / "live" / "predictor.h");
+    std::stringstream lines(read_file(source_dir() / "docs" / "live.md"));
+    const std::regex word(R"re((?:`|->)([a-z]\w+)(?:`|\())re");
+    std::size_t functions = 0;
+    bool in_section = false;
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with("## ")) in_section = line == "## As a library";
+        // The first cells of the table, and calls in the example.
+        const bool is_row = line.starts_with("| `");
+        const bool is_call = line.find("predictor->") != std::string::npos;
+        const auto part = is_row ? line.substr(0, line.find('|', 1)) : is_call ? line : "";
+        if (!in_section || line.starts_with("| `logs/")) continue;
+        for (std::sregex_iterator it(part.begin(), part.end(), word), end; it != end; ++it, ++functions)
+            EXPECT_TRUE(std::regex_search(header, std::regex("\\b" + (*it)[1].str() + "\\("))) << (*it)[1];
+    }
+    EXPECT_GE(functions, 12U);
+}
+
 TEST(Methods, NumberTheirEquationsInOrder) {
     const std::regex number(R"re(\(Eq\. (\d+)\)$)re");
     std::stringstream lines(methods());
