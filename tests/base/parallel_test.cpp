@@ -53,12 +53,16 @@ TEST(ForEachInParallel, HasOneThreadWithinALoopThatSeveralShare) {
     };
     inner(2);
     EXPECT_EQ(elsewhere, 0);
-    // A loop of one thread leaves the others to the loop within it: each of two calls waits for the other.
+    // A loop that needs one of its two threads leaves the other to the loop within it: of two calls each waits for the
+    // other. Two are asked for, as a machine may have one core.
     std::barrier meeting(2);
-    for_each_in_parallel(1, [&](std::size_t) {
-        for_each_in_parallel(
-            2, [&](std::size_t) { meeting.arrive_and_wait(); }, 2);
-    });
+    for_each_in_parallel(
+        1,
+        [&](std::size_t) {
+            for_each_in_parallel(
+                2, [&](std::size_t) { meeting.arrive_and_wait(); }, 2);
+        },
+        2);
 }
 
 TEST(ForEachInOrder, TakesWhatIsMadeInOrderFromThePlaceWhereItLies) {

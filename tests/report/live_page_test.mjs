@@ -26,13 +26,12 @@ function start(program, ...options) {
 }
 const watch = () => start("flightwatt-watch", "--follow", growing, "--log", `${log}.log`, "--model", path.join(SOURCE, "fits/mechanical/synthetic-wing.toml"), "--battery", path.join(SOURCE, "fits/battery/synthetic-3s.toml"), "--remaining", "300", "--serve", PORT, "--json");
 
-/** Asks every 100 ms. */
+/** Asks every 100 ms, and says every minute what for; CTest ends what never comes. */
 async function eventually(what, condition) {
-  for (let i = 0; i < 600; ++i) {
-    if (await condition()) return;
+  for (let i = 1; !(await condition()); ++i) {
+    if (i % 600 === 0) console.error(`waiting until ${what}`);
     await new Promise((resolve) => setTimeout(resolve, 100));
   }
-  assert.fail(`it never came that ${what}`);
 }
 const answers = async () => fetch(`${address}state`).then((answer) => answer.ok, () => false);
 
@@ -52,6 +51,7 @@ test("charts move while a flight is played, and the page outlives its server", a
   const first = watch();
   await eventually("the server answers", answers);
   const page = await (await browser.newContext({ viewport: { width: 1100, height: 900 } })).newPage();
+  page.setDefaultTimeout(0);
   const faults = [];
   let serverIsDown = false;
   page.on("pageerror", (error) => faults.push(`exception: ${error.message}`));

@@ -29,6 +29,7 @@ after(() => browser?.close());
 /** Opens a page and notes what it should not do; `blocksOpened` counts its compressed blocks that were opened. */
 async function open(name, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, ...options });
+  context.setDefaultTimeout(0); // a busy machine takes what it takes; CTest ends what never comes
   const page = await context.newPage();
   const faults = [];
   page.on("console", (message) => ["error", "warning"].includes(message.type()) && faults.push(`${message.type()}: ${message.text()}`));
@@ -77,9 +78,9 @@ async function drawShown(page) {
   await allDrawn(page);
 }
 
-/** Asks until it is so, for 6 s at most: an assertion follows. */
+/** Asks until it is so; CTest ends what never comes. */
 async function eventually(condition) {
-  for (let i = 0; i < 300 && !(await condition()); ++i) await new Promise((resolve) => setTimeout(resolve, 20));
+  while (!(await condition())) await new Promise((resolve) => setTimeout(resolve, 20));
 }
 
 /** Figures whose drawing holds no mark that is seen. */
