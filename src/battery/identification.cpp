@@ -5,8 +5,9 @@
 #include "base/piecewise_linear.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "battery/identification/aligned_fit.h"
-#include "battery/identification/chart_match.h"
+#include "battery/identification/circuit_errors.h"
+#include "battery/identification/open_circuit.h"
+#include "battery/identification/state_of_health.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,8 @@
 #pragma once
 
+#include "battery/discharge_record.h"
 #include "battery/landing_forecast.h"
+#include "mechanical/flight_progress.h"
 #include "mechanical/prediction.h"
 #include "mission/mission.h"
 #include "mission/remaining_path.h"
