@@ -8,6 +8,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,7 @@ namespace flightwatt::mechanical {
 struct FrequencyPosterior;
 struct FrequencyScan;
 struct MeanCurve;
+struct PhaseSamples;
 
 /// The highest order that is supported; beyond it the lowest admissible frequencies leave no digits.
 inline constexpr int max_order = 8;
@@ -93,6 +95,13 @@ struct PhaseFit {
 
 /// So many samples a flight needs at least: one more than its coefficients.
 constexpr std::size_t min_samples(int order) { return static_cast<std::size_t>(coefficient_count(order)) + 1; }
+
+/// Where theta may lie: from options.low_rad to options.max_periods periods, but not so high that in some
+/// flight the highest harmonic would have less than two samples a period (of the median gap between samples), or that
+/// its two columns are so alike on the samples that noise in one direction of them is more than twice (its variance)
+/// what it is on well spread ones: as near to two samples a period as evenly spread ones would allow.
+/// Throws UsageError for options that make no sense, NoResultError if the samples leave nothing of the range.
+FrequencyRange admissible_frequencies(std::span<const PhaseSamples> flights, const PhaseFitOptions& options);
 
 /// How much a flight counts in the average of its phase (the w_i of Eqs. 5-7).
 enum class Weighting {

@@ -9,13 +9,6 @@
 
 namespace flightwatt::mechanical {
 
-/// Where theta may lie: from options.low_rad to options.max_periods periods, but not so high that in some
-/// flight the highest harmonic would have less than two samples a period (of the median gap between samples), or that
-/// its two columns are so alike on the samples that noise in one direction of them is more than twice (its variance)
-/// what it is on well spread ones: as near to two samples a period as evenly spread ones would allow.
-/// Throws UsageError for options that make no sense, NoResultError if the samples leave nothing of the range.
-FrequencyRange admissible_frequencies(std::span<const PhaseSamples> flights, const PhaseFitOptions& options);
-
 /// Fits Fourier series of the order to all flights: scans the whole range of theta, refines theta and all coefficients
 /// together. A loss other than none starts from that answer, so outliers still take part in the search for the
 /// frequency. Where the samples leave the frequency open the curves are settled (average_over_frequencies) unless
