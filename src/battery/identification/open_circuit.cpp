@@ -119,7 +119,7 @@ ExtendedCurve extrapolate_curve(const CircuitFit& fit, const std::vector<double>
         extended.standard_error_v.push_back(standard_error_v[i]);
     }
     const AddedKnots above{known_from, fit.open_circuit_v.front(), standard_error_v.front(), cells};
-    for (double percent = added_step_percent * std::ceil(known_from / added_step_percent + 0.1);
+    for (percent = added_step_percent * std::ceil(known_from / added_step_percent + 0.1);
          missing_ah > 0.0 && percent <= units::percent_per_whole; percent += added_step_percent)
         add_knot(extended, above, percent);
     soc.front() = 0.0;  // the last knot, where it is as good as empty
