@@ -95,6 +95,8 @@ FlightReplanner::FlightReplanner(const AdaptivePlanner& planner)
     required_deviation_ = expected_reach(nominal_);
 }
 
+bool FlightReplanner::state_counts() const { return adaptive_.planner->step_s.has_value(); }
+
 double FlightReplanner::mechanical_factor() const {
     if (learned_.mechanical_percent <= 0.0) return 1.0;
     const double gain = learned_.time_s / (learned_.time_s + nominal_.adaptive->learning_time_s);

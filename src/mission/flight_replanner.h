@@ -58,7 +58,7 @@ class FlightReplanner {
         double mechanical_percent = 0.0;  ///< how much more by mechanical power of twice as much
     };
 
-    bool state_counts() const { return adaptive_.planner.step_s.has_value(); }
+    bool state_counts() const;
     double mechanical_percent(const PhaseSegment& time) const;
     double rest_mechanical_percent(const PhaseTime& moment) const;  ///< of tables
     PredictedDepletion predict(const PhaseSegment& interval, const Schedule& run,
