@@ -4,11 +4,9 @@
 #include "base/units.h"
 #include "flight/checks/runs.h"
 #include "flight/flight_phases.h"
-#include "flight/phase_statistics.h"
 #include "flight/selected_track.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 
