@@ -2,6 +2,7 @@
 
 #include "base/units.h"
 #include "cli/output/prediction_output.h"
+#include "cli/screen_table.h"
 
 #include <algorithm>
 #include <cctype>
