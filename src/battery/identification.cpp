@@ -5,7 +5,7 @@
 #include "base/piecewise_linear.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "battery/identification/circuit_errors.h"
+#include "battery/identification/aligned_fit.h"
 #include "battery/identification/open_circuit.h"
 #include "battery/identification/state_of_health.h"
 

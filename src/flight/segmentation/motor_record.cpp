@@ -7,6 +7,7 @@
 #include "flight/selected_track.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
