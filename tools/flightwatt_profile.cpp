@@ -11,6 +11,7 @@
 #include "compute/power_sampler.h"
 #include "compute/profile_interpolation.h"
 #include "compute/profile_reader.h"
+#include "compute/profile_specification.h"
 #include "compute/profiler.h"
 #include "stages.h"
 
