@@ -16,7 +16,6 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace flightwatt::batch {
 namespace {

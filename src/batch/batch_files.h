@@ -8,8 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 namespace flightwatt::batch {
 
 /// Of the files that an accepted log leaves.

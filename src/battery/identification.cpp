@@ -348,10 +348,6 @@ LeaveOneOutCheck checked(const IdentificationResult& told, const DischargeRecord
 
 }  // namespace
 
-double highest_resting_v(const BatteryIdentification& identified) {
-    return std::ranges::max(identified.flights, {}, &IdentifiedFlight::resting_voltage_v).resting_voltage_v;
-}
-
 BatteryIdentification identify_battery(std::span<const DischargeRecord> records, const IdentificationOptions& options) {
     if (options.cells && !records.empty()) require_possible_cells(highest_resting_v(records), *options.cells);
     const auto told = identify_common(records, options);

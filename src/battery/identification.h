@@ -20,9 +20,6 @@ struct IdentificationOptions {
         true;  ///< take a flight for one on the pack of the flight before it, where all agrees (pack_changes.h)
 };
 
-/// [V] of the fullest flight.
-double highest_resting_v(const BatteryIdentification& identified);
-
 /// Identifies the Thévenin circuit of a battery from flights. What was missing from the pack is a parameter of each
 /// flight in the same least squares; flights on one pack are chained (aligned_fit.h, pack_changes.h). Capacity, and what
 /// was missing from the fullest flight, are laid onto the LiPo chart (chart_match.h): a fullest flight that rests as a

@@ -2,6 +2,7 @@
 
 #include "battery/battery.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -158,5 +159,10 @@ struct BatteryIdentification {
     std::vector<IdentifiedFlight> flights;
     std::optional<ResistanceTrend> trend;  ///< over the flights in the order of their clocks, else as given
 };
+
+/// [V] of the fullest flight.
+inline double highest_resting_v(const BatteryIdentification& identified) {
+    return std::ranges::max(identified.flights, {}, &IdentifiedFlight::resting_voltage_v).resting_voltage_v;
+}
 
 }  // namespace flightwatt::battery

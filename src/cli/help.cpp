@@ -3,13 +3,9 @@
 #include "base/atomic_file.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <string_view>
 
 #include <fmt/format.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace flightwatt::cli {
 namespace {

@@ -1,7 +1,6 @@
 #include "flight/phase_statistics.h"
 
 #include "base/piecewise_linear.h"
-#include "base/statistics.h"
 #include "base/units.h"
 #include "flight/selected_track.h"
 
