@@ -17,13 +17,13 @@ struct IdentificationOptions {
     std::string name = "identified";
     bool with_capacities = false;  ///< of each flight too, in the same least squares as its resistance
     bool link_packs =
-        true;  ///< take a flight for one on the pack of the flight before it, where all agrees (pack_changes.h)
+        true;  ///< take a flight for one on the pack of the flight before it, where all agrees (find_pack_link)
 };
 
 /// Identifies the Thévenin circuit of a battery from flights. What was missing from the pack is a parameter of each
-/// flight in the same least squares; flights on one pack are chained (aligned_fit.h, pack_changes.h). Capacity, and what
-/// was missing from the fullest flight, are laid onto the LiPo chart (chart_match.h): a fullest flight that rests as a
-/// full pack may counts as full. The battery holds the flights' own estimate of the capacity even if another is given.
+/// flight in the same least squares; flights on one pack are chained (aligned_fit.h). Capacity, and what was missing
+/// from the fullest flight, are laid onto the LiPo chart (chart_match.h): a fullest flight that rests as a full pack may
+/// counts as full. The battery holds the flights' own estimate of the capacity even if another is given.
 /// Throws NoResultError where the flights determine no such circuit, and as estimate_capacity and
 /// require_possible_cells do.
 BatteryIdentification identify_battery(std::span<const DischargeRecord> records, const IdentificationOptions& options);

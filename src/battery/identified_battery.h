@@ -36,7 +36,7 @@ struct Capacity {
     std::optional<Interval> interval_ah;  ///< 95 %; none of one that is given
 };
 
-/// How much that counts beside the samples.
+/// How much what is believed of a pack beforehand (circuit_fit.h) counts beside the samples.
 struct FitWeights {
     int cells = 3;
     double fullest_rest_v = 0.0;  ///< of all records
