@@ -50,6 +50,7 @@ class Interrupted : public std::runtime_error {
     int signal_;
 };
 
+inline constexpr const char* runs_name = "runs.csv";
 inline constexpr const char* idle_component = "idle";
 
 /// One run of one configuration: to be done, or done.

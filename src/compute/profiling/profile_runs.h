@@ -10,8 +10,6 @@
 /// profile is resumed.
 namespace flightwatt::compute {
 
-inline constexpr const char* runs_name = "runs.csv";
-
 /// The runs in their order: idle first; then repeat by repeat, each in an order shuffled by the seed, so that
 /// neither warming up nor a slow drift is taken for an effect of the configuration. `chosen` are the
 /// configurations of each component that are run.
