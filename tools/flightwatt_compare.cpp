@@ -6,6 +6,7 @@
 #include "cli/stage.h"
 #include "mission/mission_file.h"
 #include "mission/mission_summary.h"
+#include "mission/plan.h"
 #include "mission/prepared_mission.h"
 #include "mission/sampled_flights.h"
 #include "stages.h"

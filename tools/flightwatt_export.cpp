@@ -8,11 +8,13 @@
 #include "cli/output/mission_output.h"
 #include "cli/stage.h"
 #include "exchange/autopilot_parameters.h"
+#include "exchange/flown_track.h"
 #include "exchange/message_table.h"
 #include "exchange/model_text.h"
 #include "exchange/track_files.h"
 #include "mission/mission_file.h"
 #include "mission/prepared_mission.h"
+#include "report/batch_content.h"
 #include "report/report.h"
 #include "stages.h"
 

@@ -9,6 +9,7 @@
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "flight/flown_path.h"
+#include "mission/cruise_path.h"
 #include "mission/mission_file.h"
 #include "stages.h"
 

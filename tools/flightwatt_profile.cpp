@@ -8,8 +8,11 @@
 #include "cli/output/profile_output.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
+#include "compute/power_sampler.h"
 #include "compute/profile_interpolation.h"
 #include "compute/profile_reader.h"
+#include "compute/profile_specification.h"
+#include "compute/profiler.h"
 #include "stages.h"
 
 #include <boost/algorithm/string/split.hpp>

@@ -9,6 +9,8 @@
 #include "cli/terminal.h"
 #include "mechanical/mechanical_model.h"
 #include "mission/mission_file.h"
+#include "report/figure.h"
+#include "report/html.h"
 #include "report/page.h"
 #include "report/report.h"
 #include "stages.h"

@@ -9,6 +9,7 @@
 #include "mechanical/mechanical_model.h"
 #include "stages.h"
 #include "synthetic/flight_spread.h"
+#include "synthetic/synthetic_flight.h"
 #include "synthetic/synthetic_log.h"
 
 #include <algorithm>

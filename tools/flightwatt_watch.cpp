@@ -6,6 +6,7 @@
 #include "cli/output/live_options.h"
 #include "cli/output/watch_output.h"
 #include "cli/stage.h"
+#include "live/live_schedule.h"
 #include "live/page_server.h"
 #include "live/recorder.h"
 #include "report/page.h"

@@ -16,20 +16,9 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace flightwatt::batch {
 namespace {
-
-std::vector<std::string> file_names(const std::filesystem::path& folder) {
-    std::vector<std::string> names;
-    std::error_code none;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
-        names.push_back(entry.path().filename().string());
-    }
-    std::sort(names.begin(), names.end());
-    return names;
-}
 
 /// The flights that the batch's manifest lists and that have a record.
 std::vector<LogFile> stored_flights(const std::filesystem::path& out) {
@@ -137,34 +126,6 @@ std::vector<StoredFlight> read_stored(const std::filesystem::path& out, bool wit
 }
 
 }  // namespace
-
-nlohmann::ordered_json parse_json(const std::string& text) {
-    using Json = nlohmann::ordered_json;
-    return Json::parse(text, [](int depth, Json::parse_event_t /*event*/, Json& /*parsed*/) {
-        constexpr int deepest = 20;
-        if (depth > deepest) throw std::runtime_error("nested too deep");
-        return true;
-    });
-}
-
-std::filesystem::path result_path(const std::filesystem::path& out, std::string_view flight, const char* ending) {
-    return out / "flights" / (std::string(flight) + ending);
-}
-
-std::vector<std::string> recorded_flights(const std::filesystem::path& folder) {
-    std::vector<std::string> flights;
-    for (const auto& file : file_names(folder)) {
-        if (file.ends_with(record_suffix)) {
-            flights.push_back(file.substr(0, file.size() - std::string_view(record_suffix).size()));
-        }
-    }
-    return flights;
-}
-
-void remove_results(const std::filesystem::path& out, const std::string& flight) {
-    std::error_code ignored;
-    for (const auto* ending : result_suffixes) std::filesystem::remove(result_path(out, flight, ending), ignored);
-}
 
 std::string results_fingerprint(std::string_view series_csv, std::string_view phases_csv) {
     Fingerprint fingerprint;

@@ -8,6 +8,7 @@
 #include "base/toml_reader.h"
 #include "batch/batch_files.h"
 #include "batch/manifest.h"
+#include "mechanical/fit_records.h"
 
 #include <algorithm>
 #include <cstddef>

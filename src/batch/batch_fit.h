@@ -3,6 +3,7 @@
 #include "batch/batch_run.h"
 #include "mechanical/model_errors.h"
 #include "mechanical/model_fit.h"
+#include "mechanical/phase_samples.h"
 
 #include <filesystem>
 #include <optional>

@@ -4,6 +4,7 @@
 #include "flight/edge_events.h"
 #include "flight/power_check.h"
 #include "flight/selected_track.h"
+#include "mechanical/flight_bins.h"
 
 #include <cmath>
 #include <concepts>

@@ -5,7 +5,7 @@
 #include "base/overwrite_guard.h"
 #include "base/text.h"
 #include "base/toml_reader.h"
-#include "batch/batch_files.h"
+#include "batch/flight_record.h"
 
 #include <algorithm>
 #include <iterator>
@@ -67,6 +67,16 @@ bool is_there(const std::filesystem::path& path) {
 bool begins_with(const std::filesystem::path& file, std::string_view beginning) {
     std::error_code none;
     return std::filesystem::is_regular_file(file, none) && read_file(file).starts_with(beginning);
+}
+
+std::vector<std::string> file_names(const std::filesystem::path& folder) {
+    std::vector<std::string> names;
+    std::error_code none;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
+        names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
 }
 
 /// The flight of a record of any version; std::nullopt for another program's file.
@@ -210,6 +220,34 @@ void remove_unfinished(const std::filesystem::path& folder) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json parse_json(const std::string& text) {
+    using Json = nlohmann::ordered_json;
+    return Json::parse(text, [](int depth, Json::parse_event_t /*event*/, Json& /*parsed*/) {
+        constexpr int deepest = 20;
+        if (depth > deepest) throw std::runtime_error("nested too deep");
+        return true;
+    });
+}
+
+std::filesystem::path result_path(const std::filesystem::path& out, std::string_view flight, const char* ending) {
+    return out / "flights" / (std::string(flight) + ending);
+}
+
+std::vector<std::string> recorded_flights(const std::filesystem::path& folder) {
+    std::vector<std::string> flights;
+    for (const auto& file : file_names(folder)) {
+        if (file.ends_with(record_suffix)) {
+            flights.push_back(file.substr(0, file.size() - std::string_view(record_suffix).size()));
+        }
+    }
+    return flights;
+}
+
+void remove_results(const std::filesystem::path& out, const std::string& flight) {
+    std::error_code ignored;
+    for (const auto* ending : result_suffixes) std::filesystem::remove(result_path(out, flight, ending), ignored);
+}
 
 Manifest read_manifest(const std::filesystem::path& out) {
     const OverwriteExemption own;

@@ -2,10 +2,14 @@
 
 #include "batch/log_files.h"
 
+#include <array>
 #include <filesystem>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include <nlohmann/json_fwd.hpp>
 
 /// What a batch wrote into its folder: it replaces and removes that alone.
 namespace flightwatt::batch {
@@ -13,6 +17,34 @@ namespace flightwatt::batch {
 inline constexpr auto manifest_name = "batch.json";
 /// The folder in OUT where files stand until they are whole.
 inline constexpr auto temporary_folder = ".flightwatt-unfinished";
+
+/// What a batch writes of a flight, after its name: OUT/flights/NAME.series.csv, ...
+inline constexpr auto series_suffix = ".series.csv";
+inline constexpr auto phases_suffix = ".phases.csv";
+inline constexpr auto record_suffix = ".record.json";
+inline constexpr std::array result_suffixes{record_suffix, series_suffix, phases_suffix};
+
+/// What a batch writes into OUT itself; the first one is the catalogue, the others are the fit's.
+inline constexpr auto catalogue_name = "flights.csv";
+inline constexpr auto model_name = "model.toml";
+inline constexpr auto model_errors_name = "model_errors.toml";  ///< the same with its errors
+inline constexpr auto fit_name = "fit.json";                    ///< see BatchFit
+inline constexpr std::array table_names{"table1.txt", "table1.csv", "table1.md"};
+inline constexpr std::array model_names{model_name,     model_errors_name, fit_name,
+                                        table_names[0], table_names[1],    table_names[2]};
+
+/// Where one of these stands: OUT/flights/NAME.series.csv, ...
+std::filesystem::path result_path(const std::filesystem::path& out, std::string_view flight, const char* ending);
+
+/// The flights that have a record in the folder OUT/flights, by name.
+std::vector<std::string> recorded_flights(const std::filesystem::path& folder);
+
+/// Removes what a batch wrote of a flight.
+void remove_results(const std::filesystem::path& out, const std::string& flight);
+
+/// A JSON file of a batch. Throws std::exception for what is none, or nests deeper than ours: it would take a hundred
+/// times its size in memory.
+nlohmann::ordered_json parse_json(const std::string& text);
 
 struct Manifest {
     std::set<std::string> files;         ///< in OUT itself

@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "batch/batch_files.h"
 #include "batch/batch_run.h"
+#include "batch/manifest.h"
 
 #include <algorithm>
 #include <tuple>

@@ -6,7 +6,8 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "battery/identification/aligned_fit.h"
-#include "battery/identification/chart_match.h"
+#include "battery/identification/open_circuit.h"
+#include "battery/identification/state_of_health.h"
 
 #include <algorithm>
 #include <cmath>
@@ -346,10 +347,6 @@ LeaveOneOutCheck checked(const IdentificationResult& told, const DischargeRecord
 }
 
 }  // namespace
-
-double highest_resting_v(const BatteryIdentification& identified) {
-    return std::ranges::max(identified.flights, {}, &IdentifiedFlight::resting_voltage_v).resting_voltage_v;
-}
 
 BatteryIdentification identify_battery(std::span<const DischargeRecord> records, const IdentificationOptions& options) {
     if (options.cells && !records.empty()) require_possible_cells(highest_resting_v(records), *options.cells);

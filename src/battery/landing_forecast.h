@@ -2,7 +2,7 @@
 
 #include "battery/battery.h"
 #include "battery/discharge.h"
-#include "battery/identification/discharge_record.h"
+#include "battery/discharge_record.h"
 
 #include <optional>
 #include <span>

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace flightwatt::cli {
@@ -16,10 +15,6 @@ struct HelpPage {
 
 /// The pages (*.md) of a folder, by topic; none where the folder is absent.
 std::vector<HelpPage> help_pages(const std::filesystem::path& folder);
-
-/// To the standard output; where that is a terminal, through $PAGER or else less, if there is one. Throws
-/// OutputError as print().
-void show_page(std::string_view text);
 
 /// The commit that the program was built of; empty where it is unknown. Programs alone define it (cmake/commit.cmake),
 /// so that a new commit links them anew and compiles nothing.

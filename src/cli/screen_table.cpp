@@ -4,7 +4,6 @@
 #include "base/duration_text.h"
 #include "base/number.h"
 #include "base/text.h"
-#include "cli/terminal.h"
 
 #include <algorithm>
 #include <array>
@@ -344,10 +343,6 @@ Screen screen_of(const StageCall& call) {
     return screen;
 }
 
-void add_wide_option(boost::program_options::options_description& options) {
-    options.add_options()("wide", "on a terminal: all columns, also beyond its width");
-}
-
 std::string screen_text(TextTable whole, const Screen& screen, const ScreenTable& options) {
     if (!screen.is_terminal) return to_text(std::move(whole));
     const auto table = with_minutes(std::move(whole));
@@ -388,6 +383,18 @@ void write_csv_result(const StageCall& call, const TextWriter& write_csv, const 
     std::string csv;
     write_csv([&](std::string_view piece) { csv += piece; });
     print(screen_text(readable_table(csv), screen, options));
+}
+
+std::optional<TerminalPlot> terminal_plot(const StageCall& call, const std::string& title) {
+    const auto ability = standard_output_ability();
+    if (!ability.draws || call.output || call.json) return std::nullopt;
+    constexpr std::size_t max_columns = 100;
+    TerminalPlot plot;
+    plot.title = "\n" + title;
+    plot.x_label = "s";
+    plot.columns = std::min(ability.columns, max_columns);
+    plot.colors = ability.colors;
+    return plot;
 }
 
 }  // namespace flightwatt::cli

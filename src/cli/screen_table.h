@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/text_table.h"
 #include "cli/stage.h"
+#include "cli/terminal.h"
 
 #include <cstddef>
 #include <optional>
@@ -23,9 +24,6 @@ struct Screen {
 
 /// The standard output of this program, with --wide.
 Screen screen_of(const StageCall& call);
-
-/// --wide, of every stage that shows tables.
-void add_wide_option(boost::program_options::options_description& options);
 
 /// What a table is called, and what of it matters most.
 struct ScreenTable {
@@ -49,5 +47,8 @@ TextTable readable_table(std::string_view csv);
 void write_csv_result(const StageCall& call, std::string_view csv, const ScreenTable& options);
 /// The same of a CSV in pieces.
 void write_csv_result(const StageCall& call, const TextWriter& write_csv, const ScreenTable& options);
+
+/// A plot as wide as the terminal, or std::nullopt where the result goes elsewhere or the terminal cannot show it.
+std::optional<TerminalPlot> terminal_plot(const StageCall& call, const std::string& title);
 
 }  // namespace flightwatt::cli

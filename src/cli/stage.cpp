@@ -6,13 +6,13 @@
 #include "base/overwrite_guard.h"
 #include "base/toml_reader.h"
 #include "cli/help.h"
-#include "cli/screen_table.h"
 #include "cli/terminal.h"
 
 #include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <filesystem>
@@ -20,6 +20,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 namespace flightwatt::cli {
@@ -35,6 +36,17 @@ bool reader_has_left = false;
 
 /// Diagnostics that nobody can read (closed, full disk) change nothing.
 void tell(const std::string& line) { std::fwrite(line.data(), 1, line.size(), stderr); }
+
+/// Whether a pager ran. One that was left early has shown what was wanted.
+bool page_through(std::string_view text) {
+    constexpr int no_such_command = 127;
+    ::setenv("LESS", "FRX", 0);  // as git does: a short page is printed and less ends
+    std::FILE* pager = ::popen("${PAGER:-less}", "w");
+    if (pager == nullptr) return false;
+    std::fwrite(text.data(), 1, text.size(), pager);
+    const int status = ::pclose(pager);
+    return !(WIFEXITED(status) && WEXITSTATUS(status) == no_such_command);
+}
 
 /// What a line begins with, in colour where the standard error has colours.
 std::string alert(const char* word, int color) {
@@ -96,7 +108,7 @@ void close_standard_output() {
 /// Those of the stage, and those of every stage.
 po::options_description visible_options(const StageDefinition& definition) {
     auto visible = definition.options;
-    if (definition.shows_table) add_wide_option(visible);
+    if (definition.shows_table) visible.add_options()("wide", "on a terminal: all columns, also beyond its width");
     visible.add_options()("output,o", output_file("FILE"), definition.output_help.c_str())(
         "json", "print the summary as JSON")("help,h", "show this help")("version", "show the version");
     return visible;
@@ -253,6 +265,10 @@ void print(std::string_view text) {
     if (reader_has_left || std::fwrite(text.data(), 1, text.size(), stdout) == text.size()) return;
     if (errno != EPIPE) cannot_print();
     reader_has_left = true;
+}
+
+void show_page(std::string_view text) {
+    if (::isatty(STDOUT_FILENO) == 0 || !page_through(text)) print(text);
 }
 
 bool print_flushed(std::string_view text) {

@@ -185,18 +185,6 @@ bool standard_error_has_colors() {
         .colors;
 }
 
-std::optional<TerminalPlot> terminal_plot(const StageCall& call, const std::string& title) {
-    const auto ability = standard_output_ability();
-    if (!ability.draws || call.output || call.json) return std::nullopt;
-    constexpr std::size_t max_columns = 100;
-    TerminalPlot plot;
-    plot.title = "\n" + title;
-    plot.x_label = "s";
-    plot.columns = std::min(ability.columns, max_columns);
-    plot.colors = ability.colors;
-    return plot;
-}
-
 std::string draw(const TerminalPlot& plot, std::span<const TerminalLine> lines) {
     if (lines.empty() || plot.rows < 2 || plot.columns < axis_columns + label_columns + min_columns) return "";
     double x_low = lines.front().x.front();

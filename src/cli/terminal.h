@@ -1,7 +1,5 @@
 #pragma once
 
-#include "cli/stage.h"
-
 #include <chrono>
 #include <cstddef>
 #include <cstdio>
@@ -53,9 +51,6 @@ struct TerminalPlot {
     double y_low = 0.0;  ///< of the axis, less than y_high
     double y_high = 100.0;
 };
-
-/// A plot as wide as the terminal, or std::nullopt where the result goes elsewhere or the terminal cannot show it.
-std::optional<TerminalPlot> terminal_plot(const StageCall& call, const std::string& title);
 
 /// The lines drawn in braille characters (two by four dots each), with an axis at the left, the range of x
 /// below, and each line's label where it ends. Empty where there is no room or nothing to draw.

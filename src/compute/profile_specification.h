@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/error.h"
-#include "compute/sensors/power_sampler.h"
+#include "compute/power_sampler.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "compute/profiler.h"
+#include "compute/profile_outcome.h"
+#include "compute/profile_specification.h"
 
 #include <string>
 

@@ -1,41 +1,14 @@
 #pragma once
 
-#include "compute/profile_interpolation.h"
+#include "compute/power_sampler.h"
+#include "compute/profile_outcome.h"
 #include "compute/profile_specification.h"
-#include "compute/profiling/profile_runs.h"
 
 #include <filesystem>
 #include <functional>
 #include <optional>
-#include <string>
-#include <vector>
 
 namespace flightwatt::compute {
-
-/// A configuration and its power.
-struct NodeEstimate {
-    std::vector<double> qos;
-    PowerEstimate total;      ///< interpolated: power and standard error alone
-    bool is_measured = true;  ///< false: interpolated from the others
-};
-
-/// The power of a component over its configurations: layer 2.
-struct ComponentEstimate {
-    std::string name;
-    std::vector<std::string> parameters;
-    std::vector<NodeEstimate> nodes;  ///< without those that failed
-    std::size_t configurations = 0;
-    std::vector<ProfileRun> failures;                ///< runs without power
-    std::optional<LeaveOneOutErrors> interpolation;  ///< of the method that was used, on the measured nodes
-};
-
-struct ProfileOutcome {
-    std::string sampler;  ///< kind and source
-    std::optional<PowerEstimate> idle;
-    std::vector<ComponentEstimate> components;
-    std::vector<ProfileRun> runs;
-    SamplingJitter jitter;
-};
 
 struct ProfilerOptions {
     std::filesystem::path folder;       ///< of the results

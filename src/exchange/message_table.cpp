@@ -3,6 +3,7 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "flight/series_file.h"
+#include "telemetry/message_definition.h"
 
 #include <algorithm>
 #include <cmath>

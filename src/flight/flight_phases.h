@@ -49,6 +49,9 @@ struct SegmentationOptions {
     double hold_fraction = 0.10;            ///< this fraction of the flight's height
 };
 
+/// The segmentation looks at a flight so often [s], from its first sample of power on (without power: of altitude).
+inline constexpr double segmentation_step_s = 0.5;
+
 /// As the log writes its times.
 inline double to_millisecond(double time_s) { return std::round(time_s * 1000.0) / 1000.0; }
 

@@ -1,5 +1,8 @@
 #include "flight/flight_series.h"
 
+#include "base/piecewise_linear.h"
+#include "base/statistics.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -33,6 +36,30 @@ void cut_skipped(std::vector<telemetry::SkippedLines>& skipped, double until_s) 
 }
 
 }  // namespace
+
+double median_interval_s(const std::vector<double>& time_s) {
+    std::vector<double> intervals;
+    for (std::size_t i = 1; i < time_s.size(); ++i) intervals.push_back(time_s[i] - time_s[i - 1]);
+    return intervals.empty() ? 0.0 : median_high(std::move(intervals));
+}
+
+double gap_threshold_s(const std::vector<double>& time_s) {
+    constexpr double max_s = 10.0;  // however seldom there are samples
+    return std::min(3.0 * median_interval_s(time_s), max_s);
+}
+
+double integrated(const std::vector<double>& time_s, const std::vector<double>& values, double start_s, double end_s) {
+    double integral = 0.0;
+    double last_s = start_s;
+    double last = interpolate_clamped(time_s, values, start_s);
+    for (auto i = static_cast<std::size_t>(std::ranges::lower_bound(time_s, start_s) - time_s.begin());
+         i < time_s.size() && time_s[i] < end_s; ++i) {
+        integral += 0.5 * (last + values[i]) * (time_s[i] - last_s);
+        last_s = time_s[i];
+        last = values[i];
+    }
+    return integral + 0.5 * (last + interpolate_clamped(time_s, values, end_s)) * (end_s - last_s);
+}
 
 Track make_track(const std::vector<double>& time_s, std::vector<double> values, Merge merge) {
     Track track;

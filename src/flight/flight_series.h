@@ -59,6 +59,15 @@ double state_at(const Track& track, double time_s);
 /// value_at for every time, in one pass: `time_s` must rise.
 std::vector<double> resample(const Track& track, const std::vector<double>& time_s);
 
+/// Integral of any channel over time between two times, linear between samples [channel * s].
+double integrated(const std::vector<double>& time_s, const std::vector<double>& values, double start_s, double end_s);
+
+/// A longer interval without a power sample is a gap: three usual ones, and 10 s at most [s].
+double gap_threshold_s(const std::vector<double>& time_s);
+
+/// Median interval of the power samples [s].
+double median_interval_s(const std::vector<double>& time_s);
+
 /// True if the track holds one value throughout (or nothing).
 bool is_constant(const Track& track);
 

@@ -1,12 +1,10 @@
 #include "flight/phase_statistics.h"
 
 #include "base/piecewise_linear.h"
-#include "base/statistics.h"
 #include "base/units.h"
 #include "flight/selected_track.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace flightwatt::flight {
 namespace {
@@ -16,29 +14,6 @@ std::size_t first_at_or_after(const std::vector<double>& time_s, double t) {
 }
 
 }  // namespace
-
-double median_interval_s(const std::vector<double>& time_s) {
-    std::vector<double> intervals;
-    for (std::size_t i = 1; i < time_s.size(); ++i) intervals.push_back(time_s[i] - time_s[i - 1]);
-    return intervals.empty() ? 0.0 : median_high(std::move(intervals));
-}
-
-double gap_threshold_s(const std::vector<double>& time_s) {
-    constexpr double max_s = 10.0;  // however seldom there are samples
-    return std::min(3.0 * median_interval_s(time_s), max_s);
-}
-
-double integrated(const std::vector<double>& time_s, const std::vector<double>& values, double start_s, double end_s) {
-    double integral = 0.0;
-    double last_s = start_s;
-    double last = interpolate_clamped(time_s, values, start_s);
-    for (auto i = first_at_or_after(time_s, start_s); i < time_s.size() && time_s[i] < end_s; ++i) {
-        integral += 0.5 * (last + values[i]) * (time_s[i] - last_s);
-        last_s = time_s[i];
-        last = values[i];
-    }
-    return integral + 0.5 * (last + interpolate_clamped(time_s, values, end_s)) * (end_s - last_s);
-}
 
 double integrated_energy_wh(const FlightSeries& series, double start_s, double end_s) {
     return integrated_energy_wh(power_track(series), start_s, end_s);

@@ -38,17 +38,8 @@ double integrated_energy_wh(const FlightSeries& series, double start_s, double e
 /// The same of its power track.
 double integrated_energy_wh(const Track& power_w, double start_s, double end_s);
 
-/// Integral of any channel over time between two times, linear between samples [channel * s].
-double integrated(const std::vector<double>& time_s, const std::vector<double>& values, double start_s, double end_s);
-
 /// The mean of airspeed^3 [m^3/s^3] of the samples in [start_s, end_s]: gusts count, as they do for drag.
 /// std::nullopt if fewer than half of the seconds between have a sample within 5 s.
 std::optional<double> mean_cubed_airspeed_m3_per_s3(const Track& airspeed, double start_s, double end_s);
-
-/// A longer interval without a power sample is a gap: three usual ones, and 10 s at most [s].
-double gap_threshold_s(const std::vector<double>& time_s);
-
-/// Median interval of the power samples [s].
-double median_interval_s(const std::vector<double>& time_s);
 
 }  // namespace flightwatt::flight

@@ -6,7 +6,6 @@
 #include "base/units.h"
 #include "flight/checks/runs.h"
 #include "flight/flight_phases.h"
-#include "flight/phase_statistics.h"
 #include "flight/sources/derived_tracks.h"
 #include "flight/sources/device_check.h"
 #include "flight/sources/device_sum.h"

@@ -2,6 +2,7 @@
 
 #include "mission/flight_replanner.h"
 #include "mission/mission.h"
+#include "mission/schedule.h"
 
 #include <cstddef>
 #include <memory>

@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "live/state/path_tracker.h"
-#include "mission/sampled_flights.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,9 @@
 #pragma once
 
+#include "battery/discharge_record.h"
 #include "battery/landing_forecast.h"
+#include "live/turn_home.h"
+#include "mechanical/flight_progress.h"
 #include "mechanical/prediction.h"
 #include "mission/mission.h"
 #include "mission/remaining_path.h"
@@ -38,13 +41,6 @@ struct BatteryPrediction {
     double initial_soc_percent = 0.0;
     bool initial_is_measured = false;     ///< by the resting voltage
     bool initial_soc_is_current = false;  ///< what was drawn before is not known: `initial_soc_percent` is that of now
-};
-
-/// Where a flight is on its path, by its positions.
-struct PathFix {
-    std::optional<double> path_time_s = {};  ///< in the path's planned time; none: they do not lie on the path
-    bool is_on_path = true;                  ///< else it has left it, and was there last
-    double distance_m = 0.0;                 ///< so far from there now
 };
 
 struct Prediction {

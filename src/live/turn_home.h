@@ -21,6 +21,13 @@ struct Displacement {
 /// stands for a leg whose time was measured.
 Displacement displacement_at(const mission::FlightPath& path, const mission::PathPosition& place);
 
+/// Where a flight is on its path, by its positions.
+struct PathFix {
+    std::optional<double> path_time_s = {};  ///< in the path's planned time; none: they do not lie on the path
+    bool is_on_path = true;                  ///< else it has left it, and was there last
+    double distance_m = 0.0;                 ///< so far from there now
+};
+
 /// What a flight along a path has: its battery now, and the powers ahead.
 struct ReturnFlightInput {
     battery::Battery battery;

@@ -4,7 +4,7 @@
 #include "flight/segmentation.h"
 #include "flight/selected_track.h"
 #include "mechanical/covariates.h"
-#include "mechanical/physical/flight_bins.h"
+#include "mechanical/flight_bins.h"
 
 #include <cstddef>
 #include <optional>

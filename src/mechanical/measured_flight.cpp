@@ -4,7 +4,7 @@
 #include "flight/phase_statistics.h"
 #include "flight/selected_track.h"
 #include "mechanical/covariates.h"
-#include "mechanical/fit/phase_samples.h"
+#include "mechanical/phase_samples.h"
 
 #include <algorithm>
 #include <utility>

@@ -3,9 +3,9 @@
 #include "flight/flight_phases.h"
 #include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
-#include "mechanical/fit/phase_samples.h"
+#include "mechanical/flight_bins.h"
 #include "mechanical/flight_progress.h"
-#include "mechanical/physical/flight_bins.h"
+#include "mechanical/phase_samples.h"
 
 #include <optional>
 #include <string>

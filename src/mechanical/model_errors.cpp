@@ -2,6 +2,7 @@
 
 #include "base/csv.h"
 #include "base/statistics.h"
+#include "mechanical/fit/error_analysis.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "mechanical/fit/error_analysis.h"
-#include "mechanical/fit/phase_fit.h"
+#include "mechanical/fit_records.h"
 #include "mechanical/mechanical_model.h"
 #include "mechanical/model_fit.h"
 

@@ -5,8 +5,10 @@
 #include "base/statistics.h"
 #include "mechanical/covariates.h"
 #include "mechanical/fit/flight_variation.h"
+#include "mechanical/fit/flight_weights.h"
 #include "mechanical/fit/fourier_basis.h"
 #include "mechanical/fit/least_squares.h"
+#include "mechanical/fit/phase_fit.h"
 
 #include <algorithm>
 #include <memory>

@@ -2,6 +2,8 @@
 
 #include "base/error.h"
 #include "base/statistics.h"
+#include "mechanical/fit/flight_weights.h"
+#include "mechanical/fit/phase_fit.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "mechanical/fit/flight_weights.h"
+#include "mechanical/fit_records.h"
+#include "mechanical/phase_samples.h"
 
 #include <optional>
 #include <span>

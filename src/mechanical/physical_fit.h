@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mechanical/physical/flight_bins.h"
+#include "mechanical/flight_bins.h"
 #include "mechanical/physical_model.h"
 
 #include <optional>

@@ -8,9 +8,7 @@
 #include "mission/sampling/landing_distribution.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <numeric>
 #include <variant>
 #include <vector>
@@ -171,11 +169,6 @@ std::optional<double> bisected(LimitSearch& search, double low, double high, dou
 }
 
 }  // namespace
-
-std::string to_string(LimitingFactor bound) {
-    constexpr std::array names{"charge", "power", "cut-off"};
-    return names.at(static_cast<std::size_t>(bound));
-}
 
 FeasibilityLimit longest_cruise(const MissionVariation& with_cruise_s, const std::optional<double>& probability) {
     LimitSearch search(with_cruise_s, probability);

@@ -9,30 +9,6 @@
 
 namespace flightwatt::mission {
 
-/// The mission with another value of one of its numbers, such as the length of its cruise [s]. May throw InputError
-/// where its schedule does not fit.
-using MissionVariation = std::function<MissionVariant(double value)>;
-
-/// What forbids more.
-enum class LimitingFactor {
-    charge,
-    power,   ///< beyond, the battery could not deliver the power, whatever its charge
-    cut_off  ///< beyond, its voltage would fall below the cut-off
-};
-
-/// "charge", "power" or "cut-off".
-std::string to_string(LimitingFactor bound);
-
-/// The most of something with which a mission still lands with its reserve.
-struct FeasibilityLimit {
-    double value = 0.0;
-    double final_soc_percent = 0.0;                            ///< then, simulated
-    double margin_percent = 0.0;                               ///< for the sake of a probability
-    std::optional<UncertaintySources> sources = std::nullopt;  ///< what may differ with that probability
-    double residual_percent = 0.0;                             ///< what is left, less reserve and margin
-    LimitingFactor limited_by = LimitingFactor::charge;
-};
-
 /// All limits are of the mission's own schedule, or if it is yet to be planned of the one that demands least energy.
 /// With a `probability`, that part of the flights which sampling/flight_draws.h makes of the answer keep the reserve;
 /// and they throw as require_known_spread does.
@@ -86,10 +62,6 @@ using MissionLoader = std::function<MissionVariant(const MissionReadOptions&)>;
 
 /// longest_cruise, max_circles or farthest_return; throws as they do.
 Reach find_reach(const MissionLoader& mission_of, const std::optional<double>& probability = std::nullopt);
-
-/// State of charge at the end less the reserve [points]: by tables where they hold, else simulated. Negative
-/// if the reserve is not kept, and the more so the earlier the battery ends.
-double surplus_percent(const Mission& mission);
 
 /// Whether the length of the cruise differs between flights, as nothing states it of the mission.
 bool cruise_duration_varies(const MissionSetup& mission);

@@ -3,12 +3,15 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
+#include "mission/planning/planner.h"
 #include "mission/sampling/flight_spreads.h"
 #include "mission/sampling/joint_spread.h"
+#include "mission/simulation/load_segments.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -75,22 +78,24 @@ Schedule rest_of(Schedule schedule, const PhaseTime& moment) {
 AdaptivePlanner make_adaptive_planner(const PlanningProblem& problem) {
     if (!problem.adaptive) throw std::invalid_argument("make_adaptive_planner: the policy is not adaptive");
     require_few_decisions(problem);
-    AdaptivePlanner planner{problem, make_planning_tables(problem)};
-    if (auto& step_s = planner.planner.step_s) {
+    auto tables = make_planning_tables(problem);
+    if (auto& step_s = tables.step_s) {
         double quick_s = 2.0;  // what that is off is far below what flights differ by
         if (problem.battery.thevenin) quick_s = std::min(quick_s, problem.battery.thevenin->rc_time_constant_s / 2.0);
         step_s = std::max(*step_s, quick_s);
     }
-    return planner;
+    return {problem, std::make_shared<const PlanningTables>(std::move(tables))};
 }
 
 FlightReplanner::FlightReplanner(const AdaptivePlanner& planner)
     : adaptive_(planner),
       nominal_(planner.nominal),
       planned_(timeline_of(nominal_.duration_s)),
-      known_load_(make_mission_load(nominal_)) {
+      known_load_(std::make_shared<const MissionLoad>(make_mission_load(nominal_))) {
     required_deviation_ = expected_reach(nominal_);
 }
+
+bool FlightReplanner::state_counts() const { return adaptive_.planner->step_s.has_value(); }
 
 double FlightReplanner::mechanical_factor() const {
     if (learned_.mechanical_percent <= 0.0) return 1.0;
@@ -100,7 +105,7 @@ double FlightReplanner::mechanical_factor() const {
 }
 
 double FlightReplanner::mechanical_percent(const PhaseSegment& time) const {
-    return soc_depletion_percent(adaptive_.planner.mechanical_depletion, {time, 0});
+    return soc_depletion_percent(adaptive_.planner->mechanical_depletion, {time, 0});
 }
 
 double FlightReplanner::rest_mechanical_percent(const PhaseTime& moment) const {
@@ -118,7 +123,7 @@ FlightReplanner::PredictedDepletion FlightReplanner::predict(const PhaseSegment&
                                                              const battery::BatteryState& state) const {
     if (!state_counts()) {
         PredictedDepletion predicted{0.0, mechanical_percent(interval)};
-        const auto& table = adaptive_.planner.depletions;
+        const auto& table = adaptive_.planner->depletions;
         for (const auto& segment : to_indexed(run, table)) predicted.percent += soc_depletion_percent(table, segment);
         return predicted;
     }
@@ -128,7 +133,7 @@ FlightReplanner::PredictedDepletion FlightReplanner::predict(const PhaseSegment&
         wind.mechanical_factor = mechanical_factor;
         battery::Discharge now{state};
         for (const auto& scheduled : run)
-            for (const auto& segment : disturbed({load_segment(known_load_, scheduled)}, {wind}))
+            for (const auto& segment : disturbed({load_segment(*known_load_, scheduled)}, {wind}))
                 now = advance_segment(nominal_.battery, 0.0, segment, now);
         return state.soc_percent - now.soc_percent;
     };
@@ -154,8 +159,8 @@ Plan FlightReplanner::replan(const PhaseTime& moment, const battery::BatteryStat
     else
         reserve_percent += margin * rest_mechanical_percent(moment);
     auto plan =
-        plan_remaining(nominal_, adaptive_.planner, start, reserve_percent,
-                       effort_for(adaptive_.planner, (planned_.duration_s - start.time_s) / nominal_.plan.slot_s));
+        plan_remaining(nominal_, *adaptive_.planner, start, reserve_percent,
+                       effort_for(*adaptive_.planner, (planned_.duration_s - start.time_s) / nominal_.plan.slot_s));
     // Nothing that the battery can deliver is known: fly on with what demands least energy.
     if (plan.schedule.empty()) plan.schedule = rest_of(minimum_energy_schedule(nominal_), moment);
     return plan;

@@ -1,17 +1,20 @@
 #pragma once
 
 #include "battery/battery.h"
-#include "mission/planning/planner.h"
-#include "mission/simulation/load_segments.h"
+#include "mission/mission.h"
 
+#include <memory>
 #include <optional>
 
 namespace flightwatt::mission {
 
+struct MissionLoad;
+struct PlanningTables;
+
 /// What a flight controller knows beforehand: the mission as it was stated, and how that depletes the battery.
 struct AdaptivePlanner {
     PlanningProblem nominal;
-    PlanningTables planner;
+    std::shared_ptr<const PlanningTables> planner;
 };
 
 /// Throws as make_planning_tables does, and std::invalid_argument for a problem without a policy.
@@ -55,7 +58,7 @@ class FlightReplanner {
         double mechanical_percent = 0.0;  ///< how much more by mechanical power of twice as much
     };
 
-    bool state_counts() const { return adaptive_.planner.step_s.has_value(); }
+    bool state_counts() const;
     double mechanical_percent(const PhaseSegment& time) const;
     double rest_mechanical_percent(const PhaseTime& moment) const;  ///< of tables
     PredictedDepletion predict(const PhaseSegment& interval, const Schedule& run,
@@ -64,7 +67,7 @@ class FlightReplanner {
     const AdaptivePlanner& adaptive_;
     const PlanningProblem& nominal_;
     MissionTimeline planned_;
-    MissionLoad known_load_;
+    std::shared_ptr<const MissionLoad> known_load_;
     Learned learned_;
     std::optional<compute::Configuration> running_;
     double running_for_s_ = 0.0;

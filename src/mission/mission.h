@@ -7,6 +7,7 @@
 #include "mission/schedule.h"
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -107,7 +108,18 @@ struct PlanningProblem : MissionSetup {
 /// What a mission file may hold.
 using MissionVariant = std::variant<Mission, PlanningProblem>;
 
+/// The mission with another value of one of its numbers, such as the length of its cruise [s]. May throw InputError
+/// where its schedule does not fit.
+using MissionVariation = std::function<MissionVariant(double value)>;
+
 const MissionSetup& setup_of(const MissionVariant& mission);
+
+/// Half the width of a normal 95 % interval, in deviations.
+inline constexpr double sd_per_half_95 = 1.96;
+
+/// How much the battery holds in 95 of 100 flights: as [uncertainty] states it, else as the battery's file has it. None
+/// where the mission states the capacity alone, or nothing says.
+std::optional<battery::Interval> capacity_interval_ah(const MissionSetup& mission);
 
 double utility_per_s(const Utility& utility, const std::vector<double>& qos);
 

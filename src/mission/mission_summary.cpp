@@ -3,6 +3,7 @@
 #include "base/duration_text.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include <fmt/format.h>
@@ -23,6 +24,11 @@ std::string cell(const std::optional<double>& value, int decimals) {
 }
 
 }  // namespace
+
+std::string to_string(LimitingFactor bound) {
+    constexpr std::array names{"charge", "power", "cut-off"};
+    return names.at(static_cast<std::size_t>(bound));
+}
 
 std::string to_string(ScheduleOrigin origin) {
     constexpr std::array names{"", "optimal", "planned", "no plan keeps the reserve", "replanned in flight"};

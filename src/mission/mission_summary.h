@@ -71,6 +71,26 @@ struct MonteCarloResult {
     std::vector<SocBand> bands;
 };
 
+/// What forbids more.
+enum class LimitingFactor {
+    charge,
+    power,   ///< beyond, the battery could not deliver the power, whatever its charge
+    cut_off  ///< beyond, its voltage would fall below the cut-off
+};
+
+/// "charge", "power" or "cut-off".
+std::string to_string(LimitingFactor bound);
+
+/// The most of something with which a mission still lands with its reserve.
+struct FeasibilityLimit {
+    double value = 0.0;
+    double final_soc_percent = 0.0;                            ///< then, simulated
+    double margin_percent = 0.0;                               ///< for the sake of a probability
+    std::optional<UncertaintySources> sources = std::nullopt;  ///< what may differ with that probability
+    double residual_percent = 0.0;                             ///< what is left, less reserve and margin
+    LimitingFactor limited_by = LimitingFactor::charge;
+};
+
 /// How a mission lands with the capacity that the flights of its pack indicate, where its own contradicts them.
 struct EstimatedLanding {
     double capacity_ah = 0.0;

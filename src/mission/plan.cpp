@@ -1,9 +1,8 @@
 #include "mission/plan.h"
 
+#include "base/error.h"
 #include "base/units.h"
-#include "mission/planning/limit_search.h"
 #include "mission/planning/planner.h"
-#include "mission/sampled_flights.h"
 #include "mission/sampling/flight_spreads.h"
 #include "mission/sampling/landing_distribution.h"
 
@@ -193,6 +192,18 @@ MissionPlan plan_with_chance(const PlanningProblem& problem, double probability)
 }
 
 }  // namespace
+
+bool has_uncertainty(const MissionSetup& mission) { return !collect_uncertainty(mission).sources.varied.empty(); }
+
+void require_uncertainty(const MissionSetup& mission) {
+    if (has_uncertainty(mission)) return;
+    throw InputError({mission.file},
+                     "there is nothing to draw flights from: neither the mechanical model, nor the profiles, "
+                     "nor the battery say how they differ",
+                     "fit the model to two flights or more (flightwatt fit), or state it: [uncertainty] with "
+                     "level_sd_percent = { cruise = 5 }, duration_sd_s = { cruise = 20 }, "
+                     "compute_sd_percent or capacity_sd_percent");
+}
 
 void require_known_spread(const MissionSetup& mission) {
     if (mission.mechanical)

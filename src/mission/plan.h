@@ -6,18 +6,6 @@
 
 namespace flightwatt::mission {
 
-/// A schedule for the rest of a mission: by depletion tables, or where the battery's state counts, by search.
-struct Plan {
-    bool feasible = false;
-    bool deliverable = false;  ///< the battery can deliver the power of some schedule
-    /// From the start to the mission's end; if infeasible, the one of least energy demand.
-    Schedule schedule;
-    double utility = 0.0;            ///< mean utility a second of the rest of the mission
-    double utility_bound = 0.0;      ///< no schedule that keeps the reserve has more; 0 if infeasible
-    bool bound_is_proven = true;     ///< false: something charges a battery whose state counts
-    double final_soc_percent = 0.0;  ///< as if the battery went on below empty
-};
-
 /// A plan of a whole mission that Runge-Kutta has flown.
 struct MissionPlan {
     Plan plan;                                ///< its bound is of the mission as stated, whatever Runge-Kutta says
@@ -38,6 +26,12 @@ struct MissionPlan {
 /// reserve and margin. Infeasible plans are returned as such. Throws InputError if the mission states no utility, or
 /// too many choices; with `probability` also as require_known_spread does.
 MissionPlan plan_mission(const PlanningProblem& problem, const std::optional<double>& probability = std::nullopt);
+
+/// Whether something says how a mission's flights differ.
+bool has_uncertainty(const MissionSetup& mission);
+
+/// Throws InputError, which says what is missing and how to get it, where nothing does.
+void require_uncertainty(const MissionSetup& mission);
 
 /// Throws InputError where a mission does not say how its flights differ: the level of each phase that is flown;
 /// without a mechanical model anything.

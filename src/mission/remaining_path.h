@@ -1,6 +1,7 @@
 #pragma once
 
 #include "battery/landing_forecast.h"
+#include "mechanical/flight_progress.h"
 #include "mechanical/prediction.h"
 #include "mission/cruise_path.h"
 

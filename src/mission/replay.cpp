@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "mission/plan.h"
+#include "mission/planning/planner.h"
 #include "mission/prepared_mission.h"
 #include "mission/replanning/flown_mission.h"
 
@@ -223,7 +224,7 @@ void replay_planned(const PlanningProblem& stated, const LeaveOneOutMission& fol
     }
     const auto planner = make_adaptive_planner(problem);
     auto& schedules = replay.schedules;
-    schedules.push_back(invariant(folded, problem, planner.planner));
+    schedules.push_back(invariant(folded, problem, *planner.planner));
     schedules.push_back(phased(folded, problem));
     schedules.push_back(planned_before(folded, problem, ScheduleMethod::planned));
     try {

@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 #include "base/statistics.h"
 #include "base/units.h"
+#include "mission/plan.h"
 #include "mission/sampling/flight_draws.h"
 #include "mission/sampling/flight_lanes.h"
 
@@ -187,18 +188,6 @@ void name_sources(const MissionSetup& a, const MissionSetup& b, const CommonSour
 }
 
 }  // namespace
-
-bool has_uncertainty(const MissionSetup& mission) { return !collect_uncertainty(mission).sources.varied.empty(); }
-
-void require_uncertainty(const MissionSetup& mission) {
-    if (has_uncertainty(mission)) return;
-    throw InputError({mission.file},
-                     "there is nothing to draw flights from: neither the mechanical model, nor the profiles, "
-                     "nor the battery say how they differ",
-                     "fit the model to two flights or more (flightwatt fit), or state it: [uncertainty] with "
-                     "level_sd_percent = { cruise = 5 }, duration_sd_s = { cruise = 20 }, "
-                     "compute_sd_percent or capacity_sd_percent");
-}
 
 MonteCarloResult sample_flights(const PreparedMission& prepared, const Disturbances& disturbances,
                                 const SamplingOptions& options) {

@@ -16,16 +16,6 @@ struct SamplingOptions {
     std::size_t band_points = 0;  ///< at which the state of charge is kept of every flight; 0, or 2 and more
 };
 
-/// Whether something says how a mission's flights differ.
-bool has_uncertainty(const MissionSetup& mission);
-
-/// Throws InputError, which says what is missing and how to get it, where nothing does.
-void require_uncertainty(const MissionSetup& mission);
-
-/// How much the battery holds in 95 of 100 flights: as [uncertainty] states it, else as the battery's file has it. None
-/// where the mission states the capacity alone, or nothing says.
-std::optional<battery::Interval> capacity_interval_ah(const MissionSetup& mission);
-
 /// Draws flights (sampling/flight_draws.h) and flies them, an adaptive policy each anew, under the disturbances, which
 /// happen at the same part of each flight. Flights depend on the seed and their own number alone, so the
 /// answer is the same for any number of threads. Throws as require_spread does, and UsageError for fewer than 2

@@ -46,6 +46,18 @@ struct ScheduleSegment : PhaseSegment {
 /// In the order of time.
 using Schedule = std::vector<ScheduleSegment>;
 
+/// A schedule for the rest of a mission: by depletion tables, or where the battery's state counts, by search.
+struct Plan {
+    bool feasible = false;
+    bool deliverable = false;  ///< the battery can deliver the power of some schedule
+    /// From the start to the mission's end; if infeasible, the one of least energy demand.
+    Schedule schedule;
+    double utility = 0.0;            ///< mean utility a second of the rest of the mission
+    double utility_bound = 0.0;      ///< no schedule that keeps the reserve has more; 0 if infeasible
+    bool bound_is_proven = true;     ///< false: something charges a battery whose state counts
+    double final_soc_percent = 0.0;  ///< as if the battery went on below empty
+};
+
 /// Appends a segment; if it runs what the last one of the same phase runs, that one becomes longer.
 void append_merged(Schedule& schedule, ScheduleSegment segment);
 

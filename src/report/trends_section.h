@@ -2,6 +2,7 @@
 
 #include "base/text_table.h"
 #include "batch/trend.h"
+#include "battery/discharge_record.h"
 #include "battery/identification.h"
 #include "report/batch_content.h"
 #include "report/html.h"

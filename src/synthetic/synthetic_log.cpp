@@ -2,12 +2,10 @@
 
 #include "base/units.h"
 #include "flight/telemetry_series.h"
-#include "synthetic/log_writer.h"
+#include "synthetic/paparazzi/log_writer.h"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <numbers>
 #include <random>
 #include <vector>
 

@@ -4,6 +4,7 @@
 #include "base/number.h"
 #include "telemetry/binary/frame.h"
 #include "telemetry/binary/frame_clock.h"
+#include "telemetry/binary/frame_scanner.h"
 #include "telemetry/binary/wire_value.h"
 #include "telemetry/columns/message_plan.h"
 #include "telemetry/text/skip_counter.h"

@@ -6,7 +6,6 @@
 #include "telemetry/binary/wire_value.h"
 #include "telemetry/columns/message_plan.h"
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -131,20 +130,6 @@ double shortest_decimal_general(float value) {
     std::from_chars(digits.data(), written.ptr, number);
     return number;
 }
-
-std::string_view to_string(Framing framing) {
-    switch (framing) {
-        case Framing::card:
-            return "SD card";
-        case Framing::link:
-            return "link";
-        case Framing::xbee:
-            break;
-    }
-    return "XBee";
-}
-
-std::string_view to_string(LinkVersion version) { return version == LinkVersion::v1 ? "pprzlink v1" : "pprzlink v2"; }
 
 struct LinkDecoder::State {
     State(MessageDictionary messages, std::optional<LinkVersion> link_version)

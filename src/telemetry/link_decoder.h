@@ -9,23 +9,9 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 
 namespace flightwatt::telemetry {
-
-/// How messages are packed into bytes (docs/formats.md, "Binary logs and links").
-enum class Framing {
-    card,  ///< of SD cards, with the time of each message: .LOG, .tlm
-    link,  ///< of serial lines and UDP, without
-    xbee,  ///< received packets of an XBee's API mode, escaped or not
-};
-
-/// The header of a message: sender and id (v1), or sender, destination, class and component, id (v2).
-enum class LinkVersion { v1 = 1, v2 = 2 };
-
-std::string_view to_string(Framing framing);
-std::string_view to_string(LinkVersion version);
 
 /// One message that came in.
 struct LinkMessage {

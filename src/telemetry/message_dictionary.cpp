@@ -58,6 +58,20 @@ std::optional<std::uint8_t> default_class_id(std::string_view name) {
 
 }  // namespace
 
+std::string_view to_string(Framing framing) {
+    switch (framing) {
+        case Framing::card:
+            return "SD card";
+        case Framing::link:
+            return "link";
+        case Framing::xbee:
+            break;
+    }
+    return "XBee";
+}
+
+std::string_view to_string(LinkVersion version) { return version == LinkVersion::v1 ? "pprzlink v1" : "pprzlink v2"; }
+
 std::size_t size_of(WireType type) {
     switch (type) {
         case WireType::int16:

@@ -6,12 +6,24 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace flightwatt::telemetry {
+
+/// How messages are packed into bytes (docs/formats.md, "Binary logs and links").
+enum class Framing {
+    card,  ///< of SD cards, with the time of each message: .LOG, .tlm
+    link,  ///< of serial lines and UDP, without
+    xbee,  ///< received packets of an XBee's API mode, escaped or not
+};
+
+/// The header of a message: sender and id (v1), or sender, destination, class and component, id (v2).
+enum class LinkVersion { v1 = 1, v2 = 2 };
+
+std::string_view to_string(Framing framing);
+std::string_view to_string(LinkVersion version);
 
 /// What a field, or each element of an array, is on the wire: little endian, unaligned.
 enum class WireType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64, text };

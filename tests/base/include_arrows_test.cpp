@@ -12,10 +12,14 @@
 #include <string>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace flightwatt {
 namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
 
 /// The modules that a module may include, besides itself: the table "| module | may include |" of
 /// ARCHITECTURE.md, which is the only place that says so.
@@ -85,6 +89,61 @@ std::filesystem::path below(const std::filesystem::path& path, const char* folde
     return path.lexically_relative(folder);
 }
 
+/// Files below src/, each with those that it includes.
+using Includes = std::map<std::string, std::set<std::string>>;
+
+Includes includes_of_src() {
+    Includes includes;
+    for (const auto& [file, line, target] : include_lines("src")) {
+        auto& targets = includes[below(file, "src").generic_string()];
+        if (std::filesystem::exists(test::source_dir() / "src" / target)) targets.insert(target);
+    }
+    return includes;
+}
+
+/// All that `from` includes, directly or through others; itself only where they make a cycle.
+std::set<std::string> reached(const Includes& includes, const std::string& from) {
+    std::set<std::string> found;
+    std::vector<std::string> open{from};
+    while (!open.empty()) {
+        const auto at = includes.find(open.back());
+        open.pop_back();
+        if (at == includes.end()) continue;
+        for (const auto& target : at->second)
+            if (found.insert(target).second) open.push_back(target);
+    }
+    return found;
+}
+
+bool is_public_header(const std::filesystem::path& below_src) {
+    return below_src.extension() == ".h" && !is_private(below_src);
+}
+
+/// "live/a.h reaches live/state/b.h": a public header whose reader needs a private one.
+std::vector<std::string> private_headers_reached(const Includes& includes) {
+    std::vector<std::string> found;
+    for (const auto& [file, targets] : includes) {
+        if (!is_public_header(file)) continue;
+        for (const auto& target : reached(includes, file))
+            if (is_private(target)) found.push_back(file + " reaches " + target);
+    }
+    return found;
+}
+
+/// The units of cycles within a module; a unit is a header and the source of its name.
+std::vector<std::string> units_in_cycles(const Includes& includes) {
+    const auto unit_of = [](std::filesystem::path file) { return file.replace_extension().generic_string(); };
+    Includes units;
+    for (const auto& [file, targets] : includes)
+        for (const auto& target : targets)
+            if (module_of(file) == module_of(target) && unit_of(file) != unit_of(target))
+                units[unit_of(file)].insert(unit_of(target));
+    std::vector<std::string> found;
+    for (const auto& [unit, targets] : units)
+        if (reached(units, unit).contains(unit)) found.push_back(unit);
+    return found;
+}
+
 TEST(IncludeArrows, PointOnlyWhereTheLayoutAllows) {
     const auto lines = include_lines("src");
     for (const auto& [file, line, target] : lines) {
@@ -111,12 +170,43 @@ TEST(IncludeArrows, HeadersInSubFoldersArePrivateToTheirModule) {
     }
 }
 
+TEST(IncludeArrows, OfPublicHeadersReachNoPrivateOnes) {
+    EXPECT_THAT(private_headers_reached(includes_of_src()), IsEmpty());
+}
+
+TEST(IncludeArrows, OfUnitsOfAModuleMakeNoCycle) { EXPECT_THAT(units_in_cycles(includes_of_src()), IsEmpty()); }
+
+TEST(IncludeArrows, OfMadeUpFilesThatAreWrongAreFound) {
+    const Includes wrong{{"live/a.h", {"live/b.h"}},
+                         {"live/b.h", {"base/csv.h", "live/state/c.h"}},
+                         {"live/b.cpp", {"live/a.h"}},
+                         {"live/d.cpp", {"live/a.h", "live/state/c.h"}}};
+    EXPECT_THAT(private_headers_reached(wrong),
+                ElementsAre("live/a.h reaches live/state/c.h", "live/b.h reaches live/state/c.h"));
+    EXPECT_THAT(units_in_cycles(wrong), ElementsAre("live/a", "live/b"));
+}
+
+/// A header that no other module and no program includes is private, or belongs to another header.
+TEST(IncludeArrows, LeadToEachPublicHeaderFromOutsideOfItsModule) {
+    std::set<std::string> used;
+    for (const auto* folder : {"src", "tools", "ros"})
+        for (const auto& [file, line, target] : include_lines(folder))
+            if (folder != std::string("src") || module_of(below(file, folder)) != module_of(target))
+                used.insert(target);
+    const auto src = test::source_dir() / "src";
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(src)) {
+        const auto header = entry.path().lexically_relative(src);
+        if (!is_public_header(header)) continue;
+        EXPECT_TRUE(used.contains(header.generic_string())) << header << " has no user outside of its module";
+    }
+}
+
 TEST(IncludeArrows, AModuleHasFewPublicHeaders) {
     std::map<std::string, std::size_t> headers;
     const auto src = test::source_dir() / "src";
     for (const auto& entry : std::filesystem::recursive_directory_iterator(src)) {
         const auto path = entry.path().lexically_relative(src);
-        if (path.extension() == ".h" && !is_private(path)) ++headers[module_of(path)];
+        if (is_public_header(path)) ++headers[module_of(path)];
     }
     EXPECT_EQ(headers.size(), allowed().size());
     for (const auto& [module, count] : headers) {

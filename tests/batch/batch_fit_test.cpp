@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "batch/batch_files.h"
+#include "batch/manifest.h"
 #include "helpers/generated_flights.h"
 #include "helpers/rejected.h"
 #include "helpers/test_paths.h"

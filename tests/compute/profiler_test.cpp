@@ -8,6 +8,8 @@
 #include "compute/powprofiler/powprofiler.h"
 #include "compute/profile_reader.h"
 #include "compute/profile_tables.h"
+#include "compute/profiling/profile_runs.h"
+#include "compute/sensors/power_trace.h"
 #include "helpers/rejected.h"
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"

@@ -2,6 +2,7 @@
 
 #include "base/statistics.h"
 #include "base/units.h"
+#include "mechanical/fit/flight_weights.h"
 #include "mechanical/model_fit.h"
 #include "mission/plan.h"
 #include "mission/sampling/flight_lanes.h"

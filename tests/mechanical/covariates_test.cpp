@@ -7,6 +7,7 @@
 #include "helpers/made_up_flights.h"
 #include "helpers/sample_columns.h"
 #include "mechanical/fit/flight_variation.h"
+#include "mechanical/fit/fourier_basis.h"
 #include "mechanical/model_fit.h"
 
 #include <cmath>

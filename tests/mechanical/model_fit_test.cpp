@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "helpers/made_up_flights.h"
+#include "mechanical/fit/phase_fit.h"
 #include "mechanical/mechanical_model.h"
 
 #include <algorithm>

@@ -2,6 +2,7 @@
 
 #include "helpers/path_missions.h"
 #include "mission/feasibility_limits.h"
+#include "mission/planning/limit_search.h"
 #include "mission/sampled_flights.h"
 #include "mission/simulation.h"
 #include "mission/simulation/load_segments.h"

@@ -3,6 +3,7 @@
 #include "helpers/paper_missions.h"
 #include "helpers/rejected.h"
 #include "helpers/steady_mission.h"
+#include "mission/plan.h"
 #include "mission/sampling/flight_draws.h"
 
 #include <cmath>

@@ -2,10 +2,13 @@
 
 #include "base/error.h"
 #include "base/piecewise_linear.h"
-#include "battery/identification/segment_choice.h"
+#include "base/statistics.h"
+#include "base/units.h"
+#include "flight/flight_identity.h"
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -21,6 +24,36 @@ namespace {
 constexpr int first_segments = 6;
 constexpr int max_steps = 15;
 constexpr int places_tried = 80;
+
+constexpr double max_pause_s = 6.0 * units::seconds_per_hour;
+constexpr double counter_error = 0.02;
+constexpr double min_error_ah = 0.005;
+constexpr double counted_ah = 0.01;         // a counter that begins above did not begin anew
+constexpr double unreadable_cell_v = 0.01;  // a cell; a smaller fall tells nothing
+constexpr double max_deviations = 2.5;      // of a resting voltage
+
+/// From the last sample of one record to the first of another; negative if that one began before.
+std::optional<double> pause_s(const DischargeRecord& earlier, const DischargeRecord& later) {
+    const double length_s = earlier.time_s.back() - earlier.time_s.front();
+    if (earlier.start_clock_s && later.start_clock_s) return *later.start_clock_s - *earlier.start_clock_s - length_s;
+    const auto from = flight::start_in_name(earlier.flight);
+    const auto to = flight::start_in_name(later.flight);
+    if (!from || !to) return std::nullopt;
+    const auto seconds = [](auto time) { return std::chrono::duration<double>(time.time_since_epoch()).count(); };
+    return seconds(*to) + later.time_s.front() - seconds(*from) - earlier.time_s.back();
+}
+
+bool is_fallen_as_drawn(const DischargeRecord& later, const AlignedRecord& earlier, const CircuitFit& fit) {
+    const double from_ah = earlier.initial_charge_ah;
+    const double to_ah = from_ah + earlier.record->charge_ah.back();
+    const double drawn_v = interpolate_clamped(fit.knots_ah, fit.open_circuit_v, from_ah) -
+                           interpolate_clamped(fit.knots_ah, fit.open_circuit_v, to_ah);
+    const double fallen_v = earlier.record->resting_voltage_v - later.resting_voltage_v;
+    const double readable_v = std::max(unreadable_cell_v * fit.weights.cells, later.resolution_v);
+    const double reach_v =
+        max_deviations * std::hypot(charged_rest_sd_v * fit.weights.cells, lower_rest_fraction * drawn_v);
+    return drawn_v > 2.0 * readable_v && fallen_v > drawn_v / 2.0 && fallen_v < drawn_v + reach_v;
+}
 
 bool falls_throughout(const CircuitFit& fit) {
     return std::ranges::adjacent_find(fit.open_circuit_v, std::less<>()) == fit.open_circuit_v.end();
@@ -182,6 +215,31 @@ void begin_at_zero(JointCircuitFit& aligned) {
 }
 
 }  // namespace
+
+std::optional<PackLink> find_pack_link(const DischargeRecord& later, std::span<const AlignedRecord> known,
+                                       const CircuitFit& fit) {
+    if (later.is_other_pack) return std::nullopt;
+    PackLink link;
+    link.pause_s = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < known.size(); ++i) {
+        if (known[i].record == &later) continue;
+        const auto pause = pause_s(*known[i].record, later);
+        if (!pause || *pause < 0.0 || *pause >= link.pause_s) continue;
+        link.pause_s = *pause;
+        link.earlier = i;
+    }
+    if (!(link.pause_s <= max_pause_s)) return std::nullopt;
+    const auto& earlier = known[link.earlier];
+    if (earlier.record->counter_ah && later.counter_ah && later.counter_ah->low > counted_ah) {
+        const double apart_ah = later.counter_ah->low - earlier.record->counter_ah->high;
+        if (std::abs(apart_ah) > 2.0 * counted_ah) return std::nullopt;
+        link.counter_continues = true;
+    }
+    if (!is_fallen_as_drawn(later, earlier, fit)) return std::nullopt;
+    link.charge_ah = earlier.record->charge_ah.back();
+    link.error_ah = std::hypot(min_error_ah, counter_error * link.charge_ah);
+    return link;
+}
 
 std::vector<double> uniform_knots(std::span<const AlignedRecord> records, int segments) {
     double low = std::numeric_limits<double>::infinity();

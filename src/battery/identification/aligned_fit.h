@@ -36,6 +36,22 @@ struct JointCircuitFit {
 JointCircuitFit fit_circuit_jointly(std::span<const DischargeRecord> records, int cells,
                                     std::span<const PackConstraint> links = {}, std::span<const double> begin_ah = {});
 
+/// Which of `known` the pack of `later` was flown in last, for all that clocks, counters and resting voltages say. A
+/// log does not name its pack: it is taken for the pack of the last record before it that ended at most six hours
+/// earlier, if it rests lower than that one did, by more than half of what the curve fell meanwhile, and by no more
+/// than that and what relaxation may take. A counter that begins above 0, but not where the earlier one ended, says no.
+/// Clocks are the logs', else those in the names of both ("20_07_10__06_53_03"). None where that is not known.
+std::optional<PackLink> find_pack_link(const DischargeRecord& later, std::span<const AlignedRecord> known,
+                                       const CircuitFit& fit);
+
+/// How many equal segments the curve may have, 1 to 12 and at least twenty samples each, in the order in which they are
+/// to be tried. First come the fewest that predict what is left out, where others went as deep, as well as the best do,
+/// but for one standard error of the difference (Hastie, Tibshirani and Friedman 2009, section 7.10). Left out is each
+/// record in turn; of a single one, each twentieth of its time. Initial charges and time constant are those of `fit`,
+/// and resting samples are not asked: all else is linear. A part's own level is free, as its initial charge is a
+/// parameter.
+std::vector<int> rank_segment_counts(std::span<const AlignedRecord> records, const CircuitFit& fit);
+
 /// Derivatives of one record's fitted voltages, one row a used sample, and the parameters that they are by: places in
 /// the order of FitColumns, then of the records' initial charges (the reference's derivative is 0 throughout). By the
 /// other records' parameters they are 0.
@@ -45,6 +61,13 @@ struct RecordJacobian {
     Eigen::MatrixXd columns;
 };
 std::vector<RecordJacobian> joint_jacobian(const JointCircuitFit& aligned);
+
+/// By the jackknife over blocks of time, initial charges among the parameters, and from three records on over whole
+/// records too, initial charges held (docs/methods.md). Initial charges and knots have at least the error that they
+/// would have if samples were independent, each with its effective error, and what is believed held. Errors that
+/// residuals do not show come on top: rounding of a voltage that stands still, and how far a curve of twice the
+/// segments moves the parameter.
+CircuitErrors circuit_errors(const JointCircuitFit& aligned);
 
 /// Shared parameters and those of all records: FitColumns, then the initial charges.
 Eigen::Index parameter_count(const JointCircuitFit& aligned);

@@ -4,9 +4,9 @@
 #include "base/piecewise_linear.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "battery/identification/open_circuit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -19,6 +19,10 @@
 namespace flightwatt::battery {
 namespace {
 
+constexpr std::array chart_soc_percent{0.0,  5.0,  10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0,
+                                       55.0, 60.0, 65.0, 70.0, 75.0, 80.0, 85.0, 90.0, 95.0, 100.0};
+constexpr std::array chart_cell_v{3.27, 3.61, 3.69, 3.71, 3.73, 3.75, 3.77, 3.79, 3.80, 3.82, 3.84,
+                                  3.85, 3.87, 3.91, 3.95, 3.98, 4.02, 4.08, 4.11, 4.15, 4.20};
 constexpr int capacities_tried = 120;
 constexpr double missing_step = 0.0125;
 constexpr double full_step = 0.005;
@@ -146,6 +150,10 @@ double part_below(double limit) {
 }
 
 }  // namespace
+
+double lipo_chart_voltage_v(double soc_percent) {
+    return interpolate_clamped(chart_soc_percent, chart_cell_v, soc_percent);
+}
 
 std::vector<CapacityHypothesis> capacity_posterior(const ObservedOcv& shown, std::optional<double> given_ah) {
     const auto all = compared(shown);

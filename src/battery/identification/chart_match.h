@@ -1,15 +1,22 @@
 #pragma once
 
 #include "battery/battery.h"
+#include "battery/identified_battery.h"
 
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
 namespace flightwatt::battery {
+
+/// The open-circuit voltage that lithium-polymer packs are commonly said to have, a cell: 4.20 V full, 3.84 V half,
+/// 3.27 V empty (the voltage chart that sellers of packs print, e.g. blog.ampow.com/lipo-voltage-chart). Packs differ
+/// from it by some 80 mV; it stands in only for what no flight has shown.
+
+/// [V] a cell at a state of charge, 0 to 100.
+double lipo_chart_voltage_v(double soc_percent);
 
 /// What flights show of a pack's open-circuit voltage, to be laid onto the LiPo chart.
 struct ObservedOcv {
@@ -21,11 +28,10 @@ struct ObservedOcv {
     int cells = 0;
 };
 
-/// How packs differ from the chart, a cell, as standard deviations: 80 mV, alike over 40 % of the charge, and 10 mV at
-/// each point that is compared. Chen's and Rincon-Mora's curve of a polymer cell (2006) differs from it by 55 mV, the
+/// How packs differ from the chart, a cell, as standard deviations: lipo_chart_sd_v, alike over 40 % of the charge, and
+/// 10 mV at each point that is compared. Chen's and Rincon-Mora's curve of a polymer cell (2006) differs from it by 55 mV, the
 /// two curves of the synthetic packs by 72 and 83 mV; the constants were chosen with these three in view. The 10 mV
 /// keep a curve's smoothness from telling the capacity: real curves are smoother than any model of their difference.
-inline constexpr double lipo_chart_sd_v = 0.08;
 inline constexpr double lipo_chart_correlation_percent = 40.0;
 inline constexpr double lipo_chart_local_sd_v = 0.01;
 inline constexpr double lipo_chart_soc_sd_percent = 4.0;  ///< an error of its charge, which counts where it is steep

@@ -1,6 +1,5 @@
-#include "battery/identification/circuit_errors.h"
-
 #include "base/statistics.h"
+#include "battery/identification/aligned_fit.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,8 @@
 #pragma once
 
 #include "battery/battery.h"
-#include "battery/identification/discharge_record.h"
+#include "battery/discharge_record.h"
+#include "battery/identified_battery.h"
 
 #include <optional>
 #include <span>
@@ -26,31 +27,8 @@ inline constexpr double charged_rest_sd_v = 0.01;
 inline constexpr double lower_rest_fraction = 0.3;
 inline constexpr double slope_change_sd_v = 0.15;
 
-/// How much that counts beside the samples.
-struct FitWeights {
-    int cells = 3;
-    double fullest_rest_v = 0.0;  ///< of all records
-    /// Of one sample, as if samples were independent; what is believed counts in proportion.
-    double sample_error_v = 0.05;
-};
-
 /// [V] How unsure a resting voltage is: the standard deviation of a record's own part.
 double rest_sd_v(const DischargeRecord& record, const FitWeights& weights);
-
-/// A Thévenin circuit fitted to voltages: over charge drawn, because capacity is not needed for that.
-struct CircuitFit {
-    std::vector<double> knots_ah;        ///< rising, equally far apart
-    std::vector<double> open_circuit_v;  ///< at the knots, straight lines between
-    double resistance_ohm = 0.0;
-    double rc_resistance_ohm = 0.0;     ///< 0: no RC pair explains anything
-    double rc_time_constant_s = 0.0;    ///< 0 without an RC pair
-    std::vector<double> rest_offset_v;  ///< of each record before its first load: so much above the curve
-    double common_rest_offset_v = 0.0;
-    FitWeights weights;
-    Eigen::VectorXd residual_v;  ///< measured less fitted; the used samples of the records, in their order
-    double rms_v = 0.0;
-    double objective = 0.0;  ///< sum of squares [V^2], with what was believed
-};
 
 /// The fit of least squares with these knots. Given the time constant all else is linear (variable projection: Golub
 /// and Pereyra 1973), so that one alone is searched for: on a grid from two usual intervals to a quarter of the longest

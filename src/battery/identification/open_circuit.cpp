@@ -16,10 +16,6 @@ namespace {
 
 constexpr double max_charged_cell_v = 4.25;
 constexpr double greatest_high_voltage_cell_v = 4.45;
-constexpr std::array chart_soc_percent{0.0,  5.0,  10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0,
-                                       55.0, 60.0, 65.0, 70.0, 75.0, 80.0, 85.0, 90.0, 95.0, 100.0};
-constexpr std::array chart_cell_v{3.27, 3.61, 3.69, 3.71, 3.73, 3.75, 3.77, 3.79, 3.80, 3.82, 3.84,
-                                  3.85, 3.87, 3.91, 3.95, 3.98, 4.02, 4.08, 4.11, 4.15, 4.20};
 constexpr double min_part = 0.03;  // of the charge: less tells no capacity
 constexpr double flown_fraction = 0.95;
 constexpr double added_step_percent = 5.0;
@@ -41,10 +37,6 @@ void add_knot(ExtendedCurve& extended, const AddedKnots& flown, double percent) 
 
 }  // namespace
 
-double lipo_chart_voltage_v(double soc_percent) {
-    return interpolate_clamped(chart_soc_percent, chart_cell_v, soc_percent);
-}
-
 int lipo_cells(double resting_voltage_v) {
     return static_cast<int>(std::max(1.0, std::ceil(resting_voltage_v / max_charged_cell_v)));
 }
@@ -62,17 +54,17 @@ void require_possible_cells(double resting_voltage_v, int cells) {
 
 std::string cells_warning(double resting_voltage_v, int cells, bool is_given) {
     const double cell_v = resting_voltage_v / cells;
-    if (cell_v < chart_cell_v.front()) {
+    if (cell_v < lipo_chart_voltage_v(0.0)) {
         return fmt::format(
             "{} cells rest at {:.2f} V each before take-off, below an empty LiPo cell ({} V): check the number with "
             "--cells",
-            cells, cell_v, chart_cell_v.front());
+            cells, cell_v, lipo_chart_voltage_v(0.0));
     }
     if (cell_v > max_charged_cell_v) {
         return fmt::format(
             "{} cells rest at {:.2f} V each, above a full LiPo cell ({:.2f} V): the chart, and the capacity by it, are "
             "less accurate for high-voltage cells",
-            cells, cell_v, chart_cell_v.back());
+            cells, cell_v, lipo_chart_voltage_v(100.0));
     }
     const double one_less_v = resting_voltage_v / std::max(1, cells - 1);
     if (is_given || cells == 1 || one_less_v > greatest_high_voltage_cell_v) return "";
@@ -127,7 +119,7 @@ ExtendedCurve extrapolate_curve(const CircuitFit& fit, const std::vector<double>
         extended.standard_error_v.push_back(standard_error_v[i]);
     }
     const AddedKnots above{known_from, fit.open_circuit_v.front(), standard_error_v.front(), cells};
-    for (double percent = added_step_percent * std::ceil(known_from / added_step_percent + 0.1);
+    for (percent = added_step_percent * std::ceil(known_from / added_step_percent + 0.1);
          missing_ah > 0.0 && percent <= units::percent_per_whole; percent += added_step_percent)
         add_knot(extended, above, percent);
     soc.front() = 0.0;  // the last knot, where it is as good as empty

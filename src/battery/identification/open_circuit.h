@@ -2,21 +2,13 @@
 
 #include "battery/battery.h"
 #include "battery/identification/chart_match.h"
-#include "battery/identification/circuit_fit.h"
+#include "battery/identified_battery.h"
 
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 namespace flightwatt::battery {
-
-/// The open-circuit voltage that lithium-polymer packs are commonly said to have, a cell: 4.20 V full, 3.84 V half,
-/// 3.27 V empty (the voltage chart that sellers of packs print, e.g. blog.ampow.com/lipo-voltage-chart). Packs differ
-/// from it by some 80 mV (chart_match.h); it stands in only for what no flight has shown.
-
-/// [V] a cell at a state of charge, 0 to 100.
-double lipo_chart_voltage_v(double soc_percent);
 
 /// How many cells a pack has that rests at this voltage, if it is charged: at most 4.25 V a cell.
 int lipo_cells(double resting_voltage_v);
@@ -27,25 +19,6 @@ inline constexpr double max_cell_voltage_v = 4.5;
 
 /// Throws UsageError where a pack of so many cells cannot rest at this voltage.
 void require_possible_cells(double resting_voltage_v, int cells);
-
-/// What is doubtful of the number of cells, by the voltage of the fullest pack at rest: a cell below or above the LiPo
-/// chart; or, where the number was not given, full high-voltage cells (up to 4.45 V), one less. Empty if nothing is.
-std::string cells_warning(double resting_voltage_v, int cells, bool is_given);
-
-/// Where a capacity comes from.
-enum class CapacityOrigin {
-    given,     ///< by the user
-    measured,  ///< the flights drew nearly all of it
-    chart      ///< from the part of the LiPo chart that the open-circuit voltage went down
-};
-
-std::string to_string(CapacityOrigin origin);
-
-struct Capacity {
-    double value_ah = 0.0;
-    CapacityOrigin origin = CapacityOrigin::given;
-    std::optional<Interval> interval_ah;  ///< 95 %; none of one that is given
-};
 
 /// The capacity as the posterior of capacity_posterior has it: its median and quantiles. It is `measured` where the
 /// flights leave at most 5 % of it. Throws UsageError if the given one is less than what was drawn from the pack, and

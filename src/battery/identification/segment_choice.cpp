@@ -1,5 +1,3 @@
-#include "battery/identification/segment_choice.h"
-
 #include "base/statistics.h"
 #include "battery/identification/aligned_fit.h"
 

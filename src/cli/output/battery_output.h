@@ -2,6 +2,7 @@
 
 #include "base/text_table.h"
 #include "battery/identification.h"
+#include "battery/identified_battery.h"
 #include "cli/stage.h"
 
 #include <string>

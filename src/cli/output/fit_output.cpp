@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/units.h"
+#include "mechanical/fit_records.h"
 #include "mechanical/mechanical_model.h"
 #include "mechanical/model_fit.h"
 #include "mechanical/prediction.h"

@@ -2,6 +2,7 @@
 
 #include "cli/screen_table.h"
 #include "compute/profile_interpolation.h"
+#include "compute/profile_outcome.h"
 #include "compute/profile_tables.h"
 
 #include <cstddef>

@@ -1,20 +1,14 @@
 #pragma once
 
+#include "compute/power_sampler.h"
+#include "compute/profile_outcome.h"
 #include "compute/profile_specification.h"
-#include "compute/sensors/power_sampler.h"
-#include "compute/sensors/power_trace.h"
 
 #include <filesystem>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 
 namespace flightwatt::compute {
-
-/// What became of a run. Only `ok` has power.
-enum class RunStatus { failed, ended_early, timed_out, not_started, no_samples, ok };
-
-std::string_view to_string(RunStatus status);
 
 /// The power of a configuration while it ran once.
 struct ComponentRun {
@@ -22,16 +16,6 @@ struct ComponentRun {
     std::string note;         ///< "exit code 3", "left 2 processes behind, ended"
     PowerTrace trace;         ///< time since the start of the commands, from the end of the warm-up on
     double duration_s = 0.0;  ///< from the end of the warm-up to the end of the run
-};
-
-/// A signal asked the program to end. Nothing of the run is left.
-class Interrupted : public std::runtime_error {
-  public:
-    explicit Interrupted(int signal) : std::runtime_error("interrupted by a signal"), signal_(signal) {}
-    int signal() const { return signal_; }
-
-  private:
-    int signal_;
 };
 
 /// How a run is done.

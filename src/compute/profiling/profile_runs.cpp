@@ -6,7 +6,9 @@
 #include "base/fingerprint.h"
 #include "base/number.h"
 #include "base/overwrite_guard.h"
+#include "compute/profiling/run_statistics.h"
 #include "compute/qos_range.h"
+#include "compute/sensors/power_trace.h"
 
 #include <algorithm>
 #include <cmath>

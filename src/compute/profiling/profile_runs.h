@@ -1,36 +1,14 @@
 #pragma once
 
+#include "compute/profile_outcome.h"
 #include "compute/profile_specification.h"
-#include "compute/profiling/component_run.h"
-#include "compute/profiling/run_statistics.h"
 
 #include <filesystem>
-#include <string>
 #include <vector>
 
 /// The runs of a profile and the files that they leave: layer 1, and runs.csv, by which an interrupted
 /// profile is resumed.
 namespace flightwatt::compute {
-
-inline constexpr const char* runs_name = "runs.csv";
-inline constexpr const char* idle_component = "idle";
-
-/// One run of one configuration: to be done, or done.
-struct ProfileRun {
-    std::string component;             ///< or idle_component
-    std::size_t index = 0;             ///< of the component in its specification
-    std::size_t node = 0;              ///< of its configurations
-    std::string configuration;         ///< "fps=4 key_bits=32"
-    std::size_t repeat = 1;            ///< from 1
-    std::string fingerprint;           ///< of all that its result depends on in the specification
-    std::string layer1;                ///< its file, relative to the results
-    bool is_done = false;              ///< of the rest only what follows here is set by running
-    bool is_from_earlier_run = false;  ///< by an earlier call
-    RunStatus status = RunStatus::failed;
-    std::string note;
-    PowerTrace trace;
-    PowerEstimate estimate;  ///< of status ok
-};
 
 /// The runs in their order: idle first; then repeat by repeat, each in an order shuffled by the seed, so that
 /// neither warming up nor a slow drift is taken for an effect of the configuration. `chosen` are the

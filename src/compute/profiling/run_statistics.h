@@ -1,27 +1,10 @@
 #pragma once
 
-#include "compute/sensors/power_trace.h"
+#include "compute/profile_outcome.h"
 
 #include <vector>
 
 namespace flightwatt::compute {
-
-/// The intervals between the samples of a run.
-struct SamplingJitter {
-    double mean_s = 0.0;
-    double sd_s = 0.0;
-    double max_s = 0.0;
-};
-
-/// Power over a run, or over the repeats of a configuration.
-struct PowerEstimate {
-    double power_w = 0.0;
-    double standard_error_w = 0.0;  ///< NaN where it is not known
-    double duration_s = 0.0;
-    double energy_j = 0.0;  ///< power_w * duration_s
-    std::size_t samples = 0;
-    std::size_t repeats = 0;
-};
 
 /// Jitter over all the runs; intervals of one run only. All 0 with no interval.
 SamplingJitter jitter_of(const std::vector<PowerTrace>& runs);

@@ -1,6 +1,6 @@
 #include "base/number.h"
+#include "compute/power_sampler.h"
 #include "compute/processes/supervised_processes.h"
-#include "compute/sensors/power_sampler.h"
 
 #include <array>
 #include <cerrno>

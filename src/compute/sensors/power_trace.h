@@ -1,17 +1,13 @@
 #pragma once
 
+#include "compute/profile_outcome.h"
+
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace flightwatt::compute {
-
-/// Samples of power with time stamps of their own, rising.
-struct PowerTrace {
-    std::vector<double> time_s;
-    std::vector<double> power_w;
-};
 
 /// Reads a recording of power:
 ///   - a CSV with a header that has time_s and power_w (other columns are passed over)

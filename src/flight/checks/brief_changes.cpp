@@ -1,6 +1,5 @@
 #include "base/statistics.h"
 #include "flight/checks/power_warnings.h"
-#include "flight/phase_statistics.h"
 
 #include <algorithm>
 #include <map>

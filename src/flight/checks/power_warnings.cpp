@@ -3,7 +3,6 @@
 #include "base/piecewise_linear.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "flight/phase_statistics.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,6 @@
 
 #include "flight/flight_phases.h"
 #include "flight/flight_series.h"
-#include "flight/segmentation.h"
 #include "flight/segmentation/motor_record.h"
 #include "flight/selected_track.h"
 

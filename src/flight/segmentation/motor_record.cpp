@@ -4,7 +4,6 @@
 #include "base/units.h"
 #include "flight/checks/runs.h"
 #include "flight/flight_phases.h"
-#include "flight/phase_statistics.h"
 #include "flight/selected_track.h"
 
 #include <algorithm>

@@ -3,7 +3,6 @@
 #include "base/parallel.h"
 #include "base/units.h"
 #include "flight/sources/device_sum.h"
-#include "flight/sources/power_source.h"
 
 #include <algorithm>
 #include <cmath>

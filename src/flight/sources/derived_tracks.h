@@ -11,6 +11,10 @@ namespace flightwatt::flight {
 /// The first of the commands to the actuators: a throttle where it is never negative.
 inline constexpr auto commanded_throttle = "COMMANDS.throttle";
 
+/// The last two fields of a 4-field ENERGY, read the other way round (energy_and_power_are_swapped).
+inline constexpr auto energy_read_as_power = "ENERGY.energy read as power";
+inline constexpr auto power_read_as_energy = "ENERGY.power read as energy";
+
 /// A candidate of a track from raw values at the times of a table, which has rows.
 Track make_candidate(const std::string& name, const std::string& source, const telemetry::MessageTable& table,
                      std::vector<double> values, Merge merge);

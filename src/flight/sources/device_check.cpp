@@ -3,7 +3,6 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "flight/checks/runs.h"
-#include "flight/phase_statistics.h"
 #include "flight/sources/device_sum.h"
 
 #include <algorithm>
@@ -11,7 +10,6 @@
 #include <cmath>
 #include <iterator>
 #include <numeric>
-#include <optional>
 #include <set>
 #include <system_error>
 #include <utility>

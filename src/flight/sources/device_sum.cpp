@@ -1,11 +1,8 @@
 #include "flight/sources/device_sum.h"
 
-#include "flight/phase_statistics.h"
 #include "flight/sources/outliers.h"
 
 #include <algorithm>
-#include <cmath>
-#include <functional>
 #include <optional>
 
 #include <fmt/format.h>

@@ -32,7 +32,4 @@ Track dropout_throttle(const FlightSeries& series, const Track& candidate);
 /// the other way round (power is voltage times current). Its tracks are then those of source
 /// power_read_as_energy and energy_read_as_power.
 bool energy_and_power_are_swapped(const FlightSeries& series);
-inline constexpr auto energy_read_as_power = "ENERGY.energy read as power";
-inline constexpr auto power_read_as_energy = "ENERGY.power read as energy";
-
 }  // namespace flightwatt::flight

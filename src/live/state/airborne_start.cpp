@@ -5,6 +5,8 @@
 #include "flight/phase_statistics.h"
 #include "flight/segmentation.h"
 #include "flight/selected_track.h"
+#include "mechanical/flight_bins.h"
+#include "mechanical/flight_progress.h"
 
 #include <cmath>
 

@@ -1,13 +1,13 @@
 #pragma once
 
+#include "flight/flight_series.h"
 #include "flight/selected_track.h"
-#include "live/prediction.h"
 #include "live/state/path_filter.h"
+#include "live/turn_home.h"
 #include "mission/remaining_path.h"
 
 #include <cstddef>
 #include <optional>
-#include <vector>
 
 namespace flightwatt::live {
 

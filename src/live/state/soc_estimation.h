@@ -1,5 +1,6 @@
 #pragma once
 
+#include "battery/discharge_record.h"
 #include "battery/landing_forecast.h"
 #include "live/live_flight.h"
 

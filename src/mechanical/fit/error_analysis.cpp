@@ -4,12 +4,14 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "mechanical/fit/fourier_basis.h"
+#include "mechanical/fit/phase_fit.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace flightwatt::mechanical {
 namespace {
@@ -58,8 +60,9 @@ Eigen::VectorXd curve_row(Eigen::Index coefficients, double theta_rad, double ta
 }
 
 StudentMixture curve_mixture(const ErrorAnalysis& analysis, double tau) {
-    return mixture_of(analysis.nodes,
-                      [&](double theta_rad) { return curve_row(analysis.coefficients_w.size(), theta_rad, tau); });
+    return mixture_of(analysis.curve->nodes, [&](double theta_rad) {
+        return curve_row(analysis.curve->coefficients_w.size(), theta_rad, tau);
+    });
 }
 
 Interval around(Interval interval, double value) {
@@ -88,7 +91,7 @@ Interval coefficient_interval(const ErrorAnalysis& analysis, const StudentMixtur
                               double value) {
     auto interval = around(mixture_interval(mixture, cdf), value);
     for (const double theta_rad : low_frequencies_rad) {
-        const auto part = below(mixture, analysis.nodes, theta_rad);
+        const auto part = below(mixture, analysis.curve->nodes, theta_rad);
         if (part.weight.empty()) continue;
         const auto [low, high] = mixture_interval(part, cdf);
         interval = around(around(interval, low), high);
@@ -116,12 +119,12 @@ void fill_coefficients(ErrorAnalysis& analysis, double duration_s) {
     auto& errors = analysis.errors;
     auto& intervals = errors.intervals.emplace();
     const StudentCdf cdf(errors.degrees_of_freedom);
-    const auto size = analysis.coefficients_w.size();
+    const auto size = analysis.curve->coefficients_w.size();
     for (Eigen::Index k = 0; k < size; ++k) {
         Eigen::VectorXd unit = Eigen::VectorXd::Unit(size, k);
-        const auto mixture = mixture_of(analysis.nodes, [&](double) { return unit; });
+        const auto mixture = mixture_of(analysis.curve->nodes, [&](double) { return unit; });
         const double sd = mixture_sd(mixture, errors.degrees_of_freedom);
-        const auto [low, high] = coefficient_interval(analysis, mixture, cdf, analysis.coefficients_w(k));
+        const auto [low, high] = coefficient_interval(analysis, mixture, cdf, analysis.curve->coefficients_w(k));
         (k == 0 ? errors.a0_w : k % 2 == 1 ? errors.cos_w.emplace_back() : errors.sin_w.emplace_back()) = sd;
         (k == 0       ? intervals.a0_w
          : k % 2 == 1 ? intervals.cos_w.emplace_back()
@@ -131,9 +134,9 @@ void fill_coefficients(ErrorAnalysis& analysis, double duration_s) {
         intervals.omega_rad_per_s = {analysis.theta_rad / duration_s, analysis.theta_rad / duration_s};
         return;
     }
-    const auto [low, high] = around(frequency_interval(*analysis.posterior), analysis.theta_rad);
+    const auto [low, high] = around(frequency_interval(*analysis.curve->posterior), analysis.theta_rad);
     intervals.omega_rad_per_s = {low / duration_s, high / duration_s};
-    errors.omega_rad_per_s = sd_of_frequency(analysis.nodes) / duration_s;
+    errors.omega_rad_per_s = sd_of_frequency(analysis.curve->nodes) / duration_s;
 }
 
 void fill_noise(PhaseErrors& errors, const FrequencyPosterior& posterior, std::span<const PhaseSamples> flights) {
@@ -184,21 +187,23 @@ double degrees_of_freedom(std::span<const MeanCurveNode> nodes) {
 ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseFit& fit,
                              std::span<const double> weights) {
     ErrorAnalysis analysis;
+    MeanCurve curve;
     auto& errors = analysis.errors;
     double duration_s = 0.0;
     for (std::size_t i = 0; i < flights.size(); ++i) {
         const Eigen::VectorXd own = coefficients_of(fit.flights[i].fourier);
-        if (i == 0) analysis.coefficients_w = Eigen::VectorXd::Zero(own.size());
-        analysis.coefficients_w += weights[i] * own;
+        if (i == 0) curve.coefficients_w = Eigen::VectorXd::Zero(own.size());
+        curve.coefficients_w += weights[i] * own;
         duration_s += weights[i] * flights[i].duration_s;
     }
     analysis.theta_rad = fit.theta_rad;
     describe_fit(errors, flights, fit);
-    analysis.posterior = fit.posterior ? fit.posterior : posterior_of_fit(flights, fit, errors.frequency_is_fixed);
-    analysis.nodes = mean_curve_nodes(*analysis.posterior, weights);
-    add_harmonics(analysis.nodes, analysis.coefficients_w.size());
-    errors.degrees_of_freedom = degrees_of_freedom(analysis.nodes);
-    fill_noise(errors, *analysis.posterior, flights);
+    curve.posterior = fit.posterior ? fit.posterior : posterior_of_fit(flights, fit, errors.frequency_is_fixed);
+    curve.nodes = mean_curve_nodes(*curve.posterior, weights);
+    add_harmonics(curve.nodes, curve.coefficients_w.size());
+    errors.degrees_of_freedom = degrees_of_freedom(curve.nodes);
+    fill_noise(errors, *curve.posterior, flights);
+    analysis.curve = std::make_shared<const MeanCurve>(std::move(curve));
     fill_coefficients(analysis, duration_s);
     constexpr int points = 41;
     double variance = 0.0;
@@ -217,8 +222,8 @@ std::vector<Interval> curve_intervals_w(const ErrorAnalysis& analysis, std::span
     const StudentCdf cdf(analysis.errors.degrees_of_freedom);
     std::vector<Interval> intervals;
     for (const double at : tau) {
-        const double fitted =
-            curve_row(analysis.coefficients_w.size(), analysis.theta_rad, at).dot(analysis.coefficients_w);
+        const double fitted = curve_row(analysis.curve->coefficients_w.size(), analysis.theta_rad, at)
+                                  .dot(analysis.curve->coefficients_w);
         intervals.push_back(around(mixture_interval(curve_mixture(analysis, at), cdf), fitted));
     }
     return intervals;
@@ -230,11 +235,11 @@ FrequencyProfile frequency_profile(std::span<const PhaseSamples> flights, const 
     FrequencyProfile profile{{}, {}, fit.range.low_rad, fit.range.high_rad, true, true};
     if (order == 0 || analysis.errors.frequency_is_fixed) return profile;
 
-    const auto& density = analysis.posterior->density;
-    const auto [low, high] = frequency_interval(*analysis.posterior);
+    const auto& density = analysis.curve->posterior->density;
+    const auto [low, high] = frequency_interval(*analysis.curve->posterior);
     profile.low_rad = std::min(low, fit.theta_rad);
     profile.high_rad = std::max(high, fit.theta_rad);
-    const auto& places = analysis.posterior->theta_rad;
+    const auto& places = analysis.curve->posterior->theta_rad;
     profile.low_is_open = places.front() <= fit.range.low_rad && density.front() >= open_density;
     profile.high_is_open = places.back() >= fit.range.high_rad && density.back() >= open_density;
     const auto square_sum = [&](double theta_rad) { return square_sum_w2(flights, order, theta_rad); };

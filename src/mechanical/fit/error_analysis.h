@@ -1,9 +1,9 @@
 #pragma once
 
 #include "mechanical/fit/frequency_posterior.h"
-#include "mechanical/fit/phase_fit.h"
-#include "mechanical/fit/phase_samples.h"
 #include "mechanical/fit/student_t.h"
+#include "mechanical/fit_records.h"
+#include "mechanical/phase_samples.h"
 
 #include <memory>
 #include <span>
@@ -16,11 +16,9 @@ namespace flightwatt::mechanical {
 /// The weighted mean of the nodes' degrees of freedom, for which all are computed.
 double degrees_of_freedom(std::span<const MeanCurveNode> nodes);
 
-/// The uncertainty of a phase's weighted mean curve that comes from the noise of the samples.
-struct ErrorAnalysis {
-    PhaseErrors errors;
-    double theta_rad = 0.0;
-    Eigen::VectorXd coefficients_w;  ///< of the mean curve: a0, a1, b1, ...
+/// The weighted mean curve of a phase.
+struct MeanCurve {
+    Eigen::VectorXd coefficients_w;  ///< a0, a1, b1, ...
     std::shared_ptr<const FrequencyPosterior> posterior;
     std::vector<MeanCurveNode> nodes;  ///< its weighted mean of the flights
 };
@@ -37,16 +35,6 @@ double curve_standard_error_w(const ErrorAnalysis& analysis, double tau);
 
 /// Many times of the same analysis: the mean curve's 95 % intervals [W], each with the fitted curve inside.
 std::vector<Interval> curve_intervals_w(const ErrorAnalysis& analysis, std::span<const double> tau);
-
-/// How the flights' common residual grows as the frequency leaves its best value, all coefficients following.
-struct FrequencyProfile {
-    std::vector<double> theta_rad;  ///< omega * duration, rising
-    std::vector<double> rms_w;      ///< of all residuals at each
-    double low_rad = 0.0;           ///< the 95 % interval of theta
-    double high_rad = 0.0;
-    bool low_is_open = false;  ///< the interval ends where the admissible range does, not where the data say so
-    bool high_is_open = false;
-};
 
 /// The profile about the frequency found, over twice the interval or as far as the range goes. The interval is that of
 /// the analysis, all minima included, and holds the frequency found; it says when the data leave the frequency open. A

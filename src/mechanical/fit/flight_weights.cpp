@@ -3,9 +3,9 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/toml_reader.h"
+#include "mechanical/fit/phase_fit.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -20,9 +20,6 @@ constexpr double max_times_exact = 1e3;
 
 /// Curves that differ by less than this part of their size are equal.
 constexpr double equal_level = 1e-9;
-
-/// In the order of Weighting.
-constexpr std::array<std::string_view, 4> weighting_names{"uniform", "inverse-variance", "agreement", "by hand"};
 
 std::vector<double> normalised(std::vector<double> weights) {
     const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
@@ -103,14 +100,6 @@ std::vector<double> by_hand(const PhaseFit& fit, flight::Phase phase, const std:
 }
 
 }  // namespace
-
-std::string_view to_string(Weighting weighting) { return weighting_names[static_cast<std::size_t>(weighting)]; }
-
-std::optional<Weighting> weighting_from(std::string_view name) {
-    const auto found = std::ranges::find(weighting_names, name);
-    if (found == weighting_names.end()) return std::nullopt;
-    return static_cast<Weighting>(found - weighting_names.begin());
-}
 
 void validate_weights(const WeightOptions& options, std::span<const std::string> flights) {
     if (options.weighting != Weighting::manual && !options.by_hand.empty()) {

@@ -1,38 +1,13 @@
 #pragma once
 
-#include "mechanical/fit/phase_fit.h"
+#include "mechanical/fit_records.h"
+#include "mechanical/mechanical_model.h"
 
-#include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace flightwatt::mechanical {
-
-/// How much a flight counts in the average of its phase (the w_i of Eqs. 5-7).
-enum class Weighting {
-    uniform,           ///< every flight the same
-    inverse_variance,  ///< samples / rms^2: flights that scatter little about their curve count more
-    agreement,         ///< flights whose curve resembles the others' count more
-    manual
-};
-
-/// "uniform", "inverse-variance", "agreement", "by hand".
-std::string_view to_string(Weighting weighting);
-std::optional<Weighting> weighting_from(std::string_view name);
-
-/// A weight that the user chose, for one phase of a flight or, without a phase, for all its other phases.
-struct ManualWeight {
-    std::string flight;
-    std::optional<flight::Phase> phase;
-    double weight = 0.0;  ///< 0 or more, in any scale
-};
-
-struct WeightOptions {
-    Weighting weighting = Weighting::agreement;
-    std::vector<ManualWeight> by_hand;  ///< for Weighting::by_hand only, and then for every flight
-};
 
 /// Throws UsageError for weights by hand that name no flight of `flights` (with the nearest name) or name one
 /// twice for the same phase, are negative or not finite, or are given though the weighting is another.

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "mechanical/fit/phase_samples.h"
+#include "mechanical/fit_records.h"
 #include "mechanical/mechanical_model.h"
+#include "mechanical/phase_samples.h"
 
 #include <complex>
 #include <optional>
@@ -13,11 +14,6 @@
 /// The Fourier series of Eq. 1 as linear algebra. Its coefficients stand in the order a0, a1, b1, a2, b2, ...;
 /// theta = omega * duration [rad].
 namespace flightwatt::mechanical {
-
-/// The highest order that is supported; beyond it the lowest admissible frequencies leave no digits.
-inline constexpr int max_order = 8;
-
-constexpr int coefficient_count(int order) { return 2 * order + 1; }
 
 inline Eigen::Map<const Eigen::VectorXd> as_vector(std::span<const double> values) {
     return {values.data(), static_cast<Eigen::Index>(values.size())};

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "mechanical/fit/least_squares.h"
-#include "mechanical/fit/phase_samples.h"
 #include "mechanical/mechanical_model.h"
+#include "mechanical/phase_samples.h"
 
 #include <algorithm>
 #include <cmath>

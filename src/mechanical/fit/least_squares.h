@@ -1,12 +1,11 @@
 #pragma once
 
-#include "mechanical/fit/phase_samples.h"
+#include "mechanical/fit_records.h"
 #include "mechanical/mechanical_model.h"
+#include "mechanical/phase_samples.h"
 
 #include <cmath>
-#include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -55,20 +54,6 @@ double find_frequency(std::span<const ScaledSamples> flights, int order, const F
 /// below 2 % of what the series explains (which keeps trends of less than a period); else theta_rad itself.
 double resolve_subharmonic(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
                            double theta_rad);
-
-/// How a residual far from the curve counts.
-enum class Loss {
-    none,  ///< squared
-    huber  ///< squared to 1.345 scales, beyond that as its size
-};
-
-constexpr std::string_view to_string(Loss loss) { return loss == Loss::huber ? "huber" : "none"; }
-
-constexpr std::optional<Loss> loss_from(std::string_view name) {
-    for (const auto loss : {Loss::none, Loss::huber})
-        if (name == to_string(loss)) return loss;
-    return std::nullopt;
-}
 
 /// Where Huber's loss turns from squared to linear, in standard deviations of the noise: 95 % as efficient as
 /// least squares if the noise is normal after all.

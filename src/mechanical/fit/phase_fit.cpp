@@ -156,8 +156,6 @@ double told_frequency(const std::vector<double>& tau, int order, double low_rad,
 
 }  // namespace
 
-std::size_t min_samples(int order) { return static_cast<std::size_t>(coefficient_count(order)) + 1; }
-
 FrequencyRange admissible_frequencies(std::span<const PhaseSamples> flights, const PhaseFitOptions& options) {
     check_options(options);
     FrequencyRange range{options.min_theta_rad, units::rad_from_turns(options.max_periods)};

@@ -1,9 +1,11 @@
 #include "mission/planning/limit_search.h"
 
 #include "base/units.h"
+#include "mission/plan.h"
 #include "mission/planning/depletion_table.h"
 #include "mission/planning/planner.h"
 #include "mission/sampling/landing_distribution.h"
+#include "mission/simulation.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,74 +1,19 @@
 #pragma once
 
 #include "base/error.h"
-#include "mission/feasibility_limits.h"
+#include "mission/mission.h"
+#include "mission/mission_summary.h"
 
-#include <algorithm>
 #include <functional>
 #include <map>
 #include <numeric>
 #include <optional>
-#include <string>
 
 namespace flightwatt::mission {
 
-/// Looks for the least margin above a reserve whose answer keeps the reserve with a chance. More margin, more is left.
-class MarginSearch {
-  public:
-    explicit MarginSearch(double first_percent) : margin_percent_(first_percent) {}
-
-    double margin_percent() const { return margin_percent_; }
-
-    /// What the flights of the answer keep with that chance above the reserve, and what they should at most.
-    void add_result(double slack_percent, double wanted_percent) {
-        auto& end_percent = slack_percent >= 0.0 ? enough_percent_ : too_little_percent_;
-        end_percent = margin_percent_;
-        const double step = margin_per_slack(slack_percent);
-        last_ = {margin_percent_, slack_percent};
-        move_to(margin_percent_ + step * (wanted_percent - slack_percent));
-    }
-
-    /// The answer keeps so much, though it need not: it is that of every margin up to this one.
-    void raise_lower_bound(double kept_percent) { margin_percent_ = std::max(margin_percent_, kept_percent); }
-
-    /// There is no answer with so much.
-    void mark_infeasible() {
-        enough_percent_ = margin_percent_;
-        move_to(std::midpoint(too_little_percent_.value_or(0.0), margin_percent_));
-    }
-
-    /// Nothing is left between what is enough and what is not.
-    bool has_converged() const {
-        return too_little_percent_ && enough_percent_ && *enough_percent_ - *too_little_percent_ < 1e-6;
-    }
-
-  private:
-    struct Learnt {
-        double margin_percent;
-        double slack_percent;
-    };
-
-    /// How much more margin a point of slack takes, by the last two: chances that are not normal take more than one.
-    double margin_per_slack(double slack_percent) const {
-        constexpr double least = 0.5;
-        constexpr double most = 8.0;
-        if (!last_ || slack_percent == last_->slack_percent) return 1.0;
-        const double slope = (margin_percent_ - last_->margin_percent) / (slack_percent - last_->slack_percent);
-        return slope > 0.0 ? std::clamp(slope, least, most) : 1.0;
-    }
-
-    void move_to(double margin_percent) {
-        margin_percent_ = margin_percent;
-        if (!too_little_percent_ || !enough_percent_) return;
-        if (!(margin_percent_ > *too_little_percent_ && margin_percent_ < *enough_percent_))
-            margin_percent_ = std::midpoint(*too_little_percent_, *enough_percent_);
-    }
-
-    double margin_percent_;
-    std::optional<Learnt> last_;
-    std::optional<double> too_little_percent_;
-    std::optional<double> enough_percent_;
-};
+/// State of charge at the end less the reserve [points]: by tables where they hold, else simulated. Negative
+/// if the reserve is not kept, and the more so the earlier the battery ends.
+double surplus_percent(const Mission& mission);
 
 /// What is left of a mission above its reserve, as one of its numbers changes; and where nothing is any more.
 class LimitSearch {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "mission/plan.h"
 #include "mission/planning/depletion_table.h"
 #include "mission/planning/knapsack.h"
 

@@ -3,7 +3,6 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "mechanical/prediction.h"
-#include "mission/sampled_flights.h"
 #include "mission/sampling/joint_spread.h"
 
 #include <algorithm>
@@ -243,15 +242,6 @@ double level_sd_w(const MissionSetup& mission, Phase phase) {
 void require_flight_variability(const MissionSetup& mission) {
     for (const auto phase : all_phases)
         if (mission.mechanical && mission.duration_s[phase] > 0.0) level_sd_w(mission, phase);
-}
-
-std::optional<battery::Interval> capacity_interval_ah(const MissionSetup& mission) {
-    const auto percent = mission.uncertainty.capacity_sd_percent;
-    if (!percent) return mission.capacity_is_stated ? std::nullopt : mission.battery.intervals.capacity_ah;
-    if (!(*percent > 0.0)) return std::nullopt;
-    const double capacity_ah = mission.battery.capacity_ah;
-    const double reach_ah = sd_per_half_95 * units::amount_from_percent(capacity_ah, *percent);
-    return battery::Interval{capacity_ah - reach_ah, capacity_ah + reach_ah};
 }
 
 FlightUncertainty collect_uncertainty(const MissionSetup& mission) {

@@ -46,9 +46,6 @@ double level_sd_w(const MissionSetup& mission, Phase phase);
 /// without that would be a promise about nothing.
 void require_flight_variability(const MissionSetup& mission);
 
-/// Half the width of a normal 95 % interval, in deviations.
-inline constexpr double sd_per_half_95 = 1.96;
-
 /// How the power of one component differs between flights.
 struct ComponentSpread {
     double common_sd_percent = 0.0;  ///< of all its nodes together

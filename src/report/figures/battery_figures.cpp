@@ -1,5 +1,6 @@
 #include "base/statistics.h"
 #include "base/units.h"
+#include "battery/identification.h"
 #include "report/figures/flight_figures.h"
 
 #include <algorithm>

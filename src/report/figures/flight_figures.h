@@ -1,6 +1,7 @@
 #pragma once
 
-#include "battery/identification.h"
+#include "battery/discharge_record.h"
+#include "battery/identified_battery.h"
 #include "mechanical/model_errors.h"
 #include "mechanical/physical_fit.h"
 #include "mechanical/validation.h"

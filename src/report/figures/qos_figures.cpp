@@ -1,5 +1,6 @@
 #include "base/statistics.h"
 #include "base/text.h"
+#include "mission/schedule.h"
 #include "mission/simulation.h"
 #include "report/figures/mission_figures.h"
 

@@ -5,7 +5,6 @@
 #include "flight/phase_statistics.h"
 #include "flight/selected_track.h"
 #include "report/batch_content.h"
-#include "report/blocks.h"
 #include "report/figures/flight_figures.h"
 #include "report/html.h"
 #include "report/sections/sections.h"

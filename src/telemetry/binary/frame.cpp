@@ -1,7 +1,5 @@
 #include "telemetry/binary/frame.h"
 
-#include "telemetry/binary/frame_scanner.h"
-
 #include <cstddef>
 #include <cstring>
 #include <optional>

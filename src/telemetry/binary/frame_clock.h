@@ -1,6 +1,6 @@
 #pragma once
 
-#include "telemetry/binary/frame_scanner.h"
+#include "telemetry/binary/frame.h"
 #include "telemetry/binary/wire_value.h"
 
 #include <cstddef>

@@ -1,5 +1,6 @@
 #include "battery/identification/pack_changes.h"
 
+#include "battery/identification/aligned_fit.h"
 #include "helpers/synthetic_discharge.h"
 
 #include <gmock/gmock.h>

@@ -1,7 +1,5 @@
 // How many segments a curve gets: as few as predict what is left out.
 
-#include "battery/identification/segment_choice.h"
-
 #include "battery/identification/aligned_fit.h"
 #include "helpers/battery_coverage.h"
 

@@ -3,6 +3,7 @@
 #include "helpers/made_up_flights.h"
 #include "mechanical/fit/flight_weights.h"
 #include "mechanical/fit/fourier_basis.h"
+#include "mechanical/fit/phase_fit.h"
 
 #include <cmath>
 #include <numbers>

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "helpers/made_up_flights.h"
+#include "mechanical/fit/phase_fit.h"
 #include "mechanical/mechanical_model.h"
 
 #include <cmath>

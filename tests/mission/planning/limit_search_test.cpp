@@ -1,4 +1,4 @@
-#include "mission/planning/limit_search.h"
+#include "mission/sampling/landing_distribution.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,5 @@
-#include "mission/path.h"
-
 #include "base/units.h"
+#include "mission/path.h"
 #include "mission/path/ground_track.h"
 
 #include <algorithm>

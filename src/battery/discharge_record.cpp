@@ -1,4 +1,4 @@
-#include "battery/identification/discharge_record.h"
+#include "battery/discharge_record.h"
 
 #include "base/error.h"
 #include "base/statistics.h"

@@ -1,4 +1,4 @@
-#include "mechanical/fit/phase_samples.h"
+#include "mechanical/phase_samples.h"
 
 #include <cmath>
 #include <functional>

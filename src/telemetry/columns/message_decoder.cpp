@@ -1,8 +1,7 @@
-#include "telemetry/telemetry_log.h"
-
 #include "base/error.h"
 #include "base/number.h"
 #include "telemetry/columns/message_plan.h"
+#include "telemetry/telemetry_log.h"
 #include "telemetry/text/line_scanner.h"
 
 #include <algorithm>

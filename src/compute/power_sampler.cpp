@@ -1,4 +1,4 @@
-#include "compute/sensors/power_sampler.h"
+#include "compute/power_sampler.h"
 
 #include "base/toml_reader.h"
 #include "compute/sensors/power_rails.h"

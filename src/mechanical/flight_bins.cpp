@@ -1,4 +1,4 @@
-#include "mechanical/physical/flight_bins.h"
+#include "mechanical/flight_bins.h"
 
 #include "base/statistics.h"
 #include "base/units.h"

@@ -1,6 +1,5 @@
-#include "report/blocks.h"
+#include "report/sections/sections.h"
 
-#include <cmath>
 #include <string>
 
 #include <boost/iostreams/device/array.hpp>

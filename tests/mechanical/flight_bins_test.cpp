@@ -1,4 +1,4 @@
-#include "mechanical/physical/flight_bins.h"
+#include "mechanical/flight_bins.h"
 
 #include "flight/selected_track.h"
 

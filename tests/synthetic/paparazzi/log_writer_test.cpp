@@ -1,4 +1,4 @@
-#include "synthetic/log_writer.h"
+#include "synthetic/paparazzi/log_writer.h"
 
 #include <algorithm>
 #include <set>

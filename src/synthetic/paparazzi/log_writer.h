@@ -2,6 +2,7 @@
 
 #include "synthetic/synthetic_flight.h"
 #include "telemetry/log_configuration.h"
+#include "telemetry/message_definition.h"
 
 #include <functional>
 #include <string>

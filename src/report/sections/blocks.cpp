@@ -1,8 +1,7 @@
-#include "report/blocks.h"
-
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/number.h"
+#include "report/sections/sections.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,6 +1,6 @@
 // Sensor trees as the boards' kernels lay them out, made by the test.
 
-#include "compute/sensors/power_sampler.h"
+#include "compute/power_sampler.h"
 
 #include "compute/sensors/power_rails.h"
 #include "helpers/rejected.h"

@@ -1,0 +1,98 @@
+#pragma once
+
+#include "compute/profile_interpolation.h"
+
+#include <cstddef>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// What profiling measures.
+namespace flightwatt::compute {
+
+/// Samples of power with time stamps of their own, rising.
+struct PowerTrace {
+    std::vector<double> time_s;
+    std::vector<double> power_w;
+};
+
+/// The intervals between the samples of a run.
+struct SamplingJitter {
+    double mean_s = 0.0;
+    double sd_s = 0.0;
+    double max_s = 0.0;
+};
+
+/// Power over a run, or over the repeats of a configuration.
+struct PowerEstimate {
+    double power_w = 0.0;
+    double standard_error_w = 0.0;  ///< NaN where it is not known
+    double duration_s = 0.0;
+    double energy_j = 0.0;  ///< power_w * duration_s
+    std::size_t samples = 0;
+    std::size_t repeats = 0;
+};
+
+/// What became of a run. Only `ok` has power.
+enum class RunStatus { failed, ended_early, timed_out, not_started, no_samples, ok };
+
+std::string_view to_string(RunStatus status);
+
+/// A signal asked the program to end. Nothing of the run is left.
+class Interrupted : public std::runtime_error {
+  public:
+    explicit Interrupted(int signal) : std::runtime_error("interrupted by a signal"), signal_(signal) {}
+    int signal() const { return signal_; }
+
+  private:
+    int signal_;
+};
+
+inline constexpr const char* runs_name = "runs.csv";
+inline constexpr const char* idle_component = "idle";
+
+/// One run of one configuration: to be done, or done.
+struct ProfileRun {
+    std::string component;             ///< or idle_component
+    std::size_t index = 0;             ///< of the component in its specification
+    std::size_t node = 0;              ///< of its configurations
+    std::string configuration;         ///< "fps=4 key_bits=32"
+    std::size_t repeat = 1;            ///< from 1
+    std::string fingerprint;           ///< of all that its result depends on in the specification
+    std::string layer1;                ///< its file, relative to the results
+    bool is_done = false;              ///< of the rest only what follows here is set by running
+    bool is_from_earlier_run = false;  ///< by an earlier call
+    RunStatus status = RunStatus::failed;
+    std::string note;
+    PowerTrace trace;
+    PowerEstimate estimate;  ///< of status ok
+};
+
+/// A configuration and its power.
+struct NodeEstimate {
+    std::vector<double> qos;
+    PowerEstimate total;      ///< interpolated: power and standard error alone
+    bool is_measured = true;  ///< false: interpolated from the others
+};
+
+/// The power of a component over its configurations: layer 2.
+struct ComponentEstimate {
+    std::string name;
+    std::vector<std::string> parameters;
+    std::vector<NodeEstimate> nodes;  ///< without those that failed
+    std::size_t configurations = 0;
+    std::vector<ProfileRun> failures;                ///< runs without power
+    std::optional<LeaveOneOutErrors> interpolation;  ///< of the method that was used, on the measured nodes
+};
+
+struct ProfileOutcome {
+    std::string sampler;  ///< kind and source
+    std::optional<PowerEstimate> idle;
+    std::vector<ComponentEstimate> components;
+    std::vector<ProfileRun> runs;
+    SamplingJitter jitter;
+};
+
+}  // namespace flightwatt::compute
