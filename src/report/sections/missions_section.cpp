@@ -216,9 +216,6 @@ void add_plan(Section& section, const SimulatedMission& planned, Missions missio
     }
 }
 
-constexpr int replay_width = 640;
-constexpr int replay_height = 260;
-
 /// Utility over the charge left, a point a flight and schedule.
 Figure replay_figure(const std::vector<const mission::Replay*>& replays, const std::string& id) {
     FigureData data({"soc", "utility"}, {"flight", "schedule"});
@@ -236,26 +233,10 @@ Figure replay_figure(const std::vector<const mission::Replay*>& replays, const s
                                        *summary.final_soc_percent);
         }
     }
-    auto figure = new_figure(id,
-                             "Utility over final state of charge, by schedule and flight. To the left of the line the "
-                             "reserve is not kept; what runs after the battery's end counts nothing.",
-                             description);
-    figure.spec["width"] = replay_width;
-    figure.spec["height"] = replay_height;
-    const VegaJson encoding{
-        {"x", numeric_channel("soc", "final state of charge [%]")},
-        {"y", numeric_channel("utility", "utility")},
-        {"color", nominal_channel("schedule", "schedule")},
-        {"shape", nominal_channel("flight", "flight")},
-        {"tooltip",
-         {nominal_channel("flight", "flight"), nominal_channel("schedule", "schedule"),
-          tooltip_number("utility", "utility", ".4f"), tooltip_number("soc", "final state of charge [%]", ".2f")}}};
-    const VegaJson reserve{{"values", {{{"reserve", reserve_percent}}}}};
-    figure.spec["layer"] = {
-        layer(reserve, R"({"type": "rule", "strokeDash": [4, 3]})", {{"x", numeric_channel("reserve", "")}}),
-        layer(data.json(), R"({"type": "point", "size": 70})", encoding)};
-    figure.spec["layer"][0]["encoding"]["x"]["title"] = "final state of charge [%]";
-    return figure;
+    return new_figure("replay", id,
+                      "Utility over final state of charge, by schedule and flight. To the left of the line the "
+                      "reserve is not kept; what runs after the battery's end counts nothing.",
+                      description, {{"points", data.json()}, {"reserve", reserve_percent}});
 }
 
 }  // namespace
