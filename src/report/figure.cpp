@@ -15,10 +15,6 @@
 #include <fmt/ranges.h>
 
 namespace flightwatt::report {
-
-/// The files of web/figures by their names, without ".vl.json" (CMakeLists.txt).
-const std::map<std::string_view, std::string_view>& figure_templates();
-
 namespace {
 
 /// The nearest number of so many decimals; never -0.
@@ -67,7 +63,7 @@ int decimals_for(std::span<const double> values, double steps, int least) {
     return std::clamp(static_cast<int>(std::ceil(-std::log10((highest - lowest) / steps))), least, most);
 }
 
-VegaJson figure_template(std::string_view name) { return VegaJson::parse(figure_templates().at(name)); }
+VegaJson figure_template(std::string_view name) { return VegaJson::parse(web_templates().at(name)); }
 
 VegaJson filled(VegaJson part, const VegaJson& values) {
     if (part.is_string()) {
@@ -88,6 +84,11 @@ VegaJson filled(VegaJson part, const VegaJson& values) {
 Figure new_figure(std::string_view name, std::string id, std::string caption, std::string description,
                   const VegaJson& values) {
     auto spec = filled(figure_template(name), values);
+    if (values.contains("panels")) {
+        const auto panel = spec["concat"][0];
+        spec["concat"].clear();
+        for (const auto& of_panel : values["panels"]) spec["concat"].push_back(filled(panel, of_panel));
+    }
     spec["description"] = valid_utf8(description);
     return {std::move(id), std::move(caption), std::move(description), std::move(spec)};
 }

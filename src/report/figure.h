@@ -27,6 +27,9 @@ struct Figure {               // NOLINT(bugprone-exception-escape): of nlohmann'
     VegaJson spec;
 };
 
+/// The files of web/figures and the pages of web, built into the program, by their names without endings.
+const std::map<std::string_view, std::string_view>& web_templates();
+
 /// The specification web/figures/NAME.vl.json. Texts "{{FIELD}}" in it stand for what depends on data. A panel's name is
 /// a layer: a title would stand above the highest label of its own axis, and so on another line than its neighbour's.
 /// Zoom is by Ctrl and wheel, for the wheel alone scrolls the page.
@@ -36,7 +39,7 @@ VegaJson figure_template(std::string_view name);
 /// become null are left out.
 VegaJson filled(VegaJson part, const VegaJson& values);
 
-/// The figure `id` of the template `name`, filled.
+/// The figure `id` of the template `name`, filled; the panel of "concat" once with each of the values in "panels".
 Figure new_figure(std::string_view name, std::string id, std::string caption, std::string description,
                   const VegaJson& values = {});
 

@@ -94,8 +94,8 @@ std::string title_of(const AircraftTrend& trend) {
     return trend.level_is_guess ? title + ", level a guess" : title;
 }
 
-/// Flights as points; the slope as a line through their middle, and beside it the ends of its interval.
-VegaJson trend_panel(const AircraftTrend& trend, const VegaJson& panel) {
+/// Of its panel: flights as points, the slope as a line through their middle, and beside it the ends of its interval.
+VegaJson trend_panel(const AircraftTrend& trend) {
     FigureData flights({"date", "value"});
     flights.round_to({0, 6});
     std::vector<double> days;
@@ -118,13 +118,12 @@ VegaJson trend_panel(const AircraftTrend& trend, const VegaJson& panel) {
     add_line(told.per_day, "median slope");
     add_line(told.low_per_day, "low, 95 %");
     add_line(told.high_per_day, "high, 95 %");
-    return filled(panel, {{"flights", flights.json()}, {"slopes", slopes.json()}, {"title", title_of(trend)}});
+    return {{"flights", flights.json()}, {"slopes", slopes.json()}, {"title", title_of(trend)}};
 }
 
 /// Of one aircraft, the quantities whose trend is told.
 Figure trend_figure(std::span<const AircraftTrend> trends, const std::string& aircraft, const std::string& id) {
     auto description = "How " + aircraft + " and its pack go over the dates of flights.";
-    const auto panel = figure_template("trends")["concat"][0];
     auto panels = VegaJson::array();
     for (const auto& trend : trends) {
         if (trend.aircraft != aircraft || !trend.answer.trend) continue;
@@ -132,16 +131,14 @@ Figure trend_figure(std::span<const AircraftTrend> trends, const std::string& ai
         description +=
             fmt::format(" {}: {:.3g}, {:+.3g}{} in 30 days ({:+.3g}{} to {:+.3g}{}), {}.", title_of(trend),
                         trend.answer.trend->median, slope, unit, low, unit, high, unit, trend_direction(trend));
-        panels.push_back(trend_panel(trend, panel));
+        panels.push_back(trend_panel(trend));
     }
-    auto figure = new_figure(
+    return new_figure(
         "trends", id,
         "Energy by time, and by distance over ground and through the air; the mean power of cruises; "
         "resistance and capacity of the pack. Each point is a flight; the line has the median of the slopes between all pairs of flights, "
         "the dashed ones the ends of its 95 % interval.",
-        description);
-    figure.spec["concat"] = panels;
-    return figure;
+        description, {{"panels", panels}});
 }
 
 }  // namespace

@@ -49,22 +49,19 @@ FigureData knot_rows(const battery::BatteryIdentification& identified) {
 Figure voltage_figure(const battery::BatteryIdentification& identified,
                       std::span<const battery::DischargeRecord> records, const std::string& id) {
     auto description = fmt::format("Terminal voltage of {} flights over time, measured and modelled.", records.size());
-    const auto panel = figure_template("voltage")["concat"][0];
     auto panels = VegaJson::array();
     for (std::size_t i = 0; i < records.size(); ++i) {
         const auto& record = records[i];
         const auto [low, high] = std::ranges::minmax_element(record.voltage_v);
         description += fmt::format(" {}: {:.2f} to {:.2f} V.", record.flight, *low, *high);
         const auto rows = voltage_rows(identified.battery, record, identified.flights[i].initial_depletion_ah);
-        panels.push_back(filled(panel, {{"curves", rows.json()}, {"flight", valid_utf8(record.flight)}}));
+        panels.push_back({{"curves", rows.json()}, {"flight", valid_utf8(record.flight)}});
     }
-    auto figure = new_figure(
+    return new_figure(
         "voltage", id,
         "The model's voltage follows from the measured current and the charge that was missing at the start. "
         "Both are broken where the record contradicts itself: a current that the motor did not draw.",
-        description);
-    figure.spec["concat"] = panels;
-    return figure;
+        description, {{"panels", panels}});
 }
 
 Figure open_circuit_figure(const battery::BatteryIdentification& identified, const std::string& id) {

@@ -156,20 +156,17 @@ Figure model_figure(const mechanical::MechanicalModel& model, const flight::PerP
     if (!cruise.time_s.empty()) drawn.push_back("95 % band of the mean");
     if (!cruise.flights_low_w.empty()) drawn.push_back("envelope of the flights");
     if (!published.power[flight::Phase::cruise].time_s.empty()) drawn.push_back("published, Fig. 2");
-    const auto panel = figure_template("model")["concat"][0];
     auto panels = VegaJson::array();
     for (const auto phase : flight::all_phases) {
         const auto& band = bands[phase];
-        panels.push_back(filled(panel, {{"phase", phase_word(phase)},
-                                        {"drawn", drawn},
-                                        {"envelope", area_rows(band.time_s, band.flights_low_w, band.flights_high_w)},
-                                        {"band", area_rows(band.time_s, band.low_95_w, band.high_95_w)},
-                                        {"model", model_rows(model.phases[phase])},
-                                        {"published", published_rows(published.power[phase])}}));
+        panels.push_back({{"phase", phase_word(phase)},
+                          {"drawn", drawn},
+                          {"envelope", area_rows(band.time_s, band.flights_low_w, band.flights_high_w)},
+                          {"band", area_rows(band.time_s, band.low_95_w, band.high_95_w)},
+                          {"model", model_rows(model.phases[phase])},
+                          {"published", published_rows(published.power[phase])}});
     }
-    auto figure = new_figure("model", id, model_caption(model, published), model_described(model));
-    figure.spec["concat"] = panels;
-    return figure;
+    return new_figure("model", id, model_caption(model, published), model_described(model), {{"panels", panels}});
 }
 
 Figure validation_figure(std::span<const mechanical::ValidatedFlight> flights, const std::string& id) {
