@@ -25,14 +25,8 @@ std::string explained(const flight::PhaseEdge& edge) {
 }
 
 std::string edge_name(const flight::PhaseSpan& span, bool begin) {
-    switch (span.phase) {
-        case flight::Phase::takeoff:
-            return begin ? "lift-off" : "end of take-off";
-        case flight::Phase::landing:
-            return begin ? "start of landing" : "touchdown";
-        case flight::Phase::cruise:
-            break;
-    }
+    if (span.phase == flight::Phase::takeoff) return begin ? "lift-off" : "end of take-off";
+    if (span.phase == flight::Phase::landing) return begin ? "start of landing" : "touchdown";
     return begin ? "start of cruise" : "end of cruise, start of landing";
 }
 
