@@ -36,7 +36,8 @@ std::string filled_page(std::string_view name, const std::map<std::string_view, 
         html.append(left.substr(0, at)).append(values.at(left.substr(at + 2, end - at - 2)));
         left.remove_prefix(end + 2);
     }
-    return html.append(left);
+    html.append(left);
+    return html;
 }
 
 std::vector<std::filesystem::path> library_paths(const std::filesystem::path& folder) {
