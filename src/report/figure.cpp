@@ -17,14 +17,6 @@
 namespace flightwatt::report {
 namespace {
 
-std::string dumped(const VegaJson& json) { return json.dump(-1, ' ', false, VegaJson::error_handler_t::replace); }
-
-VegaJson channel_of(std::string_view field, std::string_view type, std::string_view title, const VegaJson& more) {
-    VegaJson channel{{"field", field}, {"type", type}, {"title", title}};
-    channel.update(more);
-    return channel;
-}
-
 /// The nearest number of so many decimals; never -0.
 double rounded(double number, int decimals) {
     const double scale = std::pow(10.0, decimals);
@@ -71,9 +63,33 @@ int decimals_for(std::span<const double> values, double steps, int least) {
     return std::clamp(static_cast<int>(std::ceil(-std::log10((highest - lowest) / steps))), least, most);
 }
 
-Figure new_figure(std::string id, std::string caption, std::string description) {
-    VegaJson spec{{"$schema", "https://vega.github.io/schema/vega-lite/v5.json"},
-                  {"description", valid_utf8(description)}};
+VegaJson figure_template(std::string_view name) { return VegaJson::parse(web_templates().at(name)); }
+
+VegaJson filled(VegaJson part, const VegaJson& values) {
+    if (part.is_string()) {
+        const std::string_view text = part.get_ref<const std::string&>();
+        if (!text.starts_with("{{") || !text.ends_with("}}")) return part;
+        const std::string field(text.substr(2, text.size() - 4));
+        return values.contains(field) ? values[field] : part;
+    }
+    if (!part.is_structured()) return part;
+    for (auto& inner : part) inner = filled(std::move(inner), values);
+    if (!part.is_array()) return part;
+    std::erase_if(part.get_ref<VegaJson::array_t&>(), [](const VegaJson& layer) {
+        return layer.is_object() && layer.contains("data") && layer["data"].is_null();
+    });
+    return part;
+}
+
+Figure new_figure(std::string_view name, std::string id, std::string caption, std::string description,
+                  const VegaJson& values) {
+    auto spec = filled(figure_template(name), values);
+    if (values.contains("panels")) {
+        const auto panel = spec["concat"][0];
+        spec["concat"].clear();
+        for (const auto& of_panel : values["panels"]) spec["concat"].push_back(filled(panel, of_panel));
+    }
+    spec["description"] = valid_utf8(description);
     return {std::move(id), std::move(caption), std::move(description), std::move(spec)};
 }
 
@@ -105,15 +121,11 @@ void FigureData::add(std::initializer_list<double> numbers, std::initializer_lis
     ++rows_;
 }
 
-VegaJson FigureData::format() const {
-    VegaJson parse = VegaJson::object();
+VegaJson FigureData::json() const {
+    auto parse = VegaJson::object();
     for (const auto& name : numbers_) parse[name] = "number";
-    return {{"type", "csv"}, {"parse", parse}};
+    return {{"values", csv_}, {"format", {{"type", "csv"}, {"parse", parse}}}};
 }
-
-VegaJson FigureData::json() const { return {{"values", csv_}, {"format", format()}}; }
-
-VegaJson FigureData::reference(std::string_view name) const { return {{"name", name}, {"format", format()}}; }
 
 std::vector<std::size_t> downsample_m4(const std::vector<double>& time_s, const std::vector<double>& values,
                                        std::size_t columns) {
@@ -140,84 +152,9 @@ std::vector<std::size_t> downsample_m4(const std::vector<double>& time_s, const 
     return kept;
 }
 
-VegaJson vega(std::string_view text) { return VegaJson::parse(text); }
-
-VegaJson layer(const VegaJson& data, std::string_view mark, const VegaJson& encoding) {
-    return {{"data", data}, {"mark", vega(mark)}, {"encoding", encoding}};
-}
-
-VegaJson layer(std::string_view mark, const VegaJson& encoding) {
-    return {{"mark", vega(mark)}, {"encoding", encoding}};
-}
-
-VegaJson numeric_channel(std::string_view field, std::string_view title, const VegaJson& more) {
-    return channel_of(field, "quantitative", title, more);
-}
-
-VegaJson nominal_channel(std::string_view field, std::string_view title, const VegaJson& more) {
-    return channel_of(field, "nominal", title, more);
-}
-
-VegaJson tooltip_number(std::string_view field, std::string_view title, std::string_view format) {
-    return numeric_channel(field, title, {{"format", format}});
-}
-
-void add_measured_and_model(VegaJson& encoding, double measured_px, double model_px) {
-    const auto legend = vega(R"({"symbolType": "stroke"})");
-    auto scale = vega(R"({"domain": ["measured", "model"], "range": "measured_and_model"})");
-    encoding["color"] = nominal_channel("curve", "", {{"scale", scale}, {"legend", legend}});
-    scale["range"] = {measured_px, model_px};
-    encoding["strokeWidth"] = channel_of("curve", "ordinal", "", {{"scale", scale}, {"legend", legend}});
-}
-
-VegaJson power_ramp(std::string_view field, std::string_view title) {
-    return numeric_channel(field, title, vega(R"({"scale": {"range": "ramp"},
-        "legend": {"orient": "bottom", "gradientLength": 160}})"));
-}
-
-void set_panels(Figure& figure, int columns, int row_gap_px, const VegaJson& panels) {
-    figure.spec["columns"] = columns;
-    figure.spec["bounds"] = "flush";
-    figure.spec["spacing"] = {{"column", 62}, {"row", row_gap_px}};
-    figure.spec["concat"] = panels;
-}
-
-VegaJson panel_name(std::string_view name) {
-    auto mark = vega(R"({"type": "text", "style": "panel-name", "x": 0, "y": -12, "align": "left",
-                         "baseline": "alphabetic", "limit": 260, "aria": false})");
-    mark["text"] = valid_utf8(name);
-    return {{"data", {{"values", {VegaJson::object()}}}}, {"mark", mark}};
-}
-
-VegaJson add_zoom(Figure& figure, const VegaJson& views) {
-    figure.time_signal = "zoom_time_s";
-    figure.time_scale = "x";
-    // The wheel alone scrolls the page; a pinch on a touch pad is a wheel with Ctrl.
-    auto zoom = vega(R"({"name": "zoom", "bind": "scales", "select":
-        {"type": "interval", "encodings": ["x"], "zoom": "wheel![event.ctrlKey || event.metaKey]"}})");
-    zoom["views"] = views;
-    return zoom;
-}
-
-VegaJson legend_parameter(std::string_view field, const VegaJson& series, std::string_view view) {
-    auto all = VegaJson::array();
-    for (const auto& name : series) all.push_back({{std::string(field), name}});
-    return {{"name", "shown"},
-            {"bind", "legend"},
-            {"value", all},
-            {"select", {{"type", "point"}, {"fields", {field}}, {"toggle", "true"}}},
-            {"views", {view}}};
-}
-
-VegaJson shown_by_legend() { return vega(R"({"filter": {"param": "shown"}})"); }
-
-VegaJson phase_names(const VegaJson& data, std::string_view time_title) {
-    return layer(data, R"({"type": "text", "style": "note", "baseline": "bottom", "dy": -3, "y": 0, "clip": false})",
-                 {{"x", numeric_channel("middle_s", time_title)}, {"text", nominal_channel("word", "phase")}});
-}
-
 std::string script_json(const VegaJson& json) {
-    return boost::replace_all_copy(dumped(json), "<", "\\u003c");  // no </script> and no <!--
+    const auto text = json.dump(-1, ' ', false, VegaJson::error_handler_t::replace);
+    return boost::replace_all_copy(text, "<", "\\u003c");  // no </script> and no <!--
 }
 
 PublishedFigures read_published_figures(const std::filesystem::path& folder) {

@@ -89,9 +89,8 @@ std::string table_html(const TextTable& table, const HtmlTableOptions& options) 
 std::string figure_html(const Figure& figure) { return figure_html(figure, figure.spec); }
 
 std::string figure_html(const Figure& figure, const VegaJson& spec) {
-    const auto keys = figure.time_signal.empty()
-                          ? std::string()
-                          : fmt::format(" data-zoom=\"{}\" data-scale=\"{}\"", figure.time_signal, figure.time_scale);
+    // What has parameters zooms: by the keyboard too.
+    const auto* keys = figure.spec.contains("params") ? " data-zoom=\"zoom_time_s\" data-scale=\"x\"" : "";
     return fmt::format(
         "<figure>\n<div class=\"figure\" tabindex=\"0\" role=\"group\" aria-label=\"{0}\" "
         "data-spec=\"spec-{1}\" "

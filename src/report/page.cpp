@@ -27,16 +27,17 @@ std::string inline_script(const std::string& text) {
     return "<script>" + boost::replace_all_copy(text, "</script", "<\\/script") + "</script>\n";
 }
 
-std::string head_html(const PageHead& head, const WebFiles& web) {
-    // The policy lets the page draw (Vega compiles its expressions) and ask the network for nothing.
-    return fmt::format(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
-        "script-src 'unsafe-inline' 'unsafe-eval'; style-src 'unsafe-inline'; img-src data: blob:\">\n"
-        "<meta name=\"generator\" content=\"flightwatt " FLIGHTWATT_VERSION
-        "\">\n<link rel=\"icon\" href=\"data:,\">\n<title>{}</title>\n<style>\n{}</style>\n</head>\n",
-        html_escaped(head.title), web.style);
+/// The page web/NAME.html, with each "{{FIELD}}" replaced by its value.
+std::string filled_page(std::string_view name, const std::map<std::string_view, std::string_view>& values) {
+    auto left = web_templates().at(name);
+    std::string html;
+    for (auto at = left.find("{{"); at != std::string_view::npos; at = left.find("{{")) {
+        const auto end = left.find("}}", at);
+        html.append(left.substr(0, at)).append(values.at(left.substr(at + 2, end - at - 2)));
+        left.remove_prefix(end + 2);
+    }
+    html.append(left);
+    return html;
 }
 
 std::vector<std::filesystem::path> library_paths(const std::filesystem::path& folder) {
@@ -63,31 +64,6 @@ WebFiles read_drawing_files(const std::filesystem::path& folder) {
     if (missing_library(folder)) return files;
     for (const auto& path : library_paths(folder)) files.libraries += read_file(path) + "\n";
     return files;
-}
-
-std::string contents_html(const std::vector<Section>& sections) {
-    std::string html = "<nav aria-label=\"Contents\"><ul>\n";
-    for (const auto& section : sections) {
-        html += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", section.id, html_escaped(section.title));
-    }
-    return html + "</ul></nav>\n";
-}
-
-std::string opening_html(const PageHead& head, const std::vector<Section>& sections) {
-    return fmt::format("<header>\n<h1>{}</h1>\n", html_escaped(head.title)) + contents_html(sections) +
-           "<noscript><p class=\"warning\">The figures need JavaScript; the tables do not.</p></noscript>\n"
-           "</header>\n";
-}
-
-std::string closing_html(const PageHead& head) {
-    std::string html = "<footer>\n<h2>About this page</h2>\n<dl>\n";
-    for (const auto& [name, value] : head.facts)
-        html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", html_escaped(name), html_escaped(value));
-    html += "</dl>\n";
-    return html +
-           "<p class=\"soft keys\">In figures over time: drag to move, Ctrl and wheel to zoom, double-click for "
-           "all; with the keyboard + and \u2212, arrows, 0, and the tab key for the series. The menu in a "
-           "figure's corner saves it.</p>\n</footer>\n";
 }
 
 /// Runs a program of the PATH with its output on our standard error; false if it is not there. Throws OutputError where
@@ -165,50 +141,44 @@ WebFiles read_live_web_files(const std::filesystem::path& folder) {
 }
 
 std::string page_html(const PageHead& head, const std::vector<Section>& sections, const WebFiles& web) {
-    auto html = head_html(head, web) + "<body>\n" + opening_html(head, sections) + "<main>\n";
+    std::string contents;
+    std::string html;
     for (const auto& section : sections) {
+        const auto title = html_escaped(section.title);
+        contents += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", section.id, title);
         html += fmt::format("<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n<h2 id=\"{0}-title\">{1}</h2>\n",
-                            section.id, html_escaped(section.title));
+                            section.id, title);
         html += section.html + "</section>\n";
     }
-    html += "</main>\n" + closing_html(head) + "<script type=\"application/json\" id=\"theme\">" +
-            script_json(VegaJson::parse(web.theme)) + "</script>\n";
-    return html + inline_script(web.libraries) + inline_script(web.script) + "</body>\n</html>\n";
+    std::string facts;
+    for (const auto& [name, value] : head.facts)
+        facts += fmt::format("<dt>{}</dt><dd>{}</dd>\n", html_escaped(name), html_escaped(value));
+    return filled_page("page", {{"version", FLIGHTWATT_VERSION},
+                                {"title", html_escaped(head.title)},
+                                {"style", web.style},
+                                {"contents", contents},
+                                {"sections", html},
+                                {"facts", facts},
+                                {"theme", script_json(VegaJson::parse(web.theme))},
+                                {"libraries", inline_script(web.libraries)},
+                                {"script", inline_script(web.script)}});
 }
 
 std::string live_page_html(const WebFiles& web) {
-    const auto part = [](const char* title, const char* id) {
-        return fmt::format("<section><h2>{}</h2><dl id=\"{}\"></dl></section>\n", title, id);
-    };
-    const auto list = [](const char* title, const char* id) {
-        return fmt::format("<section><h2>{0}</h2><ul id=\"{1}\" aria-label=\"{0}\"{2}></ul></section>\n", title, id,
-                           std::string_view(id) == "alarms" ? " aria-live=\"assertive\"" : "");
-    };
-    auto html = head_html({.title = "flightwatt watch", .facts = {}}, web);
-    boost::replace_first(html, "img-src data: blob:", "img-src data: blob:; connect-src 'self'");
-    html +=
-        "<body>\n<main id=\"page\">\n<h1 id=\"title\">No aircraft yet</h1>\n"
-        "<p id=\"connection\" class=\"warning\" role=\"status\"></p>\n"
-        "<noscript><p class=\"warning\">This page needs JavaScript; /state is the same as JSON.</p></noscript>\n";
-    html += list("Alarms", "alarms");
-    if (web.libraries.empty()) {
-        html += paragraph(
+    std::string charts = "<h2>Charts</h2>\n";
+    for (const auto* id : {"charge", "power", "altitude"})
+        charts += fmt::format(
+            "<figure><div class=\"figure\" id=\"{0}\" role=\"img\" aria-label=\"{0} over time\"></div></figure>\n", id);
+    if (web.libraries.empty())
+        charts = paragraph(
             "There are no charts: the libraries that draw them are not installed (scripts/install_dependencies).",
             "warning");
-    } else {
-        html += "<h2>Charts</h2>\n";
-        for (const auto* id : {"charge", "power", "altitude"}) {
-            html += fmt::format(
-                "<figure><div class=\"figure\" id=\"{0}\" role=\"img\" aria-label=\"{0} over time\">"
-                "</div></figure>\n",
-                id);
-        }
-    }
-    html += part("Now", "now") + part("Landing", "landing") + part("Schedule", "schedule") + part("Link", "link");
-    html += list("Warnings", "warnings") + "</main>\n<script type=\"application/json\" id=\"theme\">" +
-            script_json(VegaJson::parse(web.theme)) + "</script>\n";
-    if (!web.libraries.empty()) html += inline_script(web.libraries);
-    return html + inline_script(web.script) + "</body>\n</html>\n";
+    return filled_page("watch", {{"version", FLIGHTWATT_VERSION},
+                                 {"style", web.style},
+                                 {"charts", charts},
+                                 {"theme", script_json(VegaJson::parse(web.theme))},
+                                 {"libraries", web.libraries.empty() ? "" : inline_script(web.libraries)},
+                                 {"script", inline_script(web.script)}});
 }
 
 FigureFiles write_figures(const std::vector<Section>& sections, const WebFiles& web,

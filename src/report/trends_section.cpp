@@ -94,13 +94,8 @@ std::string title_of(const AircraftTrend& trend) {
     return trend.level_is_guess ? title + ", level a guess" : title;
 }
 
-VegaJson date_axis() {
-    return {{"field", "date"}, {"type", "temporal"}, {"title", "date"}, {"scale", {{"type", "utc"}}}};
-}
-
-/// Flights as points; the slope as a line through their middle, and beside it the ends of its interval.
+/// Of its panel: flights as points, the slope as a line through their middle, and beside it the ends of its interval.
 VegaJson trend_panel(const AircraftTrend& trend) {
-    const auto title = title_of(trend);
     FigureData flights({"date", "value"});
     flights.round_to({0, 6});
     std::vector<double> days;
@@ -123,23 +118,7 @@ VegaJson trend_panel(const AircraftTrend& trend) {
     add_line(told.per_day, "median slope");
     add_line(told.low_per_day, "low, 95 %");
     add_line(told.high_per_day, "high, 95 %");
-    const VegaJson y = numeric_channel("value", "", {{"scale", {{"zero", false}}}});
-    const VegaJson points = layer(
-        flights.json(), R"({"type": "point", "size": 40, "filled": true, "opacity": 1})",
-        {{"x", date_axis()},
-         {"y", y},
-         {"tooltip",
-          {{{"field", "date"}, {"type", "temporal"}, {"title", "date"}, {"formatType", "utc"}, {"format", "%Y-%m-%d"}},
-           tooltip_number("value", title, ".4g")}}});
-    const VegaJson dash{
-        {"field", "slope"},
-        {"type", "nominal"},
-        {"title", "slope"},
-        {"scale", {{"domain", {"median slope", "low, 95 %", "high, 95 %"}}, {"range", {{1, 0}, {4, 3}, {4, 3}}}}},
-        {"legend", nullptr}};
-    const VegaJson lines = layer(slopes.json(), R"({"type": "line", "style": "measured"})",
-                                 {{"x", date_axis()}, {"y", y}, {"strokeDash", dash}});
-    return {{"width", 280}, {"height", 150}, {"layer", {lines, points, panel_name(title)}}};
+    return {{"flights", flights.json()}, {"slopes", slopes.json()}, {"title", title_of(trend)}};
 }
 
 /// Of one aircraft, the quantities whose trend is told.
@@ -154,14 +133,12 @@ Figure trend_figure(std::span<const AircraftTrend> trends, const std::string& ai
                         trend.answer.trend->median, slope, unit, low, unit, high, unit, trend_direction(trend));
         panels.push_back(trend_panel(trend));
     }
-    auto figure = new_figure(
-        id,
+    return new_figure(
+        "trends", id,
         "Energy by time, and by distance over ground and through the air; the mean power of cruises; "
         "resistance and capacity of the pack. Each point is a flight; the line has the median of the slopes between all pairs of flights, "
         "the dashed ones the ends of its 95 % interval.",
-        description);
-    set_panels(figure, 2, 66, panels);
-    return figure;
+        description, {{"panels", panels}});
 }
 
 }  // namespace

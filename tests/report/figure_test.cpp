@@ -48,6 +48,24 @@ TEST(DecimalsFor, TellTheExtentApart) {
     EXPECT_EQ(decimals_for(std::vector{0.0, 1e-300}, 500.0, 1), 9);
 }
 
+TEST(Filled, ReplacesFieldsAndLeavesOutLayersWithoutData) {
+    const auto part = VegaJson::parse(R"({"title": "{{name}}", "step": 1, "more": "{{unknown}}",
+                                          "layer": [{"data": "{{rows}}"}, {"data": "{{nothing}}"}, {"mark": "line"}]})");
+    const VegaJson values{{"name", "{{rows}}"}, {"rows", {{"values", "a\n1"}}}, {"nothing", nullptr}};
+    EXPECT_EQ(
+        filled(part, values).dump(),
+        R"({"title":"{{rows}}","step":1,"more":"{{unknown}}","layer":[{"data":{"values":"a\n1"}},{"mark":"line"}]})");
+}
+
+TEST(NewFigure, HasAPanelForEachOfTheValues) {
+    const auto figure = new_figure("voltage", "v", "", "Of two flights.",
+                                   {{"panels", {{{"curves", 1}, {"flight", "a"}}, {{"curves", 2}, {"flight", "b"}}}}});
+    EXPECT_EQ(figure.spec["description"], "Of two flights.");
+    ASSERT_EQ(figure.spec["concat"].size(), 2U);
+    EXPECT_EQ(figure.spec["concat"][1]["layer"][0]["data"], 2);
+    EXPECT_EQ(figure.spec.dump().find("{{"), std::string::npos);
+}
+
 TEST(ScriptJson, CannotEndItsElement) {
     const VegaJson json{{"name", "</script><!--<script>"}};
     const auto text = script_json(json);

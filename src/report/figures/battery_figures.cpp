@@ -1,4 +1,5 @@
 #include "base/statistics.h"
+#include "base/text.h"
 #include "base/units.h"
 #include "battery/identification.h"
 #include "report/figures/flight_figures.h"
@@ -12,8 +13,6 @@ namespace flightwatt::report {
 namespace {
 
 constexpr std::size_t battery_columns = 130;  // of a panel
-constexpr auto record_time_title = "time in the log [s]";
-constexpr auto soc_title = "state of charge [%]";
 
 /// A curve as a screen shows it, broken where the record is not used.
 void add_curve(FigureData& data, const battery::DischargeRecord& record, const std::vector<double>& voltage_v,
@@ -23,21 +22,12 @@ void add_curve(FigureData& data, const battery::DischargeRecord& record, const s
     }
 }
 
-VegaJson voltage_panel(const battery::Battery& battery, const battery::DischargeRecord& record,
-                       double initial_charge_ah) {
+FigureData voltage_rows(const battery::Battery& battery, const battery::DischargeRecord& record,
+                        double initial_charge_ah) {
     FigureData data({"time_s", "voltage_v"}, {"curve"});
     add_curve(data, record, record.voltage_v, "measured");
     add_curve(data, record, predict_voltage(battery, record, initial_charge_ah).voltage_v, "model");
-    VegaJson encoding{{"x", numeric_channel("time_s", record_time_title)},
-                      {"y", numeric_channel("voltage_v", "voltage [V]", {{"scale", {{"zero", false}}}})}};
-    add_measured_and_model(encoding, 3.2,
-                           1.1);  // what is measured stands out behind the model where both are one
-    encoding["tooltip"] = {nominal_channel("curve", "curve"), tooltip_number("time_s", "time [s]", ".1f"),
-                           tooltip_number("voltage_v", "voltage [V]", ".3f")};
-    const VegaJson curves{{"data", data.json()},
-                          {"mark", vega(R"({"type": "line", "point": {"opacity": 0, "size": 40, "aria": false}})")},
-                          {"encoding", encoding}};
-    return {{"width", 280}, {"height", 150}, {"layer", {curves, panel_name(record.flight)}}};
+    return data;
 }
 
 /// The knots with their 95 % intervals, where those are known.
@@ -55,37 +45,6 @@ FigureData knot_rows(const battery::BatteryIdentification& identified) {
     return data;
 }
 
-VegaJson open_circuit_axis(std::string_view field) {
-    return numeric_channel(field, "open-circuit voltage [V]", {{"scale", {{"zero", false}}}});
-}
-
-VegaJson band_layer() {
-    return layer(R"({"type": "area", "style": "measured", "opacity": 0.2, "aria": false})",
-                 {{"x", numeric_channel("soc_percent", soc_title)},
-                  {"y", open_circuit_axis("low_v")},
-                  {"y2", {{"field", "high_v"}}}});
-}
-
-VegaJson curve_layer() {
-    return layer(R"({"type": "line", "style": "measured"})",
-                 {{"x", numeric_channel("soc_percent", soc_title)}, {"y", open_circuit_axis("voltage_v")}});
-}
-
-VegaJson knot_layer() {
-    const auto color = vega(R"({"scale": {"domain": ["from flights", "after the LiPo chart"]}})");
-    auto shape = color;
-    shape["scale"]["range"] = {"circle", "diamond"};
-    return layer(R"({"type": "point", "size": 50, "filled": true, "opacity": 1})",
-                 {{"x", numeric_channel("soc_percent", soc_title)},
-                  {"y", open_circuit_axis("voltage_v")},
-                  {"color", nominal_channel("origin", "", color)},
-                  {"shape", nominal_channel("origin", "", shape)},
-                  {"tooltip",
-                   {nominal_channel("origin", "known"), tooltip_number("soc_percent", soc_title, ".1f"),
-                    tooltip_number("voltage_v", "voltage [V]", ".3f"), tooltip_number("low_v", "95 %, low [V]", ".3f"),
-                    tooltip_number("high_v", "95 %, high [V]", ".3f")}}});
-}
-
 }  // namespace
 
 Figure voltage_figure(const battery::BatteryIdentification& identified,
@@ -96,15 +55,14 @@ Figure voltage_figure(const battery::BatteryIdentification& identified,
         const auto& record = records[i];
         const auto [low, high] = std::ranges::minmax_element(record.voltage_v);
         description += fmt::format(" {}: {:.2f} to {:.2f} V.", record.flight, *low, *high);
-        panels.push_back(voltage_panel(identified.battery, record, identified.flights[i].initial_depletion_ah));
+        const auto rows = voltage_rows(identified.battery, record, identified.flights[i].initial_depletion_ah);
+        panels.push_back({{"curves", rows.json()}, {"flight", valid_utf8(record.flight)}});
     }
-    auto figure = new_figure(
-        id,
+    return new_figure(
+        "voltage", id,
         "The model's voltage follows from the measured current and the charge that was missing at the start. "
         "Both are broken where the record contradicts itself: a current that the motor did not draw.",
-        description);
-    set_panels(figure, 2, 66, panels);
-    return figure;
+        description, {{"panels", panels}});
 }
 
 Figure open_circuit_figure(const battery::BatteryIdentification& identified, const std::string& id) {
@@ -117,17 +75,13 @@ Figure open_circuit_figure(const battery::BatteryIdentification& identified, con
             identified.observed_min_soc_percent, identified.cells, units::mv_from_v(battery::lipo_chart_sd_v));
     }
     auto figure = new_figure(
-        id, caption,
+        "open_circuit", id, caption,
         fmt::format("Open-circuit voltage over state of charge: {:.2f} V empty, {:.2f} V full, flown down to "
                     "{:.0f} %.",
-                    curve.voltage_v.front(), curve.voltage_v.back(), identified.observed_min_soc_percent));
-    figure.spec["width"] = 560;
-    figure.spec["height"] = 240;
-    figure.spec["data"] = knot_rows(identified).json();
-    auto& layers = figure.spec["layer"] = VegaJson::array();
-    if (!identified.battery.intervals.open_circuit_standard_error_v.empty()) layers.push_back(band_layer());
-    layers.push_back(curve_layer());
-    layers.push_back(knot_layer());
+                    curve.voltage_v.front(), curve.voltage_v.back(), identified.observed_min_soc_percent),
+        {{"knots", knot_rows(identified).json()}});
+    // The first layer is the intervals.
+    if (identified.battery.intervals.open_circuit_standard_error_v.empty()) figure.spec["layer"].erase(0);
     return figure;
 }
 

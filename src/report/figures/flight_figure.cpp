@@ -25,14 +25,8 @@ std::string explained(const flight::PhaseEdge& edge) {
 }
 
 std::string edge_name(const flight::PhaseSpan& span, bool begin) {
-    switch (span.phase) {
-        case flight::Phase::takeoff:
-            return begin ? "lift-off" : "end of take-off";
-        case flight::Phase::landing:
-            return begin ? "start of landing" : "touchdown";
-        case flight::Phase::cruise:
-            break;
-    }
+    if (span.phase == flight::Phase::takeoff) return begin ? "lift-off" : "end of take-off";
+    if (span.phase == flight::Phase::landing) return begin ? "start of landing" : "touchdown";
     return begin ? "start of cruise" : "end of cruise, start of landing";
 }
 
@@ -55,8 +49,6 @@ constexpr std::size_t power_columns = 250;
 /// More than a panel's height in pixels, and than its width when it is zoomed fifty times.
 constexpr double value_steps = 500.0;
 constexpr double time_steps = 32000.0;
-constexpr int flight_width = 640;
-constexpr auto log_time_title = "time in the log [s]";
 
 /// One row a phase: for the shading and its names.
 FigureData phase_rows(const flight::FlightPhases& phases) {
@@ -111,56 +103,6 @@ FigureData channel_rows(const std::vector<double>& time_s, const std::vector<dou
     return data;
 }
 
-VegaJson phase_layers(const FigureData& phases, const FigureData& edges, bool with_names) {
-    const auto fill = vega(R"({"legend": null,
-        "scale": {"domain": ["takeoff", "cruise", "landing"], "range": "phases"}})");
-    auto layers = VegaJson::array();
-    layers.push_back(layer(phases.reference("phases"),
-                           R"({"type": "rect", "opacity": 0.13, "aria": false, "clip": true})",
-                           {{"x", numeric_channel("start_s", log_time_title)},
-                            {"x2", {{"field", "end_s"}}},
-                            {"fill", nominal_channel("phase", "phase", fill)}}));
-    layers.push_back(
-        layer(edges.reference("edges"),
-              R"({"type": "rule", "style": "edge", "strokeDash": [3, 3], "strokeWidth": 1.5, "clip": true})",
-              {{"x", numeric_channel("time_s", log_time_title)},
-               {"tooltip",
-                {nominal_channel("edge", "edge"), tooltip_number("time_s", "time [s]", ".1f"),
-                 nominal_channel("evidence", "evidence"), nominal_channel("verdict", "the autopilot")}}}));
-    if (with_names) layers.push_back(phase_names(phases.reference("phases"), log_time_title));
-    return layers;
-}
-
-/// One panel; its layers share the time axis, which only the last panel writes out.
-VegaJson panel(VegaJson layers, int height, bool is_last) {
-    for (auto& part : layers) {
-        part["encoding"]["x"]["axis"] =
-            vega(is_last ? R"({"grid": false})" : R"({"grid": false, "labels": false, "title": null})");
-        part["encoding"]["x"]["scale"] = {{"zero", false}, {"nice", false}};
-    }
-    return {{"width", flight_width}, {"height", height}, {"layer", layers}};
-}
-
-/// A line; transparent points on it carry its tooltips.
-VegaJson line_layer(const FigureData& data, const std::string& column, const std::string& title) {
-    return layer(data.json(),
-                 R"({"type": "line", "style": "measured", "strokeWidth": 1.2, "clip": true,
-                     "point": {"opacity": 0, "size": 60, "aria": false}})",
-                 {{"x", numeric_channel("time_s", log_time_title)},
-                  {"y", numeric_channel(column, title, {{"scale", {{"zero", false}}}})},
-                  {"tooltip", {tooltip_number("time_s", "time [s]", ".1f"), tooltip_number(column, title, ".1f")}}});
-}
-
-VegaJson power_layer(const FigureData& data) {
-    auto line = line_layer(data, "power_w", "power [W]");
-    line["mark"].erase("style");
-    auto& encoding = line["encoding"];
-    add_measured_and_model(encoding, 1.1, 2.2);
-    line["transform"] = VegaJson::array({shown_by_legend()});
-    encoding["tooltip"].insert(encoding["tooltip"].begin(), nominal_channel("curve", "curve"));
-    return line;
-}
-
 std::string description_of(const ReportFlight& flight) {
     std::string text = fmt::format("Altitude, throttle and power of flight {} over time.", flight.name);
     const flight::PowerStatistics power(flight.series);
@@ -186,11 +128,6 @@ std::string caption_of(const flight::Track& power, bool has_model) {
     }
     return text;
 }
-
-constexpr int in_flight_width = 640;
-constexpr int in_flight_height = 190;
-constexpr auto in_flight_time_title = "time since lift-off [s]";
-constexpr auto in_flight_energy_title = "energy of the whole flight [Wh]";
 
 }  // namespace
 
@@ -221,34 +158,30 @@ Figure flight_figure(const ReportFlight& flight, const std::optional<mechanical:
     const flight::SelectedTracks tracks(flight.series);
     const auto& power = tracks["power_w"];
     const auto& time_s = power.time_s;
-    auto figure = new_figure(id, caption_of(power, model.has_value()), description_of(flight));
-    const auto phases = phase_rows(flight.phases);
-    const auto edges = edge_rows(flight);
+    const auto templates = figure_template("flight")["vconcat"];  // of other tracks, and of power
     auto panels = VegaJson::array();
-    const auto add_channel = [&](const std::string& column, const std::string& title, int height) {
+    auto views = VegaJson::array();
+    const auto add_panel = [&](VegaJson panel, VegaJson values) {
+        if (!panels.empty()) panel["layer"].erase(2);  // only the first panel names the phases
+        views.push_back(fmt::format("panel_{}", views.size()));
+        values["name"] = views.back();
+        panels.push_back(filled(std::move(panel), values));
+    };
+    const auto add_track = [&](const std::string& column, std::string_view title, int height) {
         const auto& track = tracks[column];
         if (track.empty()) return;
-        const auto values = resample(track, time_s);
-        auto layers = phase_layers(phases, edges, panels.empty());
-        layers.push_back(line_layer(channel_rows(time_s, values, column), column, title));
-        panels.push_back(panel(layers, height, false));
+        const auto rows = channel_rows(time_s, resample(track, time_s), column);
+        add_panel(templates[0], {{"rows", rows.json()}, {"column", column}, {"title", title}, {"height", height}});
     };
-    add_channel("altitude_m", "altitude [m]", 110);
-    add_channel("throttle_percent", "throttle [%]", 80);
-    auto layers = phase_layers(phases, edges, panels.empty());
-    layers.push_back(power_layer(power_rows(flight, power, model)));
-    panels.push_back(panel(layers, 190, true));
-    auto views = VegaJson::array();
-    for (auto& view : panels) {
-        views.push_back(fmt::format("panel_{}", views.size()));
-        view["layer"].back()["name"] = views.back();  // of a panel, its last layer
-    }
-    figure.spec["params"] = {add_zoom(figure, views),
-                             legend_parameter("curve", {"measured", "model"}, views.back().get<std::string>())};
-    figure.spec["datasets"] = {{"phases", phases.csv()}, {"edges", edges.csv()}};
+    add_track("altitude_m", "altitude [m]", 110);
+    add_track("throttle_percent", "throttle [%]", 80);
+    add_panel(templates[1], {{"rows", power_rows(flight, power, model).json()}});
+    auto figure = new_figure("flight", id, caption_of(power, model.has_value()), description_of(flight),
+                             {{"views", views},
+                              {"power_view", views.back()},
+                              {"phases", phase_rows(flight.phases).csv()},
+                              {"edges", edge_rows(flight).csv()}});
     figure.spec["vconcat"] = panels;
-    figure.spec["spacing"] = 10;
-    figure.spec["resolve"] = vega(R"({"scale": {"x": "shared"}})");
     return figure;
 }
 
@@ -261,8 +194,8 @@ Figure in_flight_figure(const std::string& name, const PredictedFlight& flight, 
     }
     const auto& first = flight.moments.front();
     const auto& last = flight.moments.back();
-    auto figure = new_figure(
-        id,
+    return new_figure(
+        "in_flight", id,
         fmt::format(
             "What flightwatt predict would have said in every minute of the cruise, from what was flown until then "
             "and a model of the {} other flights; the durations of cruise and landing taken as known. Level line: "
@@ -270,28 +203,8 @@ Figure in_flight_figure(const std::string& name, const PredictedFlight& flight, 
             flight.others, held, flight.moments.size()),
         fmt::format(
             "Predicted energy of flight {}: {:.2f} Wh after {:.0f} s, {:.2f} Wh after {:.0f} s; measured {:.2f} Wh.",
-            name, first.energy_wh, first.flown_s, last.energy_wh, last.flown_s, flight.measured_wh));
-    figure.spec["data"] = data.json();
-    figure.spec["width"] = in_flight_width;
-    figure.spec["height"] = in_flight_height;
-    const auto time = numeric_channel("flown_s", in_flight_time_title, {{"scale", {{"nice", false}}}});
-    const VegaJson energy{{"scale", {{"zero", false}}}};
-    figure.spec["layer"] = {
-        layer(R"({"type": "area", "style": "measured", "opacity": 0.2, "aria": false})",
-              {{"x", time},
-               {"y", numeric_channel("low_wh", in_flight_energy_title, energy)},
-               {"y2", {{"field", "high_wh"}}}}),
-        layer(R"({"type": "line", "style": "edge", "aria": false})",
-              {{"x", time}, {"y", numeric_channel("measured_wh", in_flight_energy_title, energy)}}),
-        layer(R"({"type": "line", "style": "measured", "point": {"size": 26}})",
-              {{"x", time},
-               {"y", numeric_channel("energy_wh", in_flight_energy_title, energy)},
-               {"tooltip",
-                {tooltip_number("flown_s", in_flight_time_title, ".0f"),
-                 tooltip_number("energy_wh", "predicted [Wh]", ".3f"), tooltip_number("low_wh", "low [Wh]", ".3f"),
-                 tooltip_number("high_wh", "high [Wh]", ".3f"),
-                 tooltip_number("measured_wh", "measured [Wh]", ".3f")}}})};
-    return figure;
+            name, first.energy_wh, first.flown_s, last.energy_wh, last.flown_s, flight.measured_wh),
+        {{"moments", data.json()}});
 }
 
 }  // namespace flightwatt::report

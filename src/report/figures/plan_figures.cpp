@@ -11,16 +11,7 @@
 namespace flightwatt::report {
 namespace {
 
-constexpr int plan_width = 640;
-constexpr auto mission_time_title = "time since lift-off [s]";
-constexpr auto final_soc_title = "final state of charge [%]";
-
-VegaJson utility_axes() {
-    return {{"x", numeric_channel("soc_percent", final_soc_title)},
-            {"y", numeric_channel("utility", "utility (mean value a second)")}};
-}
-
-VegaJson points_layer(const std::vector<UtilityPoint>& points) {
+VegaJson point_rows(const std::vector<UtilityPoint>& points) {
     FigureData data({"soc_percent", "utility"}, {"mission", "kind"});
     for (const bool planned : {true, false}) {  // a planned one stands behind a given one that is as good
         for (const auto& point : points) {
@@ -28,18 +19,7 @@ VegaJson points_layer(const std::vector<UtilityPoint>& points) {
             data.add({point.soc_percent, point.utility}, {point.mission, planned ? "planned" : "given"});
         }
     }
-    auto scale = vega(R"({"scale": {"domain": ["planned", "given"]}})");
-    auto encoding = utility_axes();
-    encoding["color"] = nominal_channel("kind", "", scale);
-    scale["scale"]["range"] = {"diamond", "circle"};
-    encoding["shape"] = nominal_channel("kind", "", scale);
-    scale["scale"]["range"] = {190, 60};
-    encoding["size"] = {{"field", "kind"}, {"type", "ordinal"}, {"title", ""}};
-    encoding["size"].update(scale);
-    encoding["tooltip"] = {nominal_channel("mission", "mission"), nominal_channel("kind", "schedule"),
-                           tooltip_number("utility", "utility", ".4g"),
-                           tooltip_number("soc_percent", final_soc_title, ".2f")};
-    return layer(data.json(), R"({"type": "point", "filled": true, "opacity": 1})", encoding);
+    return data.json();
 }
 
 /// Points that a reader cannot tell apart share a name.
@@ -68,7 +48,7 @@ std::vector<UtilityPoint> named_together(const std::vector<UtilityPoint>& points
 }
 
 /// Names to the right of their points, at the figure's right end to the left.
-VegaJson names_layer(const std::vector<UtilityPoint>& points) {
+VegaJson name_rows(const std::vector<UtilityPoint>& points) {
     FigureData data({"soc_percent", "utility"}, {"mission", "side"});
     constexpr double right_end = 0.65;
     double max_percent = 0.0;
@@ -77,32 +57,10 @@ VegaJson names_layer(const std::vector<UtilityPoint>& points) {
         data.add({point.soc_percent, point.utility},
                  {point.mission, point.soc_percent > right_end * max_percent ? "left" : "right"});
     }
-    auto encoding = utility_axes();
-    encoding["text"] = nominal_channel("mission", "mission");
-    const auto texts = [&](std::string_view side, std::string_view mark) {
-        VegaJson filtered{{"transform", VegaJson::array({{{"filter", {{"field", "side"}, {"equal", side}}}}})}};
-        filtered.update(layer(mark, encoding));
-        return filtered;
-    };
-    return {
-        {"data", data.json()},
-        {"layer",
-         {texts("left", R"({"type": "text", "style": "note", "align": "right", "dx": -8, "dy": 11, "limit": 220})"),
-          texts("right", R"({"type": "text", "style": "note", "align": "left", "dx": 8, "dy": 11, "limit": 220})")}}};
+    return data.json();
 }
 
-/// A line across the figure, its place on `channel`, with its name written by `mark`.
-VegaJson rule_layer(std::string_view channel, double value, const std::string& text, std::string_view mark) {
-    const auto with = [&](std::string_view more) -> VegaJson {
-        return {{channel, {{"datum", value}}}, {more, nominal_channel("text", "line")}};
-    };
-    return {{"data", {{"values", VegaJson::array({{{"text", text}}})}}},
-            {"layer",
-             {layer(R"({"type": "rule", "style": "edge", "strokeDash": [5, 3], "strokeWidth": 1.5})", with("tooltip")),
-              layer(mark, with("text"))}}};
-}
-
-VegaJson bars_layer(const mission::Mission& mission, double duration_s) {
+VegaJson bar_rows(const mission::Mission& mission) {
     FigureData data({"from_s", "to_s", "middle_s", "power_w", "long_s"}, {"component", "runs"});
     for (const auto& running : run_intervals(mission)) {
         const auto& component = mission.compute.components[running.component];
@@ -110,28 +68,10 @@ VegaJson bars_layer(const mission::Mission& mission, double duration_s) {
                   power_w(component.profile, running.qos), running.end_s - running.start_s},
                  {component.name, describe_qos(component, running.qos)});
     }
-    const VegaJson whole{{"scale", {{"domain", {0.0, duration_s}}, {"nice", false}}}, {"axis", {{"grid", false}}}};
-    const auto y = nominal_channel("component", "", vega(R"({"sort": null, "axis": {"labelLimit": 130}})"));
-    const auto bars = layer(R"({"type": "bar", "clip": true, "height": 15, "yOffset": 9})",
-                            {{"x", numeric_channel("from_s", mission_time_title, whole)},
-                             {"x2", {{"field", "to_s"}}},
-                             {"y", y},
-                             {"color", power_ramp("power_w", "power of the component [W]")},
-                             {"tooltip",
-                              {nominal_channel("component", "component"), nominal_channel("runs", "runs"),
-                               tooltip_number("from_s", "from [s]", ".0f"), tooltip_number("to_s", "to [s]", ".0f"),
-                               tooltip_number("power_w", "power [W]", ".2f")}}});
-    constexpr double min_part = 0.13;  // of the time: a shorter bar has no room for its words
-    VegaJson words{
-        {"transform", VegaJson::array({{{"filter", fmt::format("datum.long_s > {}", min_part * duration_s)}}})}};
-    words.update(layer(R"({"type": "text", "style": "note", "dy": -8})",
-                       {{"x", numeric_channel("middle_s", mission_time_title, whole)},
-                        {"y", y},
-                        {"text", nominal_channel("runs", "runs")}}));
-    return {{"data", data.json()}, {"layer", {bars, words}}};
+    return data.json();
 }
 
-VegaJson edge_layer(const mission::Mission& mission) {
+VegaJson phase_rows(const mission::Mission& mission) {
     FigureData data({"begin_s", "middle_s"}, {"phase"});
     const auto timeline = mission::timeline_of(mission.duration_s);
     for (const auto phase : flight::all_phases) {
@@ -139,13 +79,7 @@ VegaJson edge_layer(const mission::Mission& mission) {
         data.add({timeline.start_s[phase], timeline.start_s[phase] + mission.duration_s[phase] / 2.0},
                  {phase_word(phase)});
     }
-    return {{"data", data.json()},
-            {"layer",
-             {layer(R"({"type": "rule", "style": "edge", "strokeDash": [3, 3], "aria": false})",
-                    {{"x", numeric_channel("begin_s", mission_time_title)}}),
-              layer(R"({"type": "text", "style": "note", "baseline": "bottom", "dy": -3, "y": 0})",
-                    {{"x", numeric_channel("middle_s", mission_time_title)},
-                     {"text", nominal_channel("phase", "phase")}})}}};
+    return data.json();
 }
 
 }  // namespace
@@ -181,23 +115,16 @@ Figure utility_figure(const SimulatedMission& planned, const std::vector<Utility
         description += fmt::format(" {}: {:.4g} at {:.2f} %.", point.mission, point.utility, point.soc_percent);
     }
     auto figure =
-        new_figure(id,
+        new_figure("utility", id,
                    "The utility of the schedules, by that of the planned mission, over what they leave. To the left "
                    "of the reserve a schedule spends what was to be kept; above the bound there is none that keeps it. "
                    "What runs after the battery's end counts nothing.",
-                   description);
-    figure.spec["width"] = plan_width;
-    figure.spec["height"] = 260;
-    auto& layers = figure.spec["layer"] = VegaJson::array();
-    layers.push_back(rule_layer("x", planned.simulation.summary.reserve_soc_percent, "reserve",
-                                R"({"type": "text", "style": "note", "align": "left", "dx": 4, "dy": 10, "y": 0})"));
-    if (planned.planned->feasible) {
-        layers.push_back(rule_layer(
-            "y", planned.planned->bound, "proven bound",
-            R"({"type": "text", "style": "note", "align": "right", "dx": -4, "dy": -5, "x": {"expr": "width"}})"));
-    }
-    layers.push_back(points_layer(points));
-    layers.push_back(names_layer(points));
+                   description,
+                   {{"reserve", planned.simulation.summary.reserve_soc_percent},
+                    {"bound", planned.planned->bound},
+                    {"points", point_rows(points)},
+                    {"names", name_rows(points)}});
+    if (!planned.planned->feasible) figure.spec["layer"].erase(1);  // the bound
     return figure;
 }
 
@@ -209,14 +136,14 @@ Figure strip_figure(const SimulatedMission& planned, const std::string& id) {
         description += fmt::format(" {} {} from {:.0f} to {:.0f} s.", component.name,
                                    describe_qos(component, running.qos), running.start_s, running.end_s);
     }
-    auto figure =
-        new_figure(id, "What runs when, coloured by its power; a component without a bar is off.", description);
-    figure.spec["width"] = plan_width;
-    figure.spec["height"] = {{"step", 42}};
-    figure.spec["usermeta"] = {{"margin_px", 150}};  // the components' names
-    figure.spec["layer"] = {bars_layer(mission, mission::timeline_of(mission.duration_s).duration_s),
-                            edge_layer(mission)};
-    return figure;
+    constexpr double min_part = 0.13;  // of the time: a shorter bar has no room for its words
+    const double duration_s = mission::timeline_of(mission.duration_s).duration_s;
+    return new_figure("strip", id, "What runs when, coloured by its power; a component without a bar is off.",
+                      description,
+                      {{"bars", bar_rows(mission)},
+                       {"phases", phase_rows(mission)},
+                       {"duration_s", duration_s},
+                       {"has_room", fmt::format("datum.long_s > {}", min_part * duration_s)}});
 }
 
 }  // namespace flightwatt::report

@@ -18,8 +18,6 @@
 namespace flightwatt::report {
 namespace {
 
-constexpr auto map_soc_title = "final state of charge [%]";
-
 /// The profiled values, and two more between each of them: the paper's grid.
 std::vector<double> with_thirds(const std::vector<double>& profiled) {
     std::vector<double> nodes{profiled.front()};
@@ -64,35 +62,14 @@ double cell_soc(const QosMap& map, std::size_t i, std::size_t j) {
     return (map.at(i, j) + map.at(i + 1, j) + map.at(i, j + 1) + map.at(i + 1, j + 1)) / 4.0;
 }
 
-VegaJson axis(const std::string& field, const QosAxis& qos) {
-    return numeric_channel(
-        field, valid_utf8(qos.name),
-        {{"scale", {{"domain", {qos.nodes.front(), qos.nodes.back()}}, {"nice", false}, {"zero", false}}},
-         {"axis", {{"grid", false}}}});
-}
-
-VegaJson soc_color() {
-    return numeric_channel("soc_percent", map_soc_title,
-                           vega(R"({"scale": {"range": "heatmap"}, "legend": {"gradientLength": 200}})"));
-}
-
-VegaJson cell_layer(const QosMap& map) {
+VegaJson cell_rows(const QosMap& map) {
     FigureData data({"x_low", "x_high", "y_low", "y_high", "soc_percent"});
     for (std::size_t j = 0; j + 1 < map.y.nodes.size(); ++j) {
         for (std::size_t i = 0; i + 1 < map.x.nodes.size(); ++i) {
             data.add({map.x.nodes[i], map.x.nodes[i + 1], map.y.nodes[j], map.y.nodes[j + 1], cell_soc(map, i, j)});
         }
     }
-    return layer(data.json(), R"({"type": "rect"})",
-                 {{"x", axis("x_low", map.x)},
-                  {"x2", {{"field", "x_high"}}},
-                  {"y", axis("y_low", map.y)},
-                  {"y2", {{"field", "y_high"}}},
-                  {"color", soc_color()},
-                  {"tooltip",
-                   {numeric_channel("x_low", valid_utf8(map.x.name) + " from"), numeric_channel("x_high", "to"),
-                    numeric_channel("y_low", valid_utf8(map.y.name) + " from"), numeric_channel("y_high", "to"),
-                    tooltip_number("soc_percent", map_soc_title, ".2f")}}});
+    return data.json();
 }
 
 /// The configurations that the missions run with both components on, and who runs them.
@@ -116,34 +93,19 @@ std::map<std::pair<double, double>, std::string> configurations(const QosMap& ma
     return marked;
 }
 
-VegaJson marker_layer(const QosMap& map, std::span<const SimulatedMission> missions) {
+VegaJson marker_rows(const QosMap& map, std::span<const SimulatedMission> missions) {
     FigureData data({"x", "y"}, {"missions"});
     for (const auto& [place, who] : configurations(map, missions)) data.add({place.first, place.second}, {who});
-    return layer(data.json(),
-                 R"({"type": "point", "shape": "diamond", "style": "marker", "filled": true, "opacity": 1,
-                     "size": 130, "strokeWidth": 1.5})",
-                 {{"x", axis("x", map.x)},
-                  {"y", axis("y", map.y)},
-                  {"tooltip",
-                   {nominal_channel("missions", "run by"), numeric_channel("x", valid_utf8(map.x.name)),
-                    numeric_channel("y", valid_utf8(map.y.name))}}});
+    return data.json();
 }
 
-VegaJson published_layer(const QosMap& map, const std::vector<PublishedCell>& cells) {
+VegaJson published_rows(const std::vector<PublishedCell>& cells) {
     FigureData data({"x", "y", "soc_percent"});
     for (const auto& cell : cells) {
         data.add({std::midpoint(cell.fps_low, cell.fps_high), std::midpoint(cell.key_bits_low, cell.key_bits_high),
                   cell.soc_percent});
     }
-    return layer(data.json(),
-                 R"({"type": "circle", "size": 80, "opacity": 1, "stroke": "#ffffff", "strokeWidth": 0.8,
-                     "strokeOpacity": 0.8, "aria": false})",
-                 {{"x", axis("x", map.x)},
-                  {"y", axis("y", map.y)},
-                  {"color", soc_color()},
-                  {"tooltip",
-                   {numeric_channel("x", valid_utf8(map.x.name)), numeric_channel("y", valid_utf8(map.y.name)),
-                    tooltip_number("soc_percent", "published, Fig. 4 [%]", ".2f")}}});
+    return data.json();
 }
 
 /// The least and the greatest of what can be delivered; both 0 if nothing can.
@@ -201,18 +163,6 @@ bool all_measured(const compute::PowerProfile& profile) {
     return std::ranges::all_of(profile.is_measured, [](bool measured) { return measured; });
 }
 
-/// The nodes: interpolated ones are hollow where there are any.
-VegaJson points_layer(const compute::PowerProfile& profile) {
-    auto points = layer(R"({"type": "point", "style": "measured", "size": 45, "opacity": 1})", VegaJson::object());
-    if (all_measured(profile)) {
-        points["mark"]["filled"] = true;
-    } else {
-        points["encoding"]["shape"] = nominal_channel("origin", "", vega(R"({"scale":
-            {"domain": ["measured", "interpolated"], "range": ["circle", "cross"]}})"));
-    }
-    return points;
-}
-
 FigureData node_rows(const compute::PowerProfile& profile) {
     FigureData data({"qos", "power_w", "error_w", "low_w", "high_w"}, {"line", "origin"});
     for (std::size_t node = 0; node < profile.power_w.size(); ++node) {
@@ -226,26 +176,30 @@ FigureData node_rows(const compute::PowerProfile& profile) {
     return data;
 }
 
-VegaJson panel_of(const compute::Component& component) {
+/// The template's panel without what the profile does not have.
+VegaJson panel_of(const compute::Component& component, VegaJson panel) {
     const auto& profile = component.profile;
-    const auto title = profile.parameters.empty() ? "no parameter" : valid_utf8(profile.parameters.front());
-    VegaJson encoding{{"x", numeric_channel("qos", title, {{"scale", {{"zero", false}}}})},
-                      {"y", numeric_channel("power_w", "power [W]")},
-                      {"tooltip", {numeric_channel("qos", title), tooltip_number("power_w", "power [W]", ".2f")}}};
-    if (profile.parameters.size() > 1) {
-        encoding["color"] = nominal_channel("line", "", {{"sort", nullptr}});
-        encoding["tooltip"].push_back(nominal_channel("line", "also"));
+    auto& nodes = panel["layer"][0];
+    auto& tooltip = nodes["encoding"]["tooltip"];  // power over the parameter, further parameters, error, origin
+    auto& points = nodes["layer"][2];              // on lines and intervals
+    if (all_measured(profile)) {
+        tooltip.erase(4);
+        points["encoding"].erase("shape");
+    } else {
+        points["mark"].erase("filled");
     }
-    auto layers = vega(R"([{"mark": {"type": "line", "style": "measured"}}])");
-    if (!profile.standard_error_w.empty()) {
-        encoding["tooltip"].push_back(tooltip_number("error_w", "standard error [W]", ".3f"));
-        layers.push_back(layer(R"({"type": "rule", "style": "measured", "strokeWidth": 1.4})",
-                               {{"y", numeric_channel("low_w", "power [W]")}, {"y2", {{"field", "high_w"}}}}));
+    if (profile.standard_error_w.empty()) {
+        tooltip.erase(3);
+        nodes["layer"].erase(1);
     }
-    if (!all_measured(profile)) encoding["tooltip"].push_back(nominal_channel("origin", "node"));
-    layers.push_back(points_layer(profile));
-    const VegaJson nodes{{"data", node_rows(profile).json()}, {"encoding", encoding}, {"layer", layers}};
-    return {{"width", 280}, {"height", 190}, {"layer", {nodes, panel_name(component.name)}}};
+    if (profile.parameters.size() < 2) {
+        tooltip.erase(2);
+        nodes["encoding"].erase("color");
+    }
+    const auto parameter = profile.parameters.empty() ? "no parameter" : valid_utf8(profile.parameters.front());
+    return filled(
+        std::move(panel),
+        {{"nodes", node_rows(profile).json()}, {"parameter", parameter}, {"component", valid_utf8(component.name)}});
 }
 
 std::string profile_described(const compute::ComputeModel& compute) {
@@ -348,25 +302,29 @@ Figure qos_map_figure(const QosMap& map, std::span<const SimulatedMission> missi
             "alone. RMS difference over {} cells {:.2f} points.",
             published.size(), *rms);
     }
-    auto figure = new_figure(
-        id, caption,
+    const auto x = valid_utf8(map.x.name);
+    const auto y = valid_utf8(map.y.name);
+    return new_figure(
+        "quality", id, caption,
         fmt::format("Final state of charge over {} and {}: from {:.1f} % to {:.1f} % where one configuration runs "
                     "throughout.",
-                    map.x.name, map.y.name, least, greatest));
-    figure.spec["width"] = 560;
-    figure.spec["height"] = 320;
-    figure.spec["layer"] = VegaJson::array({cell_layer(map)});
-    if (rms) figure.spec["layer"].push_back(published_layer(map, published));
-    figure.spec["layer"].push_back(marker_layer(map, missions));
-    return figure;
+                    map.x.name, map.y.name, least, greatest),
+        {{"x", x},
+         {"x_from", x + " from"},
+         {"x_domain", {map.x.nodes.front(), map.x.nodes.back()}},
+         {"y", y},
+         {"y_from", y + " from"},
+         {"y_domain", {map.y.nodes.front(), map.y.nodes.back()}},
+         {"cells", cell_rows(map)},
+         {"published", rms ? published_rows(published) : VegaJson()},
+         {"markers", marker_rows(map, missions)}});
 }
 
 Figure profile_figure(const compute::ComputeModel& compute, const std::string& id) {
-    auto figure = new_figure(id, profile_caption(compute), profile_described(compute));
+    auto figure = new_figure("profile", id, profile_caption(compute), profile_described(compute));
     auto panels = VegaJson::array();
-    for (const auto& component : compute.components) panels.push_back(panel_of(component));
-    set_panels(figure, 2, 72, panels);
-    figure.spec["resolve"] = vega(R"({"scale": {"color": "independent"}})");
+    for (const auto& component : compute.components) panels.push_back(panel_of(component, figure.spec["concat"][0]));
+    figure.spec["concat"] = panels;
     return figure;
 }
 

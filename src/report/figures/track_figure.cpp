@@ -25,7 +25,7 @@ namespace bg = boost::geometry;
 using Point = bg::model::point<double, 3, bg::cs::cartesian>;  ///< east, north, height
 using Line = bg::model::linestring<Point>;
 
-constexpr int side = 380;  // [px]
+constexpr int side = 380;  // [px] of the panels
 
 /// Where the aircraft was, on the clock of the power samples.
 struct GroundTrack {
@@ -115,20 +115,6 @@ FigureData track_rows(const ReportFlight& flight, const GroundTrack& track, doub
     return data;
 }
 
-VegaJson axis_of(std::string_view field, std::string_view title, double middle_m, double half_m) {
-    return numeric_channel(
-        field, title,
-        {{"scale", {{"domain", {middle_m - half_m, middle_m + half_m}}, {"nice", false}, {"zero", false}}}});
-}
-
-VegaJson east_axis(const Square& square) { return axis_of("east_m", "east [m]", square.east_m, square.half_m); }
-VegaJson north_axis(const Square& square) { return axis_of("north_m", "north [m]", square.north_m, square.half_m); }
-
-VegaJson track_tooltip() {
-    return {nominal_channel("word", "phase"), tooltip_number("east_m", "east [m]", ".0f"),
-            tooltip_number("north_m", "north [m]", ".0f"), tooltip_number("height_m", "height [m]", ".0f")};
-}
-
 /// The length of 1, 2 or 5 times a power of ten that is nearest below a quarter of the square.
 double scale_bar_m(const Square& square) {
     const double max_m = square.half_m / 2.0;
@@ -140,56 +126,14 @@ double scale_bar_m(const Square& square) {
 }
 
 /// In the lower left corner.
-VegaJson scale_bar_layers(const Square& square) {
+VegaJson scale_bar(const Square& square, double length_m) {
     constexpr double margin = 0.05;
-    const double length_m = scale_bar_m(square);
     const double start_m = square.east_m - square.half_m * (1.0 - 2.0 * margin);
     const double north_m = square.north_m - square.half_m * (1.0 - 2.0 * margin);
-    const VegaJson data{{"values", {{{"east_m", start_m}, {"end_m", start_m + length_m}, {"north_m", north_m}}}}};
-    const VegaJson ends{{"x", east_axis(square)}, {"x2", {{"field", "end_m"}}}, {"y", north_axis(square)}};
-    auto text = vega(R"({"type": "text", "style": "note", "align": "left", "dy": -8, "aria": false})");
-    text["text"] = fmt::format("{:g} m", length_m);
-    return {layer(data, R"({"type": "rule", "style": "edge", "strokeWidth": 3, "aria": false})", ends),
-            {{"data", data}, {"mark", text}, {"encoding", {{"x", east_axis(square)}, {"y", north_axis(square)}}}}};
+    return {{"values", {{{"east_m", start_m}, {"end_m", start_m + length_m}, {"north_m", north_m}}}}};
 }
 
-VegaJson phase_panel(const Square& square) {
-    const auto color = vega(R"({"scale": {"domain": ["take-off", "cruise", "landing"], "range": "phases"},
-        "legend": {"symbolType": "stroke"}})");
-    auto dash = color;
-    dash["scale"]["range"] = vega("[[6, 2], [1, 0], [2, 2]]");
-    auto layers = scale_bar_layers(square);
-    layers.push_back(layer(R"({"type": "line", "strokeWidth": 1.5, "clip": true,
-                               "point": {"opacity": 0, "size": 50, "aria": false}})",
-                           {{"x", east_axis(square)},
-                            {"y", north_axis(square)},
-                            {"order", {{"field", "order"}, {"type", "quantitative"}}},
-                            {"detail", {{"field", "piece"}}},
-                            {"color", nominal_channel("word", "", color)},
-                            {"strokeDash", nominal_channel("word", "", dash)},
-                            {"tooltip", track_tooltip()}}));
-    return {{"width", side}, {"height", side}, {"layer", layers}};
-}
-
-/// A line has one colour: each stretch to the next point is a rule of its own.
-VegaJson height_panel(const Square& square) {
-    auto panel = vega(R"({"transform": [{"window": [{"op": "lead", "field": "east_m", "as": "next_east_m"},
-                                                    {"op": "lead", "field": "north_m", "as": "next_north_m"}],
-                                         "groupby": ["piece"], "sort": [{"field": "order"}]},
-                                        {"filter": "datum.next_east_m !== null"}],
-                          "mark": {"type": "rule", "strokeWidth": 1.5, "clip": true}})");
-    panel["width"] = side;
-    panel["height"] = side;
-    panel["encoding"] = {
-        {"x", east_axis(square)},
-        {"y", north_axis(square)},
-        {"x2", {{"field", "next_east_m"}}},
-        {"y2", {{"field", "next_north_m"}}},
-        {"color", numeric_channel("height_m", "height [m]", vega(R"({"scale": {"scheme": "viridis", "zero": false},
-                                                             "legend": {"orient": "top", "gradientLength": 160}})"))},
-        {"tooltip", track_tooltip()}};
-    return panel;
-}
+VegaJson around(double middle_m, double half_m) { return {middle_m - half_m, middle_m + half_m}; }
 
 }  // namespace
 
@@ -199,19 +143,20 @@ std::optional<Figure> track_figure(const ReportFlight& flight, const std::string
     const auto square = square_around(flight, track);
     const auto data = track_rows(flight, track, square.half_m / side);
     if (data.empty()) return std::nullopt;
-    auto figure = new_figure(
-        id,
+    const double length_m = scale_bar_m(square);
+    return new_figure(
+        "track", id,
         "Ground track from above, coloured by phase and by height over the place of lift-off; broken where samples are "
         "missing.",
         fmt::format(
             "Ground track of flight {} coloured by phase and by height, within {:.0f} m from west to east and from "
             "south to north.",
-            flight.name, 2.0 * square.half_m));
-    figure.spec["data"] = data.json();
-    constexpr int row_gap_px = 60;
-    set_panels(figure, 2, row_gap_px, {phase_panel(square), height_panel(square)});
-    figure.spec["resolve"] = vega(R"({"scale": {"color": "independent", "strokeDash": "independent"}})");
-    return figure;
+            flight.name, 2.0 * square.half_m),
+        {{"track", data.json()},
+         {"east", around(square.east_m, square.half_m)},
+         {"north", around(square.north_m, square.half_m)},
+         {"scale_bar", scale_bar(square, length_m)},
+         {"length", fmt::format("{:g} m", length_m)}});
 }
 
 }  // namespace flightwatt::report

@@ -24,12 +24,9 @@ std::string reason_of(const InputError& error, const std::string& flight) {
 
 /// The flight's record, or why it has none.
 void add_record(ReportBattery& battery, const ReportFlight& flight) {
-    if (!flight.rejected.empty()) {
-        battery.excluded.push_back({flight.name, "rejected: " + flight.rejected});
-        return;
-    }
-    if (!flight.unusable_power.empty()) {
-        battery.excluded.push_back({flight.name, flight.unusable_power});
+    const auto unusable = flight.rejected.empty() ? flight.unusable_power : "rejected: " + flight.rejected;
+    if (!unusable.empty()) {
+        battery.excluded.push_back({flight.name, unusable});
         return;
     }
     try {

@@ -72,36 +72,6 @@ std::optional<double> chance_below_percent(const mission::MissionSummary& summar
     return units::percentage(summary.samples->probability_below_reserve, 1.0);
 }
 
-/// What people look for first stands to the left; columns that no mission has are left out.
-TextTable ranking_of(std::vector<mission::MissionSummary> summaries) {
-    const auto sorted = ranked(std::move(summaries));
-    const auto any = [&](const auto& has) { return std::ranges::any_of(sorted, has); };
-    const bool utility = any([](const auto& summary) { return summary.utility.has_value(); });
-    const bool empty = any([](const auto& summary) { return summary.depleted_at_s.has_value(); });
-    const bool cut_off = any([](const auto& summary) { return summary.cut_off_at_s.has_value(); });
-    TextTable table{{"rank", "mission", "final state of charge [%]", "reserve [%]", "chance of landing below [%]"}, {}};
-    if (utility) table.header.emplace_back("utility");
-    for (const auto* name : {"energy [Wh]", "mechanical [Wh]", "computing [Wh]", "duration [s]"})
-        table.header.emplace_back(name);
-    if (empty) table.header.emplace_back("empty at [s]");
-    if (cut_off) table.header.emplace_back("cut off at [s]");
-    for (const auto& summary : sorted) {
-        const auto origin = to_string(summary.schedule);
-        std::vector<std::string> row{std::to_string(table.rows.size() + 1),
-                                     summary.mission + (origin.empty() ? "" : fmt::format(" ({})", origin)),
-                                     fixed(summary.final_soc_percent, 2), fixed(summary.reserve_soc_percent, 2),
-                                     fixed(chance_below_percent(summary), 1)};
-        if (utility) row.push_back(fixed(summary.utility, 3));
-        for (const double energy_wh : {summary.energy_wh, summary.mechanical_energy_wh, summary.compute_energy_wh})
-            row.push_back(fixed(energy_wh, 3));
-        row.push_back(fixed(summary.duration_s, 1));
-        if (empty) row.push_back(fixed(summary.depleted_at_s, 1));
-        if (cut_off) row.push_back(fixed(summary.cut_off_at_s, 1));
-        table.rows.push_back(std::move(row));
-    }
-    return table;
-}
-
 Section schedule_section(Missions missions, const PublishedFigures& published) {
     Section section{"schedules", "Schedules"};
     add_figure(section, schedule_figure(missions, published, "schedules-soc"));
@@ -216,9 +186,6 @@ void add_plan(Section& section, const SimulatedMission& planned, Missions missio
     }
 }
 
-constexpr int replay_width = 640;
-constexpr int replay_height = 260;
-
 /// Utility over the charge left, a point a flight and schedule.
 Figure replay_figure(const std::vector<const mission::Replay*>& replays, const std::string& id) {
     FigureData data({"soc", "utility"}, {"flight", "schedule"});
@@ -236,26 +203,10 @@ Figure replay_figure(const std::vector<const mission::Replay*>& replays, const s
                                        *summary.final_soc_percent);
         }
     }
-    auto figure = new_figure(id,
-                             "Utility over final state of charge, by schedule and flight. To the left of the line the "
-                             "reserve is not kept; what runs after the battery's end counts nothing.",
-                             description);
-    figure.spec["width"] = replay_width;
-    figure.spec["height"] = replay_height;
-    const VegaJson encoding{
-        {"x", numeric_channel("soc", "final state of charge [%]")},
-        {"y", numeric_channel("utility", "utility")},
-        {"color", nominal_channel("schedule", "schedule")},
-        {"shape", nominal_channel("flight", "flight")},
-        {"tooltip",
-         {nominal_channel("flight", "flight"), nominal_channel("schedule", "schedule"),
-          tooltip_number("utility", "utility", ".4f"), tooltip_number("soc", "final state of charge [%]", ".2f")}}};
-    const VegaJson reserve{{"values", {{{"reserve", reserve_percent}}}}};
-    figure.spec["layer"] = {
-        layer(reserve, R"({"type": "rule", "strokeDash": [4, 3]})", {{"x", numeric_channel("reserve", "")}}),
-        layer(data.json(), R"({"type": "point", "size": 70})", encoding)};
-    figure.spec["layer"][0]["encoding"]["x"]["title"] = "final state of charge [%]";
-    return figure;
+    return new_figure("replay", id,
+                      "Utility over final state of charge, by schedule and flight. To the left of the line the "
+                      "reserve is not kept; what runs after the battery's end counts nothing.",
+                      description, {{"points", data.json()}, {"reserve", reserve_percent}});
 }
 
 }  // namespace
@@ -276,13 +227,39 @@ TextTable plans_table(Missions missions) {
     return table;
 }
 
+/// What people look for first stands to the left; columns that no mission has are left out.
 TextTable ranking_table(Missions missions) {
     std::vector<mission::MissionSummary> summaries;
     for (const auto& simulated : missions) {
         summaries.push_back(simulated.simulation.summary);
         summaries.back().mission = simulated.title;
     }
-    return ranking_of(std::move(summaries));
+    const auto sorted = ranked(std::move(summaries));
+    const auto any = [&](const auto& has) { return std::ranges::any_of(sorted, has); };
+    const bool utility = any([](const auto& summary) { return summary.utility.has_value(); });
+    const bool empty = any([](const auto& summary) { return summary.depleted_at_s.has_value(); });
+    const bool cut_off = any([](const auto& summary) { return summary.cut_off_at_s.has_value(); });
+    TextTable table{{"rank", "mission", "final state of charge [%]", "reserve [%]", "chance of landing below [%]"}, {}};
+    if (utility) table.header.emplace_back("utility");
+    for (const auto* name : {"energy [Wh]", "mechanical [Wh]", "computing [Wh]", "duration [s]"})
+        table.header.emplace_back(name);
+    if (empty) table.header.emplace_back("empty at [s]");
+    if (cut_off) table.header.emplace_back("cut off at [s]");
+    for (const auto& summary : sorted) {
+        const auto origin = to_string(summary.schedule);
+        std::vector<std::string> row{std::to_string(table.rows.size() + 1),
+                                     summary.mission + (origin.empty() ? "" : fmt::format(" ({})", origin)),
+                                     fixed(summary.final_soc_percent, 2), fixed(summary.reserve_soc_percent, 2),
+                                     fixed(chance_below_percent(summary), 1)};
+        if (utility) row.push_back(fixed(summary.utility, 3));
+        for (const double energy_wh : {summary.energy_wh, summary.mechanical_energy_wh, summary.compute_energy_wh})
+            row.push_back(fixed(energy_wh, 3));
+        row.push_back(fixed(summary.duration_s, 1));
+        if (empty) row.push_back(fixed(summary.depleted_at_s, 1));
+        if (cut_off) row.push_back(fixed(summary.cut_off_at_s, 1));
+        table.rows.push_back(std::move(row));
+    }
+    return table;
 }
 
 Section plan_section(Missions missions) {

@@ -69,14 +69,9 @@ auto ask(const Question& question, std::string* why = nullptr) -> std::optional<
 }
 
 std::string in_words(const mission::Reach& reach) {
-    switch (reach.unit) {
-        case mission::ReachUnit::circles:
-            return fmt::format("{:.0f} circles", reach.limit.value);
-        case mission::ReachUnit::return_m:
-            return fmt::format("{:.2f} km out and back", reach.limit.value / 1000.0);
-        case mission::ReachUnit::cruise_s:
-            break;
-    }
+    if (reach.unit == mission::ReachUnit::circles) return fmt::format("{:.0f} circles", reach.limit.value);
+    if (reach.unit == mission::ReachUnit::return_m)
+        return fmt::format("{:.2f} km out and back", reach.limit.value / 1000.0);
     return duration_text(reach.limit.value) + " of cruise";
 }
 
@@ -188,14 +183,8 @@ ReserveStatus verdict_as_modelled(const mission::MissionSummary& summary) {
 
 nlohmann::ordered_json to_json(const std::optional<mission::Reach>& reach) {
     if (!reach) return nullptr;
-    switch (reach->unit) {
-        case mission::ReachUnit::circles:
-            return {{"most_circles", reach->limit.value}};
-        case mission::ReachUnit::return_m:
-            return {{"farthest_return_m", reach->limit.value}};
-        case mission::ReachUnit::cruise_s:
-            break;
-    }
+    if (reach->unit == mission::ReachUnit::circles) return {{"most_circles", reach->limit.value}};
+    if (reach->unit == mission::ReachUnit::return_m) return {{"farthest_return_m", reach->limit.value}};
     return {{"longest_cruise_s", reach->limit.value}};
 }
 

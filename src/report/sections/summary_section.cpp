@@ -4,6 +4,7 @@
 #include "report/sections/sections.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include <fmt/format.h>
@@ -11,35 +12,24 @@
 namespace flightwatt::report {
 namespace {
 
-std::string_view css_class_of(ReserveStatus verdict) {
-    switch (verdict) {
-        case ReserveStatus::keeps:
-            return "good";
-        case ReserveStatus::may_keep:
-            return "unsure";
-        case ReserveStatus::fails:
-            break;
-    }
-    return "bad";
-}
+/// How a verdict looks, and what it says of missions with and without a reserve.
+struct VerdictWords {
+    const char* css_class;
+    const char* of_reserve;
+    const char* of_battery;
+};
 
-std::string words_of(ReserveStatus verdict, bool has_reserve) {
-    switch (verdict) {
-        case ReserveStatus::keeps:
-            return has_reserve ? "keeps its reserve" : "the battery lasts";
-        case ReserveStatus::may_keep:
-            return has_reserve ? "may not keep its reserve" : "the battery may not last";
-        case ReserveStatus::fails:
-            break;
-    }
-    return has_reserve ? "does not keep its reserve" : "the battery does not last";
-}
+/// In the order of ReserveStatus.
+constexpr std::array<VerdictWords, 3> words_of_verdicts{
+    {{"good", "keeps its reserve", "the battery lasts"},
+     {"unsure", "may not keep its reserve", "the battery may not last"},
+     {"bad", "does not keep its reserve", "the battery does not last"}}};
 
 std::string card_html(const SimulatedMission& simulated, const MissionAssessment& answer) {
-    const auto verdict = verdict_of(simulated);
+    const auto& words = words_of_verdicts.at(static_cast<std::size_t>(verdict_of(simulated)));
     const bool has_reserve = simulated.simulation.summary.reserve_soc_percent > 0.0;
-    auto html = fmt::format("<article class=\"card {}\">\n<h3>{}</h3>\n<p class=\"verdict\">{}</p>\n",
-                            css_class_of(verdict), html_escaped(simulated.title), words_of(verdict, has_reserve));
+    auto html = fmt::format("<article class=\"card {}\">\n<h3>{}</h3>\n<p class=\"verdict\">{}</p>\n", words.css_class,
+                            html_escaped(simulated.title), has_reserve ? words.of_reserve : words.of_battery);
     const auto lines = card_lines(simulated, answer);
     html += fmt::format("<p class=\"lead\">{}</p>\n", html_escaped(lines.front()));
     for (std::size_t i = 1; i < lines.size(); ++i)
