@@ -6,7 +6,9 @@
 #include "report/sections/sections.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -74,32 +76,21 @@ std::optional<double> chance_below_percent(const mission::MissionSummary& summar
 
 /// What people look for first stands to the left; columns that no mission has are left out.
 TextTable ranking_of(std::vector<mission::MissionSummary> summaries) {
-    const auto sorted = ranked(std::move(summaries));
-    const auto any = [&](const auto& has) { return std::ranges::any_of(sorted, has); };
-    const bool utility = any([](const auto& summary) { return summary.utility.has_value(); });
-    const bool empty = any([](const auto& summary) { return summary.depleted_at_s.has_value(); });
-    const bool cut_off = any([](const auto& summary) { return summary.cut_off_at_s.has_value(); });
-    TextTable table{{"rank", "mission", "final state of charge [%]", "reserve [%]", "chance of landing below [%]"}, {}};
-    if (utility) table.header.emplace_back("utility");
-    for (const auto* name : {"energy [Wh]", "mechanical [Wh]", "computing [Wh]", "duration [s]"})
-        table.header.emplace_back(name);
-    if (empty) table.header.emplace_back("empty at [s]");
-    if (cut_off) table.header.emplace_back("cut off at [s]");
-    for (const auto& summary : sorted) {
+    TextTable table{
+        {"rank", "mission", "final state of charge [%]", "reserve [%]", "chance of landing below [%]", "utility",
+         "energy [Wh]", "mechanical [Wh]", "computing [Wh]", "duration [s]", "empty at [s]", "cut off at [s]"},
+        {}};
+    for (const auto& summary : ranked(std::move(summaries))) {
         const auto origin = to_string(summary.schedule);
-        std::vector<std::string> row{std::to_string(table.rows.size() + 1),
-                                     summary.mission + (origin.empty() ? "" : fmt::format(" ({})", origin)),
-                                     fixed(summary.final_soc_percent, 2), fixed(summary.reserve_soc_percent, 2),
-                                     fixed(chance_below_percent(summary), 1)};
-        if (utility) row.push_back(fixed(summary.utility, 3));
-        for (const double energy_wh : {summary.energy_wh, summary.mechanical_energy_wh, summary.compute_energy_wh})
-            row.push_back(fixed(energy_wh, 3));
-        row.push_back(fixed(summary.duration_s, 1));
-        if (empty) row.push_back(fixed(summary.depleted_at_s, 1));
-        if (cut_off) row.push_back(fixed(summary.cut_off_at_s, 1));
-        table.rows.push_back(std::move(row));
+        table.rows.push_back(
+            {std::to_string(table.rows.size() + 1), summary.mission + (origin.empty() ? "" : " (" + origin + ")"),
+             fixed(summary.final_soc_percent, 2), fixed(summary.reserve_soc_percent, 2),
+             fixed(chance_below_percent(summary), 1), fixed(summary.utility, 3), fixed(summary.energy_wh, 3),
+             fixed(summary.mechanical_energy_wh, 3), fixed(summary.compute_energy_wh, 3), fixed(summary.duration_s, 1),
+             fixed(summary.depleted_at_s, 1), fixed(summary.cut_off_at_s, 1)});
     }
-    return table;
+    constexpr std::array<std::string_view, 3> rare{"utility", "empty at [s]", "cut off at [s]"};
+    return without_unknown(std::move(table), rare);
 }
 
 Section schedule_section(Missions missions, const PublishedFigures& published) {
