@@ -8,7 +8,6 @@
 #include "stages.h"
 #include "telemetry/log_configuration.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <fstream>
 #include <iterator>

@@ -5,7 +5,6 @@
 #include "batch/batch_run.h"
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>

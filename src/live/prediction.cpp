@@ -5,7 +5,6 @@
 #include "live/state/path_tracker.h"
 #include "mission/sampled_flights.h"
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <iterator>
 #include <numeric>
-#include <optional>
 #include <set>
 #include <system_error>
 #include <utility>

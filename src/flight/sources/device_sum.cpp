@@ -4,7 +4,6 @@
 #include "flight/sources/outliers.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <optional>
 

@@ -6,8 +6,6 @@
 #include "flight/segmentation.h"
 #include "flight/selected_track.h"
 
-#include <cmath>
-
 #include <fmt/format.h>
 
 namespace flightwatt::live {
