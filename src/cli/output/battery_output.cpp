@@ -152,20 +152,19 @@ Json estimate(double value, const battery::Interval& range) {
 }
 
 Json flight_json(const battery::IdentifiedFlight& flight) {
-    Json json{{"flight", flight.flight},
-              {"resting_voltage_v", flight.resting_voltage_v},
-              {"initial_charge_ah", flight.initial_depletion_ah},
-              {"initial_charge_interval_ah", interval(flight.initial_charge_interval_ah)},
-              {"drawn_ah", flight.drawn_ah},
-              {"pack_of", text_or_null(flight.same_pack_as)},
-              {"pause_s", flight.link ? Json(flight.link->pause_s) : Json()},
-              {"resistance_ohm", Json()},
-              {"air_temperature_c", flight.air_temperature_c ? Json(*flight.air_temperature_c) : Json()},
-              {"samples", flight.samples},
-              {"unused_samples", flight.unused},
-              {"voltage_rms_mv", units::mv_from_v(flight.voltage_rms_v)}};
-    if (const auto& own = flight.resistance) json["resistance_ohm"] = estimate(own->value_ohm, own->interval_ohm);
-    return json;
+    const auto& own = flight.resistance;
+    return {{"flight", flight.flight},
+            {"resting_voltage_v", flight.resting_voltage_v},
+            {"initial_charge_ah", flight.initial_depletion_ah},
+            {"initial_charge_interval_ah", interval(flight.initial_charge_interval_ah)},
+            {"drawn_ah", flight.drawn_ah},
+            {"pack_of", text_or_null(flight.same_pack_as)},
+            {"pause_s", flight.link ? Json(flight.link->pause_s) : Json()},
+            {"resistance_ohm", own ? estimate(own->value_ohm, own->interval_ohm) : Json()},
+            {"air_temperature_c", optional_json(flight.air_temperature_c)},
+            {"samples", flight.samples},
+            {"unused_samples", flight.unused},
+            {"voltage_rms_mv", units::mv_from_v(flight.voltage_rms_v)}};
 }
 
 }  // namespace
@@ -176,14 +175,14 @@ Json to_json(const battery::BatteryIdentification& identified, const std::vector
     json["capacity_ah"] = identified.capacity.value_ah;
     json["capacity_from"] = to_string(identified.capacity.origin);
     json["capacity_interval_ah"] = interval(identified.capacity.interval_ah);
-    json["flight_estimate_ah"] = Json();
-    if (const auto& flights = identified.battery.flight_estimate)
-        json["flight_estimate_ah"] = estimate(flights->capacity_ah, flights->capacity_interval_ah);
+    const auto& by_flights = identified.battery.flight_estimate;
+    json["flight_estimate_ah"] =
+        by_flights ? estimate(by_flights->capacity_ah, by_flights->capacity_interval_ah) : Json();
     json["cells"] = identified.cells;
     json["resistance_ohm"] = estimate(fit.resistance_ohm, errors.resistance_ohm);
-    json["resistance_between_flights"] = Json();
-    if (const auto& scatter = identified.battery.intervals.resistance_scatter)
-        json["resistance_between_flights"] = {{"sd_ohm", scatter->sd_ohm}, {"flights", scatter->flights}};
+    const auto& scatter = identified.battery.intervals.resistance_scatter;
+    json["resistance_between_flights"] =
+        scatter ? Json{{"sd_ohm", scatter->sd_ohm}, {"flights", scatter->flights}} : Json();
     json["rc_resistance_ohm"] = estimate(fit.rc_resistance_ohm, errors.rc_resistance_ohm);
     json["rc_time_constant_s"] = fit.rc_resistance_ohm > 0.0
                                      ? estimate(fit.rc_time_constant_s, errors.rc_time_constant_s)

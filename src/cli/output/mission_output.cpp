@@ -156,15 +156,13 @@ Json to_json(const mission::MissionPlan& plan, const mission::MissionSetup& miss
 }
 
 Json to_json(const mission::InfeasibilityReport& report) {
-    Json json;
-    json["short_percent"] = report.shortfall_percent;
-    json["short_wh"] = report.shortfall_wh;
-    json["cut_off_at_s"] = optional_json(report.cut_off_at_s);
-    json["longest_cruise_s"] = optional_json(report.cruise_s);
-    json["least_fixed_spare_percent"] = optional_json(report.min_fixed_surplus_percent);
-    json["largest_reserve_soc_percent"] = optional_json(report.reserve_soc_percent);
-    json["smallest_capacity_ah"] = optional_json(report.capacity_ah);
-    return json;
+    return {{"short_percent", report.shortfall_percent},
+            {"short_wh", report.shortfall_wh},
+            {"cut_off_at_s", optional_json(report.cut_off_at_s)},
+            {"longest_cruise_s", optional_json(report.cruise_s)},
+            {"least_fixed_spare_percent", optional_json(report.min_fixed_surplus_percent)},
+            {"largest_reserve_soc_percent", optional_json(report.reserve_soc_percent)},
+            {"smallest_capacity_ah", optional_json(report.capacity_ah)}};
 }
 
 TerminalLine soc_line(const mission::SocCurve& curve, std::size_t rank) {

@@ -69,11 +69,6 @@ Section profile_section(Missions missions) {
     return section;
 }
 
-std::optional<double> chance_below_percent(const mission::MissionSummary& summary) {
-    if (!summary.samples) return std::nullopt;
-    return units::percentage(summary.samples->probability_below_reserve, 1.0);
-}
-
 /// What people look for first stands to the left; columns that no mission has are left out.
 TextTable ranking_of(std::vector<mission::MissionSummary> summaries) {
     TextTable table{
@@ -82,12 +77,14 @@ TextTable ranking_of(std::vector<mission::MissionSummary> summaries) {
         {}};
     for (const auto& summary : ranked(std::move(summaries))) {
         const auto origin = to_string(summary.schedule);
+        const auto& samples = summary.samples;
         table.rows.push_back(
             {std::to_string(table.rows.size() + 1), summary.mission + (origin.empty() ? "" : " (" + origin + ")"),
              fixed(summary.final_soc_percent, 2), fixed(summary.reserve_soc_percent, 2),
-             fixed(chance_below_percent(summary), 1), fixed(summary.utility, 3), fixed(summary.energy_wh, 3),
-             fixed(summary.mechanical_energy_wh, 3), fixed(summary.compute_energy_wh, 3), fixed(summary.duration_s, 1),
-             fixed(summary.depleted_at_s, 1), fixed(summary.cut_off_at_s, 1)});
+             samples ? fixed(units::percentage(samples->probability_below_reserve, 1.0), 1) : "-",
+             fixed(summary.utility, 3), fixed(summary.energy_wh, 3), fixed(summary.mechanical_energy_wh, 3),
+             fixed(summary.compute_energy_wh, 3), fixed(summary.duration_s, 1), fixed(summary.depleted_at_s, 1),
+             fixed(summary.cut_off_at_s, 1)});
     }
     constexpr std::array<std::string_view, 3> rare{"utility", "empty at [s]", "cut off at [s]"};
     return without_unknown(std::move(table), rare);
