@@ -8,9 +8,7 @@
 #include "stages.h"
 #include "telemetry/log_configuration.h"
 
-#include <algorithm>
 #include <cstdint>
-#include <fstream>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -139,12 +137,6 @@ Json summary(const flight::FlightFile& file, const ConvertedLog& log, const std:
             {"warnings", warnings}};
 }
 
-/// Not an input: it may be written over if that changes nothing.
-bool holds(const std::filesystem::path& file, const std::string& text) {
-    std::ifstream stream(file, std::ios::binary);
-    return stream && std::string(std::istreambuf_iterator<char>(stream), {}) == text;
-}
-
 /// NAME.log for NAME.data, where the binary log has a sound one beside it that is not there already.
 std::optional<std::filesystem::path> log_to_write(const cli::StageCall& call, const flight::FlightFile& file) {
     const auto own = telemetry::find_log_file(file.path());
@@ -192,7 +184,7 @@ int convert(const cli::StageCall& call) {
     const auto log_file = log_to_write(call, file);
     if (log_file) {
         register_output(*log_file);
-        if (std::filesystem::exists(*log_file) && !holds(*log_file, file.log_text().value())) {
+        if (std::filesystem::exists(*log_file) && !file_holds(*log_file, file.log_text().value())) {
             throw UsageError(
                 fmt::format("{} is there already, with other definitions than {}: move it away, or name "
                             "another output",

@@ -11,7 +11,6 @@
 #include "mechanical/physical_fit.h"
 #include "stages.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <span>

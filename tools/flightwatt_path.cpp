@@ -30,13 +30,11 @@ void print_summary(const cli::StageCall& call, const mission::MissionSetup& miss
                                     length_m / 1000.0, duration_text(duration_s), energy_wh, mean_power_w(cruise)));
         return;
     }
-    cli::Json json;
-    json["mission"] = mission.name;
-    json["length_m"] = length_m;
-    json["duration_s"] = duration_s;
-    json["mechanical_energy_wh"] = energy_wh;
-    json["mechanical_w"] = mean_power_w(cruise);
-    cli::print(cli::json_text(json));
+    cli::print(cli::json_text({{"mission", mission.name},
+                               {"length_m", length_m},
+                               {"duration_s", duration_s},
+                               {"mechanical_energy_wh", energy_wh},
+                               {"mechanical_w", mean_power_w(cruise)}}));
 }
 
 int show_path(const cli::StageCall& call) {
@@ -91,11 +89,8 @@ int take_path(const cli::StageCall& call, const std::string& file) {
     }
     write_csv_result(call, csv.text(), {loaded.series.flight + ": where it flew", {}});
     if (call.json) {
-        cli::Json json;
-        json["flight"] = loaded.series.flight;
-        json["waypoints"] = path.waypoints.size();
-        json["duration_s"] = duration_s;
-        cli::print(cli::json_text(json));
+        cli::print(cli::json_text(
+            {{"flight", loaded.series.flight}, {"waypoints", path.waypoints.size()}, {"duration_s", duration_s}}));
     } else {
         cli::note(call, fmt::format("{}: {} waypoints of a cruise of {}, each with how long the way there took: a "
                                     "mission that is to fly them in another wind leaves duration_s out",

@@ -15,8 +15,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -44,12 +42,6 @@ std::vector<exchange::LogSlice> chosen_pieces(const cli::StageCall& call, const 
     return pieces;
 }
 
-/// Not an input: it may be written over if that changes nothing.
-bool holds(const std::filesystem::path& file, const std::string& content) {
-    std::ifstream stream(file, std::ios::binary);
-    return stream && std::string(std::istreambuf_iterator<char>(stream), {}) == content;
-}
-
 /// Throws UsageError where a file is there already that holds something else.
 CutFiles cut_log(const cli::StageCall& call, const flight::FlightFile& file, const flight::LoadedFlight& loaded,
                  const flight::LoadOptions& options) {
@@ -70,7 +62,7 @@ CutFiles cut_log(const cli::StageCall& call, const flight::FlightFile& file, con
     std::error_code error;
     for (const auto& [path, content] : cut.files) {
         register_output(path, "--cut");
-        if (std::filesystem::exists(path, error) && !holds(path, content)) {
+        if (std::filesystem::exists(path, error) && !file_holds(path, content)) {
             throw UsageError(
                 fmt::format("{} is there already and holds something else: move it away, or name another "
                             "folder",

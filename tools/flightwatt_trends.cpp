@@ -1,6 +1,5 @@
 // flightwatt trends: how aircraft and pack go over the dates of their flights.
 
-#include "base/csv.h"
 #include "base/error.h"
 #include "batch/trend.h"
 #include "cli/output/battery_output.h"
@@ -15,6 +14,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -46,34 +46,6 @@ std::vector<report::FlightTrendData> read_flights(const cli::StageCall& call) {
         });
 }
 
-std::string flights_csv(const std::vector<report::FlightTrendData>& flights) {
-    const auto quantities = report::trend_quantities();
-    CsvWriter csv({"flight", "aircraft", "date", "in_air_s", "energy_wh", "distance_m", "air_distance_m",
-                   quantities[0].name, quantities[1].name, quantities[2].name, quantities[3].name, quantities[4].name,
-                   quantities[5].name, "resistance_low_ohm", "resistance_high_ohm", "capacity_low_ah",
-                   "capacity_high_ah", "charge_ah"});
-    for (const auto& flight : flights) {
-        const auto& facts = flight.facts;
-        std::optional<double> low_ohm;
-        std::optional<double> high_ohm;
-        std::optional<double> low_ah;
-        std::optional<double> high_ah;
-        if (flight.resistance) {
-            low_ohm = flight.resistance->interval_ohm.low;
-            high_ohm = flight.resistance->interval_ohm.high;
-        }
-        if (flight.capacity_ah) {
-            low_ah = flight.capacity_interval_ah.low;
-            high_ah = flight.capacity_interval_ah.high;
-        }
-        csv.add(flight.name, flight.aircraft, facts.date, facts.in_air_s, facts.energy_wh, facts.distance_m,
-                facts.air_distance_m, quantities[0].value(flight), quantities[1].value(flight),
-                quantities[2].value(flight), quantities[3].value(flight), quantities[4].value(flight),
-                quantities[5].value(flight), low_ohm, high_ohm, low_ah, high_ah, flight.charge_ah);
-    }
-    return csv.text();
-}
-
 Json flight_json(const report::FlightTrendData& flight) {
     const auto& facts = flight.facts;
     Json json{{"flight", flight.name},
@@ -92,6 +64,27 @@ Json flight_json(const report::FlightTrendData& flight) {
                            : Json(nullptr);
     json["charge_ah"] = cli::optional_json(flight.charge_ah);
     return json;
+}
+
+std::string flights_csv(const std::vector<report::FlightTrendData>& flights) {
+    std::vector<Json> records;
+    for (const auto& flight : flights) {
+        auto& record = records.emplace_back(flight_json(flight));
+        if (flight.resistance) {
+            record["resistance_low_ohm"] = flight.resistance->interval_ohm.low;
+            record["resistance_high_ohm"] = flight.resistance->interval_ohm.high;
+        }
+        if (flight.capacity_ah) {
+            record["capacity_low_ah"] = flight.capacity_interval_ah.low;
+            record["capacity_high_ah"] = flight.capacity_interval_ah.high;
+        }
+    }
+    std::vector<std::string_view> columns{"flight",    "aircraft",   "date",          "in_air_s",
+                                          "energy_wh", "distance_m", "air_distance_m"};
+    for (const auto& quantity : report::trend_quantities()) columns.emplace_back(quantity.name);
+    columns.insert(columns.end(),
+                   {"resistance_low_ohm", "resistance_high_ohm", "capacity_low_ah", "capacity_high_ah", "charge_ah"});
+    return cli::csv_of(records, columns);
 }
 
 Json trends_json(const std::vector<report::FlightTrendData>& flights,

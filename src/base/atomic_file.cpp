@@ -5,6 +5,8 @@
 
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <optional>
 #include <random>
 #include <string>
@@ -164,6 +166,11 @@ void link_or_copy_file(const std::filesystem::path& source, const std::filesyste
     ::unlink(link.c_str());  // rename does nothing where both are names of one file
     if (!is_done) fail(path, error);
     mark_written(path);
+}
+
+bool file_holds(const std::filesystem::path& path, std::string_view text) {
+    std::ifstream stream(path, std::ios::binary);
+    return stream && std::string(std::istreambuf_iterator<char>(stream), {}) == text;
 }
 
 bool is_temporary_name(std::string_view name) {

@@ -79,7 +79,9 @@ class CsvWriter {
     /// What was written since the last call, for texts too large to hold.
     std::string take_text() { return std::exchange(text_, {}); }
 
-  private:
+    void add_row(const std::vector<std::string>& cells);
+
+    /// A value as a cell of this text.
     std::string cell(double number) const;
     std::string cell(std::string_view text) const { return csv_cell(text); }
     template <typename T>
@@ -89,8 +91,8 @@ class CsvWriter {
     std::string cell(const std::optional<T>& value) const {
         return value ? cell(*value) : std::string();
     }
-    void add_row(const std::vector<std::string>& cells);
 
+  private:
     std::size_t columns_;
     int digits_;
     std::string text_;

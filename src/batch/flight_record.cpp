@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -21,10 +22,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The keys of a record: `visit` is called with each and with what it holds, for writing and for reading.
+/// T is a Record that is written, or read into.
+template <typename T, typename Record>
+concept Of = std::same_as<std::remove_const_t<T>, Record>;
 
-template <typename Phase, typename Visit>
-void visit_recorded_phase(Phase& phase, const Visit& visit) {
+// The fields of each record: `visit` is called with their keys and with what they hold, for writing and for reading.
+
+void visit_fields(Of<RecordedPhase> auto& phase, const auto& visit) {
     visit("sortie", phase.sortie);
     visit("phase", phase.phase);
     visit("start_s", phase.start_s);
@@ -54,8 +58,18 @@ void visit_measured_phase(Flight& flight, flight::Phase phase, Samples& samples,
     visit("power_w", samples.power_w);
 }
 
-template <typename Bin, typename Visit>
-void visit_bin(Bin& bin, const Visit& visit) {
+void visit_fields(Of<RecordedEdgeCheck> auto& check, const auto& visit) {
+    visit("time_s", check.time_s);
+    visit("verdict", check.text);
+}
+
+void visit_fields(Of<mechanical::Exclusion> auto& exclusion, const auto& visit) {
+    visit("flight", exclusion.flight);
+    visit("phase", exclusion.phase);
+    visit("reason", exclusion.reason);
+}
+
+void visit_fields(Of<mechanical::FlightBin> auto& bin, const auto& visit) {
     visit("phase", bin.phase);
     visit("start_s", bin.start_s);
     visit("duration_s", bin.duration_s);
@@ -66,21 +80,18 @@ void visit_bin(Bin& bin, const Visit& visit) {
     visit("throttle_cubed", bin.throttle_cubed);
 }
 
-template <typename Motion, typename Visit>
-void visit_motion(Motion& motion, const Visit& visit) {
+void visit_fields(Of<mechanical::BinnedFlight> auto& motion, const auto& visit) {
     visit("bank_measured", motion.bank_measured);
     visit("lacks", motion.no_bins_reason);
     visit("bins", motion.bins);
 }
 
-template <typename Content, typename Visit>
-void visit_content(Content& content, const Visit& visit) {
+void visit_fields(Of<flight::FlightSketch> auto& content, const auto& visit) {
     visit("has_definitions", content.has_definitions);
     visit("samples", content.samples);
 }
 
-template <typename Record, typename Visit>
-void visit_record(Record& record, const Visit& visit) {
+void visit_fields(Of<FlightRecord> auto& record, const auto& visit) {
     visit("flight", record.flight);
     visit("log", record.log);
     visit("fingerprint", record.fingerprint);
@@ -103,6 +114,11 @@ void visit_record(Record& record, const Visit& visit) {
     // Its marks follow: they stand last, so that all else can be read without them.
 }
 
+template <typename T>
+concept HasFields = requires(T& record) {
+    visit_fields(record, 0);
+};
+
 /// Writes what it visits into an object.
 struct RecordWriter {
     Json& json;
@@ -115,7 +131,19 @@ struct RecordWriter {
   private:
     template <typename T>
     static Json json_of(const T& value) {
-        return value;
+        if constexpr (HasFields<T>) {
+            Json json = Json::object();
+            visit_fields(value, RecordWriter{json});
+            return json;
+        } else {
+            return value;
+        }
+    }
+    template <HasFields T>
+    static Json json_of(const std::vector<T>& records) {
+        Json json = Json::array();
+        for (const auto& record : records) json.push_back(json_of(record));
+        return json;
     }
     template <typename T>
     static Json json_of(const std::optional<T>& value) {
@@ -129,21 +157,6 @@ struct RecordWriter {
         }
         return json;
     }
-    static Json json_of(const mechanical::BinnedFlight& motion) {
-        Json json = Json::object();
-        visit_motion(motion, RecordWriter{json});
-        return json;
-    }
-    static Json json_of(const std::vector<mechanical::FlightBin>& bins) {
-        Json json = Json::array();
-        for (const auto& bin : bins) visit_bin(bin, RecordWriter{json.emplace_back()});
-        return json;
-    }
-    static Json json_of(const flight::FlightSketch& content) {
-        Json json = Json::object();
-        visit_content(content, RecordWriter{json});
-        return json;
-    }
     static Json json_of(const FlightMarks& marks) {
         Json fingerprints = Json::array();
         Json times_s = Json::array();
@@ -152,16 +165,6 @@ struct RecordWriter {
             times_s.push_back(time_s);
         }
         return Json::array({{{"fingerprints", fingerprints}, {"times_s", times_s}}});
-    }
-    static Json json_of(const std::vector<RecordedPhase>& phases) {
-        Json json = Json::array();
-        for (const auto& phase : phases) visit_recorded_phase(phase, RecordWriter{json.emplace_back()});
-        return json;
-    }
-    static Json json_of(const std::vector<RecordedEdgeCheck>& verdicts) {
-        Json json = Json::array();
-        for (const auto& [time_s, text] : verdicts) json.push_back({{"time_s", time_s}, {"verdict", text}});
-        return json;
     }
     static Json json_of(const mechanical::MeasuredFlights& measured) {
         Json flights = Json::array();
@@ -178,11 +181,7 @@ struct RecordWriter {
                                {"phases", phases},
                                {"motion", json_of(flight.motion)}});
         }
-        Json excluded = Json::array();
-        for (const auto& [flight, phase, reason] : measured.exclusions) {
-            excluded.push_back({{"flight", flight}, {"phase", json_of(phase)}, {"reason", reason}});
-        }
-        return {{"flights", flights}, {"excluded", excluded}};
+        return {{"flights", flights}, {"excluded", json_of(measured.exclusions)}};
     }
 };
 
@@ -211,7 +210,9 @@ struct RecordReader {
   private:
     template <typename T>
     static void read(const Json& json, T& value) {
-        if constexpr (std::integral<T> && !std::same_as<T, bool>) {
+        if constexpr (HasFields<T>) {
+            visit_fields(value, RecordReader{json});
+        } else if constexpr (std::integral<T> && !std::same_as<T, bool>) {
             value = whole<T>(json);
         } else {
             json.get_to(value);
@@ -229,10 +230,10 @@ struct RecordReader {
             covariates[mechanical::covariate_from(name).value()] = value.get<double>();
         }
     }
-    static void read(const Json& json, std::vector<mechanical::FlightBin>& bins) {
-        for (const auto& entry : json) visit_bin(bins.emplace_back(), RecordReader{entry});
+    template <HasFields T>
+    static void read(const Json& json, std::vector<T>& records) {
+        for (const auto& entry : json) read(entry, records.emplace_back());
     }
-    static void read(const Json& json, flight::FlightSketch& content) { visit_content(content, RecordReader{json}); }
     /// The last of the array: earlier versions have those of rounded values before it.
     static void read(const Json& json, FlightMarks& marks) {
         const auto& exact = json.at(json.size() - 1);
@@ -240,12 +241,6 @@ struct RecordReader {
         const auto& times_s = exact.at("times_s");
         for (std::size_t i = 0; i < fingerprints.size(); ++i)
             marks.push_back({whole<std::uint64_t>(fingerprints.at(i)), times_s.at(i)});
-    }
-    static void read(const Json& json, std::vector<RecordedPhase>& phases) {
-        for (const auto& entry : json) visit_recorded_phase(phases.emplace_back(), RecordReader{entry});
-    }
-    static void read(const Json& json, std::vector<RecordedEdgeCheck>& verdicts) {
-        for (const auto& entry : json) verdicts.push_back({entry.at("time_s"), entry.at("verdict")});
     }
     static void read(const Json& json, mechanical::MeasuredFlights& measured) {
         for (const auto& entry : json.at("flights")) {
@@ -257,16 +252,11 @@ struct RecordReader {
                 samples.flight = flight.samples.flight;
                 visit_measured_phase(flight, phase, samples, RecordReader{object});
             }
-            visit_motion(flight.motion, RecordReader{entry.at("motion")});
+            read(entry.at("motion"), flight.motion);
             flight.motion.flight = flight.samples.flight;
             measured.sorties.push_back(whole<std::size_t>(entry.at("sortie")));
         }
-        for (const auto& entry : json.at("excluded")) {
-            auto& exclusion = measured.exclusions.emplace_back();
-            exclusion.flight = entry.at("flight");
-            read(entry.at("phase"), exclusion.phase);
-            exclusion.reason = entry.at("reason");
-        }
+        read(json.at("excluded"), measured.exclusions);
     }
 };
 
@@ -330,7 +320,7 @@ FlightRecord record_of(const flight::LoadedFlight& loaded) {
 
 std::string to_json_text(const FlightRecord& record) {
     Json json;
-    visit_record(record, RecordWriter{json});
+    visit_fields(record, RecordWriter{json});
     RecordWriter{json}(marks_name, record.content.hashes);
     // File names need not be UTF-8, and a record must never fail for that.
     auto text = json.dump(1, ' ', false, Json::error_handler_t::replace);
@@ -344,7 +334,7 @@ std::optional<FlightRecord> record_from_json(const std::string& text) {
         return std::nullopt;
     try {
         FlightRecord record;
-        visit_record(record, RecordReader{Json::parse(text.substr(0, marks_at(text)) + "}")});
+        visit_fields(record, RecordReader{Json::parse(text.substr(0, marks_at(text)) + "}")});
         return record;
     } catch (const std::exception&) {
         return std::nullopt;  // of another version: the log is done again

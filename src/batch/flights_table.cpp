@@ -57,18 +57,15 @@ std::vector<std::string> cells_of(const BatchFlight& flight, const SortieRow& ro
     }
     for (const auto phase : flight::all_phases) {
         const auto* recorded = row.phases[phase];
-        cells.push_back(recorded == nullptr || !has_power ? "-"
-                                                          : fmt::format("{:.1f}", recorded->statistics.mean_power_w));
+        cells.push_back(recorded == nullptr || !has_power ? "-" : fixed(recorded->statistics.mean_power_w, 1));
     }
-    cells.push_back(has_power ? fmt::format("{:.3f}", row.energy_wh) : "-");
-    cells.push_back(row.has_counter ? fmt::format("{:.3f}", row.counter_wh) : "-");
-    cells.push_back(fmt::format("{}", row.samples));
-    cells.push_back(has_power ? fmt::format("{}", row.gaps) : "-");
-    cells.push_back(has_power ? fmt::format("{:.1f}", row.max_gap_s) : "-");
-    cells.push_back(fmt::format("{}", flight.record.warnings.size()));
     const auto fitted = std::count_if(row.phases.values.begin(), row.phases.values.end(),
                                       [&](const auto* phase) { return phase != nullptr && is_used(flight, *phase); });
-    cells.push_back(has_power ? fmt::format("{} of 3", fitted) : "no power");
+    const auto of_power = [&](const std::string& cell) { return has_power ? cell : "-"; };
+    cells.insert(cells.end(), {of_power(fixed(row.energy_wh, 3)), row.has_counter ? fixed(row.counter_wh, 3) : "-",
+                               fmt::format("{}", row.samples), of_power(fmt::format("{}", row.gaps)),
+                               of_power(fixed(row.max_gap_s, 1)), fmt::format("{}", flight.record.warnings.size()),
+                               has_power ? fmt::format("{} of 3", fitted) : "no power"});
     return cells;
 }
 

@@ -6,7 +6,6 @@
 #include "batch/manifest.h"
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>

@@ -18,7 +18,6 @@
 #include <utility>
 
 #include <boost/math/tools/minima.hpp>
-#include <fmt/format.h>
 
 namespace flightwatt::battery {
 namespace {

@@ -4,8 +4,6 @@
 #include "base/units.h"
 #include "battery/fast_discharge.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 namespace flightwatt::battery {

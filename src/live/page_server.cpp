@@ -10,7 +10,6 @@
 #include <chrono>
 #include <deque>
 #include <list>
-#include <optional>
 #include <random>
 #include <thread>
 #include <utility>

@@ -4,7 +4,6 @@
 #include "base/units.h"
 #include "live/state/path_tracker.h"
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>

@@ -195,6 +195,14 @@ bool was_predicted(const ValidatedFlight& flight, std::optional<flight::Phase> p
 
 }  // namespace
 
+void require_distinct(std::span<const MeasuredFlight> flights) {
+    std::set<std::string> names;
+    for (const auto& flight : flights) {
+        if (names.insert(flight.samples.flight).second) continue;
+        throw UsageError(fmt::format("flight '{}' is given twice: it would predict itself", flight.samples.flight));
+    }
+}
+
 std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights, const ModelFitOptions& options,
                                            std::span<const Covariate> covariates,
                                            const std::function<void(std::size_t, std::size_t)>& progress,
@@ -203,11 +211,7 @@ std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> fligh
         throw NoResultError(fmt::format("{} flight{}: leaving one out needs 2 or more, and 3 for an interval",
                                         flights.size(), flights.size() == 1 ? "" : "s"));
     }
-    std::set<std::string> names;
-    for (const auto& flight : flights) {
-        if (names.insert(flight.samples.flight).second) continue;
-        throw UsageError(fmt::format("flight '{}' is given twice: it would predict itself", flight.samples.flight));
-    }
+    require_distinct(flights);
     std::vector<FlightSamples> samples(flights.size());
     std::ranges::transform(flights, samples.begin(), &MeasuredFlight::samples);
     cache_scans(samples, options);

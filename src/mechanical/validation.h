@@ -28,6 +28,9 @@ struct ValidatedFlight {
 /// Of more flights than this, groups are left out together (folds_of).
 inline constexpr std::size_t max_validation_folds = 40;
 
+/// Throws UsageError for a flight that is given twice.
+void require_distinct(std::span<const MeasuredFlight> flights);
+
 /// Excludes each flight in turn (or each of `max_folds` groups), fits the others and predicts the energy of its phases
 /// from their durations alone. A phase that no other flight has is not predicted. Models:
 ///   fourier          the model of this project (fit_phase_model)

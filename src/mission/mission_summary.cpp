@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,10 +18,6 @@ std::pair<int, double> merit(const MissionSummary& summary) {
     if (!summary.final_soc_percent) return {0, 0.0};  // undeliverable
     if (summary.depleted_at_s || summary.cut_off_at_s) return {1, powered_end_s(summary)};
     return {2, *summary.final_soc_percent};
-}
-
-std::string cell(const std::optional<double>& value, int decimals) {
-    return value ? fmt::format("{:.{}f}", *value, decimals) : "-";
 }
 
 }  // namespace
@@ -98,32 +95,23 @@ std::vector<MissionSummary> ranked(std::vector<MissionSummary> summaries) {
 }
 
 TextTable comparison_table(const std::vector<MissionSummary>& ranked) {
-    const auto any = [&](const auto& has) { return std::ranges::any_of(ranked, has); };
-    // Most missions have no cut-off voltage, and tables are wide enough without it.
-    const bool cut_off = any([](const auto& summary) { return summary.cut_off_at_s.has_value(); });
-    const bool utility = any([](const auto& summary) { return summary.utility.has_value(); });
-    const bool sampled = any([](const auto& summary) { return summary.samples.has_value(); });
-    TextTable table;
-    table.header = {
-        "rank",       "mission",      "final_soc_percent", "energy_wh", "mechanical_energy_wh", "compute_energy_wh",
-        "duration_s", "depleted_at_s"};
-    if (cut_off) table.header.emplace_back("cut_off_at_s");
-    if (utility) table.header.emplace_back("utility");
-    if (sampled) table.header.emplace_back("probability_below_reserve");
+    // Most missions have none of these, and tables are wide enough without them.
+    constexpr std::array<std::string_view, 3> rare{"cut_off_at_s", "utility", "probability_below_reserve"};
+    TextTable table{{"rank", "mission", "final_soc_percent", "energy_wh", "mechanical_energy_wh", "compute_energy_wh",
+                     "duration_s", "depleted_at_s"},
+                    {}};
+    table.header.insert(table.header.end(), rare.begin(), rare.end());
     for (const auto& summary : ranked) {
         const auto name = summary.schedule == ScheduleOrigin::given
                               ? summary.mission
                               : fmt::format("{} ({})", summary.mission, to_string(summary.schedule));
-        std::vector<std::string> row{std::to_string(table.rows.size() + 1), name,
-                                     cell(summary.final_soc_percent, 2),    cell(summary.energy_wh, 3),
-                                     cell(summary.mechanical_energy_wh, 3), cell(summary.compute_energy_wh, 3),
-                                     cell(summary.duration_s, 1),           cell(summary.depleted_at_s, 1)};
-        if (cut_off) row.push_back(cell(summary.cut_off_at_s, 1));
-        if (utility) row.push_back(cell(summary.utility, 3));
-        if (sampled) row.push_back(summary.samples ? cell(summary.samples->probability_below_reserve, 4) : "-");
-        table.rows.push_back(std::move(row));
+        table.rows.push_back(
+            {std::to_string(table.rows.size() + 1), name, fixed(summary.final_soc_percent, 2),
+             fixed(summary.energy_wh, 3), fixed(summary.mechanical_energy_wh, 3), fixed(summary.compute_energy_wh, 3),
+             fixed(summary.duration_s, 1), fixed(summary.depleted_at_s, 1), fixed(summary.cut_off_at_s, 1),
+             fixed(summary.utility, 3), summary.samples ? fixed(summary.samples->probability_below_reserve, 4) : "-"});
     }
-    return table;
+    return without_unknown(std::move(table), rare);
 }
 
 }  // namespace flightwatt::mission

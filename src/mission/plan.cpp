@@ -7,7 +7,6 @@
 #include "mission/sampling/landing_distribution.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace flightwatt::mission {

@@ -152,9 +152,4 @@ RemainingPath PathForecast::predict(const mechanical::FlightProgress& flown, con
     return rest;
 }
 
-RemainingPath predict_remaining_path(const PlannedPath& plan, const mechanical::FlightProgress& flown,
-                                     const PathPosition& place) {
-    return PathForecast(plan).predict(flown, place);
-}
-
 }  // namespace flightwatt::mission

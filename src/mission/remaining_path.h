@@ -39,7 +39,9 @@ class PathForecast {
     const PlannedPath& plan() const { return plan_; }
     /// In the plan's wind. Throws InputError where that forbids it.
     const PathTrajectory& flown() const;
-    /// As predict_remaining_path.
+    /// The rest of a cruise (predict_remaining_physical), over 7 equally likely speeds by 7 directions of the wind that
+    /// the plan's spread makes of its wind, none slower than 0; where they differ the interval is wider. Throws
+    /// NoResultError as predict_remaining_physical, or where most of the winds forbid what is left.
     RemainingPath predict(const mechanical::FlightProgress& flown, const PathPosition& place) const;
 
   private:
@@ -70,11 +72,5 @@ class PathForecast {
     std::vector<PathInWind> in_likely_winds_;
     PathTrajectory flown_;  ///< in the plan's wind, crawling where that forbids it
 };
-
-/// The rest of a cruise along its path (predict_remaining_physical), over 7 equally likely speeds by 7 directions of
-/// the wind that the plan's spread makes of its wind, none slower than 0; where they differ the interval is wider.
-/// Throws NoResultError as predict_remaining_physical, or where most of the winds forbid what is left.
-RemainingPath predict_remaining_path(const PlannedPath& plan, const mechanical::FlightProgress& flown,
-                                     const PathPosition& place);
 
 }  // namespace flightwatt::mission

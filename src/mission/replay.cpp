@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
 
 #include <fmt/format.h>
 
@@ -256,11 +255,7 @@ void require_flights(std::span<const mechanical::MeasuredFlight> flights, const 
         throw NoResultError(fmt::format("{} flight{}: a model of the other flights needs 2 or more; or give a model",
                                         flights.size(), flights.size() == 1 ? "" : "s"));
     }
-    std::set<std::string> names;
-    for (const auto& flight : flights) {
-        if (names.insert(flight.samples.flight).second) continue;
-        throw UsageError(fmt::format("flight '{}' is given twice: it would predict itself", flight.samples.flight));
-    }
+    mechanical::require_distinct(flights);
 }
 
 /// Throws InputError for a mission that cannot be replayed whatever the flight.

@@ -136,8 +136,7 @@ Simulation simulate(const MissionSetup& mission, const Schedule& schedule, const
     refuse_charging(mission, stated);
     const auto segments = disturbed(stated, disturbances);
     require_output_step(steps.output_s, segments.back().end_s);
-    const Supply supply{apply_disturbances(mission.battery, disturbances),
-                        steps.apply_cutoff ? mission.cutoff_voltage_v : 0.0};
+    const Supply supply{apply_disturbances(mission.battery, disturbances), mission.cutoff_voltage_v};
     SocCurve curve;
     battery::Discharge state{{mission.initial_soc_percent}};
     for (const auto& segment : segments) {

@@ -37,7 +37,6 @@ struct Simulation {
 struct SimulationOptions {
     double output_s = 1.0;       ///< the curve has a row at every multiple, and at every jump
     double integration_s = 0.1;  ///< the Runge-Kutta step, at most
-    bool apply_cutoff = true;    ///< false: the battery goes on below the mission's cut-off voltage
 };
 
 /// Runs a mission with a schedule: mechanical and computing power, added, deplete the battery (Eqs. 8-10). Energies are

@@ -57,7 +57,7 @@ TEST(RemainingPath, TakesWhatTheModelSays) {
     const PlannedPath plan{path(), {}, test::made_up_wing()};
     const auto flown = compute_trajectory(path(), {});
     const auto place = position_at(flown, 150.0);
-    const auto rest = predict_remaining_path(plan, unseen_flight(), place);
+    const auto rest = PathForecast(plan).predict(unseen_flight(), place);
     EXPECT_NEAR(rest.duration_s, flown.duration_s - 150.0, 1e-9);
     EXPECT_NEAR(rest.cruise.energy.energy_wh, energy_j(remaining_trajectory(flown, place)) / 3600.0, 1e-9);
 }
@@ -67,8 +67,8 @@ TEST(RemainingPath, SpreadOfTheWindWidensTheInterval) {
     auto spread = wind;
     spread.speed_sd_m_per_s = 1.0;
     const PathPosition place{3, 0.0};  // southward, the wind from behind
-    const auto known = predict_remaining_path({path(), wind, test::made_up_wing()}, unseen_flight(), place);
-    const auto drawn = predict_remaining_path({path(), spread, test::made_up_wing()}, unseen_flight(), place);
+    const auto known = PathForecast({path(), wind, test::made_up_wing()}).predict(unseen_flight(), place);
+    const auto drawn = PathForecast({path(), spread, test::made_up_wing()}).predict(unseen_flight(), place);
     // The time is 1300 m over the ground speed, whose mean over winds is a little longer.
     EXPECT_GT(drawn.cruise.energy.energy_wh, known.cruise.energy.energy_wh);
     EXPECT_LT(drawn.cruise.energy.energy_wh, 1.005 * known.cruise.energy.energy_wh);
@@ -84,20 +84,19 @@ TEST(RemainingPath, CountsTheWindsThatForbidIt) {
     const PathPosition place{3, 0.0};  // southward
     Wind wind{8.5, 180.0};             // against it
     wind.speed_sd_m_per_s = 4.0;       // 13 m/s are 1.125 sd more: of 7 equally likely winds the fastest
-    const auto rest = predict_remaining_path({path(), wind, test::made_up_wing()}, unseen_flight(), place);
+    const auto rest = PathForecast({path(), wind, test::made_up_wing()}).predict(unseen_flight(), place);
     EXPECT_NEAR(rest.infeasible_fraction, 1.0 / 7.0, 1e-12);
     wind.from_deg = 0.0;  // from behind: what lay northward before the place does not matter
-    EXPECT_EQ(predict_remaining_path({path(), wind, test::made_up_wing()}, unseen_flight(), place).infeasible_fraction,
+    EXPECT_EQ(PathForecast({path(), wind, test::made_up_wing()}).predict(unseen_flight(), place).infeasible_fraction,
               0.0);
     const Wind hopeless{20.0, 180.0, 3.0};
-    EXPECT_THROW(predict_remaining_path({path(), hopeless, test::made_up_wing()}, unseen_flight(), place),
-                 NoResultError);
+    EXPECT_THROW(PathForecast({path(), hopeless, test::made_up_wing()}).predict(unseen_flight(), place), NoResultError);
 }
 
 TEST(RemainingPath, GetsNothingBackFromADescent) {
     const FlightPath made{{test::path_element(Hold{100.0}), test::path_element(Hold{100.0}, 13.0, -400.0)}};
     const PlannedPath plan{made, {}, test::made_up_wing()};
-    const auto rest = predict_remaining_path(plan, unseen_flight(), {0, 0.0});
+    const auto rest = PathForecast(plan).predict(unseen_flight(), {0, 0.0});
     EXPECT_NEAR(rest.cruise.energy.energy_wh, 100.0 * 0.01 * 13.0 * 13.0 * 13.0 / 3600.0, 1e-9);
     ASSERT_EQ(rest.power.size(), 2U);
     EXPECT_EQ(rest.power[1].power_w, 0.0);
@@ -106,7 +105,7 @@ TEST(RemainingPath, GetsNothingBackFromADescent) {
 TEST(RemainingPath, OfNothingIsNothing) {
     const PlannedPath plan{path(), {3.0, 45.0, 1.0, 10.0}, test::made_up_wing()};
     const auto flown = compute_trajectory(path(), plan.wind);
-    const auto rest = predict_remaining_path(plan, unseen_flight(), position_at(flown, flown.duration_s));
+    const auto rest = PathForecast(plan).predict(unseen_flight(), position_at(flown, flown.duration_s));
     EXPECT_EQ(rest.duration_s, 0.0);
     EXPECT_EQ(rest.cruise.energy.energy_wh, 0.0);
 }

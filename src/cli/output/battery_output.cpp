@@ -2,8 +2,10 @@
 
 #include "base/units.h"
 
-#include <algorithm>
+#include <array>
+#include <string_view>
 #include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -84,23 +86,19 @@ TextTable parameters_table(const battery::BatteryIdentification& identified) {
 
 TextTable flights_table(const battery::BatteryIdentification& identified,
                         const std::vector<battery::LeaveOneOutCheck>& left_out) {
-    const auto& flights = identified.flights;
-    const bool has_air = std::ranges::any_of(flights, [](const auto& f) { return f.air_temperature_c.has_value(); });
-    const bool has_packs = std::ranges::any_of(flights, [](const auto& f) { return f.link.has_value(); });
-    TextTable table;
-    table.header = {"flight",  "at rest V", "missing Ah", "low Ah",  "high Ah", "drawn Ah",
-                    "own ohm", "low ohm",   "high ohm",   "samples", "unused",  "fitted mV"};
-    if (has_air) table.header.emplace_back("air C");
-    if (has_packs) table.header.emplace_back("pack of");
-    if (!left_out.empty()) {
-        for (const auto* name : {"leave-one-out mV", "under load mV", "placed best mV", "beyond the others %"})
-            table.header.emplace_back(name);
-    }
-    for (std::size_t i = 0; i < flights.size(); ++i) {
-        const auto& flight = flights[i];
-        const auto& resistance = flight.resistance;
+    constexpr std::array<std::string_view, 6> rare{"air C",         "pack of",        "leave-one-out mV",
+                                                   "under load mV", "placed best mV", "beyond the others %"};
+    TextTable table{{"flight", "at rest V", "missing Ah", "low Ah", "high Ah", "drawn Ah", "own ohm", "low ohm",
+                     "high ohm", "samples", "unused", "fitted mV"},
+                    {}};
+    table.header.insert(table.header.end(), rare.begin(), rare.end());
+    for (std::size_t i = 0; i < identified.flights.size(); ++i) {
+        const auto& flight = identified.flights[i];
         const auto ohm = [&](const auto& member) {
-            return resistance ? fixed(member(*resistance), 4) : fixed(std::nullopt, 4);
+            return flight.resistance ? fixed(member(*flight.resistance), 4) : "-";
+        };
+        const auto mv = [&](double battery::LeaveOneOutCheck::*rms_v) {
+            return left_out.empty() ? "-" : fixed(units::mv_from_v(left_out[i].*rms_v), 1);
         };
         table.rows.push_back(
             {flight.flight, fixed(flight.resting_voltage_v, 3), fixed(flight.initial_depletion_ah, 3),
@@ -108,16 +106,13 @@ TextTable flights_table(const battery::BatteryIdentification& identified,
              fixed(flight.drawn_ah, 3), ohm([](const auto& own) { return own.value_ohm; }),
              ohm([](const auto& own) { return own.interval_ohm.low; }),
              ohm([](const auto& own) { return own.interval_ohm.high; }), fmt::format("{}", flight.samples),
-             fmt::format("{}", flight.unused), fixed(units::mv_from_v(flight.voltage_rms_v), 1)});
-        if (has_air) table.rows.back().push_back(fixed(flight.air_temperature_c, 1));
-        if (has_packs) table.rows.back().push_back(flight.link ? flight.same_pack_as : "-");
-        if (left_out.empty()) continue;
-        table.rows.back().push_back(fixed(units::mv_from_v(left_out[i].voltage_rms_v), 1));
-        table.rows.back().push_back(fixed(units::mv_from_v(left_out[i].load_rms_v), 1));
-        table.rows.back().push_back(fixed(units::mv_from_v(left_out[i].best_offset_load_rms_v), 1));
-        table.rows.back().push_back(fixed(left_out[i].extrapolated_percent, 0));
+             fmt::format("{}", flight.unused), fixed(units::mv_from_v(flight.voltage_rms_v), 1),
+             fixed(flight.air_temperature_c, 1), flight.link ? flight.same_pack_as : "-",
+             mv(&battery::LeaveOneOutCheck::voltage_rms_v), mv(&battery::LeaveOneOutCheck::load_rms_v),
+             mv(&battery::LeaveOneOutCheck::best_offset_load_rms_v),
+             left_out.empty() ? "-" : fixed(left_out[i].extrapolated_percent, 0)});
     }
-    return table;
+    return without_unknown(std::move(table), rare);
 }
 
 std::string provenance(const battery::BatteryIdentification& identified) {
@@ -157,20 +152,19 @@ Json estimate(double value, const battery::Interval& range) {
 }
 
 Json flight_json(const battery::IdentifiedFlight& flight) {
-    Json json{{"flight", flight.flight},
-              {"resting_voltage_v", flight.resting_voltage_v},
-              {"initial_charge_ah", flight.initial_depletion_ah},
-              {"initial_charge_interval_ah", interval(flight.initial_charge_interval_ah)},
-              {"drawn_ah", flight.drawn_ah},
-              {"pack_of", text_or_null(flight.same_pack_as)},
-              {"pause_s", flight.link ? Json(flight.link->pause_s) : Json()},
-              {"resistance_ohm", Json()},
-              {"air_temperature_c", flight.air_temperature_c ? Json(*flight.air_temperature_c) : Json()},
-              {"samples", flight.samples},
-              {"unused_samples", flight.unused},
-              {"voltage_rms_mv", units::mv_from_v(flight.voltage_rms_v)}};
-    if (const auto& own = flight.resistance) json["resistance_ohm"] = estimate(own->value_ohm, own->interval_ohm);
-    return json;
+    const auto& own = flight.resistance;
+    return {{"flight", flight.flight},
+            {"resting_voltage_v", flight.resting_voltage_v},
+            {"initial_charge_ah", flight.initial_depletion_ah},
+            {"initial_charge_interval_ah", interval(flight.initial_charge_interval_ah)},
+            {"drawn_ah", flight.drawn_ah},
+            {"pack_of", text_or_null(flight.same_pack_as)},
+            {"pause_s", flight.link ? Json(flight.link->pause_s) : Json()},
+            {"resistance_ohm", own ? estimate(own->value_ohm, own->interval_ohm) : Json()},
+            {"air_temperature_c", optional_json(flight.air_temperature_c)},
+            {"samples", flight.samples},
+            {"unused_samples", flight.unused},
+            {"voltage_rms_mv", units::mv_from_v(flight.voltage_rms_v)}};
 }
 
 }  // namespace
@@ -181,14 +175,14 @@ Json to_json(const battery::BatteryIdentification& identified, const std::vector
     json["capacity_ah"] = identified.capacity.value_ah;
     json["capacity_from"] = to_string(identified.capacity.origin);
     json["capacity_interval_ah"] = interval(identified.capacity.interval_ah);
-    json["flight_estimate_ah"] = Json();
-    if (const auto& flights = identified.battery.flight_estimate)
-        json["flight_estimate_ah"] = estimate(flights->capacity_ah, flights->capacity_interval_ah);
+    const auto& by_flights = identified.battery.flight_estimate;
+    json["flight_estimate_ah"] =
+        by_flights ? estimate(by_flights->capacity_ah, by_flights->capacity_interval_ah) : Json();
     json["cells"] = identified.cells;
     json["resistance_ohm"] = estimate(fit.resistance_ohm, errors.resistance_ohm);
-    json["resistance_between_flights"] = Json();
-    if (const auto& scatter = identified.battery.intervals.resistance_scatter)
-        json["resistance_between_flights"] = {{"sd_ohm", scatter->sd_ohm}, {"flights", scatter->flights}};
+    const auto& scatter = identified.battery.intervals.resistance_scatter;
+    json["resistance_between_flights"] =
+        scatter ? Json{{"sd_ohm", scatter->sd_ohm}, {"flights", scatter->flights}} : Json();
     json["rc_resistance_ohm"] = estimate(fit.rc_resistance_ohm, errors.rc_resistance_ohm);
     json["rc_time_constant_s"] = fit.rc_resistance_ohm > 0.0
                                      ? estimate(fit.rc_time_constant_s, errors.rc_time_constant_s)

@@ -1,6 +1,5 @@
 #include "cli/output/mission_output.h"
 
-#include "base/csv.h"
 #include "base/error.h"
 #include "cli/stage.h"
 #include "mechanical/mechanical_model.h"
@@ -128,19 +127,16 @@ Json to_json(const mission::EstimatedLanding& landing) {
 
 std::string comparison_csv(const std::vector<mission::MissionSummary>& ranked) {
     constexpr int digits = 10;
-    CsvWriter csv({"rank", "mission", "schedule", "final_soc_percent", "reserve_soc_percent", "keeps_reserve",
+    std::vector<Json> records;
+    for (const auto& summary : ranked) {
+        records.push_back(to_json(summary));
+        records.back()["rank"] = records.size();
+    }
+    return csv_of(records,
+                  {"rank", "mission", "schedule", "final_soc_percent", "reserve_soc_percent", "keeps_reserve",
                    "energy_wh", "mechanical_energy_wh", "compute_energy_wh", "delivered_energy_wh", "duration_s",
                    "depleted_at_s", "cut_off_at_s", "utility", "probability_below_reserve"},
                   digits);
-    for (std::size_t i = 0; i < ranked.size(); ++i) {
-        const auto& summary = ranked[i];
-        csv.add(i + 1, summary.mission, to_string(summary.schedule), summary.final_soc_percent,
-                summary.reserve_soc_percent, summary.keeps_reserve ? "true" : "false", summary.energy_wh,
-                summary.mechanical_energy_wh, summary.compute_energy_wh, summary.delivered_energy_wh,
-                summary.duration_s, summary.depleted_at_s, summary.cut_off_at_s, summary.utility,
-                summary.samples ? std::optional(summary.samples->probability_below_reserve) : std::nullopt);
-    }
-    return csv.text();
 }
 
 Json to_json(const mission::MissionPlan& plan, const mission::MissionSetup& mission) {
@@ -160,15 +156,13 @@ Json to_json(const mission::MissionPlan& plan, const mission::MissionSetup& miss
 }
 
 Json to_json(const mission::InfeasibilityReport& report) {
-    Json json;
-    json["short_percent"] = report.shortfall_percent;
-    json["short_wh"] = report.shortfall_wh;
-    json["cut_off_at_s"] = optional_json(report.cut_off_at_s);
-    json["longest_cruise_s"] = optional_json(report.cruise_s);
-    json["least_fixed_spare_percent"] = optional_json(report.min_fixed_surplus_percent);
-    json["largest_reserve_soc_percent"] = optional_json(report.reserve_soc_percent);
-    json["smallest_capacity_ah"] = optional_json(report.capacity_ah);
-    return json;
+    return {{"short_percent", report.shortfall_percent},
+            {"short_wh", report.shortfall_wh},
+            {"cut_off_at_s", optional_json(report.cut_off_at_s)},
+            {"longest_cruise_s", optional_json(report.cruise_s)},
+            {"least_fixed_spare_percent", optional_json(report.min_fixed_surplus_percent)},
+            {"largest_reserve_soc_percent", optional_json(report.reserve_soc_percent)},
+            {"smallest_capacity_ah", optional_json(report.capacity_ah)}};
 }
 
 TerminalLine soc_line(const mission::SocCurve& curve, std::size_t rank) {

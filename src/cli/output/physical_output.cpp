@@ -39,8 +39,6 @@ std::optional<double> half_width(const mechanical::PhysicalModel& model, std::si
     return student_t_half_width(model.degrees_of_freedom) * std::sqrt(model.covariance[term][term]);
 }
 
-std::string four_digits(double value) { return fmt::format("{:.4g}", value); }
-
 /// How far a flight of an hour may be off at the model's own mean airspeed, level, as a part of its power.
 std::string accuracy(const mechanical::PhysicalModel& model) {
     if (!model.level_sd) return "a single flight does not tell how flights differ: no interval of an unseen one\n";
@@ -64,8 +62,8 @@ TextTable constants_table(const mechanical::PhysicalModel& model) {
         const auto term = model.terms[i];
         const auto half = half_width(model, i);
         table.rows.push_back({std::string(to_string(term)), std::string(value_of(term)),
-                              four_digits(model.coefficients[term]), half ? fmt::format("{:.2g}", *half) : "-",
-                              std::string(unit_of(term))});
+                              fmt::format("{:.4g}", model.coefficients[term]),
+                              half ? fmt::format("{:.2g}", *half) : "-", std::string(unit_of(term))});
     }
     return table;
 }

@@ -1,6 +1,5 @@
 #include "cli/output/replay_output.h"
 
-#include "base/csv.h"
 #include "base/duration_text.h"
 #include "cli/output/mission_output.h"
 #include "cli/stage.h"
@@ -236,21 +235,21 @@ std::string replay_text(Replays replays, const Screen& screen) {
 
 std::string replay_csv(Replays replays) {
     constexpr int digits = 10;
-    CsvWriter csv({"flight", "mission", "schedule", "reserve_soc_percent", "keeps_reserve", "expected_soc_percent",
+    std::vector<Json> records;
+    for (const auto& replay : replays) {
+        const auto of_replay = replay_json(replay);
+        for (auto record : of_replay["schedules"]) {
+            const Json way = record["way"];
+            record["schedule"] = way;
+            for (const auto* shared : {"flight", "mission", "bound"}) record[shared] = of_replay[shared];
+            records.push_back(std::move(record));
+        }
+    }
+    return csv_of(records,
+                  {"flight", "mission", "schedule", "reserve_soc_percent", "keeps_reserve", "expected_soc_percent",
                    "final_soc_percent", "utility", "regret", "bound", "depleted_at_s", "cut_off_at_s",
                    "undeliverable_at_s", "mechanical_energy_wh", "compute_energy_wh", "duration_s"},
                   digits);
-    for (const auto& replay : replays) {
-        for (const auto& replayed : replay.schedules) {
-            const auto& summary = replayed.summary;
-            csv.add(replay.flight, replay.mission, mission::to_string(replayed.way), summary.reserve_soc_percent,
-                    summary.keeps_reserve ? "true" : "false", replayed.expected_soc_percent, summary.final_soc_percent,
-                    summary.utility, replayed.regret, replay.bound_is_proven ? replay.bound : std::nullopt,
-                    summary.depleted_at_s, summary.cut_off_at_s, undeliverable_at_s(replayed),
-                    summary.mechanical_energy_wh, summary.compute_energy_wh, summary.duration_s);
-        }
-    }
-    return csv.text();
 }
 
 Json to_json(const mission::Replays& replays) {

@@ -43,19 +43,14 @@ Json battery_json(const live::LiveBattery& battery) {
 }
 
 Json decision_json(const live::LiveDecision& decision, const compute::ComputeModel& compute) {
-    Json json{{"run", run_json(decision.run, compute)},
-              {"utility_per_s", decision.utility_per_s},
-              {"next", nullptr},
-              {"next_in_s", nullptr},
-              {"rest_utility_per_s", optional_json(decision.remaining_utility_per_s)},
-              {"keeps_reserve", decision.keeps_reserve},
-              {"final_soc_percent", optional_json(decision.final_soc_percent)},
-              {"changes", decision.changes}};
-    if (decision.next) {
-        json["next"] = run_json(*decision.next, compute);
-        json["next_in_s"] = decision.next_in_s;
-    }
-    return json;
+    return {{"run", run_json(decision.run, compute)},
+            {"utility_per_s", decision.utility_per_s},
+            {"next", decision.next ? run_json(*decision.next, compute) : Json()},
+            {"next_in_s", decision.next ? Json(decision.next_in_s) : Json()},
+            {"rest_utility_per_s", optional_json(decision.remaining_utility_per_s)},
+            {"keeps_reserve", decision.keeps_reserve},
+            {"final_soc_percent", optional_json(decision.final_soc_percent)},
+            {"changes", decision.changes}};
 }
 
 std::string spare(const std::optional<double>& value, int decimals, const char* unit) {
@@ -148,11 +143,11 @@ Json json_of(const live::LiveState& state, const compute::ComputeModel& compute)
               {"voltage_v", optional_json(state.voltage_v)},
               {"current_a", optional_json(state.current_a)},
               {"altitude_m", optional_json(state.altitude_m)},
-              {"battery", nullptr},
-              {"prediction", nullptr},
-              {"waits_for", nullptr},
+              {"battery", state.battery ? battery_json(*state.battery) : Json()},
+              {"prediction", state.prediction ? json_of(*state.prediction) : Json()},
+              {"waits_for", state.prediction ? Json() : Json(state.no_prediction_reason)},
               {"turn_home", nullptr},
-              {"decision", nullptr},
+              {"decision", state.decision ? decision_json(*state.decision, compute) : Json()},
               {"alarms", Json::array()},
               {"warnings", state.warnings},
               {"messages", state.messages},
@@ -160,13 +155,9 @@ Json json_of(const live::LiveState& state, const compute::ComputeModel& compute)
               {"silent_s", state.time_since_message_s},
               {"others", state.other_senders},
               {"unusable", state.unusable}};
-    if (state.battery) json["battery"] = battery_json(*state.battery);
-    if (state.prediction) json["prediction"] = json_of(*state.prediction);
-    if (!state.prediction) json["waits_for"] = state.no_prediction_reason;
     if (const auto& turn = state.turn_home)
         json["turn_home"] = {{"latest_in_s", optional_json(turn->latest_in_s)},
                              {"path_can_be_flown", turn->path_can_be_flown}};
-    if (state.decision) json["decision"] = decision_json(*state.decision, compute);
     for (const auto& alarm : state.alarms) json["alarms"].push_back({{"kind", alarm.kind}, {"text", alarm.text}});
     return json;
 }

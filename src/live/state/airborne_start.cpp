@@ -8,8 +8,6 @@
 #include "mechanical/flight_bins.h"
 #include "mechanical/flight_progress.h"
 
-#include <cmath>
-
 #include <fmt/format.h>
 
 namespace flightwatt::live {

@@ -3,7 +3,6 @@
 #include "flight/segmentation.h"
 #include "flight/selected_track.h"
 
-#include <algorithm>
 #include <exception>
 
 namespace flightwatt::live {

@@ -8,11 +8,9 @@
 #include "mechanical/fit/least_squares.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numeric>
 
 #include <boost/math/tools/minima.hpp>

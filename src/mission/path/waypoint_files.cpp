@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <functional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -12,10 +12,8 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <stdexcept>
 
 #include <boost/random/normal_distribution.hpp>
-#include <fmt/format.h>
 
 namespace flightwatt::mission {
 namespace {

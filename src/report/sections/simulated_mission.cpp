@@ -251,18 +251,17 @@ std::vector<std::string> card_lines(const SimulatedMission& simulated, const Mis
 
 nlohmann::ordered_json to_json(const SimulatedMission& simulated, const MissionAssessment& answer) {
     const auto& summary = simulated.simulation.summary;
-    const auto or_null = [](const auto& value) { return value ? nlohmann::ordered_json(*value) : nullptr; };
-    nlohmann::ordered_json json{{"mission", simulated.title},
-                                {"final_soc_percent", or_null(summary.final_soc_percent)},
-                                {"reserve_soc_percent", summary.reserve_soc_percent},
-                                {"keeps_reserve", summary.keeps_reserve},
-                                {"probability_below_reserve", nullptr},
-                                {"utility", or_null(summary.utility)},
-                                {"reach", to_json(answer.reach)},
-                                {"reach_with_95_percent", to_json(answer.reach_at_95_percent)},
-                                {"least_capacity_ah", or_null(answer.capacity_ah)},
-                                {"card", card_lines(simulated, answer)}};
-    if (summary.samples) json["probability_below_reserve"] = summary.samples->probability_below_reserve;
+    const auto& samples = summary.samples;
+    cli::Json json{{"mission", simulated.title},
+                   {"final_soc_percent", cli::optional_json(summary.final_soc_percent)},
+                   {"reserve_soc_percent", summary.reserve_soc_percent},
+                   {"keeps_reserve", summary.keeps_reserve},
+                   {"probability_below_reserve", samples ? cli::Json(samples->probability_below_reserve) : cli::Json()},
+                   {"utility", cli::optional_json(summary.utility)},
+                   {"reach", to_json(answer.reach)},
+                   {"reach_with_95_percent", to_json(answer.reach_at_95_percent)},
+                   {"least_capacity_ah", cli::optional_json(answer.capacity_ah)},
+                   {"card", card_lines(simulated, answer)}};
     if (summary.by_flights) json[cli::by_flights_key] = cli::to_json(*summary.by_flights);
     return json;
 }

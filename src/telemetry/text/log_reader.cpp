@@ -15,8 +15,6 @@
 #include <string_view>
 #include <utility>
 
-#include <fmt/format.h>
-
 namespace flightwatt::telemetry {
 namespace {
 
