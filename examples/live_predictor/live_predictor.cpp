@@ -11,7 +11,7 @@
 
 namespace {
 
-void print(const flightwatt::live::Outlook& now) {
+void print(const flightwatt::live::PredictorState& now) {
     if (!now.landing) return;
     const auto& landing = *now.landing;
     std::printf("%.3f s  %.17g Wh so far, %.17g to %.17g more", now.time_s, now.energy_wh.value_or(0.0),
@@ -40,13 +40,13 @@ int main(int argc, char** argv) {
         return 3;
     }
     auto& predictor = *made.predictor;
-    double looked_at_s = -1.0;
+    double updated_at_s = -1.0;
     for (std::string line; std::getline(std::cin, line);) {
         const double time_s = std::atof(line.c_str());
         if (!predictor.push_line(line)) std::fprintf(stderr, "live_predictor: a line was dropped\n");
-        if (time_s - looked_at_s < 1.0) continue;
-        looked_at_s = time_s;
-        print(predictor.look());
+        if (time_s - updated_at_s < 1.0) continue;
+        updated_at_s = time_s;
+        print(predictor.update());
     }
     print(predictor.end());
     return 0;
