@@ -9,8 +9,8 @@
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "flight/flown_path.h"
-#include "mission/cruise_path.h"
 #include "mission/mission_file.h"
+#include "path/cruise_path.h"
 #include "stages.h"
 
 #include <fmt/format.h>
@@ -23,7 +23,7 @@ constexpr int digits = 10;
 
 void print_summary(const cli::StageCall& call, const mission::MissionSetup& mission, double length_m) {
     const auto& cruise = *mission.cruise_path;
-    const double duration_s = mission::duration_s(cruise);
+    const double duration_s = path::duration_s(cruise);
     const double energy_wh = units::wh_from_joule(energy_j(cruise));
     if (!call.json) {
         cli::note(call, fmt::format("{}: {:.2f} km over ground in {}; {:.3f} Wh, {:.2f} W on average", mission.name,

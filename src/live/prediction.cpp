@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "base/units.h"
-#include "live/state/path_tracker.h"
 
 #include <cmath>
 #include <memory>
@@ -62,7 +61,7 @@ void warn_of_level(const mechanical::PhysicalModel& model, double level, Diagnos
 /// Where on the path the flight is: where it was seen, after as long as it has cruised, or the remaining time before
 /// its end.
 double seconds_on_path(const PredictionInput& basis, const FlightProgress& flown,
-                       const std::optional<PathFix>& sighting) {
+                       const std::optional<path::PathFix>& sighting) {
     const auto& path = basis.path->flown();
     if (basis.remaining_s) {
         if (*basis.remaining_s <= path.duration_s) return path.duration_s - *basis.remaining_s;
@@ -83,7 +82,7 @@ double seconds_on_path(const PredictionInput& basis, const FlightProgress& flown
                     flown.cruise_s(), path.duration_s));
 }
 
-void remark_on(const std::optional<PathFix>& sighting, double cruise_s, Diagnostics& remarks) {
+void remark_on(const std::optional<path::PathFix>& sighting, double cruise_s, Diagnostics& remarks) {
     if (!sighting) return;
     if (!sighting->path_time_s) {
         remarks.warnings.emplace_back(
@@ -106,12 +105,12 @@ void remark_on(const std::optional<PathFix>& sighting, double cruise_s, Diagnost
 
 /// The cruise along what is left of the path.
 mechanical::RemainingCruise predict_along(const PredictionInput& basis, const FlightProgress& flown,
-                                          const std::optional<PathFix>& sighting, Prediction& prediction,
+                                          const std::optional<path::PathFix>& sighting, Prediction& prediction,
                                           Diagnostics& remarks) {
     prediction.on_path_s = seconds_on_path(basis, flown, sighting);
     prediction.is_from_position = sighting && sighting->path_time_s;
     remark_on(sighting, flown.cruise_s(), remarks);
-    auto rest = basis.path->predict(flown, position_at(basis.path->flown(), *prediction.on_path_s));
+    const auto rest = basis.path->predict(flown, position_at(basis.path->flown(), *prediction.on_path_s));
     if (rest.infeasible_fraction > 0.0) {
         remarks.warnings.push_back(
             fmt::format("{:.0f} % of the winds that [wind] makes likely forbid what is left of the path: they are not "
@@ -119,7 +118,10 @@ mechanical::RemainingCruise predict_along(const PredictionInput& basis, const Fl
                         units::percentage(rest.infeasible_fraction, 1.0)));
     }
     prediction.remaining_s = rest.duration_s;
-    prediction.remaining_power = std::move(rest.power);
+    const auto& pieces = rest.trajectory.pieces;
+    prediction.remaining_power.reserve(pieces.size());
+    for (const auto& piece : pieces)
+        prediction.remaining_power.push_back({power_w(basis.path->plan().power, piece.motion), piece.time_s});
     return rest.cruise;
 }
 
@@ -134,7 +136,7 @@ mechanical::RemainingCruise predict_level(const PredictionInput& basis, const Fl
 }
 
 mechanical::RemainingCruise predict_cruise(const PredictionInput& basis, const FlightProgress& flown,
-                                           const std::optional<PathFix>& sighting, Prediction& prediction,
+                                           const std::optional<path::PathFix>& sighting, Prediction& prediction,
                                            Diagnostics& remarks) {
     prediction.uses_physical_model = basis.path || basis.motion;
     if (prediction.uses_physical_model && !flown.motion.no_bins_reason.empty())
@@ -186,7 +188,7 @@ PredictionInput basis_of(const mission::MissionSetup& setup) {
     PredictionInput basis{setup.mechanical.value(), {}, setup.duration_s[flight::Phase::landing]};
     basis.limits = {setup.cutoff_voltage_v, setup.reserve_soc_percent};
     if (setup.cruise_path) {
-        basis.path = std::make_shared<const mission::PathForecast>(*setup.cruise_path->plan);
+        basis.path = std::make_shared<const path::PathForecast>(*setup.cruise_path->plan);
         basis.model.physical = basis.path->plan().power;  // where the model has but a law of airspeed, that
     } else {
         basis.cruise_s = setup.duration_s[flight::Phase::cruise];
@@ -243,14 +245,14 @@ Prediction predict_flight(const PredictionInput& basis, const mechanical::Flight
     return prediction;
 }
 
-std::optional<PathFix> find_path_fix(const PredictionInput& basis, const FlightProgress& flown,
-                                     const flight::FlightSeries& series) {
+std::optional<path::PathFix> find_path_fix(const PredictionInput& basis, const FlightProgress& flown,
+                                           const flight::FlightSeries& series) {
     if (!basis.path || basis.remaining_s) return std::nullopt;
     return locate_on_path(*basis.path, series, flown.cruise_start_s, flown.until_s);
 }
 
 Prediction predict_energy(const PredictionInput& basis, const FlightProgress& flown,
-                          const std::optional<PathFix>& sighting, Diagnostics& remarks) {
+                          const std::optional<path::PathFix>& sighting, Diagnostics& remarks) {
     Prediction prediction;
     prediction.flown = flown;
     prediction.cruise = predict_cruise(basis, flown, sighting, prediction, remarks);

@@ -2,11 +2,11 @@
 
 #include "battery/discharge_record.h"
 #include "battery/landing_forecast.h"
-#include "live/turn_home.h"
 #include "mechanical/flight_progress.h"
 #include "mechanical/prediction.h"
 #include "mission/mission.h"
-#include "mission/remaining_path.h"
+#include "path/path_tracker.h"
+#include "path/remaining_path.h"
 
 #include <memory>
 #include <optional>
@@ -23,8 +23,8 @@ struct PredictionInput {
     double landing_s = 0.0;
     std::optional<double> remaining_s = {};  ///< of the cruise, from the moment on, whatever was flown
     std::optional<double> cruise_s = {};     ///< else: what is left of so long; none: what is left of the path
-    std::optional<mechanical::FlightState> motion = {};      ///< how the rest is flown
-    std::shared_ptr<const mission::PathForecast> path = {};  ///< or along what
+    std::optional<mechanical::FlightState> motion = {};   ///< how the rest is flown
+    std::shared_ptr<const path::PathForecast> path = {};  ///< or along what
     std::optional<battery::Battery> battery = {};
     std::string battery_file = {};                   ///< for errors
     std::optional<double> initial_soc_percent = {};  ///< none: by the voltage at rest
@@ -88,12 +88,12 @@ Prediction predict_flight(const PredictionInput& basis, const mechanical::Flight
 
 /// The same without the battery. `sighting`: where the path is to go on from; none: after as long as it has cruised.
 Prediction predict_energy(const PredictionInput& basis, const mechanical::FlightProgress& flown,
-                          const std::optional<PathFix>& sighting, Diagnostics& remarks);
+                          const std::optional<path::PathFix>& sighting, Diagnostics& remarks);
 
 /// Where the positions see the flight on the path that is to be flown on; none where there is no path, where the time
 /// that is left is stated, or without positions.
-std::optional<PathFix> find_path_fix(const PredictionInput& basis, const mechanical::FlightProgress& flown,
-                                     const flight::FlightSeries& series);
+std::optional<path::PathFix> find_path_fix(const PredictionInput& basis, const mechanical::FlightProgress& flown,
+                                           const flight::FlightSeries& series);
 
 /// The stretches of power ahead, cruise and landing, as expected times `part`.
 std::vector<battery::ConstantLoad> remaining_power(const Prediction& prediction, double part = 1.0);

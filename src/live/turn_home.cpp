@@ -1,41 +1,20 @@
 #include "live/turn_home.h"
 
 #include "base/units.h"
+#include "path/path.h"
+#include "path/trajectory.h"
 
 #include <algorithm>
 #include <cmath>
-#include <variant>
 
 namespace flightwatt::live {
 namespace {
 
-void add(Displacement& at, double length_m, double course_deg) {
-    const double course_rad = course_deg / units::degree_per_rad;
-    at.east_m += length_m * std::sin(course_rad);
-    at.north_m += length_m * std::cos(course_rad);
-}
-
-void add_part(Displacement& at, const mission::PathElement& element, double part) {
-    if (const auto* leg = std::get_if<mission::Leg>(&element.shape)) {
-        add(at, leg->length_m * part, leg->course_deg);
-    } else if (const auto* hold = std::get_if<mission::Hold>(&element.shape); hold != nullptr && hold->over_ground) {
-        add(at, hold->over_ground->length_m * part, hold->over_ground->course_deg);
-    } else if (const auto* circles = std::get_if<mission::Circles>(&element.shape)) {
-        constexpr double quarter_deg = 90.0;
-        constexpr double turn_deg = 360.0;
-        const double side = circles->to_right ? 1.0 : -1.0;
-        const double turned_deg = turn_deg * circles->turns * part;
-        add(at, circles->radius_m, circles->start_course_deg + side * quarter_deg);
-        add(at, circles->radius_m, circles->start_course_deg + side * (turned_deg - quarter_deg));
-    }
-}
-
 /// Straight home from a place, level; none where the wind forbids it.
-std::optional<battery::ConstantLoad> way_home(const mission::PathForecast& path, double on_path_s,
-                                              double power_factor) {
+std::optional<battery::ConstantLoad> way_home(const path::PathForecast& path, double on_path_s, double power_factor) {
     const auto& plan = path.plan();
     const auto place = position_at(path.flown(), on_path_s);
-    const auto at = displacement_at(plan.path, place);
+    const auto at = local_position_at(plan.path, place);
     const double distance_m = std::hypot(at.east_m, at.north_m);
     const auto& element = plan.path.elements[std::min(place.element, plan.path.elements.size() - 1)];
     const double power_w = mechanical::power_w(plan.power, {.airspeed_m_per_s = element.airspeed_m_per_s});
@@ -81,14 +60,7 @@ bool fly_on(const ReturnFlightInput& budget, std::vector<battery::ConstantLoad>&
 
 }  // namespace
 
-Displacement displacement_at(const mission::FlightPath& path, const mission::PathPosition& place) {
-    Displacement at;
-    for (std::size_t i = 0; i < path.elements.size() && i <= place.element; ++i)
-        add_part(at, path.elements[i], i < place.element ? 1.0 : place.part);
-    return at;
-}
-
-ReturnDeadline latest_return(const mission::PathForecast& path, double on_path_s, const ReturnFlightInput& budget) {
+ReturnDeadline latest_return(const path::PathForecast& path, double on_path_s, const ReturnFlightInput& budget) {
     constexpr double finest_s = 10.0;
     constexpr double max_looks = 40.0;
     double rest_s = 0.0;

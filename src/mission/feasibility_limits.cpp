@@ -6,6 +6,7 @@
 #include "mission/planning/limit_search.h"
 #include "mission/planning/planner.h"
 #include "mission/sampling/landing_distribution.h"
+#include "path/path.h"
 
 #include <algorithm>
 #include <cmath>
@@ -256,7 +257,7 @@ FeasibilityLimit farthest_return(const MissionVariation& with_return_after_m, do
 ReachUnit reach_unit_of(const MissionSetup& mission) {
     if (!mission.cruise_path) return ReachUnit::cruise_s;
     const bool has_circles = std::ranges::any_of(mission.cruise_path->plan->path.elements, [](const auto& element) {
-        return std::holds_alternative<Circles>(element.shape);
+        return std::holds_alternative<path::Circles>(element.shape);
     });
     return has_circles ? ReachUnit::circles : ReachUnit::return_m;
 }

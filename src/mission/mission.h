@@ -3,8 +3,8 @@
 #include "battery/battery.h"
 #include "compute/compute_model.h"
 #include "mechanical/mechanical_model.h"
-#include "mission/cruise_path.h"
 #include "mission/schedule.h"
+#include "path/cruise_path.h"
 
 #include <cstddef>
 #include <functional>
@@ -51,9 +51,10 @@ struct MissionSetup {
     mechanical::PhaseTimeScaling phase_clock = mechanical::PhaseTimeScaling::stretched;
     /// The cruise's mean power under the stated conditions, or along its path; the cruise has this level then.
     std::optional<mechanical::ConstantPower> cruise_level = {};
-    std::optional<CruisePath> cruise_path = {};  ///< what the cruise's power is then, instead of the model's curve
+    std::optional<path::CruisePath> cruise_path =
+        {};  ///< what the cruise's power is then, instead of the model's curve
     /// Of a flight that was flown: the power of its phases as it was measured, instead of what model and path say.
-    PerPhase<std::shared_ptr<const PiecewisePower>> measured_power = {};
+    PerPhase<std::shared_ptr<const path::PiecewisePower>> measured_power = {};
     PerPhase<double> duration_s;        ///< 0: the phase is not flown
     PerPhase<bool> duration_is_stated;  ///< by the mission, and not its model's: all flights take so long
     battery::Battery battery;

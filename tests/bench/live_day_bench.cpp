@@ -6,9 +6,8 @@
 
 #include "live/live_flight.h"
 #include "live/prediction.h"
-#include "live/turn_home.h"
 #include "mission/mission_file.h"
-#include "mission/remaining_path.h"
+#include "path/remaining_path.h"
 
 #include <algorithm>
 #include <cmath>
@@ -57,7 +56,7 @@ double height_part(double in_air_s) { return std::clamp(std::min(in_air_s, fligh
 class MadeUpDay {
   public:
     /// `path`: none, or what is flown.
-    explicit MadeUpDay(const mission::PathForecast* path) : path_(path) {}
+    explicit MadeUpDay(const path::PathForecast* path) : path_(path) {}
 
     std::vector<std::string> at(long tick) {
         const double time_s = 0.1 * static_cast<double>(tick);
@@ -103,13 +102,13 @@ class MadeUpDay {
   private:
     std::string position_message(double in_air_s) {
         const double on_path_s = std::clamp(in_air_s - climb_s, 0.0, path_->flown().duration_s);
-        const auto at = live::displacement_at(path_->plan().path, position_at(path_->flown(), on_path_s));
+        const auto at = local_position_at(path_->plan().path, position_at(path_->flown(), on_path_s));
         const double side_m = on_path_s > 0.0 ? 20.0 : 0.0;
         return fmt::format("7 NAVIGATION 0 0 {:.1f} {:.1f} 0 0 0 0", at.east_m + side_m + 4.0 * noise_(random_),
                            at.north_m + side_m + 4.0 * noise_(random_));
     }
 
-    const mission::PathForecast* path_;
+    const path::PathForecast* path_;
     std::mt19937 random_{1};
     std::normal_distribution<double> noise_{0.0, 1.0};
     double charge_ah_ = 0.0;

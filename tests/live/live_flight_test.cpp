@@ -60,19 +60,19 @@ TEST(LiveFlight, WarnsOfACapacityThatContradictsTheFlights) {
 }
 
 /// A path of legs where the flight was every 10 s.
-std::shared_ptr<const mission::PathForecast> path_of(const std::filesystem::path& log, double from_s, double to_s) {
+std::shared_ptr<const path::PathForecast> path_of(const std::filesystem::path& log, double from_s, double to_s) {
     const auto series = flight::read_flight(log);
     const auto east = select_track(series, "east_m");
     const auto north = select_track(series, "north_m");
-    mission::FlightPath path;
+    path::FlightPath path;
     constexpr double leg_s = 10.0;
     for (double time_s = from_s; time_s < to_s; time_s += leg_s) {
         const double east_m = value_at(east, time_s + leg_s) - value_at(east, time_s);
         const double north_m = value_at(north, time_s + leg_s) - value_at(north, time_s);
         const double course_deg = std::atan2(east_m, north_m) * 180.0 / 3.14159265358979;
-        path.elements.push_back(test::path_element(mission::Leg{std::hypot(east_m, north_m), course_deg}, 10.0));
+        path.elements.push_back(test::path_element(path::Leg{std::hypot(east_m, north_m), course_deg}, 10.0));
     }
-    return std::make_shared<const mission::PathForecast>(mission::PlannedPath{path, {}, test::made_up_wing()});
+    return std::make_shared<const path::PathForecast>(path::PlannedPath{path, {}, test::made_up_wing()});
 }
 
 TEST(LiveFlight, SaysWhatPredictSaysAlongAPath) {

@@ -1,6 +1,6 @@
 #include "live/turn_home.h"
 
-#include "helpers/path_missions.h"
+#include "helpers/made_up_paths.h"
 
 #include <cmath>
 
@@ -9,31 +9,16 @@
 namespace flightwatt::live {
 namespace {
 
-using mission::Circles;
-using mission::FlightPath;
-using mission::Leg;
+using path::FlightPath;
+using path::Leg;
 
 FlightPath out_and_on() {
     return {{test::path_element(Leg{1000.0, 0.0}, 10.0), test::path_element(Leg{1000.0, 90.0}, 10.0)}};
 }
 
-TEST(TurnHome, KnowsWhereAPlaceLies) {
-    const auto path = out_and_on();
-    EXPECT_NEAR(displacement_at(path, {0, 0.5}).north_m, 500.0, 1e-9);
-    EXPECT_NEAR(displacement_at(path, {1, 0.25}).east_m, 250.0, 1e-9);
-    EXPECT_NEAR(displacement_at(path, {2, 0.0}).north_m, 1000.0, 1e-9);
-    for (const bool right : {true, false}) {
-        const FlightPath circle{{test::path_element(Circles{100.0, 2.0, right, 0.0})}};
-        EXPECT_NEAR(displacement_at(circle, {0, 0.5}).east_m, 0.0, 1e-6) << "a whole turn";
-        const auto half = displacement_at(circle, {0, 0.25});
-        EXPECT_NEAR(half.east_m, right ? 200.0 : -200.0, 1e-6) << "across";
-        EXPECT_NEAR(half.north_m, 0.0, 1e-6);
-    }
-}
-
 /// 10 W wherever it flies, on an ideal battery of 1 Wh.
 struct Trial {
-    mission::PlannedPath plan{out_and_on(), {}, test::made_up_wing()};
+    path::PlannedPath plan{out_and_on(), {}, test::made_up_wing()};
     ReturnFlightInput budget;
 
     Trial() {
@@ -44,9 +29,7 @@ struct Trial {
         budget.battery.capacity_ah = 0.1;
         budget.cruise_ahead = {{10.0, 200.0}};
     }
-    ReturnDeadline turn(double on_path_s) const {
-        return latest_return(mission::PathForecast(plan), on_path_s, budget);
-    }
+    ReturnDeadline turn(double on_path_s) const { return latest_return(path::PathForecast(plan), on_path_s, budget); }
     void charge_for(double time_s) { budget.now = {time_s * 10.0 / 3600.0 * 100.0, 0.0}; }
 };
 

@@ -14,6 +14,10 @@
 namespace flightwatt::mission {
 namespace {
 
+using path::Circles;
+using path::FlightPath;
+using path::Leg;
+using path::Wind;
 using test::path_element;
 using test::path_mission;
 

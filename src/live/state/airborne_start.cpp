@@ -76,7 +76,7 @@ std::optional<double> energy_between_wh(const CarriedFlight& before, const fligh
 }  // namespace
 
 Prediction predict_airborne_start(const PredictionInput& basis, const flight::FlightSeries& series,
-                                  const flight::Sortie& sortie, const LiveBattery* battery, PathTracker* places,
+                                  const flight::Sortie& sortie, const LiveBattery* battery, path::PathTracker* places,
                                   Diagnostics& remarks) {
     const auto flown = progress_from_air(series, sortie);
     auto ahead = basis;
@@ -91,7 +91,7 @@ Prediction predict_airborne_start(const PredictionInput& basis, const flight::Fl
             "may be left; half of that is expected, and the interval holds all of it",
             unknown_s));
     }
-    std::optional<PathFix> sighting;
+    std::optional<path::PathFix> sighting;
     if (saw_cruise_begin && places != nullptr)
         sighting = places->find(flight::SelectedTracks(series), flown.cruise_start_s, flown.until_s);
     auto prediction = predict_energy(ahead, flown, sighting, remarks);

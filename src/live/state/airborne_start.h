@@ -2,7 +2,7 @@
 
 #include "flight/flight_phases.h"
 #include "live/live_flight.h"
-#include "live/state/path_tracker.h"
+#include "path/path_tracker.h"
 
 #include <optional>
 #include <string>
@@ -15,7 +15,7 @@ namespace flightwatt::live {
 /// battery goes on from its state; `places` finds where on its path it is. Throws NoResultError before 30 s of cruise
 /// were seen, and as predict_energy.
 Prediction predict_airborne_start(const PredictionInput& basis, const flight::FlightSeries& series,
-                                  const flight::Sortie& sortie, const LiveBattery* battery, PathTracker* places,
+                                  const flight::Sortie& sortie, const LiveBattery* battery, path::PathTracker* places,
                                   Diagnostics& remarks);
 
 /// What was known of a flight in the air when its clock began anew: the log or the aircraft restarted.

@@ -8,11 +8,11 @@
 #include "live/state/aircraft_choice.h"
 #include "live/state/alarms.h"
 #include "live/state/flight_clock.h"
-#include "live/state/path_tracker.h"
 #include "live/state/sender_clocks.h"
 #include "live/state/soc_estimation.h"
 #include "live/state/telemetry_store.h"
 #include "mechanical/prediction.h"
+#include "path/path_tracker.h"
 
 #include <algorithm>
 #include <cmath>
@@ -121,7 +121,7 @@ class LiveFlight::Impl {
     TelemetryStore store_;
     SenderClocks clocks_;
     AircraftSelector choice_;
-    std::optional<PathTracker> places_;        ///< where the path is to go on from
+    std::optional<path::PathTracker> places_;  ///< where the path is to go on from
     std::vector<ClockFilter::Line> believed_;  ///< of the last message: its memory is used again
     std::size_t messages_ = 0;
     std::size_t restarts_ = 0;
@@ -259,7 +259,7 @@ void LiveFlight::Impl::predict(const flight::SelectedTracks& tracks,
         const auto* sortie = phases_.sorties.empty() ? nullptr : &phases_.sorties.back();
         const auto flown = mechanical::progress_of(tracks, sortie, now_s);
         state.expected_power_w = units::joule_from_wh(flown.cruise_energy_wh) / flown.cruise_s();
-        std::optional<PathFix> sighting;
+        std::optional<path::PathFix> sighting;
         if (places_) sighting = places_->find(tracks, flown.cruise_start_s, flown.until_s);
         auto energy = predict_energy(*basis_, flown, sighting, remarks);
         if (record && state.battery && state.battery->soc_percent) {

@@ -1,6 +1,8 @@
 #include "mission/file/mission_tables.h"
-#include "mission/path/path_entries.h"
-#include "mission/path/waypoint_files.h"
+#include "path/cruise_path.h"
+#include "path/path_entries.h"
+#include "path/trajectory.h"
+#include "path/waypoint_files.h"
 
 #include <algorithm>
 #include <cmath>
@@ -130,8 +132,8 @@ constexpr double max_wind_m_per_s = 100.0;
 constexpr auto altitudes = between(-1e5, 1e5);
 constexpr auto times = more_than_up_to(0.0, 1e7);
 
-Wind read_wind(const TomlTable& root) {
-    Wind wind;
+path::Wind read_wind(const TomlTable& root) {
+    path::Wind wind;
     const auto table = root.optional_table("wind");
     if (!table) return wind;
     table->refuse_keys_except({"speed_m_per_s", "from_deg", "speed_sd_m_per_s", "direction_sd_deg"});
@@ -144,49 +146,49 @@ Wind read_wind(const TomlTable& root) {
     return wind;
 }
 
-ClimbRates read_rates(const TomlTable& table) {
-    const auto rates = more_than_up_to(0.0, max_m_per_s);
+path::ClimbRates read_rates(const TomlTable& table) {
+    const auto rates = more_than_up_to(0.0, path::max_m_per_s);
     return {optional_number_in(rates, table, "climb_m_per_s"), optional_number_in(rates, table, "descent_m_per_s")};
 }
 
 /// The place that a table gives, in either coordinates.
 struct StatedPlace {
-    std::optional<LocalPosition> local;
-    std::optional<GeodeticPosition> geographic;
+    std::optional<path::LocalPosition> local;
+    std::optional<path::GeodeticPosition> geographic;
 };
 
 StatedPlace read_place(const TomlTable& table) {
     StatedPlace place;
     const auto metres = between(-1e7, 1e7);
     if (table.has("east_m") || table.has("north_m"))
-        place.local = LocalPosition{number_in(metres, table, "east_m"), number_in(metres, table, "north_m")};
+        place.local = path::LocalPosition{number_in(metres, table, "east_m"), number_in(metres, table, "north_m")};
     if (table.has("latitude_deg") || table.has("longitude_deg")) {
-        place.geographic = GeodeticPosition{number_in(between(-90.0, 90.0), table, "latitude_deg"),
-                                            number_in(between(-180.0, 180.0), table, "longitude_deg")};
+        place.geographic = path::GeodeticPosition{number_in(between(-90.0, 90.0), table, "latitude_deg"),
+                                                  number_in(between(-180.0, 180.0), table, "longitude_deg")};
     }
     if (place.local && place.geographic)
         throw InputError(table.where(), "a place in metres and in degrees", "give one of them");
     return place;
 }
 
-PathEntry read_leg(const TomlTable& leg, std::size_t number) {
+path::PathEntry read_leg(const TomlTable& leg, std::size_t number) {
     leg.refuse_keys_except({"east_m", "north_m", "latitude_deg", "longitude_deg", "length_m", "course_deg",
                             "duration_s", "altitude_m", "airspeed_m_per_s", "climb_m_per_s", "descent_m_per_s",
                             "circles", "radius_m", "turn", "hold_s"});
-    PathEntry entry;
+    path::PathEntry entry;
     entry.name = fmt::format("leg {}", number);
     entry.where = leg.where();
     const auto place = read_place(leg);
     entry.place = place.local;
     entry.geographic = place.geographic;
-    entry.length_m = optional_number_in(more_than_up_to(0.0, max_leg_m), leg, "length_m");
+    entry.length_m = optional_number_in(more_than_up_to(0.0, path::max_leg_m), leg, "length_m");
     entry.course_deg = optional_number_in(between(-360.0, 360.0), leg, "course_deg");
     entry.duration_s = optional_number_in(times, leg, "duration_s");
     entry.altitude_m = optional_number_in(altitudes, leg, "altitude_m");
-    entry.airspeed_m_per_s = optional_number_in(more_than_up_to(0.0, max_m_per_s), leg, "airspeed_m_per_s");
+    entry.airspeed_m_per_s = optional_number_in(more_than_up_to(0.0, path::max_m_per_s), leg, "airspeed_m_per_s");
     entry.rates = read_rates(leg);
-    entry.circles = optional_number_in(more_than_up_to(0.0, largest_circle_count), leg, "circles");
-    entry.radius_m = optional_number_in(between(min_radius_m, max_radius_m), leg, "radius_m");
+    entry.circles = optional_number_in(more_than_up_to(0.0, path::largest_circle_count), leg, "circles");
+    entry.radius_m = optional_number_in(between(path::min_radius_m, path::max_radius_m), leg, "radius_m");
     entry.hold_s = optional_number_in(times, leg, "hold_s");
     if (const auto turn = leg.optional_string("turn")) {
         if (*turn != "left" && *turn != "right")
@@ -198,10 +200,10 @@ PathEntry read_leg(const TomlTable& leg, std::size_t number) {
     return entry;
 }
 
-PathDefaults read_defaults(const TomlTable& path) {
-    PathDefaults defaults;
+path::PathDefaults read_defaults(const TomlTable& path) {
+    path::PathDefaults defaults;
     defaults.where = path.where();
-    defaults.airspeed_m_per_s = number_in(more_than_up_to(0.0, max_m_per_s), path, "airspeed_m_per_s");
+    defaults.airspeed_m_per_s = number_in(more_than_up_to(0.0, path::max_m_per_s), path, "airspeed_m_per_s");
     defaults.altitude_m = optional_number_in(altitudes, path, "altitude_m");
     defaults.rates = read_rates(path);
     defaults.return_to_start = path.optional_boolean("return_to_start").value_or(false);
@@ -218,8 +220,8 @@ PathDefaults read_defaults(const TomlTable& path) {
 }
 
 /// Those of a file first, then the legs.
-std::vector<PathEntry> read_entries(const TomlTable& path) {
-    std::vector<PathEntry> entries;
+std::vector<path::PathEntry> read_entries(const TomlTable& path) {
+    std::vector<path::PathEntry> entries;
     const bool has_waypoints = path.has("waypoints");
     if (has_waypoints && path.has("flight_plan"))
         throw InputError(path.where("flight_plan"), "waypoints and flight_plan are two paths", "give one");
@@ -229,9 +231,9 @@ std::vector<PathEntry> read_entries(const TomlTable& path) {
             "a flight plan's blocks are a program that is not run: say which of its waypoints are flown, in "
             "order, waypoint_order = [\"1\", \"2\"]");
     }
-    if (has_waypoints) entries = read_waypoints(file_of(path, "waypoints"));
+    if (has_waypoints) entries = path::read_waypoints(file_of(path, "waypoints"));
     if (path.has("flight_plan"))
-        entries = read_flight_plan(file_of(path, "flight_plan"), path.strings("waypoint_order"));
+        entries = path::read_flight_plan(file_of(path, "flight_plan"), path.strings("waypoint_order"));
     std::size_t number = 0;
     for (const auto& leg : path.tables("leg")) entries.push_back(read_leg(leg, ++number));
     if (entries.empty())
@@ -279,16 +281,16 @@ mechanical::PhysicalModel power_model(const TomlTable& path, const MissionSetup&
                                      mission.mechanical->name),
                          "fly at one altitude, or " + fit);
     }
-    return physical_model_from_drag(*law);
+    return path::physical_model_from_drag(*law);
 }
 
 /// The entry whose circles may be repeated: the last that has some.
-PathEntry* repeated_circles(std::vector<PathEntry>& entries) {
+path::PathEntry* repeated_circles(std::vector<path::PathEntry>& entries) {
     const auto last = std::find_if(entries.rbegin(), entries.rend(), [](const auto& entry) { return !!entry.circles; });
     return last == entries.rend() ? nullptr : &*last;
 }
 
-FlightPath read_path(const TomlTable& table, const MissionReadOptions& reading) {
+path::FlightPath read_path(const TomlTable& table, const MissionReadOptions& reading) {
     table.refuse_keys_except({"airspeed_m_per_s", "altitude_m", "climb_m_per_s", "descent_m_per_s", "start",
                               "return_to_start", "waypoints", "flight_plan", "waypoint_order", "leg"});
     const auto defaults = read_defaults(table);
@@ -304,7 +306,8 @@ FlightPath read_path(const TomlTable& table, const MissionReadOptions& reading) 
 }
 
 /// The level of the cruise and how flights differ about it.
-mechanical::ConstantPower level_of(const mechanical::PhysicalModel& model, const PathTrajectory& flown, double mean_w) {
+mechanical::ConstantPower level_of(const mechanical::PhysicalModel& model, const path::PathTrajectory& flown,
+                                   double mean_w) {
     mechanical::ConstantPower level{mean_w, std::nullopt, 0.0};
     if (const auto uncertainty = prediction_uncertainty(model, mean_terms(model, flown), flown.duration_s)) {
         level.sd_w = uncertainty->sd_w;
@@ -330,7 +333,7 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
     }
     if (reading.cruise_s) throw NoResultError("the duration of the cruise follows from its path");
     refuse_what_the_path_decides(mission_table);
-    PlannedPath plan;
+    path::PlannedPath plan;
     plan.path = read_path(*table, reading);
     plan.wind = read_wind(mission_table);
     const bool is_level =
@@ -338,8 +341,8 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
     plan.power = power_model(*table, mission, is_level);
     const auto flown = compute_trajectory(plan.path, plan.wind);
     for (auto& warning : path_warnings(plan, flown)) mission.notes.push_back(std::move(warning));
-    const auto shared = std::make_shared<const PlannedPath>(std::move(plan));
-    mission.cruise_path = compute_cruise(shared, shared->wind, InfeasibleLegPolicy::refuse);
+    const auto shared = std::make_shared<const path::PlannedPath>(std::move(plan));
+    mission.cruise_path = compute_cruise(shared, shared->wind, path::InfeasibleLegPolicy::refuse);
     mission.cruise_level = level_of(shared->power, flown, mean_power_w(*mission.cruise_path));
     mission.duration_s[Phase::cruise] = duration_s(*mission.cruise_path);
     mission.duration_is_stated[Phase::cruise] = true;

@@ -123,7 +123,7 @@ PhaseDepletion tabulate(const PhaseLoad& load, double duration_s) {
 }
 
 /// A table for each piece of a path.
-PhaseDepletion tabulate(PhaseLoad load, const PiecewisePower& pieces) {
+PhaseDepletion tabulate(PhaseLoad load, const path::PiecewisePower& pieces) {
     PhaseDepletion depletion;
     depletion.duration_s = pieces.back().end_s;
     double depleted = 0.0;

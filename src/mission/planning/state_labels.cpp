@@ -45,7 +45,7 @@ void join(const StateLabel& label, const MergeWeights& weights, StateLabel& into
     into.utility = std::max(into.utility, label.utility);
 }
 
-constexpr double never = -std::numeric_limits<double>::infinity();
+constexpr double unreachable = -std::numeric_limits<double>::infinity();
 
 /// What a choice's current leaves across the RC pair when it has run for long.
 double steady_rc_v(const SlotDynamics& dynamics, std::size_t slot, double compute_w, double soc_percent) {
@@ -65,7 +65,7 @@ double after_run(const ScheduleProblem& question, const UtilityBound& bounds, co
     battery::BatteryState state{soc_percent, bounds.min_power_trajectory[from].rc_voltage_v + more_v};
     for (std::size_t i = from; i < run.to; ++i) {
         const auto after = advance_slot(dynamics, i, run.choice, state);
-        if (!after) return never;
+        if (!after) return unreachable;
         state = *after;
     }
     return run.sum.utility + utility_to_go(value, run.to, state.soc_percent);
@@ -109,7 +109,7 @@ HeuristicValue make_cautious_value(const ScheduleProblem& question, const Knapsa
         at.min_percent =
             bounds.min_charge_percent.empty() ? question.reserve_soc_percent : bounds.min_charge_percent[i].front();
         at.step_percent = std::max(1e-9, max_percent - at.min_percent) / static_cast<double>(cells);
-        at.utility.assign(cells + 1, i == graph.slots ? 0.0 : never);
+        at.utility.assign(cells + 1, i == graph.slots ? 0.0 : unreachable);
         if (i == graph.slots) continue;
         for (std::size_t k = 0; k <= cells; ++k) {
             const double soc_percent = at.min_percent + at.step_percent * static_cast<double>(k);
@@ -123,9 +123,9 @@ HeuristicValue make_cautious_value(const ScheduleProblem& question, const Knapsa
 double utility_to_go(const HeuristicValue& value, std::size_t slot, double soc_percent) {
     const auto& [min_percent, step_percent, utility] = value.at[slot];
     const double place = (soc_percent - min_percent) / step_percent;
-    if (!(place >= 0.0)) return never;
+    if (!(place >= 0.0)) return unreachable;
     const auto lower = std::min(static_cast<std::size_t>(place), utility.size() - 2);
-    if (utility[lower] == never) return never;
+    if (utility[lower] == unreachable) return unreachable;
     return std::lerp(utility[lower], utility[lower + 1], std::min(1.0, place - static_cast<double>(lower)));
 }
 

@@ -9,10 +9,10 @@ constexpr double shortest_piece_s = 1.0;  // as long as the coarse steps of flig
 
 }  // namespace
 
-PiecewisePower measured_power_profile(const mechanical::PhasePower& measured) {
+path::PiecewisePower measured_power_profile(const mechanical::PhasePower& measured) {
     const auto& time_s = measured.time_s;
     const auto& power_w = measured.power_w;
-    PiecewisePower pieces;
+    path::PiecewisePower pieces;
     double energy_j = 0.0;  // of the piece that is being made
     double start_s = 0.0;
     double before_j = 0.0;
@@ -53,7 +53,7 @@ MissionSetup measured_mission(const MissionSetup& known, const mechanical::Measu
     for (const auto phase : all_phases) {
         if (known.duration_s[phase] == 0.0) continue;
         const auto& power = flight.power[phase].value();
-        flown.measured_power[phase] = std::make_shared<const PiecewisePower>(measured_power_profile(power));
+        flown.measured_power[phase] = std::make_shared<const path::PiecewisePower>(measured_power_profile(power));
         flown.duration_s[phase] = power.time_s.back();
     }
     return flown;

@@ -7,7 +7,7 @@ namespace flightwatt::mission {
 
 /// Pieces of constant power with the energy that was measured in each: from sample to sample, or over as many as make a
 /// second. What was measured below 0, which no motor gives back, counts as 0.
-PiecewisePower measured_power_profile(const mechanical::PhasePower& measured);
+path::PiecewisePower measured_power_profile(const mechanical::PhasePower& measured);
 
 /// What is known of a mission before a flight: the mission with another mechanical model. Conditions and path are
 /// dropped. Phases whose duration the mission does not state take as long as the model's; with `flown_s` the phases

@@ -6,6 +6,7 @@
 #include "mission/sampling/flight_spreads.h"
 #include "mission/sampling/joint_spread.h"
 #include "mission/simulation/load_segments.h"
+#include "path/cruise_path.h"
 
 #include <algorithm>
 #include <array>
@@ -91,7 +92,7 @@ void fly_drawn_path(double moved_w, double speed_z, double direction_z, const Mi
     wind.speed_m_per_s = std::max(0.0, wind.speed_m_per_s + speed_z * wind.speed_sd_m_per_s);
     wind.from_deg += direction_z * wind.direction_sd_deg;
     const double factor = std::max(0.0, 1.0 + moved_w / mean_power_w(*planned.cruise_path));
-    flight.cruise_path = compute_cruise(plan, wind, InfeasibleLegPolicy::crawl, factor);
+    flight.cruise_path = compute_cruise(plan, wind, path::InfeasibleLegPolicy::crawl, factor);
     flight.duration_s[Phase::cruise] = duration_s(*flight.cruise_path);
 }
 

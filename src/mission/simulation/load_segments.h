@@ -21,7 +21,7 @@ struct LoadSegment {
     double start_s = 0.0;
     double end_s = 0.0;
     std::optional<mechanical::FourierModel> mechanical;  ///< in the phase's own time
-    std::shared_ptr<const PiecewisePower> pieces;        ///< instead: in the phase's own time too
+    std::shared_ptr<const path::PiecewisePower> pieces;  ///< instead: in the phase's own time too
     double compute_w = 0.0;
     double soc_drop_percent = 0.0;  ///< [points] that the battery loses at once as this starts
 };
@@ -32,7 +32,7 @@ struct MissionLoad {
     MissionTimeline timeline;
     /// Of the phases that are flown, in their own time; none without a mechanical model.
     PerPhase<std::optional<mechanical::FourierModel>> mechanical;
-    PerPhase<std::shared_ptr<const PiecewisePower>> pieces =
+    PerPhase<std::shared_ptr<const path::PiecewisePower>> pieces =
         {};  ///< of a path or a measured flight, instead of a curve
 };
 

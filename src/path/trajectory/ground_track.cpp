@@ -1,4 +1,4 @@
-#include "mission/path/ground_track.h"
+#include "path/trajectory/ground_track.h"
 
 #include "base/units.h"
 
@@ -8,7 +8,7 @@
 #include <boost/math/special_functions/ellint_1.hpp>
 #include <boost/math/special_functions/ellint_2.hpp>
 
-namespace flightwatt::mission {
+namespace flightwatt::path {
 namespace {
 
 constexpr double pieces_a_turn = 12.0;
@@ -66,11 +66,6 @@ std::optional<WindTriangle> solve_wind_triangle(double horizontal_m_per_s, doubl
     const double headway = std::sqrt(squared);
     if (!(headway + along > 0.0)) return std::nullopt;
     return WindTriangle{headway + along, headway / horizontal_m_per_s};
-}
-
-std::optional<double> ground_speed_m_per_s(double airspeed_m_per_s, double course_deg, const Wind& wind) {
-    const auto drift = solve_wind_triangle(airspeed_m_per_s, rad_of(course_deg), velocity_of(wind));
-    return drift ? std::optional(drift->ground_speed_m_per_s) : std::nullopt;
 }
 
 GroundTrack::GroundTrack(const Leg& leg, const Wind& wind)
@@ -150,4 +145,4 @@ double GroundTrack::segment_length_m() const {
     return std::ceil(length_m_ / turn_m / max_pieces) * turn_m;
 }
 
-}  // namespace flightwatt::mission
+}  // namespace flightwatt::path

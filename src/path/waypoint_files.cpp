@@ -1,4 +1,4 @@
-#include "mission/path/waypoint_files.h"
+#include "path/waypoint_files.h"
 
 #include "base/atomic_file.h"
 #include "base/csv.h"
@@ -13,7 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <pugixml.hpp>
 
-namespace flightwatt::mission {
+namespace flightwatt::path {
 namespace {
 
 /// What a value of a waypoint may be.
@@ -306,4 +306,4 @@ std::vector<PathEntry> read_flight_plan(const std::filesystem::path& path, const
     return parse_flight_plan(read_file(path), path.string(), names);
 }
 
-}  // namespace flightwatt::mission
+}  // namespace flightwatt::path

@@ -1,4 +1,4 @@
-#include "live/state/path_filter.h"
+#include "path/tracking/path_filter.h"
 
 #include "base/units.h"
 
@@ -10,7 +10,7 @@
 #include <numeric>
 #include <variant>
 
-namespace flightwatt::live {
+namespace flightwatt::path {
 namespace {
 
 // Chosen by what they mean; none was fitted to flights.
@@ -19,9 +19,9 @@ constexpr double max_places = 1200.0;  // on a path
 constexpr double oldest_position_s = 5.0;
 constexpr double settled_after_s = 10.0;  // a link hands on late messages within seconds
 
-Displacement unit(const Displacement& of, double min_m) {
+LocalPosition unit(const LocalPosition& of, double min_m) {
     const double length_m = std::hypot(of.east_m, of.north_m);
-    return length_m < min_m ? Displacement{} : Displacement{of.east_m / length_m, of.north_m / length_m};
+    return length_m < min_m ? LocalPosition{} : LocalPosition{of.east_m / length_m, of.north_m / length_m};
 }
 
 /// Positions of a log, in degrees or on a plane, as metres.
@@ -46,7 +46,8 @@ class Positions {
                                 times_s[sample_] - times_s[sample_ - 1] <= 2.0 * oldest_position_s;
         const bool is_at = sample_ < times_s.size() && times_s[sample_] == time_s;
         if (!is_between && !is_at) return {};
-        const Displacement at{value_at(*east_, time_s) * metre_per_east_, value_at(*north_, time_s) * metre_per_north_};
+        const LocalPosition at{value_at(*east_, time_s) * metre_per_east_,
+                               value_at(*north_, time_s) * metre_per_north_};
         if (!std::isfinite(at.east_m) || !std::isfinite(at.north_m)) return {};
         return {at, {}, true};
     }
@@ -80,13 +81,13 @@ constexpr double comes_back = 0.05;
 
 }  // namespace
 
-Displacement minus(const Displacement& a, const Displacement& b) {
+LocalPosition minus(const LocalPosition& a, const LocalPosition& b) {
     return {a.east_m - b.east_m, a.north_m - b.north_m};
 }
 
-double dot(const Displacement& a, const Displacement& b) { return a.east_m * b.east_m + a.north_m * b.north_m; }
+double dot(const LocalPosition& a, const LocalPosition& b) { return a.east_m * b.east_m + a.north_m * b.north_m; }
 
-PathGrid make_path_grid(const mission::PathForecast& path) {
+PathGrid make_path_grid(const PathForecast& path) {
     const auto& flown = path.flown();
     const auto& elements = path.plan().path.elements;
     PathGrid places;
@@ -100,11 +101,11 @@ PathGrid make_path_grid(const mission::PathForecast& path) {
         const auto before = position_at(flown, std::max(0.0, time_s - 0.1 * places.step_s));
         const auto after = position_at(flown, std::min(flown.duration_s, time_s + 0.1 * places.step_s));
         PathPoint place;
-        place.at = displacement_at(path.plan().path, here);
+        place.at = local_position_at(path.plan().path, here);
         place.course =
-            unit(minus(displacement_at(path.plan().path, after), displacement_at(path.plan().path, before)), 1e-6);
+            unit(minus(local_position_at(path.plan().path, after), local_position_at(path.plan().path, before)), 1e-6);
         if (here.element < elements.size()) {
-            const auto* hold = std::get_if<mission::Hold>(&elements[here.element].shape);
+            const auto* hold = std::get_if<Hold>(&elements[here.element].shape);
             place.is_unconstrained = hold != nullptr && !hold->over_ground;
         }
         places.of.push_back(place);
@@ -120,7 +121,7 @@ void collect_observations(const flight::SelectedTracks& tracks, double start_s, 
     Positions positions(tracks);
     if (positions.empty()) return;
     const double settled_until_s = std::min(until_s, positions.last_s()) - settled_after_s;
-    Displacement origin;
+    LocalPosition origin;
     bool has_origin = false;
     std::size_t settled = 0;
     for (std::size_t k = 0; start_s + static_cast<double>(k) * step_s <= until_s; ++k) {
@@ -147,7 +148,7 @@ PathFilter::PathFilter(const PathGrid& places) : places_(&places) {
     next_off_.resize(max_back + places.of.size() + max_ahead);
 }
 
-void PathFilter::begin(double off_path_m, const Displacement& origin) {
+void PathFilter::begin(double off_path_m, const LocalPosition& origin) {
     off_path_m_ = off_path_m;
     origin_ = origin;
     taken_ = 0;
@@ -258,7 +259,7 @@ double PathFilter::nearest_position() const {
     return static_cast<double>(nearest) + std::clamp(ahead_m / step_m, -0.5, 0.5);
 }
 
-Displacement PathFilter::off(double place) const { return minus(minus(last_seen_.at, origin_), point_of(place).at); }
+LocalPosition PathFilter::off(double place) const { return minus(minus(last_seen_.at, origin_), point_of(place).at); }
 
 const PathPoint& PathFilter::point_of(double place) const { return places_->of[index_of(place)]; }
 
@@ -267,4 +268,20 @@ std::size_t PathFilter::index_of(double place) const {
     return static_cast<std::size_t>(std::clamp(std::round(place), 0.0, last));
 }
 
-}  // namespace flightwatt::live
+void OriginEstimate::add(const LocalPosition& off, const LocalPosition& course) {
+    const LocalPosition across{-course.north_m, course.east_m};
+    constexpr double weight = PathFilter::likelihood_weight / (off_path_m * off_path_m);
+    const double off_m = dot(off, across);
+    ee_ += weight * across.east_m * across.east_m;
+    en_ += weight * across.east_m * across.north_m;
+    nn_ += weight * across.north_m * across.north_m;
+    e_ += weight * across.east_m * off_m;
+    n_ += weight * across.north_m * off_m;
+}
+
+LocalPosition OriginEstimate::value() const {
+    const double determinant = ee_ * nn_ - en_ * en_;
+    return {(nn_ * e_ - en_ * n_) / determinant, (ee_ * n_ - en_ * e_) / determinant};
+}
+
+}  // namespace flightwatt::path

@@ -1,4 +1,4 @@
-#include "mission/remaining_path.h"
+#include "path/remaining_path.h"
 
 #include "base/error.h"
 #include "base/statistics.h"
@@ -10,38 +10,7 @@
 #include <limits>
 #include <utility>
 
-namespace flightwatt::mission {
-
-PathPosition position_at(const PathTrajectory& flown, double time_s) {
-    double start_s = 0.0;
-    for (std::size_t i = 0; i < flown.element_s.size(); ++i) {
-        const double element_s = flown.element_s[i];
-        if (time_s < start_s + element_s) return {i, std::max(time_s - start_s, 0.0) / element_s};
-        start_s += element_s;
-    }
-    return {flown.element_s.size(), 0.0};
-}
-
-PathTrajectory remaining_trajectory(const PathTrajectory& flown, const PathPosition& place) {
-    PathTrajectory rest;
-    rest.element_s = flown.element_s;
-    rest.infeasible_element = flown.infeasible_element;
-    double skipped_s = 0.0;
-    for (std::size_t i = 0; i < flown.element_s.size(); ++i) {
-        const double part = i < place.element ? 1.0 : i == place.element ? place.part : 0.0;
-        skipped_s += part * flown.element_s[i];
-        rest.element_s[i] *= 1.0 - part;
-    }
-    for (auto piece : flown.pieces) {
-        const double here_s = std::min(skipped_s, piece.time_s);
-        skipped_s -= here_s;
-        piece.time_s -= here_s;
-        if (!(piece.time_s > 0.0)) continue;
-        rest.duration_s += piece.time_s;
-        rest.pieces.push_back(piece);
-    }
-    return rest;
-}
+namespace flightwatt::path {
 
 namespace {
 
@@ -140,8 +109,8 @@ RemainingPath PathForecast::predict(const mechanical::FlightProgress& flown, con
     if (rest.infeasible_fraction > 0.5)
         throw NoResultError("most of the winds that [wind] makes likely forbid the rest of the path");
     rest.duration_s /= count;
-    const auto ahead = remaining_trajectory(flown_, place);
-    for (const auto& piece : ahead.pieces) rest.power.push_back({power_w(plan_.power, piece.motion), piece.time_s});
+    rest.trajectory = remaining_trajectory(flown_, place);
+    const auto& ahead = rest.trajectory;
     rest.cruise = predict_remaining_physical(plan_.power, flown, mean_terms(plan_.power, ahead), ahead.duration_s);
     rest.cruise.energy.energy_wh = mean(energies_wh);
     if (rest.duration_s > 0.0)
@@ -152,4 +121,4 @@ RemainingPath PathForecast::predict(const mechanical::FlightProgress& flown, con
     return rest;
 }
 
-}  // namespace flightwatt::mission
+}  // namespace flightwatt::path

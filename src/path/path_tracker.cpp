@@ -1,15 +1,17 @@
-#include "live/state/path_tracker.h"
+#include "path/path_tracker.h"
+
+#include "path/tracking/path_filter.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
-namespace flightwatt::live {
+namespace flightwatt::path {
 namespace {
 
 // Chosen by what they mean; none was fitted to flights.
-constexpr double off_path_m = 25.0;        // one deviation: satellite navigation, and a turn that cuts its corner
-constexpr double first_off_path_m = 60.0;  // while it is not known from where the path begins
+constexpr double off_path_m = 25.0;  // one deviation: satellite navigation, and a turn that cuts its corner
 constexpr double min_on_path_s = 20.0;
 constexpr double min_on_path_part = 0.5;
 constexpr double moved_origin_m = 2.0;         // little beside `off_path_m`
@@ -17,35 +19,51 @@ constexpr std::size_t caught_up_at_once = 32;  // observations, with each that i
 
 }  // namespace
 
-void OriginEstimate::add(const Displacement& off, const Displacement& course) {
-    const Displacement across{-course.north_m, course.east_m};
-    constexpr double weight = PathFilter::likelihood_weight / (first_off_path_m * first_off_path_m);
-    const double off_m = dot(off, across);
-    ee_ += weight * across.east_m * across.east_m;
-    en_ += weight * across.east_m * across.north_m;
-    nn_ += weight * across.north_m * across.north_m;
-    e_ += weight * across.east_m * off_m;
-    n_ += weight * across.north_m * off_m;
-}
+class PathTracker::Filters {
+  public:
+    explicit Filters(const PathForecast& path);
+    std::optional<PathFix> find(const flight::SelectedTracks& tracks, double cruise_start_s, double until_s);
 
-Displacement OriginEstimate::value() const {
-    const double determinant = ee_ * nn_ - en_ * en_;
-    return {(nn_ * e_ - en_ * n_) / determinant, (ee_ * n_ - en_ * e_) / determinant};
-}
+  private:
+    /// By the observations until one of them.
+    struct FilterPasses {
+        explicit FilterPasses(const PathGrid& places) : first(places), second(places), coming(places) {}
 
-PathTracker::PathTracker(const mission::PathForecast& path)
+        PathFilter first;
+        OriginEstimate origin = {};  ///< of the path, by the first
+        PathFilter second;           ///< from the origin as it was known when it began
+        PathFilter coming;           ///< takes the place of the second when it has caught up: from a newer origin
+        bool has_coming = false;
+    };
+
+    static void begin(FilterPasses& passes);
+    void forget_changed();
+    void run_filters(std::size_t until, FilterPasses& passes) const;
+    void renew_second(FilterPasses& passes) const;
+    PathFix sighting(double cruise_start_s, double until_s) const;
+
+    PathGrid places_;
+    double duration_s_ = 0.0;
+    Observations seen_;
+    Observations seen_before_;
+    FilterPasses settled_;  ///< by observations that are settled
+    FilterPasses now_;      ///< by all
+};
+
+PathTracker::Filters::Filters(const PathForecast& path)
     : places_(make_path_grid(path)), duration_s_(path.flown().duration_s), settled_(places_), now_(places_) {
     begin(settled_);
 }
 
-void PathTracker::begin(FilterPasses& passes) {
-    passes.first.begin(first_off_path_m, {});
+void PathTracker::Filters::begin(FilterPasses& passes) {
+    passes.first.begin(OriginEstimate::off_path_m, {});
     passes.origin = {};
     passes.second.begin(off_path_m, {});
     passes.has_coming = false;
 }
 
-std::optional<PathFix> PathTracker::find(const flight::SelectedTracks& tracks, double cruise_start_s, double until_s) {
+std::optional<PathFix> PathTracker::Filters::find(const flight::SelectedTracks& tracks, double cruise_start_s,
+                                                  double until_s) {
     if (!(until_s > cruise_start_s)) return std::nullopt;
     std::swap(seen_, seen_before_);
     collect_observations(tracks, cruise_start_s, until_s, places_.step_s, seen_);
@@ -58,7 +76,7 @@ std::optional<PathFix> PathTracker::find(const flight::SelectedTracks& tracks, d
 }
 
 /// What the filters took may have been changed since: rows were thinned, the log began anew, or it is another cruise.
-void PathTracker::forget_changed() {
+void PathTracker::Filters::forget_changed() {
     const auto taken = settled_.first.taken();
     const bool is_as_before =
         taken <= seen_.settled &&
@@ -66,7 +84,7 @@ void PathTracker::forget_changed() {
     if (!is_as_before) begin(settled_);
 }
 
-void PathTracker::run_filters(std::size_t until, FilterPasses& passes) const {
+void PathTracker::Filters::run_filters(std::size_t until, FilterPasses& passes) const {
     auto& first = passes.first;
     while (first.taken() < until) {
         const auto& seen = seen_.of[first.taken()];
@@ -83,7 +101,7 @@ void PathTracker::run_filters(std::size_t until, FilterPasses& passes) const {
 
 /// With another origin all of it is likely elsewhere: the second filter begins anew, and goes through what was seen a
 /// part at a time.
-void PathTracker::renew_second(FilterPasses& passes) const {
+void PathTracker::Filters::renew_second(FilterPasses& passes) const {
     if (!passes.has_coming) {
         const auto moved = minus(passes.origin.value(), passes.second.origin());
         if (std::hypot(moved.east_m, moved.north_m) <= moved_origin_m) return;
@@ -99,7 +117,7 @@ void PathTracker::renew_second(FilterPasses& passes) const {
     passes.has_coming = false;
 }
 
-PathFix PathTracker::sighting(double cruise_start_s, double until_s) const {
+PathFix PathTracker::Filters::sighting(double cruise_start_s, double until_s) const {
     PathFix sighting;
     const auto& second = now_.second;
     if (second.seen_on_path_s() < std::max(min_on_path_s, min_on_path_part * second.known_s())) return sighting;
@@ -116,10 +134,18 @@ PathFix PathTracker::sighting(double cruise_start_s, double until_s) const {
     return sighting;
 }
 
-std::optional<PathFix> locate_on_path(const mission::PathForecast& path, const flight::FlightSeries& series,
+PathTracker::PathTracker(const PathForecast& path) : filters_(std::make_unique<Filters>(path)) {}
+
+PathTracker::~PathTracker() = default;
+
+std::optional<PathFix> PathTracker::find(const flight::SelectedTracks& tracks, double cruise_start_s, double until_s) {
+    return filters_->find(tracks, cruise_start_s, until_s);
+}
+
+std::optional<PathFix> locate_on_path(const PathForecast& path, const flight::FlightSeries& series,
                                       double cruise_start_s, double until_s) {
     if (!(path.flown().duration_s > 0.0)) return std::nullopt;
     return PathTracker(path).find(flight::SelectedTracks(series), cruise_start_s, until_s);
 }
 
-}  // namespace flightwatt::live
+}  // namespace flightwatt::path

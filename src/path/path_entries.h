@@ -1,12 +1,12 @@
 #pragma once
 
-#include "mission/path.h"
+#include "path/path.h"
 
 #include <optional>
 #include <string>
 #include <vector>
 
-namespace flightwatt::mission {
+namespace flightwatt::path {
 
 // What the numbers of a path may be: beyond, a unit was mistaken.
 inline constexpr double max_m_per_s = 300.0;
@@ -14,12 +14,6 @@ inline constexpr double largest_circle_count = 1e4;
 inline constexpr double min_radius_m = 1.0;
 inline constexpr double max_radius_m = 1e5;
 inline constexpr double max_leg_m = 1e6;
-
-/// From an origin [m], towards east and north.
-struct LocalPosition {
-    double east_m = 0.0;
-    double north_m = 0.0;
-};
 
 /// On the WGS84 ellipsoid.
 struct GeodeticPosition {
@@ -65,4 +59,4 @@ struct PathDefaults {
 /// two things.
 FlightPath path_of(const std::vector<PathEntry>& entries, const PathDefaults& defaults);
 
-}  // namespace flightwatt::mission
+}  // namespace flightwatt::path

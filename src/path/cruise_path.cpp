@@ -1,4 +1,4 @@
-#include "mission/cruise_path.h"
+#include "path/cruise_path.h"
 
 #include "base/units.h"
 
@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt::mission {
+namespace flightwatt::path {
 namespace {
 
 constexpr double same_power_fraction = 1e-12;
@@ -169,4 +169,4 @@ std::vector<std::string> path_warnings(const PlannedPath& plan, const PathTrajec
     return warnings;
 }
 
-}  // namespace flightwatt::mission
+}  // namespace flightwatt::path

@@ -1,8 +1,8 @@
-#include "live/state/path_tracker.h"
+#include "path/path_tracker.h"
 
 #include "flight/selected_track.h"
-#include "helpers/path_missions.h"
-#include "live/turn_home.h"
+#include "helpers/made_up_paths.h"
+#include "path/tracking/path_filter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,13 +14,8 @@
 
 #include <gtest/gtest.h>
 
-namespace flightwatt::live {
+namespace flightwatt::path {
 namespace {
-
-using mission::Circles;
-using mission::FlightPath;
-using mission::Leg;
-using mission::Wind;
 
 constexpr double begin_s = 100.0;
 
@@ -48,14 +43,14 @@ struct Conditions {
     Wind planned = {};
     Wind true_wind = {};
     double noise_m = 4.0;
-    Displacement origin = {};   ///< of the path, from where its first position is
+    LocalPosition origin = {};  ///< of the path, from where its first position is
     double detour_at_s = -1.0;  ///< of the flight's time
     double detour_s = 0.0;
     double every_s = 0.25;
 };
 
 /// What is planned to be where the flight is after `time_s` in its own wind.
-double planned_s(const mission::PathForecast& plan, const mission::PathTrajectory& flown, double time_s) {
+double planned_s(const PathForecast& plan, const PathTrajectory& flown, double time_s) {
     const auto place = position_at(flown, time_s);
     double planned_s = 0.0;
     for (std::size_t i = 0; i < std::min(place.element, plan.flown().element_s.size()); ++i)
@@ -68,7 +63,7 @@ double planned_s(const mission::PathForecast& plan, const mission::PathTrajector
 Flown fly(const FlightPath& path, const Conditions& conditions, std::uint32_t seed) {
     std::mt19937 random(seed);
     std::normal_distribution<double> noise(0.0, conditions.noise_m);
-    const mission::PathForecast plan({path, conditions.planned, test::made_up_wing()});
+    const PathForecast plan({path, conditions.planned, test::made_up_wing()});
     const auto flown = compute_trajectory(path, conditions.true_wind);
     Flown result;
     flight::Track east{.name = "east_m", .source = "NAVIGATION.pos_x"};
@@ -76,7 +71,7 @@ Flown fly(const FlightPath& path, const Conditions& conditions, std::uint32_t se
     const double all_s = flown.duration_s + conditions.detour_s;
     for (double t = 0.0; t <= all_s; t += conditions.every_s) {
         double on_path_s = t;
-        Displacement away;
+        LocalPosition away;
         if (conditions.detour_at_s >= 0.0 && t > conditions.detour_at_s) {
             const double gone_s = std::min(t - conditions.detour_at_s, conditions.detour_s);
             on_path_s = t - gone_s;
@@ -85,7 +80,7 @@ Flown fly(const FlightPath& path, const Conditions& conditions, std::uint32_t se
                 away = {400.0 * std::sin(angle), 400.0 * (1.0 - std::cos(angle))};
             }
         }
-        const auto at = displacement_at(path, position_at(flown, on_path_s));
+        const auto at = local_position_at(path, position_at(flown, on_path_s));
         const bool is_first = t == 0.0;
         for (auto* track : {&east, &north}) track->time_s.push_back(begin_s + t);
         east.value.push_back(700.0 + at.east_m + away.east_m + (is_first ? 0.0 : conditions.origin.east_m) +
@@ -101,7 +96,7 @@ Flown fly(const FlightPath& path, const Conditions& conditions, std::uint32_t se
 
 /// The worst of the places that are told every 10 s, from 30 s on; -1 where one is not told.
 double worst_s(const FlightPath& path, const Conditions& conditions, const Flown& flown) {
-    const mission::PathForecast plan({path, conditions.planned, test::made_up_wing()});
+    const PathForecast plan({path, conditions.planned, test::made_up_wing()});
     double worst_s = 0.0;
     for (double time_s = begin_s + 30.0; time_s < flown.end_s - 10.0; time_s += 10.0) {
         const auto sighting = locate_on_path(plan, truncate_series(flown.series, time_s), begin_s, time_s);
@@ -144,7 +139,7 @@ TEST(PathTracker, ADetourIsSeenAndThePathGoesOnWhereItWasLeft) {
     conditions.detour_at_s = 230.0;
     conditions.detour_s = 120.0;
     const auto flown = fly(path, conditions, 5);
-    const mission::PathForecast plan({path, {}, test::made_up_wing()});
+    const PathForecast plan({path, {}, test::made_up_wing()});
     const auto at = [&](double time_s) {
         return locate_on_path(plan, truncate_series(flown.series, begin_s + time_s), begin_s, begin_s + time_s);
     };
@@ -158,7 +153,7 @@ TEST(PathTracker, ADetourIsSeenAndThePathGoesOnWhereItWasLeft) {
 }
 
 TEST(PathTracker, IsNotToldByPositionsElsewhereOrMissingOnes) {
-    const mission::PathForecast plan({survey(), {}, test::made_up_wing()});
+    const PathForecast plan({survey(), {}, test::made_up_wing()});
     FlightPath other;
     other.elements = {test::path_element(Circles{150.0, 8.0, false, 270.0})};
     const auto elsewhere = fly(other, {}, 3);
@@ -171,7 +166,7 @@ TEST(PathTracker, IsNotToldByPositionsElsewhereOrMissingOnes) {
 TEST(PathTracker, NothingLaterIsLookedAt) {
     const auto path = survey();
     const auto flown = fly(path, {}, 8);
-    const mission::PathForecast plan({path, {}, test::made_up_wing()});
+    const PathForecast plan({path, {}, test::made_up_wing()});
     const double until_s = begin_s + 222.2;
     const auto whole = locate_on_path(plan, flown.series, begin_s, until_s);
     const auto known = locate_on_path(plan, truncate_series(flown.series, until_s), begin_s, until_s);
@@ -194,7 +189,7 @@ Conditions made_up_conditions(std::mt19937& random) {
 
 TEST(PathTracker, GoingOnFromMomentToMomentIsTheSameAsBeginningAnew) {
     const auto path = survey();
-    const mission::PathForecast plan({path, {}, test::made_up_wing()});
+    const PathForecast plan({path, {}, test::made_up_wing()});
     std::mt19937 random(2024);
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
         const auto flown = fly(path, made_up_conditions(random), seed);
@@ -212,7 +207,7 @@ TEST(PathTracker, GoingOnFromMomentToMomentIsTheSameAsBeginningAnew) {
 }
 
 /// The second filter over all observations, from the origin that the first gives.
-PathFilter second_anew(const mission::PathForecast& plan, const flight::FlightSeries& series, double until_s,
+PathFilter second_anew(const PathForecast& plan, const flight::FlightSeries& series, double until_s,
                        const PathGrid& places) {
     Observations seen;
     collect_observations(flight::SelectedTracks(series), begin_s, until_s, places.step_s, seen);
@@ -235,7 +230,7 @@ PathFilter second_anew(const mission::PathForecast& plan, const flight::FlightSe
 /// A second pass that is behind by some seconds costs a place little, and its verdict nothing.
 TEST(PathPlaceStudy, ASecondPassInPartsTellsWhatAWholeOneDoes) {
     const auto path = survey();
-    const mission::PathForecast plan({path, {}, test::made_up_wing()});
+    const PathForecast plan({path, {}, test::made_up_wing()});
     const auto places = make_path_grid(plan);
     std::mt19937 random(7);
     std::vector<double> differences_s;
@@ -269,7 +264,7 @@ TEST(PathPlaceStudy, ASecondPassInPartsTellsWhatAWholeOneDoes) {
 /// As when rows are thinned, or a late message comes in.
 TEST(PathTracker, WhatChangedBeforeIsTakenAnew) {
     const auto path = survey();
-    const mission::PathForecast plan({path, {}, test::made_up_wing()});
+    const PathForecast plan({path, {}, test::made_up_wing()});
     const auto flown = fly(path, {}, 4);
     const double until_s = begin_s + 200.0;
     auto changed = truncate_series(flown.series, until_s);
@@ -287,4 +282,4 @@ TEST(PathTracker, WhatChangedBeforeIsTakenAnew) {
 }
 
 }  // namespace
-}  // namespace flightwatt::live
+}  // namespace flightwatt::path

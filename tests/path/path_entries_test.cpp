@@ -1,4 +1,4 @@
-#include "mission/path/path_entries.h"
+#include "path/path_entries.h"
 
 #include "helpers/rejected.h"
 
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace flightwatt::mission {
+namespace flightwatt::path {
 namespace {
 
 using test::rejected;
@@ -152,4 +152,4 @@ TEST(PathEntries, RefuseWhatHasNoMeaning) {
 }
 
 }  // namespace
-}  // namespace flightwatt::mission
+}  // namespace flightwatt::path

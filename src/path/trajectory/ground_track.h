@@ -1,10 +1,10 @@
 #pragma once
 
-#include "mission/path.h"
+#include "path/path.h"
 
 #include <optional>
 
-namespace flightwatt::mission {
+namespace flightwatt::path {
 
 /// The wind as a velocity [m/s], towards east and north.
 struct WindVelocity {
@@ -66,4 +66,4 @@ class GroundTrack {
     WindVelocity wind_;
 };
 
-}  // namespace flightwatt::mission
+}  // namespace flightwatt::path

@@ -1,13 +1,13 @@
-#include "mission/remaining_path.h"
+#include "path/remaining_path.h"
 
 #include "base/error.h"
-#include "helpers/path_missions.h"
+#include "helpers/made_up_paths.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-namespace flightwatt::mission {
+namespace flightwatt::path {
 namespace {
 
 const FlightPath& path() {
@@ -98,8 +98,8 @@ TEST(RemainingPath, GetsNothingBackFromADescent) {
     const PlannedPath plan{made, {}, test::made_up_wing()};
     const auto rest = PathForecast(plan).predict(unseen_flight(), {0, 0.0});
     EXPECT_NEAR(rest.cruise.energy.energy_wh, 100.0 * 0.01 * 13.0 * 13.0 * 13.0 / 3600.0, 1e-9);
-    ASSERT_EQ(rest.power.size(), 2U);
-    EXPECT_EQ(rest.power[1].power_w, 0.0);
+    ASSERT_EQ(rest.trajectory.pieces.size(), 2U);
+    EXPECT_EQ(power_w(plan.power, rest.trajectory.pieces[1].motion), 0.0);
 }
 
 TEST(RemainingPath, OfNothingIsNothing) {
@@ -111,4 +111,4 @@ TEST(RemainingPath, OfNothingIsNothing) {
 }
 
 }  // namespace
-}  // namespace flightwatt::mission
+}  // namespace flightwatt::path

@@ -1,11 +1,13 @@
-#include "mission/path/ground_track.h"
+#include "path/trajectory/ground_track.h"
+
+#include "path/trajectory.h"
 
 #include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
 
-namespace flightwatt::mission {
+namespace flightwatt::path {
 namespace {
 
 /// The time from one place of a circle to another and the mean square of the load factor, by the middle of many small
@@ -67,4 +69,4 @@ TEST(GroundTrack, HasNoGapsAtTheCoursesOfTheWind) {
 }
 
 }  // namespace
-}  // namespace flightwatt::mission
+}  // namespace flightwatt::path

@@ -2,13 +2,15 @@
 
 #include "mechanical/covariates.h"
 #include "mechanical/physical_model.h"
-#include "mission/path.h"
+#include "path/path.h"
+#include "path/trajectory.h"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-namespace flightwatt::mission {
+namespace flightwatt::path {
 
 /// A part of a phase with constant mechanical power.
 struct PowerSegment {
@@ -74,4 +76,4 @@ mechanical::PhysicalModel physical_model_from_drag(const mechanical::CovariateRe
 /// none.
 std::vector<std::string> path_warnings(const PlannedPath& plan, const PathTrajectory& flown);
 
-}  // namespace flightwatt::mission
+}  // namespace flightwatt::path

@@ -1,6 +1,8 @@
+#include "path/trajectory.h"
+
+#include "base/error.h"
 #include "base/units.h"
-#include "mission/path.h"
-#include "mission/path/ground_track.h"
+#include "path/trajectory/ground_track.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +11,7 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <fmt/format.h>
 
-namespace flightwatt::mission {
+namespace flightwatt::path {
 namespace {
 
 constexpr double crawling_fraction = 0.02;  // of the airspeed, over ground, where a drawn wind forbids an element
@@ -205,51 +207,46 @@ class PathFlight {
     const PathElement* element_ = nullptr;
 };
 
-/// A leg flown the other way.
-PathElement reversed(PathElement element, const ClimbRates& back) {
-    auto& leg = std::get<Leg>(element.shape);
-    leg.course_deg = std::fmod(leg.course_deg + 180.0, 360.0);
-    element.altitude_change_m = -element.altitude_change_m;
-    element.climb_rate_m_per_s = element.altitude_change_m < 0.0 ? back.descent_m_per_s : back.climb_m_per_s;
-    element.name += " on the way back";
-    return element;
-}
-
 }  // namespace
 
 PathTrajectory compute_trajectory(const FlightPath& path, const Wind& wind, InfeasibleLegPolicy forbidden) {
     return PathFlight(path, wind, forbidden).fly();
 }
 
-FlightPath out_and_back(const FlightPath& path, double return_after_m, const ClimbRates& back) {
-    FlightPath result;
-    std::vector<PathElement> way_back;
-    double left_m = return_after_m;
-    const double rounding_m = 1e-9 * return_after_m;  // of the sum of the legs
-    for (auto element : path.elements) {
-        if ((left_m <= rounding_m && !result.elements.empty()) || element.is_return_leg) break;
-        if (auto* leg = std::get_if<Leg>(&element.shape)) {
-            const double part = std::min(1.0, left_m / leg->length_m);
-            leg->length_m *= part;
-            element.altitude_change_m *= part;
-            left_m -= leg->length_m;
-            way_back.push_back(reversed(element, back));
-        } else if (element.altitude_change_m != 0.0 && !way_back.empty()) {
-            way_back.back().altitude_change_m -= element.altitude_change_m;
-            way_back.back().climb_rate_m_per_s.reset();
-        }
-        result.elements.push_back(std::move(element));
+std::optional<double> ground_speed_m_per_s(double airspeed_m_per_s, double course_deg, const Wind& wind) {
+    const auto drift = solve_wind_triangle(airspeed_m_per_s, course_deg / units::degree_per_rad, velocity_of(wind));
+    return drift ? std::optional(drift->ground_speed_m_per_s) : std::nullopt;
+}
+
+PathPosition position_at(const PathTrajectory& flown, double time_s) {
+    double start_s = 0.0;
+    for (std::size_t i = 0; i < flown.element_s.size(); ++i) {
+        const double element_s = flown.element_s[i];
+        if (time_s < start_s + element_s) return {i, std::max(time_s - start_s, 0.0) / element_s};
+        start_s += element_s;
     }
-    std::move(way_back.rbegin(), way_back.rend(), std::back_inserter(result.elements));
-    return result;
+    return {flown.element_s.size(), 0.0};
 }
 
-double length_of_legs_m(const FlightPath& path) {
-    double length_m = 0.0;
-    for (const auto& element : path.elements)
-        if (const auto* leg = std::get_if<Leg>(&element.shape); leg && !element.is_return_leg)
-            length_m += leg->length_m;
-    return length_m;
+PathTrajectory remaining_trajectory(const PathTrajectory& flown, const PathPosition& place) {
+    PathTrajectory rest;
+    rest.element_s = flown.element_s;
+    rest.infeasible_element = flown.infeasible_element;
+    double skipped_s = 0.0;
+    for (std::size_t i = 0; i < flown.element_s.size(); ++i) {
+        const double part = i < place.element ? 1.0 : i == place.element ? place.part : 0.0;
+        skipped_s += part * flown.element_s[i];
+        rest.element_s[i] *= 1.0 - part;
+    }
+    for (auto piece : flown.pieces) {
+        const double here_s = std::min(skipped_s, piece.time_s);
+        skipped_s -= here_s;
+        piece.time_s -= here_s;
+        if (!(piece.time_s > 0.0)) continue;
+        rest.duration_s += piece.time_s;
+        rest.pieces.push_back(piece);
+    }
+    return rest;
 }
 
-}  // namespace flightwatt::mission
+}  // namespace flightwatt::path

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "base/error.h"
-#include "mechanical/physical_model.h"
 
 #include <cstddef>
 #include <optional>
@@ -9,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-namespace flightwatt::mission {
+namespace flightwatt::path {
 
 /// A steady wind along the whole path, and how it differs between flights.
 struct Wind {
@@ -56,39 +55,6 @@ struct FlightPath {
     std::vector<PathElement> elements;
 };
 
-/// A part of a flight with one motion through the air.
-struct TrajectorySegment {
-    double time_s = 0.0;  ///< how long it lasts
-    /// Its load factor is the root of the mean square, which makes the mean of a power that follows the square exact.
-    mechanical::FlightState motion;
-    std::size_t element = 0;
-};
-
-/// A path as it is flown in a wind.
-struct PathTrajectory {
-    std::vector<TrajectorySegment> pieces;          ///< in order, none shorter than 0 s
-    std::vector<double> element_s;                  ///< how long each element takes
-    double duration_s = 0.0;                        ///< of all
-    std::optional<std::size_t> infeasible_element;  ///< the first element that the wind forbids, if that was asked for
-};
-
-/// What to do where the wind forbids an element.
-enum class InfeasibleLegPolicy {
-    refuse,  ///< throw InputError
-    crawl  ///< note it in `infeasible_element`, and fly the element with 2 % of the airspeed over ground, which is as good as none
-};
-
-/// Flies a path in a steady wind: airspeed is held, the course over ground kept by a drift angle (docs/methods.md,
-/// Eqs. 43 and 44). Around circles ground speed and bank change, which is integrated. Throws InputError, placed at the
-/// element, for one that the wind forbids, that is too short or too steep for its climb, or for a path of more than
-/// 1e7 s.
-PathTrajectory compute_trajectory(const FlightPath& path, const Wind& wind,
-                                  InfeasibleLegPolicy forbidden = InfeasibleLegPolicy::refuse);
-
-/// Ground speed [m/s] in a wind, of level flight with a course over ground; none where the drift angle that it takes
-/// does not exist, or the aircraft would be blown back.
-std::optional<double> ground_speed_m_per_s(double airspeed_m_per_s, double course_deg, const Wind& wind);
-
 /// At which heights are changed, both more than 0; none: evenly over a leg.
 struct ClimbRates {
     std::optional<double> climb_m_per_s;
@@ -103,4 +69,22 @@ FlightPath out_and_back(const FlightPath& path, double return_after_m, const Cli
 /// Over the ground, of the legs alone, without the way home.
 double length_of_legs_m(const FlightPath& path);
 
-}  // namespace flightwatt::mission
+/// A place on a path: so much of an element's time has passed.
+struct PathPosition {
+    std::size_t element = 0;
+    double part = 0.0;  ///< of 1
+};
+
+/// East and north [m], from an origin; or a difference of two of them, or a direction of length 1.
+struct LocalPosition {
+    double east_m = 0.0;
+    double north_m = 0.0;
+
+    friend bool operator==(const LocalPosition&, const LocalPosition&) = default;
+};
+
+/// Where a place of a path is, from its start. A hold moves nothing, as the path goes on from where it was planned to,
+/// but where it stands for a leg whose time was measured.
+LocalPosition local_position_at(const FlightPath& path, const PathPosition& place);
+
+}  // namespace flightwatt::path

@@ -1,4 +1,4 @@
-#include "mission/path/waypoint_files.h"
+#include "path/waypoint_files.h"
 
 #include "helpers/rejected.h"
 #include "helpers/test_paths.h"
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace flightwatt::mission {
+namespace flightwatt::path {
 namespace {
 
 using test::rejected;
@@ -114,4 +114,4 @@ TEST(WaypointFiles, AreFlightPlansWithNamesInOrder) {
 }
 
 }  // namespace
-}  // namespace flightwatt::mission
+}  // namespace flightwatt::path

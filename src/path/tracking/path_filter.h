@@ -1,17 +1,16 @@
 #pragma once
 
 #include "flight/selected_track.h"
-#include "live/turn_home.h"
-#include "mission/remaining_path.h"
+#include "path/remaining_path.h"
 
 #include <cstddef>
 #include <vector>
 
-namespace flightwatt::live {
+namespace flightwatt::path {
 
 struct PathPoint {
-    Displacement at;
-    Displacement course;  ///< of length 1, or 0 where it is not known
+    LocalPosition at;
+    LocalPosition course;  ///< of length 1, or 0 where it is not known
     bool is_unconstrained = false;
 };
 
@@ -22,12 +21,12 @@ struct PathGrid {
 };
 
 /// Of a path that takes some time.
-PathGrid make_path_grid(const mission::PathForecast& path);
+PathGrid make_path_grid(const PathForecast& path);
 
 /// Where a flight was seen, from where its cruise began.
 struct Observation {
-    Displacement at;
-    Displacement course;  ///< of length 1, or 0 where it is not known
+    LocalPosition at;
+    LocalPosition course;  ///< of length 1, or 0 where it is not known
     bool is_known = false;
 
     friend bool operator==(const Observation&, const Observation&) = default;
@@ -43,8 +42,8 @@ struct Observations {
 void collect_observations(const flight::SelectedTracks& tracks, double start_s, double until_s, double step_s,
                           Observations& observations);
 
-Displacement minus(const Displacement& a, const Displacement& b);
-double dot(const Displacement& a, const Displacement& b);
+LocalPosition minus(const LocalPosition& a, const LocalPosition& b);
+double dot(const LocalPosition& a, const LocalPosition& b);
 
 /// How likely a flight at each place of a path is, on the path and off it, by its observations one after the other.
 class PathFilter {
@@ -56,10 +55,10 @@ class PathFilter {
 
     /// From the beginning of the path, which lies `origin` off the first observation. `off_path_m`: one deviation of
     /// positions from the path.
-    void begin(double off_path_m, const Displacement& origin);
+    void begin(double off_path_m, const LocalPosition& origin);
     void add_observation(const Observation& seen);
 
-    const Displacement& origin() const { return origin_; }
+    const LocalPosition& origin() const { return origin_; }
     /// Observations since the beginning.
     std::size_t taken() const { return taken_; }
     /// Seconds of planned time that were seen, and those of them on the path.
@@ -73,7 +72,7 @@ class PathFilter {
     /// that is faster or slower than planned.
     double nearest_position() const;
     /// What the last position that was seen is off a place.
-    Displacement off(double place) const;
+    LocalPosition off(double place) const;
     const PathPoint& point_of(double place) const;
 
   private:
@@ -84,7 +83,7 @@ class PathFilter {
 
     const PathGrid* places_;
     double off_path_m_ = 0.0;
-    Displacement origin_;
+    LocalPosition origin_;
     Observation last_seen_;
     std::size_t taken_ = 0;
     double known_s_ = 0.0;
@@ -96,4 +95,21 @@ class PathFilter {
     std::vector<double> next_off_;  ///< and what goes over an end of the path
 };
 
-}  // namespace flightwatt::live
+/// From where a path begins: what positions are off it, across it, as far as that is known better than beforehand.
+class OriginEstimate {
+  public:
+    static constexpr double off_path_m = 60.0;  ///< one deviation of positions while the origin is not known
+
+    void add(const LocalPosition& off, const LocalPosition& course);
+    LocalPosition value() const;
+
+  private:
+    static constexpr double sd_m = 60.0;  ///< beforehand: some seconds of the climb
+    double ee_ = 1.0 / (sd_m * sd_m);
+    double en_ = 0.0;
+    double nn_ = 1.0 / (sd_m * sd_m);
+    double e_ = 0.0;
+    double n_ = 0.0;
+};
+
+}  // namespace flightwatt::path

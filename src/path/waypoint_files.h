@@ -1,13 +1,13 @@
 #pragma once
 
-#include "mission/path/path_entries.h"
+#include "path/path_entries.h"
 
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace flightwatt::mission {
+namespace flightwatt::path {
 
 /// The waypoints of a file, in its order: GeoJSON by its ending (.geojson, .json), else CSV (docs/formats.md,
 /// Waypoints). Throws InputError, placed in the file.
@@ -24,4 +24,4 @@ std::vector<PathEntry> read_flight_plan(const std::filesystem::path& path, const
 std::vector<PathEntry> parse_flight_plan(std::string_view text, const std::string& file,
                                          const std::vector<std::string>& names);
 
-}  // namespace flightwatt::mission
+}  // namespace flightwatt::path

@@ -1,4 +1,4 @@
-#include "mission/path/path_entries.h"
+#include "path/path_entries.h"
 
 #include "base/units.h"
 
@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt::mission {
+namespace flightwatt::path {
 namespace {
 
 constexpr double max_m = 300e3;  // of a place from the start: beyond, coordinates were mistaken
@@ -253,4 +253,4 @@ FlightPath path_of(const std::vector<PathEntry>& entries, const PathDefaults& de
     return path;
 }
 
-}  // namespace flightwatt::mission
+}  // namespace flightwatt::path

@@ -1,33 +1,21 @@
 #pragma once
 
-#include "battery/landing_forecast.h"
 #include "mechanical/flight_progress.h"
 #include "mechanical/prediction.h"
-#include "mission/cruise_path.h"
+#include "path/cruise_path.h"
+#include "path/trajectory.h"
 
 #include <cstddef>
 #include <vector>
 
-namespace flightwatt::mission {
-
-/// A place on a path: so much of an element's time has passed.
-struct PathPosition {
-    std::size_t element = 0;
-    double part = 0.0;  ///< of 1
-};
-
-/// Where a path is after a time from its start, at most its duration.
-PathPosition position_at(const PathTrajectory& flown, double time_s);
-
-/// What is left of a path from a place on, which may have been found in another wind.
-PathTrajectory remaining_trajectory(const PathTrajectory& flown, const PathPosition& place);
+namespace flightwatt::path {
 
 /// A prediction of what is left of a path, and how long that takes: means over the winds that let it be flown.
 struct RemainingPath {
     mechanical::RemainingCruise cruise;
     double duration_s = 0.0;
-    double infeasible_fraction = 0.0;          ///< of the winds, of 1
-    std::vector<battery::ConstantLoad> power;  ///< in the plan's wind, as the model has it, in order
+    double infeasible_fraction = 0.0;  ///< of the winds, of 1
+    PathTrajectory trajectory;         ///< in the plan's wind
 };
 
 /// A plan's path as it is flown in each of the winds that its spread makes likely, for forecasts of what is left of it
@@ -73,4 +61,4 @@ class PathForecast {
     PathTrajectory flown_;  ///< in the plan's wind, crawling where that forbids it
 };
 
-}  // namespace flightwatt::mission
+}  // namespace flightwatt::path

@@ -1,4 +1,4 @@
-#include "mission/path.h"
+#include "path/trajectory.h"
 
 #include "helpers/rejected.h"
 
@@ -9,7 +9,7 @@
 #include <boost/math/special_functions/ellint_2.hpp>
 #include <gtest/gtest.h>
 
-namespace flightwatt::mission {
+namespace flightwatt::path {
 namespace {
 
 using std::numbers::pi;
@@ -41,7 +41,7 @@ double climbed_m(const PathTrajectory& flown) {
     return sum_m;
 }
 
-TEST(Path, GroundSpeedsFollowTheWindTriangle) {
+TEST(Trajectory, GroundSpeedsFollowTheWindTriangle) {
     const Wind wind{5.0, 270.0};  // from the west
     EXPECT_DOUBLE_EQ(ground_speed_m_per_s(13.0, 90.0, wind).value(), 18.0);
     EXPECT_DOUBLE_EQ(ground_speed_m_per_s(13.0, 270.0, wind).value(), 8.0);
@@ -54,7 +54,7 @@ TEST(Path, GroundSpeedsFollowTheWindTriangle) {
 }
 
 /// The heading that a ground speed implies moves the aircraft as its airspeed and the wind do.
-TEST(Path, GroundSpeedsAddUpAsVectors) {
+TEST(Trajectory, GroundSpeedsAddUpAsVectors) {
     std::mt19937 random(20261);
     std::uniform_real_distribution<double> angle(0.0, 360.0);
     std::uniform_real_distribution<double> speed(0.0, 12.0);
@@ -69,7 +69,7 @@ TEST(Path, GroundSpeedsAddUpAsVectors) {
     }
 }
 
-TEST(Path, CirclesInCalmAirTakeTheirLength) {
+TEST(Trajectory, CirclesInCalmAirTakeTheirLength) {
     const auto flown = compute_trajectory({{element_of(Circles{75.0, 2.5})}}, {});
     ASSERT_EQ(flown.pieces.size(), 1U);
     EXPECT_NEAR(flown.duration_s, 2.5 * 2.0 * pi * 75.0 / 13.0, 1e-9);
@@ -78,7 +78,7 @@ TEST(Path, CirclesInCalmAirTakeTheirLength) {
 }
 
 /// 1 / g = (sqrt(V^2 - w^2 sin^2) - w cos) / (V^2 - w^2): around a circle the complete elliptic integral.
-TEST(Path, CirclesInWindTakeTheEllipticIntegral) {
+TEST(Trajectory, CirclesInWindTakeTheEllipticIntegral) {
     for (const double wind : {0.5, 3.0, 8.0, 12.5}) {
         const double airspeed = 13.0;
         const double exact_s =
@@ -92,7 +92,7 @@ TEST(Path, CirclesInWindTakeTheEllipticIntegral) {
 }
 
 /// A turn in small steps: the heading's rate of change is what the bank has to give.
-TEST(Path, LoadFactorsInWindAreThoseOfTheTurn) {
+TEST(Trajectory, LoadFactorsInWindAreThoseOfTheTurn) {
     const double airspeed = 13.0;
     const double radius_m = 50.0;
     const double wind = 4.0;
@@ -119,7 +119,7 @@ TEST(Path, LoadFactorsInWindAreThoseOfTheTurn) {
     EXPECT_GT(flown.pieces.size(), 8U);
 }
 
-TEST(Path, PartsOfCirclesAddUpToTheWhole) {
+TEST(Trajectory, PartsOfCirclesAddUpToTheWhole) {
     const Wind wind{6.0, 300.0};
     const double whole_s = time_s(element_of(Circles{80.0, 1.0, true, 30.0}), wind);
     double sum_s = 0.0;
@@ -132,7 +132,7 @@ TEST(Path, PartsOfCirclesAddUpToTheWhole) {
     EXPECT_NEAR(many.duration_s, 5000.0 * whole_s + time_s(element_of(Circles{80.0, 0.5, true, 30.0}), wind), 1e-4);
 }
 
-TEST(Path, AnyWindMakesARoundTripLonger) {
+TEST(Trajectory, AnyWindMakesARoundTripLonger) {
     std::mt19937 random(20262);
     std::uniform_real_distribution<double> angle(0.0, 360.0);
     std::uniform_real_distribution<double> speed(0.1, 11.0);
@@ -143,7 +143,7 @@ TEST(Path, AnyWindMakesARoundTripLonger) {
         EXPECT_GT(compute_trajectory(square, {speed(random), angle(random)}).duration_s, calm_s);
 }
 
-TEST(Path, ClimbsSpreadOverALegArriveAtItsEnd) {
+TEST(Trajectory, ClimbsSpreadOverALegArriveAtItsEnd) {
     // Calm: along the slope.
     EXPECT_NEAR(time_s(climbing(element_of(Leg{400.0, 0.0}), 300.0)), 500.0 / 13.0, 1e-9);
     for (const Wind wind : {Wind{6.0, 10.0}, Wind{6.0, 100.0}, Wind{6.0, 190.0}}) {
@@ -158,7 +158,7 @@ TEST(Path, ClimbsSpreadOverALegArriveAtItsEnd) {
     EXPECT_NEAR(climbed_m(circling), 60.0, 1e-6);
 }
 
-TEST(Path, ClimbsAtARateComeFirst) {
+TEST(Trajectory, ClimbsAtARateComeFirst) {
     const Wind wind{4.0, 0.0};
     const auto flown = compute_trajectory({{climbing(element_of(Leg{1000.0, 0.0}), 60.0, 2.0)}}, wind);
     ASSERT_EQ(flown.pieces.size(), 2U);
@@ -173,7 +173,7 @@ TEST(Path, ClimbsAtARateComeFirst) {
     EXPECT_NEAR(climbed_m(holding), 60.0, 1e-9);
 }
 
-TEST(Path, RefusesWhatCannotBeFlown) {
+TEST(Trajectory, RefusesWhatCannotBeFlown) {
     const auto refusal = [](const PathElement& element, const Wind& wind = {}) {
         return test::rejected([&] { compute_trajectory({{element}}, wind); });
     };
@@ -195,7 +195,7 @@ TEST(Path, RefusesWhatCannotBeFlown) {
     EXPECT_NE(refusal(element_of(Leg{1e6, 0.0}), {12.9999999, 0.0}).find("more than 1e+07"), std::string::npos);
 }
 
-TEST(Path, CrawlsAgainstAWindThatWasDrawn) {
+TEST(Trajectory, CrawlsAgainstAWindThatWasDrawn) {
     const FlightPath path{{element_of(Leg{100.0, 180.0}), element_of(Leg{100.0, 0.0})}};
     const auto flown = compute_trajectory(path, {14.0, 0.0}, InfeasibleLegPolicy::crawl);
     EXPECT_EQ(flown.infeasible_element, std::optional<std::size_t>(1));
@@ -207,32 +207,5 @@ TEST(Path, CrawlsAgainstAWindThatWasDrawn) {
     EXPECT_NEAR(climbed.duration_s, 20.0, 1e-9);
 }
 
-TEST(Path, LeadsThereAndBack) {
-    FlightPath path{
-        {element_of(Leg{300.0, 90.0}), element_of(Circles{50.0, 1.0}), climbing(element_of(Leg{400.0, 0.0}), 40.0)}};
-    EXPECT_DOUBLE_EQ(length_of_legs_m(path), 700.0);
-    const auto turned = out_and_back(path, 400.0, {});
-    ASSERT_EQ(turned.elements.size(), 5U);
-    const auto& back = turned.elements;
-    EXPECT_DOUBLE_EQ(std::get<Leg>(back[2].shape).length_m, 100.0);
-    EXPECT_DOUBLE_EQ(back[2].altitude_change_m, 10.0);
-    EXPECT_DOUBLE_EQ(std::get<Leg>(back[3].shape).course_deg, 180.0);
-    EXPECT_DOUBLE_EQ(back[3].altitude_change_m, -10.0);
-    EXPECT_DOUBLE_EQ(std::get<Leg>(back[4].shape).course_deg, 270.0);
-    EXPECT_DOUBLE_EQ(std::get<Leg>(back[4].shape).length_m, 300.0);
-    EXPECT_EQ(out_and_back(path, 300.0, {}).elements.size(), 2U);
-}
-
-TEST(Path, TurnsBackAtItsEndWhateverItsLengthsRoundTo) {
-    std::mt19937_64 random(5);
-    std::uniform_real_distribution<double> length_m(1.0, 2000.0);
-    for (int i = 0; i < 200; ++i) {
-        FlightPath path;
-        for (int leg = 0; leg < 5; ++leg) path.elements.push_back(element_of(Leg{length_m(random), 10.0 * leg}));
-        path.elements.push_back(element_of(Hold{60.0}));  // begins where the path turns back: is not flown
-        EXPECT_EQ(out_and_back(path, length_of_legs_m(path), {}).elements.size(), 10U) << i;
-    }
-}
-
 }  // namespace
-}  // namespace flightwatt::mission
+}  // namespace flightwatt::path
