@@ -121,8 +121,8 @@ bool has_numbers(const telemetry::Column& column) {
     return std::ranges::any_of(column.values, [](double value) { return std::isfinite(value); });
 }
 
-MessageTable as_csv(const telemetry::MessageTable& table) {
-    MessageTable result;
+MessageCsv as_csv(const telemetry::MessageTable& table) {
+    MessageCsv result;
     std::vector<const telemetry::Column*> columns;
     std::vector<std::string> header{"time_s"};
     for (const auto& column : table.columns) {
@@ -147,8 +147,8 @@ MessageTable as_csv(const telemetry::MessageTable& table) {
 
 }  // namespace
 
-MessageTable message_table(const flight::FlightFile& file, const std::string& message,
-                           const std::optional<std::string>& sender) {
+MessageCsv message_table(const flight::FlightFile& file, const std::string& message,
+                         const std::optional<std::string>& sender) {
     if (file.is_series()) {
         throw InputError({file.path().string()}, "is a series, which holds tracks and no messages",
                          "give the log that it was made from, or leave --message out");

@@ -10,7 +10,7 @@
 /// column a quantity with its unit as suffix. A cell is empty where its column has no value at that time.
 namespace flightwatt::exchange {
 
-struct MessageTable {
+struct MessageCsv {
     std::string csv;
     std::vector<std::string> left_out;  ///< fields that hold no number in any row: texts and arrays
     std::size_t rows = 0;
@@ -19,8 +19,8 @@ struct MessageTable {
 /// All rows of one message of one sender, every field in the base unit of its quantity (ENERGY.voltage in V:
 /// voltage_v). `sender` may be absent where one alone sent it. Throws InputError for a series, for a message that the
 /// log does not hold (it says which it holds), and for one of several senders.
-MessageTable message_table(const flight::FlightFile& file, const std::string& message,
-                           const std::optional<std::string>& sender);
+MessageCsv message_table(const flight::FlightFile& file, const std::string& message,
+                         const std::optional<std::string>& sender);
 
 /// All tracks of a series, those that are not chosen too: the series file without its comments.
 std::string series_table(const flight::FlightSeries& series);
