@@ -10,6 +10,13 @@ namespace flightwatt {
 /// Confidence level of all intervals that FlightWatt reports.
 inline constexpr double confidence_level = 0.95;
 
+/// From `low` to `high`; of an estimate at that level.
+struct Interval {
+    double low = 0.0;
+    double high = 0.0;
+    bool operator==(const Interval&) const = default;
+};
+
 /// Arithmetic mean. `values` must not be empty.
 double mean(std::span<const double> values);
 

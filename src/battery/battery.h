@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/statistics.h"
 #include "base/toml_reader.h"
 
 #include <cstddef>
@@ -25,13 +26,6 @@ struct TheveninCircuit {
     OpenCircuitVoltage open_circuit;
     double rc_resistance_ohm = 0.0;   ///< 0: no RC pair
     double rc_time_constant_s = 1.0;  ///< without meaning where there is no RC pair
-};
-
-/// A 95 % interval.
-struct Interval {
-    double low = 0.0;
-    double high = 0.0;
-    bool operator==(const Interval&) const = default;
 };
 
 /// How the series resistance differs between flights of one pack: by temperature, rest and age. Of a flight to come, a

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/statistics.h"
 #include "flight/flight_phases.h"
 #include "mechanical/covariates.h"
 #include "mechanical/physical_model.h"
@@ -40,12 +41,6 @@ struct FrequencyRange {
 
 /// What the noise's autocorrelation is at most, in the longest phases (autocorrelation_limit).
 inline constexpr double max_autocorrelation = 0.99;
-
-/// A 95 % interval.
-struct Interval {
-    double low = 0.0;
-    double high = 0.0;
-};
 
 /// Of a value with this standard error, by Student's t.
 Interval student_t_interval(double value, double standard_error, double degrees_of_freedom);

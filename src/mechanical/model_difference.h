@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/statistics.h"
 #include "mechanical/mechanical_model.h"
 
 #include <optional>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/statistics.h"
 #include "mechanical/flight_progress.h"
 #include "mechanical/mechanical_model.h"
 #include "mechanical/physical_model.h"

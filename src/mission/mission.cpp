@@ -13,13 +13,13 @@ const MissionSetup& setup_of(const MissionVariant& mission) {
     return std::visit([](const MissionSetup& setup) -> const MissionSetup& { return setup; }, mission);
 }
 
-std::optional<battery::Interval> capacity_interval_ah(const MissionSetup& mission) {
+std::optional<Interval> capacity_interval_ah(const MissionSetup& mission) {
     const auto percent = mission.uncertainty.capacity_sd_percent;
     if (!percent) return mission.capacity_is_stated ? std::nullopt : mission.battery.intervals.capacity_ah;
     if (!(*percent > 0.0)) return std::nullopt;
     const double capacity_ah = mission.battery.capacity_ah;
     const double reach_ah = sd_per_half_95 * units::amount_from_percent(capacity_ah, *percent);
-    return battery::Interval{capacity_ah - reach_ah, capacity_ah + reach_ah};
+    return Interval{capacity_ah - reach_ah, capacity_ah + reach_ah};
 }
 
 double utility_per_s(const Utility& utility, const std::vector<double>& qos) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/statistics.h"
 #include "battery/battery.h"
 #include "compute/compute_model.h"
 #include "mechanical/mechanical_model.h"
@@ -120,7 +121,7 @@ inline constexpr double sd_per_half_95 = 1.96;
 
 /// How much the battery holds in 95 of 100 flights: as [uncertainty] states it, else as the battery's file has it. None
 /// where the mission states the capacity alone, or nothing says.
-std::optional<battery::Interval> capacity_interval_ah(const MissionSetup& mission);
+std::optional<Interval> capacity_interval_ah(const MissionSetup& mission);
 
 double utility_per_s(const Utility& utility, const std::vector<double>& qos);
 

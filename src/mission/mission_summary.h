@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/statistics.h"
 #include "base/text_table.h"
 #include "battery/discharge.h"
 #include "mechanical/mechanical_model.h"
@@ -66,7 +67,7 @@ struct MonteCarloResult {
     double probability_battery_failure = 0.0;               ///< that, or cut off, or beyond the power limit
     double probability_below_reserve = 0.0;                 ///< the share of the flights
     double probability_below_reserve_standard_error = 0.0;  ///< sqrt(p (1 - p) / samples)
-    battery::Interval probability_below_reserve_95;         ///< Wilson's score interval (1927)
+    Interval probability_below_reserve_95;                  ///< Wilson's score interval (1927)
     UncertaintySources sources;
     std::vector<SocBand> bands;
 };

@@ -90,7 +90,7 @@ class Sampler {
 };
 
 /// Wilson's interval of a share `p` of n.
-battery::Interval wilson_interval(double p, double n) {
+Interval wilson_interval(double p, double n) {
     const double z = normal_half_width();
     const double z2 = z * z;
     const double middle = (p + z2 / (2.0 * n)) / (1.0 + z2 / n);
@@ -156,7 +156,7 @@ FlownQuantities flown_quantities(const PreparedMission& prepared, const MissionS
     return flown;
 }
 
-battery::Interval middle_95(std::vector<double> values) {
+Interval middle_95(std::vector<double> values) {
     std::ranges::sort(values);
     return {quantile(values, 0.025), quantile(values, 0.975)};
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/statistics.h"
 #include "mission/prepared_mission.h"
 
 #include <cstddef>
@@ -25,7 +26,7 @@ MonteCarloResult sample_flights(const PreparedMission& prepared, const Disturban
 
 /// What 95 of 100 flights of two missions, and their difference b - a, lie between.
 struct DrawnIntervals {
-    battery::Interval a, b, difference;
+    Interval a, b, difference;
 };
 
 /// Two missions on flights drawn for both. What they have in common (the same mechanical model, the same battery, a

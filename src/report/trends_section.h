@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/statistics.h"
 #include "base/text_table.h"
 #include "batch/trend.h"
 #include "battery/discharge_record.h"
@@ -24,7 +25,7 @@ struct FlightTrendData {
     std::string no_record;  ///< why there are none of these
     std::optional<battery::FlightResistance> resistance;
     std::optional<double> capacity_ah;  ///< of the pack, where the flight tells it
-    battery::Interval capacity_interval_ah;
+    Interval capacity_interval_ah;
     bool capacity_level_is_guess = false;  ///< of all of a pack's flights together; how they differ is measured
     std::optional<double> charge_ah;       ///< drawn from the pack, on the ground too
 };

@@ -106,10 +106,8 @@ inline BatteryCoverage battery_coverage(const BatteryCase& made, std::uint64_t f
         if (made.capacity_given) options.capacity_ah = drawn.pack.capacity_ah;
         ++coverage.packs;
         const double whole_ah = drawn.pack.capacity_ah;
-        const auto width_percent = [&](const battery::Interval& range) {
-            return 100.0 * (range.high - range.low) / whole_ah;
-        };
-        const auto holds = [](const battery::Interval& range, double truth) {
+        const auto width_percent = [&](const Interval& range) { return 100.0 * (range.high - range.low) / whole_ah; };
+        const auto holds = [](const Interval& range, double truth) {
             return truth >= range.low - 1e-9 && truth <= range.high + 1e-9;
         };
         try {

@@ -116,17 +116,16 @@ class MissionGenerator {
             battery.thevenin = circuit;
             if (maybe(0.5)) battery.intervals.open_circuit_standard_error_v.assign(5, between(0.02, 0.1));
             if (maybe(0.5)) {
-                battery.intervals.rc_resistance_ohm = battery::Interval{0.0, 2.0 * circuit.rc_resistance_ohm};
+                battery.intervals.rc_resistance_ohm = Interval{0.0, 2.0 * circuit.rc_resistance_ohm};
                 battery.intervals.rc_time_constant_s =
-                    battery::Interval{circuit.rc_time_constant_s / 3.0, circuit.rc_time_constant_s * 4.0};
+                    Interval{circuit.rc_time_constant_s / 3.0, circuit.rc_time_constant_s * 4.0};
             }
         } else {
             battery.voltage_v = 11.1;
-            if (maybe(0.5)) battery.intervals.voltage_v = battery::Interval{10.9, 11.4};
+            if (maybe(0.5)) battery.intervals.voltage_v = Interval{10.9, 11.4};
         }
         if (battery.resistance_ohm > 0.0 && maybe(0.5))
-            battery.intervals.resistance_ohm =
-                battery::Interval{battery.resistance_ohm * 0.7, battery.resistance_ohm * 1.4};
+            battery.intervals.resistance_ohm = Interval{battery.resistance_ohm * 0.7, battery.resistance_ohm * 1.4};
         if (maybe(0.5)) problem.uncertainty.capacity_sd_percent = between(1.0, 5.0);
         if (thevenin_ && maybe(0.3)) problem.cutoff_voltage_v = between(9.5, 10.2);
         problem.initial_soc_percent = maybe(0.3) ? between(90.0, 100.0) : 100.0;

@@ -299,7 +299,7 @@ TEST(LiveFlight, TheChanceOfLandingBelowTheReserveHoldsTheCapacitysSpread) {
         const double capacity_ah = basis.battery->capacity_ah;
         constexpr double half_95 = 1.96;
         basis.battery->intervals.capacity_ah =
-            battery::Interval{capacity_ah * (1.0 - half_95 * sd_part), capacity_ah * (1.0 + half_95 * sd_part)};
+            Interval{capacity_ah * (1.0 - half_95 * sd_part), capacity_ah * (1.0 + half_95 * sd_part)};
         if (sd_part == 0.0) basis.battery->intervals.capacity_ah.reset();
         basis.battery->capacity_ah *= capacity_part;
         LiveFlight flight(test::options_of(test::sample(1)), basis, nullptr);

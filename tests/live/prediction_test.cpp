@@ -92,7 +92,7 @@ TEST(PredictionBasis, TheCapacityIsAsUncertainAsTheMissionSays) {
     auto setup = setup_in("missions/synthetic/survey-path.toml");
     const auto interval_of = [&] { return input_from_mission(setup, "m.toml").battery->intervals.capacity_ah; };
     setup.capacity_is_stated = false;
-    setup.battery.intervals.capacity_ah = battery::Interval{0.9, 1.2};
+    setup.battery.intervals.capacity_ah = Interval{0.9, 1.2};
     EXPECT_EQ(interval_of()->low, 0.9);
     setup.capacity_is_stated = true;
     EXPECT_FALSE(interval_of());

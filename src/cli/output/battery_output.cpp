@@ -1,5 +1,6 @@
 #include "cli/output/battery_output.h"
 
+#include "base/statistics.h"
 #include "base/units.h"
 
 #include <array>
@@ -49,7 +50,7 @@ std::string describe(const battery::ResistanceTrend& trend) {
 
 TextTable pack_table(const battery::Battery& pack) {
     TextTable table{{"parameter", "value", "95 %"}, {}};
-    const auto add = [&](const char* name, double value, const std::optional<battery::Interval>& interval) {
+    const auto add = [&](const char* name, double value, const std::optional<Interval>& interval) {
         table.rows.push_back({name, fmt::format("{:.4g}", value),
                               interval ? fmt::format("{:.4g} to {:.4g}", interval->low, interval->high) : "-"});
     };
@@ -70,7 +71,7 @@ TextTable pack_table(const battery::Battery& pack) {
 TextTable parameters_table(const battery::BatteryIdentification& identified) {
     TextTable table;
     table.header = {"parameter", "value", "low 95 %", "high 95 %"};
-    const auto add = [&](const std::string& name, double value, const battery::Interval& interval) {
+    const auto add = [&](const std::string& name, double value, const Interval& interval) {
         table.rows.push_back({name, fmt::format("{:.4g}", value), fmt::format("{:.4g}", interval.low),
                               fmt::format("{:.4g}", interval.high)});
     };
@@ -143,11 +144,11 @@ namespace {
 
 Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
 
-Json interval(const std::optional<battery::Interval>& range) {
+Json interval(const std::optional<Interval>& range) {
     return range ? Json{{"low", range->low}, {"high", range->high}} : Json();
 }
 
-Json estimate(double value, const battery::Interval& range) {
+Json estimate(double value, const Interval& range) {
     return Json{{"value", value}, {"low", range.low}, {"high", range.high}};
 }
 

@@ -1,5 +1,6 @@
 #include "cli/output/difference_output.h"
 
+#include "base/statistics.h"
 #include "base/units.h"
 
 #include <algorithm>
@@ -75,13 +76,12 @@ void add_intervals(const mission::SampledDifference& drawn, std::vector<Differen
         {"compute_energy_wh", &drawn.compute_energy_wh},
         {"energy_wh", &drawn.energy_wh},
         {"final_soc_percent", &drawn.final_soc_percent}};
-    const auto of = [](const battery::Interval& from) { return mechanical::Interval{from.low, from.high}; };
     for (auto& row : rows) {
         const auto found = intervals.find(row.quantity);
         if (row.part != "mission" || found == intervals.end() || !row.a || !row.b) continue;
-        row.a->interval = of(found->second->a);
-        row.b->interval = of(found->second->b);
-        row.interval = of(found->second->difference);
+        row.a->interval = found->second->a;
+        row.b->interval = found->second->b;
+        row.interval = found->second->difference;
         row.basis = mechanical::DifferenceBasis::flights;
     }
 }
@@ -137,7 +137,7 @@ TextTable difference_table(const Differences& differences, const std::function<s
     for (const auto& row : differences.rows) {
         std::vector<std::string> cells{row.part, row.quantity, row.unit};
         const auto number = [&](const std::optional<double>& value) { cells.push_back(value ? form(*value) : "-"); };
-        const auto interval = [&](const std::optional<mechanical::Interval>& of) {
+        const auto interval = [&](const std::optional<Interval>& of) {
             number(of ? std::optional(of->low) : std::nullopt);
             number(of ? std::optional(of->high) : std::nullopt);
         };
@@ -158,7 +158,7 @@ TextTable difference_table(const Differences& differences, const std::function<s
 
 Json to_json(const Differences& differences) {
     constexpr std::array kinds{"models", "batches", "missions"};
-    const auto interval = [](const std::optional<mechanical::Interval>& of) {
+    const auto interval = [](const std::optional<Interval>& of) {
         return of ? Json::array({of->low, of->high}) : Json(nullptr);
     };
     Json json{{"kind", kinds.at(static_cast<std::size_t>(differences.kind))},

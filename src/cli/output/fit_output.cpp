@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "base/statistics.h"
 #include "base/units.h"
 #include "mechanical/fit_records.h"
 #include "mechanical/mechanical_model.h"
@@ -34,9 +35,9 @@ mechanical::ManualWeight parse_hand_weight(const std::string& text) {
     return weight;
 }
 
-Json interval_json(const mechanical::Interval& interval) { return {{"low", interval.low}, {"high", interval.high}}; }
+Json interval_json(const Interval& interval) { return {{"low", interval.low}, {"high", interval.high}}; }
 
-Json interval_json(const std::vector<mechanical::Interval>& intervals) {
+Json interval_json(const std::vector<Interval>& intervals) {
     auto list = Json::array();
     for (const auto& interval : intervals) list.push_back(interval_json(interval));
     return list;
@@ -170,11 +171,9 @@ TextTable mean_power_table(const mechanical::MechanicalModel& model) {
     for (const auto phase : flight::all_phases) {
         const auto power = mean_power(model, phase);
         if (!power) continue;
-        const auto end = [&](double mechanical::Interval::*of) {
-            return power->interval ? fixed((*power->interval).*of, 2) : "-";
-        };
-        table.rows.push_back({std::string(to_string(phase)), fixed(power->mean_w, 2), end(&mechanical::Interval::low),
-                              end(&mechanical::Interval::high), fmt::format("{}", power->flights),
+        const auto end = [&](double Interval::*of) { return power->interval ? fixed((*power->interval).*of, 2) : "-"; };
+        table.rows.push_back({std::string(to_string(phase)), fixed(power->mean_w, 2), end(&Interval::low),
+                              end(&Interval::high), fmt::format("{}", power->flights),
                               fmt::format("{}", power->samples)});
     }
     return table;

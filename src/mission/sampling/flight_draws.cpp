@@ -24,14 +24,14 @@ constexpr double max_part = 10.0;          ///< of it too
 constexpr double min_part = 1e-3;          ///< of what must stay positive
 
 /// `value` moved by `z` deviations of an interval.
-double moved(double value, const std::optional<battery::Interval>& interval, double z, double least) {
+double moved(double value, const std::optional<Interval>& interval, double z, double least) {
     if (!interval) return value;
     const double sd = (z < 0.0 ? value - interval->low : interval->high - value) / sd_per_half_95;
     return std::max(least, value + z * sd);
 }
 
 /// The same in the logarithm.
-double moved_logarithm(double value, const std::optional<battery::Interval>& interval, double z) {
+double moved_logarithm(double value, const std::optional<Interval>& interval, double z) {
     if (!interval || interval->low <= 0.0) return moved(value, interval, z, min_part * value);
     const double sd = std::log(z < 0.0 ? value / interval->low : interval->high / value) / sd_per_half_95;
     return value * std::exp(z * sd);

@@ -108,7 +108,7 @@ TEST(FlightDraws, TakeWhatTheModelsKnow) {
     }
     auto& detection = mission.compute.components[0].profile;
     detection.standard_error_w.assign(detection.power_w.size(), 0.5);
-    mission.battery.intervals.capacity_ah = battery::Interval{3.0, 3.3};
+    mission.battery.intervals.capacity_ah = Interval{3.0, 3.3};
     const auto spreads = collect_uncertainty(mission);
     const double new_flight = std::sqrt(1.0 + 1.0 / 3.0);
     EXPECT_NEAR(spreads.level_sd_w[flight::Phase::cruise], new_flight, 1e-12);
@@ -174,7 +174,7 @@ TEST(FlightDraws, DrawTheResistanceOfFilesOfBeforeByItsInterval) {
     auto mission = test::paper_mission("phased");
     constexpr std::size_t of_resistance = 8;
     const double ohm = mission.battery.resistance_ohm;
-    mission.battery.intervals.resistance_ohm = battery::Interval{0.8 * ohm, 1.1 * ohm};
+    mission.battery.intervals.resistance_ohm = Interval{0.8 * ohm, 1.1 * ohm};
     const auto drawn_ohm = [&](double z) {
         std::vector<double> normals(count_normals(mission), 0.0);
         normals[of_resistance] = z;
@@ -202,7 +202,7 @@ TEST(FlightDraws, LeaveAloneWhatTheMissionStates) {
         flight.phases[flight::Phase::cruise] = mechanical::PhaseContribution{0.5, duration_s, 1.0, 100};
         mission.mechanical->flights.push_back(flight);
     }
-    mission.battery.intervals.capacity_ah = battery::Interval{3.0, 3.3};
+    mission.battery.intervals.capacity_ah = Interval{3.0, 3.3};
     EXPECT_GT(collect_uncertainty(mission).duration_sd_s[flight::Phase::cruise], 0.0);
     mission.duration_is_stated[flight::Phase::cruise] = true;
     mission.capacity_is_stated = true;
