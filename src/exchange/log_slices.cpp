@@ -86,7 +86,7 @@ std::string lines_in_slice(std::string_view text, const LogSlice& piece) {
         const auto end = std::min(text.find('\n', begin), text.size() - 1) + 1;
         const auto line = text.substr(begin, end - begin);
         if (const auto time_s = parse_number(line.substr(0, line.find(' '))))
-            inside = *time_s >= piece.from_s && *time_s <= piece.to_s;
+            inside = *time_s >= piece.time.start_s && *time_s <= piece.time.end_s;
         const bool says_synthetic = begin == 0 && line.find("INFO_MSG \"SYNTHETIC:") != std::string_view::npos;
         if (inside || says_synthetic) lines += line;
         begin = end;

@@ -12,11 +12,10 @@ namespace flightwatt::exchange {
 /// What a sortie's own log holds of the ground before and after it, where there is as much before the next one [s].
 inline constexpr double ground_margin_s = 60.0;
 
-/// The lines of a log with times from `from_s` to `to_s`.
+/// The lines of a log with these times.
 struct LogSlice {
     std::string name;  ///< "sortie1", "sortie1_cruise"
-    double from_s = 0.0;
-    double to_s = 0.0;
+    flight::TimeInterval time;
 };
 
 /// Each sortie with the ground beside it, up to half-way to its neighbours: as much as the segmentation looks at. It

@@ -27,6 +27,22 @@ constexpr std::optional<Phase> phase_from(std::string_view name) {
     return std::nullopt;
 }
 
+/// From one time to another.
+struct TimeInterval {
+    double start_s = 0.0;
+    double end_s = 0.0;
+    double duration_s() const { return end_s - start_s; }
+};
+
+/// A time within one phase: in the log's own seconds, in missions in seconds since the phase began.
+struct PhaseSegment {
+    Phase phase = Phase::takeoff;
+    double start_s = 0.0;
+    double end_s = 0.0;
+    bool operator==(const PhaseSegment&) const = default;
+    double duration_s() const { return end_s - start_s; }
+};
+
 /// One value for each phase, indexed by Phase.
 template <typename T>
 struct PerPhase {
@@ -76,12 +92,9 @@ struct PhaseSpan {
 };
 
 /// A height that was held, above the ground, after which the aircraft did not come back to a greater one.
-struct HeldAltitude {
+struct HeldAltitude : TimeInterval {
     double height_m = 0.0;
-    double start_s = 0.0;
-    double end_s = 0.0;
     bool of_landing = false;  ///< held too shortly to be worked at: a step of the landing
-    double duration_s() const { return end_s - start_s; }
 };
 
 /// From lift-off to touchdown.
@@ -97,21 +110,13 @@ struct Sortie {
 };
 
 /// Something that moved or ran on the ground and is no flight.
-struct GroundEvent {
-    double start_s = 0.0;
-    double end_s = 0.0;
+struct GroundEvent : TimeInterval {
     std::string what;  ///< "run-up: throttle to 65 %, height 0.4 m"
-};
-
-/// From `start_s` to before `end_s`.
-struct Rest {
-    double start_s = 0.0;
-    double end_s = 0.0;
 };
 
 struct FlightPhases {
     std::vector<Sortie> sorties;
-    std::vector<Rest> rests;  ///< on the ground, in their order
+    std::vector<TimeInterval> rests;  ///< on the ground, in their order; without their ends
     std::vector<GroundEvent> ground_events;
     std::string motor_source;  ///< what told whether the motor runs: "ENERGY.throttle"
     std::vector<std::string> warnings;

@@ -60,7 +60,7 @@ double energy_height_m(const MotionTracks& tracks, double time_s) {
     return value_at(tracks.altitude, time_s) + airspeed * airspeed / (2.0 * units::standard_gravity_m_per_s2);
 }
 
-FlightBin motion_bin(const MotionTracks& tracks, const BinSpan& span) {
+FlightBin motion_bin(const MotionTracks& tracks, const flight::PhaseSegment& span) {
     FlightBin bin;
     bin.phase = span.phase;
     bin.start_s = span.start_s;
@@ -102,14 +102,15 @@ std::string why_without_motion(const flight::SelectedTracks& tracks) {
 
 }  // namespace
 
-std::vector<BinSpan> phase_spans(const flight::Sortie& sortie) {
-    std::vector<BinSpan> spans;
+std::vector<flight::PhaseSegment> phase_spans(const flight::Sortie& sortie) {
+    std::vector<flight::PhaseSegment> spans;
     spans.reserve(sortie.phases.size());
     for (const auto& phase : sortie.phases) spans.push_back({phase.phase, phase.start.time_s, phase.end.time_s});
     return spans;
 }
 
-BinnedFlight bin_flight(const flight::SelectedTracks& tracks, const std::vector<BinSpan>& spans, double bin_s) {
+BinnedFlight bin_flight(const flight::SelectedTracks& tracks, const std::vector<flight::PhaseSegment>& spans,
+                        double bin_s) {
     BinnedFlight motion{tracks.series().flight, {}, false, why_without_motion(tracks)};
     if (!motion.no_bins_reason.empty()) return motion;
     MotionTracks of{tracks["power_w"], tracks["airspeed_m_per_s"], tracks["altitude_m"], tracks["roll_deg"],
@@ -122,7 +123,7 @@ BinnedFlight bin_flight(const flight::SelectedTracks& tracks, const std::vector<
     if (!speeds.empty()) of.min_m_per_s = 0.5 * median(speeds);
     motion.bank_measured = !of.roll.empty();
     for (const auto& span : spans) {
-        const double duration_s = span.end_s - span.start_s;
+        const double duration_s = span.duration_s();
         const auto count = std::max<std::size_t>(1, static_cast<std::size_t>(std::round(duration_s / bin_s)));
         const double width_s = duration_s / static_cast<double>(count);
         for (std::size_t i = 0; i < count && duration_s > 0.0; ++i) {

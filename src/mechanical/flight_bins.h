@@ -39,13 +39,6 @@ struct BinnedFlight {
 /// How long a bin is: longer than gusts and the exchange of height and speed, short beside a manoeuvre.
 inline constexpr double default_bin_s = 30.0;
 
-/// A stretch of a flight.
-struct BinSpan {
-    flight::Phase phase = flight::Phase::cruise;
-    double start_s = 0.0;
-    double end_s = 0.0;
-};
-
 /// Each span in equal bins of about `bin_s`. A bin counts where power, airspeed and altitude were measured in half of
 /// its seconds or more (a sample within 5 s). Its terms:
 ///   drag, induced   means of V^3 and 1/V of the airspeed's samples (below half their median the wing does not carry,
@@ -53,11 +46,11 @@ struct BinSpan {
 ///   climb           of the energy height altitude + V^2 / 2g, from end to end: power that becomes speed is not lost
 ///   descent         the same where it is below 0
 ///   turn            mean of tan^2 of the bank (at most 60 degrees: what banks more is no steady turn) times that of 1/V
-BinnedFlight bin_flight(const flight::SelectedTracks& tracks, const std::vector<BinSpan>& spans,
+BinnedFlight bin_flight(const flight::SelectedTracks& tracks, const std::vector<flight::PhaseSegment>& spans,
                         double bin_s = default_bin_s);
 
 /// The spans of a sortie: its phases.
-std::vector<BinSpan> phase_spans(const flight::Sortie& sortie);
+std::vector<flight::PhaseSegment> phase_spans(const flight::Sortie& sortie);
 
 /// Means of the bins' terms, each weighing as long as it is. Of no bins zeros.
 TermValues mean_values(const std::vector<FlightBin>& bins);

@@ -10,15 +10,8 @@ namespace flightwatt::mission {
 using flight::all_phases;
 using flight::PerPhase;
 using flight::Phase;
-
-/// A time within one phase, in seconds since the phase began.
-struct PhaseSegment {
-    Phase phase = Phase::takeoff;
-    double start_s = 0.0;
-    double end_s = 0.0;
-    bool operator==(const PhaseSegment&) const = default;
-    double duration_s() const { return end_s - start_s; }
-};
+using flight::PhaseSegment;
+using flight::TimeInterval;
 
 /// When each phase is flown, in seconds since the mission began; a phase that is not flown starts as it ends.
 struct MissionTimeline {

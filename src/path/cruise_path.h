@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flight/flight_phases.h"
 #include "mechanical/covariates.h"
 #include "mechanical/physical_model.h"
 #include "path/path.h"
@@ -12,10 +13,9 @@
 
 namespace flightwatt::path {
 
-/// A part of a phase with constant mechanical power.
-struct PowerSegment {
-    double start_s = 0.0;  ///< since the phase began; the first starts at 0, each other where the one before ends
-    double end_s = 0.0;
+/// A part of a phase with constant mechanical power, in seconds since the phase began; the first starts at 0, each other
+/// where the one before ends.
+struct PowerSegment : flight::TimeInterval {
     double power_w = 0.0;
     double energy_before_j = 0.0;  ///< of all pieces before
 };

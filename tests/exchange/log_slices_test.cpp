@@ -88,10 +88,10 @@ TEST(LogSlices, LeavesTheGroundHalfWayToTheNextSortie) {
     ASSERT_EQ(pieces.size(), 2u);
     EXPECT_EQ(pieces[0].name, "sortie1");
     EXPECT_EQ(pieces[1].name, "sortie2");
-    EXPECT_NEAR(pieces[0].to_s, sorties[0].end_s() + ground_margin_s, 1.0);
-    EXPECT_LE(pieces[0].to_s, pieces[1].from_s);
-    EXPECT_GE(pieces[1].from_s, sorties[1].start_s() - ground_margin_s);
-    EXPECT_LE(pieces[1].from_s, sorties[1].start_s() - 0.5 * ground_margin_s);
+    EXPECT_NEAR(pieces[0].time.end_s, sorties[0].end_s() + ground_margin_s, 1.0);
+    EXPECT_LE(pieces[0].time.end_s, pieces[1].time.start_s);
+    EXPECT_GE(pieces[1].time.start_s, sorties[1].start_s() - ground_margin_s);
+    EXPECT_LE(pieces[1].time.start_s, sorties[1].start_s() - 0.5 * ground_margin_s);
 }
 
 TEST(LogSlices, NamesEachPhaseAndTakesItFromEdgeToEdge) {
@@ -100,8 +100,8 @@ TEST(LogSlices, NamesEachPhaseAndTakesItFromEdgeToEdge) {
     const auto pieces = phase_slices(whole.phases);
     ASSERT_EQ(pieces.size(), 3u);
     EXPECT_EQ(pieces[1].name, "sortie1_cruise");
-    EXPECT_EQ(pieces[1].from_s, phases[1].start.time_s);
-    EXPECT_EQ(pieces[1].to_s, phases[1].end.time_s);
+    EXPECT_EQ(pieces[1].time.start_s, phases[1].start.time_s);
+    EXPECT_EQ(pieces[1].time.end_s, phases[1].end.time_s);
 }
 
 TEST(LogSlices, TakesLinesAsTheyStand) {
@@ -132,7 +132,7 @@ TEST(LogSlices, TakesABinaryLogAsTheTextThatConvertMakes) {
     const auto lines = lines_in_slice(text, cruise);
     EXPECT_THAT(text, HasSubstr(lines));
     EXPECT_GT(lines.size(), 1000u);
-    EXPECT_NEAR(std::stod(lines), cruise.from_s, 1.0);
+    EXPECT_NEAR(std::stod(lines), cruise.time.start_s, 1.0);
 }
 
 TEST(LogSlices, RefusesASeries) {

@@ -258,7 +258,7 @@ PowerRecord make_power_record(const SelectedTracks& tracks, const FlightPhases& 
     return record;
 }
 
-std::vector<std::size_t> resting_samples(const PowerRecord& record, const std::vector<Rest>& rests,
+std::vector<std::size_t> resting_samples(const PowerRecord& record, const std::vector<TimeInterval>& rests,
                                          const SegmentationOptions& options) {
     std::vector<std::size_t> indices;
     const bool motor_known = !record.throttle_percent.empty();

@@ -41,7 +41,7 @@ PowerRecord make_power_record(const SelectedTracks& tracks, const FlightPhases& 
 
 /// Indices of the power samples at rest on the ground with the motor off; where no throttle tells that of the motor, at
 /// rest outside of the sorties.
-std::vector<std::size_t> resting_samples(const PowerRecord& record, const std::vector<Rest>& rests,
+std::vector<std::size_t> resting_samples(const PowerRecord& record, const std::vector<TimeInterval>& rests,
                                          const SegmentationOptions& options);
 
 /// What the rules for samples of a power record found: faults exclude a flight from fits, warnings do not.

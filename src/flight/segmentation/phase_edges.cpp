@@ -224,8 +224,9 @@ SortieEdges find_edges(const ResampledFlight& grid, const Activity& activity, co
     while (takeoff_end < touchdown && flown.height(takeoff_end) < reached) ++takeoff_end;
     const auto holds = holds_before_landing(flown);
     for (const auto& hold : holds) {
-        edges.held.push_back({hold.height_m, flown.time_s(std::max(hold.begin, takeoff_end)),
-                              flown.time_s(std::max(hold.end, takeoff_end)), false});
+        edges.held.push_back(
+            {{flown.time_s(std::max(hold.begin, takeoff_end)), flown.time_s(std::max(hold.end, takeoff_end))},
+             hold.height_m});
     }
     const auto& last_height = holds[mark_landing_steps(flown, edges.held)];
     const double left = options.cruise_fraction * last_height.height_m;

@@ -127,14 +127,14 @@ PhaseDepletion tabulate(PhaseLoad load, const path::PiecewisePower& pieces) {
     PhaseDepletion depletion;
     depletion.duration_s = pieces.back().end_s;
     double depleted = 0.0;
-    for (const auto& [start_s, end_s, power_w, energy_before_j] : pieces) {
-        load.mechanical = mechanical::FourierModel{0.0, power_w, {}, {}};
-        auto of_piece = tabulate(load, end_s - start_s, 1);  // of constant power: exact
+    for (const auto& piece : pieces) {
+        load.mechanical = mechanical::FourierModel{0.0, piece.power_w, {}, {}};
+        auto of_piece = tabulate(load, piece.duration_s(), 1);  // of constant power: exact
         depletion.deliverable = depletion.deliverable && of_piece.deliverable;
         depletion.error_percent += of_piece.error_percent;
         const double before = depleted;
         depleted += of_piece.nodes.back().depleted_percent;
-        depletion.pieces.push_back({start_s, before, std::move(of_piece)});
+        depletion.pieces.push_back({piece.start_s, before, std::move(of_piece)});
     }
     return depletion;
 }

@@ -243,7 +243,7 @@ battery::Discharge advance_segment(const battery::Battery& battery, double cutof
     return discharge(battery, load, state, {coarse_step_s, cutoff_voltage_v});
 }
 
-PowerAt min_power_w(const mechanical::FourierModel& curve, const CurveInterval& within, double enough_w) {
+PowerAt min_power_w(const mechanical::FourierModel& curve, const TimeInterval& within, double enough_w) {
     const double bound_w = bound_below_w(curve);
     if (bound_w >= enough_w || curve.cos_w.empty()) return {within.start_s, bound_w};
     const double length_s = within.end_s - within.start_s;

@@ -15,11 +15,9 @@ inline constexpr double end_tolerance_s = 1e-6;
 
 /// What a mission demands while one configuration runs: mechanical power, smooth but for the jumps between the pieces
 /// of a path or of a measured flight, and constant computing. Times are those of the mission.
-struct LoadSegment {
+struct LoadSegment : TimeInterval {
     Phase phase = Phase::takeoff;
     double phase_start_s = 0.0;
-    double start_s = 0.0;
-    double end_s = 0.0;
     std::optional<mechanical::FourierModel> mechanical;  ///< in the phase's own time
     std::shared_ptr<const path::PiecewisePower> pieces;  ///< instead: in the phase's own time too
     double compute_w = 0.0;
@@ -81,15 +79,9 @@ struct PowerAt {
     double power_w = 0.0;
 };
 
-/// From one time of a curve to another.
-struct CurveInterval {
-    double start_s = 0.0;
-    double end_s = 0.0;
-};
-
 /// The least of a curve within a time, to 1e-6 W and better. Where the amplitudes alone show that it is `enough_w` or
 /// more, a bound below the least, at the start.
-PowerAt min_power_w(const mechanical::FourierModel& curve, const CurveInterval& within, double enough_w = 0.0);
+PowerAt min_power_w(const mechanical::FourierModel& curve, const TimeInterval& within, double enough_w = 0.0);
 
 /// Throws InputError where a mission asks for power below 0, with phase, time and power: it would charge the battery,
 /// and nobody said that something aboard does (may_charge).

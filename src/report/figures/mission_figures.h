@@ -36,12 +36,10 @@ struct UtilityPoint {
 /// Utility over final state of charge, a point a mission, with the planned one's reserve and proven bound.
 Figure utility_figure(const SimulatedMission& planned, const std::vector<UtilityPoint>& points, const std::string& id);
 
-/// When a component of a mission runs with which quality of service, from start to end as it is seen: equal
+/// When a component of a mission runs with which quality of service, in seconds since the mission began: equal
 /// neighbours are one.
-struct RunInterval {
+struct RunInterval : flight::TimeInterval {
     std::size_t component = 0;
-    double start_s = 0.0;  ///< since the mission began
-    double end_s = 0.0;
     std::vector<double> qos;
 };
 

@@ -99,7 +99,7 @@ std::vector<RunInterval> run_intervals(const mission::Mission& mission) {
                 continue;
             }
             last[run.component] = times.size();
-            times.push_back({run.component, start_s, end_s, run.qos});
+            times.push_back({{start_s, end_s}, run.component, run.qos});
         }
     }
     return times;

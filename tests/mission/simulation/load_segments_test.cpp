@@ -102,7 +102,7 @@ TEST(LeastPower, IsThatOfAFineGrid) {
                                              1.0,
                                              {uniform(random), uniform(random), uniform(random)},
                                              {uniform(random), uniform(random), uniform(random)}};
-        const CurveInterval within{5.0 * (1.0 + uniform(random)), 40.0 + 20.0 * uniform(random)};
+        const TimeInterval within{5.0 * (1.0 + uniform(random)), 40.0 + 20.0 * uniform(random)};
         double min_w = 1e9;
         for (int k = 0; k <= 100000; ++k) {
             const double time_s = within.start_s + (within.end_s - within.start_s) * k / 100000.0;
