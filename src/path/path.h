@@ -81,6 +81,9 @@ struct LocalPosition {
     double north_m = 0.0;
 
     friend bool operator==(const LocalPosition&, const LocalPosition&) = default;
+    friend LocalPosition operator-(const LocalPosition& a, const LocalPosition& b) {
+        return {a.east_m - b.east_m, a.north_m - b.north_m};
+    }
 };
 
 /// Where a place of a path is, from its start. A hold moves nothing, as the path goes on from where it was planned to,

@@ -130,10 +130,9 @@ class PathBuilder {
     }
 
     void fly_to(const PathEntry& entry, const LocalPosition& there) {
-        const double east_m = there.east_m - place_.east_m;
-        const double north_m = there.north_m - place_.north_m;
-        const double length_m = std::hypot(east_m, north_m);
-        const double course_deg = std::atan2(east_m, north_m) * units::degree_per_rad;
+        const auto way = there - place_;
+        const double length_m = std::hypot(way.east_m, way.north_m);
+        const double course_deg = std::atan2(way.east_m, way.north_m) * units::degree_per_rad;
         if (entry.duration_s) {
             if (length_m > same_place_m) course_deg_ = std::fmod(course_deg + 360.0, 360.0);
             add_element(entry, Hold{*entry.duration_s, Leg{length_m, course_deg_}});
@@ -153,12 +152,11 @@ class PathBuilder {
 
     /// Straight towards the centre, or from it, to the edge.
     void fly_to_circle(const PathEntry& entry, const LocalPosition& centre) {
-        const double east_m = place_.east_m - centre.east_m;
-        const double north_m = place_.north_m - centre.north_m;
-        const double distance_m = std::hypot(east_m, north_m);
+        const auto out = place_ - centre;
+        const double distance_m = std::hypot(out.east_m, out.north_m);
         const double course_rad = course_deg_ / units::degree_per_rad;
-        const double out_east = distance_m > same_place_m ? east_m / distance_m : std::sin(course_rad);
-        const double out_north = distance_m > same_place_m ? north_m / distance_m : std::cos(course_rad);
+        const double out_east = distance_m > same_place_m ? out.east_m / distance_m : std::sin(course_rad);
+        const double out_north = distance_m > same_place_m ? out.north_m / distance_m : std::cos(course_rad);
         auto edge = entry;
         edge.duration_s.reset();
         fly_to(edge, {centre.east_m + *entry.radius_m * out_east, centre.north_m + *entry.radius_m * out_north});

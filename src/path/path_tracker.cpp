@@ -103,7 +103,7 @@ void PathTracker::Filters::run_filters(std::size_t until, FilterPasses& passes) 
 /// part at a time.
 void PathTracker::Filters::renew_second(FilterPasses& passes) const {
     if (!passes.has_coming) {
-        const auto moved = minus(passes.origin.value(), passes.second.origin());
+        const auto moved = passes.origin.value() - passes.second.origin();
         if (std::hypot(moved.east_m, moved.north_m) <= moved_origin_m) return;
         passes.coming.begin(off_path_m, passes.origin.value());
         passes.has_coming = true;

@@ -152,23 +152,16 @@ path::ClimbRates read_rates(const TomlTable& table) {
 }
 
 /// The place that a table gives, in either coordinates.
-struct StatedPlace {
-    std::optional<path::LocalPosition> local;
-    std::optional<path::GeodeticPosition> geographic;
-};
-
-StatedPlace read_place(const TomlTable& table) {
-    StatedPlace place;
+void read_place(const TomlTable& table, std::optional<path::LocalPosition>& local,
+                std::optional<path::GeodeticPosition>& geographic) {
     const auto metres = between(-1e7, 1e7);
     if (table.has("east_m") || table.has("north_m"))
-        place.local = path::LocalPosition{number_in(metres, table, "east_m"), number_in(metres, table, "north_m")};
+        local = path::LocalPosition{number_in(metres, table, "east_m"), number_in(metres, table, "north_m")};
     if (table.has("latitude_deg") || table.has("longitude_deg")) {
-        place.geographic = path::GeodeticPosition{number_in(between(-90.0, 90.0), table, "latitude_deg"),
-                                                  number_in(between(-180.0, 180.0), table, "longitude_deg")};
+        geographic = path::GeodeticPosition{number_in(between(-90.0, 90.0), table, "latitude_deg"),
+                                            number_in(between(-180.0, 180.0), table, "longitude_deg")};
     }
-    if (place.local && place.geographic)
-        throw InputError(table.where(), "a place in metres and in degrees", "give one of them");
-    return place;
+    if (local && geographic) throw InputError(table.where(), "a place in metres and in degrees", "give one of them");
 }
 
 path::PathEntry read_leg(const TomlTable& leg, std::size_t number) {
@@ -178,9 +171,7 @@ path::PathEntry read_leg(const TomlTable& leg, std::size_t number) {
     path::PathEntry entry;
     entry.name = fmt::format("leg {}", number);
     entry.where = leg.where();
-    const auto place = read_place(leg);
-    entry.place = place.local;
-    entry.geographic = place.geographic;
+    read_place(leg, entry.place, entry.geographic);
     entry.length_m = optional_number_in(more_than_up_to(0.0, path::max_leg_m), leg, "length_m");
     entry.course_deg = optional_number_in(between(-360.0, 360.0), leg, "course_deg");
     entry.duration_s = optional_number_in(times, leg, "duration_s");
@@ -209,12 +200,10 @@ path::PathDefaults read_defaults(const TomlTable& path) {
     defaults.return_to_start = path.optional_boolean("return_to_start").value_or(false);
     if (const auto start = path.optional_table("start")) {
         start->refuse_keys_except({"east_m", "north_m", "latitude_deg", "longitude_deg"});
-        const auto place = read_place(*start);
-        if (!place.local && !place.geographic)
+        read_place(*start, defaults.start, defaults.geographic_start);
+        if (!defaults.start && !defaults.geographic_start)
             throw InputError(start->where(), "start is no place",
                              "give east_m and north_m, or latitude_deg and longitude_deg");
-        defaults.start = place.local;
-        defaults.geographic_start = place.geographic;
     }
     return defaults;
 }

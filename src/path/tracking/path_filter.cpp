@@ -81,10 +81,6 @@ constexpr double comes_back = 0.05;
 
 }  // namespace
 
-LocalPosition minus(const LocalPosition& a, const LocalPosition& b) {
-    return {a.east_m - b.east_m, a.north_m - b.north_m};
-}
-
 double dot(const LocalPosition& a, const LocalPosition& b) { return a.east_m * b.east_m + a.north_m * b.north_m; }
 
 PathGrid make_path_grid(const PathForecast& path) {
@@ -103,7 +99,7 @@ PathGrid make_path_grid(const PathForecast& path) {
         PathPoint place;
         place.at = local_position_at(path.plan().path, here);
         place.course =
-            unit(minus(local_position_at(path.plan().path, after), local_position_at(path.plan().path, before)), 1e-6);
+            unit(local_position_at(path.plan().path, after) - local_position_at(path.plan().path, before), 1e-6);
         if (here.element < elements.size()) {
             const auto* hold = std::get_if<Hold>(&elements[here.element].shape);
             place.is_unconstrained = hold != nullptr && !hold->over_ground;
@@ -134,8 +130,8 @@ void collect_observations(const flight::SelectedTracks& tracks, double start_s, 
             has_origin = true;
         }
         constexpr double min_m = 3.0;
-        if (now.is_known) now.at = minus(now.at, origin);
-        if (now.is_known && !all.empty() && all.back().is_known) now.course = unit(minus(now.at, all.back().at), min_m);
+        if (now.is_known) now.at = now.at - origin;
+        if (now.is_known && !all.empty() && all.back().is_known) now.course = unit(now.at - all.back().at, min_m);
         all.push_back(now);
         if (time_s <= settled_until_s) settled = all.size();
     }
@@ -221,7 +217,7 @@ double PathFilter::log_likelihood(std::size_t i) const {
     const auto& point = places_->of[i];
     if (point.is_unconstrained) return anywhere;
     const auto& seen = last_seen_;
-    const auto off = minus(minus(seen.at, origin_), point.at);
+    const auto off = seen.at - origin_ - point.at;
     const bool have_courses = dot(point.course, point.course) > 0.0 && dot(seen.course, seen.course) > 0.0;
     const double turned = have_courses ? 1.0 - dot(point.course, seen.course) : 0.0;
     return -0.5 * dot(off, off) / (off_path_m_ * off_path_m_) - course_weight * turned;
@@ -253,13 +249,13 @@ double PathFilter::nearest_position() const {
     }
     const auto& point = places_->of[nearest];
     if (point.is_unconstrained) return middle;
-    const double ahead_m = dot(minus(minus(last_seen_.at, origin_), point.at), point.course);
-    const auto step = minus(places_->of[std::min(nearest + 1, on_.size() - 1)].at, point.at);
+    const double ahead_m = dot(last_seen_.at - origin_ - point.at, point.course);
+    const auto step = places_->of[std::min(nearest + 1, on_.size() - 1)].at - point.at;
     const double step_m = std::max(1.0, std::hypot(step.east_m, step.north_m));
     return static_cast<double>(nearest) + std::clamp(ahead_m / step_m, -0.5, 0.5);
 }
 
-LocalPosition PathFilter::off(double place) const { return minus(minus(last_seen_.at, origin_), point_of(place).at); }
+LocalPosition PathFilter::off(double place) const { return last_seen_.at - origin_ - point_of(place).at; }
 
 const PathPoint& PathFilter::point_of(double place) const { return places_->of[index_of(place)]; }
 

@@ -42,7 +42,6 @@ struct Observations {
 void collect_observations(const flight::SelectedTracks& tracks, double start_s, double until_s, double step_s,
                           Observations& observations);
 
-LocalPosition minus(const LocalPosition& a, const LocalPosition& b);
 double dot(const LocalPosition& a, const LocalPosition& b);
 
 /// How likely a flight at each place of a path is, on the path and off it, by its observations one after the other.
