@@ -153,7 +153,7 @@ ModelKind model_kind(const StageCall& call) {
 
 void add_best_power(std::span<const mechanical::MeasuredFlight> measured, const mechanical::ModelFitOptions& options,
                     mechanical::MechanicalModel& model) {
-    TerminalProgress fitting("fits");
+    ProgressBar fitting("fits");
     mechanical::add_best_power(model, measured, options, fitting.callback());
 }
 
