@@ -4,7 +4,6 @@
 #include "base/error.h"
 #include "base/overwrite_guard.h"
 #include "base/signal_watch.h"
-#include "batch/batch_files.h"
 #include "batch/batch_fit.h"
 #include "batch/batch_run.h"
 #include "batch/manifest.h"
@@ -30,7 +29,6 @@
 
 #include <fmt/format.h>
 #include <malloc.h>
-#include <unistd.h>
 
 namespace {
 
@@ -38,7 +36,7 @@ using namespace flightwatt;
 
 /// What is known of the run at any moment, by all threads.
 struct BatchProgressState {
-    std::optional<cli::ProgressBar> bar;  ///< on a terminal
+    cli::ProgressBar bar{"logs"};
     std::atomic<std::size_t> done = 0;
     std::size_t all = 0;
     std::timed_mutex speaking;  ///< whoever tells of the run holds it; what says that it was stopped, for ever
@@ -49,10 +47,7 @@ batch::BatchProgress progress_of(const cli::StageCall& call, BatchProgressState&
     return [&](std::size_t done, std::size_t all, const batch::BatchFlight& flight) {
         const std::lock_guard lock(state.speaking);
         state.done = done;
-        if (state.bar) {
-            state.bar->show(done, all);
-            return;
-        }
+        if (cli::standard_error_terminal() != nullptr) return state.bar.show(done, all);
         const auto* what = flight.record.is_of_other_aircraft ? "left out"
                            : !flight.record.accepted          ? "rejected"
                            : flight.log_is_missing            ? "kept, its log is gone"
@@ -67,7 +62,7 @@ std::function<void(int)> on_signal(const cli::StageCall& call, BatchProgressStat
         constexpr std::chrono::milliseconds patience(100);  // with a standard error that nobody reads
         [[maybe_unused]] const bool others_are_silent = state.speaking.try_lock_for(patience);
         const batch::RemoveIfEmpty unfinished{std::filesystem::path(*call.output) / batch::temporary_folder};
-        if (state.bar) state.bar->clear();
+        state.bar.clear();
         cli::note(call, fmt::format("stopped by {} after {} of {} logs; the same command goes on from there",
                                     signal_name(signal), state.done.load(), state.all));
     };
@@ -357,11 +352,10 @@ int run_over_logs(const cli::StageCall& call) {
     options.gate = &gate;
     BatchProgressState state;
     state.all = plan.logs.size();
-    if (::isatty(STDERR_FILENO) != 0) state.bar.emplace(stderr, "logs");
     const batch::TerminationHandler interruption(gate, on_signal(call, state));
     auto flights = run_batch(plan.logs, options, progress_of(call, state));
     plan = {};
-    if (state.bar) state.bar->clear();
+    state.bar.clear();
     return finish(call, std::move(flights), options, published);
 }
 

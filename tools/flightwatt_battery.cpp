@@ -109,7 +109,7 @@ void note_what_it_rests_on(const cli::StageCall& call, const battery::BatteryIde
 std::pair<battery::BatteryIdentification, std::vector<battery::LeaveOneOutCheck>> identify_and_check(
     const std::vector<battery::DischargeRecord>& records, const battery::IdentificationOptions& options,
     std::size_t folds) {
-    cli::TerminalProgress identifying("identifications");
+    cli::ProgressBar identifying("identifications");
     auto identified = identify_battery(records, options);
     const auto show = [&](std::size_t done, std::size_t all) { identifying.show(done + 1, all + 1); };
     return {std::move(identified), leave_one_out(records, options, show, folds)};

@@ -70,7 +70,7 @@ Form form_of(const cli::StageCall& call) {
 
 std::string ranking_text(const cli::StageCall& call, const std::vector<mission::MissionSummary>& ranking, Form form) {
     if (form == Form::csv) return cli::comparison_csv(ranking);
-    const auto table = comparison_table(ranking);
+    const auto table = cli::comparison_table(ranking);
     if (form == Form::markdown) return to_markdown(table);
     const auto screen = call.output ? cli::Screen() : screen_of(call);
     const auto count = ranking.size();

@@ -38,39 +38,27 @@ struct ConvertedLog {
     telemetry::LinkCounts counts;
 };
 
-class TextWriter {
-  public:
-    void write(const telemetry::LinkMessage& message) {
-        if (message.time_s && !converted_.start_s) {
-            converted_.start_s = *message.time_s;
-            converted_.untimed = std::exchange(converted_.lines, 0);
-            converted_.text.clear();
-            converted_.senders.clear();
-        }
-        const double time_s = message.time_s.value_or(0.0);
-        converted_.end_s = time_s;
-        converted_.senders.insert(message.sender);
-        fmt::format_to(std::back_inserter(converted_.text), "{:.4f} {}\n", time_s, message.text);
-        ++converted_.lines;
-    }
-    ConvertedLog take(const telemetry::LinkCounts& counts) {
-        converted_.counts = counts;
-        return std::move(converted_);
-    }
-
-  private:
-    ConvertedLog converted_;
-};
-
 ConvertedLog convert_log(const flight::FlightFile& file) {
     return flight::with_binary_log(file, [&](const telemetry::BinaryLog& log) {
         telemetry::LinkDecoder decoder(*log.messages, log.framing, link_version(log));
-        TextWriter writer;
-        const auto sink = [&](const telemetry::LinkMessage& message) { writer.write(message); };
+        ConvertedLog converted;
+        const auto sink = [&](const telemetry::LinkMessage& message) {
+            if (message.time_s && !converted.start_s) {
+                converted.start_s = *message.time_s;
+                converted.untimed = std::exchange(converted.lines, 0);
+                converted.text.clear();
+                converted.senders.clear();
+            }
+            converted.end_s = message.time_s.value_or(0.0);
+            converted.senders.insert(message.sender);
+            fmt::format_to(std::back_inserter(converted.text), "{:.4f} {}\n", converted.end_s, message.text);
+            ++converted.lines;
+        };
         decoder.push(log.bytes, sink);
         decoder.flush(sink);
         require_fitting(decoder.counts(), log);
-        return writer.take(decoder.counts());
+        converted.counts = decoder.counts();
+        return converted;
     });
 }
 

@@ -88,12 +88,12 @@ int show_difference(const cli::StageCall& call) {
         kind == ComparedKind::missions ? cli::Differences{kind, mission_differences(call)} : compare_models(call, kind);
     const auto screen = screen_of(call);
     if (screen.is_terminal && !call.output && !call.json) {
-        const auto table = difference_table(differences, [](double value) { return fmt::format("{:.4g}", value); });
+        const auto table = difference_table(differences, ".4g");
         cli::print(screen_text(table, screen,
                                {fmt::format("{} against {}", b, a),
                                 {"part", "quantity", "a", "b", "difference", "low", "high", "differs", "at_s"}}));
     } else {
-        cli::write_result(call, to_csv(difference_table(differences, [](double v) { return fmt::format("{}", v); })));
+        cli::write_result(call, to_csv(difference_table(differences, "")));
     }
     if (call.json) cli::print(cli::json_text(to_json(differences)));
     if (kind != ComparedKind::missions) note_differences(call, differences.rows);

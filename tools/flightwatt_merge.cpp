@@ -2,7 +2,6 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "batch/batch_files.h"
 #include "batch/batch_fit.h"
 #include "batch/merge.h"
 #include "batch/write_guard.h"
@@ -106,7 +105,7 @@ int merge(const cli::StageCall& call) {
     remove_model(call, out);
     batch::WriteGate gate;
     batch::MergeOptions options{out, mechanical::min_samples(mechanical::ModelFitOptions{}.phases.order), gate};
-    cli::TerminalProgress progress("flights");
+    cli::ProgressBar progress("flights");
     const batch::TerminationHandler interruption(gate, [&](int) {
         const batch::RemoveIfEmpty unfinished_folder{out / batch::temporary_folder};
         cli::note(call, "stopped; the same command goes on from there");

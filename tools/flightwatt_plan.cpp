@@ -12,7 +12,11 @@
 #include "mission/plan.h"
 #include "stages.h"
 
+#include <array>
+#include <cstddef>
 #include <filesystem>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -109,15 +113,9 @@ int make_plan(const cli::StageCall& call, const MissionFile& file) {
 
 /// What the battery does beyond a limit; empty if charge is what ends it.
 std::string_view beyond(mission::LimitingFactor bound) {
-    switch (bound) {
-        case mission::LimitingFactor::power:
-            return "; beyond, the battery cannot deliver the power";
-        case mission::LimitingFactor::cut_off:
-            return "; beyond, the battery is cut off";
-        case mission::LimitingFactor::charge:
-            break;
-    }
-    return "";
+    constexpr std::array<std::string_view, 3> texts{"", "; beyond, the battery cannot deliver the power",
+                                                    "; beyond, the battery is cut off"};
+    return texts.at(static_cast<std::size_t>(bound));
 }
 
 int answer(const cli::StageCall& call, const mission::MissionSetup& mission, const std::string& question,
@@ -158,15 +156,10 @@ int answer_reach(const cli::StageCall& call, const MissionFile& file) {
         [&](const mission::MissionReadOptions& reading) { return file.read(reading); }, probability(call));
     const auto mission = file.read();
     const auto& setup = setup_of(mission);
-    switch (reach.unit) {
-        case mission::ReachUnit::circles:
-            return answer(call, setup, "most_circles", "circles", reach.limit);
-        case mission::ReachUnit::return_m:
-            return answer(call, setup, "farthest_return_m", "m", reach.limit);
-        case mission::ReachUnit::cruise_s:
-            break;
-    }
-    return answer(call, setup, "longest_cruise_s", "s", reach.limit);
+    constexpr std::array<std::pair<const char*, const char*>, 3> questions{
+        {{"longest_cruise_s", "s"}, {"most_circles", "circles"}, {"farthest_return_m", "m"}}};
+    const auto& [question, unit] = questions.at(static_cast<std::size_t>(reach.unit));
+    return answer(call, setup, question, unit, reach.limit);
 }
 
 int plan_file(const cli::StageCall& call) {

@@ -10,7 +10,6 @@
 #include "mechanical/prediction.h"
 #include "stages.h"
 
-#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>

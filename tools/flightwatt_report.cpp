@@ -7,7 +7,6 @@
 #include "cli/output/mission_output.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
-#include "mechanical/mechanical_model.h"
 #include "mission/mission_file.h"
 #include "report/figure.h"
 #include "report/html.h"
@@ -85,7 +84,7 @@ report::ReportLog log_of(const cli::StageCall& call) {
     return {[&](const std::string& text) { cli::warn(call, text); },
             [&](const std::string& text) { cli::note(call, text); },
             [](const std::string& unit) -> report::Progress {
-                const auto bar = std::make_shared<cli::TerminalProgress>(unit);
+                const auto bar = std::make_shared<cli::ProgressBar>(unit);
                 return [bar](std::size_t done, std::size_t all) { bar->show(done, all); };
             }};
 }

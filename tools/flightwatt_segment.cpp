@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -89,16 +90,11 @@ struct SegmentedFlights {
 
 /// The rows of a CSV behind a first cell with their flight; its header where `csv` has none yet.
 void append_rows(const std::string& rows, const std::string& flight, std::string& csv) {
-    const bool has_header = !csv.empty();
-    bool is_header = true;
-    for_each_csv_row(rows, flight, [&](const CsvRowView& row) {
-        if (!is_header || !has_header) {
-            csv += is_header ? "flight" : csv_cell(flight);
-            for (const auto& cell : row.cells) csv += "," + csv_cell(cell.text);
-            csv += "\n";
-        }
-        is_header = false;
-    });
+    std::istringstream lines(rows);
+    std::string line;
+    std::getline(lines, line);
+    if (csv.empty()) csv = "flight," + line + "\n";
+    while (std::getline(lines, line)) csv += csv_cell(flight) + "," + line + "\n";
 }
 
 void add_flight(const cli::StageCall& call, const std::string& file, const flight::LoadedFlight& loaded,

@@ -4,6 +4,7 @@
 #include "batch/trend.h"
 #include "cli/output/battery_output.h"
 #include "cli/output/flight_options.h"
+#include "cli/output/records.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "report/page.h"
@@ -67,30 +68,19 @@ Json flight_json(const report::FlightTrendData& flight) {
 }
 
 std::string flights_csv(const std::vector<report::FlightTrendData>& flights) {
-    std::vector<Json> records;
-    for (const auto& flight : flights) {
-        auto& record = records.emplace_back(flight_json(flight));
-        if (flight.resistance) {
-            record["resistance_low_ohm"] = flight.resistance->interval_ohm.low;
-            record["resistance_high_ohm"] = flight.resistance->interval_ohm.high;
-        }
-        if (flight.capacity_ah) {
-            record["capacity_low_ah"] = flight.capacity_interval_ah.low;
-            record["capacity_high_ah"] = flight.capacity_interval_ah.high;
-        }
-    }
     std::vector<std::string_view> columns{"flight",    "aircraft",   "date",          "in_air_s",
                                           "energy_wh", "distance_m", "air_distance_m"};
     for (const auto& quantity : report::trend_quantities()) columns.emplace_back(quantity.name);
-    columns.insert(columns.end(),
-                   {"resistance_low_ohm", "resistance_high_ohm", "capacity_low_ah", "capacity_high_ah", "charge_ah"});
-    return cli::csv_of(records, columns);
+    columns.insert(
+        columns.end(),
+        {"resistance_interval_ohm/0: resistance_low_ohm", "resistance_interval_ohm/1: resistance_high_ohm",
+         "capacity_interval_ah/0: capacity_low_ah", "capacity_interval_ah/1: capacity_high_ah", "charge_ah"});
+    return cli::csv_of(cli::list_json(flights, flight_json), columns);
 }
 
 Json trends_json(const std::vector<report::FlightTrendData>& flights,
                  const std::vector<report::AircraftTrend>& trends) {
-    Json json{{"flights", Json::array()}, {"trends", Json::array()}};
-    for (const auto& flight : flights) json["flights"].push_back(flight_json(flight));
+    Json json{{"flights", cli::list_json(flights, flight_json)}, {"trends", Json::array()}};
     for (const auto& row : trends) {
         Json item{{"aircraft", row.aircraft}, {"quantity", row.quantity}};
         const auto& trend = row.answer.trend;

@@ -80,7 +80,7 @@ std::vector<mechanical::ValidatedFlight> validate(const std::vector<mechanical::
                                                   const mechanical::ModelFitOptions& options,
                                                   const std::vector<mechanical::Covariate>& covariates,
                                                   std::size_t folds) {
-    cli::TerminalProgress fitting("fits");
+    cli::ProgressBar fitting("fits");
     return leave_one_out(flights, options, covariates, fitting.callback(), folds);
 }
 

@@ -95,16 +95,6 @@ std::string fixed(const std::optional<double>& number, int decimals) {
     return number ? fmt::format("{:.{}f}", *number, decimals) : "-";
 }
 
-TextTable without_unknown(TextTable table, std::span<const std::string_view> columns) {
-    for (const auto& name : columns) {
-        const auto column = std::ranges::find(table.header, name) - table.header.begin();
-        if (std::ranges::any_of(table.rows, [&](const auto& row) { return *(row.begin() + column) != "-"; })) continue;
-        table.header.erase(table.header.begin() + column);
-        for (auto& row : table.rows) row.erase(row.begin() + column);
-    }
-    return table;
-}
-
 std::string to_text(TextTable raw) {
     const auto table = without_controls(std::move(raw));
     std::vector<std::size_t> widths;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,9 +22,6 @@ struct CaptionedTable {
 
 /// A number with so many decimals, for a cell; '-' for what is not known.
 std::string fixed(const std::optional<double>& number, int decimals);
-
-/// The table without those of the named columns in which no row knows anything: all cells are '-'.
-TextTable without_unknown(TextTable table, std::span<const std::string_view> columns);
 
 /// Columns padded to their widest cell (counted in code points) and two blanks apart; a column whose cells
 /// are all numbers, or '-', stands to the right.

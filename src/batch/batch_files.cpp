@@ -11,8 +11,6 @@
 #include "flight/series_file.h"
 #include "telemetry/log_configuration.h"
 
-#include <algorithm>
-#include <stdexcept>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -28,23 +26,6 @@ std::vector<LogFile> stored_flights(const std::filesystem::path& out) {
         return !std::filesystem::exists(result_path(out, flight.flight, record_suffix), none);
     });
     return flights;
-}
-
-/// What a batch wrote of an accepted log beside its record.
-struct Results {
-    std::string series_csv;
-    std::string fingerprint;  ///< of it and the phases; empty if one is missing
-};
-
-Results read_results(const std::filesystem::path& out, const std::string& flight) {
-    const auto series_path = result_path(out, flight, series_suffix);
-    const auto phases_path = result_path(out, flight, phases_suffix);
-    std::error_code none;
-    for (const auto& path : {series_path, phases_path})
-        if (!std::filesystem::is_regular_file(path, none)) return {};
-    Results results{read_file(series_path), {}};
-    results.fingerprint = results_fingerprint(results.series_csv, read_file(phases_path));
-    return results;
 }
 
 struct IntactFlight {
@@ -68,12 +49,14 @@ IntactFlight read_intact(const std::filesystem::path& out, const std::string& fl
     record->flight = flight;
     IntactFlight intact{*std::move(record), {}};
     if (!intact.record.accepted) return intact;
-    auto results = read_results(out, flight);
-    if (intact.record.results.empty() || intact.record.results != results.fingerprint) {
-        throw InputError({result_path(out, flight, series_suffix).string()},
-                         "it or the phases beside it are not as the batch wrote them", hint);
-    }
-    intact.series_csv = std::move(results.series_csv);
+    const auto series = result_path(out, flight, series_suffix);
+    const auto phases = result_path(out, flight, phases_suffix);
+    std::error_code none;
+    const bool are_there =
+        std::filesystem::is_regular_file(series, none) && std::filesystem::is_regular_file(phases, none);
+    if (are_there) intact.series_csv = read_file(series);
+    if (!are_there || intact.record.results != results_fingerprint(intact.series_csv, read_file(phases)))
+        throw InputError({series.string()}, "it or the phases beside it are not as the batch wrote them", hint);
     return intact;
 }
 

@@ -6,7 +6,6 @@
 #include "base/overwrite_guard.h"
 #include "base/text.h"
 #include "base/toml_reader.h"
-#include "batch/batch_files.h"
 #include "batch/manifest.h"
 #include "mechanical/fit_records.h"
 

@@ -6,7 +6,6 @@
 #include "mechanical/measured_flight.h"
 
 #include <cstddef>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>

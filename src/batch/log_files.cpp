@@ -70,17 +70,17 @@ void add_folder(const std::filesystem::path& folder, const std::filesystem::path
 }
 
 std::vector<LogFile> each_once(std::vector<LogFile> logs) {
-    CanonicalPathCache find_place;
     for (auto& log : logs) {
         auto normal = std::filesystem::path(log.path).lexically_normal().string();
         // Behind a link, LINK/.. is not where LINK stands.
-        const bool is_same = log.path.find("..") == std::string::npos || find_place(normal) == find_place(log.path);
+        const bool is_same =
+            log.path.find("..") == std::string::npos || canonical_path(normal) == canonical_path(log.path);
         if (is_same) log.path = std::move(normal);
     }
     std::ranges::sort(logs, [](const LogFile& a, const LogFile& b) {
         return a.path == b.path ? a.why_not_fitted < b.why_not_fitted : path_less(a.path, b.path);
     });
-    for (auto& log : logs) log.place = find_place(log.path);
+    for (auto& log : logs) log.place = canonical_path(log.path);
     {
         std::unordered_set<std::string_view> seen;
         for (auto& log : logs)
@@ -113,20 +113,13 @@ bool path_less(std::string_view one, std::string_view other) {
     return std::ranges::lexicographical_compare(one, other, {}, rank, rank);
 }
 
-std::string CanonicalPathCache::operator()(const std::string& log) {
+std::string canonical_path(const std::string& log) {
     const std::filesystem::path path(log);
-    auto folder = path.has_parent_path() ? path.parent_path().string() : std::string(".");
-    if (folder != folder_) {
-        std::error_code error;
-        const auto whole = std::filesystem::absolute(folder, error);
-        const auto canonical = std::filesystem::weakly_canonical(whole, error);
-        place_ = error ? whole.lexically_normal() : canonical;
-        folder_ = std::move(folder);
-    }
-    return (place_ / path.filename()).string();
+    std::error_code error;
+    const auto folder = std::filesystem::absolute(path.has_parent_path() ? path.parent_path() : ".", error);
+    const auto canonical = std::filesystem::weakly_canonical(folder, error);
+    return ((error ? folder.lexically_normal() : canonical) / path.filename()).string();
 }
-
-std::string canonical_path(const std::string& log) { return CanonicalPathCache()(log); }
 
 void UniqueNames::reserve(const std::string& name) { taken_.insert(name); }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -27,16 +26,6 @@ bool path_less(std::string_view one, std::string_view other);
 
 /// The path of a log from the root, its folder without links: one log, one place, however it is written.
 std::string canonical_path(const std::string& log);
-
-/// The same of many logs, whose folders are asked for once as long as they follow each other.
-class CanonicalPathCache {
-  public:
-    std::string operator()(const std::string& log);
-
-  private:
-    std::optional<std::string> folder_;  ///< of the last log, as it was written
-    std::filesystem::path place_;        ///< and from the root
-};
 
 /// The logs among files and folders (searched to the bottom for .data, .LOG and .tlm files, compressed or not), in the
 /// order of their paths, each once however it is written. Flights of the same name get the names NAME, NAME_2, ...

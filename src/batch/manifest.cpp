@@ -111,37 +111,26 @@ Manifest manifest_of_records(const std::filesystem::path& out) {
     return manifest;
 }
 
-/// Finds the earlier flight of a log: at the same place, or of the same path where its own place is gone (moved
-/// folders).
-class EarlierFlights {
-  public:
-    explicit EarlierFlights(const std::vector<LogFile>& flights) {
-        for (const auto& flight : flights) {
-            by_place_.emplace(flight.place, &flight);
-            by_path_.emplace(flight.path, &flight);
-        }
-    }
-    /// nullptr where there is none.
-    const LogFile* find(const LogFile& log) const {
-        if (const auto same = by_place_.find(log.place); same != by_place_.end()) return same->second;
-        const auto moved = by_path_.find(log.path);
-        return moved == by_path_.end() || is_there(moved->second->place) ? nullptr : moved->second;
-    }
-
-  private:
-    std::unordered_map<std::string_view, const LogFile*> by_place_;
-    std::unordered_map<std::string_view, const LogFile*> by_path_;
-};
-
 /// Names this run's logs. Returns the names of the earlier flights that are among them.
 std::unordered_set<std::string_view> name_logs(std::vector<LogFile>& logs, const std::vector<LogFile>& earlier,
                                                bool prune) {
-    const EarlierFlights flights(earlier);
+    std::unordered_map<std::string_view, const LogFile*> by_place;
+    std::unordered_map<std::string_view, const LogFile*> by_path;
+    for (const auto& flight : earlier) {
+        by_place.emplace(flight.place, &flight);
+        by_path.emplace(flight.path, &flight);
+    }
+    // The flight of a log at the same place, or of the same path where its own place is gone (moved folders).
+    const auto find = [&](const LogFile& log) -> const LogFile* {
+        if (const auto same = by_place.find(log.place); same != by_place.end()) return same->second;
+        const auto moved = by_path.find(log.path);
+        return moved == by_path.end() || is_there(moved->second->place) ? nullptr : moved->second;
+    };
     std::unordered_set<std::string_view> known;
     UniqueNames names;
     std::vector<LogFile*> without_name;
     for (auto& log : logs) {
-        const auto* before = log.problem.empty() ? flights.find(log) : nullptr;
+        const auto* before = log.problem.empty() ? find(log) : nullptr;
         if (before != nullptr && known.insert(before->flight).second) {
             log.flight = before->flight;
             names.reserve(log.flight);
@@ -166,9 +155,9 @@ bool was_usable(const std::filesystem::path& out, const std::string& flight) {
 }
 
 /// An earlier flight that is not among this run's logs.
-void add_earlier(LogFile flight, const std::filesystem::path& out, CanonicalPathCache& find_place, bool prune,
-                 BatchPlan& plan, std::vector<LogFile>& logs) {
-    if (find_place(flight.path) != flight.place) flight.path = flight.place;  // run from another folder
+void add_earlier(LogFile flight, const std::filesystem::path& out, bool prune, BatchPlan& plan,
+                 std::vector<LogFile>& logs) {
+    if (canonical_path(flight.path) != flight.place) flight.path = flight.place;  // run from another folder
     flight.is_of_this_run = false;
     flight.is_missing = !is_there(flight.path);
     const auto gone = flight.is_missing ? "is gone" : "is not in this batch";
@@ -294,12 +283,11 @@ BatchPlan plan_batch(std::vector<LogFile> logs, const std::filesystem::path& out
     BatchPlan plan;
     plan.earlier = read_manifest(out);
     const auto& earlier = plan.earlier.flights;
-    CanonicalPathCache find_place;
     for (auto& log : logs)
-        if (log.place.empty()) log.place = find_place(log.path);
+        if (log.place.empty()) log.place = canonical_path(log.path);
     const auto known = name_logs(logs, earlier, prune);
     for (const auto& flight : earlier)
-        if (!known.contains(flight.flight)) add_earlier(flight, out, find_place, prune, plan, logs);
+        if (!known.contains(flight.flight)) add_earlier(flight, out, prune, plan, logs);
     std::ranges::stable_sort(logs, path_less, &LogFile::path);
     plan.manifest.files = {model_names.begin(), model_names.end()};
     plan.manifest.files.insert(catalogue_name);

@@ -111,81 +111,72 @@ FlightRecord renamed(FlightRecord record, const std::string& name) {
     return record;
 }
 
-class FlightMerger {
-  public:
-    FlightMerger(const MergePlan& plan, const MergeOptions& options) : plan_(plan), options_(options) {}
+void write(const MergeOptions& options, const std::string& name, const char* ending, const std::string& text) {
+    write_file_atomically(result_path(options.out, name, ending), text, options.out / temporary_folder);
+}
 
-    BatchFlight merge(std::size_t number) const {
-        const OverwriteExemption own;  // its batches' results, which are no inputs that a result could replace
-        const auto& [from, flight] = plan_.sources[number];
-        const auto& name = plan_.folder.logs[number].flight;
-        const auto text = read_file(result_path(from, flight, record_suffix));
-        auto record = read_verified_record(from, flight);
-        const bool is_up_to_date = name == flight && is_there(name, text);
-        if (name != flight) {
-            record.content.hashes = marks_from_json(text).value();  // sealed with the rest
-            take_over_as(name, from, flight, record);
-        } else if (!is_up_to_date) {
-            take_over(from, name, record.accepted);
-        }
-        auto merged = without_samples(std::move(record), options_.needed_samples, {});
-        merged.was_up_to_date = is_up_to_date;
-        return merged;
+/// Whether the flight is there already, with this record.
+bool is_there(const std::filesystem::path& out, const std::string& name, const std::string& record) {
+    try {
+        std::error_code none;
+        const auto file = result_path(out, name, record_suffix);
+        if (!std::filesystem::is_regular_file(file, none) || read_file(file) != record) return false;
+        read_verified_record(out, name);
+        return true;
+    } catch (const InputError&) {
+        return false;
     }
+}
 
-  private:
-    bool is_there(const std::string& name, const std::string& record) const {
-        try {
-            std::error_code none;
-            const auto file = result_path(options_.out, name, record_suffix);
-            if (!std::filesystem::is_regular_file(file, none) || read_file(file) != record) return false;
-            read_verified_record(options_.out, name);
-            return true;
-        } catch (const InputError&) {
-            return false;
-        }
+/// The record last, as a batch does.
+void take_over(const MergeOptions& options, const MergedFlight& source, bool is_accepted) {
+    const WriteGate::WriterGuard inside(options.gate);
+    remove_results(options.out, source.flight);
+    for (const auto* ending : {series_suffix, phases_suffix, record_suffix}) {
+        if (!is_accepted && ending != std::string_view(record_suffix)) continue;
+        link_or_copy_file(result_path(source.from, source.flight, ending),
+                          result_path(options.out, source.flight, ending), options.out / temporary_folder);
     }
+}
 
-    /// The record last, as a batch does.
-    void take_over(const std::filesystem::path& from, const std::string& name, bool is_accepted) const {
-        const WriteGate::WriterGuard inside(options_.gate);
-        remove_results(options_.out, name);
-        for (const auto* ending : {series_suffix, phases_suffix, record_suffix}) {
-            if (!is_accepted && ending != std::string_view(record_suffix)) continue;
-            link_or_copy_file(result_path(from, name, ending), result_path(options_.out, name, ending),
-                              options_.out / temporary_folder);
-        }
+void take_over_as(const MergeOptions& options, const MergedFlight& source, const std::string& name,
+                  FlightRecord& record) {
+    std::string series_text;
+    std::string phases_text;
+    if (record.accepted) {
+        auto series = flight::read_series_csv(result_path(source.from, source.flight, series_suffix));
+        const auto phases = flight::read_phases_csv(result_path(source.from, source.flight, phases_suffix));
+        series.flight = name;
+        series_text = to_csv(series);
+        phases_text = flight::phases_csv(series, phases);
     }
-
-    void take_over_as(const std::string& name, const std::filesystem::path& from, const std::string& flight,
-                      FlightRecord& record) const {
-        std::string series_text;
-        std::string phases_text;
-        if (record.accepted) {
-            auto series = flight::read_series_csv(result_path(from, flight, series_suffix));
-            const auto phases = flight::read_phases_csv(result_path(from, flight, phases_suffix));
-            series.flight = name;
-            series_text = to_csv(series);
-            phases_text = flight::phases_csv(series, phases);
-        }
-        record = renamed(std::move(record), name);
-        if (record.accepted) record.results = results_fingerprint(series_text, phases_text);
-        const WriteGate::WriterGuard inside(options_.gate);
-        remove_results(options_.out, name);
-        if (record.accepted) {
-            write(name, series_suffix, series_text);
-            write(name, phases_suffix, phases_text);
-        }
-        write(name, record_suffix, to_json_text(record));
+    record = renamed(std::move(record), name);
+    if (record.accepted) record.results = results_fingerprint(series_text, phases_text);
+    const WriteGate::WriterGuard inside(options.gate);
+    remove_results(options.out, name);
+    if (record.accepted) {
+        write(options, name, series_suffix, series_text);
+        write(options, name, phases_suffix, phases_text);
     }
+    write(options, name, record_suffix, to_json_text(record));
+}
 
-    void write(const std::string& name, const char* ending, const std::string& text) const {
-        write_file_atomically(result_path(options_.out, name, ending), text, options_.out / temporary_folder);
+/// Takes a flight over under that name.
+BatchFlight merge_flight(const MergeOptions& options, const MergedFlight& source, const std::string& name) {
+    const OverwriteExemption own;  // its batches' results, which are no inputs that a result could replace
+    const auto text = read_file(result_path(source.from, source.flight, record_suffix));
+    auto record = read_verified_record(source.from, source.flight);
+    const bool is_up_to_date = name == source.flight && is_there(options.out, name, text);
+    if (name != source.flight) {
+        record.content.hashes = marks_from_json(text).value();  // sealed with the rest
+        take_over_as(options, source, name, record);
+    } else if (!is_up_to_date) {
+        take_over(options, source, record.accepted);
     }
-
-    const MergePlan& plan_;
-    const MergeOptions& options_;
-};
+    auto merged = without_samples(std::move(record), options.needed_samples, {});
+    merged.was_up_to_date = is_up_to_date;
+    return merged;
+}
 
 }  // namespace
 
@@ -223,11 +214,10 @@ MergePlan plan_merge(const std::vector<std::filesystem::path>& batches, const st
 BatchFlights merge_flights(const MergePlan& plan, const MergeOptions& options, const BatchProgress& progress) {
     make_directories(options.out / temporary_folder);
     BatchFlights flights(plan.sources.size());
-    const FlightMerger merger(plan, options);
     std::mutex mutex;  // guards what follows
     std::size_t done = 0;
     for_each_in_parallel(flights.size(), [&](std::size_t i) {
-        flights[i] = merger.merge(i);
+        flights[i] = merge_flight(options, plan.sources[i], plan.folder.logs[i].flight);
         const std::lock_guard lock(mutex);
         progress(++done, flights.size(), flights[i]);
     });

@@ -223,7 +223,7 @@ std::string line_of(const std::vector<ShownColumn>& columns, const std::vector<s
             line += std::string(pending, ' ') + in_color(parts[i], colors[i]);
             pending = 0;
         }
-        if (columns[i].is_text || parts[i].empty()) pending += columns[i].is_text ? blanks : 0;
+        if (columns[i].is_text) pending += blanks;
     }
     return line + "\n";
 }
@@ -258,10 +258,8 @@ std::string head_lines(const std::vector<ShownColumn>& columns, bool colors) {
         cells[i].insert(cells[i].begin(), height - cells[i].size(), "");
         if (has_units) cells[i].push_back(columns[i].unit);
     }
-    const std::vector<int> plain(columns.size(), -1);
     constexpr int grey = 244;
-    const std::vector<int> pale(columns.size(), colors ? grey : -1);
-    return row_lines(columns, cells, colors ? pale : plain);
+    return row_lines(columns, cells, std::vector<int>(columns.size(), colors ? grey : -1));
 }
 
 std::string rows_text(const TextTable& table, const std::vector<ShownColumn>& columns, const Screen& screen,
@@ -335,12 +333,7 @@ TextTable with_minutes(TextTable table) {
 
 Screen screen_of(const StageCall& call) {
     const auto ability = standard_output_ability();
-    Screen screen;
-    screen.is_terminal = ability.is_terminal;
-    screen.colors = ability.colors;
-    screen.columns = ability.columns;
-    screen.wide = call.has("wide");
-    return screen;
+    return {ability.is_terminal, ability.colors, call.has("wide"), ability.columns};
 }
 
 std::string screen_text(TextTable whole, const Screen& screen, const ScreenTable& options) {

@@ -1,7 +1,6 @@
 #include "cli/stage.h"
 
 #include "base/atomic_file.h"
-#include "base/csv.h"
 #include "base/error.h"
 #include "base/number.h"
 #include "base/overwrite_guard.h"
@@ -312,24 +311,6 @@ std::string shell_quoted(std::string_view file) {
     std::string quoted = "'";
     for (const char c : file) c == '\'' ? quoted += R"('\'')" : quoted += c;
     return quoted + "'";
-}
-
-std::string csv_of(const std::vector<Json>& records, const std::vector<std::string_view>& columns, int digits) {
-    CsvWriter csv(columns, digits);
-    const auto cell = [&](const Json& value) {
-        if (value.is_null()) return std::string();
-        if (value.is_string()) return csv_cell(value.get_ref<const std::string&>());
-        return value.is_number_float() ? csv.cell(value.get<double>()) : value.dump();
-    };
-    for (const auto& record : records) {
-        std::vector<std::string> cells;
-        for (const auto& column : columns) {
-            const auto field = record.find(std::string(column));
-            cells.push_back(field == record.end() ? "" : cell(*field));
-        }
-        csv.add_row(cells);
-    }
-    return csv.text();
 }
 
 void warn(const StageCall& call, std::string_view message) {

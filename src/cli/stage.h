@@ -132,9 +132,6 @@ inline std::string json_text(const Json& json) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-/// The records' fields of these names as CSV, so many digits a number; what a record does not know is an empty cell.
-std::string csv_of(const std::vector<Json>& records, const std::vector<std::string_view>& columns, int digits = 0);
-
 /// null for what is not known.
 template <typename T>
 Json optional_json(const std::optional<T>& value) {

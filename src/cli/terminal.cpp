@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -154,10 +155,15 @@ std::string bar_text(const ProgressState& state, std::size_t width) {
     return "[" + std::string(full, '#') + std::string(cells - full, '.') + "] ";
 }
 
-std::size_t terminal_width(std::FILE* terminal) {
-    constexpr std::size_t usual = 80;
+/// 0: not known.
+std::size_t columns_of(int terminal) {
     winsize size{};
-    return ::ioctl(::fileno(terminal), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : usual;
+    return ::ioctl(terminal, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+}
+
+TerminalCapabilities ability_of(int stream) {
+    return detect_capabilities(::isatty(stream) != 0, columns_of(stream),
+                               [](const char* name) { return std::getenv(name); });
 }
 
 }  // namespace
@@ -173,17 +179,11 @@ TerminalCapabilities detect_capabilities(bool is_terminal, std::size_t columns, 
     return ability;
 }
 
-TerminalCapabilities standard_output_ability() {
-    winsize size{};
-    const bool known = ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0;
-    return detect_capabilities(::isatty(STDOUT_FILENO) != 0, known ? size.ws_col : 0,
-                               [](const char* name) { return std::getenv(name); });
-}
+TerminalCapabilities standard_output_ability() { return ability_of(STDOUT_FILENO); }
 
-bool standard_error_has_colors() {
-    return detect_capabilities(::isatty(STDERR_FILENO) != 0, 0, [](const char* name) { return std::getenv(name); })
-        .colors;
-}
+bool standard_error_has_colors() { return ability_of(STDERR_FILENO).colors; }
+
+std::FILE* standard_error_terminal() { return ::isatty(STDERR_FILENO) != 0 ? stderr : nullptr; }
 
 std::string draw(const TerminalPlot& plot, std::span<const TerminalLine> lines) {
     if (lines.empty() || plot.rows < 2 || plot.columns < axis_columns + label_columns + min_columns) return "";
@@ -227,7 +227,7 @@ std::string progress_text(const ProgressState& state, const std::string& unit, s
     return bar_text(state, width - text.size()) + text;
 }
 
-ProgressBar::ProgressBar(std::FILE* terminal, std::string unit)
+ProgressBar::ProgressBar(std::string unit, std::FILE* terminal)
     : terminal_(terminal), unit_(std::move(unit)), recent_{{Clock::now(), 0}} {}
 
 ProgressBar::~ProgressBar() { clear(); }
@@ -235,13 +235,15 @@ ProgressBar::~ProgressBar() { clear(); }
 void ProgressBar::show(std::size_t done, std::size_t all) {
     const std::lock_guard lock(mutex_);
     const auto now = Clock::now();
-    if (cleared_ || now - recent_.back().time < min_interval) return;
+    if (terminal_ == nullptr || cleared_ || now - recent_.back().time < min_interval) return;
     recent_.push_back({now, done});
     while (recent_.size() > 2 && now - recent_.front().time > rate_window) recent_.pop_front();
     const std::chrono::duration<double> window = now - recent_.front().time;
     const auto per_s = static_cast<double>(done - recent_.front().done) / window.count();
+    const auto columns = columns_of(::fileno(terminal_));
     // One column less: a full last one makes some terminals wrap.
-    const auto text = progress_text({done, all, per_s}, unit_, terminal_width(terminal_) - 1);
+    const auto text =
+        progress_text({done, all, per_s}, unit_, (columns > 0 ? columns : TerminalCapabilities().columns) - 1);
     erase();
     std::fwrite(text.data(), 1, text.size(), terminal_);  // a terminal that is gone changes nothing
     std::fflush(terminal_);
@@ -251,13 +253,11 @@ void ProgressBar::show(std::size_t done, std::size_t all) {
 void ProgressBar::hide() {
     const std::lock_guard lock(mutex_);
     erase();
-    std::fflush(terminal_);
 }
 
 void ProgressBar::clear() {
     const std::lock_guard lock(mutex_);
     erase();
-    std::fflush(terminal_);
     cleared_ = true;
 }
 
@@ -266,23 +266,12 @@ void ProgressBar::erase() {
     if (drawn_width_ > 0) {
         const auto blanks = fmt::format("\r{}\r", std::string(drawn_width_, ' '));
         std::fwrite(blanks.data(), 1, blanks.size(), terminal_);
+        std::fflush(terminal_);
     }
     drawn_width_ = 0;
 }
 
-TerminalProgress::TerminalProgress(const std::string& unit) {
-    if (::isatty(STDERR_FILENO) != 0) bar_.emplace(stderr, unit);
-}
-
-void TerminalProgress::show(std::size_t done, std::size_t all) {
-    if (bar_) bar_->show(done, all);
-}
-
-void TerminalProgress::hide() {
-    if (bar_) bar_->hide();
-}
-
-std::function<void(std::size_t, std::size_t)> TerminalProgress::callback() {
+std::function<void(std::size_t, std::size_t)> ProgressBar::callback() {
     return [this](std::size_t done, std::size_t all) { show(done, all); };
 }
 

@@ -6,7 +6,6 @@
 #include <deque>
 #include <functional>
 #include <mutex>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -67,12 +66,15 @@ struct ProgressState {
 /// does not fit goes: the bar gets shorter, then rate and remaining time are not shown.
 std::string progress_text(const ProgressState& state, const std::string& unit, std::size_t width);
 
+/// The standard error, where it is a terminal.
+std::FILE* standard_error_terminal();
+
 /// A progress bar on a terminal, drawn at most ten times a second in the terminal's width. It draws nothing
-/// once it is cleared. May be called from several threads.
+/// once it is cleared, and where there is no terminal. May be called from several threads.
 class ProgressBar {
   public:
-    /// `unit` is what is counted, "logs"; `terminal` is an open terminal.
-    ProgressBar(std::FILE* terminal, std::string unit);
+    /// `unit` is what is counted, "logs"; `terminal` is an open terminal or nullptr.
+    explicit ProgressBar(std::string unit, std::FILE* terminal = standard_error_terminal());
     ~ProgressBar();
     ProgressBar(const ProgressBar&) = delete;
     ProgressBar& operator=(const ProgressBar&) = delete;
@@ -80,6 +82,8 @@ class ProgressBar {
     void show(std::size_t done, std::size_t all);
     void hide();  ///< until it is shown again: something else is to be told
     void clear();
+    /// show(), for what takes a function; not longer than this lives.
+    std::function<void(std::size_t done, std::size_t all)> callback();
 
   private:
     using Clock = std::chrono::steady_clock;
@@ -96,20 +100,6 @@ class ProgressBar {
     bool cleared_ = false;
 
     void erase();
-};
-
-/// A progress bar of what is done of `unit` where the standard error is a terminal, and nothing elsewhere; gone with
-/// it.
-class TerminalProgress {
-  public:
-    explicit TerminalProgress(const std::string& unit);
-    void show(std::size_t done, std::size_t all);
-    void hide();
-    /// show(), for what takes a function; not longer than this lives.
-    std::function<void(std::size_t done, std::size_t all)> callback();
-
-  private:
-    std::optional<ProgressBar> bar_;
 };
 
 }  // namespace flightwatt::cli

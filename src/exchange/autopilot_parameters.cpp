@@ -1,6 +1,7 @@
 #include "exchange/autopilot_parameters.h"
 
 #include "base/error.h"
+#include "base/piecewise_linear.h"
 #include "base/units.h"
 
 #include <algorithm>
@@ -152,14 +153,8 @@ double phase_energy_wh(const EstimatorInput& input, flight::Phase phase) {
 /// The charge drawn of a full pack, as a part, when its open-circuit voltage has fallen to `voltage_v`: 0 above the
 /// full one, 1 below the empty one.
 double drawn_fraction(const battery::OpenCircuitVoltage& curve, double voltage_v) {
-    const auto& volts = curve.voltage_v;
-    if (voltage_v >= volts.back()) return 0.0;
-    if (voltage_v <= volts.front()) return 1.0;
-    const auto above = std::ranges::upper_bound(volts, voltage_v);
-    const auto upper = static_cast<std::size_t>(above - volts.begin());
-    const double fraction = (voltage_v - volts[upper - 1]) / (volts[upper] - volts[upper - 1]);
-    const double soc_percent = std::lerp(curve.soc_percent[upper - 1], curve.soc_percent[upper], fraction);
-    return 1.0 - soc_percent / units::percent_per_whole;
+    if (voltage_v >= curve.voltage_v.back()) return 0.0;
+    return 1.0 - interpolate_clamped(curve.voltage_v, curve.soc_percent, voltage_v) / units::percent_per_whole;
 }
 
 }  // namespace

@@ -6,7 +6,9 @@
 #include "telemetry/message_definition.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <functional>
 
 #include <fmt/format.h>
@@ -18,31 +20,9 @@ namespace {
 using units::Quantity;
 
 std::string_view suffix_of(Quantity quantity) {
-    switch (quantity) {
-        case Quantity::volt:
-            return "_v";
-        case Quantity::ampere:
-            return "_a";
-        case Quantity::watt:
-            return "_w";
-        case Quantity::ampere_hour:
-            return "_ah";
-        case Quantity::watt_hour:
-            return "_wh";
-        case Quantity::metre:
-            return "_m";
-        case Quantity::metre_per_second:
-            return "_m_per_s";
-        case Quantity::second:
-            return "_s";
-        case Quantity::percent:
-            return "_percent";
-        case Quantity::degree:
-            return "_deg";
-        case Quantity::celsius:
-            return "_c";
-    }
-    return "";
+    constexpr std::array<std::string_view, 11> suffixes{"_v",       "_a", "_w",       "_ah",  "_wh", "_m",
+                                                        "_m_per_s", "_s", "_percent", "_deg", "_c"};
+    return suffixes.at(static_cast<std::size_t>(quantity));
 }
 
 /// The fields of a message in the .log's order; of a log without one, of every layout that is known.

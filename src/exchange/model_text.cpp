@@ -40,12 +40,12 @@ std::string json_text(const std::string& toml_text) { return json_of(toml::parse
 bool is_letter(char c) { return c >= 'a' && c <= 'z'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Numbers that C reads as doubles, to their last digit, as TOML does.
+/// A list of numbers that C reads as doubles, to their last digit, as TOML does.
 std::string c_numbers(const std::vector<double>& values) {
-    std::vector<std::string> texts;
-    texts.reserve(values.size());
-    for (const double value : values) texts.push_back(toml_real(value));
-    return fmt::format("{}", fmt::join(texts, ", "));
+    auto list = toml_reals(values);
+    list.front() = '{';
+    list.back() = '}';
+    return list;
 }
 
 /// What no compiler takes for the comment's end, for one within it, or for a trigraph.
@@ -93,7 +93,7 @@ std::string rows(const mechanical::MechanicalModel& model, std::vector<double> m
     for (const auto phase : flight::all_phases) {
         auto values = model.phases[phase].fourier.*member;
         values.resize(order, 0.0);
-        lines.push_back("        {" + c_numbers(values) + "}");
+        lines.push_back("        " + c_numbers(values));
     }
     return fmt::format("{{\n{}}}", fmt::join(lines, ",\n"));
 }
@@ -103,7 +103,7 @@ std::string a_phase(const mechanical::MechanicalModel& model, const Get& get) {
     std::vector<double> values;
     values.reserve(flight::all_phases.size());
     for (const auto phase : flight::all_phases) values.push_back(get(model.phases[phase]));
-    return "{" + c_numbers(values) + "}";
+    return c_numbers(values);
 }
 
 /// The constants, which each function holds for itself: a header's own would be unused in some files.

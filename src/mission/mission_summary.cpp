@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -92,26 +91,6 @@ std::string describe(const MissionSummary& summary) {
 std::vector<MissionSummary> ranked(std::vector<MissionSummary> summaries) {
     std::ranges::stable_sort(summaries, [](const auto& a, const auto& b) { return merit(a) > merit(b); });
     return summaries;
-}
-
-TextTable comparison_table(const std::vector<MissionSummary>& ranked) {
-    // Most missions have none of these, and tables are wide enough without them.
-    constexpr std::array<std::string_view, 3> rare{"cut_off_at_s", "utility", "probability_below_reserve"};
-    TextTable table{{"rank", "mission", "final_soc_percent", "energy_wh", "mechanical_energy_wh", "compute_energy_wh",
-                     "duration_s", "depleted_at_s"},
-                    {}};
-    table.header.insert(table.header.end(), rare.begin(), rare.end());
-    for (const auto& summary : ranked) {
-        const auto name = summary.schedule == ScheduleOrigin::given
-                              ? summary.mission
-                              : fmt::format("{} ({})", summary.mission, to_string(summary.schedule));
-        table.rows.push_back(
-            {std::to_string(table.rows.size() + 1), name, fixed(summary.final_soc_percent, 2),
-             fixed(summary.energy_wh, 3), fixed(summary.mechanical_energy_wh, 3), fixed(summary.compute_energy_wh, 3),
-             fixed(summary.duration_s, 1), fixed(summary.depleted_at_s, 1), fixed(summary.cut_off_at_s, 1),
-             fixed(summary.utility, 3), summary.samples ? fixed(summary.samples->probability_below_reserve, 4) : "-"});
-    }
-    return without_unknown(std::move(table), rare);
 }
 
 }  // namespace flightwatt::mission

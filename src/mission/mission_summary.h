@@ -1,7 +1,6 @@
 #pragma once
 
 #include "base/statistics.h"
-#include "base/text_table.h"
 #include "battery/discharge.h"
 #include "mechanical/mechanical_model.h"
 
@@ -141,9 +140,5 @@ std::string describe(const MissionSummary& summary);
 /// The best first: by state of charge left, then (when empty) by how long the battery lasted; those whose
 /// power it cannot deliver last. Equals keep their order.
 std::vector<MissionSummary> ranked(std::vector<MissionSummary> summaries);
-
-/// A row for each mission; "-" where there is no number. Cut-off, utility and the probability to land below the reserve
-/// have a column if any mission has them.
-TextTable comparison_table(const std::vector<MissionSummary>& ranked);
 
 }  // namespace flightwatt::mission

@@ -2,9 +2,7 @@
 
 #include "batch/batch_fit.h"
 #include "batch/flight_record.h"
-#include "flight/segmentation.h"
 #include "mechanical/measured_flight.h"
-#include "report/batch_content.h"
 
 #include <filesystem>
 #include <optional>

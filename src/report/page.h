@@ -1,7 +1,6 @@
 #pragma once
 
 #include "report/html.h"
-#include "report/page.h"
 
 #include <filesystem>
 #include <optional>

@@ -216,7 +216,7 @@ TEST(ProgressBar, DrawsAtMostTenTimesASecond) {
     if (!has_terminals()) GTEST_SKIP() << "no pseudo-terminal here";
     Terminal terminal(60);
     const auto start = std::chrono::steady_clock::now();
-    ProgressBar bar(terminal.stream(), "logs");
+    ProgressBar bar("logs", terminal.stream());
     for (std::size_t i = 1; i <= 50; ++i) bar.show(i, 1000);
     std::this_thread::sleep_for(beyond_interval);
     for (std::size_t i = 51; i <= 100; ++i) bar.show(i, 1000);
@@ -238,7 +238,7 @@ std::string first_drawn(ProgressBar& bar, Terminal& terminal) {
 TEST(ProgressBar, StaysOnOneLineAndIsGoneInTheEnd) {
     if (!has_terminals()) GTEST_SKIP() << "no pseudo-terminal here";
     Terminal terminal(30);
-    ProgressBar bar(terminal.stream(), "logs");
+    ProgressBar bar("logs", terminal.stream());
     const auto drawn = first_drawn(bar, terminal);
     EXPECT_THAT(drawn, HasSubstr("3/8"));
     EXPECT_LT(drawn.size(), 30U);
@@ -253,7 +253,7 @@ TEST(ProgressBar, StaysOnOneLineAndIsGoneInTheEnd) {
 TEST(ProgressBar, GoesOnAfterItWasHidden) {
     if (!has_terminals()) GTEST_SKIP() << "no pseudo-terminal here";
     Terminal terminal(30);
-    ProgressBar bar(terminal.stream(), "logs");
+    ProgressBar bar("logs", terminal.stream());
     const auto drawn = first_drawn(bar, terminal);
     bar.hide();
     EXPECT_EQ(terminal.printed(), "\r" + std::string(drawn.size(), ' ') + "\r");
@@ -262,11 +262,11 @@ TEST(ProgressBar, GoesOnAfterItWasHidden) {
     EXPECT_THAT(terminal.printed(), HasSubstr("4/8"));
 }
 
-TEST(TerminalProgress, SaysNothingWhereTheStandardErrorIsNoTerminal) {
+TEST(ProgressBar, SaysNothingWhereTheStandardErrorIsNoTerminal) {
     if (::isatty(STDERR_FILENO) != 0) GTEST_SKIP() << "the standard error is a terminal here";
     testing::internal::CaptureStderr();
     {
-        TerminalProgress progress("logs");
+        ProgressBar progress("logs");
         const auto show = progress.callback();
         std::this_thread::sleep_for(beyond_interval);
         show(1, 2);

@@ -1,9 +1,8 @@
 // Tracks as others read them: by the rules of RFC 7946, of GPX 1.1 and of KML 2.2, and by gpsbabel where it is.
 
-#include "exchange/track_files.h"
-
 #include "base/atomic_file.h"
 #include "base/number.h"
+#include "exchange/flown_track.h"
 #include "flight/load_flight.h"
 #include "helpers/running_program.h"
 #include "helpers/sample_logs.h"

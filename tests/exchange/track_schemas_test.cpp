@@ -2,7 +2,7 @@
 // Debian package. What is damaged must be refused by them, else they would hold nothing.
 
 #include "base/atomic_file.h"
-#include "exchange/track_files.h"
+#include "exchange/flown_track.h"
 #include "flight/load_flight.h"
 #include "helpers/running_program.h"
 #include "helpers/sample_logs.h"

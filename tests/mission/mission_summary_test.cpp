@@ -33,10 +33,6 @@ TEST(Comparison, CutOffRanksBelowWhateverLasts) {
     const auto ranking = ranked({outcome("early", 0.0, 100.0), cut_off, outcome("lasts", 2.0)});
     EXPECT_EQ(ranking[0].mission, "lasts");
     EXPECT_EQ(ranking[1].mission, "cut off");
-    const auto table = comparison_table(ranking);
-    EXPECT_EQ(table.header.back(), "cut_off_at_s");
-    EXPECT_EQ(table.rows[1].back(), "500.0");
-    EXPECT_EQ(table.rows[2].back(), "-");
 }
 
 TEST(Comparison, KeepsTheOrderOfEquals) {
@@ -44,15 +40,6 @@ TEST(Comparison, KeepsTheOrderOfEquals) {
     EXPECT_EQ(ranking[0].mission, "b");
     EXPECT_EQ(ranking[1].mission, "a");
     EXPECT_EQ(ranking[2].mission, "c");
-}
-
-TEST(Comparison, MakesATable) {
-    const auto table = comparison_table({outcome("a", 5.126), outcome("b", 0.0, 580.345), outcome("c", {})});
-    EXPECT_EQ(to_csv(table),
-              "rank,mission,final_soc_percent,energy_wh,mechanical_energy_wh,compute_energy_wh,duration_s,"
-              "depleted_at_s\n"
-              "1,a,5.13,10.000,4.000,6.000,688.0,-\n2,b,0.00,10.000,4.000,6.000,688.0,580.3\n"
-              "3,c,-,10.000,4.000,6.000,688.0,-\n");
 }
 
 TEST(DescribePowerModel, SaysWhatIsUsedAndHowItPredicts) {

@@ -2,11 +2,9 @@
 
 #include "base/statistics.h"
 #include "base/units.h"
+#include "cli/output/records.h"
 
-#include <array>
-#include <string_view>
 #include <tuple>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -87,33 +85,18 @@ TextTable parameters_table(const battery::BatteryIdentification& identified) {
 
 TextTable flights_table(const battery::BatteryIdentification& identified,
                         const std::vector<battery::LeaveOneOutCheck>& left_out) {
-    constexpr std::array<std::string_view, 6> rare{"air C",         "pack of",        "leave-one-out mV",
-                                                   "under load mV", "placed best mV", "beyond the others %"};
-    TextTable table{{"flight", "at rest V", "missing Ah", "low Ah", "high Ah", "drawn Ah", "own ohm", "low ohm",
-                     "high ohm", "samples", "unused", "fitted mV"},
-                    {}};
-    table.header.insert(table.header.end(), rare.begin(), rare.end());
-    for (std::size_t i = 0; i < identified.flights.size(); ++i) {
-        const auto& flight = identified.flights[i];
-        const auto ohm = [&](const auto& member) {
-            return flight.resistance ? fixed(member(*flight.resistance), 4) : "-";
-        };
-        const auto mv = [&](double battery::LeaveOneOutCheck::*rms_v) {
-            return left_out.empty() ? "-" : fixed(units::mv_from_v(left_out[i].*rms_v), 1);
-        };
-        table.rows.push_back(
-            {flight.flight, fixed(flight.resting_voltage_v, 3), fixed(flight.initial_depletion_ah, 3),
-             fixed(flight.initial_charge_interval_ah.low, 3), fixed(flight.initial_charge_interval_ah.high, 3),
-             fixed(flight.drawn_ah, 3), ohm([](const auto& own) { return own.value_ohm; }),
-             ohm([](const auto& own) { return own.interval_ohm.low; }),
-             ohm([](const auto& own) { return own.interval_ohm.high; }), fmt::format("{}", flight.samples),
-             fmt::format("{}", flight.unused), fixed(units::mv_from_v(flight.voltage_rms_v), 1),
-             fixed(flight.air_temperature_c, 1), flight.link ? flight.same_pack_as : "-",
-             mv(&battery::LeaveOneOutCheck::voltage_rms_v), mv(&battery::LeaveOneOutCheck::load_rms_v),
-             mv(&battery::LeaveOneOutCheck::best_offset_load_rms_v),
-             left_out.empty() ? "-" : fixed(left_out[i].extrapolated_percent, 0)});
-    }
-    return without_unknown(std::move(table), rare);
+    const auto json = to_json(identified, left_out);
+    auto flights = json["flights"];
+    for (std::size_t i = 0; i < left_out.size(); ++i) flights[i]["check"] = json["left_out"][i];
+    return table_of(
+        flights,
+        {"flight", "resting_voltage_v .3f: at rest V", "initial_charge_ah .3f: missing Ah",
+         "initial_charge_interval_ah/low .3f: low Ah", "initial_charge_interval_ah/high .3f: high Ah",
+         "drawn_ah .3f: drawn Ah", "resistance_ohm/value .4f: own ohm", "resistance_ohm/low .4f: low ohm",
+         "resistance_ohm/high .4f: high ohm", "samples", "unused_samples: unused", "voltage_rms_mv .1f: fitted mV",
+         "air_temperature_c? .1f: air C", "pack_of?: pack of", "check/voltage_rms_mv? .1f: leave-one-out mV",
+         "check/load_voltage_rms_mv? .1f: under load mV", "check/placed_load_voltage_rms_mv? .1f: placed best mV",
+         "check/beyond_others_percent? .0f: beyond the others %"});
 }
 
 std::string provenance(const battery::BatteryIdentification& identified) {
@@ -144,10 +127,6 @@ namespace {
 
 Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
 
-Json interval(const std::optional<Interval>& range) {
-    return range ? Json{{"low", range->low}, {"high", range->high}} : Json();
-}
-
 Json estimate(double value, const Interval& range) {
     return Json{{"value", value}, {"low", range.low}, {"high", range.high}};
 }
@@ -157,7 +136,7 @@ Json flight_json(const battery::IdentifiedFlight& flight) {
     return {{"flight", flight.flight},
             {"resting_voltage_v", flight.resting_voltage_v},
             {"initial_charge_ah", flight.initial_depletion_ah},
-            {"initial_charge_interval_ah", interval(flight.initial_charge_interval_ah)},
+            {"initial_charge_interval_ah", interval_json(flight.initial_charge_interval_ah)},
             {"drawn_ah", flight.drawn_ah},
             {"pack_of", text_or_null(flight.same_pack_as)},
             {"pause_s", flight.link ? Json(flight.link->pause_s) : Json()},
@@ -168,6 +147,17 @@ Json flight_json(const battery::IdentifiedFlight& flight) {
             {"voltage_rms_mv", units::mv_from_v(flight.voltage_rms_v)}};
 }
 
+Json check_json(const battery::LeaveOneOutCheck& check) {
+    return {{"flight", check.flight},
+            {"initial_charge_ah", check.initial_charge_ah},
+            {"pack_of", text_or_null(check.pack_of)},
+            {"voltage_rms_mv", units::mv_from_v(check.voltage_rms_v)},
+            {"load_voltage_rms_mv", units::mv_from_v(check.load_rms_v)},
+            {"placed_charge_ah", check.best_offset_ah},
+            {"placed_load_voltage_rms_mv", units::mv_from_v(check.best_offset_load_rms_v)},
+            {"beyond_others_percent", check.extrapolated_percent}};
+}
+
 }  // namespace
 
 Json to_json(const battery::BatteryIdentification& identified, const std::vector<battery::LeaveOneOutCheck>& left_out) {
@@ -175,7 +165,7 @@ Json to_json(const battery::BatteryIdentification& identified, const std::vector
     Json json;
     json["capacity_ah"] = identified.capacity.value_ah;
     json["capacity_from"] = to_string(identified.capacity.origin);
-    json["capacity_interval_ah"] = interval(identified.capacity.interval_ah);
+    json["capacity_interval_ah"] = interval_json(identified.capacity.interval_ah);
     const auto& by_flights = identified.battery.flight_estimate;
     json["flight_estimate_ah"] =
         by_flights ? estimate(by_flights->capacity_ah, by_flights->capacity_interval_ah) : Json();
@@ -196,24 +186,13 @@ Json to_json(const battery::BatteryIdentification& identified, const std::vector
                             {"known_down_to_percent", identified.observed_min_soc_percent},
                             {"known_down_to_ah", fit.knots_ah.back()}};
     json["voltage_rms_mv"] = units::mv_from_v(fit.rms_v);
-    json["flights"] = Json::array();
-    for (const auto& flight : identified.flights) json["flights"].push_back(flight_json(flight));
+    json["flights"] = list_json(identified.flights, flight_json);
     json["resistance_trend"] = Json();
     if (const auto& trend = identified.trend) {
         json["resistance_trend"] = {{"flights", trend->flights},
                                     {"ohm_a_flight", estimate(trend->ohm_per_flight, trend->interval_ohm_a_flight)}};
     }
-    json["left_out"] = Json::array();
-    for (const auto& check : left_out) {
-        json["left_out"].push_back({{"flight", check.flight},
-                                    {"initial_charge_ah", check.initial_charge_ah},
-                                    {"pack_of", text_or_null(check.pack_of)},
-                                    {"voltage_rms_mv", units::mv_from_v(check.voltage_rms_v)},
-                                    {"load_voltage_rms_mv", units::mv_from_v(check.load_rms_v)},
-                                    {"placed_charge_ah", check.best_offset_ah},
-                                    {"placed_load_voltage_rms_mv", units::mv_from_v(check.best_offset_load_rms_v)},
-                                    {"beyond_others_percent", check.extrapolated_percent}});
-    }
+    json["left_out"] = list_json(left_out, check_json);
     return json;
 }
 

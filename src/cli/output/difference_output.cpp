@@ -2,6 +2,7 @@
 
 #include "base/statistics.h"
 #include "base/units.h"
+#include "cli/output/records.h"
 
 #include <algorithm>
 #include <array>
@@ -130,30 +131,15 @@ std::vector<Difference> mission_difference(const mission::Simulation& a, const m
     return all;
 }
 
-TextTable difference_table(const Differences& differences, const std::function<std::string(double)>& form) {
-    TextTable table{{"part", "quantity", "unit", "a", "a_low", "a_high", "b", "b_low", "b_high", "difference", "low",
-                     "high", "differs", "basis", "at_s"},
-                    {}};
-    for (const auto& row : differences.rows) {
-        std::vector<std::string> cells{row.part, row.quantity, row.unit};
-        const auto number = [&](const std::optional<double>& value) { cells.push_back(value ? form(*value) : "-"); };
-        const auto interval = [&](const std::optional<Interval>& of) {
-            number(of ? std::optional(of->low) : std::nullopt);
-            number(of ? std::optional(of->high) : std::nullopt);
-        };
-        for (const auto* side : {&row.a, &row.b}) {
-            number(*side ? std::optional((*side)->value) : std::nullopt);
-            interval(*side ? (*side)->interval : std::nullopt);
-        }
-        number(difference_of(row));
-        interval(row.interval);
-        cells.push_back(verdict(differences, row));
-        const auto basis = basis_of(differences, row);
-        cells.push_back(basis.empty() ? "-" : basis);
-        number(row.at_s);
-        table.rows.push_back(std::move(cells));
-    }
-    return table;
+TextTable difference_table(const Differences& differences, std::string_view form) {
+    auto rows = to_json(differences)["differences"];
+    for (auto& row : rows)
+        if (row["basis"] == "") row["basis"] = nullptr;
+    return table_of(
+        rows,
+        {"part", "quantity", "unit", "a", "a_interval/0: a_low", "a_interval/1: a_high", "b", "b_interval/0: b_low",
+         "b_interval/1: b_high", "difference", "interval/0: low", "interval/1: high", "differs", "basis", "at_s"},
+        form);
 }
 
 Json to_json(const Differences& differences) {

@@ -6,9 +6,9 @@
 #include "mission/sampled_flights.h"
 #include "mission/simulation.h"
 
-#include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /// What diff compares and shows.
@@ -27,8 +27,8 @@ struct Differences {
 std::vector<mechanical::Difference> mission_difference(const mission::Simulation& a, const mission::Simulation& b,
                                                        const std::optional<mission::SampledDifference>& drawn);
 
-/// A row a quantity, its numbers as `form` writes them.
-TextTable difference_table(const Differences& differences, const std::function<std::string(double)>& form);
+/// A row a quantity, its numbers of the form that fmt knows by this text; empty: all digits.
+TextTable difference_table(const Differences& differences, std::string_view form);
 
 Json to_json(const Differences& differences);
 

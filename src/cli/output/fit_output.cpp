@@ -4,6 +4,7 @@
 #include "base/number.h"
 #include "base/statistics.h"
 #include "base/units.h"
+#include "cli/output/records.h"
 #include "mechanical/fit_records.h"
 #include "mechanical/mechanical_model.h"
 #include "mechanical/model_fit.h"
@@ -35,12 +36,8 @@ mechanical::ManualWeight parse_hand_weight(const std::string& text) {
     return weight;
 }
 
-Json interval_json(const Interval& interval) { return {{"low", interval.low}, {"high", interval.high}}; }
-
-Json interval_json(const std::vector<Interval>& intervals) {
-    auto list = Json::array();
-    for (const auto& interval : intervals) list.push_back(interval_json(interval));
-    return list;
+Json intervals_json(const std::vector<Interval>& intervals) {
+    return list_json(intervals, [](const auto& interval) { return interval_json(interval); });
 }
 
 Json to_json(const mechanical::PhaseModel& phase, const mechanical::PhaseErrors& errors) {
@@ -54,8 +51,8 @@ Json to_json(const mechanical::PhaseModel& phase, const mechanical::PhaseErrors&
             {"interval_95",
              {{"omega_rad_per_s", interval_json(intervals.omega_rad_per_s)},
               {"a0_w", interval_json(intervals.a0_w)},
-              {"cos_w", interval_json(intervals.cos_w)},
-              {"sin_w", interval_json(intervals.sin_w)}}},
+              {"cos_w", intervals_json(intervals.cos_w)},
+              {"sin_w", intervals_json(intervals.sin_w)}}},
             {"frequency_is_given", errors.frequency_is_fixed},
             {"degrees_of_freedom", errors.degrees_of_freedom},
             {"r2", errors.r2},
@@ -83,10 +80,8 @@ Json to_json(const mechanical::FlightEnvelope& spread) {
 }
 
 Json validation_json(const mechanical::ModelValidation& validation) {
-    auto scores = Json::array();
-    for (const auto& [model, flights, error_percent] : validation.scores)
-        scores.push_back({{"model", model}, {"flights", flights}, {"mean_absolute_error_percent", error_percent}});
-    return {{"default_model", default_model(validation)}, {"scores", scores}};
+    return {{"default_model", default_model(validation)},
+            {"scores", list_json(validation.scores, [](const auto& score) { return cli::to_json(score); })}};
 }
 
 /// "off on 4 flights left out of the fit: constant_mean 18.6 %, ...; missions use constant_mean".
@@ -188,6 +183,12 @@ std::string table_text(const TextTable& table, const std::filesystem::path& file
     throw UsageError(fmt::format("{}: expected a name that ends in .txt, .csv, .md or .tex", file.string()));
 }
 
+Json to_json(const mechanical::HeldOutScore& score) {
+    return {{"model", score.model},
+            {"flights", score.flights},
+            {"mean_absolute_error_percent", score.mean_absolute_error_percent}};
+}
+
 Json to_json(const mechanical::MechanicalModel& model) {
     Json json{
         {"name", model.name}, {"weighting", model.weighting}, {"phases", Json::object()}, {"flights", Json::array()}};
@@ -213,7 +214,7 @@ Json to_json(const mechanical::MechanicalModel& model) {
         }
         if (const auto power = mean_power(model, phase)) {
             entry["mean_power_w"] = power->mean_w;
-            entry["mean_power_interval_95_w"] = power->interval ? interval_json(*power->interval) : Json();
+            entry["mean_power_interval_95_w"] = interval_json(power->interval);
         }
         if (fitted.range) {
             entry["omega_duration_rad"] = {{"low", fitted.range->low_rad},
@@ -263,13 +264,13 @@ void add_errors_json(Json& json, const mechanical::MechanicalModel& model,
 
 void add_loss_json(Json& json, const mechanical::ModelFit& fit) {
     for (const auto phase : flight::all_phases) {
-        Json samples = Json::array();
-        for (const auto& sample : down_weighted_samples(fit.samples[phase], fit.fits[phase])) {
-            samples.push_back({{"flight", sample.flight},
-                               {"log_time_s", sample.log_time_s},
-                               {"residual_w", sample.residual_w},
-                               {"weight", sample.weight}});
-        }
+        const auto samples =
+            list_json(down_weighted_samples(fit.samples[phase], fit.fits[phase]), [](const auto& sample) -> Json {
+                return {{"flight", sample.flight},
+                        {"log_time_s", sample.log_time_s},
+                        {"residual_w", sample.residual_w},
+                        {"weight", sample.weight}};
+            });
         json["phases"][std::string(to_string(phase))]["loss"] = {{"name", to_string(fit.fits[phase].loss)},
                                                                  {"noise_w", fit.fits[phase].loss_scale_w},
                                                                  {"down_weighted", samples}};
@@ -277,19 +278,18 @@ void add_loss_json(Json& json, const mechanical::ModelFit& fit) {
 }
 
 void add_order_json(Json& json, flight::Phase phase, const mechanical::OrderSelection& choice) {
-    Json errors = Json::array();
-    for (const auto& error : choice.errors) {
-        errors.push_back({{"order", error.order},
-                          {"rms_w", optional_json(error.rms_w)},
-                          {"behind_best_w2", optional_json(error.excess_mse_w2)},
-                          {"standard_error_w2", optional_json(error.standard_error_w2)},
-                          {"reason", error.reason}});
-    }
+    const auto error_json = [](const auto& error) -> Json {
+        return {{"order", error.order},
+                {"rms_w", optional_json(error.rms_w)},
+                {"behind_best_w2", optional_json(error.excess_mse_w2)},
+                {"standard_error_w2", optional_json(error.standard_error_w2)},
+                {"reason", error.reason}};
+    };
     json["phases"][std::string(to_string(phase))]["order_choice"] = {{"order", choice.order},
                                                                      {"best", choice.best},
                                                                      {"how", to_string(choice.held_back)},
                                                                      {"folds", choice.folds},
-                                                                     {"errors", errors}};
+                                                                     {"errors", list_json(choice.errors, error_json)}};
 }
 
 void note_order(const StageCall& call, flight::Phase phase, const mechanical::OrderSelection& choice) {

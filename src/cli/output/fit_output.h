@@ -41,6 +41,9 @@ TextTable mean_power_table(const mechanical::MechanicalModel& model);
 /// Text, CSV, Markdown or LaTeX, by the file's ending. Throws UsageError for another ending.
 std::string table_text(const TextTable& table, const std::filesystem::path& file);
 
+/// How a model predicts flights that were left out.
+Json to_json(const mechanical::HeldOutScore& score);
+
 /// The fitted model as the stages' JSON.
 Json to_json(const mechanical::MechanicalModel& model);
 

@@ -182,7 +182,7 @@ std::vector<std::size_t> for_each_flight(const StageCall& call, const flight::Lo
     UsedFlights used(call);
     std::optional<flight::OtherAircraftError> other;
     std::optional<InputError> unusable;
-    TerminalProgress reading("logs");
+    ProgressBar reading("logs");
     std::size_t done = 0;
     for (const auto& file : inputs) {
         if (inputs.size() > 1) reading.show(done++, inputs.size());

@@ -1,6 +1,9 @@
 #include "cli/output/mission_output.h"
 
 #include "base/error.h"
+#include "base/units.h"
+#include "cli/output/fit_output.h"
+#include "cli/output/records.h"
 #include "cli/stage.h"
 #include "mechanical/mechanical_model.h"
 
@@ -12,14 +15,6 @@
 
 namespace flightwatt::cli {
 namespace {
-
-/// Nothing where it is not known.
-void add_to_json(const std::optional<mechanical::HeldOutScore>& power_model, Json& json) {
-    if (!power_model) return;
-    json["power_model"] = {{"model", power_model->model},
-                           {"flights", power_model->flights},
-                           {"mean_absolute_error_percent", power_model->mean_absolute_error_percent}};
-}
 
 void add_to_json(const mission::MonteCarloResult& flights, Json& json) {
     json["probability_below_reserve"] = flights.probability_below_reserve;
@@ -106,7 +101,7 @@ Json to_json(const mission::MissionSummary& summary) {
     json["feasible"] = summary.feasible;
     json["reserve_soc_percent"] = summary.reserve_soc_percent;
     json["keeps_reserve"] = summary.keeps_reserve;
-    add_to_json(summary.power_model, json);
+    if (summary.power_model) json["power_model"] = to_json(*summary.power_model);
     if (summary.utility) json["utility"] = *summary.utility;
     if (const auto& decisions = summary.decisions) {
         json["decisions"] = decisions->made;
@@ -125,14 +120,30 @@ Json to_json(const mission::EstimatedLanding& landing) {
             {"keeps_reserve", landing.keeps_reserve}};
 }
 
+Json ranking_json(const std::vector<mission::MissionSummary>& ranked) {
+    auto records = Json::array();
+    for (const auto& summary : ranked) {
+        auto record = to_json(summary);
+        record["rank"] = records.size() + 1;
+        const auto origin = to_string(summary.schedule);
+        record["title"] = origin.empty() ? summary.mission : fmt::format("{} ({})", summary.mission, origin);
+        if (summary.samples)
+            record["chance_below_percent"] = units::percentage(summary.samples->probability_below_reserve, 1.0);
+        records.push_back(std::move(record));
+    }
+    return records;
+}
+
+TextTable comparison_table(const std::vector<mission::MissionSummary>& ranked) {
+    return table_of(ranking_json(ranked),
+                    {"rank", "title: mission", "final_soc_percent .2f", "energy_wh .3f", "mechanical_energy_wh .3f",
+                     "compute_energy_wh .3f", "duration_s .1f", "depleted_at_s .1f", "cut_off_at_s? .1f",
+                     "utility? .3f", "probability_below_reserve? .4f"});
+}
+
 std::string comparison_csv(const std::vector<mission::MissionSummary>& ranked) {
     constexpr int digits = 10;
-    std::vector<Json> records;
-    for (const auto& summary : ranked) {
-        records.push_back(to_json(summary));
-        records.back()["rank"] = records.size();
-    }
-    return csv_of(records,
+    return csv_of(ranking_json(ranked),
                   {"rank", "mission", "schedule", "final_soc_percent", "reserve_soc_percent", "keeps_reserve",
                    "energy_wh", "mechanical_energy_wh", "compute_energy_wh", "delivered_energy_wh", "duration_s",
                    "depleted_at_s", "cut_off_at_s", "utility", "probability_below_reserve"},
@@ -149,7 +160,7 @@ Json to_json(const mission::MissionPlan& plan, const mission::MissionSetup& miss
     json["final_soc_percent"] = optional_json(plan.summary.final_soc_percent);
     json["reserve_soc_percent"] = mission.reserve_soc_percent;
     json["margin_percent"] = plan.margin_percent;
-    add_to_json(mission.power_model, json);
+    if (mission.power_model) json["power_model"] = to_json(*mission.power_model);
     if (plan.sources) add_sources(*plan.sources, json);
     if (plan.summary.by_flights) json[by_flights_key] = to_json(*plan.summary.by_flights);
     return json;

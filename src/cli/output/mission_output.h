@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/text_table.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
 #include "mission/disturbance.h"
@@ -39,6 +40,14 @@ void add_sources(const mission::UncertaintySources& sources, Json& json);
 
 /// The summary as simulate and compare print it; null stands for "never".
 Json to_json(const mission::MissionSummary& summary);
+
+/// The same of missions in their order, with rank, "title" (the name with how the schedule came about) and
+/// "chance_below_percent": what tables of missions show.
+Json ranking_json(const std::vector<mission::MissionSummary>& ranked);
+
+/// A row for each mission; cut-off, utility and the probability to land below the reserve have a column if any mission
+/// has them.
+TextTable comparison_table(const std::vector<mission::MissionSummary>& ranked);
 
 /// rank,mission,schedule,... (docs/formats.md): a row a mission in their order, all columns whatever the missions are.
 std::string comparison_csv(const std::vector<mission::MissionSummary>& ranked);

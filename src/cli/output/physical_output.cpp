@@ -3,40 +3,54 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
+#include "cli/output/records.h"
 #include "cli/terminal.h"
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <optional>
+#include <string_view>
 
 #include <fmt/format.h>
 
 namespace flightwatt::cli {
 namespace {
 
-using mechanical::PowerTerm;
-
-std::string_view value_of(PowerTerm term) {
-    switch (term) {
-        case PowerTerm::drag:
-            return "airspeed cubed";
-        case PowerTerm::induced:
-            return "1 / airspeed";
-        case PowerTerm::turn:
-            return "(load factor squared - 1) / airspeed";
-        case PowerTerm::climb:
-            return "climb rate";
-        case PowerTerm::descent:
-            return "climb rate below 0, besides";
-        case PowerTerm::constant:
-            return "1";
-    }
-    return "";
+std::string_view value_of(mechanical::PowerTerm term) {
+    constexpr std::array<std::string_view, mechanical::power_term_count> values{"airspeed cubed",
+                                                                                "1 / airspeed",
+                                                                                "(load factor squared - 1) / airspeed",
+                                                                                "climb rate",
+                                                                                "climb rate below 0, besides",
+                                                                                "1"};
+    return values.at(static_cast<std::size_t>(term));
 }
 
 /// Half the 95 % interval of a term's coefficient; absent from a single flight.
 std::optional<double> half_width(const mechanical::PhysicalModel& model, std::size_t term) {
     if (!model.level_sd) return std::nullopt;
     return student_t_half_width(model.degrees_of_freedom) * std::sqrt(model.covariance[term][term]);
+}
+
+Json terms_json(const mechanical::PhysicalModel& model) {
+    auto terms = Json::array();
+    for (std::size_t i = 0; i < model.terms.size(); ++i) {
+        const auto term = model.terms[i];
+        terms.push_back({{"term", to_string(term)},
+                         {"coefficient", model.coefficients[term]},
+                         {"half_width_95", optional_json(half_width(model, i))},
+                         {"unit", unit_of(term)}});
+    }
+    return terms;
+}
+
+Json trial_json(const mechanical::TermTrial& trial) {
+    return {{"term", trial.term},
+            {"kept", trial.kept},
+            {"rms_without_w", optional_json(trial.rms_before_w)},
+            {"rms_with_w", optional_json(trial.rms_after_w)},
+            {"reason", trial.reason}};
 }
 
 /// How far a flight of an hour may be off at the model's own mean airspeed, level, as a part of its power.
@@ -57,24 +71,17 @@ std::string accuracy(const mechanical::PhysicalModel& model) {
 }  // namespace
 
 TextTable constants_table(const mechanical::PhysicalModel& model) {
-    TextTable table{{"term", "times", "coefficient", "+-", "unit"}, {}};
-    for (std::size_t i = 0; i < model.terms.size(); ++i) {
-        const auto term = model.terms[i];
-        const auto half = half_width(model, i);
-        table.rows.push_back({std::string(to_string(term)), std::string(value_of(term)),
-                              fmt::format("{:.4g}", model.coefficients[term]),
-                              half ? fmt::format("{:.2g}", *half) : "-", std::string(unit_of(term))});
-    }
-    return table;
+    auto terms = terms_json(model);
+    for (std::size_t i = 0; i < model.terms.size(); ++i) terms[i]["times"] = value_of(model.terms[i]);
+    return table_of(terms, {"term", "times", "coefficient .4g", "half_width_95 .2g: +-", "unit"});
 }
 
 TextTable trials_table(const mechanical::PhysicalFit& fit) {
-    TextTable table{{"tried", "without W", "with W", "result"}, {}};
-    for (const auto& trial : fit.trials) {
-        table.rows.push_back({trial.term, fixed(trial.rms_before_w, 2), fixed(trial.rms_after_w, 2),
-                              trial.kept ? "kept" : trial.reason});
-    }
-    return table;
+    auto trials = list_json(fit.trials, trial_json);
+    for (auto& trial : trials)
+        if (trial["kept"] == true) trial["reason"] = "kept";
+    return table_of(trials,
+                    {"term: tried", "rms_without_w .2f: without W", "rms_with_w .2f: with W", "reason: result"});
 }
 
 std::string physical_text(const mechanical::PhysicalFit& fit, const Screen& screen) {
@@ -94,23 +101,7 @@ std::string physical_text(const mechanical::PhysicalFit& fit, const Screen& scre
 
 Json physical_json(const mechanical::PhysicalFit& fit) {
     const auto& model = fit.model;
-    Json terms = Json::array();
-    for (std::size_t i = 0; i < model.terms.size(); ++i) {
-        const auto term = model.terms[i];
-        terms.push_back({{"term", to_string(term)},
-                         {"coefficient", model.coefficients[term]},
-                         {"half_width_95", optional_json(half_width(model, i))},
-                         {"unit", unit_of(term)}});
-    }
-    Json trials = Json::array();
-    for (const auto& trial : fit.trials) {
-        trials.push_back({{"term", trial.term},
-                          {"kept", trial.kept},
-                          {"rms_without_w", optional_json(trial.rms_before_w)},
-                          {"rms_with_w", optional_json(trial.rms_after_w)},
-                          {"reason", trial.reason}});
-    }
-    return {{"terms", terms},
+    return {{"terms", terms_json(model)},
             {"level_sd", optional_json(model.level_sd)},
             {"degrees_of_freedom", model.degrees_of_freedom},
             {"drift_sd_w", model.drift_sd_w},
@@ -119,11 +110,11 @@ Json physical_json(const mechanical::PhysicalFit& fit) {
             {"bins", model.bins},
             {"bin_s", model.bin_s},
             {"samples", model.samples},
-            {"airspeed_m_per_s", {{"low", model.airspeed_m_per_s.low}, {"high", model.airspeed_m_per_s.high}}},
-            {"climb_m_per_s", {{"low", model.climb_m_per_s.low}, {"high", model.climb_m_per_s.high}}},
+            {"airspeed_m_per_s", interval_json(model.airspeed_m_per_s)},
+            {"climb_m_per_s", interval_json(model.climb_m_per_s)},
             {"mean_airspeed_m_per_s", model.mean_airspeed_m_per_s},
             {"held_back", fit.phases_decided ? "mean power of phases" : "stretches"},
-            {"trials", trials}};
+            {"trials", list_json(fit.trials, trial_json)}};
 }
 
 void warn_of_physical(const StageCall& call, const mechanical::PhysicalFit& fit) {
@@ -153,7 +144,7 @@ ModelKind model_kind(const StageCall& call) {
 
 void add_best_power(std::span<const mechanical::MeasuredFlight> measured, const mechanical::ModelFitOptions& options,
                     mechanical::MechanicalModel& model) {
-    TerminalProgress fitting("fits");
+    ProgressBar fitting("fits");
     mechanical::add_best_power(model, measured, options, fitting.callback());
 }
 

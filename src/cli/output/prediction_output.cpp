@@ -3,6 +3,7 @@
 #include "base/duration_text.h"
 #include "base/units.h"
 
+#include <array>
 #include <optional>
 
 #include <fmt/format.h>
@@ -64,19 +65,11 @@ Json json_of(const battery::LandingForecast& forecast) {
             {"fails_after_s", optional_json(forecast.fails_after_s)}};
 }
 
-/// A phase, or the whole flight.
-struct ValidatedPart {
-    std::string name;
-    std::optional<flight::Phase> phase;
-};
+/// The phases, and the whole flight.
+constexpr std::array<std::optional<flight::Phase>, 4> validated_parts{flight::Phase::takeoff, flight::Phase::cruise,
+                                                                      flight::Phase::landing, std::nullopt};
 
-std::vector<ValidatedPart> validated_parts() {
-    std::vector<ValidatedPart> parts;
-    parts.reserve(std::size(flight::all_phases) + 1);
-    for (const auto phase : flight::all_phases) parts.push_back({std::string(to_string(phase)), phase});
-    parts.push_back({"total", std::nullopt});
-    return parts;
-}
+std::string name_of(const std::optional<flight::Phase>& part) { return part ? std::string(to_string(*part)) : "total"; }
 
 std::string comparison(const std::string& part, const std::string& challenger, const mechanical::ModelScore& ours,
                        const std::string& baseline, const mechanical::ModelScore& theirs) {
@@ -161,21 +154,20 @@ TextTable flights_table(const std::vector<mechanical::ValidatedFlight>& flights)
                      "95 % low", "95 % high"},
                     {}};
     for (const auto& flight : flights) {
-        for (const auto& part : validated_parts()) {
+        for (const auto& part : validated_parts) {
             for (const auto& model : model_names(flights)) {
-                const auto energy = predicted_energy(flight, model, part.phase);
+                const auto energy = predicted_energy(flight, model, part);
                 if (!energy) continue;
                 const auto& [measured_wh, estimate] = *energy;
                 const double error_wh = estimate.energy_wh - measured_wh;
                 const auto interval = interval_95(estimate);
-                table.rows.push_back({flight.flight, part.name, model, fixed(measured_wh, 3),
-                                      fixed(part.phase ? flight.counter_wh[*part.phase] : std::nullopt, 3),
-                                      fixed(estimate.energy_wh, 3), fmt::format("{:+.3f}", error_wh),
-                                      part.phase == flight::Phase::landing
-                                          ? "-"
-                                          : fmt::format("{:+.1f}", units::percentage(error_wh, measured_wh)),
-                                      interval ? fixed(interval->low_wh, 3) : "-",
-                                      interval ? fixed(interval->high_wh, 3) : "-"});
+                table.rows.push_back(
+                    {flight.flight, name_of(part), model, fixed(measured_wh, 3),
+                     fixed(part ? flight.counter_wh[*part] : std::nullopt, 3), fixed(estimate.energy_wh, 3),
+                     fmt::format("{:+.3f}", error_wh),
+                     part == flight::Phase::landing ? "-"
+                                                    : fmt::format("{:+.1f}", units::percentage(error_wh, measured_wh)),
+                     interval ? fixed(interval->low_wh, 3) : "-", interval ? fixed(interval->high_wh, 3) : "-"});
             }
         }
     }
@@ -185,12 +177,12 @@ TextTable flights_table(const std::vector<mechanical::ValidatedFlight>& flights)
 TextTable scores_table(const std::vector<mechanical::ValidatedFlight>& flights) {
     TextTable table{
         {"phase", "model", "flights", "mean |error| Wh", "mean |error| %", "bias Wh", "95 % interval covers"}, {}};
-    for (const auto& part : validated_parts()) {
+    for (const auto& part : validated_parts) {
         for (const auto& model : model_names(flights)) {
-            const auto score = score_of(flights, model, part.phase);
+            const auto score = score_of(flights, model, part);
             if (!score) continue;
             table.rows.push_back(
-                {part.name, model, fmt::format("{}", score->flights), fixed(score->mean_absolute_error_wh, 3),
+                {name_of(part), model, fmt::format("{}", score->flights), fixed(score->mean_absolute_error_wh, 3),
                  fixed(score->mean_absolute_error_percent, 1), fmt::format("{:+.3f}", score->bias_wh),
                  score->coverage_95 ? fmt::format("{:.0f} %", units::percentage(*score->coverage_95, 1.0)) : "-"});
         }
@@ -201,12 +193,12 @@ TextTable scores_table(const std::vector<mechanical::ValidatedFlight>& flights) 
 std::string verdict(const std::vector<mechanical::ValidatedFlight>& flights, const std::string& challenger,
                     const std::string& baseline) {
     std::string text;
-    for (const auto& part : validated_parts()) {
-        const auto ours = score_of(flights, challenger, part.phase);
-        const auto theirs = score_of(flights, baseline, part.phase);
+    for (const auto& part : validated_parts) {
+        const auto ours = score_of(flights, challenger, part);
+        const auto theirs = score_of(flights, baseline, part);
         if (!ours || !theirs) continue;
         if (ours->mean_absolute_error_wh == theirs->mean_absolute_error_wh) continue;
-        text += comparison(part.name, challenger, *ours, baseline, *theirs);
+        text += comparison(name_of(part), challenger, *ours, baseline, *theirs);
     }
     return text;
 }
@@ -231,12 +223,12 @@ std::string validation_text(const std::vector<mechanical::ValidatedFlight>& flig
 
 Json scores_json(const std::vector<mechanical::ValidatedFlight>& flights) {
     Json json{{"flights", flights.size()}};
-    for (const auto& part : validated_parts()) {
-        json[part.name] = Json::object();
+    for (const auto& part : validated_parts) {
+        json[name_of(part)] = Json::object();
         for (const auto& model : model_names(flights)) {
-            const auto score = score_of(flights, model, part.phase);
+            const auto score = score_of(flights, model, part);
             if (!score) continue;
-            json[part.name][model] = {
+            json[name_of(part)][model] = {
                 {"mean_absolute_error_wh", score->mean_absolute_error_wh},
                 {"mean_absolute_error_percent", optional_json(score->mean_absolute_error_percent)},
                 {"bias_wh", score->bias_wh},

@@ -1,6 +1,7 @@
 #include "cli/output/profile_output.h"
 
 #include "base/text_table.h"
+#include "cli/output/records.h"
 
 #include <fmt/format.h>
 
@@ -38,10 +39,16 @@ Json to_json(const compute::PowerEstimate& estimate) {
             {"samples", estimate.samples},       {"repeats", estimate.repeats}};
 }
 
+Json failure_json(const compute::ProfileRun& run) {
+    return {{"configuration", run.configuration},
+            {"repeat", run.repeat},
+            {"status", to_string(run.status)},
+            {"note", run.note}};
+}
+
 Json to_json(const compute::ComponentEstimate& component, const compute::ProfileOutcome& outcome, bool above_idle) {
     Json json{{"name", component.name}, {"parameters", component.parameters}};
-    json["nodes"] = Json::array();
-    for (const auto& node : component.nodes) {
+    json["nodes"] = list_json(component.nodes, [&](const auto& node) {
         const auto reported = reported_power(node.total, outcome.idle, above_idle);
         Json entry{{"qos", node.qos}};
         entry.update(to_json(node.total));
@@ -50,15 +57,9 @@ Json to_json(const compute::ComponentEstimate& component, const compute::Profile
         entry["energy_j"] = reported.power_w * node.total.duration_s;
         entry["total_power_w"] = node.total.power_w;
         entry["measured"] = node.is_measured;
-        json["nodes"].push_back(std::move(entry));
-    }
-    json["failures"] = Json::array();
-    for (const auto& run : component.failures) {
-        json["failures"].push_back({{"configuration", run.configuration},
-                                    {"repeat", run.repeat},
-                                    {"status", to_string(run.status)},
-                                    {"note", run.note}});
-    }
+        return entry;
+    });
+    json["failures"] = list_json(component.failures, failure_json);
     if (component.interpolation) json["leave_one_out"] = cli::to_json(*component.interpolation);
     return json;
 }
@@ -108,10 +109,8 @@ Json to_json(const compute::ProfileOutcome& outcome, bool above_idle) {
     json["sampling_interval"] = {{"mean_s", outcome.jitter.mean_s},
                                  {"standard_deviation_s", outcome.jitter.sd_s},
                                  {"longest_s", outcome.jitter.max_s}};
-    json["components"] = Json::array();
-    for (const auto& component : outcome.components) {
-        json["components"].push_back(to_json(component, outcome, above_idle));
-    }
+    json["components"] =
+        list_json(outcome.components, [&](const auto& component) { return to_json(component, outcome, above_idle); });
     return json;
 }
 

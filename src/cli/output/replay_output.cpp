@@ -2,6 +2,7 @@
 
 #include "base/duration_text.h"
 #include "cli/output/mission_output.h"
+#include "cli/output/records.h"
 #include "cli/stage.h"
 
 #include <algorithm>
@@ -138,6 +139,8 @@ Json schedule_json(const ReplayedSchedule& replayed) {
     return json;
 }
 
+Json known_bound(const Replay& replay) { return replay.bound_is_proven ? optional_json(replay.bound) : nullptr; }
+
 Json replay_json(const Replay& replay) {
     constexpr std::array<std::string_view, 3> seen{"no", "yes", "unknown"};
     Json json{{"flight", replay.flight},
@@ -152,11 +155,27 @@ Json replay_json(const Replay& replay) {
               {"counter_energy_wh", optional_json(replay.counter_energy_wh)},
               {"gaps", replay.gaps},
               {"longest_gap_s", replay.max_gap_s},
-              {"bound", replay.bound_is_proven ? optional_json(replay.bound) : nullptr},
+              {"bound", known_bound(replay)},
               {"notes", replay.notes}};
-    json["schedules"] = Json::array();
-    for (const auto& replayed : replay.schedules) json["schedules"].push_back(schedule_json(replayed));
+    json["schedules"] = list_json(replay.schedules, schedule_json);
     return json;
+}
+
+/// Of each schedule, with its flight and mission.
+Json schedules_json(Replays replays) {
+    auto records = Json::array();
+    for (const auto& replay : replays) {
+        for (const auto& replayed : replay.schedules) {
+            auto record = schedule_json(replayed);
+            record["flight"] = replay.flight;
+            record["mission"] = replay.mission;
+            record["bound"] = known_bound(replay);
+            record["shown_way"] = way_text(replayed);
+            record["end"] = how_it_ended(replayed);
+            records.push_back(std::move(record));
+        }
+    }
+    return records;
 }
 
 Json comparison_json(const std::string& mission, ScheduleMethod baseline,
@@ -164,15 +183,14 @@ Json comparison_json(const std::string& mission, ScheduleMethod baseline,
     Json json{{"mission", mission},
               {"baseline", mission::to_string(baseline)},
               {"sentence", sentence(mission, baseline, comparisons)}};
-    json["flights"] = Json::array();
-    for (const auto& comparison : comparisons) {
-        json["flights"].push_back({{"flight", comparison.flight},
-                                   {"verdict", to_string(comparison.verdict)},
-                                   {"replanned_keeps_reserve", comparison.replanned_keeps_reserve},
-                                   {"baseline_keeps_reserve", comparison.baseline_keeps_reserve},
-                                   {"more_utility", comparison.more_utility},
-                                   {"more_soc_percent", optional_json(comparison.more_soc_percent)}});
-    }
+    json["flights"] = list_json(comparisons, [](const auto& comparison) -> Json {
+        return {{"flight", comparison.flight},
+                {"verdict", to_string(comparison.verdict)},
+                {"replanned_keeps_reserve", comparison.replanned_keeps_reserve},
+                {"baseline_keeps_reserve", comparison.baseline_keeps_reserve},
+                {"more_utility", comparison.more_utility},
+                {"more_soc_percent", optional_json(comparison.more_soc_percent)}};
+    });
     return json;
 }
 
@@ -193,19 +211,10 @@ TextTable replay_basis_table(Replays replays) {
 }
 
 TextTable replay_table(Replays replays) {
-    TextTable table{{"flight", "mission", "schedule", "expected SoC %", "final SoC %", "reserve %", "reserve",
-                     "utility", "regret", "computing Wh"},
-                    {}};
-    for (const auto& replay : replays) {
-        for (const auto& replayed : replay.schedules) {
-            const auto& summary = replayed.summary;
-            table.rows.push_back(
-                {replay.flight, replay.mission, way_text(replayed), fixed(replayed.expected_soc_percent, 2),
-                 fixed(summary.final_soc_percent, 2), fixed(summary.reserve_soc_percent, 2), how_it_ended(replayed),
-                 fixed(summary.utility, 4), fixed(replayed.regret, 4), fixed(summary.compute_energy_wh, 3)});
-        }
-    }
-    return table;
+    return table_of(schedules_json(replays),
+                    {"flight", "mission", "shown_way: schedule", "expected_soc_percent .2f: expected SoC %",
+                     "final_soc_percent .2f: final SoC %", "reserve_soc_percent .2f: reserve %", "end: reserve",
+                     "utility .4f", "regret .4f", "compute_energy_wh .3f: computing Wh"});
 }
 
 std::vector<std::string> replay_sentences(Replays replays) {
@@ -235,34 +244,24 @@ std::string replay_text(Replays replays, const Screen& screen) {
 
 std::string replay_csv(Replays replays) {
     constexpr int digits = 10;
-    std::vector<Json> records;
-    for (const auto& replay : replays) {
-        const auto of_replay = replay_json(replay);
-        for (auto record : of_replay["schedules"]) {
-            const Json way = record["way"];
-            record["schedule"] = way;
-            for (const auto* shared : {"flight", "mission", "bound"}) record[shared] = of_replay[shared];
-            records.push_back(std::move(record));
-        }
-    }
-    return csv_of(records,
-                  {"flight", "mission", "schedule", "reserve_soc_percent", "keeps_reserve", "expected_soc_percent",
+    return csv_of(schedules_json(replays),
+                  {"flight", "mission", "way: schedule", "reserve_soc_percent", "keeps_reserve", "expected_soc_percent",
                    "final_soc_percent", "utility", "regret", "bound", "depleted_at_s", "cut_off_at_s",
                    "undeliverable_at_s", "mechanical_energy_wh", "compute_energy_wh", "duration_s"},
                   digits);
 }
 
 Json to_json(const mission::Replays& replays) {
-    Json json{{"replays", Json::array()}, {"comparisons", Json::array()}, {"not_replayed", Json::array()}};
-    for (const auto& replay : replays.replays) json["replays"].push_back(replay_json(replay));
+    Json json{{"replays", list_json(replays.replays, replay_json)}, {"comparisons", Json::array()}};
     for (const auto& name : missions_of(replays.replays)) {
         for (const auto baseline : baselines) {
             const auto comparisons = compare_replanned(replays.replays, name, baseline);
             if (!comparisons.empty()) json["comparisons"].push_back(comparison_json(name, baseline, comparisons));
         }
     }
-    for (const auto& left : replays.not_replayed)
-        json["not_replayed"].push_back({{"flight", left.flight}, {"mission", left.mission}, {"reason", left.reason}});
+    json["not_replayed"] = list_json(replays.not_replayed, [](const auto& left) -> Json {
+        return {{"flight", left.flight}, {"mission", left.mission}, {"reason", left.reason}};
+    });
     return json;
 }
 

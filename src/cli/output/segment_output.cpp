@@ -1,6 +1,7 @@
 #include "cli/output/segment_output.h"
 
 #include "base/duration_text.h"
+#include "cli/output/records.h"
 #include "cli/stage.h"
 #include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
@@ -39,46 +40,37 @@ Json to_json(const flight::PowerStatistics& power, const flight::PhaseSpan& span
             {"evidence", {{"start", to_json(span.start)}, {"end", to_json(span.end)}}}};
 }
 
-Json to_json(const flight::EdgeReport& explained) {
-    const auto events_json = [](const std::vector<flight::EdgeEvent>& events) {
-        Json json = Json::array();
-        for (const auto& event : events) {
-            json.push_back({{"what", event.what}, {"time_s", event.time_s}, {"after_s", event.after_s}});
-        }
-        return json;
-    };
+Json event_json(const flight::EdgeEvent& event) {
+    return {{"what", event.what}, {"time_s", event.time_s}, {"after_s", event.after_s}};
+}
+
+Json edge_json(const flight::EdgeReport& explained) {
     return {{"edge", to_string(explained.kind)},
             {"time_s", explained.edge.time_s},
             {"height_percent", explained.height_percent},
-            {"witnesses", events_json(explained.matching_events)},
-            {"nearby", events_json(explained.other_events)},
+            {"witnesses", list_json(explained.matching_events, event_json)},
+            {"nearby", list_json(explained.other_events, event_json)},
             {"verdict", explained.agreement}};
 }
 
 Json to_json(const flight::SelectedTracks& tracks, const flight::PowerStatistics& power, const flight::Sortie& sortie) {
-    Json phases = Json::array();
-    for (const auto& span : sortie.phases) phases.push_back(to_json(power, span));
-    Json edges = Json::array();
-    for (const auto& edge : compare_edges_with_events(tracks, sortie)) edges.push_back(to_json(edge));
-    Json held = Json::array();
-    for (const auto& hold : sortie.held) {
-        held.push_back({{"height_m", hold.height_m},
-                        {"start_s", hold.start_s},
-                        {"end_s", hold.end_s},
-                        {"of_landing", hold.of_landing}});
-    }
+    const auto held_json = [](const auto& hold) -> Json {
+        return {{"height_m", hold.height_m},
+                {"start_s", hold.start_s},
+                {"end_s", hold.end_s},
+                {"of_landing", hold.of_landing}};
+    };
     return {{"ground_altitude_m", sortie.ground_altitude_m},
             {"height_m", sortie.height_m},
-            {"held_heights", held},
-            {"phases", phases},
-            {"edges", edges}};
+            {"held_heights", list_json(sortie.held, held_json)},
+            {"phases", list_json(sortie.phases, [&](const auto& span) { return to_json(power, span); })},
+            {"edges", list_json(compare_edges_with_events(tracks, sortie), edge_json)}};
 }
 
 Json to_json(const flight::PowerReport& report) {
-    Json gaps = Json::array();
-    for (const auto& gap : report.gaps) {
-        gaps.push_back({{"start_s", gap.start_s}, {"duration_s", gap.duration_s}});
-    }
+    const auto gap_json = [](const auto& gap) -> Json {
+        return {{"start_s", gap.start_s}, {"duration_s", gap.duration_s}};
+    };
     Json idle;
     if (report.idle) {
         idle = {{"mean_a", report.idle->mean_a}, {"deviation_a", report.idle->sd_a}, {"samples", report.idle->samples}};
@@ -87,7 +79,7 @@ Json to_json(const flight::PowerReport& report) {
             {"idle_current", idle},
             {"energy_closure_percent", optional_json(report.energy_closure_percent)},
             {"charge_closure_percent", optional_json(report.charge_closure_percent)},
-            {"gaps", gaps},
+            {"gaps", list_json(report.gaps, gap_json)},
             {"power_faults", report.power_faults}};
 }
 
@@ -177,22 +169,20 @@ std::string explanation(const flight::FlightSeries& series, const flight::Flight
 
 Json to_json(const flight::FlightSeries& series, const flight::FlightPhases& phases, const flight::PowerReport& power,
              const std::vector<std::string>& warnings) {
-    Json sorties = Json::array();
     const flight::SelectedTracks tracks(series);
     const flight::PowerStatistics statistics(series);
-    for (const auto& sortie : phases.sorties) sorties.push_back(to_json(tracks, statistics, sortie));
-    Json others = Json::array();
-    for (const auto& other : phases.ground_events) {
-        others.push_back({{"start_s", other.start_s}, {"end_s", other.end_s}, {"what", other.what}});
-    }
+    const auto sortie_json = [&](const auto& sortie) { return to_json(tracks, statistics, sortie); };
+    const auto other_json = [](const auto& other) -> Json {
+        return {{"start_s", other.start_s}, {"end_s", other.end_s}, {"what", other.what}};
+    };
     return {{"flight", series.flight},
             {"aircraft_id", series.aircraft_id},
             {"aircraft_name", series.aircraft_name},
             {"synthetic", flight::is_synthetic(series.aircraft_name)},
             {"power_source", power_track(series).source},
             {"motor_evidence", phases.motor_source},
-            {"sorties", sorties},
-            {"not_flights", others},
+            {"sorties", list_json(phases.sorties, sortie_json)},
+            {"not_flights", list_json(phases.ground_events, other_json)},
             {"power", to_json(power)},
             {"warnings", warnings}};
 }

@@ -2,13 +2,14 @@
 
 #include "cli/stage.h"
 #include "cli/terminal.h"
-#include "cli/warning_throttle.h"
 #include "compute/compute_model.h"
 #include "live/decision_command.h"
 #include "live/live_curves.h"
 #include "live/live_flight.h"
 
 #include <chrono>
+#include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +38,27 @@ std::vector<std::string> screen_of(const live::LiveState& state, const compute::
 /// FLIGHTWATT_COMPONENT_NAME_PARAMETER. The state has a decision.
 live::DecisionCommand::Environment decision_environment(const live::LiveState& state,
                                                         const compute::ComputeModel& compute);
+
+/// Warnings of something that goes on, each said when it first holds, and again when its numbers have changed so much
+/// that somebody wants to know: one has doubled or halved, or come from or gone to 0, and half a minute has passed.
+class WarningThrottle {
+  public:
+    static constexpr std::size_t max_kinds = 200;
+    static constexpr double again_after_s = 30.0;
+
+    /// Those that hold `now` and are to be said at that time.
+    std::vector<std::string> due(const std::vector<std::string>& now, double time_s);
+    /// At the end: those whose numbers are others than those last said.
+    std::vector<std::string> final_updates(const std::vector<std::string>& now);
+
+  private:
+    struct Said {
+        std::string text;
+        std::vector<double> numbers;
+        double time_s = 0.0;
+    };
+    std::map<std::string, Said> said_;  ///< by their texts without numbers
+};
 
 /// The standard output of watch: a screen with a plot on a terminal that shows one, else a line or with --json an object
 /// a state. What it is made from has to outlive it.

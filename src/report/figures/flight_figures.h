@@ -4,11 +4,12 @@
 #include "battery/identified_battery.h"
 #include "mechanical/model_errors.h"
 #include "mechanical/physical_fit.h"
+#include "mechanical/prediction.h"
 #include "mechanical/validation.h"
 #include "report/batch_content.h"
 #include "report/figure.h"
-#include "report/sections/in_flight.h"
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -37,6 +38,20 @@ Figure flight_figure(const ReportFlight& flight, const std::optional<mechanical:
 /// The ground track of a flight from above, coloured by phase, metres east and north on equal scales;
 /// std::nullopt where the log has no position.
 std::optional<Figure> track_figure(const ReportFlight& flight, const std::string& id);
+
+/// What flightwatt predict would have said at a moment: what was measured until then and what was to come.
+struct PredictedMoment {
+    double flown_s = 0.0;    ///< since lift-off
+    double energy_wh = 0.0;  ///< of the whole flight
+    mechanical::EnergyInterval interval;
+};
+
+/// A flight that was predicted while it cruised.
+struct PredictedFlight {
+    std::vector<PredictedMoment> moments;  ///< every minute of the cruise
+    double measured_wh = 0.0;              ///< of the whole flight
+    std::size_t others = 0;                ///< flights that the model was fitted to
+};
 
 /// What would have been predicted while the flight cruised, with its 95 % intervals, over time, and what was measured.
 /// `flight` has moments.

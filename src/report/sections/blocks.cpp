@@ -4,6 +4,7 @@
 #include "report/sections/sections.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -48,8 +49,7 @@ constexpr std::size_t max_digits = 15;  ///< that a double keeps, and JavaScript
 struct NumberCell {
     bool is_empty = false;
     double value = 0.0;
-    std::int64_t digits = 0;  ///< without the point: -15 of "-1.5"
-    std::size_t whole = 0;    ///< how many stand before the point
+    std::size_t whole = 0;  ///< how many digits stand before the point
     std::size_t decimals = 0;
     bool is_decimal = true;  ///< of a sign, digits and a point alone, and no more digits than there may be
 };
@@ -62,18 +62,12 @@ NumberCell number_cell(const CsvRowView::Cell& cell, std::size_t line) {
     if (!value)
         throw InputError({table_name, line, cell.column}, fmt::format("'{}' is not a finite number", cell.text));
     number.value = *value;
-    const bool is_negative = cell.text.front() == '-';
-    const auto text = cell.text.substr(is_negative ? 1 : 0);
+    const auto text = cell.text.substr(cell.text.front() == '-' ? 1 : 0);
     const auto point = text.find('.');
     number.whole = std::min(point, text.size());
     number.decimals = point == std::string_view::npos ? 0 : text.size() - point - 1;
-    number.is_decimal = number.whole + number.decimals <= max_digits;
-    for (const char c : text) {
-        if (!number.is_decimal || c == '.') continue;
-        number.is_decimal = c >= '0' && c <= '9';
-        number.digits = number.digits * 10 + (c - '0');
-    }
-    if (is_negative) number.digits = -number.digits;
+    number.is_decimal =
+        number.whole + number.decimals <= max_digits && text.find_first_not_of("0123456789.") == std::string_view::npos;
     return number;
 }
 
@@ -106,14 +100,14 @@ class PackedColumn {
     VegaJson::array_t steps(std::size_t decimals) const {
         VegaJson::array_t all;
         all.reserve(numbers_.size());
+        const double scale = std::pow(10.0, static_cast<double>(decimals));
         std::int64_t last = 0;
         for (const auto& number : numbers_) {
             if (number.is_empty) {
                 all.emplace_back(nullptr);
                 continue;
             }
-            auto digits = number.digits;
-            for (auto at = number.decimals; at < decimals; ++at) digits *= 10;
+            const auto digits = std::llround(number.value * scale);  // exact: a double keeps max_digits
             all.emplace_back(digits - last);
             last = digits;
         }

@@ -1,9 +1,10 @@
-#include "report/sections/in_flight.h"
-
 #include "base/error.h"
 #include "base/units.h"
 #include "flight/phase_statistics.h"
 #include "live/prediction.h"
+#include "mechanical/model_fit.h"
+#include "mechanical/prediction.h"
+#include "report/sections/sections.h"
 
 #include <algorithm>
 

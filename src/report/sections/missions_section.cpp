@@ -1,4 +1,6 @@
 #include "base/units.h"
+#include "cli/output/mission_output.h"
+#include "cli/output/records.h"
 #include "cli/output/replay_output.h"
 #include "mechanical/table_one.h"
 #include "mission/mission_summary.h"
@@ -66,11 +68,6 @@ Section profile_section(Missions missions) {
         add_figure(section, profile_figure(compute, fmt::format("profile-{}", section.figures.size() + 1)));
     }
     return section;
-}
-
-std::optional<double> chance_below_percent(const mission::MissionSummary& summary) {
-    if (!summary.samples) return std::nullopt;
-    return units::percentage(summary.samples->probability_below_reserve, 1.0);
 }
 
 Section schedule_section(Missions missions, const PublishedFigures& published) {
@@ -235,32 +232,13 @@ TextTable ranking_table(Missions missions) {
         summaries.push_back(simulated.simulation.summary);
         summaries.back().mission = simulated.title;
     }
-    const auto sorted = ranked(std::move(summaries));
-    const auto any = [&](const auto& has) { return std::ranges::any_of(sorted, has); };
-    const bool utility = any([](const auto& summary) { return summary.utility.has_value(); });
-    const bool empty = any([](const auto& summary) { return summary.depleted_at_s.has_value(); });
-    const bool cut_off = any([](const auto& summary) { return summary.cut_off_at_s.has_value(); });
-    TextTable table{{"rank", "mission", "final state of charge [%]", "reserve [%]", "chance of landing below [%]"}, {}};
-    if (utility) table.header.emplace_back("utility");
-    for (const auto* name : {"energy [Wh]", "mechanical [Wh]", "computing [Wh]", "duration [s]"})
-        table.header.emplace_back(name);
-    if (empty) table.header.emplace_back("empty at [s]");
-    if (cut_off) table.header.emplace_back("cut off at [s]");
-    for (const auto& summary : sorted) {
-        const auto origin = to_string(summary.schedule);
-        std::vector<std::string> row{std::to_string(table.rows.size() + 1),
-                                     summary.mission + (origin.empty() ? "" : fmt::format(" ({})", origin)),
-                                     fixed(summary.final_soc_percent, 2), fixed(summary.reserve_soc_percent, 2),
-                                     fixed(chance_below_percent(summary), 1)};
-        if (utility) row.push_back(fixed(summary.utility, 3));
-        for (const double energy_wh : {summary.energy_wh, summary.mechanical_energy_wh, summary.compute_energy_wh})
-            row.push_back(fixed(energy_wh, 3));
-        row.push_back(fixed(summary.duration_s, 1));
-        if (empty) row.push_back(fixed(summary.depleted_at_s, 1));
-        if (cut_off) row.push_back(fixed(summary.cut_off_at_s, 1));
-        table.rows.push_back(std::move(row));
-    }
-    return table;
+    return cli::table_of(
+        cli::ranking_json(ranked(std::move(summaries))),
+        {"rank", "title: mission", "final_soc_percent .2f: final state of charge [%]",
+         "reserve_soc_percent .2f: reserve [%]", "chance_below_percent .1f: chance of landing below [%]",
+         "utility? .3f", "energy_wh .3f: energy [Wh]", "mechanical_energy_wh .3f: mechanical [Wh]",
+         "compute_energy_wh .3f: computing [Wh]", "duration_s .1f: duration [s]", "depleted_at_s? .1f: empty at [s]",
+         "cut_off_at_s? .1f: cut off at [s]"});
 }
 
 Section plan_section(Missions missions) {

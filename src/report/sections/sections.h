@@ -10,8 +10,8 @@
 #include "mission/replay.h"
 #include "report/batch_content.h"
 #include "report/figure.h"
+#include "report/figures/flight_figures.h"
 #include "report/html.h"
-#include "report/sections/in_flight.h"
 #include "report/sections/simulated_mission.h"
 
 #include <cstddef>
@@ -55,6 +55,15 @@ TextTable flights_table(std::span<const ReportFlight> flights);
 
 /// That one, and what was excluded with the reasons: the section's tables.
 std::vector<CaptionedTable> flights_tables(std::span<const ReportFlight> flights);
+
+/// Each flight of one complete sortie, predicted by a model of the other flights, from nothing that was logged later
+/// but the durations of cruise and landing, taken as known. By the flights' names; flights without a prediction are not
+/// in it, and none is where there are less than 3 flights or more than `max_flights`.
+std::map<std::string, PredictedFlight> predict_each_minute(const BatchContent& content, std::size_t max_flights);
+
+/// A row a flight: the energy [Wh] that was predicted in the first, the middle and the last of these moments, with its
+/// 95 % interval, beside the measured one, and the percentage of all moments' intervals that hold it.
+TextTable predictions_table(const std::map<std::string, PredictedFlight>& flights);
 
 /// All flights as a table (durations, power, energy, closure of integral and counter, gaps, warnings), those
 /// that are excluded with their reasons, and a part a flight that is drawn when it is opened, with what would have

@@ -10,7 +10,6 @@
 #include "mission/sampled_flights.h"
 #include "report/figure.h"
 
-#include <algorithm>
 #include <cctype>
 #include <map>
 
@@ -252,18 +251,16 @@ std::vector<std::string> card_lines(const SimulatedMission& simulated, const Mis
 
 nlohmann::ordered_json to_json(const SimulatedMission& simulated, const MissionAssessment& answer) {
     const auto& summary = simulated.simulation.summary;
-    const auto& samples = summary.samples;
-    cli::Json json{{"mission", simulated.title},
-                   {"final_soc_percent", cli::optional_json(summary.final_soc_percent)},
-                   {"reserve_soc_percent", summary.reserve_soc_percent},
-                   {"keeps_reserve", summary.keeps_reserve},
-                   {"probability_below_reserve", samples ? cli::Json(samples->probability_below_reserve) : cli::Json()},
-                   {"utility", cli::optional_json(summary.utility)},
-                   {"reach", to_json(answer.reach)},
-                   {"reach_with_95_percent", to_json(answer.reach_at_95_percent)},
-                   {"least_capacity_ah", cli::optional_json(answer.capacity_ah)},
-                   {"card", card_lines(simulated, answer)}};
-    if (summary.by_flights) json[cli::by_flights_key] = cli::to_json(*summary.by_flights);
+    const auto of_summary = cli::to_json(summary);
+    cli::Json json{{"mission", simulated.title}};
+    for (const auto* field :
+         {"final_soc_percent", "reserve_soc_percent", "keeps_reserve", "probability_below_reserve", "utility"})
+        json[field] = of_summary.value(field, cli::Json());
+    json["reach"] = to_json(answer.reach);
+    json["reach_with_95_percent"] = to_json(answer.reach_at_95_percent);
+    json["least_capacity_ah"] = cli::optional_json(answer.capacity_ah);
+    json["card"] = card_lines(simulated, answer);
+    if (summary.by_flights) json[cli::by_flights_key] = of_summary[cli::by_flights_key];
     return json;
 }
 

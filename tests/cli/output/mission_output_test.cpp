@@ -7,6 +7,7 @@
 #include "mission/plan.h"
 #include "mission/sampled_flights.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,44 @@ TEST(SamplingOptions, RefuseWhatIsNoWholeNumber) {
     for (const auto* text : {"-5", "1.5", "many"}) {
         EXPECT_THROW(sampling_options(call_with({std::string("--samples=") + text}), false), UsageError) << text;
     }
+}
+
+mission::MissionSummary outcome(const std::string& name, std::optional<double> soc,
+                                std::optional<double> depleted = {}) {
+    mission::MissionSummary summary;
+    summary.mission = name;
+    summary.final_soc_percent = soc;
+    summary.depleted_at_s = depleted;
+    summary.energy_wh = 10.0;
+    summary.mechanical_energy_wh = 4.0;
+    summary.compute_energy_wh = 6.0;
+    summary.duration_s = 688.0;
+    return summary;
+}
+
+TEST(ComparisonTable, HasARowAMission) {
+    const auto table = comparison_table({outcome("a", 5.126), outcome("b", 0.0, 580.345), outcome("c", {})});
+    EXPECT_EQ(to_csv(table),
+              "rank,mission,final_soc_percent,energy_wh,mechanical_energy_wh,compute_energy_wh,duration_s,"
+              "depleted_at_s\n"
+              "1,a,5.13,10.000,4.000,6.000,688.0,-\n2,b,0.00,10.000,4.000,6.000,688.0,580.3\n"
+              "3,c,-,10.000,4.000,6.000,688.0,-\n");
+}
+
+TEST(ComparisonTable, HasRareColumnsWhereAMissionHasThem) {
+    auto cut_off = outcome("cut off", 40.0);
+    cut_off.cut_off_at_s = 500.0;
+    cut_off.schedule = mission::ScheduleOrigin::planned;
+    const auto table = comparison_table({outcome("lasts", 2.0), cut_off, outcome("early", 0.0, 100.0)});
+    EXPECT_EQ(table.header.back(), "cut_off_at_s");
+    EXPECT_EQ(table.rows[1].back(), "500.0");
+    EXPECT_EQ(table.rows[1][1], "cut off (planned)");
+    EXPECT_EQ(table.rows[2].back(), "-");
+}
+
+TEST(ComparisonCsv, HasEveryColumnWithItsDigits) {
+    const auto csv = comparison_csv({outcome("a", 100.0 / 3.0)});
+    EXPECT_EQ(csv.substr(csv.find('\n') + 1), "1,a,,33.33333333,0,false,10,4,6,0,688,,,,\n");
 }
 
 TEST(MissionJson, HoldsTheSummaryWithNullForNever) {

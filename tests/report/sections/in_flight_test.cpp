@@ -1,4 +1,4 @@
-#include "report/sections/in_flight.h"
+#include "report/sections/sections.h"
 
 #include "flight/load_flight.h"
 #include "helpers/test_paths.h"

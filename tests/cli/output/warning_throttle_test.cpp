@@ -1,4 +1,4 @@
-#include "cli/warning_throttle.h"
+#include "cli/output/watch_output.h"
 
 #include <string>
 #include <vector>
