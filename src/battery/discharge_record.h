@@ -6,7 +6,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -55,7 +54,5 @@ std::ptrdiff_t rest_sample_count(const DischargeRecord& record);
 /// The current [A] that has settled in an RC pair of that time constant at every sample: the solution of
 /// tau dx/dt = I - x from the resting current on, exact for a current that is constant between samples.
 std::vector<double> rc_branch_current_a(const DischargeRecord& record, double time_constant_s);
-/// Into a span of as many.
-void compute_rc_branch_current(const DischargeRecord& record, double time_constant_s, std::span<double> settled_a);
 
 }  // namespace flightwatt::battery

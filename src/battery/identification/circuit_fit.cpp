@@ -132,18 +132,7 @@ class WithoutRests {
 
 /// The settled currents of the used samples.
 Eigen::VectorXd settled(std::span<const AlignedRecord> records, double time_constant_s) {
-    std::size_t samples = 0;
-    for (const auto& [record, initial_ah] : records) samples += record->time_s.size();
-    Eigen::VectorXd settled_a(static_cast<Eigen::Index>(samples));
-    Eigen::Index used = 0;
-    for (const auto& [record, initial_ah] : records) {
-        compute_rc_branch_current(*record, time_constant_s, {settled_a.data() + used, record->time_s.size()});
-        const Eigen::Index first = used;  // unused samples fall out by moving the others up
-        for (std::size_t i = 0; i < record->used.size(); ++i)
-            if (record->used[i]) settled_a[used++] = settled_a[first + static_cast<Eigen::Index>(i)];
-    }
-    settled_a.conservativeResize(used);
-    return settled_a;
+    return gathered(records, [&](const AlignedRecord& a) { return rc_branch_current_a(*a.record, time_constant_s); });
 }
 
 /// The time constants to search, as logarithms.

@@ -1,6 +1,5 @@
 #include "battery/identification/open_circuit.h"
 
-#include "base/piecewise_linear.h"
 #include "base/statistics.h"
 #include "base/units.h"
 
