@@ -80,37 +80,25 @@ void append_message_text(const FoundFrame& found, std::string& text) {
     append_number(unsigned{found.sender}, text);
     text += ' ';
     text += found.message->definition.name;
-    const char* p = found.fields.data();
-    for (const auto& field : found.message->fields) {
+    for_each_field(*found.message, found.fields, [&](const WireField& field, const char* p, std::size_t elements) {
         text += ' ';
-        std::size_t elements = field.elements;
-        if (field.count == WireCount::counted) elements = wire_number<std::uint8_t>(p++);
-        const auto size = size_of(field.type);
-        if (field.type == WireType::text && field.count != WireCount::one) {
-            append_quoted({p, elements}, text);
-            p += elements;
-            continue;
-        }
-        for (std::size_t i = 0; i < elements; ++i, p += size) {
+        if (field.type == WireType::text && field.count != WireCount::one) return append_quoted({p, elements}, text);
+        for (std::size_t i = 0; i < elements; ++i) {
             if (i > 0) text += ',';
-            append_element(field.type, p, text);
+            append_element(field.type, p + i * size_of(field.type), text);
         }
-    }
+    });
 }
 
 /// The values of its fields; NaN for what is no single finite number.
 void read_message_values(const FoundFrame& found, std::vector<double>& values) {
     values.clear();
-    const char* p = found.fields.data();
-    for (const auto& field : found.message->fields) {
-        std::size_t elements = field.elements;
-        if (field.count == WireCount::counted) elements = wire_number<std::uint8_t>(p++);
+    for_each_field(*found.message, found.fields, [&](const WireField& field, const char* p, std::size_t elements) {
         int decimals = 4;  // often enough
         const bool is_number = elements == 1 && field.type != WireType::text;
         const double value = is_number ? wire_value(field.type, p, decimals) : std::nan("");
         values.push_back(std::isfinite(value) ? value : std::nan(""));
-        p += elements * size_of(field.type);
-    }
+    });
 }
 
 /// So many bytes are looked at in one go.

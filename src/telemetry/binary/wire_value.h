@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <string_view>
 
 namespace flightwatt::telemetry {
 
@@ -90,6 +92,18 @@ inline double wire_value(WireType type, const char* p, int& decimals) {
             return wire_number<double>(p);
     }
     return 0.0;
+}
+
+/// Calls use(WireField, first byte, how many elements) for each field of a payload that fits its definition.
+template <typename Use>
+void for_each_field(const WireMessage& message, std::string_view payload, Use&& use) {
+    const char* p = payload.data();
+    for (const auto& field : message.fields) {
+        std::size_t elements = field.elements;
+        if (field.count == WireCount::counted) elements = wire_number<std::uint8_t>(p++);
+        use(field, p, elements);
+        p += elements * size_of(field.type);
+    }
 }
 
 }  // namespace flightwatt::telemetry
