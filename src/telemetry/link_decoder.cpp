@@ -42,27 +42,14 @@ char shown_character(char c) {
 }
 
 void append_element(WireType type, const char* p, std::string& text) {
-    switch (type) {
-        case WireType::text:
+    with_wire_type(type, [&]<typename T>() {
+        if constexpr (std::is_same_v<T, char>)
             text += *p == ' ' ? '?' : shown_character(*p);
-            break;
-        case WireType::float32:
+        else if constexpr (std::is_same_v<T, float>)
             append_number(shortest_decimal(wire_number<float>(p)), text);
-            break;
-        case WireType::float64:
-            append_number(wire_number<double>(p), text);
-            break;
-        case WireType::int64:
-            append_number(wire_number<std::int64_t>(p), text);
-            break;
-        case WireType::uint64:
-            append_number(wire_number<std::uint64_t>(p), text);
-            break;
-        default: {
-            int decimals = 0;
-            append_number(static_cast<std::int64_t>(wire_value(type, p, decimals)), text);
-        }
-    }
+        else
+            append_number(wire_number<T>(p), text);
+    });
 }
 
 /// Zeros behind it fill a char[n] up.
