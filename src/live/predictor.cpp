@@ -364,16 +364,10 @@ const PredictorState& Predictor::state() const noexcept { return state_->outlook
 std::span<const ComponentState> Predictor::component_states() const noexcept { return state_->runs; }
 std::span<const AlarmText> Predictor::alarms() const noexcept { return state_->alarms; }
 
-struct PredictorMaker {
-    static std::unique_ptr<Predictor> make(const PredictorSetup& setup) {
-        return std::unique_ptr<Predictor>(
-            new Predictor(std::make_unique<Predictor::State>(setup, start_of(setup))));  // its constructor is private
-    }
-};
-
 PredictorOrError make_predictor(const PredictorSetup& setup) noexcept {
     try {
-        return {PredictorMaker::make(setup), ""};
+        auto state = std::make_unique<Predictor::State>(setup, start_of(setup));
+        return {std::unique_ptr<Predictor>(new Predictor(std::move(state))), ""};  // its constructor is private
     } catch (const InputError& error) {
         const auto hint = error.hint().empty() ? std::string() : "; " + error.hint();
         return {nullptr, fmt::format("{}: {}{}", to_string(error.where()), error.what(), hint)};
