@@ -3,6 +3,7 @@
 #include "battery/identification/circuit_fit.h"
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,18 +11,13 @@
 
 namespace flightwatt::battery {
 
-/// Two records of one pack: the later one began with what the earlier one left.
-struct PackConstraint {
-    std::size_t later = 0;
-    std::size_t earlier = 0;
-    double charge_ah = 0.0;  ///< drawn in between
-    double error_ah = 0.0;   ///< its standard deviation
-};
+/// One a record: the earlier one whose pack it was flown on, if that is known.
+using PackLinks = std::vector<std::optional<PackLink>>;
 
 /// A circuit, and the initial charges that belong to it.
 struct JointCircuitFit {
     std::vector<AlignedRecord> records;
-    std::vector<PackConstraint> links;
+    PackLinks links;
     CircuitFit fit;
     std::size_t reference = 0;  ///< the record with the highest resting voltage: others are aligned with it
 };
@@ -33,8 +29,8 @@ struct JointCircuitFit {
 /// most) as predict best what was left out: each record in turn, or, of a single one, each twentieth of it. The curve
 /// begins at charge 0. Throws NoResultError where the records determine no circuit whose voltage falls as charge is
 /// drawn.
-JointCircuitFit fit_circuit_jointly(std::span<const DischargeRecord> records, int cells,
-                                    std::span<const PackConstraint> links = {}, std::span<const double> begin_ah = {});
+JointCircuitFit fit_circuit_jointly(std::span<const DischargeRecord> records, int cells, PackLinks links = {},
+                                    std::span<const double> begin_ah = {});
 
 /// Which of `known` the pack of `later` was flown in last, for all that clocks, counters and resting voltages say. A
 /// log does not name its pack: it is taken for the pack of the last record before it that ended at most six hours
