@@ -110,23 +110,15 @@ class WithoutRests {
         return believed;
     }
 
-    /// The record's rest of what its row, reflected, leaves for it.
-    double rest_of(Eigen::Index f, double left) const { return -left / at(f).length; }
-
-    double believed(Eigen::Index f) const { return at(f).believed; }
-    Eigen::Index first(Eigen::Index f) const { return at(f).first; }
-    Eigen::Index rows(Eigen::Index f) const { return at(f).rows; }
-
-  private:
     struct Rest {
         Eigen::Index first = 0;  ///< row
         Eigen::Index rows = 0;
         double believed = 0.0;  ///< the rest's factor in the row of what is believed
         double length = 0.0;    ///< of its column
     };
-
     const Rest& at(Eigen::Index f) const { return rests_[static_cast<std::size_t>(f)]; }
 
+  private:
     std::vector<Rest> rests_;
 };
 
@@ -303,10 +295,11 @@ CircuitFit fit_circuit(std::span<const AlignedRecord> records, const std::vector
     const Eigen::VectorXd left = problem.rest_target - problem.of_rests * solution;
     double believed = (problem.rows.bottomRows(problem.rows.rows() - voltage_v.size()) * solution).squaredNorm();
     for (Eigen::Index f = 0; f < flights; ++f) {
-        const double rest_v = without.rest_of(f, left[f]);
+        const auto& rest = without.at(f);
+        const double rest_v = -left[f] / rest.length;
         fit.rest_offset_v.push_back(rest_v);
-        fit.residual_v.segment(without.first(f), without.rows(f)).array() -= rest_v;
-        believed += std::pow(without.believed(f) * (rest_v - fit.common_rest_offset_v), 2);
+        fit.residual_v.segment(rest.first, rest.rows).array() -= rest_v;
+        believed += std::pow(rest.believed * (rest_v - fit.common_rest_offset_v), 2);
     }
     fit.objective = fit.residual_v.squaredNorm() + believed;
     fit.rms_v = std::sqrt(fit.residual_v.squaredNorm() / static_cast<double>(fit.residual_v.size()));
