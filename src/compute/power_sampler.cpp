@@ -82,6 +82,7 @@ struct Sensor {
 
     std::vector<std::string> names() const {
         std::vector<std::string> all;
+        all.reserve(rails.size());
         for (const auto& rail : rails) all.push_back(rail.name);
         return all;
     }

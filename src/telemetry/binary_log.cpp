@@ -169,9 +169,10 @@ class FrameReader {
     /// Where the plan's targets stand in the frame; none for what is no single number.
     static void find_offsets(const DecodePlan& plan, const FoundFrame& found, std::vector<std::size_t>& offsets) {
         std::vector<std::pair<std::size_t, std::size_t>> fields;
-        for_each_field(*found.message, found.fields, [&](const WireField&, const char* p, std::size_t elements) {
-            fields.emplace_back(p - found.fields.data(), elements);
-        });
+        for_each_field(*found.message, found.fields,
+                       [&](const WireField& /*field*/, const char* p, std::size_t elements) {
+                           fields.emplace_back(p - found.fields.data(), elements);
+                       });
         offsets.clear();
         for (const auto& target : plan.targets) {
             const auto& [offset, elements] = fields[target.field];

@@ -8,12 +8,7 @@
 namespace flightwatt::live {
 
 void SourceReport::count(std::string_view reason, std::size_t times) {
-    if (times == 0) return;
-    if (const auto known = unusable.find(reason); known != unusable.end()) {
-        known->second += times;
-    } else {
-        unusable.emplace(reason, times);
-    }
+    if (times > 0) unusable[std::string(reason)] += times;
 }
 
 std::optional<IncomingMessage> message_of_line(std::string_view line) {

@@ -20,7 +20,7 @@ double time_of(std::string_view line) {
 }  // namespace
 
 void SkipCounter::add(const SkipKind& kind, double time_s, std::size_t line_number, std::size_t count) {
-    auto known = std::find_if(skips_.begin(), skips_.end(), [&](const auto& skip) { return skip.first == kind; });
+    auto known = std::ranges::find(skips_, kind, &std::pair<SkipKind, SkippedLines>::first);
     if (known == skips_.end()) known = skips_.insert(known, {kind, {}});
     auto& lines = known->second.lines;
     if (!lines.empty() && lines.back().time_s == time_s) {
