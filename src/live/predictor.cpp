@@ -159,12 +159,6 @@ class InputBuffer {
         return true;
     }
 
-    bool push(const Sample& sample) {
-        char bytes[sizeof(Sample)];
-        std::memcpy(bytes, &sample, sizeof(sample));
-        return push(Kind::sample, sample.time_s, {bytes, sizeof(bytes)});
-    }
-
     static Sample sample_of(std::string_view bytes) {
         Sample sample;
         std::memcpy(&sample, bytes.data(), sizeof(sample));
@@ -213,15 +207,9 @@ class Predictor::State {
     }
 
     bool push(InputBuffer::Kind kind, double time_s, std::string_view bytes) {
-        const bool is_wanted = input_ == PredictorInput::messages && std::isfinite(time_s) &&
-                               (kind != InputBuffer::Kind::frames || decoder_);
+        const bool is_of_input = (kind == InputBuffer::Kind::sample) == (input_ == PredictorInput::samples);
+        const bool is_wanted = is_of_input && std::isfinite(time_s) && (kind != InputBuffer::Kind::frames || decoder_);
         if (is_wanted && waiting_.push(kind, time_s, bytes)) return true;
-        ++outlook.dropped;
-        return false;
-    }
-
-    bool push(const Sample& sample) {
-        if (input_ == PredictorInput::samples && std::isfinite(sample.time_s) && waiting_.push(sample)) return true;
         ++outlook.dropped;
         return false;
     }
@@ -340,7 +328,10 @@ bool Predictor::push_frames(double time_s, std::string_view bytes) noexcept {
     return state_->push(InputBuffer::Kind::frames, time_s, bytes);
 }
 
-bool Predictor::push_sample(const Sample& sample) noexcept { return state_->push(sample); }
+bool Predictor::push_sample(const Sample& sample) noexcept {
+    return state_->push(InputBuffer::Kind::sample, sample.time_s,
+                        {reinterpret_cast<const char*>(&sample), sizeof(sample)});
+}
 
 const PredictorState& Predictor::update(double silent_s) noexcept {
     try {
