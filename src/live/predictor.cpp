@@ -1,6 +1,5 @@
 #include "live/predictor.h"
 
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "live/live_flight.h"
 #include "live/prediction.h"
@@ -99,8 +98,7 @@ LiveOptions options_of(const PredictorSetup& setup) {
     if (setup.input == PredictorInput::samples) {
         options.configuration = sample_configuration();
     } else if (!setup.definitions_file.empty()) {
-        options.configuration = telemetry::parse_log_configuration(
-            read_file(setup.definitions_file, telemetry::max_log_configuration_bytes), setup.definitions_file);
+        options.configuration = telemetry::read_log_configuration(setup.definitions_file);
     }
     return options;
 }
