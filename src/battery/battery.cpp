@@ -163,22 +163,13 @@ double current_at_a(const Battery& battery, double voltage_v, double power_w) {
 
 }  // namespace
 
-double voltage_integral(const OpenCircuitVoltage& curve, double soc_percent) {
-    const auto& [knots, voltage_v] = curve;
-    double sum = 0.0;
-    for (std::size_t k = 1; k < knots.size() && knots[k - 1] < soc_percent; ++k) {
-        const double to_percent = std::min(knots[k], soc_percent);
-        const double to_v = interpolate_clamped(knots, voltage_v, to_percent);
-        sum += (to_percent - knots[k - 1]) * (voltage_v[k - 1] + to_v) / 2.0;
-    }
-    return sum;
-}
-
 double full_energy_wh(const Battery& battery) {
     if (!battery.thevenin) return battery.capacity_ah * battery.voltage_v;
-    const auto& curve = battery.thevenin->open_circuit;
-    const double full_percent = curve.soc_percent.back();
-    return battery.capacity_ah * voltage_integral(curve, full_percent) / (full_percent - curve.soc_percent.front());
+    const auto& [knots, voltage_v] = battery.thevenin->open_circuit;
+    double integral = 0.0;  // [V points]
+    for (std::size_t k = 1; k < knots.size(); ++k)
+        integral += (knots[k] - knots[k - 1]) * (voltage_v[k - 1] + voltage_v[k]) / 2.0;
+    return battery.capacity_ah * integral / (knots.back() - knots.front());
 }
 
 double open_circuit_voltage_v(const Battery& battery, double soc_percent) {

@@ -75,9 +75,6 @@ struct BatteryState {
     double rc_voltage_v = 0.0;  ///< across the RC pair; 0 at rest
 };
 
-/// [V points] The integral of the open-circuit voltage from an empty battery up to a state of charge.
-double voltage_integral(const OpenCircuitVoltage& curve, double soc_percent);
-
 /// [Wh] of a full battery at rest: capacity times the mean of the open-circuit voltage over its charge.
 double full_energy_wh(const Battery& battery);
 

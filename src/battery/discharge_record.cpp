@@ -170,7 +170,8 @@ std::ptrdiff_t rest_sample_count(const DischargeRecord& record) {
     return std::count(record.used.begin(), record.used.begin() + rests, true);
 }
 
-void compute_rc_branch_current(const DischargeRecord& record, double time_constant_s, std::span<double> settled_a) {
+std::vector<double> rc_branch_current_a(const DischargeRecord& record, double time_constant_s) {
+    std::vector<double> settled_a(record.time_s.size());
     settled_a.front() = record.resting_current_a;
     double step_s = 0.0;
     double decay = 1.0;
@@ -181,11 +182,6 @@ void compute_rc_branch_current(const DischargeRecord& record, double time_consta
         }
         settled_a[i] = settled_a[i - 1] * decay + record.mean_current_a[i] * (1.0 - decay);
     }
-}
-
-std::vector<double> rc_branch_current_a(const DischargeRecord& record, double time_constant_s) {
-    std::vector<double> settled_a(record.time_s.size());
-    compute_rc_branch_current(record, time_constant_s, settled_a);
     return settled_a;
 }
 

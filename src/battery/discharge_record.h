@@ -6,7 +6,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -38,13 +37,11 @@ struct DischargeRecords {
     std::vector<std::string> notes;        ///< changes of the pack, counters that began anew, what is not used
 };
 
-/// Takes the records from a log, cut where the pack was changed (pack_changes.h). The charge is the on-board counter's,
-/// or the current's integral where there is none; so is the mean current where the counter is fine enough, and across
-/// gaps in any case. The battery rests until the current first exceeds 15 % of its greatest; its resting voltage and
-/// current are the medians of the last 30 s of that. Samples with more than 1 A while the throttle idles are not used:
-/// the autopilot's current has bursts on the ground that the voltage knows nothing of. Throws InputError, naming the
-/// flight, where voltage or current is missing or constant, where the current was computed from throttle, and where no
-/// record begins at rest.
+/// Takes the records from a log, cut where the pack was changed (pack_changes.h). Charge, and mean current where it is
+/// fine enough and across gaps, are by the on-board counter, else by the current. The battery rests until the current
+/// first exceeds 15 % of its maximum; its resting voltage and current are the medians of the last 30 s of that. Bursts
+/// of more than 1 A while the throttle idles are not used. Throws InputError, naming the flight, for a voltage or
+/// current that is missing, constant or computed from throttle, and where no record begins at rest.
 DischargeRecords discharge_records(const flight::SelectedTracks& tracks);
 
 std::ptrdiff_t used_sample_count(const DischargeRecord& record);
@@ -55,7 +52,5 @@ std::ptrdiff_t rest_sample_count(const DischargeRecord& record);
 /// The current [A] that has settled in an RC pair of that time constant at every sample: the solution of
 /// tau dx/dt = I - x from the resting current on, exact for a current that is constant between samples.
 std::vector<double> rc_branch_current_a(const DischargeRecord& record, double time_constant_s);
-/// Into a span of as many.
-void compute_rc_branch_current(const DischargeRecord& record, double time_constant_s, std::span<double> settled_a);
 
 }  // namespace flightwatt::battery

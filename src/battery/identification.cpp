@@ -23,23 +23,21 @@ namespace flightwatt::battery {
 namespace {
 
 constexpr double unreadable_v = 0.01;  // smaller differences between resting voltages are none
-constexpr double tied_ah = 0.001;  // the counter is believed before a voltage whose slow relaxation no circuit follows
 
 double highest_resting_v(std::span<const DischargeRecord> records) {
     return std::ranges::max_element(records, {}, &DischargeRecord::resting_voltage_v)->resting_voltage_v;
 }
 
-/// A circuit whose flights are chained, and why each of them is.
+/// A circuit whose flights are chained.
 struct Chained {
     JointCircuitFit aligned;
-    std::vector<std::optional<PackLink>> links;  ///< one a record
     CircuitErrors errors;
     std::vector<std::optional<FlightResistance>> resistances;
     std::vector<std::optional<FlightCapacity>> capacities;
 };
 
 /// By the counters, along all links from where the record's pack was first flown.
-double counted_error_ah(const std::vector<std::optional<PackLink>>& links, std::size_t record) {
+double counted_error_ah(const PackLinks& links, std::size_t record) {
     double squares_ah2 = 0.0;
     for (std::size_t steps = 0; steps < links.size() && links[record]; ++steps) {
         squares_ah2 += std::pow(links[record]->error_ah, 2);
@@ -67,7 +65,7 @@ void add_errors(Chained& chained, bool with_capacities) {
     for (std::size_t f = 0; f < errors_ah.size(); ++f)
         if (f != reference) errors_ah[f] = std::hypot(errors_ah[f], moved_ah(f), moved_ah(reference));
     for (std::size_t f = 0; f < errors_ah.size(); ++f)
-        errors_ah[f] = std::hypot(errors_ah[f], counted_error_ah(chained.links, f));
+        errors_ah[f] = std::hypot(errors_ah[f], counted_error_ah(chained.aligned.links, f));
 }
 
 /// Whether the voltage under load, by which the record lies where it does, agrees with the link.
@@ -86,17 +84,14 @@ Chained chained_fit(std::span<const DischargeRecord> records, int cells, const I
                     std::span<const double> begin_ah) {
     Chained chained;
     chained.aligned = fit_circuit_jointly(records, cells, {}, begin_ah);
-    chained.links.resize(records.size());
     add_errors(chained, options.with_capacities);
-    std::vector<PackConstraint> links;
+    PackLinks links(records.size());
     for (std::size_t f = 0; options.link_packs && f < records.size(); ++f) {
         const auto link = find_pack_link(records[f], chained.aligned.records, chained.aligned.fit);
-        if (!link || !agrees(chained, f, *link)) continue;
-        links.push_back({f, link->earlier, link->charge_ah, tied_ah});
-        chained.links[f] = link;
+        if (link && agrees(chained, f, *link)) links[f] = link;
     }
-    if (links.empty()) return chained;
-    chained.aligned = fit_circuit_jointly(records, cells, links, begin_ah);
+    if (std::ranges::none_of(links, [](const auto& link) { return link.has_value(); })) return chained;
+    chained.aligned = fit_circuit_jointly(records, cells, std::move(links), begin_ah);
     add_errors(chained, options.with_capacities);
     return chained;
 }
@@ -146,7 +141,7 @@ std::vector<IdentifiedFlight> identified_flights(const Chained& chained, std::sp
             depletion_interval_ah(posterior, offset_ah, error_ah);
         flight.initial_depletion_ah = std::clamp(missing_ah + offset_ah, low_ah, high_ah);
         flight.drawn_ah = record->charge_ah.back();
-        flight.link = chained.links[f];
+        flight.link = chained.aligned.links[f];
         if (flight.link) flight.same_pack_as = chained.aligned.records[flight.link->earlier].record->flight;
         flight.resistance = chained.resistances[f];
         flight.capacity = chained.capacities[f];

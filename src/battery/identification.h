@@ -20,11 +20,10 @@ struct IdentificationOptions {
         true;  ///< take a flight for one on the pack of the flight before it, where all agrees (find_pack_link)
 };
 
-/// Identifies the Thévenin circuit of a battery from flights. What was missing from the pack is a parameter of each
-/// flight in the same least squares; flights on one pack are chained (aligned_fit.h). Capacity, and what was missing
-/// from the fullest flight, are laid onto the LiPo chart (chart_match.h): a fullest flight that rests as a full pack may
-/// counts as full. The battery holds the flights' own estimate of the capacity even if another is given.
-/// Throws NoResultError where the flights determine no such circuit, and as estimate_capacity and
+/// Identifies the Thévenin circuit of a battery from flights, with the charge missing at the start of each and the
+/// chain of flights on one pack (aligned_fit.h). Capacity, and the charge missing from the fullest flight, come from
+/// the LiPo chart (chart_match.h). The battery holds the flights' own estimate of the capacity even if another is
+/// given. Throws NoResultError where the flights determine no such circuit, and as estimate_capacity and
 /// require_possible_cells do.
 BatteryIdentification identify_battery(std::span<const DischargeRecord> records, const IdentificationOptions& options);
 

@@ -4,9 +4,7 @@
 #include "compute/sensors/power_rails.h"
 
 #include <algorithm>
-#include <iterator>
-#include <memory>
-#include <utility>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -80,13 +78,12 @@ namespace {
 
 struct Sensor {
     SamplerKind kind;
-    std::vector<PowerRail> rails;         ///< either
-    std::vector<EnergyCounter> counters;  ///< or
+    std::vector<PowerRail> rails;
 
     std::vector<std::string> names() const {
         std::vector<std::string> all;
+        all.reserve(rails.size());
         for (const auto& rail : rails) all.push_back(rail.name);
-        for (const auto& counter : counters) all.push_back(counter.name);
         return all;
     }
 
@@ -97,14 +94,14 @@ struct Sensor {
 };
 
 std::vector<Sensor> probe(const std::filesystem::path& sysfs) {
-    return {{SamplerKind::ina238, ina238_rails(sysfs), {}},
-            {SamplerKind::ina3221_iio, iio_rails(sysfs), {}},
-            {SamplerKind::ina3221_hwmon, hwmon_rails(sysfs), {}},
-            {SamplerKind::rapl, {}, energy_counters(sysfs)},
-            {SamplerKind::power_supply, power_supply_rails(sysfs), {}}};
+    return {{SamplerKind::ina238, ina238_rails(sysfs)},
+            {SamplerKind::ina3221_iio, iio_rails(sysfs)},
+            {SamplerKind::ina3221_hwmon, hwmon_rails(sysfs)},
+            {SamplerKind::rapl, rapl_rails(sysfs)},
+            {SamplerKind::power_supply, power_supply_rails(sysfs)}};
 }
 
-PowerSampler sampler_of_rails(const Sensor& sensor, const std::vector<std::string>& wanted) {
+PowerSampler sampler_of(const Sensor& sensor, const std::vector<std::string>& wanted) {
     std::vector<PowerRail> chosen;
     std::vector<std::string> sources;
     for (const auto index : rails_of_total(sensor.names(), wanted)) {
@@ -114,64 +111,14 @@ PowerSampler sampler_of_rails(const Sensor& sensor, const std::vector<std::strin
     PowerSampler sampler;
     sampler.kind = sensor.kind;
     sampler.source = fmt::format("{}", fmt::join(sources, " + "));
-    sampler.read = [chosen] {
+    sampler.read = [chosen]() -> std::vector<PowerReading> {
         const auto before = std::chrono::steady_clock::now();
         double power_w = 0.0;
-        for (const auto& rail : chosen) power_w += rail.read();
+        for (const auto& rail : chosen) power_w += rail.read(before);
+        if (std::isnan(power_w)) return {};
         // Stamped with the middle of the time that the reading took.
-        return std::vector<PowerReading>{{before + (std::chrono::steady_clock::now() - before) / 2, power_w}};
+        return {{before + (std::chrono::steady_clock::now() - before) / 2, power_w}};
     };
-    return sampler;
-}
-
-/// Core and uncore are parts of packages, and psys contains them.
-std::vector<EnergyCounter> counters_of_total(const Sensor& sensor, const std::vector<std::string>& wanted) {
-    std::vector<EnergyCounter> chosen;
-    if (wanted.empty()) {
-        std::ranges::copy_if(sensor.counters, std::back_inserter(chosen), &EnergyCounter::is_package);
-        return chosen.empty() ? std::vector{sensor.counters.front()} : chosen;
-    }
-    for (const auto index : rails_of_total(sensor.names(), wanted)) chosen.push_back(sensor.counters[index]);
-    return chosen;
-}
-
-/// The counters as they were at the last call.
-struct CounterState {
-    std::vector<EnergyCounter> counters;
-    std::vector<double> energy_uj;
-    std::chrono::steady_clock::time_point time;
-};
-
-std::vector<PowerReading> read_counters(CounterState& state) {
-    std::vector<double> now_uj;
-    const auto time = std::chrono::steady_clock::now();
-    for (const auto& counter : state.counters) now_uj.push_back(counter.read_uj());
-    std::vector<PowerReading> readings;
-    const double time_s = std::chrono::duration<double>(time - state.time).count();
-    if (!state.energy_uj.empty() && time_s > 0.0) {
-        PowerReading reading{time, 0.0};
-        for (std::size_t i = 0; i < now_uj.size(); ++i) {
-            reading.power_w += power_of_counter_w(state.energy_uj[i], now_uj[i], state.counters[i].range_uj, time_s);
-        }
-        readings.push_back(reading);
-    }
-    state.energy_uj = std::move(now_uj);
-    state.time = time;
-    return readings;
-}
-
-/// Of mean power between calls: the first call gives no reading.
-PowerSampler sampler_of_counters(const Sensor& sensor, const std::vector<std::string>& wanted) {
-    auto state = std::make_shared<CounterState>();
-    state->counters = counters_of_total(sensor, wanted);
-    std::vector<std::string> sources;
-    for (const auto& counter : state->counters) {
-        sources.push_back(fmt::format("{} ({})", counter.name, counter.source));
-    }
-    PowerSampler sampler;
-    sampler.kind = sensor.kind;
-    sampler.source = fmt::format("{}", fmt::join(sources, " + "));
-    sampler.read = [state] { return read_counters(*state); };
     return sampler;
 }
 
@@ -194,8 +141,7 @@ PowerSampler open_sampler(const SamplerSettings& settings) {
     const auto sensors = probe(sysfs);
     for (const auto& sensor : sensors) {
         if (!sensor.is_asked_for(settings.kind) || sensor.names().empty()) continue;
-        auto sampler = sensor.counters.empty() ? sampler_of_rails(sensor, settings.rails)
-                                               : sampler_of_counters(sensor, settings.rails);
+        auto sampler = sampler_of(sensor, settings.rails);
         sampler.found = lines_of(sensors);
         return sampler;
     }

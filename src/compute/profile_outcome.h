@@ -16,6 +16,11 @@ namespace flightwatt::compute {
 struct PowerTrace {
     std::vector<double> time_s;
     std::vector<double> power_w;
+
+    void add(double at_s, double sample_w) {
+        time_s.push_back(at_s);
+        power_w.push_back(sample_w);
+    }
 };
 
 /// The intervals between the samples of a run.

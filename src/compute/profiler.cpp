@@ -11,8 +11,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <numeric>
-#include <set>
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -105,17 +105,6 @@ void do_runs(std::vector<ProfileRun>& runs, const ProfileSpecification& specific
     write_runs(runs, options.folder);
 }
 
-std::vector<PowerEstimate> repeats_of(const std::vector<ProfileRun>& runs, const std::string& component,
-                                      std::size_t node) {
-    std::vector<PowerEstimate> estimates;
-    for (const auto& run : runs) {
-        if (run.component == component && run.node == node && run.status == RunStatus::ok) {
-            estimates.push_back(run.estimate);
-        }
-    }
-    return estimates;
-}
-
 /// Fills in the configurations that were not run.
 void interpolate(const QosPoints& missing, ComponentEstimate& estimate) {
     if (missing.empty() || estimate.nodes.empty()) return;
@@ -148,20 +137,23 @@ PowerEstimate idle_of(const std::vector<ProfileRun>& runs) {
 ComponentEstimate estimate_component(const ProfiledComponent& component, std::size_t index,
                                      const std::vector<ProfileRun>& runs) {
     ComponentEstimate estimate{component.name, component.parameters, {}, component.configurations.size(), {}, {}};
-    std::set<std::size_t> tried;
+    std::map<std::size_t, std::vector<PowerEstimate>> repeats;  // of the nodes that were run
     for (const auto& run : runs) {
         if (run.component == idle_component || run.index != index) continue;
-        tried.insert(run.node);
-        if (run.status != RunStatus::ok) estimate.failures.push_back(run);
+        auto& of_node = repeats[run.node];
+        if (run.status == RunStatus::ok)
+            of_node.push_back(run.estimate);
+        else
+            estimate.failures.push_back(run);
     }
     QosPoints missing;
     for (std::size_t node = 0; node < component.configurations.size(); ++node) {
         const auto& qos = component.configurations[node].qos;
-        const auto repeats = repeats_of(runs, component.name, node);
-        if (!repeats.empty())
-            estimate.nodes.push_back({qos, combine_repeats(repeats), true});
-        else if (!tried.contains(node))
+        const auto found = repeats.find(node);
+        if (found == repeats.end())
             missing.push_back(qos);
+        else if (!found->second.empty())
+            estimate.nodes.push_back({qos, combine_repeats(found->second), true});
     }
     interpolate(missing, estimate);
     return estimate;

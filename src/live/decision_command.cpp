@@ -3,7 +3,6 @@
 #include "base/signal_watch.h"
 
 #include <array>
-#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>

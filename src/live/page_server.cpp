@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cctype>
 #include <chrono>
 #include <deque>
 #include <list>
@@ -14,6 +13,7 @@
 #include <thread>
 #include <utility>
 
+#include <boost/algorithm/string/predicate.hpp>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -34,6 +34,7 @@ namespace {
 namespace asio = boost::asio;
 namespace http = boost::beast::http;
 using asio::ip::tcp;
+using boost::algorithm::iequals;
 using boost::system::error_code;
 
 constexpr std::chrono::seconds max_request{10}, max_write{20};
@@ -43,13 +44,6 @@ constexpr std::size_t max_unsent_bytes = 2'000'000;  // a listener that takes no
 constexpr int ok = 200, forbidden = 403, not_found = 404, not_allowed = 405, too_many = 503;
 
 std::string_view text_of(boost::beast::string_view text) { return {text.data(), text.size()}; }
-
-std::string lower_case(std::string_view text) {
-    std::string lower(text);
-    std::transform(lower.begin(), lower.end(), lower.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return lower;
-}
 
 /// Without its port; empty where that is none.
 std::string_view without_port(std::string_view host) {
@@ -63,7 +57,7 @@ std::string_view without_port(std::string_view host) {
 /// address of this machine's is neither.
 bool is_own_host(std::string_view host) {
     auto name = without_port(host);
-    if (lower_case(name) == "localhost") return true;
+    if (iequals(name, "localhost")) return true;
     if (name.starts_with('[') && name.ends_with(']')) name = name.substr(1, name.size() - 2);
     boost::system::error_code error;
     boost::asio::ip::make_address(std::string(name), error);
@@ -76,7 +70,7 @@ int status_of(const http::request<http::empty_body>& request, std::string_view t
     const auto origin = text_of(request[http::field::origin]);
     const auto fetch_site = text_of(request["Sec-Fetch-Site"]);
     if (!is_own_host(host)) return forbidden;
-    if (!origin.empty() && lower_case(origin) != "http://" + lower_case(host)) return forbidden;
+    if (!origin.empty() && !iequals(origin, "http://" + std::string(host))) return forbidden;
     if (request.method() != http::verb::get && request.method() != http::verb::head) return not_allowed;
     if (target == "/") return ok;  // also by a link on another page
     if (target != "/state" && target != "/events") return not_found;

@@ -170,7 +170,8 @@ std::optional<BatteryPrediction> predict_battery(const PredictionInput& basis, c
     of.limits = basis.limits;
     of.initial_is_measured = !basis.initial_soc_percent;
     of.initial_soc_percent = initial_soc_percent(basis, record);
-    forecast_battery(battery, record, prediction, of);
+    const auto state_of = [&](const auto& pack) { return state_after(pack, record, of.initial_soc_percent); };
+    forecast_battery(battery, state_of, prediction, of);
     return of;
 }
 
@@ -283,12 +284,9 @@ std::vector<battery::ConstantLoad> remaining_power(const Prediction& prediction,
     return ahead;
 }
 
-namespace {
-
-/// `state_of`: what a battery of that capacity is in now.
-template <typename StateOf>
-void land_from(const battery::Battery& battery, const StateOf& state_of, const Prediction& prediction,
-               BatteryPrediction& result) {
+void forecast_battery(const battery::Battery& battery,
+                      const std::function<battery::BatteryState(const battery::Battery&)>& state_of,
+                      const Prediction& prediction, BatteryPrediction& result) {
     const auto forecast = [&](const battery::Battery& of, double part) {
         return battery::forecast_landing(of, state_of(of), remaining_power(prediction, part),
                                          prediction.cruise.remaining_mean_w * part, result.limits);
@@ -299,22 +297,6 @@ void land_from(const battery::Battery& battery, const StateOf& state_of, const P
     if (result.worst_uses_min_capacity) least.capacity_ah = battery.intervals.capacity_ah->low;
     result.expected = forecast(battery, 1.0);
     result.worst = forecast(least, rest_wh > 0.0 ? prediction.interval.high_wh / rest_wh : 1.0);
-}
-
-}  // namespace
-
-void forecast_battery(const battery::Battery& battery, const battery::DischargeRecord& flown,
-                      const Prediction& prediction, BatteryPrediction& result) {
-    const auto state_of = [&](const battery::Battery& of) {
-        return battery::state_after(of, flown, result.initial_soc_percent);
-    };
-    land_from(battery, state_of, prediction, result);
-}
-
-void forecast_battery(const battery::Battery& battery, const battery::BatteryState& now, const Prediction& prediction,
-                      BatteryPrediction& result) {
-    land_from(
-        battery, [&](const battery::Battery&) { return now; }, prediction, result);
 }
 
 PredictionInput input_from_mission(const mission::MissionSetup& setup, const std::string& file) {

@@ -8,6 +8,7 @@
 #include "path/path_tracker.h"
 #include "path/remaining_path.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -98,14 +99,10 @@ std::optional<path::PathFix> find_path_fix(const PredictionInput& basis, const m
 /// The stretches of power ahead, cruise and landing, as expected times `part`.
 std::vector<battery::ConstantLoad> remaining_power(const Prediction& prediction, double part = 1.0);
 
-/// Flies the battery through the rest of `prediction`, from its initial charge and what was drawn of it. Throws as
-/// battery::state_after.
-void forecast_battery(const battery::Battery& battery, const battery::DischargeRecord& flown,
+/// Flies the battery through the rest of `prediction`. `state_of`: the state that a battery of that capacity is in now.
+void forecast_battery(const battery::Battery& battery,
+                      const std::function<battery::BatteryState(const battery::Battery&)>& state_of,
                       const Prediction& prediction, BatteryPrediction& result);
-
-/// The same from the state that it is in.
-void forecast_battery(const battery::Battery& battery, const battery::BatteryState& now, const Prediction& prediction,
-                      BatteryPrediction& result);
 
 /// What a mission lets predict: its model, its path or else the time of its cruise, its battery (its capacity as
 /// uncertain as in the mission's drawn flights) and limits. Where its model does not allow a prediction,

@@ -1,6 +1,5 @@
 #include "live/predictor.h"
 
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "live/live_flight.h"
 #include "live/prediction.h"
@@ -99,8 +98,7 @@ LiveOptions options_of(const PredictorSetup& setup) {
     if (setup.input == PredictorInput::samples) {
         options.configuration = sample_configuration();
     } else if (!setup.definitions_file.empty()) {
-        options.configuration = telemetry::parse_log_configuration(
-            read_file(setup.definitions_file, telemetry::max_log_configuration_bytes), setup.definitions_file);
+        options.configuration = telemetry::read_log_configuration(setup.definitions_file);
     }
     return options;
 }
@@ -159,12 +157,6 @@ class InputBuffer {
         return true;
     }
 
-    bool push(const Sample& sample) {
-        char bytes[sizeof(Sample)];
-        std::memcpy(bytes, &sample, sizeof(sample));
-        return push(Kind::sample, sample.time_s, {bytes, sizeof(bytes)});
-    }
-
     static Sample sample_of(std::string_view bytes) {
         Sample sample;
         std::memcpy(&sample, bytes.data(), sizeof(sample));
@@ -213,15 +205,9 @@ class Predictor::State {
     }
 
     bool push(InputBuffer::Kind kind, double time_s, std::string_view bytes) {
-        const bool is_wanted = input_ == PredictorInput::messages && std::isfinite(time_s) &&
-                               (kind != InputBuffer::Kind::frames || decoder_);
+        const bool is_of_input = (kind == InputBuffer::Kind::sample) == (input_ == PredictorInput::samples);
+        const bool is_wanted = is_of_input && std::isfinite(time_s) && (kind != InputBuffer::Kind::frames || decoder_);
         if (is_wanted && waiting_.push(kind, time_s, bytes)) return true;
-        ++outlook.dropped;
-        return false;
-    }
-
-    bool push(const Sample& sample) {
-        if (input_ == PredictorInput::samples && std::isfinite(sample.time_s) && waiting_.push(sample)) return true;
         ++outlook.dropped;
         return false;
     }
@@ -340,7 +326,10 @@ bool Predictor::push_frames(double time_s, std::string_view bytes) noexcept {
     return state_->push(InputBuffer::Kind::frames, time_s, bytes);
 }
 
-bool Predictor::push_sample(const Sample& sample) noexcept { return state_->push(sample); }
+bool Predictor::push_sample(const Sample& sample) noexcept {
+    return state_->push(InputBuffer::Kind::sample, sample.time_s,
+                        {reinterpret_cast<const char*>(&sample), sizeof(sample)});
+}
 
 const PredictorState& Predictor::update(double silent_s) noexcept {
     try {
@@ -364,16 +353,10 @@ const PredictorState& Predictor::state() const noexcept { return state_->outlook
 std::span<const ComponentState> Predictor::component_states() const noexcept { return state_->runs; }
 std::span<const AlarmText> Predictor::alarms() const noexcept { return state_->alarms; }
 
-struct PredictorMaker {
-    static std::unique_ptr<Predictor> make(const PredictorSetup& setup) {
-        return std::unique_ptr<Predictor>(
-            new Predictor(std::make_unique<Predictor::State>(setup, start_of(setup))));  // its constructor is private
-    }
-};
-
 PredictorOrError make_predictor(const PredictorSetup& setup) noexcept {
     try {
-        return {PredictorMaker::make(setup), ""};
+        auto state = std::make_unique<Predictor::State>(setup, start_of(setup));
+        return {std::unique_ptr<Predictor>(new Predictor(std::move(state))), ""};  // its constructor is private
     } catch (const InputError& error) {
         const auto hint = error.hint().empty() ? std::string() : "; " + error.hint();
         return {nullptr, fmt::format("{}: {}{}", to_string(error.where()), error.what(), hint)};

@@ -110,6 +110,8 @@ struct AlarmText {
     std::string_view text;
 };
 
+struct PredictorOrError;
+
 /// A flight's energy while it is in the air: the same as flightwatt watch says of the same telemetry. Nothing that it
 /// calls throws across it. One thread at a time.
 class Predictor {
@@ -141,7 +143,7 @@ class Predictor {
     std::span<const AlarmText> alarms() const noexcept;
 
   private:
-    friend struct PredictorMaker;
+    friend PredictorOrError make_predictor(const PredictorSetup& setup) noexcept;
     class State;
     explicit Predictor(std::unique_ptr<State> state);
     std::unique_ptr<State> state_;

@@ -2,12 +2,10 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/overwrite_guard.h"
 
 #include <cerrno>
 #include <cstring>
 #include <ctime>
-#include <system_error>
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -68,7 +68,9 @@ class FrameReader {
         scanner.scan(
             binary_.bytes, InputContinuation::end,
             [&](const FoundFrame& found, const Frame& frame) {
-                count(found);
+                ++counts_.frames;
+                counts_.messages += found.length_matches ? 1 : 0;
+                counts_.length_mismatches += found.message != nullptr && !found.length_matches ? 1 : 0;
                 const auto time_s = framing == Framing::card ? clock_.time_s(frame.time_100us) : link_time_s(found);
                 if (std::isnan(time_s)) return;
                 if (gap_.bytes > 0) note_gap(time_s);
@@ -103,19 +105,6 @@ class FrameReader {
     static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
     /// So many ids are told one by one.
     static constexpr std::size_t max_ids = 20;
-
-    void count(const FoundFrame& found) {
-        ++counts_.frames;
-        if (found.length_matches) {
-            ++counts_.messages;
-        } else if (!found.carries_message) {
-            ++counts_.non_message_frames;
-        } else if (found.message == nullptr) {
-            ++counts_.unknown;
-        } else {
-            ++counts_.length_mismatches;
-        }
-    }
 
     /// NaN before the first TIMESTAMP: such frames are counted, and told of at the end.
     double link_time_s(const FoundFrame& found) {
@@ -179,20 +168,17 @@ class FrameReader {
 
     /// Where the plan's targets stand in the frame; none for what is no single number.
     static void find_offsets(const DecodePlan& plan, const FoundFrame& found, std::vector<std::size_t>& offsets) {
+        std::vector<std::pair<std::size_t, std::size_t>> fields;
+        for_each_field(*found.message, found.fields,
+                       [&](const WireField& /*field*/, const char* p, std::size_t elements) {
+                           fields.emplace_back(p - found.fields.data(), elements);
+                       });
         offsets.clear();
         for (const auto& target : plan.targets) {
-            std::size_t at = 0;
-            for (std::size_t i = 0;; ++i) {
-                const auto& field = found.message->fields[i];
-                std::size_t elements = field.elements;
-                if (field.count == WireCount::counted) elements = wire_number<std::uint8_t>(found.fields.data() + at++);
-                if (i == target.field) {
-                    const bool is_number = elements == 1 || (elements > 1 && target.is_first_element);
-                    offsets.push_back(is_number && field.type != WireType::text ? at : none);
-                    break;
-                }
-                at += elements * size_of(field.type);
-            }
+            const auto& [offset, elements] = fields[target.field];
+            const bool is_number = elements == 1 || (elements > 1 && target.is_first_element);
+            const bool is_text = found.message->fields[target.field].type == WireType::text;
+            offsets.push_back(is_number && !is_text ? offset : none);
         }
     }
 

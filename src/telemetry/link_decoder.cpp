@@ -42,27 +42,14 @@ char shown_character(char c) {
 }
 
 void append_element(WireType type, const char* p, std::string& text) {
-    switch (type) {
-        case WireType::text:
+    with_wire_type(type, [&]<typename T>() {
+        if constexpr (std::is_same_v<T, char>)
             text += *p == ' ' ? '?' : shown_character(*p);
-            break;
-        case WireType::float32:
+        else if constexpr (std::is_same_v<T, float>)
             append_number(shortest_decimal(wire_number<float>(p)), text);
-            break;
-        case WireType::float64:
-            append_number(wire_number<double>(p), text);
-            break;
-        case WireType::int64:
-            append_number(wire_number<std::int64_t>(p), text);
-            break;
-        case WireType::uint64:
-            append_number(wire_number<std::uint64_t>(p), text);
-            break;
-        default: {
-            int decimals = 0;
-            append_number(static_cast<std::int64_t>(wire_value(type, p, decimals)), text);
-        }
-    }
+        else
+            append_number(wire_number<T>(p), text);
+    });
 }
 
 /// Zeros behind it fill a char[n] up.
@@ -80,37 +67,25 @@ void append_message_text(const FoundFrame& found, std::string& text) {
     append_number(unsigned{found.sender}, text);
     text += ' ';
     text += found.message->definition.name;
-    const char* p = found.fields.data();
-    for (const auto& field : found.message->fields) {
+    for_each_field(*found.message, found.fields, [&](const WireField& field, const char* p, std::size_t elements) {
         text += ' ';
-        std::size_t elements = field.elements;
-        if (field.count == WireCount::counted) elements = wire_number<std::uint8_t>(p++);
-        const auto size = size_of(field.type);
-        if (field.type == WireType::text && field.count != WireCount::one) {
-            append_quoted({p, elements}, text);
-            p += elements;
-            continue;
-        }
-        for (std::size_t i = 0; i < elements; ++i, p += size) {
+        if (field.type == WireType::text && field.count != WireCount::one) return append_quoted({p, elements}, text);
+        for (std::size_t i = 0; i < elements; ++i) {
             if (i > 0) text += ',';
-            append_element(field.type, p, text);
+            append_element(field.type, p + i * size_of(field.type), text);
         }
-    }
+    });
 }
 
 /// The values of its fields; NaN for what is no single finite number.
 void read_message_values(const FoundFrame& found, std::vector<double>& values) {
     values.clear();
-    const char* p = found.fields.data();
-    for (const auto& field : found.message->fields) {
-        std::size_t elements = field.elements;
-        if (field.count == WireCount::counted) elements = wire_number<std::uint8_t>(p++);
+    for_each_field(*found.message, found.fields, [&](const WireField& field, const char* p, std::size_t elements) {
         int decimals = 4;  // often enough
         const bool is_number = elements == 1 && field.type != WireType::text;
         const double value = is_number ? wire_value(field.type, p, decimals) : std::nan("");
         values.push_back(std::isfinite(value) ? value : std::nan(""));
-        p += elements * size_of(field.type);
-    }
+    });
 }
 
 /// So many bytes are looked at in one go.

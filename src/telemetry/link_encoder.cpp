@@ -9,6 +9,8 @@
 #include <concepts>
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <type_traits>
 
 namespace flightwatt::telemetry {
 namespace {
@@ -23,52 +25,31 @@ void append_bytes(Number number, std::string& bytes) {
     }
 }
 
-template <std::integral Number>
-bool append_integer(std::string_view word, std::string& bytes) {
-    Number number = 0;
-    const auto read = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (read.ec != std::errc() || read.ptr != word.data() + word.size()) return false;
-    append_bytes(number, bytes);
-    return true;
-}
-
-template <std::floating_point Number>
-bool append_float(std::string_view word, std::string& bytes) {
-    const bool is_nan = word == "nan" || word == "-nan";
-    const auto number = is_nan ? std::numeric_limits<double>::quiet_NaN() : parse_number(word);
-    if (!number) return false;
-    append_bytes(static_cast<Number>(*number), bytes);
-    return true;
+template <typename Number>
+std::optional<Number> parse_element(std::string_view word) {
+    if constexpr (std::floating_point<Number>) {
+        const bool is_nan = word == "nan" || word == "-nan";
+        const auto number = is_nan ? std::numeric_limits<double>::quiet_NaN() : parse_number(word);
+        return number ? std::optional(static_cast<Number>(*number)) : std::nullopt;
+    } else {
+        Number number = 0;
+        const auto read = std::from_chars(word.data(), word.data() + word.size(), number);
+        const bool is_whole = read.ec == std::errc() && read.ptr == word.data() + word.size();
+        return is_whole ? std::optional(number) : std::nullopt;
+    }
 }
 
 bool append_element(WireType type, std::string_view word, std::string& bytes) {
-    switch (type) {
-        case WireType::int8:
-            return append_integer<std::int8_t>(word, bytes);
-        case WireType::uint8:
-            return append_integer<std::uint8_t>(word, bytes);
-        case WireType::int16:
-            return append_integer<std::int16_t>(word, bytes);
-        case WireType::uint16:
-            return append_integer<std::uint16_t>(word, bytes);
-        case WireType::int32:
-            return append_integer<std::int32_t>(word, bytes);
-        case WireType::uint32:
-            return append_integer<std::uint32_t>(word, bytes);
-        case WireType::int64:
-            return append_integer<std::int64_t>(word, bytes);
-        case WireType::uint64:
-            return append_integer<std::uint64_t>(word, bytes);
-        case WireType::float32:
-            return append_float<float>(word, bytes);
-        case WireType::float64:
-            return append_float<double>(word, bytes);
-        case WireType::text:
-            if (word.size() != 1) return false;
-            bytes += word;
-            return true;
-    }
-    return false;
+    return with_wire_type(type, [&]<typename T>() {
+        if constexpr (std::is_same_v<T, char>) {
+            if (word.size() == 1) bytes += word;
+            return word.size() == 1;
+        } else {
+            const auto number = parse_element<T>(word);
+            if (number) append_bytes(*number, bytes);
+            return number.has_value();
+        }
+    });
 }
 
 /// What stands before the next `mark`, which is taken off with it.
@@ -140,15 +121,12 @@ LinkEncoder::LinkEncoder(const MessageDictionary& dictionary, LinkVersion versio
 }
 
 std::string_view LinkEncoder::append_frame(std::string_view text, std::string& frames) {
-    std::uint8_t sender = 0;
-    const auto sender_word = take_word(text, ' ');
-    const auto read = std::from_chars(sender_word.data(), sender_word.data() + sender_word.size(), sender);
-    if (read.ec != std::errc() || read.ptr != sender_word.data() + sender_word.size())
-        return "their sender is no aircraft";
+    const auto sender = parse_element<std::uint8_t>(take_word(text, ' '));
+    if (!sender) return "their sender is no aircraft";
     const auto found = by_name_.find(take_word(text, ' '));
     if (found == by_name_.end()) return "their message is not among the definitions of telemetry";
     const auto& message = *found->second;
-    payload_.assign(1, static_cast<char>(sender));
+    payload_.assign(1, static_cast<char>(*sender));
     if (version_ == LinkVersion::v2) {
         payload_ += '\0';  // to all
         payload_ += static_cast<char>(message.class_id);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "telemetry/link_decoder.h"
 #include "telemetry/message_dictionary.h"
 
 #include <map>

@@ -25,8 +25,7 @@ std::size_t SkippedLines::count() const {
 }
 
 std::size_t SkippedLines::first_line() const {
-    const auto first = std::min_element(lines.begin(), lines.end(),
-                                        [](const AtTime& a, const AtTime& b) { return a.first_line < b.first_line; });
+    const auto first = std::ranges::min_element(lines, {}, &AtTime::first_line);
     return first == lines.end() ? 0 : first->first_line;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
+#include <map>
 #include <set>
 
 #include <fmt/format.h>
@@ -169,8 +170,7 @@ std::string undeclared_unit(const MessageDefinition& definition, std::size_t fie
 }
 
 std::optional<std::size_t> field_index(const MessageDefinition& definition, std::string_view field) {
-    const auto found = std::find_if(definition.fields.begin(), definition.fields.end(),
-                                    [&](const FieldDefinition& f) { return f.name == field; });
+    const auto found = std::ranges::find(definition.fields, field, &FieldDefinition::name);
     if (found == definition.fields.end()) return std::nullopt;
     return static_cast<std::size_t>(found - definition.fields.begin());
 }

@@ -3,7 +3,6 @@
 #include "base/units.h"
 
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>

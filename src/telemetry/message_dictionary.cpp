@@ -72,24 +72,6 @@ std::string_view to_string(Framing framing) {
 
 std::string_view to_string(LinkVersion version) { return version == LinkVersion::v1 ? "pprzlink v1" : "pprzlink v2"; }
 
-std::size_t size_of(WireType type) {
-    switch (type) {
-        case WireType::int16:
-        case WireType::uint16:
-            return 2;
-        case WireType::int32:
-        case WireType::uint32:
-        case WireType::float32:
-            return 4;
-        case WireType::int64:
-        case WireType::uint64:
-        case WireType::float64:
-            return 8;
-        default:
-            return 1;
-    }
-}
-
 bool WireMessage::fits_counted(std::string_view payload) const {
     std::size_t at = 0;
     for (const auto& field : fields) {

@@ -42,8 +42,40 @@ struct WireField {
     std::uint16_t elements = 1;  ///< of one and fixed
 };
 
+/// Calls use.template operator()<T>() with the C++ type of an element; a char is text.
+template <typename Use>
+auto with_wire_type(WireType type, Use&& use) {
+    switch (type) {
+        case WireType::int8:
+            return use.template operator()<std::int8_t>();
+        case WireType::uint8:
+            return use.template operator()<std::uint8_t>();
+        case WireType::int16:
+            return use.template operator()<std::int16_t>();
+        case WireType::uint16:
+            return use.template operator()<std::uint16_t>();
+        case WireType::int32:
+            return use.template operator()<std::int32_t>();
+        case WireType::uint32:
+            return use.template operator()<std::uint32_t>();
+        case WireType::int64:
+            return use.template operator()<std::int64_t>();
+        case WireType::uint64:
+            return use.template operator()<std::uint64_t>();
+        case WireType::float32:
+            return use.template operator()<float>();
+        case WireType::float64:
+            return use.template operator()<double>();
+        case WireType::text:
+            break;
+    }
+    return use.template operator()<char>();
+}
+
 /// Bytes of one element.
-std::size_t size_of(WireType type);
+inline std::size_t size_of(WireType type) {
+    return with_wire_type(type, []<typename T>() { return sizeof(T); });
+}
 
 /// A message as frames carry it: known by the number of its class and its own.
 struct WireMessage {

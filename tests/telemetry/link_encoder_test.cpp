@@ -1,5 +1,7 @@
 #include "telemetry/link_encoder.h"
 
+#include "telemetry/link_decoder.h"
+
 #include <optional>
 #include <string>
 #include <vector>

@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "base/piecewise_linear.h"
-#include "base/statistics.h"
 #include "base/units.h"
 #include "flight/flight_identity.h"
 
@@ -25,6 +24,7 @@ constexpr int first_segments = 6;
 constexpr int max_steps = 15;
 constexpr int places_tried = 80;
 
+constexpr double tied_ah = 0.001;  // the counter is believed before a voltage whose slow relaxation no circuit follows
 constexpr double max_pause_s = 6.0 * units::seconds_per_hour;
 constexpr double counter_error = 0.02;
 constexpr double min_error_ah = 0.005;
@@ -114,10 +114,12 @@ double best_place_ah(const DischargeRecord& record, const CircuitFit& fit) {
 double objective_of(const JointCircuitFit& aligned) {
     double sum = aligned.fit.objective;
     const double sample_v = aligned.fit.weights.sample_error_v;
-    for (const auto& link : aligned.links) {
-        const double apart_ah = aligned.records[link.later].initial_charge_ah -
-                                aligned.records[link.earlier].initial_charge_ah - link.charge_ah;
-        sum += std::pow(sample_v * apart_ah / link.error_ah, 2);
+    for (std::size_t f = 0; f < aligned.links.size(); ++f) {
+        const auto& link = aligned.links[f];
+        if (!link) continue;
+        const double apart_ah =
+            aligned.records[f].initial_charge_ah - aligned.records[link->earlier].initial_charge_ah - link->charge_ah;
+        sum += std::pow(sample_v * apart_ah / tied_ah, 2);
     }
     return sum;
 }
@@ -170,19 +172,17 @@ FitWeights first_weights(const DischargeRecord& fullest, int cells) {
 }
 
 /// Initial charges of records that are laid onto each other one by one, the fullest first.
-std::vector<double> laid_one_by_one(std::span<const DischargeRecord> records, int cells,
-                                    std::span<const PackConstraint> links) {
+std::vector<double> laid_one_by_one(std::span<const DischargeRecord> records, int cells, const PackLinks& links) {
     const auto order = fullest_first(records);
     JointCircuitFit growing;
     growing.fit.weights = first_weights(records[order.front()], cells);
     std::vector<double> initial_ah(records.size(), 0.0);
     for (const auto at : order) {
-        const auto linked = std::ranges::find(links, at, &PackConstraint::later);
+        const auto& link = links[at];
         if (at == order.front()) {
             initial_ah[at] = 0.0;
-        } else if (linked != links.end() &&
-                   records[linked->earlier].resting_voltage_v >= records[at].resting_voltage_v) {
-            initial_ah[at] = initial_ah[linked->earlier] + linked->charge_ah;
+        } else if (link && records[link->earlier].resting_voltage_v >= records[at].resting_voltage_v) {
+            initial_ah[at] = initial_ah[link->earlier] + link->charge_ah;
         } else {
             initial_ah[at] = best_place_ah(records[at], growing.fit);
         }
@@ -194,11 +194,11 @@ std::vector<double> laid_one_by_one(std::span<const DischargeRecord> records, in
 }
 
 /// With the initial charges that are about right.
-JointCircuitFit laid_out(std::span<const DischargeRecord> records, int cells, std::span<const PackConstraint> links,
+JointCircuitFit laid_out(std::span<const DischargeRecord> records, int cells, const PackLinks& links,
                          std::span<const double> initial_ah) {
     JointCircuitFit aligned;
     for (std::size_t i = 0; i < records.size(); ++i) aligned.records.push_back({&records[i], initial_ah[i]});
-    aligned.links.assign(links.begin(), links.end());
+    aligned.links = links;
     aligned.reference = fullest_first(records).front();
     aligned.fit.weights = first_weights(records[aligned.reference], cells);
     refit(aligned, first_segments, false);
@@ -286,7 +286,7 @@ JointPrior joint_prior(const JointCircuitFit& aligned) {
     const auto at = fit_columns(fit);
     const auto circuit = prior_rows(aligned.records, fit);
     const auto flights = static_cast<Eigen::Index>(aligned.records.size());
-    const auto links = static_cast<Eigen::Index>(aligned.links.size());
+    const auto links = std::ranges::count_if(aligned.links, [](const auto& link) { return link.has_value(); });
     JointPrior belief;
     belief.rows = Eigen::MatrixXd::Zero(circuit.rows() + links, at.width + flights);
     belief.rows.topLeftCorner(circuit.rows(), at.width) = circuit;
@@ -295,14 +295,15 @@ JointPrior joint_prior(const JointCircuitFit& aligned) {
     for (Eigen::Index f = 0; f < flights; ++f) now[at.rest + f] = fit.rest_offset_v[static_cast<std::size_t>(f)];
     now[at.common] = fit.common_rest_offset_v;
     belief.residual = -belief.rows * now;
-    for (Eigen::Index l = 0; l < links; ++l) {
-        const auto& [later, earlier, charge_ah, error_ah] = aligned.links[static_cast<std::size_t>(l)];
-        const double weight = fit.weights.sample_error_v / error_ah;
-        const auto row = circuit.rows() + l;
-        belief.rows(row, at.width + static_cast<Eigen::Index>(later)) = weight;
-        belief.rows(row, at.width + static_cast<Eigen::Index>(earlier)) = -weight;
-        belief.residual[row] = weight * (charge_ah - aligned.records[later].initial_charge_ah +
-                                         aligned.records[earlier].initial_charge_ah);
+    auto row = circuit.rows();
+    for (std::size_t f = 0; f < aligned.links.size(); ++f) {
+        const auto& link = aligned.links[f];
+        if (!link) continue;
+        const double weight = fit.weights.sample_error_v / tied_ah;
+        belief.rows(row, at.width + static_cast<Eigen::Index>(f)) = weight;
+        belief.rows(row, at.width + static_cast<Eigen::Index>(link->earlier)) = -weight;
+        belief.residual[row++] = weight * (link->charge_ah - aligned.records[f].initial_charge_ah +
+                                           aligned.records[link->earlier].initial_charge_ah);
     }
     const auto reference = at.width + static_cast<Eigen::Index>(aligned.reference);
     belief.rows.col(reference).setZero();
@@ -333,8 +334,9 @@ Eigen::VectorXd gauss_newton_step(const JointCircuitFit& aligned) {
     return scaled.cwiseQuotient(length);
 }
 
-JointCircuitFit fit_circuit_jointly(std::span<const DischargeRecord> records, int cells,
-                                    std::span<const PackConstraint> links, std::span<const double> begin_ah) {
+JointCircuitFit fit_circuit_jointly(std::span<const DischargeRecord> records, int cells, PackLinks links,
+                                    std::span<const double> begin_ah) {
+    links.resize(records.size());
     auto rough = begin_ah.empty() ? laid_out(records, cells, links, laid_one_by_one(records, cells, links))
                                   : laid_out(records, cells, links, begin_ah);
     step_to_optimum(rough, first_segments);

@@ -3,6 +3,7 @@
 #include "battery/identification/circuit_fit.h"
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,46 +11,34 @@
 
 namespace flightwatt::battery {
 
-/// Two records of one pack: the later one began with what the earlier one left.
-struct PackConstraint {
-    std::size_t later = 0;
-    std::size_t earlier = 0;
-    double charge_ah = 0.0;  ///< drawn in between
-    double error_ah = 0.0;   ///< its standard deviation
-};
+/// One a record: the earlier one whose pack it was flown on, if that is known.
+using PackLinks = std::vector<std::optional<PackLink>>;
 
 /// A circuit, and the initial charges that belong to it.
 struct JointCircuitFit {
     std::vector<AlignedRecord> records;
-    std::vector<PackConstraint> links;
+    PackLinks links;
     CircuitFit fit;
     std::size_t reference = 0;  ///< the record with the highest resting voltage: others are aligned with it
 };
 
-/// Circuit and initial charges in one least squares: what was missing from the pack is a parameter of each record but
-/// the reference's, told by the voltage under load, the resting voltage (as far as it can be believed, circuit_fit.h)
-/// and the links. Solved by Gauss-Newton steps from `begin_ah`, initial charges that are about right; without them from
-/// where each record's voltage lies best on the curve of the fuller ones. The curve has as many equal segments (12 at
-/// most) as predict best what was left out: each record in turn, or, of a single one, each twentieth of it. The curve
-/// begins at charge 0. Throws NoResultError where the records determine no circuit whose voltage falls as charge is
-/// drawn.
-JointCircuitFit fit_circuit_jointly(std::span<const DischargeRecord> records, int cells,
-                                    std::span<const PackConstraint> links = {}, std::span<const double> begin_ah = {});
+/// Circuit and initial charges in one least squares (docs/methods.md): the charge missing at the start of each record
+/// but the reference's is a parameter. Gauss-Newton steps start from `begin_ah`; without them from where each record's
+/// voltage is best on the curve of the fuller ones. The curve has as many equal segments as rank_segment_counts says,
+/// and begins at charge 0. Throws NoResultError where the voltage does not fall as charge is drawn.
+JointCircuitFit fit_circuit_jointly(std::span<const DischargeRecord> records, int cells, PackLinks links = {},
+                                    std::span<const double> begin_ah = {});
 
-/// Which of `known` the pack of `later` was flown in last, for all that clocks, counters and resting voltages say. A
-/// log does not name its pack: it is taken for the pack of the last record before it that ended at most six hours
-/// earlier, if it rests lower than that one did, by more than half of what the curve fell meanwhile, and by no more
-/// than that and what relaxation may take. A counter that begins above 0, but not where the earlier one ended, says no.
-/// Clocks are the logs', else those in the names of both ("20_07_10__06_53_03"). None where that is not known.
+/// Which of `known` the pack of `later` was flown in last: the last record before it that ended at most six hours
+/// earlier, by the clocks of the logs or those in both names ("20_07_10__06_53_03"). None if a counter contradicts it,
+/// or if `later` does not rest lower by half of what the curve fell, or by more than that fall and relaxation.
 std::optional<PackLink> find_pack_link(const DischargeRecord& later, std::span<const AlignedRecord> known,
                                        const CircuitFit& fit);
 
-/// How many equal segments the curve may have, 1 to 12 and at least twenty samples each, in the order in which they are
-/// to be tried. First come the fewest that predict what is left out, where others went as deep, as well as the best do,
-/// but for one standard error of the difference (Hastie, Tibshirani and Friedman 2009, section 7.10). Left out is each
-/// record in turn; of a single one, each twentieth of its time. Initial charges and time constant are those of `fit`,
-/// and resting samples are not asked: all else is linear. A part's own level is free, as its initial charge is a
-/// parameter.
+/// Numbers of equal segments of the curve, 1 to 12 and at least twenty samples each, in the order in which they are to
+/// be tried: first the lowest number that predicts left-out parts as well as the best one, within one standard error
+/// (Hastie, Tibshirani and Friedman 2009, section 7.10). A part is one record, or a twentieth of a single one; its own
+/// level is free, initial charges and time constant are those of `fit`, and samples at rest do not count.
 std::vector<int> rank_segment_counts(std::span<const AlignedRecord> records, const CircuitFit& fit);
 
 /// Derivatives of one record's fitted voltages, one row a used sample, and the parameters that they are by: places in

@@ -29,9 +29,10 @@ struct ObservedOcv {
 };
 
 /// How packs differ from the chart, a cell, as standard deviations: lipo_chart_sd_v, alike over 40 % of the charge, and
-/// 10 mV at each point that is compared. Chen's and Rincon-Mora's curve of a polymer cell (2006) differs from it by 55 mV, the
-/// two curves of the synthetic packs by 72 and 83 mV; the constants were chosen with these three in view. The 10 mV
-/// keep a curve's smoothness from telling the capacity: real curves are smoother than any model of their difference.
+/// 10 mV at each point that is compared. Chen's and Rincon-Mora's curve of a polymer cell (2006) differs from it by 55
+/// mV, the two curves of the synthetic packs by 72 and 83 mV; the constants were chosen with these three in view. The
+/// 10 mV keep a curve's smoothness from telling the capacity: real curves are smoother than any model of their
+/// difference.
 inline constexpr double lipo_chart_correlation_percent = 40.0;
 inline constexpr double lipo_chart_local_sd_v = 0.01;
 inline constexpr double lipo_chart_soc_sd_percent = 4.0;  ///< an error of its charge, which counts where it is steep
@@ -44,13 +45,11 @@ struct CapacityHypothesis {
     bool is_full = false;  ///< as a charger leaves it: then `missing_ah` is 0 to some percent
 };
 
-/// The posterior on a grid, probabilities summing to 1: the curve's voltages at four points are the chart's, with an
-/// error as above (a Gaussian process over charge), a common error of 30 mV a cell under load and one of 20 mV at rest.
-/// Beforehand each part of what the pack held may have been drawn, from all to a fiftieth (or the capacity is
-/// `given_ah`); and packs begin full in half of all cases (which leaves 3 % missing: half a normal distribution), and
-/// from 0 to 90 % short in the others. With a flight of a pack that is not full alone, capacity and initial charge are
-/// told by the chart alone, and the posterior is wide. Throws UsageError where the curve shows more than the given
-/// capacity, by a tenth.
+/// The posterior on a grid, probabilities summing to 1: four points of the curve follow the chart with an error as
+/// above, a common one of 30 mV a cell under load, and one of 20 mV at rest. Prior: any part of the charge may have
+/// been drawn, from all to a fiftieth (or the capacity is `given_ah`); half of all packs begin full, within 3 % (half a
+/// normal distribution), the others 0 to 90 % short. Throws UsageError if the curve exceeds the given capacity by a
+/// tenth.
 std::vector<CapacityHypothesis> capacity_posterior(const ObservedOcv& shown, std::optional<double> given_ah);
 
 /// Quantile of the capacity.

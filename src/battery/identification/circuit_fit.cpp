@@ -110,40 +110,21 @@ class WithoutRests {
         return believed;
     }
 
-    /// The record's rest of what its row, reflected, leaves for it.
-    double rest_of(Eigen::Index f, double left) const { return -left / at(f).length; }
-
-    double believed(Eigen::Index f) const { return at(f).believed; }
-    Eigen::Index first(Eigen::Index f) const { return at(f).first; }
-    Eigen::Index rows(Eigen::Index f) const { return at(f).rows; }
-
-  private:
     struct Rest {
         Eigen::Index first = 0;  ///< row
         Eigen::Index rows = 0;
         double believed = 0.0;  ///< the rest's factor in the row of what is believed
         double length = 0.0;    ///< of its column
     };
-
     const Rest& at(Eigen::Index f) const { return rests_[static_cast<std::size_t>(f)]; }
 
+  private:
     std::vector<Rest> rests_;
 };
 
 /// The settled currents of the used samples.
 Eigen::VectorXd settled(std::span<const AlignedRecord> records, double time_constant_s) {
-    std::size_t samples = 0;
-    for (const auto& [record, initial_ah] : records) samples += record->time_s.size();
-    Eigen::VectorXd settled_a(static_cast<Eigen::Index>(samples));
-    Eigen::Index used = 0;
-    for (const auto& [record, initial_ah] : records) {
-        compute_rc_branch_current(*record, time_constant_s, {settled_a.data() + used, record->time_s.size()});
-        const Eigen::Index first = used;  // unused samples fall out by moving the others up
-        for (std::size_t i = 0; i < record->used.size(); ++i)
-            if (record->used[i]) settled_a[used++] = settled_a[first + static_cast<Eigen::Index>(i)];
-    }
-    settled_a.conservativeResize(used);
-    return settled_a;
+    return gathered(records, [&](const AlignedRecord& a) { return rc_branch_current_a(*a.record, time_constant_s); });
 }
 
 /// The time constants to search, as logarithms.
@@ -314,10 +295,11 @@ CircuitFit fit_circuit(std::span<const AlignedRecord> records, const std::vector
     const Eigen::VectorXd left = problem.rest_target - problem.of_rests * solution;
     double believed = (problem.rows.bottomRows(problem.rows.rows() - voltage_v.size()) * solution).squaredNorm();
     for (Eigen::Index f = 0; f < flights; ++f) {
-        const double rest_v = without.rest_of(f, left[f]);
+        const auto& rest = without.at(f);
+        const double rest_v = -left[f] / rest.length;
         fit.rest_offset_v.push_back(rest_v);
-        fit.residual_v.segment(without.first(f), without.rows(f)).array() -= rest_v;
-        believed += std::pow(without.believed(f) * (rest_v - fit.common_rest_offset_v), 2);
+        fit.residual_v.segment(rest.first, rest.rows).array() -= rest_v;
+        believed += std::pow(rest.believed * (rest_v - fit.common_rest_offset_v), 2);
     }
     fit.objective = fit.residual_v.squaredNorm() + believed;
     fit.rms_v = std::sqrt(fit.residual_v.squaredNorm() / static_cast<double>(fit.residual_v.size()));

@@ -1,6 +1,5 @@
 #include "battery/identification/open_circuit.h"
 
-#include "base/piecewise_linear.h"
 #include "base/statistics.h"
 #include "base/units.h"
 
@@ -19,21 +18,6 @@ constexpr double greatest_high_voltage_cell_v = 4.45;
 constexpr double min_part = 0.03;  // of the charge: less tells no capacity
 constexpr double flown_fraction = 0.95;
 constexpr double added_step_percent = 5.0;
-
-/// A knot that the chart adds, parallel to it from one that was flown.
-struct AddedKnots {
-    double from_percent = 0.0;
-    double from_v = 0.0;
-    double standard_error_v = 0.0;
-    int cells = 0;
-};
-
-void add_knot(ExtendedCurve& extended, const AddedKnots& flown, double percent) {
-    const double above_v = flown.cells * (lipo_chart_voltage_v(percent) - lipo_chart_voltage_v(flown.from_percent));
-    extended.curve.soc_percent.push_back(percent);
-    extended.curve.voltage_v.push_back(std::max(flown.from_v + above_v, flown.from_v / 2.0));
-    extended.standard_error_v.push_back(std::hypot(flown.standard_error_v, flown.cells * lipo_chart_sd_v));
-}
 
 }  // namespace
 
@@ -105,12 +89,16 @@ ExtendedCurve extrapolate_curve(const CircuitFit& fit, const std::vector<double>
     extended.known_down_to_percent = known_to > same_percent ? known_to : 0.0;
     extended.known_up_to_percent = known_from;
     const int cells = fit.weights.cells;
-    const AddedKnots below{known_to, fit.open_circuit_v.back(), standard_error_v.back(), cells};
+    // A knot that the chart adds, parallel to it from one that was flown.
+    const auto add_knot = [&](double percent, double from_percent, double from_v, double error_v) {
+        const double above_v = cells * (lipo_chart_voltage_v(percent) - lipo_chart_voltage_v(from_percent));
+        soc.push_back(percent);
+        extended.curve.voltage_v.push_back(std::max(from_v + above_v, from_v / 2.0));
+        extended.standard_error_v.push_back(std::hypot(error_v, cells * lipo_chart_sd_v));
+    };
     double percent = 0.0;
-    while (percent < extended.known_down_to_percent - 0.5) {
-        add_knot(extended, below, percent);
-        percent += added_step_percent;
-    }
+    for (; percent < extended.known_down_to_percent - 0.5; percent += added_step_percent)
+        add_knot(percent, known_to, fit.open_circuit_v.back(), standard_error_v.back());
     for (std::size_t i = fit.knots_ah.size(); i-- > 0;) {
         // Knots beyond a capacity that was given are of no use, but for the last that is.
         if (i > 0 && soc_at(fit.knots_ah[i - 1]) <= 0.0) continue;
@@ -118,10 +106,9 @@ ExtendedCurve extrapolate_curve(const CircuitFit& fit, const std::vector<double>
         extended.curve.voltage_v.push_back(fit.open_circuit_v[i]);
         extended.standard_error_v.push_back(standard_error_v[i]);
     }
-    const AddedKnots above{known_from, fit.open_circuit_v.front(), standard_error_v.front(), cells};
     for (percent = added_step_percent * std::ceil(known_from / added_step_percent + 0.1);
          missing_ah > 0.0 && percent <= units::percent_per_whole; percent += added_step_percent)
-        add_knot(extended, above, percent);
+        add_knot(percent, known_from, fit.open_circuit_v.front(), standard_error_v.front());
     soc.front() = 0.0;  // the last knot, where it is as good as empty
     soc.back() = units::percent_per_whole;
     return extended;

@@ -1,13 +1,10 @@
 #include "battery/identification/pack_changes.h"
 
-#include "base/piecewise_linear.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "flight/flight_identity.h"
 
 #include <algorithm>
 #include <cstddef>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>

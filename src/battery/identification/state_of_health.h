@@ -16,12 +16,10 @@ struct FlightHealth {
 };
 
 /// Of each record, in one least squares with the curve, the RC resistance, the rests and the initial charges: a series
-/// resistance of its own and, `with_capacity`, a factor of its own on the charge that it draws (the mean of their
-/// logarithms is 0). All are free together: with the curve of a common resistance held, flights on aged packs would
-/// seem less aged than they are, as that curve has bent to them. Errors by the jackknife over a dozen blocks of each
-/// flight's time, and not less than if samples were independent; those of capacities also hold 10 mV a cell that no
-/// curve follows, over what the flight's voltage falls by. No resistance where current or charge varies too little, no
-/// capacity where its interval is wider than 15 % to either side: the flight draws too little.
+/// resistance and, `with_capacity`, a factor on the charge drawn (the mean of their logarithms is 0). Errors by the
+/// jackknife over a dozen blocks of each flight, not less than for independent samples; those of capacities also hold
+/// 10 mV a cell over the voltage's fall. No resistance where current or charge varies too little, no capacity where its
+/// interval is wider than 15 % to either side.
 std::vector<FlightHealth> estimate_state_of_health(const JointCircuitFit& aligned, bool with_capacity);
 
 }  // namespace flightwatt::battery

@@ -5,7 +5,6 @@
 #include "base/number.h"
 #include "base/units.h"
 #include "compute/profile_specification.h"
-#include "compute/qos_range.h"
 
 #include <algorithm>
 #include <cmath>
@@ -110,9 +109,11 @@ void read_component(const Property& property, const Location& where, Powprofiler
         component.source = property.value;
     } else if (property.name == "fixed") {
         if (property.value.empty()) throw InputError(where, "fixed = nothing, expected an argument");
-        component.arguments.push_back({std::string(property.value), {}});
+        component.arguments += " " + std::string(property.value);
     } else if (property.name == "range") {
-        component.arguments.push_back({"", range_of(property.value, where)});
+        component.ranges.push_back(
+            {fmt::format("qos_{}", component.ranges.size() + 1), range_of(property.value, where)});
+        component.arguments += " {" + component.ranges.back().name + "}";
     } else if (property.name == "runtime") {
         component.runtime_s = units::second_from_millisecond(number_in(property.value, where));
         if (*component.runtime_s <= 0.0) throw InputError(where, "runtime is not positive", "it counts ms");
@@ -133,7 +134,7 @@ std::string_view begin_section(std::string_view line, const Location& where, Pow
         throw InputError(where, fmt::format("unknown section {}", line),
                          "known are [settings], [components], [component.NAME] and [combinations]");
     }
-    config.components.push_back({std::string(name), "", {}, {}, where});
+    config.components.push_back({std::string(name), "", "", {}, {}, where});
     return component_section;
 }
 
@@ -200,33 +201,21 @@ std::vector<std::string> shell_words(const std::string& line) {
     return {std::istream_iterator<std::string>(words), {}};
 }
 
-/// The command line at a combination of the ranges.
-std::string line_of(const PowprofilerComponent& component, const std::vector<double>& qos) {
-    std::string line = component.source;
-    std::size_t next = 0;
-    for (const auto& argument : component.arguments) {
-        line += argument.fixed.empty() ? fmt::format(" {}", qos[next++]) : " " + argument.fixed;
-    }
-    return line;
-}
-
 ProfiledComponent profiled(const PowprofilerComponent& written) {
     ProfiledComponent component{written.name, {}, {}, {}};
     component.timing.duration_s = written.runtime_s;
-    std::vector<QosRange> ranges;
     double count = 1.0;
-    for (const auto& argument : written.arguments) {
-        if (!argument.fixed.empty()) continue;
-        count *= static_cast<double>(argument.values.size());
-        component.parameters.push_back(fmt::format("qos_{}", ranges.size() + 1));
-        ranges.push_back({component.parameters.back(), argument.values});
+    for (const auto& range : written.ranges) {
+        count *= static_cast<double>(range.values.size());
+        component.parameters.push_back(range.name);
     }
     if (count > static_cast<double>(max_configurations)) {
         throw InputError(written.where, fmt::format("{} has {} configurations", written.name, count),
                          "profile fewer values");
     }
-    for (const auto& qos : cartesian_product(ranges)) {
-        component.configurations.push_back({qos, {shell_words(line_of(written, qos))}, {}});
+    for (const auto& qos : cartesian_product(written.ranges)) {
+        const auto line = substitute_qos(written.source + written.arguments, component.parameters, qos);
+        component.configurations.push_back({qos, {shell_words(line)}, {}});
     }
     return component;
 }

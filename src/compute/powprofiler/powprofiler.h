@@ -2,6 +2,7 @@
 
 #include "base/csv.h"
 #include "base/error.h"
+#include "compute/qos_range.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -18,15 +19,12 @@ struct PowprofilerCombination {
     Location where;
 };
 
-/// A program of [components]: its arguments are fixed texts and ranges, in order.
+/// A program of [components].
 struct PowprofilerComponent {
-    struct Argument {
-        std::string fixed;           ///< empty: a range
-        std::vector<double> values;  ///< of the range
-    };
     std::string name;
-    std::string source;  ///< the program
-    std::vector<Argument> arguments;
+    std::string source;               ///< the program
+    std::string arguments;            ///< " -f {qos_1} {qos_2}", a placeholder for each range
+    std::vector<QosRange> ranges;     ///< qos_1, qos_2, ...
     std::optional<double> runtime_s;  ///< none: until it ends
     Location where;
 };

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
-#include <cstdint>
 #include <cstring>
 #include <ctime>
 #include <filesystem>
@@ -15,6 +14,7 @@
 #include <map>
 #include <optional>
 #include <sstream>
+#include <type_traits>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -27,15 +27,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// What the supervisor tells through its pipe; smaller than PIPE_BUF, so written whole.
+/// What the supervisor reports through its pipe; smaller than PIPE_BUF, so written whole.
 struct SupervisorEvent {
-    enum class Kind : std::int32_t { not_started, ended, finished };
-    Kind kind = Kind::ended;
-    std::uint32_t command = 0;
-    std::int32_t status = 0;  ///< errno, or of waitpid()
-    std::int64_t time_ns = 0;
-    ShutdownReport report;  ///< of `finished`
+    FinishedCommand finished;
+    std::optional<ShutdownReport> report;  ///< the last event: instead of a command
 };
+static_assert(std::is_trivially_copyable_v<SupervisorEvent>);
 
 /// Of each process: the child, and whether it lives.
 std::multimap<::pid_t, std::pair<::pid_t, bool>> children_by_parent() {
@@ -78,14 +75,12 @@ std::vector<::pid_t> descendants_of(::pid_t root) {
 constexpr int cannot_execute = 127;               // what a shell exits with then
 constexpr std::chrono::seconds kill_patience(5);  // after SIGKILL only the kernel can delay an end
 
-void tell(int events, SupervisorEvent event) {
-    event.time_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
-    // Nobody listens any more if the profiler is gone; the ending goes on all the same.
+void report(int events, const SupervisorEvent& event) {
+    // Where the profiler is gone this fails, and what runs is ended in any case.
     [[maybe_unused]] const auto ignored = ::write(events, &event, sizeof event);
 }
 
-[[noreturn]] void become(const std::vector<std::string>& words, std::uint32_t command,
-                         const SupervisionOptions& options, int events) {
+[[noreturn]] void become(const std::vector<std::string>& words, const SupervisionOptions& options, int events) {
     ::setpgid(0, 0);
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // should the supervisor itself be killed
     const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
@@ -99,7 +94,7 @@ void tell(int events, SupervisorEvent event) {
     std::vector<char*> arguments(words.size() + 1);  // and a null pointer
     std::ranges::transform(words, arguments.begin(), [](auto& word) { return const_cast<char*>(word.c_str()); });
     ::execvp(arguments.front(), arguments.data());
-    tell(events, {SupervisorEvent::Kind::not_started, command, errno, 0, {}});
+    report(events, {{errno, 0, Clock::now()}, {}});
     ::_exit(cannot_execute);
 }
 
@@ -109,9 +104,8 @@ class Supervisor {
 
     void start(const std::vector<std::string>& words, const SupervisionOptions& options) {
         const auto child = ::fork();
-        const auto command = static_cast<std::uint32_t>(commands_.size());
-        if (child == 0) become(words, command, options, events_);
-        if (child < 0) tell(events_, {SupervisorEvent::Kind::not_started, command, errno, 0, {}});
+        if (child == 0) become(words, options, events_);
+        if (child < 0) report(events_, {{errno, 0, Clock::now()}, {}});
         if (child > 0) ::setpgid(child, child);  // here too: it may be signalled before it runs
         commands_.push_back(child);
     }
@@ -125,16 +119,15 @@ class Supervisor {
             if (child < 0) return errno != ECHILD;
             const auto known = std::find(commands_.begin(), commands_.end(), child);
             if (known == commands_.end()) continue;
-            const auto command = static_cast<std::uint32_t>(known - commands_.begin());
             *known = -1;
-            tell(events_, {SupervisorEvent::Kind::ended, command, status, 0, {}});
+            report(events_, {{0, status, Clock::now()}, {}});
         }
     }
 
     ShutdownReport end_all() {
-        ShutdownReport report;
+        ShutdownReport shutdown;
         auto living = descendants_of(::getpid());
-        report.orphans = static_cast<std::size_t>(std::count_if(living.begin(), living.end(), [&](auto pid) {
+        shutdown.orphans = static_cast<std::size_t>(std::count_if(living.begin(), living.end(), [&](auto pid) {
             return std::find(commands_.begin(), commands_.end(), pid) == commands_.end();
         }));
         for (const auto pid : living) ::kill(pid, SIGTERM);
@@ -142,14 +135,14 @@ class Supervisor {
         const auto kill_until = term_until + kill_patience;
         while (reap() && Clock::now() < kill_until) {
             if (Clock::now() >= term_until) {
-                report.killed = true;
+                shutdown.killed = true;
                 // Anew every time: they may fork on while they are being killed.
                 for (const auto pid : descendants_of(::getpid())) ::kill(pid, SIGKILL);
             }
             wait_for_child(std::chrono::milliseconds(10));
         }
-        report.survivors = descendants_of(::getpid()).size();
-        return report;
+        shutdown.survivors = descendants_of(::getpid()).size();
+        return shutdown;
     }
 
   private:
@@ -186,8 +179,7 @@ class Supervisor {
         if (::sigwait(&awaited, &signal) != 0 || signal == SIGTERM) break;
         if (signal == SIGCHLD) supervisor.reap();
     }
-    SupervisorEvent last{SupervisorEvent::Kind::finished, 0, 0, 0, supervisor.end_all()};
-    tell(events, last);
+    report(events, {{}, supervisor.end_all()});
     ::_exit(0);
 }
 
@@ -241,15 +233,12 @@ SupervisedProcesses::~SupervisedProcesses() {
 
 std::vector<FinishedCommand> SupervisedProcesses::ended() {
     std::vector<FinishedCommand> all;
+    // Of one that cannot be started its exit code follows, and is of no interest.
     while (const auto event = next_event(events_)) {
-        if (event->kind == SupervisorEvent::Kind::finished) {
-            report_ = event->report;
-            continue;
-        }
-        const std::chrono::steady_clock::time_point time{std::chrono::nanoseconds(event->time_ns)};
-        const bool started = event->kind == SupervisorEvent::Kind::ended;
-        // Of one that cannot be started the exit code follows, and is of no interest.
-        all.push_back({event->command, started ? 0 : event->status, started ? event->status : 0, time});
+        if (event->report)
+            report_ = *event->report;
+        else
+            all.push_back(event->finished);
     }
     return all;
 }

@@ -24,9 +24,8 @@ struct ShutdownReport {
 
 /// A command that has ended, or that could not be started.
 struct FinishedCommand {
-    std::size_t command = 0;  ///< which of those given, from 0
-    int start_error = 0;      ///< errno, if it could not be started
-    int wait_status = 0;      ///< as waitpid() gives it
+    int start_error = 0;  ///< errno, if it could not be started
+    int wait_status = 0;  ///< as waitpid() gives it
     std::chrono::steady_clock::time_point time;
 };
 

@@ -110,8 +110,7 @@ class Watch {
             const double time_s = seconds(reading.time - start_);
             if (time_s < timing_.warm_up_s || reading.time > end()) continue;
             if (!run_.trace.time_s.empty() && time_s <= run_.trace.time_s.back()) continue;
-            run_.trace.time_s.push_back(time_s);
-            run_.trace.power_w.push_back(reading.power_w);
+            run_.trace.add(time_s, reading.power_w);
         }
     }
 
@@ -181,8 +180,7 @@ ComponentRun run_of_recording(const PowerTrace& recording, const ProfileTiming& 
     for (std::size_t i = 0; i < recording.time_s.size(); ++i) {
         const double time_s = recording.time_s[i] - first_s;
         if (time_s < timing.warm_up_s || time_s > limit_s) continue;
-        run.trace.time_s.push_back(time_s);
-        run.trace.power_w.push_back(recording.power_w[i]);
+        run.trace.add(time_s, recording.power_w[i]);
     }
     run.status = run.trace.time_s.empty() ? RunStatus::no_samples : RunStatus::ok;
     if (run.status == RunStatus::no_samples) {

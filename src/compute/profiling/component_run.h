@@ -5,7 +5,6 @@
 #include "compute/profile_specification.h"
 
 #include <filesystem>
-#include <stdexcept>
 #include <string>
 
 namespace flightwatt::compute {

@@ -8,8 +8,10 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -21,8 +23,12 @@ namespace {
 constexpr std::string_view total_rails[] = {"VDD_IN", "POM_5V_IN", "5V_IN"};
 /// Behind another rail that is measured too: AGX Orin's is made from VIN_SYS_5V0; NC is not connected.
 constexpr std::string_view derived_rails[] = {"VDDQ_VDD2_1V8AO", "NC"};
+/// "package-0": a processor, whose parts (core, uncore) have counters of their own; psys contains it.
+constexpr std::string_view package = "package";
 
 using std::filesystem::path;
+
+using Clock = std::chrono::steady_clock;
 
 constexpr int channels = 3;  // of an INA3221
 
@@ -68,39 +74,42 @@ void add_device(std::vector<path>& devices, const path& folder) {
     devices.push_back(folder);
 }
 
-PowerRail product_rail(const std::string& name, const path& voltage_mv, const path& current_ma) {
-    return {name, fmt::format("{} x {}", voltage_mv.string(), current_ma.filename().string()),
-            [voltage_mv, current_ma] {
-                return units::volt_from_millivolt(require_sysfs_number(voltage_mv)) *
-                       units::ampere_from_milliampere(require_sysfs_number(current_ma));
-            }};
+/// The units that a driver counts in.
+struct RailUnits {
+    double (*watt)(double);
+    double (*volt)(double);
+    double (*ampere)(double);
+};
+constexpr RailUnits milli_units{units::watt_from_milliwatt, units::volt_from_millivolt, units::ampere_from_milliampere};
+
+/// Adds a rail by its power, else by voltage and current; none where neither can be read.
+void add_rail(const std::string& name, const path& power, const path& voltage, const path& current, const RailUnits& in,
+              std::vector<PowerRail>& rails) {
+    if (sysfs_number(power)) {
+        rails.push_back({name, power.string(), [=](auto) { return in.watt(require_sysfs_number(power)); }});
+    } else if (sysfs_number(voltage) && sysfs_number(current)) {
+        rails.push_back({name, fmt::format("{} x {}", voltage.string(), current.filename().string()), [=](auto) {
+                             return in.volt(require_sysfs_number(voltage)) * in.ampere(require_sysfs_number(current));
+                         }});
+    }
 }
 
 void add_iio_channels(const path& folder, std::vector<PowerRail>& rails) {
     for (int i = 0; i < channels; ++i) {
         const auto name = sysfs_text(folder / fmt::format("rail_name_{}", i))
                               .value_or(fmt::format("{}.{}", folder.filename().string(), i));
-        const auto power = folder / fmt::format("in_power{}_input", i);
-        const auto voltage = folder / fmt::format("in_voltage{}_input", i);
-        const auto current = folder / fmt::format("in_current{}_input", i);
-        if (sysfs_number(power)) {
-            rails.push_back(
-                {name, power.string(), [power] { return units::watt_from_milliwatt(require_sysfs_number(power)); }});
-        } else if (sysfs_number(voltage) && sysfs_number(current)) {
-            rails.push_back(product_rail(name, voltage, current));
-        }
+        add_rail(name, folder / fmt::format("in_power{}_input", i), folder / fmt::format("in_voltage{}_input", i),
+                 folder / fmt::format("in_current{}_input", i), milli_units, rails);
     }
 }
 
 void add_hwmon_channels(const path& folder, std::vector<PowerRail>& rails) {
     for (int i = 1; i <= channels; ++i) {
-        const auto voltage = folder / fmt::format("in{}_input", i);
-        const auto current = folder / fmt::format("curr{}_input", i);
         if (sysfs_number(folder / fmt::format("in{}_enable", i)) == 0.0) continue;
-        if (!sysfs_number(voltage) || !sysfs_number(current)) continue;
         const auto label = sysfs_text(folder / fmt::format("in{}_label", i))
                                .value_or(fmt::format("{}.{}", folder.filename().string(), i));
-        rails.push_back(product_rail(label, voltage, current));
+        add_rail(label, {}, folder / fmt::format("in{}_input", i), folder / fmt::format("curr{}_input", i), milli_units,
+                 rails);
     }
 }
 
@@ -134,8 +143,10 @@ std::vector<std::size_t> rails_of_total(const std::vector<std::string>& names, c
         const auto found = std::ranges::find(names, total);
         if (found != names.end()) return {static_cast<std::size_t>(found - names.begin())};
     }
+    const bool has_packages = std::ranges::any_of(names, [](const auto& name) { return name.starts_with(package); });
     for (std::size_t i = 0; i < names.size(); ++i) {
-        if (std::ranges::find(derived_rails, names[i]) == std::end(derived_rails)) chosen.push_back(i);
+        const bool is_derived = std::ranges::find(derived_rails, names[i]) != std::end(derived_rails);
+        if (has_packages ? names[i].starts_with(package) : !is_derived) chosen.push_back(i);
     }
     return chosen;
 }
@@ -163,62 +174,51 @@ std::vector<PowerRail> hwmon_rails(const path& sysfs) {
 }
 
 std::vector<PowerRail> ina238_rails(const path& sysfs) {
+    constexpr RailUnits in{units::watt_from_microwatt, milli_units.volt, milli_units.ampere};
     std::vector<PowerRail> rails;
     for (const auto& folder : hwmon_devices(sysfs, "ina238")) {
         const auto name = sysfs_text(folder / "in1_label").value_or("VIN " + folder.filename().string());
-        const auto power = folder / "power1_input";
-        const auto voltage = folder / "in1_input";
-        const auto current = folder / "curr1_input";
-        if (sysfs_number(power)) {
-            rails.push_back(
-                {name, power.string(), [power] { return units::watt_from_microwatt(require_sysfs_number(power)); }});
-        } else if (sysfs_number(voltage) && sysfs_number(current)) {
-            rails.push_back(product_rail(name, voltage, current));
-        }
+        add_rail(name, folder / "power1_input", folder / "in1_input", folder / "curr1_input", in, rails);
     }
     return rails;
 }
 
 std::vector<PowerRail> power_supply_rails(const path& sysfs) {
+    // Drivers differ in the sign of a discharge.
+    constexpr RailUnits in{[](double power_uw) { return std::abs(units::watt_from_microwatt(power_uw)); },
+                           units::volt_from_microvolt,
+                           [](double current_ua) { return std::abs(units::ampere_from_microampere(current_ua)); }};
     std::vector<PowerRail> rails;
     for (const auto& supply : sysfs_entries(sysfs / "class/power_supply")) {
         const auto status = sysfs_text(supply / "status").value_or("");
         if (status == "Charging" || status == "Full") continue;
-        const auto name = supply.filename().string();
-        const auto power = supply / "power_now";
-        const auto voltage = supply / "voltage_now";
-        const auto current = supply / "current_now";
-        // Drivers differ in the sign of a discharge.
-        if (sysfs_number(power)) {
-            rails.push_back({name, power.string(),
-                             [power] { return units::watt_from_microwatt(std::abs(require_sysfs_number(power))); }});
-        } else if (sysfs_number(voltage) && sysfs_number(current)) {
-            rails.push_back({name, voltage.string() + " x current_now", [voltage, current] {
-                                 return units::volt_from_microvolt(require_sysfs_number(voltage)) *
-                                        std::abs(units::ampere_from_microampere(require_sysfs_number(current)));
-                             }});
-        }
+        add_rail(supply.filename().string(), supply / "power_now", supply / "voltage_now", supply / "current_now", in,
+                 rails);
     }
     return rails;
 }
 
-std::vector<EnergyCounter> energy_counters(const path& sysfs) {
-    std::vector<EnergyCounter> counters;
+std::vector<PowerRail> rapl_rails(const path& sysfs) {
+    std::vector<PowerRail> rails;
     // Not intel-rapl-mmio:0, which counts the package once more.
     for (const auto& zone : sysfs_entries(sysfs / "class/powercap", "intel-rapl:")) {
         const auto file = zone / "energy_uj";
         const auto range_uj = sysfs_number(zone / "max_energy_range_uj");
         if (!sysfs_number(file) || !range_uj) continue;
+        auto mean_power_w = [file, range_uj = *range_uj, last_uj = 0.0,
+                             last = std::optional<Clock::time_point>()](Clock::time_point now) mutable {
+            const double now_uj = require_sysfs_number(file);
+            const double energy_uj = now_uj - last_uj + (now_uj < last_uj ? range_uj : 0.0);
+            const double time_s = last ? std::chrono::duration<double>(now - *last).count() : 0.0;
+            last_uj = now_uj;
+            last = now;
+            return time_s > 0.0 ? units::joule_from_microjoule(energy_uj) / time_s
+                                : std::numeric_limits<double>::quiet_NaN();
+        };
         const auto name = sysfs_text(zone / "name").value_or(zone.filename().string());
-        counters.push_back({name, file.string(), [file] { return require_sysfs_number(file); }, *range_uj,
-                            name.starts_with("package")});
+        rails.push_back({name, file.string(), std::move(mean_power_w)});
     }
-    return counters;
-}
-
-double power_of_counter_w(double last_uj, double now_uj, double range_uj, double time_s) {
-    const double energy_uj = now_uj - last_uj + (now_uj < last_uj ? range_uj : 0.0);
-    return units::joule_from_microjoule(energy_uj) / time_s;
+    return rails;
 }
 
 }  // namespace flightwatt::compute

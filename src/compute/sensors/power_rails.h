@@ -1,5 +1,7 @@
 #pragma once
 
+#include <chrono>
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -7,25 +9,17 @@
 
 namespace flightwatt::compute {
 
-/// A supply line of a board, and how its power now is read [W]. `read` throws InputError naming the file.
+/// A supply line of a board, or a part of its processor. `read` gives its power [W] at a time (now); of a counter of
+/// energy the mean power since the last call, NaN at the first. It throws InputError naming the file.
 struct PowerRail {
-    std::string name;    ///< the board's name for it, "VDD_IN"
+    std::string name;    ///< the board's or the driver's name for it, "VDD_IN", "package-0"
     std::string source;  ///< the files
-    std::function<double()> read;
-};
-
-/// A counter of the energy that a part of the processor has used. `read_uj` throws InputError naming the file.
-struct EnergyCounter {
-    std::string name;    ///< "package-0"
-    std::string source;  ///< its energy_uj
-    std::function<double()> read_uj;
-    double range_uj = 0.0;    ///< where it begins at 0 again
-    bool is_package = false;  ///< a whole processor, whose parts have counters of their own
+    std::function<double(std::chrono::steady_clock::time_point)> read;
 };
 
 /// Which of the rails (by name) add up to the power of the board: those `wanted`; else the one that is known
-/// to carry everything (VDD_IN, POM_5V_IN, ...); else all but those that are fed by another rail. Returns
-/// indices. Throws NoResultError for one wanted that is not there, listing those that are.
+/// to carry everything (VDD_IN, POM_5V_IN, ...); else the processor's packages; else all but those that are fed by
+/// another rail. Returns indices. Throws NoResultError for one wanted that is not there, listing those that are.
 std::vector<std::size_t> rails_of_total(const std::vector<std::string>& names, const std::vector<std::string>& wanted);
 
 /// TI INA3221 through NVIDIA's IIO driver (Jetson Nano, TX2, Xavier under L4T up to 32):
@@ -47,12 +41,8 @@ std::vector<PowerRail> ina238_rails(const std::filesystem::path& sysfs);
 /// current_now [uA]. Those whose status is Charging or Full do not show the load, and are passed over.
 std::vector<PowerRail> power_supply_rails(const std::filesystem::path& sysfs);
 
-/// The counters that can be read below class/powercap (Intel and AMD RAPL through the kernel's powercap
-/// driver): intel-rapl:0 and below.
-std::vector<EnergyCounter> energy_counters(const std::filesystem::path& sysfs);
-
-/// Two readings of a counter as power [W]: energy since the last, over time. `range_uj` is where the counter
-/// begins at 0 again.
-double power_of_counter_w(double last_uj, double now_uj, double range_uj, double time_s);
+/// The counters of energy that can be read below class/powercap (Intel and AMD RAPL through the kernel's powercap
+/// driver): intel-rapl:0 and below. They begin at 0 again at max_energy_range_uj.
+std::vector<PowerRail> rapl_rails(const std::filesystem::path& sysfs);
 
 }  // namespace flightwatt::compute

@@ -72,8 +72,7 @@ PowerTrace trace_of_tegrastats(const std::string& text, const std::string& file,
             throw InputError(where, "its date is not after the line before",
                              "dates count whole seconds: give the sampler's interval_s");
         }
-        trace.time_s.push_back(time_s);
-        trace.power_w.push_back(total_w(line, where));
+        trace.add(time_s, total_w(line, where));
     }
     return trace;
 }
@@ -88,8 +87,7 @@ PowerTrace trace_of_csv(const CsvTable& table) {
             throw InputError({table.file, row.line}, fmt::format("time_s = {} follows {}", time_s, trace.time_s.back()),
                              "the time stamps of a recording rise");
         }
-        trace.time_s.push_back(time_s);
-        trace.power_w.push_back(cell_number(table, row, power));
+        trace.add(time_s, cell_number(table, row, power));
     }
     if (trace.time_s.empty()) throw InputError({table.file}, "has a header and no samples");
     return trace;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <thread>
+#include <type_traits>
 #include <utility>
 
 #include <fcntl.h>
@@ -110,8 +111,6 @@ class FileTail {
 /// Messages out of the lines of a .data file.
 class TextReader {
   public:
-    static constexpr bool zeros_are_padding = false;
-
     explicit TextReader(MessageSink& sink) : sink_(sink) {}
 
     void push(std::string_view bytes) {
@@ -135,12 +134,6 @@ class TextReader {
 
     MessageSink& sink_;
     LineBuffer buffer_;
-};
-
-class BinaryReader : public LinkReader {
-  public:
-    static constexpr bool zeros_are_padding = true;
-    using LinkReader::LinkReader;
 };
 
 /// A source that reads in the thread of the one who asks.
@@ -199,7 +192,8 @@ class FollowedFile : public DirectSource {
 
     void receive(milliseconds timeout, std::vector<IncomingMessage>& messages) override {
         messages_ = &messages;
-        const auto piece = tail_.read(timeout, Reader::zeros_are_padding);
+        constexpr bool is_binary = std::is_same_v<Reader, LinkReader>;  // room is set aside in such files
+        const auto piece = tail_.read(timeout, is_binary);
         if (piece.anew) {
             reader_.restart();
             count_restart();
@@ -224,7 +218,7 @@ std::unique_ptr<MessageSource> follow_data_file(const std::filesystem::path& pat
 
 std::unique_ptr<MessageSource> follow_binary_log(const std::filesystem::path& path,
                                                  telemetry::MessageDictionary definitions) {
-    return std::make_unique<FollowedFile<BinaryReader>>(
+    return std::make_unique<FollowedFile<LinkReader>>(
         path, "expected the log that an autopilot or a modem's program writes",
         std::make_shared<const telemetry::MessageDictionary>(std::move(definitions)));
 }

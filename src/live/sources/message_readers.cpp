@@ -1,8 +1,23 @@
 #include "live/sources/message_readers.h"
 
+#include "base/number.h"
+
+#include <cmath>
 #include <utility>
 
 namespace flightwatt::live {
+
+void SourceReport::count(std::string_view reason, std::size_t times) {
+    if (times > 0) unusable[std::string(reason)] += times;
+}
+
+std::optional<IncomingMessage> message_of_line(std::string_view line) {
+    const auto blank = line.find(' ');
+    if (blank == std::string_view::npos || blank + 1 >= line.size()) return std::nullopt;
+    const auto time_s = parse_number(line.substr(0, blank));
+    if (!time_s || !std::isfinite(*time_s)) return std::nullopt;
+    return IncomingMessage{time_s, std::string(line.substr(blank + 1))};
+}
 
 std::size_t LineBuffer::push(std::string_view bytes, std::vector<std::string>& lines) {
     std::size_t overlong = 0;

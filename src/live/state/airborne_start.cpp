@@ -102,7 +102,8 @@ Prediction predict_airborne_start(const PredictionInput& basis, const flight::Fl
         of.limits = basis.limits;
         of.initial_soc_percent = battery->state->soc_percent;
         of.initial_soc_is_current = true;
-        forecast_battery(*basis.battery, *battery->state, prediction, of);
+        const auto state_of = [&](const auto&) { return *battery->state; };
+        forecast_battery(*basis.battery, state_of, prediction, of);
         remarks.warnings.emplace_back(
             battery->soc_percent ? "watched from the air on: the state of charge is what --initial-soc (or the "
                                    "mission) leaves by the autopilot's counter"

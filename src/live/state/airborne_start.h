@@ -5,7 +5,6 @@
 #include "path/path_tracker.h"
 
 #include <optional>
-#include <string>
 
 namespace flightwatt::live {
 

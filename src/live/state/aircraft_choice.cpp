@@ -22,11 +22,7 @@ bool has_flown(const flight::FlightSeries& series) {
 
 void AircraftSelector::count(std::string_view text) {
     const auto sender = text.substr(0, text.find(' '));
-    if (const auto known = messages_.find(sender); known != messages_.end()) {
-        ++known->second;
-    } else if (messages_.size() < max_named) {
-        messages_.emplace(sender, 1);
-    }
+    if (messages_.contains(sender) || messages_.size() < max_named) ++messages_[std::string(sender)];
 }
 
 flight::FlightSeries AircraftSelector::choose(TelemetryStore& store) {

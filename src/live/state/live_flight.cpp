@@ -267,7 +267,10 @@ void LiveFlight::Impl::predict(const flight::SelectedTracks& tracks,
             energy.battery->limits = basis_->limits;
             energy.battery->initial_soc_percent = state.battery->initial_soc_percent;
             energy.battery->initial_is_measured = state.battery->initial_is_from_voltage;
-            forecast_battery(*basis_->battery, *record, energy, *energy.battery);
+            const auto state_of = [&](const auto& pack) {
+                return state_after(pack, *record, state.battery->initial_soc_percent);
+            };
+            forecast_battery(*basis_->battery, state_of, energy, *energy.battery);
         }
         state.prediction = std::move(energy);
         state.expected_power_w = remaining_power(*state.prediction).front().power_w;

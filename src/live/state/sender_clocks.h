@@ -50,13 +50,10 @@ class ArrivalMonitor {
     double arrival_s_ = 0.0;
 };
 
-/// What to believe of the times that come in. A time more than 10 s ahead of the latest one, or a minute behind it,
-/// counts when four more behind it agree (a single one is a damaged line): forwards it is a gap, backwards the log or
-/// the aircraft began anew. Ten lines in a row more than 2 s behind the latest say that the clock went back: it goes on
-/// from where it was, unless within a minute a line is ahead by as much: then the lines only came out of order; or,
-/// where fewer than five lines had come near the latest, that the latest was damaged. Where lines arrive as fast as
-/// their clock goes, a clock that runs more than 10 s further ahead than the arrivals was set: it goes on after as long
-/// as nothing arrived.
+/// Accepts or holds the times that come in (docs/live.md). A time more than 10 s ahead of the latest, or a minute
+/// behind it, counts when four more agree: forwards as a gap, backwards as a restart. Ten lines in a row more than 2 s
+/// late mean that the clock went back, unless a line within a minute is ahead by as much, or fewer than five lines had
+/// come near the latest. A clock more than 10 s further ahead than the arrivals was set; it continues by the arrivals.
 class ClockFilter {
   public:
     static constexpr double max_step_s = 60.0;

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <string_view>
+#include <type_traits>
 
 namespace flightwatt::telemetry {
 
@@ -66,30 +69,23 @@ inline double shortest_decimal(float value) {
 
 /// One element as a number; a char is its code. `decimals`: as for shortest_decimal().
 inline double wire_value(WireType type, const char* p, int& decimals) {
-    switch (type) {
-        case WireType::int8:
-            return wire_number<std::int8_t>(p);
-        case WireType::uint8:
-        case WireType::text:
-            return wire_number<std::uint8_t>(p);
-        case WireType::int16:
-            return wire_number<std::int16_t>(p);
-        case WireType::uint16:
-            return wire_number<std::uint16_t>(p);
-        case WireType::int32:
-            return wire_number<std::int32_t>(p);
-        case WireType::uint32:
-            return wire_number<std::uint32_t>(p);
-        case WireType::int64:
-            return static_cast<double>(wire_number<std::int64_t>(p));
-        case WireType::uint64:
-            return static_cast<double>(wire_number<std::uint64_t>(p));
-        case WireType::float32:
-            return shortest_decimal(wire_number<float>(p), decimals);
-        case WireType::float64:
-            return wire_number<double>(p);
+    return with_wire_type(type, [&]<typename T>() -> double {
+        if constexpr (std::is_same_v<T, char>) return wire_number<std::uint8_t>(p);
+        if constexpr (std::is_same_v<T, float>) return shortest_decimal(wire_number<float>(p), decimals);
+        return static_cast<double>(wire_number<T>(p));
+    });
+}
+
+/// Calls use(WireField, first byte, how many elements) for each field of a payload that fits its definition.
+template <typename Use>
+void for_each_field(const WireMessage& message, std::string_view payload, Use&& use) {
+    const char* p = payload.data();
+    for (const auto& field : message.fields) {
+        std::size_t elements = field.elements;
+        if (field.count == WireCount::counted) elements = wire_number<std::uint8_t>(p++);
+        use(field, p, elements);
+        p += elements * size_of(field.type);
     }
-    return 0.0;
 }
 
 }  // namespace flightwatt::telemetry

@@ -15,13 +15,12 @@
 namespace flightwatt::telemetry {
 
 const Column* MessageTable::column(std::string_view field) const {
-    const auto found = std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.field == field; });
+    const auto found = std::ranges::find(columns, field, &Column::field);
     return found == columns.end() ? nullptr : &*found;
 }
 
 const MessageTable* SenderLog::table(std::string_view message) const {
-    const auto found =
-        std::find_if(tables.begin(), tables.end(), [&](const MessageTable& t) { return t.message == message; });
+    const auto found = std::ranges::find(tables, message, &MessageTable::message);
     return found == tables.end() ? nullptr : &*found;
 }
 
@@ -49,11 +48,7 @@ std::vector<std::pair<std::string, std::size_t>> count_messages(std::string_view
         std::string_view name;
         if (!words.next(time) || !words.next(sender) || !words.next(name)) return;
         if (!parse_number(time) || !is_name(name)) return;
-        if (const auto known = names.find(name); known != names.end()) {
-            ++known->second;
-        } else if (names.size() < max_names) {
-            names.emplace(name, 1);
-        }
+        if (names.contains(name) || names.size() < max_names) ++names[std::string(name)];
     });
     std::vector<std::pair<std::string, std::size_t>> census(names.begin(), names.end());
     std::stable_sort(census.begin(), census.end(), [](const auto& a, const auto& b) { return a.second > b.second; });

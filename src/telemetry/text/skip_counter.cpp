@@ -20,7 +20,7 @@ double time_of(std::string_view line) {
 }  // namespace
 
 void SkipCounter::add(const SkipKind& kind, double time_s, std::size_t line_number, std::size_t count) {
-    auto known = std::find_if(skips_.begin(), skips_.end(), [&](const auto& skip) { return skip.first == kind; });
+    auto known = std::ranges::find(skips_, kind, &std::pair<SkipKind, SkippedLines>::first);
     if (known == skips_.end()) known = skips_.insert(known, {kind, {}});
     auto& lines = known->second.lines;
     if (!lines.empty() && lines.back().time_s == time_s) {
@@ -28,11 +28,6 @@ void SkipCounter::add(const SkipKind& kind, double time_s, std::size_t line_numb
     } else {
         lines.push_back({time_s, count, line_number});
     }
-}
-
-void SkipCounter::append(const SkipCounter& later, std::size_t lines_before) {
-    for (const auto& [kind, skipped] : later.skips_)
-        for (const auto& at : skipped.lines) add(kind, at.time_s, lines_before + at.first_line, at.count);
 }
 
 void SkipCounter::add_without_time(const SkipKind& kind, const ScannedLine& line) {

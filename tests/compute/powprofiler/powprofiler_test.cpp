@@ -79,14 +79,13 @@ TEST(PowprofilerConfig, ReadsComponentsHoweverTheyAreFormatted) {
     EXPECT_EQ(mult.name, "matrix-mult");
     EXPECT_EQ(mult.source, "/home/user/mult");
     EXPECT_FALSE(mult.runtime_s);
-    ASSERT_EQ(mult.arguments.size(), 1U);
-    EXPECT_EQ(mult.arguments[0].values, (std::vector<double>{64, 128, 256, 512}));
+    EXPECT_EQ(mult.arguments, " {qos_1}");
+    EXPECT_EQ(mult.ranges.at(0).values, (std::vector<double>{64, 128, 256, 512}));
     const auto& yolo = config.components[1];
     EXPECT_EQ(yolo.runtime_s, 1.5);
-    ASSERT_EQ(yolo.arguments.size(), 3U);
-    EXPECT_EQ(yolo.arguments[0].values, (std::vector<double>{4, 8, 12}));
-    EXPECT_EQ(yolo.arguments[1].fixed, "image-file/image.jpg");
-    EXPECT_EQ(yolo.arguments[2].values, (std::vector<double>{0, 2, 4}));
+    EXPECT_EQ(yolo.arguments, " {qos_1} image-file/image.jpg {qos_2}");
+    EXPECT_EQ(yolo.ranges.at(0).values, (std::vector<double>{4, 8, 12}));
+    EXPECT_EQ(yolo.ranges.at(1).values, (std::vector<double>{0, 2, 4}));
 }
 
 std::optional<PowprofilerColumns> columns(const std::string& header) {
