@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace flightwatt::flight {
@@ -23,6 +24,21 @@ struct Track {
 
     bool empty() const { return time_s.empty(); }
     bool operator==(const Track&) const = default;
+};
+
+/// A track as it is chosen, and what of the log is not used for it.
+struct TrackSelection {
+    const Track* logged = nullptr;                   ///< one of the series' own, where it is taken as it stands
+    Track derived = {};                              ///< else
+    std::vector<std::string> removal_notes = {};     ///< samples that are left out, sources that cannot be
+    std::vector<std::string> rejected_sources = {};  ///< sources of power that are not taken, and why
+
+    const Track& track() const { return logged != nullptr ? *logged : derived; }
+    /// To be changed: a copy, where it was one of the series' own.
+    Track& own() {
+        if (logged != nullptr) derived = *std::exchange(logged, nullptr);
+        return derived;
+    }
 };
 
 /// What several values at the same time become.

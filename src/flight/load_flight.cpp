@@ -278,7 +278,7 @@ std::string exclusion_reason(const FlightAssessment& judgement) {
 
 LoadedFlight segment_and_check(FlightSeries series, const LoadOptions& options) {
     LoadedFlight loaded;
-    FlightAssessment judgement;
+    FlightAssessment& judgement = loaded;
     {
         const SelectedTracks tracks(series);
         tracks.compute_all();
@@ -291,16 +291,13 @@ LoadedFlight segment_and_check(FlightSeries series, const LoadOptions& options) 
         judgement = assess_flight(tracks, loaded.phases, options.segmentation);
         loaded.sources = track_sources(tracks);
     }
-    if (options.correct_idle_offset && judgement.lacks_power.empty()) {
-        correct_idle_offset(series, judgement.power.idle);
+    if (options.correct_idle_offset && loaded.lacks_power.empty()) {
+        correct_idle_offset(series, loaded.power.idle);
         const SelectedTracks tracks(series);
-        judgement.warnings = all_warnings(tracks, loaded.phases, judgement);
+        loaded.warnings = all_warnings(tracks, loaded.phases, judgement);
         loaded.sources = track_sources(tracks);
     }
     loaded.exclusion = exclusion_of(series.flight, judgement, options);
-    loaded.power = std::move(judgement.power);
-    loaded.lacks_power = std::move(judgement.lacks_power);
-    loaded.warnings = std::move(judgement.warnings);
     loaded.series = std::move(series);
     return loaded;
 }

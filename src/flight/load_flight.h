@@ -34,13 +34,17 @@ struct LoadOptions {
     std::optional<std::filesystem::path> messages = {};            ///< see FlightFile
 };
 
-struct LoadedFlight {
+/// What a series that is segmented is worth: its power record, why none can be used, and what a user should know.
+struct FlightAssessment {
+    PowerReport power;                  ///< as measured, before any correction
+    std::string lacks_power = {};       ///< why no power was measured; empty if it was
+    std::vector<std::string> warnings;  ///< of the series, the segmentation and the power
+};
+
+struct LoadedFlight : FlightAssessment {
     FlightSeries series;  ///< its idle offset is corrected if that was asked for
     FlightPhases phases;
-    PowerReport power;                                ///< as measured, before any correction
-    std::string lacks_power = {};                     ///< why no power was measured; empty if it was
     std::string exclusion = {};                       ///< why the flight is not to be used; empty if it is
-    std::vector<std::string> warnings;                ///< of the series, the segmentation and the power
     std::map<std::string, std::string> sources = {};  ///< where each chosen track came from, by name
 };
 
@@ -100,12 +104,6 @@ std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::opt
 /// several (it says which, and where none flew what they did instead).
 FlightSeries choose_aircraft(std::vector<FlightSeries> candidates);
 
-/// What a series that is segmented is worth: its power record, why none can be used, and what a user should know.
-struct FlightAssessment {
-    PowerReport power;                  ///< as measured
-    std::string lacks_power = {};       ///< why no power was measured; empty if it was
-    std::vector<std::string> warnings;  ///< of the series, the segmentation and the power
-};
 FlightAssessment assess_flight(const SelectedTracks& tracks, const FlightPhases& phases,
                                const SegmentationOptions& options = {});
 

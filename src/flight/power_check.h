@@ -18,14 +18,13 @@ struct IdleCurrent {
     std::size_t samples = 0;
 };
 
-/// A time without a power sample, longer than three usual intervals.
-struct PowerGap {
+/// A time without a sample of more than gap_threshold_s(), which a sortie touches or holds as a whole.
+struct SampleGap {
     double start_s = 0.0;
     double duration_s = 0.0;
+    std::size_t end = 0;  ///< the sample after it
+    bool is_within = false;
 };
-
-/// An integral that is further away from the on-board counter is a fault.
-inline constexpr double max_closure_percent = 10.0;
 
 /// How far a power record can be trusted.
 struct PowerReport {
@@ -33,19 +32,13 @@ struct PowerReport {
     std::optional<IdleCurrent> idle;
     std::optional<double> energy_closure_percent;  ///< in flight: integral of power over counter, less 100 %
     std::optional<double> charge_closure_percent;  ///< the same of current and the charge counter
-    double energy_rounding_percent = 0.0;          ///< what the counter's rounding may add to its closure
-    double charge_rounding_percent = 0.0;
-    std::vector<PowerGap> gaps;             ///< within the sorties
-    std::vector<std::string> power_faults;  ///< what cannot be: such a record is not fitted
-    std::vector<std::string> warnings;      ///< what is doubtful, though it can be
+    std::vector<PowerGap> gaps;                    ///< within the sorties
+    std::vector<std::string> power_faults;         ///< what cannot be: such a record is not fitted
+    std::vector<std::string> warnings;             ///< what is doubtful, though it can be
 };
 
-/// Checks a power record. The closure is over the sorties, lift-off to touchdown (that of a phase stands in its
-/// statistics); the idle current over the rests with the motor off. Power faults are: more than 5 A in a tenth of the
-/// samples at rest with the motor off; power that is not voltage times current (more than 10 % apart, median, above
-/// 1 W); a counter that runs back in flight by more than 5 % of what it counted; an integral more than 10 % away from
-/// the counter; power that is negative on average, or does not change at all, in flight. The warnings and their
-/// thresholds stand in docs/methods.md.
+/// Checks a power record by the rules of docs/methods.md. The closure is over the sorties, lift-off to touchdown (that of
+/// a phase stands in its statistics); the idle current over the rests with the motor off.
 PowerReport check_power_record(const SelectedTracks& tracks, const FlightPhases& phases,
                                const SegmentationOptions& options = {});
 

@@ -45,21 +45,21 @@ PhaseEdge describe_edge(const SelectedTracks& tracks, const ResampledFlight& gri
     return edge;
 }
 
-Sortie make_sortie(const SelectedTracks& tracks, const ResampledFlight& grid, const Activity& activity,
-                   const Heights& heights, const SegmentationOptions& options) {
-    const auto edges = find_edges(grid, activity, heights, options);
-    const double first_s = edges.lift_off_s.value_or(grid.time_s(activity.span.begin));
-    const double last_s = edges.touchdown_s.value_or(grid.time_s(activity.span.end - 1));
+Sortie make_sortie(const FlightCandidate& flown) {
+    const auto& grid = flown.grid;
+    const auto edges = find_edges(grid, flown.activity, flown.heights, flown.options);
+    const double first_s = edges.lift_off_s.value_or(grid.time_s(flown.activity.span.begin));
+    const double last_s = edges.touchdown_s.value_or(grid.time_s(flown.activity.span.end - 1));
     const double cruise_from = edges.takeoff_end_s.value_or(first_s);
     const double cruise_to = std::max(edges.landing_start_s.value_or(last_s), cruise_from);
     Sortie sortie;
-    sortie.ground_altitude_m = heights.ground_m;
-    sortie.height_m = heights.cruise_height_m;
+    sortie.ground_altitude_m = flown.heights.ground_m;
+    sortie.height_m = flown.heights.cruise_height_m;
     sortie.held = edges.held;
     const auto add = [&](Phase phase, double start_s, double end_s, bool complete) {
         if (end_s <= start_s) return;
         sortie.phases.push_back(
-            {phase, describe_edge(tracks, grid, start_s), describe_edge(tracks, grid, end_s), complete});
+            {phase, describe_edge(flown.tracks, grid, start_s), describe_edge(flown.tracks, grid, end_s), complete});
     };
     if (edges.takeoff_end_s) add(Phase::takeoff, first_s, cruise_from, edges.lift_off_s.has_value());
     add(Phase::cruise, cruise_from, cruise_to, edges.takeoff_end_s.has_value() && edges.landing_start_s.has_value());
@@ -114,7 +114,8 @@ FlightPhases segment(const SelectedTracks& tracks, const SegmentationOptions& op
     for (const auto& activity : find_activities(grid, rests, options)) {
         const auto grounds = estimate_ground_levels(grid, activity, ground_m);
         const auto heights = compute_heights(grid, activity, grounds);
-        auto why = no_flight_reason(tracks, grid, activity, heights, options);
+        const FlightCandidate candidate{tracks, grid, activity, heights, options};
+        auto why = no_flight_reason(candidate);
         if (!why.empty()) {
             phases.ground_events.push_back(
                 {grid.time_s(activity.moving.begin), grid.time_s(activity.moving.end - 1), std::move(why)});
@@ -126,9 +127,8 @@ FlightPhases segment(const SelectedTracks& tracks, const SegmentationOptions& op
                 "latter counts",
                 grid.time_s(activity.moving.begin), *activity.ground_before_m, *activity.ground_after_m));
         }
-        if (auto doubt = motor_doubt(grid, activity, options); !doubt.empty())
-            phases.warnings.push_back(std::move(doubt));
-        auto sortie = make_sortie(tracks, grid, activity, heights, options);
+        if (auto doubt = motor_doubt(candidate); !doubt.empty()) phases.warnings.push_back(std::move(doubt));
+        auto sortie = make_sortie(candidate);
         if (sortie.phases.empty()) {
             phases.ground_events.push_back({grid.time_s(activity.moving.begin), grid.time_s(activity.moving.end - 1),
                                             fmt::format("height of {:.0f} m for less than {} s: too short for a phase",

@@ -33,24 +33,14 @@ void put_first(std::vector<std::string>& notes, const std::vector<std::string>& 
     notes.insert(notes.begin(), earlier.begin(), earlier.end());
 }
 
-/// A copy of its own, where it had none.
-Track& to_change(Choice& choice) {
-    if (choice.logged != nullptr) choice.derived = *std::exchange(choice.logged, nullptr);
-    return choice.derived;
-}
-
 /// Leaves out what cannot be.
 Choice sound_choice(const FlightSeries& series, const Track& candidate) {
     const bool is_current = candidate.name == "current_a";
-    auto sound = remove_outliers(candidate, {}, is_current ? dropout_throttle(series, candidate) : Track{});
-    Choice choice;
-    if (sound.is_unchanged) choice.logged = &candidate;
-    choice.derived = std::move(sound.track);
-    if (!sound.removal_note.empty()) choice.removal_notes.push_back(std::move(sound.removal_note));
+    auto choice = remove_outliers(candidate, {}, is_current ? dropout_throttle(series, candidate) : Track{});
     if (candidate.name != "voltage_v" && !is_current) return choice;
     // Where the message contradicts itself is said of its power.
     const auto contradicted_s = contradicted_times(series, candidate.source);
-    if (!contradicted_s.empty()) to_change(choice) = without_times(choice.track(), contradicted_s);
+    if (!contradicted_s.empty()) erase_times(choice.own(), contradicted_s);
     return choice;
 }
 
@@ -61,14 +51,11 @@ Choice first_that_varies(const FlightSeries& series, std::string_view name, cons
         if (track.name != name || track.empty() || !track.device.empty() || !accept(track)) continue;
         if (is_constant(track) && !constant.track().empty()) continue;
         auto sound = sound_choice(series, track);
+        put_first(sound.removal_notes, constant.removal_notes);
+        if (!is_constant(sound.track())) return sound;
         if (sound.track().empty()) {
-            constant.removal_notes.insert(constant.removal_notes.end(), sound.removal_notes.begin(),
-                                          sound.removal_notes.end());
-        } else if (!is_constant(sound.track())) {
-            put_first(sound.removal_notes, constant.removal_notes);
-            return sound;
+            constant.removal_notes = std::move(sound.removal_notes);
         } else if (constant.track().empty()) {
-            put_first(sound.removal_notes, constant.removal_notes);
             constant = std::move(sound);
         }
     }
@@ -90,7 +77,8 @@ bool is_fraction(const Track& throttle, const FlightSeries& series) {
     if (throttle.empty()) return false;
     const auto [least, most] = std::ranges::minmax(throttle.value);
     if (most < runs || most > full || least < -idle) return false;
-    const auto power = select_power(series).power_w;
+    const auto selection = select_power(series);
+    const auto& power = selection.track();
     std::vector<double> idle_w;
     std::vector<double> running_w;
     for (std::size_t i = 0; i < power.time_s.size(); ++i) {
@@ -107,7 +95,7 @@ bool is_fraction(const Track& throttle, const FlightSeries& series) {
 /// In percent.
 void scale_fraction(const FlightSeries& series, Choice& throttle) {
     if (throttle.track().empty() || !is_fraction(throttle.track(), series)) return;
-    auto& track = to_change(throttle);
+    auto& track = throttle.own();
     const auto [least, most] = std::ranges::minmax(track.value);
     throttle.removal_notes.push_back(
         fmt::format("the throttle ({}) runs from {:.3g} to {:.3g}: it is taken for a fraction, "
@@ -143,16 +131,16 @@ void follow_commands(const FlightSeries& series, Choice& throttle) {
     double together_s = 0.0;
     std::optional<double> first_s;
     for (const auto& run : runs_of({0, track.time_s.size()}, idles)) {
-        const SampleRange sent{first_from(commands->time_s, track.time_s[run.first]),
-                               first_after(commands->time_s, track.time_s[run.last - 1])};
+        const IndexSpan sent{first_from(commands->time_s, track.time_s[run.begin]),
+                             first_after(commands->time_s, track.time_s[run.end - 1])};
         const double running_s = time_where(commands->time_s, sent, gap_s, runs);
         if (running_s < contradicted_s) continue;
-        const auto last = first_after(track.time_s, commands->time_s[sent.last - 1]);  // what stopped says nothing
-        std::copy(percent.begin() + static_cast<std::ptrdiff_t>(run.first),
+        const auto last = first_after(track.time_s, commands->time_s[sent.end - 1]);  // what stopped says nothing
+        std::copy(percent.begin() + static_cast<std::ptrdiff_t>(run.begin),
                   percent.begin() + static_cast<std::ptrdiff_t>(last),
-                  to_change(throttle).value.begin() + static_cast<std::ptrdiff_t>(run.first));
+                  throttle.own().value.begin() + static_cast<std::ptrdiff_t>(run.begin));
         together_s += running_s;
-        if (!first_s) first_s = track.time_s[run.first];
+        if (!first_s) first_s = track.time_s[run.begin];
     }
     if (!first_s) return;
     throttle.removal_notes.push_back(
@@ -165,7 +153,7 @@ Choice throttle(const FlightSeries& series) {
     constexpr double often_s = 2.0;  // of commands that come more seldom a throttle is only made where nothing else is
     const auto* commands = commands_of(series);
     const bool counts =
-        commands != nullptr && (median_interval_s(commands->time_s) <= often_s || select_power(series).power_w.empty());
+        commands != nullptr && (median_interval_s(commands->time_s) <= often_s || select_power(series).track().empty());
     const auto is_thrust = [](const Track& track) { return track.source == "ROTORCRAFT_FP.thrust"; };
     auto found = first_that_varies(series, "throttle_percent", [&](const Track& track) {
         return !is_thrust(track) && (track.source != commanded_throttle || counts);
@@ -206,19 +194,12 @@ Choice charge(const FlightSeries& series) {
     auto found = first_that_varies(series, "charge_ah", [&](const Track& track) {
         return exchanged ? track.source != "ENERGY.energy" : track.source != power_read_as_energy;
     });
-    if (found.track().source == power_read_as_energy) to_change(found).source = "ENERGY.energy";
+    if (found.track().source == power_read_as_energy) found.own().source = "ENERGY.energy";
     return found;
 }
 
-Choice power(const FlightSeries& series) {
-    auto choice = select_power(series);
-    return {.derived = std::move(choice.power_w),
-            .removal_notes = std::move(choice.left_out),
-            .rejected_sources = std::move(choice.passed_over)};
-}
-
 Choice choose(const FlightSeries& series, std::string_view name) {
-    if (name == "power_w") return power(series);
+    if (name == "power_w") return select_power(series);
     if (name == "current_a") return current(series);
     if (name == "voltage_v") return voltage(series);
     if (name == "charge_ah") return charge(series);
@@ -234,7 +215,7 @@ Choice choose(const FlightSeries& series, std::string_view name) {
 
 Track select_track(const FlightSeries& series, std::string_view name) {
     auto choice = choose(series, name);
-    return std::move(to_change(choice));
+    return std::move(choice.own());
 }
 
 const TrackSelection& SelectedTracks::choice(std::string_view name) const {
@@ -318,9 +299,9 @@ std::vector<std::string> warnings_of(const SelectedTracks& tracks) {
 }
 
 std::string no_power_reason(const FlightSeries& series) {
-    const auto power = select_power(series);
-    if (!power.power_w.empty()) return "";
-    std::vector<std::string> reasons = power.passed_over;
+    auto power = select_power(series);
+    if (!power.track().empty()) return "";
+    auto reasons = std::move(power.rejected_sources);
     for (const auto& skip : series.skipped) reasons.push_back(describe(skip));
     for (const auto& assumed : series.assumed_definitions)
         reasons.push_back(fmt::format("{} {}", series.log_is_missing ? "assumed" : "the .log:", assumed.text));
@@ -334,7 +315,7 @@ void require_power(const FlightSeries& series, const std::string& holds) {
                                      restart->to_s, series.aircraft_id, restart->message),
                          "it holds several recordings, or one over another: split it where the time begins anew");
     }
-    if (!select_power(series).power_w.empty()) return;
+    if (!select_power(series).track().empty()) return;
     const auto reasons = no_power_reason(series);
     const auto reason = reasons.empty() ? "" : fmt::format(" ({})", reasons);
     throw InputError({series.file}, fmt::format("holds no measured power of aircraft {}{}", series.aircraft_id, reason),

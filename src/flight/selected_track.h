@@ -21,16 +21,6 @@ namespace flightwatt::flight {
 /// "ENERGY.voltage * ENERGY.current", "ESC, summed over 4 devices".
 Track select_track(const FlightSeries& series, std::string_view name);
 
-/// A track as it is chosen, and what of the log is not used for it.
-struct TrackSelection {
-    const Track* logged = nullptr;                   ///< one of the series' own, where it is taken as it stands
-    Track derived = {};                              ///< else
-    std::vector<std::string> removal_notes = {};     ///< samples that are left out, sources that cannot be
-    std::vector<std::string> rejected_sources = {};  ///< sources of power that are not taken, and why
-
-    const Track& track() const { return logged != nullptr ? *logged : derived; }
-};
-
 /// The chosen tracks of a series, each made when it is first asked for. The series must outlive it, and stay as it is.
 /// What takes selected tracks takes a series too; several calls share the tracks if they are given them.
 class SelectedTracks {

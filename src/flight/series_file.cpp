@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -170,13 +171,8 @@ std::string format_front_matter(const FlightSeries& series) {
         if (!track.device.empty()) toml += fmt::format("device = {}\n", toml_string(track.device));
         if (std::isfinite(track.since_s)) toml += fmt::format("since_s = {}\n", toml_real(track.since_s));
     }
-    std::string comments;
-    for (std::string_view rest = toml; !rest.empty();) {
-        const auto line = rest.substr(0, rest.find('\n'));
-        comments += fmt::format("# {}\n", line);
-        rest.remove_prefix(line.size() + 1);
-    }
-    return comments;
+    toml.pop_back();
+    return fmt::format("# {}\n", boost::algorithm::replace_all_copy(toml, "\n", "\n# "));
 }
 
 /// Throws InputError for a format that is newer, and for what is not as format_front_matter writes it.
@@ -279,13 +275,9 @@ class TableReader {
 
     /// The series; the tracks are those that have a column.
     FlightSeries take() {
-        auto series = std::move(matter_.series);
-        std::vector<Track> tracks;
-        for (std::size_t i = 0; i < series.tracks.size(); ++i) {
-            if (is_bound_[i]) tracks.push_back(std::move(series.tracks[i]));
-        }
-        series.tracks = std::move(tracks);
-        return series;
+        std::size_t track = 0;
+        std::erase_if(matter_.series.tracks, [&](const Track&) { return !is_bound_[track++]; });
+        return std::move(matter_.series);
     }
 
   private:

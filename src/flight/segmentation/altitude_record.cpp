@@ -11,6 +11,15 @@
 namespace flightwatt::flight {
 namespace {
 
+// From one sample to the next an altitude changes by no more than this, or it has jumped: 60 m/s is more than a small
+// aircraft climbs or dives, and an estimator may correct itself by 10 m.
+constexpr double jump_m = 10.0;
+constexpr double jump_m_per_s = 60.0;
+constexpr double fix_jump_m = 60.0;  // beside a time in which it repeated one value, and over a time left out
+constexpr double fix_jump_m_per_s = 5.0;
+constexpr double excursion_s = 30.0;    // what comes back from a jump within this time was somewhere else meanwhile
+constexpr double fix_loss_s = 120.0;    // so was what stood still meanwhile, without a fix
+constexpr std::size_t max_jumps = 10;   // with more nothing can be concluded from an altitude
 constexpr double stuck_s = 10.0;        // a value that is repeated for so long, and
 constexpr std::size_t stuck_count = 5;  // so often, is that of an estimator without a fix
 constexpr double shortest_piece_s = 5.0;
@@ -19,23 +28,11 @@ constexpr double farthest_jump_m = 1000.0;
 constexpr std::size_t passes = 10;    // what is left out brings others together
 constexpr std::size_t returns = 100;  // jumps among which the one back is looked for
 
-/// Median of each value and its neighbours.
-void take_out_spikes(std::vector<double>& values) {
-    const auto raw = values;
-    for (std::size_t i = 1; i + 1 < raw.size(); ++i) {
-        values[i] = std::max(std::min(raw[i - 1], raw[i]), std::min(std::max(raw[i - 1], raw[i]), raw[i + 1]));
-    }
-}
-
-void mark(std::vector<bool>& out, std::size_t begin, std::size_t end) {
-    std::fill(out.begin() + static_cast<std::ptrdiff_t>(begin), out.begin() + static_cast<std::ptrdiff_t>(end), true);
-}
-
 /// Which samples repeat one value for long.
 std::vector<bool> stuck_samples(const Track& track) {
     std::vector<bool> stuck(track.value.size(), false);
     for (const auto& run : runs_of_equal(track.value, stuck_count))
-        if (track.time_s[run.last - 1] - track.time_s[run.first] >= stuck_s) mark(stuck, run.first, run.last);
+        if (track.time_s[run.end - 1] - track.time_s[run.begin] >= stuck_s) set_part(stuck, run, true);
     return stuck;
 }
 
@@ -43,14 +40,23 @@ bool is_beyond(const Track& track, std::size_t i, std::size_t j, double step_m, 
     return std::abs(track.value[j] - track.value[i]) > step_m + rate_m_per_s * (track.time_s[j] - track.time_s[i]);
 }
 
+/// The pieces between jumps, in order.
+std::vector<IndexSpan> pieces_of(const Track& track) {
+    const auto stuck = stuck_samples(track);
+    const auto goes_on = [&](std::size_t i) {
+        const bool has_fix = !stuck[i - 1] && !stuck[i];
+        return (has_fix || !is_beyond(track, i - 1, i, fix_jump_m, fix_jump_m_per_s)) &&
+               !is_beyond(track, i - 1, i, jump_m, jump_m_per_s);
+    };
+    return runs_of(
+        {0, stuck.size()}, [](std::size_t) { return true; }, goes_on);
+}
+
 /// The samples after jumps, in order.
 std::vector<std::size_t> jumps_of(const Track& track) {
-    const auto stuck = stuck_samples(track);
     std::vector<std::size_t> jumps;
-    for (std::size_t i = 0; i + 1 < stuck.size(); ++i) {
-        const bool without_fix = (stuck[i] || stuck[i + 1]) && is_beyond(track, i, i + 1, fix_jump_m, fix_jump_m_per_s);
-        if (without_fix || is_beyond(track, i, i + 1, jump_m, jump_m_per_s)) jumps.push_back(i + 1);
-    }
+    for (const auto& piece : pieces_of(track))
+        if (piece.begin > 0) jumps.push_back(piece.begin);
     return jumps;
 }
 
@@ -69,7 +75,7 @@ std::size_t leave_out_excursions(Track& track) {
             const double max_s = stands_still ? fix_loss_s : excursion_s;
             if (track.time_s[back] - track.time_s[first - 1] > max_s) break;
             if (is_beyond(track, first - 1, back, fix_jump_m, fix_jump_m_per_s)) continue;
-            mark(out, first, back);
+            set_part(out, {first, back}, true);
             after = back;
             break;
         }
@@ -77,37 +83,26 @@ std::size_t leave_out_excursions(Track& track) {
     return erase_samples(track, [&](std::size_t i) { return out[i]; });
 }
 
-/// The pieces between jumps: where each begins, and at last where the track ends.
-std::vector<std::size_t> piece_bounds(const Track& track) {
-    std::vector<std::size_t> bounds{0};
-    const auto jumps = jumps_of(track);
-    bounds.insert(bounds.end(), jumps.begin(), jumps.end());
-    bounds.push_back(track.time_s.size());
-    return bounds;
-}
-
 /// Leaves out pieces between jumps that are too short to tell anything. Returns how many samples.
 std::size_t leave_out_short_pieces(Track& track) {
-    const auto bounds = piece_bounds(track);
-    if (bounds.size() == 2) return 0;
+    const auto pieces = pieces_of(track);
+    if (pieces.size() == 1) return 0;
     std::vector<bool> out(track.time_s.size(), false);
-    for (std::size_t p = 0; p + 1 < bounds.size(); ++p) {
-        const auto [begin, end] = std::pair{bounds[p], bounds[p + 1]};
-        if (track.time_s[end - 1] - track.time_s[begin] < shortest_piece_s) mark(out, begin, end);
-    }
+    for (const auto& piece : pieces)
+        if (track.time_s[piece.end - 1] - track.time_s[piece.begin] < shortest_piece_s) set_part(out, piece, true);
     return erase_samples(track, [&](std::size_t i) { return out[i]; });
 }
 
 /// Whether an altitude that moves on both sides, and for a while, jumps further than any estimator that gets its fix.
 bool jumps_too_far(const Track& track) {
     const auto stuck = stuck_samples(track);
-    const auto bounds = piece_bounds(track);
-    const auto lasts = [&](std::size_t p) {
-        return track.time_s[bounds[p + 1] - 1] - track.time_s[bounds[p]] >= long_piece_s;
+    const auto pieces = pieces_of(track);
+    const auto lasts = [&](const IndexSpan& piece) {
+        return track.time_s[piece.end - 1] - track.time_s[piece.begin] >= long_piece_s;
     };
-    for (std::size_t p = 1; p + 1 < bounds.size(); ++p) {
-        const auto i = bounds[p];
-        const bool moves = !stuck[i - 1] && !stuck[i] && lasts(p - 1) && lasts(p);
+    for (std::size_t p = 1; p < pieces.size(); ++p) {
+        const auto i = pieces[p].begin;
+        const bool moves = !stuck[i - 1] && !stuck[i] && lasts(pieces[p - 1]) && lasts(pieces[p]);
         if (moves && std::abs(track.value[i] - track.value[i - 1]) > farthest_jump_m) return true;
     }
     return false;
@@ -121,7 +116,7 @@ CleanedAltitude clean_altitude(Track altitude) {
     const auto [low, high] = std::minmax_element(altitude.value.begin(), altitude.value.end());
     const double min_m = all > 0 ? *low : 0.0;
     const double max_m = all > 0 ? *high : 0.0;
-    take_out_spikes(altitude.value);
+    altitude.value = running_median<3>(altitude.value);
     const auto before = jumps_of(altitude);
     const double first_jump_s = before.empty() ? 0.0 : altitude.time_s[before.front()];
     std::size_t left_out = 0;

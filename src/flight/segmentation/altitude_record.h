@@ -2,24 +2,28 @@
 
 #include "flight/flight_series.h"
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
 namespace flightwatt::flight {
 
-/// From one sample to the next an altitude changes by no more than this, or it has jumped: 60 m/s is more than a small
-/// aircraft climbs or dives, and an estimator may correct itself by 10 m.
-inline constexpr double jump_m = 10.0;
-inline constexpr double jump_m_per_s = 60.0;
-/// The same beside a time in which it repeated one value (an estimator without a fix), and over a time left out.
-inline constexpr double fix_jump_m = 60.0;
-inline constexpr double fix_jump_m_per_s = 5.0;
-/// An altitude that comes back from a jump within this time was somewhere else meanwhile [s].
-inline constexpr double excursion_s = 30.0;
-/// So did one that stood still meanwhile, as an estimator does that has lost its fix [s].
-inline constexpr double fix_loss_s = 120.0;
-/// With more jumps than this nothing can be concluded from an altitude.
-inline constexpr std::size_t max_jumps = 10;
+/// Median of an odd number of values around each: takes out spikes of less than half as many, and leaves climbs as they
+/// are.
+template <std::size_t Width>
+std::vector<double> running_median(const std::vector<double>& values) {
+    constexpr auto reach = static_cast<std::ptrdiff_t>(Width / 2);
+    std::vector<double> smooth = values;
+    for (std::ptrdiff_t i = reach; i + reach < static_cast<std::ptrdiff_t>(values.size()); ++i) {
+        std::array<double, Width> near{};
+        std::copy_n(values.begin() + i - reach, Width, near.begin());
+        std::nth_element(near.begin(), near.begin() + reach, near.end());
+        smooth[static_cast<std::size_t>(i)] = near[Width / 2];
+    }
+    return smooth;
+}
 
 /// The altitude that phases are found by: without single spikes and excursions.
 struct CleanedAltitude {

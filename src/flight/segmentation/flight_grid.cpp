@@ -7,7 +7,6 @@
 #include "flight/selected_track.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -17,21 +16,6 @@
 
 namespace flightwatt::flight {
 namespace {
-
-/// Running median of an odd number of values: takes out spikes of less than half as many, and leaves climbs
-/// as they are.
-template <std::size_t Width>
-std::vector<double> without_spikes(const std::vector<double>& values) {
-    constexpr auto reach = static_cast<std::ptrdiff_t>(Width / 2);
-    std::vector<double> smooth = values;
-    for (std::ptrdiff_t i = reach; i + reach < static_cast<std::ptrdiff_t>(values.size()); ++i) {
-        std::array<double, Width> near{};
-        std::copy_n(values.begin() + i - reach, Width, near.begin());
-        std::nth_element(near.begin(), near.begin() + reach, near.end());
-        smooth[static_cast<std::size_t>(i)] = near[Width / 2];
-    }
-    return smooth;
-}
 
 /// The altitude at the grid's times, piece by piece: nothing is interpolated over a jump.
 void add_altitude(ResampledFlight& grid, const CleanedAltitude& record, const std::vector<double>& time_s) {
@@ -46,13 +30,13 @@ void add_altitude(ResampledFlight& grid, const CleanedAltitude& record, const st
         const auto end = last ? time_s.size() : index_at(time_s, record.jumps_s[p]);
         const auto next_sample = last ? track.time_s.size() : index_at(track.time_s, record.jumps_s[p]);
         if (end > begin && next_sample > sample) {
-            const auto part = [](const std::vector<double>& all, std::size_t from, std::size_t to) {
-                return std::vector<double>(all.begin() + static_cast<std::ptrdiff_t>(from),
-                                           all.begin() + static_cast<std::ptrdiff_t>(to));
+            const auto copy = [](const std::vector<double>& all, IndexSpan span) {
+                const auto part = part_of(all, span);
+                return std::vector<double>(part.begin(), part.end());
             };
-            const Track piece{.time_s = part(track.time_s, sample, next_sample),
-                              .value = part(track.value, sample, next_sample)};
-            const auto altitude_m = without_spikes<5>(resample(piece, part(time_s, begin, end)));
+            const Track piece{.time_s = copy(track.time_s, {sample, next_sample}),
+                              .value = copy(track.value, {sample, next_sample})};
+            const auto altitude_m = running_median<5>(resample(piece, copy(time_s, {begin, end})));
             grid.altitude_m.insert(grid.altitude_m.end(), altitude_m.begin(), altitude_m.end());
             grid.pieces.push_back({begin, end});
             begin = end;
@@ -120,18 +104,6 @@ std::vector<bool> gliding_points(const ResampledFlight& grid, double idle_percen
     return gliding;
 }
 
-/// The marked points that follow each other, none across a jump of the altitude.
-std::vector<GridSpan> spans_of(const ResampledFlight& grid, const std::vector<bool>& marked) {
-    std::vector<GridSpan> spans;
-    for (std::size_t i = 0; i < grid.size(); ++i) {
-        if (!marked[i]) continue;
-        const bool begins_piece = std::ranges::binary_search(grid.pieces, i, {}, &GridSpan::begin);
-        if (spans.empty() || spans.back().end != i || begins_piece) spans.push_back({i, i});
-        spans.back().end = i + 1;
-    }
-    return spans;
-}
-
 /// How many points the grid has. Throws InputError where its times are none.
 std::size_t size_until(const FlightSeries& series, const ResampledFlight& grid, double end_s) {
     const double span_s = end_s - grid.start_s;
@@ -154,7 +126,7 @@ void refuse_without_altitude(const FlightSeries& series, const Track& altitude) 
 
 }  // namespace
 
-std::vector<double> ResampledFlight::times_s(GridSpan span) const {
+std::vector<double> ResampledFlight::times_s(IndexSpan span) const {
     std::vector<double> times(span.end - span.begin);
     for (std::size_t i = 0; i < times.size(); ++i) times[i] = time_s(span.begin + i);
     return times;
@@ -188,7 +160,7 @@ ResampledFlight make_grid(const SelectedTracks& tracks) {
     }
     if (motor.sign == MotorIndicator::throttle) grid.throttle_percent = grid.motor_percent;
     const auto& speed = tracks["ground_speed_m_per_s"];
-    if (!speed.empty()) grid.ground_speed_m_per_s = without_spikes<5>(resample(speed, time_s));
+    if (!speed.empty()) grid.ground_speed_m_per_s = running_median<5>(resample(speed, time_s));
     return grid;
 }
 
@@ -204,7 +176,7 @@ double flight_motor_percent(const ResampledFlight& grid, const SegmentationOptio
     return grid.motor_sign == MotorIndicator::power ? flight_power_percent : options.flight_throttle_percent;
 }
 
-std::vector<GridSpan> find_rests(const ResampledFlight& grid, const SegmentationOptions& options) {
+std::vector<IndexSpan> find_rests(const ResampledFlight& grid, const SegmentationOptions& options) {
     const double idle_percent = idle_motor_percent(grid, options);
     const auto within = [&](const std::vector<double>& channel, std::size_t i, double limit) {
         return channel.empty() || channel[i] <= limit;
@@ -221,16 +193,11 @@ std::vector<GridSpan> find_rests(const ResampledFlight& grid, const Segmentation
     };
     // Where neither motor nor speed is known, a height that is kept is that of a rest only near the ground.
     const bool by_altitude = grid.motor_percent.empty() && grid.ground_speed_m_per_s.empty();
-    const auto max_rest_m = [&](const GridSpan& piece) {
-        const auto [low, high] = std::minmax_element(grid.altitude_m.begin() + static_cast<std::ptrdiff_t>(piece.begin),
-                                                     grid.altitude_m.begin() + static_cast<std::ptrdiff_t>(piece.end));
-        return by_altitude ? *low + std::max(options.flight_height_m, 0.25 * (*high - *low)) : *high;
+    const auto max_rest_m = [&](const IndexSpan& piece) {
+        const auto [low_m, high_m] = std::ranges::minmax(part_of(grid.altitude_m, piece));
+        return by_altitude ? low_m + std::max(options.flight_height_m, 0.25 * (high_m - low_m)) : high_m;
     };
     std::vector<bool> resting(grid.size(), false);
-    const auto mark = [&](std::size_t begin, std::size_t end) {
-        std::fill(resting.begin() + static_cast<std::ptrdiff_t>(begin),
-                  resting.begin() + static_cast<std::ptrdiff_t>(end), true);
-    };
     const auto window = grid.steps(options.rest_s) + 1;
     const auto edge = grid.steps(0.3 * options.rest_s) + 1;
     for (const auto& piece : grid.pieces) {
@@ -245,29 +212,31 @@ std::vector<GridSpan> find_rests(const ResampledFlight& grid, const Segmentation
             while (!stretch.take(end)) stretch.leave();
             if (stretch.size() > window) stretch.leave();
             if (stretch.size() < window || grid.altitude_m[stretch.first()] > max_m) continue;
-            mark(std::max(marked, stretch.first()), end + 1);
+            set_part(resting, {std::max(marked, stretch.first()), end + 1}, true);
             marked = end + 1;
         }
         if (piece.begin + edge > piece.end) continue;
         // The log may begin just before lift-off or end just after touchdown: there less time does, within less height.
         if (grid.altitude_m[piece.begin] <= max_m &&
             is_still(piece.begin, piece.begin + edge, 0.3 * options.rest_height_m)) {
-            mark(piece.begin, piece.begin + edge);
+            set_part(resting, {piece.begin, piece.begin + edge}, true);
         }
         if (grid.altitude_m[piece.end - 1] <= max_m &&
             is_still(piece.end - edge, piece.end, 0.3 * options.rest_height_m))
-            mark(piece.end - edge, piece.end);
+            set_part(resting, {piece.end - edge, piece.end}, true);
     }
     const auto gliding = gliding_points(grid, idle_percent, options.flight_height_m);
-    auto rests = spans_of(grid, resting);
-    std::erase_if(rests, [&](const GridSpan& rest) { return gliding[rest.end - 1]; });
+    // None across a jump of the altitude.
+    auto rests = runs_of(
+        {0, grid.size()}, [&](std::size_t i) { return resting[i]; },
+        [&](std::size_t i) { return !std::ranges::binary_search(grid.pieces, i, {}, &IndexSpan::begin); });
+    std::erase_if(rests, [&](const IndexSpan& rest) { return gliding[rest.end - 1]; });
     return rests;
 }
 
-double median_altitude_m(const ResampledFlight& grid, GridSpan span) {
-    std::vector<double> values(grid.altitude_m.begin() + static_cast<std::ptrdiff_t>(span.begin),
-                               grid.altitude_m.begin() + static_cast<std::ptrdiff_t>(span.end));
-    return median_high(std::move(values));
+double median_altitude_m(const ResampledFlight& grid, IndexSpan span) {
+    const auto altitude_m = part_of(grid.altitude_m, span);
+    return median_high({altitude_m.begin(), altitude_m.end()});
 }
 
 }  // namespace flightwatt::flight

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flight/checks/runs.h"
 #include "flight/flight_phases.h"
 #include "flight/flight_series.h"
 #include "flight/segmentation/motor_record.h"
@@ -11,12 +12,6 @@
 
 namespace flightwatt::flight {
 
-/// The grid points [begin, end).
-struct GridSpan {
-    std::size_t begin;
-    std::size_t end;
-};
-
 /// A flight on an even clock, for the segmentation: spikes of single samples are gone.
 struct ResampledFlight {
     double start_s = 0.0;
@@ -26,7 +21,7 @@ struct ResampledFlight {
     std::vector<double> motor_percent;     ///< see MotorRecord; empty if unknown
     double min_motor_percent = 0.0;
     std::vector<double> ground_speed_m_per_s;  ///< empty if unknown
-    std::vector<GridSpan> pieces;              ///< between jumps of the altitude; together the whole grid
+    std::vector<IndexSpan> pieces;             ///< between jumps of the altitude; together the whole grid
     MotorIndicator motor_sign = MotorIndicator::unknown;
     std::string motor_evidence;         ///< see MotorRecord
     std::vector<std::string> warnings;  ///< what was left out, and what is used instead
@@ -34,7 +29,7 @@ struct ResampledFlight {
 
     std::size_t size() const { return altitude_m.size(); }
     double time_s(std::size_t index) const { return start_s + step_s * static_cast<double>(index); }
-    std::vector<double> times_s(GridSpan span) const;
+    std::vector<double> times_s(IndexSpan span) const;
     /// How many steps make up `duration_s`.
     std::size_t steps(double duration_s) const { return static_cast<std::size_t>(duration_s / step_s); }
 };
@@ -44,13 +39,13 @@ struct ResampledFlight {
 ResampledFlight make_grid(const SelectedTracks& tracks);
 
 /// The spans in which the aircraft is at rest: see SegmentationOptions.
-std::vector<GridSpan> find_rests(const ResampledFlight& grid, const SegmentationOptions& options);
+std::vector<IndexSpan> find_rests(const ResampledFlight& grid, const SegmentationOptions& options);
 
 /// Up to this motor_percent the motor idles; what rises without ever getting to the other one is no flight.
 double idle_motor_percent(const ResampledFlight& grid, const SegmentationOptions& options);
 double flight_motor_percent(const ResampledFlight& grid, const SegmentationOptions& options);
 
 /// Median of grid.altitude_m over a span that is not empty.
-double median_altitude_m(const ResampledFlight& grid, GridSpan span);
+double median_altitude_m(const ResampledFlight& grid, IndexSpan span);
 
 }  // namespace flightwatt::flight

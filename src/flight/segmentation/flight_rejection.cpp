@@ -2,13 +2,13 @@
 
 #include "base/statistics.h"
 #include "base/units.h"
-#include "flight/selected_track.h"
 #include "flight/series_file.h"
 #include "flight/sources/outliers.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -17,50 +17,59 @@
 namespace flightwatt::flight {
 namespace {
 
-double max_motor_percent(const ResampledFlight& grid, GridSpan span) {
-    if (grid.motor_percent.empty()) return 0.0;
-    return *std::max_element(grid.motor_percent.begin() + static_cast<std::ptrdiff_t>(span.begin),
-                             grid.motor_percent.begin() + static_cast<std::ptrdiff_t>(span.end));
+// docs/methods.md says why.
+constexpr double max_climb_5_s_m_per_s = 60.0;
+constexpr double max_climb_30_s_m_per_s = 30.0;
+constexpr double max_gps_motion_fraction = 0.25;  // of the altitude's; beside half of the least height of a flight
+constexpr double min_confirming_fraction = 0.5;   // of it, by which another altitude confirms it
+constexpr double min_flight_m_per_s = 5.0;        // of a fixed wing
+constexpr double min_time_aloft_s = 15.0;         // above half of its height, where nothing tells of the motor
+constexpr double min_height_factor = 2.0;         // of the least height of a flight, where no speed is known either
+constexpr double road_slope = 0.03;
+constexpr double road_slack_m = 2.0;  // that an altitude may be off
+constexpr double position_window_s = 10.0;
+constexpr double standing_extent_m = 30.0;
+// At this airspeed, for this time, so much height (or the energy of as much) is gained by a motor or a thermal.
+constexpr double least_airspeed_m_per_s = 7.0;
+constexpr double climb_window_s = 20.0;
+constexpr double climbed_by_motor_m = 15.0;
+constexpr std::size_t enough = 10;  // values that change: a receiver without a fix repeats its last one
+
+std::vector<double> sorted(std::span<const double> values) {
+    std::vector<double> in_order(values.begin(), values.end());
+    std::ranges::sort(in_order);
+    return in_order;
 }
 
-/// What stays below the height of a flight.
-std::string low_text(const ResampledFlight& grid, double motor_percent, double height_m,
-                     const SegmentationOptions& options) {
-    height_m = std::max(height_m, 0.0);
-    if (grid.motor_sign == MotorIndicator::unknown) {
-        return fmt::format("carried, rolled or hop: height to {:.1f} m; nothing tells of the motor", height_m);
-    }
-    const bool by_power = grid.motor_sign == MotorIndicator::power;
-    if (motor_percent <= (by_power ? idle_power_percent : options.idle_throttle_percent)) {
-        return fmt::format("carried or rolled: height to {:.1f} m, {}", height_m,
-                           by_power ? "power at its idle" : "motor off");
-    }
-    return by_power
-               ? fmt::format("run-up, taxi or hop: power of a running motor, height to {:.1f} m", height_m)
-               : fmt::format("run-up, taxi or hop: throttle to {:.0f} %, height to {:.1f} m", motor_percent, height_m);
-}
-
-/// How fast the altitude changes at most over a time within the span [m/s].
-double max_m_per_s(const ResampledFlight& grid, GridSpan span, double over_s) {
-    const auto steps = grid.steps(over_s);
-    double fastest = 0.0;
-    for (auto i = span.begin; i + steps < span.end; ++i) {
-        fastest = std::max(fastest, std::abs(grid.altitude_m[i + steps] - grid.altitude_m[i]) / over_s);
-    }
-    return fastest;
-}
+/// What is exceeded for a tenth of the time.
+double fast(std::span<const double> speeds) { return quantile(sorted(speeds), 0.9); }
 
 /// From the 5th to the 95th percentile.
-double spread_of(std::vector<double> values) {
-    std::ranges::sort(values);
-    return quantile(values, 0.95) - quantile(values, 0.05);
+double spread_of(std::span<const double> values) {
+    const auto in_order = sorted(values);
+    return quantile(in_order, 0.95) - quantile(in_order, 0.05);
 }
 
-/// The values of a track within a time, as far as they are altitudes.
-std::vector<double> altitudes_within(const Track& track, double start_s, double end_s) {
+const std::string& altitude_source(const FlightCandidate& c) { return c.tracks["altitude_m"].source; }
+
+/// A rotorcraft's altitude is that above the ground.
+bool is_above_ground(const FlightCandidate& c) { return altitude_source(c).starts_with("ROTORCRAFT_FP"); }
+
+/// Those of an activity's values that were taken above half of its height.
+std::vector<double> when_high(std::span<const double> values, const Heights& heights) {
+    std::vector<double> high;
+    high.reserve(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (heights.height_m[i] > 0.5 * heights.max_m) high.push_back(values[i]);
+    return high;
+}
+
+/// The values of a track within a span, as far as they are altitudes.
+std::vector<double> altitudes_within(const Track& track, const ResampledFlight& grid, IndexSpan span) {
+    const double end_s = grid.time_s(span.end - 1);
     const auto bounds = physical_bounds("altitude_m").value();
     std::vector<double> values;
-    const auto first = std::ranges::lower_bound(track.time_s, start_s) - track.time_s.begin();
+    const auto first = std::ranges::lower_bound(track.time_s, grid.time_s(span.begin)) - track.time_s.begin();
     values.reserve(track.time_s.size() - static_cast<std::size_t>(first));
     for (auto i = static_cast<std::size_t>(first); i < track.time_s.size() && track.time_s[i] <= end_s; ++i) {
         if (track.value[i] >= bounds.low && track.value[i] <= bounds.high) values.push_back(track.value[i]);
@@ -68,170 +77,42 @@ std::vector<double> altitudes_within(const Track& track, double start_s, double 
     return values;
 }
 
-/// Whether a receiver is alive: without a fix it repeats its last value.
-bool is_alive(const std::vector<double>& values) {
-    constexpr std::size_t enough = 10;
-    std::size_t changes = 0;
-    for (std::size_t i = 1; i < values.size(); ++i) changes += values[i] != values[i - 1] ? 1 : 0;
-    return values.size() >= enough && 2 * changes >= values.size();
-}
-
-/// A GPS that says that nothing moved, where no other altitude of the log does: "ESTIMATOR.z moves by 40 m, GPS.alt by
-/// 2.0 m"; empty if there is none.
-std::string contradiction(const SelectedTracks& tracks, const ResampledFlight& grid, const Activity& activity,
-                          const SegmentationOptions& options) {
-    const double start_s = grid.time_s(activity.moving.begin);
-    const double end_s = grid.time_s(activity.moving.end - 1);
-    const auto& chosen = tracks["altitude_m"];
-    const auto own = altitudes_within(chosen, start_s, end_s);
-    const double own_m = own.empty() ? 0.0 : spread_of(own);
-    if (own_m < options.flight_height_m) return "";
-    std::string contradicts;
-    for (const auto& track : tracks.series().tracks) {
-        if (track.name != "altitude_m" || track.source == chosen.source) continue;
-        const auto other = altitudes_within(track, start_s, end_s);
-        const double other_m = other.empty() ? 0.0 : spread_of(other);
-        if (other_m >= min_confirming_fraction * own_m) return "";
-        const bool stands =
-            is_alive(other) && other_m < max_gps_motion_fraction * own_m && other_m < 0.5 * options.flight_height_m;
-        if (stands && track.source.starts_with("GPS")) {
-            contradicts = fmt::format("{} moves by {:.0f} m, {} by {:.1f} m: an estimator that ran away", chosen.source,
-                                      own_m, track.source, other_m);
-        }
-    }
-    return contradicts;
-}
-
-/// Those of an activity's values that were taken above half of its height, in order of size.
-std::vector<double> sorted_when_high(const std::vector<double>& values, const Heights& heights) {
-    std::vector<double> high;
-    high.reserve(values.size());
-    for (std::size_t i = 0; i < values.size(); ++i)
-        if (heights.height_m[i] > 0.5 * heights.max_m) high.push_back(values[i]);
-    std::ranges::sort(high);
-    return high;
-}
-
-/// Whether an activity that shows no ground, and no climb, is as slow as what drives.
-std::string why_only_driven(const SelectedTracks& tracks, const ResampledFlight& grid, const Activity& activity,
-                            const SegmentationOptions& options) {
-    if (activity.ground_before_m || activity.ground_after_m || grid.ground_speed_m_per_s.empty()) return "";
-    // A rotorcraft hovers, its altitude is that above the ground; and who writes a CSV knows what it is of.
-    const auto& source = tracks["altitude_m"].source;
-    if (source.starts_with("ROTORCRAFT_FP") || source == plain_source) return "";
-    const auto part = [&](const std::vector<double>& all) {
-        const auto [begin, end] = activity.moving;
-        std::vector<double> values(all.begin() + static_cast<std::ptrdiff_t>(begin),
-                                   all.begin() + static_cast<std::ptrdiff_t>(end));
-        std::ranges::sort(values);
-        return values;
-    };
-    const auto altitude_m = part(grid.altitude_m);
-    const double moved_m = altitude_m.back() - altitude_m.front();
-    const double speed = quantile(part(grid.ground_speed_m_per_s), 0.9);
-    if (moved_m >= options.flight_height_m || speed >= min_flight_m_per_s) return "";
-    return fmt::format(
-        "altitude moves by no more than {:.1f} m and the ground is not seen, at {:.1f} m/s over ground: "
-        "driven or carried",
-        moved_m, speed);
-}
-
-/// Whether what only an altitude shows is as short, low or slow as an estimator that settles.
-std::string why_only_settling(const SelectedTracks& tracks, const ResampledFlight& grid, const Activity& activity,
-                              const Heights& heights, const SegmentationOptions& options) {
-    if (grid.motor_sign != MotorIndicator::unknown) return "";
-    const auto seen = fmt::format("altitude alone shows a height of {:.0f} m", heights.max_m);
-    const double high_s = static_cast<double>(sorted_when_high(heights.height_m, heights).size()) * grid.step_s;
-    if (high_s < min_time_aloft_s) return fmt::format("{}, for {:.0f} s: an estimator that settles", seen, high_s);
-    if (grid.ground_speed_m_per_s.empty())
-        return heights.max_m < min_height_factor * options.flight_height_m ? seen + ": an estimator that settles" : "";
-    const auto first = grid.ground_speed_m_per_s.begin() + static_cast<std::ptrdiff_t>(activity.span.begin);
-    const std::vector<double> speeds(first, first + std::ssize(heights.height_m));
-    const double speed = quantile(sorted_when_high(speeds, heights), 0.9);
-    if (tracks["altitude_m"].source.starts_with("ROTORCRAFT_FP") || speed >= min_flight_m_per_s) return "";
-    return fmt::format("{}, at {:.1f} m/s over ground: an estimator that settles", seen, speed);
-}
-
-/// Whether an activity from ground to ground, faster than what is carried, goes up and down as roads do.
-std::string why_on_a_road(const SelectedTracks& tracks, const ResampledFlight& grid, const Activity& activity) {
-    if (!activity.ground_before_m || !activity.ground_after_m || grid.ground_speed_m_per_s.empty()) return "";
-    constexpr double often_s = 5.0;  // of what is seen more seldom no slope is known
-    const double start_s = grid.time_s(activity.span.begin);
-    const double end_s = grid.time_s(activity.span.end - 1);
-    const auto seen = altitudes_within(tracks["altitude_m"], start_s, end_s).size();
-    if (static_cast<double>(seen) * often_s < end_s - start_s) return "";
-    std::vector<double> way_m{0.0};
-    for (auto i = activity.span.begin; i < activity.span.end; ++i)
-        way_m.push_back(way_m.back() + grid.ground_speed_m_per_s[i] * grid.step_s);
-    for (const double over_s : {5.0, 10.0, 30.0}) {
-        const auto steps = grid.steps(over_s);
-        for (auto i = activity.span.begin; i + steps < activity.span.end; ++i) {
-            const auto k = i - activity.span.begin;
-            const double climbed_m = std::abs(grid.altitude_m[i + steps] - grid.altitude_m[i]);
-            if (climbed_m > road_slope * (way_m[k + steps] - way_m[k]) + road_slack_m) return "";
-        }
-    }
-    return fmt::format("altitude never moves by more than {:.0f} % of the way, from ground to ground: driven",
-                       units::percentage(road_slope, 1.0));
-}
-
-bool changes_often(const Track& track, double start_s, double end_s) {
-    constexpr std::size_t enough = 10;
+std::size_t changes_within(const Track& track, const ResampledFlight& grid, IndexSpan span) {
+    const double start_s = grid.time_s(span.begin);
+    const double end_s = grid.time_s(span.end - 1);
     std::size_t changes = 0;
     for (std::size_t i = 1; i < track.value.size(); ++i) {
         const bool is_within = track.time_s[i - 1] >= start_s && track.time_s[i] <= end_s;
         changes += is_within && track.value[i] != track.value[i - 1] ? 1 : 0;
     }
-    return changes >= enough;
+    return changes;
 }
 
-/// How fast positions move, from so long before to each of the times [m/s].
-std::vector<double> speeds_by_position(const ResampledFlight& grid, const std::vector<double>& east_m,
-                                       const std::vector<double>& north_m) {
-    const auto steps = grid.steps(position_window_s);
-    std::vector<double> speeds(east_m.size(), 0.0);
-    for (std::size_t i = steps; i < speeds.size(); ++i)
-        speeds[i] = std::hypot(east_m[i] - east_m[i - steps], north_m[i] - north_m[i - steps]) / position_window_s;
-    return speeds;
-}
-
-/// Whether ground speed and position, both measured, show that it stood still or was carried while its altitude shows a
-/// height. A rotorcraft hovers, and a fixed wing may stand against the wind, but not within the width of a field.
-std::string why_standing(const SelectedTracks& tracks, const ResampledFlight& grid, const Activity& activity,
-                         const Heights& heights) {
-    const auto& source = tracks["altitude_m"].source;
-    if (source == plain_source || source.starts_with("ROTORCRAFT_FP") || tracks.series().firmware == "rotorcraft")
-        return "";
-    const auto time_s = grid.times_s(activity.span);
-    const auto is_alive = [&](const char* name) { return changes_often(tracks[name], time_s.front(), time_s.back()); };
-    if (!is_alive("ground_speed_m_per_s") || !is_alive("east_m") || !is_alive("north_m")) return "";
-    const auto east_m = resample(tracks["east_m"], time_s);
-    const auto north_m = resample(tracks["north_m"], time_s);
-    const auto fast = [&](const std::vector<double>& speeds) {
-        return quantile(sorted_when_high(speeds, heights), 0.9);
-    };
-    const double speed = fast(resample(tracks["ground_speed_m_per_s"], time_s));
-    if (speed >= min_flight_m_per_s) return "";
-    if (fast(speeds_by_position(grid, east_m, north_m)) >= min_flight_m_per_s) return "";
-    const double extent_m =
-        std::max(spread_of(sorted_when_high(east_m, heights)), spread_of(sorted_when_high(north_m, heights)));
-    if (!tracks["airspeed_m_per_s"].empty() && extent_m >= standing_extent_m) return "";
-    return fmt::format(
-        "altitude shows a height of {:.0f} m, but it moves at {:.1f} m/s over ground, within {:.0f} m: "
-        "it stood still or was carried",
-        heights.max_m, speed, extent_m);
+std::string stays_low(const FlightCandidate& c) {
+    if (c.heights.max_m >= c.options.flight_height_m) return "";
+    const double height_m = std::max(c.heights.max_m, 0.0);
+    const double motor_percent = c.max_motor_percent();
+    const bool by_power = c.grid.motor_sign == MotorIndicator::power;
+    if (c.grid.motor_sign == MotorIndicator::unknown)
+        return fmt::format("carried, rolled or hop: height to {:.1f} m; nothing tells of the motor", height_m);
+    if (motor_percent <= (by_power ? idle_power_percent : c.options.idle_throttle_percent))
+        return fmt::format("carried or rolled: height to {:.1f} m, {}", height_m,
+                           by_power ? "power at its idle" : "motor off");
+    const auto motor =
+        by_power ? std::string("power of a running motor") : fmt::format("throttle to {:.0f} %", motor_percent);
+    return fmt::format("run-up, taxi or hop: {}, height to {:.1f} m", motor, height_m);
 }
 
 /// Whether the airspeed shows flight: so much energy of height and speed is gained within a window of flying speed.
-bool flies_by_airspeed(const SelectedTracks& tracks, const ResampledFlight& grid, const Activity& activity) {
-    const auto& airspeed = tracks["airspeed_m_per_s"];
+bool flies_by_airspeed(const FlightCandidate& c) {
+    const auto& airspeed = c.tracks["airspeed_m_per_s"];
     if (airspeed.empty()) return false;
-    const auto speed = resample(airspeed, grid.times_s(activity.span));
+    const auto speed = resample(airspeed, c.grid.times_s(c.activity.span));
+    const auto altitude_m = part_of(c.grid.altitude_m, c.activity.span);
     const auto energy_height_m = [&](std::size_t i) {
-        return grid.altitude_m[activity.span.begin + i] +
-               speed[i] * speed[i] / (2.0 * units::standard_gravity_m_per_s2);
+        return altitude_m[i] + speed[i] * speed[i] / (2.0 * units::standard_gravity_m_per_s2);
     };
-    const auto steps = grid.steps(climb_window_s);
+    const auto steps = c.grid.steps(climb_window_s);
     std::size_t flying = 0;  // points in a row at flying speed
     for (std::size_t i = 0; i < speed.size(); ++i) {
         flying = speed[i] >= least_airspeed_m_per_s ? flying + 1 : 0;
@@ -240,88 +121,20 @@ bool flies_by_airspeed(const SelectedTracks& tracks, const ResampledFlight& grid
     return false;
 }
 
-/// How many times as much `b` moves as `a` (as long), where one of them moves; std::nullopt where they hardly do, or
-/// have nothing to do with each other.
-std::optional<double> times_as_much(const std::vector<double>& a, const std::vector<double>& b) {
-    constexpr std::size_t enough = 5;
-    constexpr double moves_m = 5.0;
-    constexpr double min_correlation = 0.8;
-    std::size_t moves = 0;
-    double aa = 0.0;
-    double ab = 0.0;
-    double bb = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        if (std::max(std::abs(a[i]), std::abs(b[i])) < moves_m) continue;
-        ++moves;
-        aa += a[i] * a[i];
-        ab += a[i] * b[i];
-        bb += b[i] * b[i];
-    }
-    if (moves < enough || aa == 0.0 || ab < min_correlation * std::sqrt(aa * bb)) return std::nullopt;
-    return ab / aa;
+std::string rises_without_motor(const FlightCandidate& c) {
+    if (!c.is_motor_off() || flies_by_airspeed(c)) return "";
+    return fmt::format("altitude moved by {:.0f} m with {}: an estimator without a fix", c.heights.max_m,
+                       c.grid.motor_sign == MotorIndicator::power ? "the power at its idle" : "the motor off");
 }
 
-/// The changes of the grid's altitude within windows that follow each other, piece by piece.
-std::vector<double> changes_seen(const ResampledFlight& grid, double window_s) {
-    std::vector<double> changes_m;
-    const auto steps = grid.steps(window_s);
-    changes_m.reserve(grid.size() / steps + 1);
-    for (const auto& piece : grid.pieces) {
-        for (auto i = piece.begin; i + steps < piece.end; i += steps) {
-            changes_m.push_back(grid.altitude_m[i + steps] - grid.altitude_m[i]);
-        }
-    }
-    return changes_m;
-}
-
-/// The same as another altitude, or the integral of a climb rate, tells them; what is absurd of it tells nothing.
-std::vector<double> changes_said(const ResampledFlight& grid, const Track& track, double window_s) {
-    std::vector<double> changes_m;
-    const auto steps = grid.steps(window_s);
-    changes_m.reserve(grid.size() / steps + 1);
-    const double max_m = physical_bounds("altitude_m").value().high;
-    std::vector<double> middles_s(track.name == "altitude_m" ? 0 : grid.size());
-    for (std::size_t i = 0; i < middles_s.size(); ++i) middles_s[i] = grid.time_s(i) + 0.5 * grid.step_s;
-    const auto climb_m_per_s = resample(track, middles_s);
-    for (const auto& piece : grid.pieces) {
-        for (auto i = piece.begin; i + steps < piece.end; i += steps) {
-            double change_m = 0.0;
-            if (track.name == "altitude_m") {
-                change_m = value_at(track, grid.time_s(i + steps)) - value_at(track, grid.time_s(i));
-            } else {
-                for (std::size_t k = 0; k < steps; ++k) change_m += grid.step_s * climb_m_per_s[i + k];
-            }
-            changes_m.push_back(std::abs(change_m) <= max_m ? change_m : 0.0);
-        }
-    }
-    return changes_m;
-}
-
-std::string unit_of(double times) {
-    const auto is_near = [&](double factor) { return times > 0.8 * factor && times < 1.25 * factor; };
-    return is_near(100.0) ? "cm" : is_near(1000.0) ? "mm" : is_near(3.28084) ? "feet" : "another unit than m";
-}
-
-}  // namespace
-
-std::string ground_vehicle_reason(const SelectedTracks& tracks) {
-    if (!tracks["rover_mode"].empty()) return "a ground vehicle: it sends ROVER_STATUS";
-    if (tracks.series().firmware == "rover") return "a ground vehicle: its airframe's firmware is rover";
-    return "";
-}
-
-std::string no_flight_reason(const SelectedTracks& tracks, const ResampledFlight& grid, const Activity& activity,
-                             const Heights& heights, const SegmentationOptions& options) {
-    const double motor_percent = max_motor_percent(grid, activity.span);
-    if (heights.max_m < options.flight_height_m) return low_text(grid, motor_percent, heights.max_m, options);
-    if (grid.motor_sign != MotorIndicator::unknown && motor_percent < flight_motor_percent(grid, options) &&
-        !flies_by_airspeed(tracks, grid, activity)) {
-        return fmt::format("altitude moved by {:.0f} m with {}: an estimator without a fix", heights.max_m,
-                           grid.motor_sign == MotorIndicator::power ? "the power at its idle" : "the motor off");
-    }
+std::string climbs_too_fast(const FlightCandidate& c) {
+    const auto altitude_m = part_of(c.grid.altitude_m, c.activity.span);
     for (const auto& [over_s, limit] :
          {std::pair{5.0, max_climb_5_s_m_per_s}, std::pair{30.0, max_climb_30_s_m_per_s}}) {
-        const double fastest = max_m_per_s(grid, activity.span, over_s);
+        const auto steps = c.grid.steps(over_s);
+        double fastest = 0.0;
+        for (std::size_t i = 0; i + steps < altitude_m.size(); ++i)
+            fastest = std::max(fastest, std::abs(altitude_m[i + steps] - altitude_m[i]) / over_s);
         if (fastest > limit) {
             return fmt::format(
                 "altitude changes by {:.0f} m/s for {:.0f} s: an estimator that ran away, or another "
@@ -329,40 +142,146 @@ std::string no_flight_reason(const SelectedTracks& tracks, const ResampledFlight
                 fastest, over_s);
         }
     }
-    if (auto why = contradiction(tracks, grid, activity, options); !why.empty()) return why;
-    if (auto why = why_only_settling(tracks, grid, activity, heights, options); !why.empty()) return why;
-    if (auto why = why_on_a_road(tracks, grid, activity); !why.empty()) return why;
-    if (auto why = why_only_driven(tracks, grid, activity, options); !why.empty()) return why;
-    return why_standing(tracks, grid, activity, heights);
+    return "";
 }
 
-std::string motor_doubt(const ResampledFlight& grid, const Activity& activity, const SegmentationOptions& options) {
-    if (grid.motor_sign == MotorIndicator::unknown) return "";
-    if (max_motor_percent(grid, activity.span) >= flight_motor_percent(grid, options)) return "";
+/// A GPS that is alive says that nothing moved, and no other altitude of the log does.
+std::string is_contradicted(const FlightCandidate& c) {
+    const auto& chosen = c.tracks["altitude_m"];
+    const auto own = altitudes_within(chosen, c.grid, c.activity.moving);
+    const double own_m = own.empty() ? 0.0 : spread_of(own);
+    if (own_m < c.options.flight_height_m) return "";
+    std::string contradicts;
+    for (const auto& track : c.tracks.series().tracks) {
+        if (track.name != "altitude_m" || track.source == chosen.source) continue;
+        const auto other = altitudes_within(track, c.grid, c.activity.moving);
+        const double other_m = other.empty() ? 0.0 : spread_of(other);
+        if (other_m >= min_confirming_fraction * own_m) return "";
+        const bool is_alive =
+            other.size() >= enough && 2 * changes_within(track, c.grid, c.activity.moving) >= other.size();
+        const bool stands = other_m < max_gps_motion_fraction * own_m && other_m < 0.5 * c.options.flight_height_m;
+        if (is_alive && stands && track.source.starts_with("GPS")) {
+            contradicts = fmt::format("{} moves by {:.0f} m, {} by {:.1f} m: an estimator that ran away", chosen.source,
+                                      own_m, track.source, other_m);
+        }
+    }
+    return contradicts;
+}
+
+/// What only an altitude shows, as short, low or slow as an estimator that settles.
+std::string only_settles(const FlightCandidate& c) {
+    if (c.grid.motor_sign != MotorIndicator::unknown) return "";
+    const auto seen = fmt::format("altitude alone shows a height of {:.0f} m", c.heights.max_m);
+    const auto high_s = static_cast<double>(when_high(c.heights.height_m, c.heights).size()) * c.grid.step_s;
+    if (high_s < min_time_aloft_s) return fmt::format("{}, for {:.0f} s: an estimator that settles", seen, high_s);
+    if (c.grid.ground_speed_m_per_s.empty()) {
+        const bool is_low = c.heights.max_m < min_height_factor * c.options.flight_height_m;
+        return is_low ? seen + ": an estimator that settles" : "";
+    }
+    const double speed = fast(when_high(part_of(c.grid.ground_speed_m_per_s, c.activity.span), c.heights));
+    if (is_above_ground(c) || speed >= min_flight_m_per_s) return "";
+    return fmt::format("{}, at {:.1f} m/s over ground: an estimator that settles", seen, speed);
+}
+
+/// From ground to ground, faster than what is carried, it goes up and down as roads do.
+std::string moves_on_a_road(const FlightCandidate& c) {
+    const auto& span = c.activity.span;
+    if (!c.activity.ground_before_m || !c.activity.ground_after_m || c.grid.ground_speed_m_per_s.empty()) return "";
+    constexpr double often_s = 5.0;  // of what is seen more seldom no slope is known
+    const auto seen = altitudes_within(c.tracks["altitude_m"], c.grid, span).size();
+    if (static_cast<double>(seen) * often_s < c.grid.time_s(span.end - 1) - c.grid.time_s(span.begin)) return "";
+    std::vector<double> way_m{0.0};
+    way_m.reserve(span.end - span.begin + 1);
+    for (const double speed : part_of(c.grid.ground_speed_m_per_s, span))
+        way_m.push_back(way_m.back() + speed * c.grid.step_s);
+    const auto altitude_m = part_of(c.grid.altitude_m, span);
+    for (const double over_s : {5.0, 10.0, 30.0}) {
+        const auto steps = c.grid.steps(over_s);
+        for (std::size_t i = 0; i + steps < altitude_m.size(); ++i) {
+            const double climbed_m = std::abs(altitude_m[i + steps] - altitude_m[i]);
+            if (climbed_m > road_slope * (way_m[i + steps] - way_m[i]) + road_slack_m) return "";
+        }
+    }
+    return fmt::format("altitude never moves by more than {:.0f} % of the way, from ground to ground: driven",
+                       units::percentage(road_slope, 1.0));
+}
+
+/// It shows no ground and no climb, and is as slow as what drives. A rotorcraft hovers, and who writes a CSV knows what
+/// it is of.
+std::string only_drives(const FlightCandidate& c) {
+    const auto& [moving, span, ground_before_m, ground_after_m] = c.activity;
+    if (ground_before_m || ground_after_m || c.grid.ground_speed_m_per_s.empty()) return "";
+    if (is_above_ground(c) || altitude_source(c) == plain_source) return "";
+    const auto [low_m, high_m] = std::ranges::minmax(part_of(c.grid.altitude_m, moving));
+    const double speed = fast(part_of(c.grid.ground_speed_m_per_s, moving));
+    if (high_m - low_m >= c.options.flight_height_m || speed >= min_flight_m_per_s) return "";
+    return fmt::format(
+        "altitude moves by no more than {:.1f} m and the ground is not seen, at {:.1f} m/s over ground: "
+        "driven or carried",
+        high_m - low_m, speed);
+}
+
+/// Ground speed and position, both measured, show that it stood still or was carried while its altitude shows a height.
+/// A rotorcraft hovers, and a fixed wing may stand against the wind, but not within the width of a field.
+std::string stands_still(const FlightCandidate& c) {
+    if (altitude_source(c) == plain_source || is_above_ground(c) || c.tracks.series().firmware == "rotorcraft")
+        return "";
+    const auto time_s = c.grid.times_s(c.activity.span);
+    const auto is_dead = [&](const char* name) {
+        return changes_within(c.tracks[name], c.grid, c.activity.span) < enough;
+    };
+    if (is_dead("ground_speed_m_per_s") || is_dead("east_m") || is_dead("north_m")) return "";
+    const auto east_m = resample(c.tracks["east_m"], time_s);
+    const auto north_m = resample(c.tracks["north_m"], time_s);
+    const double speed = fast(when_high(resample(c.tracks["ground_speed_m_per_s"], time_s), c.heights));
+    if (speed >= min_flight_m_per_s) return "";
+    const auto steps = c.grid.steps(position_window_s);
+    std::vector<double> by_position(time_s.size(), 0.0);  // how fast it moves, from so long before on
+    for (std::size_t i = steps; i < by_position.size(); ++i)
+        by_position[i] = std::hypot(east_m[i] - east_m[i - steps], north_m[i] - north_m[i - steps]) / position_window_s;
+    if (fast(when_high(by_position, c.heights)) >= min_flight_m_per_s) return "";
+    const double extent_m = std::max(spread_of(when_high(east_m, c.heights)), spread_of(when_high(north_m, c.heights)));
+    if (!c.tracks["airspeed_m_per_s"].empty() && extent_m >= standing_extent_m) return "";
+    return fmt::format(
+        "altitude shows a height of {:.0f} m, but it moves at {:.1f} m/s over ground, within {:.0f} m: "
+        "it stood still or was carried",
+        c.heights.max_m, speed, extent_m);
+}
+
+using Rejection = std::string (*)(const FlightCandidate&);
+
+/// The first one that gives a reason counts.
+constexpr Rejection rejections[] = {stays_low,    rises_without_motor, climbs_too_fast, is_contradicted,
+                                    only_settles, moves_on_a_road,     only_drives,     stands_still};
+
+}  // namespace
+
+double FlightCandidate::max_motor_percent() const {
+    return grid.motor_percent.empty() ? 0.0 : std::ranges::max(part_of(grid.motor_percent, activity.span));
+}
+
+bool FlightCandidate::is_motor_off() const {
+    return grid.motor_sign != MotorIndicator::unknown && max_motor_percent() < flight_motor_percent(grid, options);
+}
+
+std::string ground_vehicle_reason(const SelectedTracks& tracks) {
+    if (!tracks["rover_mode"].empty()) return "a ground vehicle: it sends ROVER_STATUS";
+    if (tracks.series().firmware == "rover") return "a ground vehicle: its airframe's firmware is rover";
+    return "";
+}
+
+std::string no_flight_reason(const FlightCandidate& candidate) {
+    for (const auto rejection : rejections)
+        if (auto why = rejection(candidate); !why.empty()) return why;
+    return "";
+}
+
+std::string motor_doubt(const FlightCandidate& c) {
+    if (!c.is_motor_off()) return "";
     return fmt::format(
         "{} says that the motor is off from {:.0f} to {:.0f} s, airspeed and climb that it flies: the "
         "latter count",
-        grid.motor_evidence, grid.time_s(activity.moving.begin), grid.time_s(activity.moving.end - 1));
-}
-
-std::string suspected_unit_error(const SelectedTracks& tracks, const ResampledFlight& grid) {
-    constexpr double window_s = 10.0;
-    constexpr double factor = 1.7;  // feet are 3.28 times as many
-    const auto& chosen = tracks["altitude_m"];
-    const auto doubt_by = [&](const Track& said, const char* how) -> std::string {
-        const auto times = times_as_much(changes_said(grid, said, window_s), changes_seen(grid, window_s));
-        if (!times || (*times<factor&& * times> 1.0 / factor)) return "";
-        return fmt::format("{} moves {:.3g} times as much as {}{} says: is one of them in {}?", chosen.source, *times,
-                           how, said.source, unit_of(std::max(*times, 1.0 / *times)));
-    };
-    if (const auto& climb = tracks["climb_m_per_s"]; !climb.empty()) {
-        if (auto doubt = doubt_by(climb, "the climb rate of "); !doubt.empty()) return doubt;
-    }
-    for (const auto& track : tracks.series().tracks) {
-        if (track.name != "altitude_m" || track.source == chosen.source || track.empty()) continue;
-        if (auto doubt = doubt_by(track, ""); !doubt.empty()) return doubt;
-    }
-    return "";
+        c.grid.motor_evidence, c.grid.time_s(c.activity.moving.begin), c.grid.time_s(c.activity.moving.end - 1));
 }
 
 }  // namespace flightwatt::flight

@@ -68,14 +68,12 @@ std::size_t take_out_glitches(Track& throttle, const Track& power, const PowerLe
     std::size_t count = 0;
     const auto& time_s = throttle.time_s;
     const auto opens = [&](std::size_t i) { return throttle.value[i] > idle_percent; };
-    for (const auto& [begin, end] : runs_of({0, time_s.size()}, opens)) {
+    for (const auto& run : runs_of({0, time_s.size()}, opens)) {
         const auto has_power = [&](double power_w) { return levels.percent(power_w) > idle_power_percent; };
-        const auto first_w = power.value.begin() + static_cast<std::ptrdiff_t>(begin);
-        const auto last_w = power.value.begin() + static_cast<std::ptrdiff_t>(end);
-        if (time_s[end - 1] - time_s[begin] > glitch_s || std::any_of(first_w, last_w, has_power)) continue;
-        std::fill(throttle.value.begin() + static_cast<std::ptrdiff_t>(begin),
-                  throttle.value.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
-        count += end - begin;
+        const bool is_powered = std::ranges::any_of(part_of(power.value, run), has_power);
+        if (time_s[run.end - 1] - time_s[run.begin] > glitch_s || is_powered) continue;
+        set_part(throttle.value, run, 0.0);
+        count += run.size();
     }
     return count;
 }
@@ -101,12 +99,12 @@ std::string follow_power(const SelectedTracks& tracks, Track& throttle, const Tr
         const double running_s = time_where(time_s, run, gap_s, runs_by_power);
         if (running_s < contradicted_s) continue;
         std::vector<double> running_w;
-        for (auto i = run.first; i < run.last; ++i)
+        for (auto i = run.begin; i < run.end; ++i)
             if (runs_by_power(i)) running_w.push_back(power.value[i]);
         if (levels.percent(mean(running_w)) < flight_power_percent) continue;
-        for (auto i = run.first; i < run.last; ++i)
+        for (auto i = run.begin; i < run.end; ++i)
             if (moves(i)) throttle.value[i] = levels.percent(power.value[i]);
-        if (!first_s) first_s = time_s[run.first];
+        if (!first_s) first_s = time_s[run.begin];
         mean_w = (mean_w * together_s + mean(running_w) * running_s) / (together_s + running_s);
         together_s += running_s;
     }

@@ -10,10 +10,10 @@ namespace flightwatt::flight {
 namespace {
 
 /// The ground beside an activity: the last (or first) twenty seconds of the rest there.
-double ground_beside(const ResampledFlight& grid, GridSpan rest, bool before) {
+double ground_beside(const ResampledFlight& grid, IndexSpan rest, bool before) {
     const auto length = std::min(grid.steps(20.0) + 1, rest.end - rest.begin);
     return median_altitude_m(
-        grid, before ? GridSpan{rest.end - length, rest.end} : GridSpan{rest.begin, rest.begin + length});
+        grid, before ? IndexSpan{rest.end - length, rest.end} : IndexSpan{rest.begin, rest.begin + length});
 }
 
 double median_of_upper_half(const std::vector<double>& heights, double highest) {
@@ -151,13 +151,13 @@ std::size_t mark_landing_steps(const Flown& flown, std::vector<HeldAltitude>& he
 
 }  // namespace
 
-std::vector<Activity> find_activities(const ResampledFlight& grid, const std::vector<GridSpan>& rests,
+std::vector<Activity> find_activities(const ResampledFlight& grid, const std::vector<IndexSpan>& rests,
                                       const SegmentationOptions& options) {
     const auto reach = grid.steps(options.rest_s);
     std::vector<Activity> activities;
     std::size_t r = 0;
     for (const auto& piece : grid.pieces) {
-        const GridSpan* before = nullptr;
+        const IndexSpan* before = nullptr;
         for (auto begin = piece.begin; begin < piece.end;) {
             const bool last = r == rests.size() || rests[r].begin >= piece.end;
             const auto end = last ? piece.end : rests[r].begin;
@@ -183,17 +183,15 @@ std::vector<Activity> find_activities(const ResampledFlight& grid, const std::ve
 
 GroundLevels estimate_ground_levels(const ResampledFlight& grid, const Activity& activity,
                                     const std::optional<double>& planned_ground_m) {
-    const auto first = grid.altitude_m.begin() + static_cast<std::ptrdiff_t>(activity.span.begin);
-    const auto last = grid.altitude_m.begin() + static_cast<std::ptrdiff_t>(activity.span.end);
-    const auto [lowest, highest] = std::minmax_element(first, last);
+    const auto [lowest_m, highest_m] = std::ranges::minmax(part_of(grid.altitude_m, activity.span));
     if (!activity.ground_before_m && !activity.ground_after_m) {
         // In the air from the first to the last line: the flight plan's ground, unless the log goes below it.
-        const double ground_m = std::min(planned_ground_m.value_or(*lowest), *lowest);
+        const double ground_m = std::min(planned_ground_m.value_or(lowest_m), lowest_m);
         return {ground_m, ground_m};
     }
     const double after_m = activity.ground_after_m ? *activity.ground_after_m : *activity.ground_before_m;
     const double before_m = activity.ground_before_m.value_or(after_m);
-    const bool disagree = std::abs(before_m - after_m) > std::max(10.0, (*highest - after_m) / 3.0);
+    const bool disagree = std::abs(before_m - after_m) > std::max(10.0, (highest_m - after_m) / 3.0);
     return {disagree ? after_m : before_m, after_m, disagree};
 }
 

@@ -10,14 +10,14 @@ namespace flightwatt::flight {
 
 /// What lies between two rests: something moved, or the motor ran.
 struct Activity {
-    GridSpan moving;
-    GridSpan span;                          ///< with the ends of the rests beside it, which reach up to the last metres
+    IndexSpan moving;
+    IndexSpan span;                         ///< with the ends of the rests beside it, which reach up to the last metres
     std::optional<double> ground_before_m;  ///< absent if the log (or its altitude, after a jump) begins with it
     std::optional<double> ground_after_m;   ///< absent if it ends with it
 };
 
 /// The activities of the grid, piece by piece, in order.
-std::vector<Activity> find_activities(const ResampledFlight& grid, const std::vector<GridSpan>& rests,
+std::vector<Activity> find_activities(const ResampledFlight& grid, const std::vector<IndexSpan>& rests,
                                       const SegmentationOptions& options);
 
 /// The ground on both sides. An estimator without a fix rests at any level: where the two differ by more than

@@ -34,6 +34,10 @@ struct DeviceTable {
     std::vector<double> time_s;
     std::vector<double> step_s;  ///< for which each sample counts; what is longer than a gap does not
     std::vector<std::vector<double>> power_w;
+
+    double energy_j(const std::vector<double>& watts, double before_j = 0.0) const {
+        return std::transform_reduce(watts.begin(), watts.end(), step_s.begin(), before_j);
+    }
 };
 
 DeviceTable table_of(const std::vector<Device>& devices) {
@@ -41,14 +45,11 @@ DeviceTable table_of(const std::vector<Device>& devices) {
     table.time_s = devices.front().track.time_s;
     const auto& time_s = table.time_s;
     const double max_s = gap_threshold_s(time_s);
-    for (std::size_t i = 0; i < time_s.size(); ++i)
-        table.step_s.push_back(i == 0 ? 0.0 : std::min(time_s[i] - time_s[i - 1], max_s));
+    table.step_s.assign(time_s.size(), 0.0);
+    for (std::size_t i = 1; i < time_s.size(); ++i) table.step_s[i] = std::min(time_s[i] - time_s[i - 1], max_s);
+    table.power_w.reserve(devices.size());
     for (const auto& device : devices) table.power_w.push_back(resample(device.track, time_s));
     return table;
-}
-
-double energy_j(const DeviceTable& table, const std::vector<double>& power_w, double before_j = 0.0) {
-    return std::transform_reduce(power_w.begin(), power_w.end(), table.step_s.begin(), before_j);
 }
 
 /// What one device does beside the others, sample by sample.
@@ -70,76 +71,71 @@ DeviceComparison beside_others(const DeviceTable& table, std::size_t device, con
     }
     for (const auto& track : reported) {
         for (const auto& run : runs_of_equal(track.value, alike_reports)) {
-            const auto first = std::ranges::lower_bound(table.time_s, track.time_s[run.first]) - table.time_s.begin();
-            const auto last = std::ranges::upper_bound(table.time_s, track.time_s[run.last - 1]) - table.time_s.begin();
+            const auto first = std::ranges::lower_bound(table.time_s, track.time_s[run.begin]) - table.time_s.begin();
+            const auto last = std::ranges::upper_bound(table.time_s, track.time_s[run.end - 1]) - table.time_s.begin();
             std::fill(beside.stands.begin() + first, beside.stands.begin() + std::max(first, last), true);
         }
     }
     return beside;
 }
 
-/// What part of the others' power the circuit draws where it moves; of that which hardly does, an equal one.
-double median_fraction(const DeviceTable& table, const DeviceComparison& beside) {
-    double own_j = 0.0;
-    double others_j = 0.0;
-    double all_others_j = 0.0;
-    for (std::size_t i = 0; i < table.time_s.size(); ++i) {
-        all_others_j += beside.sum_w[i] * table.step_s[i];
-        if (beside.stands[i]) continue;
-        own_j += beside.own_w[i] * table.step_s[i];
-        others_j += beside.sum_w[i] * table.step_s[i];
-    }
-    if (others_j > telling_fraction * all_others_j) return own_j / others_j;
-    return 1.0 / static_cast<double>(table.power_w.size() - 1);
-}
-
-/// What is doubted of one device: from when to when, and the energy that would be missing.
+/// What is doubted of one device: from when to when, what it drew, and what it would have drawn with the others.
 struct SuspectInterval {
-    double missing_j = 0.0;
     double own_j = 0.0;
     double expected_j = 0.0;
     double lasts_s = 0.0;
     double from_s = 0.0;
     double to_s = 0.0;
-
-    void add(double time_s, double step_s, double own_w, double expected_w) {
-        if (lasts_s == 0.0) from_s = time_s - step_s;
-        to_s = time_s;
-        lasts_s += step_s;
-        own_j += own_w * step_s;
-        expected_j += expected_w * step_s;
-        missing_j = std::abs(expected_j - own_j);
-    }
 };
 
+template <typename IsSuspect, typename Expected>
+SuspectInterval suspect_samples(const DeviceTable& table, const DeviceComparison& beside, const IsSuspect& is_suspect,
+                                const Expected& expected_w) {
+    SuspectInterval doubt;
+    for (std::size_t i = 0; i < table.time_s.size(); ++i) {
+        if (!is_suspect(i)) continue;
+        if (doubt.lasts_s == 0.0) doubt.from_s = table.time_s[i] - table.step_s[i];
+        doubt.to_s = table.time_s[i];
+        doubt.lasts_s += table.step_s[i];
+        doubt.own_j += beside.own_w[i] * table.step_s[i];
+        doubt.expected_j += expected_w(i) * table.step_s[i];
+    }
+    return doubt;
+}
+
+/// A motor that stands still, or runs on next to nothing while the others run: it is expected to draw their median.
 SuspectInterval doubt_of_motor(const DeviceTable& table, const DeviceComparison& beside) {
     auto sorted = beside.median_w;
     std::ranges::sort(sorted);
     const double running_w = running_fraction * quantile(sorted, 0.75);
-    SuspectInterval doubt;
-    for (std::size_t i = 0; i < table.time_s.size(); ++i) {
-        const double others_w = beside.median_w[i];
-        const bool idles = others_w > running_w && beside.own_w[i] < next_to_nothing_fraction * others_w;
-        if (idles || beside.stands[i]) doubt.add(table.time_s[i], table.step_s[i], beside.own_w[i], others_w);
-    }
-    return doubt;
+    const auto others_w = [&](std::size_t i) { return beside.median_w[i]; };
+    const auto idles = [&](std::size_t i) {
+        return others_w(i) > running_w && beside.own_w[i] < next_to_nothing_fraction * others_w(i);
+    };
+    return suspect_samples(
+        table, beside, [&](std::size_t i) { return idles(i) || beside.stands[i]; }, others_w);
 }
 
+/// A circuit that stands still: it is expected to draw the part of the others' power that it draws where it moves; of
+/// that which hardly does, an equal one.
 SuspectInterval doubt_of_circuit(const DeviceTable& table, const DeviceComparison& beside,
                                  const std::vector<Track>& reported, double all_j) {
     const bool is_steady_load = std::ranges::any_of(
         reported, [](const Track& track) { return is_constant(track) && track.value.front() != 0.0; });
-    if (is_steady_load && energy_j(table, beside.own_w) < small_load_fraction * all_j) return {};
-    const double part = median_fraction(table, beside);
-    SuspectInterval doubt;
-    for (std::size_t i = 0; i < table.time_s.size(); ++i)
-        if (beside.stands[i]) doubt.add(table.time_s[i], table.step_s[i], beside.own_w[i], part * beside.sum_w[i]);
-    return doubt;
+    if (is_steady_load && table.energy_j(beside.own_w) < small_load_fraction * all_j) return {};
+    const auto others_w = [&](std::size_t i) { return beside.sum_w[i]; };
+    const auto moving = suspect_samples(
+        table, beside, [&](std::size_t i) { return !beside.stands[i]; }, others_w);
+    const bool tells = moving.expected_j > telling_fraction * table.energy_j(beside.sum_w);
+    const double part = tells ? moving.own_j / moving.expected_j : 1.0 / static_cast<double>(table.power_w.size() - 1);
+    return suspect_samples(
+        table, beside, [&](std::size_t i) { return beside.stands[i]; },
+        [&](std::size_t i) { return part * others_w(i); });
 }
 
 /// What is odd of a device's part in the sum: it is taken off, or it is the others' sum.
 std::string odd_part(const DeviceTable& table, const DeviceComparison& beside, double all_j) {
-    const double own_j = energy_j(table, beside.own_w);
+    const double own_j = table.energy_j(beside.own_w);
     if (own_j < -doubtful_missing_fraction * std::abs(all_j)) {
         return fmt::format("reports negative power, {:.0f} % of the sum: a source, or a sensor that is reversed?",
                            units::percentage(own_j, all_j));
@@ -147,9 +143,9 @@ std::string odd_part(const DeviceTable& table, const DeviceComparison& beside, d
     std::vector<double> apart_w(beside.sum_w.size());
     std::ranges::transform(beside.own_w, beside.sum_w, apart_w.begin(),
                            [](double own_w, double others_w) { return std::abs(own_w - others_w); });
-    const auto is_part = [&](const auto& power_w) { return energy_j(table, power_w) > alike_fraction * own_j; };
+    const auto is_part = [&](const auto& power_w) { return table.energy_j(power_w) > alike_fraction * own_j; };
     const bool has_parts = std::ranges::count_if(table.power_w, is_part) > 2;  // itself, and two others
-    if (has_parts && energy_j(table, apart_w) < alike_fraction * own_j)
+    if (has_parts && table.energy_j(apart_w) < alike_fraction * own_j)
         return "reports what all others do together: if it is the pack's, the energy is counted twice";
     return "";
 }
@@ -201,7 +197,7 @@ std::vector<std::string> find_suspect_devices(const FlightSeries& series, std::s
     const auto currents = devices_of(series, "current_a", message);
     const auto table = table_of(devices);
     double all_j = 0.0;
-    for (const auto& power_w : table.power_w) all_j = energy_j(table, power_w, all_j);
+    for (const auto& power_w : table.power_w) all_j = table.energy_j(power_w, all_j);
     for (std::size_t d = 0; d < devices.size(); ++d) {
         std::vector<Track> reported{devices[d].track};
         const auto current = std::ranges::find(currents, devices[d].id, &Device::id);
@@ -209,7 +205,7 @@ std::vector<std::string> find_suspect_devices(const FlightSeries& series, std::s
         const auto beside = beside_others(table, d, reported);
         const auto doubt =
             message == "ESC" ? doubt_of_motor(table, beside) : doubt_of_circuit(table, beside, reported, all_j);
-        if (doubt.missing_j > doubtful_missing_fraction * std::abs(all_j))
+        if (std::abs(doubt.expected_j - doubt.own_j) > doubtful_missing_fraction * std::abs(all_j))
             doubts.push_back(said_of(doubt, message, devices[d].id, all_j));
         if (const auto odd = odd_part(table, beside, all_j); !odd.empty())
             doubts.push_back(fmt::format("{} {} {}", message, devices[d].id, odd));

@@ -8,12 +8,9 @@
 
 namespace flightwatt::flight {
 
-/// Which of the devices of `message` is not to be believed: one that stands still (30 reports alike, in current or in
-/// power) while the others go on, and an ESC below 5 % of the others' median while these run. Told where more than
-/// 4 % of the energy would be missing if it went with the others: an ESC draws their median, a circuit
-/// (POWER_DEVICE) the part of their power that it drew otherwise. A circuit that draws the same small power
-/// throughout is the electronics'; one that is 0 throughout is reported. So are devices of negative power, one that
-/// reports the sum of two or more others, and ids that are missing between others.
+/// Which of the devices of `message` is not to be believed: one that stands still or reports next to nothing while the
+/// others go on, that is negative, or reports what others do together; and which ids are missing between others. By the
+/// rules of docs/methods.md.
 std::vector<std::string> find_suspect_devices(const FlightSeries& series, std::string_view message);
 
 /// Why voltage and current of POWER_DEVICE are not the pack's: "its circuits have 5.0 to 12.3 V ...". Empty where their

@@ -20,22 +20,6 @@ constexpr double burst_fraction = 0.4;      // of the intervals, that are a fift
 constexpr double short_interval = 0.2;
 constexpr double min_summed_part = 0.25;  // of the times: with less there is no power record
 
-/// How many reports came beside others of the same time, and how many of these differ from the first.
-struct Repetition {
-    std::size_t reports = 0;
-    std::size_t differing = 0;
-};
-
-Repetition repetition_of(const Device& device) {
-    Repetition repetition;
-    for (const auto& track : device.repeated) {
-        repetition.reports += track.time_s.size();
-        for (std::size_t i = 0; i < track.time_s.size(); ++i)
-            if (value_at(device.track, track.time_s[i]) != track.value[i]) ++repetition.differing;
-    }
-    return repetition;
-}
-
 bool comes_in_bursts(const Track& track) {
     if (track.time_s.size() < many_reports) return false;
     const auto intervals = static_cast<double>(track.time_s.size() - 1);
@@ -49,21 +33,28 @@ bool comes_in_bursts(const Track& track) {
 /// Whether one id stands for several devices: says so, or what might be.
 void judge_ids(const std::vector<Device>& devices, std::string_view message, DeviceSum& sum) {
     for (const auto& device : devices) {
-        const auto [reports, differing] = repetition_of(device);
-        if (static_cast<double>(reports) > repeated_fraction * static_cast<double>(device.track.time_s.size())) {
-            const auto often = static_cast<double>(device.repeated.back().time_s.size()) >
-                               repeated_fraction * static_cast<double>(device.track.time_s.size());
-            if (2 * differing > reports || (often && device.repeated.size() > 1)) {
-                sum.ambiguity = fmt::format("{} {} reports {} times at one time{}: several devices under one id",
-                                            message, device.id, device.repeated.size() + 1,
-                                            2 * differing > reports ? ", and differently" : "");
-            } else if (devices.size() == 1) {
-                sum.notes.push_back(fmt::format(
-                    "{} {} reports up to {} times at one time: doubled lines, or several devices under one id; counted "
-                    "once",
-                    message, device.id, device.repeated.size() + 1));
-            }
-        } else if (devices.size() == 1 && comes_in_bursts(device.track)) {
+        const auto& track = device.track;
+        const auto is_often = [&](std::size_t reports) {
+            return static_cast<double>(reports) > repeated_fraction * static_cast<double>(track.time_s.size());
+        };
+        std::size_t reports = 0;  // that came beside others of the same time
+        std::size_t differing = 0;
+        for (const auto& more : device.repeated) {
+            reports += more.time_s.size();
+            for (std::size_t i = 0; i < more.time_s.size(); ++i)
+                differing += value_at(track, more.time_s[i]) != more.value[i] ? 1 : 0;
+        }
+        const bool differ = 2 * differing > reports;
+        const auto times = device.repeated.size() + 1;
+        if (is_often(reports) && (differ || (times > 2 && is_often(device.repeated.back().time_s.size())))) {
+            sum.ambiguity = fmt::format("{} {} reports {} times at one time{}: several devices under one id", message,
+                                        device.id, times, differ ? ", and differently" : "");
+        } else if (devices.size() == 1 && is_often(reports)) {
+            sum.notes.push_back(fmt::format(
+                "{} {} reports up to {} times at one time: doubled lines, or several devices under one id; counted "
+                "once",
+                message, device.id, times));
+        } else if (devices.size() == 1 && comes_in_bursts(track)) {
             sum.notes.push_back(fmt::format(
                 "{} {} reports in bursts: are these several devices under one id? Taken for one", message, device.id));
         }
@@ -145,12 +136,14 @@ DeviceSum sum_over_devices(const FlightSeries& series, std::string_view name, st
     auto devices = devices_of(series, name, message);
     if (devices.empty()) return sum;
     const auto most = devices.front().track.time_s.size();
-    for (const auto& device : devices) {
-        if (!reports_rarely(device, most)) continue;
-        sum.notes.push_back(fmt::format("{} {} reports only {} times: it is left out of the sum", message, device.id,
-                                        device.track.time_s.size()));
-    }
-    std::erase_if(devices, [&](const Device& device) { return reports_rarely(device, most); });
+    std::erase_if(devices, [&](const Device& device) {
+        const bool is_rare = reports_rarely(device, most);
+        if (is_rare) {
+            sum.notes.push_back(fmt::format("{} {} reports only {} times: it is left out of the sum", message,
+                                            device.id, device.track.time_s.size()));
+        }
+        return is_rare;
+    });
     judge_ids(devices, message, sum);
     if (!sum.ambiguity.empty()) return sum;
     sum.track = devices.front().track;

@@ -29,11 +29,8 @@ struct DeviceSum {
     std::vector<std::string> notes;  ///< devices that fall silent, that hardly report, that come in bursts
 };
 
-/// Sum over the devices of `message` that report `name`. There is a value where every device reports: not where one is
-/// silent for longer than five of its usual intervals, or longer than three before its first or after its last report.
-/// A device with less than 1 % of the most frequent one's reports (or 3 of 30) is none. Several reports at one time
-/// under one id that differ, or three and more, are several devices: no sum; nor is one where all report at less than a
-/// quarter of the times. `source` says of how many.
+/// Sum over the devices of `message` that report `name`, where every device reports (docs/methods.md says when one is
+/// silent, and when ids do not tell devices apart). `source` says of how many.
 DeviceSum sum_over_devices(const FlightSeries& series, std::string_view name, std::string_view message);
 
 /// Whether that made the track, of more than one device.

@@ -35,8 +35,6 @@ constexpr std::array bounds_by_name{NamedBounds{"altitude_m", {-500.0, 2e4}},
 
 bool is_within(const PhysicalBounds& bounds, double value) { return value >= bounds.low && value <= bounds.high; }
 
-constexpr double contradicting_part = 0.10;
-constexpr double contradicting_w = 1.0;  // power may be a whole number
 constexpr double spike_factor = 3.0;
 constexpr double neighbour_factor = 2.0;
 constexpr double voltage_step = 0.30;
@@ -44,24 +42,6 @@ constexpr double counter_step = 0.01;
 constexpr std::size_t max_dropout = 3;
 constexpr double dropout_throttle_percent = 30.0;
 constexpr double beside_dropout_fraction = 0.25;
-
-struct ComparedPower {
-    double time_s;
-    double difference_w;
-    double larger_w;
-};
-
-std::vector<ComparedPower> compared(const Track& power, const Track& product) {
-    std::vector<ComparedPower> pairs;
-    pairs.reserve(std::min(power.time_s.size(), product.time_s.size()));
-    for (std::size_t i = 0, j = 0; i < power.time_s.size(); ++i) {
-        while (j < product.time_s.size() && product.time_s[j] < power.time_s[i]) ++j;
-        if (j == product.time_s.size() || product.time_s[j] != power.time_s[i]) continue;
-        pairs.push_back({power.time_s[i], std::abs(power.value[i] - product.value[j]),
-                         std::max(std::abs(power.value[i]), std::abs(product.value[j]))});
-    }
-    return pairs;
-}
 
 /// The largest magnitude that was held for three samples.
 double held_magnitude(const std::vector<double>& values) {
@@ -117,44 +97,10 @@ std::vector<double> counter_spikes(const Track& track) {
     });
 }
 
-}  // namespace
-
-std::optional<PhysicalBounds> physical_bounds(std::string_view track_name) {
-    const auto* const found = std::ranges::find(bounds_by_name, track_name, &NamedBounds::name);
-    return found == bounds_by_name.end() ? std::nullopt : std::optional(found->bounds);
-}
-
-bool is_plausible(const Track& track) {
-    const auto bounds = physical_bounds(track.name);
-    return !bounds || std::ranges::all_of(track.value, [&](double value) { return is_within(*bounds, value); });
-}
-
-Track within_bounds(const Track& track) {
-    if (is_plausible(track)) return track;
-    const auto bounds = physical_bounds(track.name).value();
-    constexpr double max_beyond = 0.1;
-    auto kept = track;
-    const auto beyond = erase_samples(kept, [&](std::size_t i) { return !is_within(bounds, track.value[i]); });
-    if (static_cast<double>(beyond) > max_beyond * static_cast<double>(track.value.size()))
-        kept.time_s = kept.value = {};
-    return kept;
-}
-
-std::vector<double> inconsistent_times(const Track& power, const Track& product) {
-    const auto pairs = compared(power, product);
-    std::vector<double> parts;
-    parts.reserve(pairs.size());
-    for (const auto& pair : pairs)
-        if (pair.larger_w > contradicting_w) parts.push_back(pair.difference_w / pair.larger_w);
-    constexpr std::size_t enough = 10;
-    if (parts.size() < enough) return {};
-    const double part = std::max(contradicting_part, 10.0 * median_high(std::move(parts)));
-    std::vector<double> times_s;
-    for (const auto& pair : pairs)
-        if (pair.difference_w > part * pair.larger_w + contradicting_w) times_s.push_back(pair.time_s);
-    return times_s;
-}
-
+/// The times of samples that nothing before and after them explains. Of power and current: one or two samples of more
+/// than three times what was ever held for three samples, and of more than twice their neighbours. Of voltage: one or
+/// two samples that differ from the neighbours, which agree, by more than 30 %. Of counters: a sample that alone is out
+/// of their order by more than 1 % of what was counted. A sample is judged once another follows it.
 std::vector<double> spike_times(const Track& track) {
     const auto& value = track.value;
     constexpr std::size_t judged = 10;
@@ -171,6 +117,9 @@ std::vector<double> spike_times(const Track& track) {
     });
 }
 
+/// The times of samples of power or current that dropped out: up to three in a row at exactly 0 while the throttle
+/// stands above 30 %, as it does before and after, where there is more than a quarter of the median at such a throttle.
+/// A motor that is cut for so short a time has its throttle closed.
 std::vector<double> dropout_times(const Track& track, const Track& throttle) {
     const auto& value = track.value;
     std::vector<double> times_s;
@@ -194,47 +143,67 @@ std::vector<double> dropout_times(const Track& track, const Track& throttle) {
     return times_s;
 }
 
-Track without_times(Track track, const std::vector<double>& times_s) {
+/// Whether all of it lies within its bounds.
+bool is_plausible(const Track& track) {
+    const auto bounds = physical_bounds(track.name);
+    return !bounds || std::ranges::all_of(track.value, [&](double value) { return is_within(*bounds, value); });
+}
+
+}  // namespace
+
+std::optional<PhysicalBounds> physical_bounds(std::string_view track_name) {
+    const auto* const found = std::ranges::find(bounds_by_name, track_name, &NamedBounds::name);
+    return found == bounds_by_name.end() ? std::nullopt : std::optional(found->bounds);
+}
+
+Track within_bounds(const Track& track) {
+    if (is_plausible(track)) return track;
+    const auto bounds = physical_bounds(track.name).value();
+    constexpr double max_beyond = 0.1;
+    auto kept = track;
+    const auto beyond = erase_samples(kept, [&](std::size_t i) { return !is_within(bounds, track.value[i]); });
+    if (static_cast<double>(beyond) > max_beyond * static_cast<double>(track.value.size()))
+        kept.time_s = kept.value = {};
+    return kept;
+}
+
+std::size_t erase_times(Track& track, const std::vector<double>& times_s) {
     auto next = times_s.begin();
-    erase_samples(track, [&](std::size_t i) {
+    return erase_samples(track, [&](std::size_t i) {
         while (next != times_s.end() && *next < track.time_s[i]) ++next;
         return next != times_s.end() && *next == track.time_s[i];
     });
-    return track;
 }
 
-CleanedTrack remove_outliers(const Track& candidate, const std::vector<double>& contradicted_s, const Track& throttle) {
-    CleanedTrack sound;
-    sound.is_unchanged = is_plausible(candidate);
-    if (!sound.is_unchanged) sound.track = within_bounds(candidate);
-    const auto all = candidate.value.size();
-    if (sound.of(candidate).empty() && all > 0) {
-        const auto bounds = physical_bounds(candidate.name).value();
-        sound.removal_note = fmt::format("{} of {} is mostly beyond {:g} to {:g}", candidate.name, candidate.source,
-                                         bounds.low, bounds.high);
-        return sound;
-    }
+TrackSelection remove_outliers(const Track& candidate, const std::vector<double>& contradicted_s,
+                               const Track& throttle) {
+    TrackSelection sound{.logged = &candidate};
     std::vector<std::string> reasons;
-    std::size_t left = all;
-    const auto note = [&](const char* reason) {
-        const auto now = sound.of(candidate).value.size();
-        if (now < left) reasons.push_back(fmt::format("{} {}", left - now, reason));
-        left = now;
+    const auto note = [&](std::size_t samples, const char* reason) {
+        if (samples > 0) reasons.push_back(fmt::format("{} {}", samples, reason));
     };
     const auto leave_out = [&](const std::vector<double>& times_s, const char* reason) {
-        if (times_s.empty()) return;
-        sound.track = without_times(sound.take(candidate), times_s);
-        sound.is_unchanged = false;
-        note(reason);
+        if (!times_s.empty()) note(erase_times(sound.own(), times_s), reason);
     };
-    note("beyond what can be");
+    const auto all = candidate.value.size();
+    if (!is_plausible(candidate)) {
+        sound = TrackSelection{.derived = within_bounds(candidate)};
+        if (sound.derived.empty()) {
+            const auto bounds = physical_bounds(candidate.name).value();
+            sound.removal_notes.push_back(fmt::format("{} of {} is mostly beyond {:g} to {:g}", candidate.name,
+                                                      candidate.source, bounds.low, bounds.high));
+            return sound;
+        }
+        note(all - sound.derived.value.size(), "beyond what can be");
+    }
     leave_out(contradicted_s, "where power is not voltage times current");
-    leave_out(dropout_times(sound.of(candidate), throttle), "at 0 for up to three samples with the throttle open");
-    leave_out(spike_times(sound.of(candidate)),
+    leave_out(dropout_times(sound.track(), throttle), "at 0 for up to three samples with the throttle open");
+    leave_out(spike_times(sound.track()),
               is_counter(candidate) ? "out of the counter's order" : "far beyond the samples beside");
     if (!reasons.empty()) {
-        sound.removal_note = fmt::format("{} of {} samples of {} ({}) are left out: {}", all - left, all,
-                                         candidate.name, candidate.source, fmt::join(reasons, ", "));
+        sound.removal_notes.push_back(fmt::format("{} of {} samples of {} ({}) are left out: {}",
+                                                  all - sound.track().value.size(), all, candidate.name,
+                                                  candidate.source, fmt::join(reasons, ", ")));
     }
     return sound;
 }

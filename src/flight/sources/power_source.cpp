@@ -1,5 +1,6 @@
 #include "flight/sources/power_source.h"
 
+#include "base/statistics.h"
 #include "flight/sources/derived_tracks.h"
 #include "flight/sources/device_sum.h"
 #include "flight/sources/outliers.h"
@@ -14,21 +15,24 @@
 namespace flightwatt::flight {
 namespace {
 
-/// The first candidate of power that `accept` takes; nullptr if there is none.
+constexpr double compared_w = 1.0;
+constexpr std::size_t enough_pairs = 10;
+
+/// The first candidate of that name that `accept` takes; nullptr if there is none.
 template <typename Accept>
-const Track* find_power(const FlightSeries& series, Accept&& accept) {
-    const auto found = std::ranges::find_if(
-        series.tracks, [&](const Track& track) { return track.name == "power_w" && accept(track); });
+const Track* find_track(const FlightSeries& series, std::string_view name, const Accept& accept) {
+    const auto found =
+        std::ranges::find_if(series.tracks, [&](const Track& track) { return track.name == name && accept(track); });
     return found == series.tracks.end() ? nullptr : &*found;
 }
 
 const Track* find_source(const FlightSeries& series, std::string_view source) {
-    return find_power(series, [&](const Track& track) { return track.source == source; });
+    return find_track(series, "power_w", [&](const Track& track) { return track.source == source; });
 }
 
 /// Voltage times current of one message; nullptr if it lacks one of them.
 const Track* find_product(const FlightSeries& series, std::string_view message) {
-    return find_power(series, [&](const Track& track) {
+    return find_track(series, "power_w", [&](const Track& track) {
         return track.source.starts_with(message) && track.source.find(" * ") != std::string::npos &&
                track.device.empty();
     });
@@ -36,42 +40,71 @@ const Track* find_product(const FlightSeries& series, std::string_view message) 
 
 /// A track that no message of a log names: a user's CSV.
 const Track* find_plain(const FlightSeries& series, std::string_view name) {
-    const auto found = std::ranges::find_if(series.tracks, [&](const Track& track) {
-        return track.name == name && track.device.empty() && track.source.find('.') == std::string::npos;
+    return find_track(series, name, [](const Track& track) {
+        return track.device.empty() && track.source.find('.') == std::string::npos;
     });
-    return found == series.tracks.end() ? nullptr : &*found;
 }
 
-/// Calls visit(a, b) for the values of both tracks at the times that they share.
-template <typename Visit>
-void for_each_pair(const Track& a, const Track& b, Visit&& visit) {
-    for (std::size_t i = 0, j = 0; i < a.time_s.size(); ++i) {
-        while (j < b.time_s.size() && b.time_s[j] < a.time_s[i]) ++j;
-        if (j < b.time_s.size() && b.time_s[j] == a.time_s[i]) visit(a.value[i], b.value[j]);
+/// Power, and voltage times current, at one time.
+struct PowerPair {
+    double time_s;
+    double power_w;
+    double product_w;
+
+    double apart_w() const { return std::abs(power_w - product_w); }
+    double larger_w() const { return std::max(std::abs(power_w), std::abs(product_w)); }
+};
+
+std::vector<PowerPair> pairs_of(const Track& power, const Track& product) {
+    std::vector<PowerPair> pairs;
+    pairs.reserve(std::min(power.time_s.size(), product.time_s.size()));
+    for (std::size_t i = 0, j = 0; i < power.time_s.size(); ++i) {
+        while (j < product.time_s.size() && product.time_s[j] < power.time_s[i]) ++j;
+        if (j == product.time_s.size()) break;
+        if (product.time_s[j] == power.time_s[i]) pairs.push_back({power.time_s[i], power.value[i], product.value[j]});
     }
+    return pairs;
+}
+
+/// Those with a product that is more than what rounding and offsets make.
+std::vector<PowerPair> compared_pairs(const Track& power, const Track& product) {
+    auto pairs = pairs_of(power, product);
+    std::erase_if(pairs, [](const PowerPair& pair) { return std::abs(pair.product_w) <= compared_w; });
+    return pairs;
 }
 
 /// True if most samples are nowhere near voltage times current: another layout of the message than was assumed.
 bool contradicts(const Track& power, const Track& product) {
-    std::size_t compared = 0;
-    std::size_t apart = 0;
-    for_each_pair(power, product, [&](double power_w, double product_w) {
-        if (std::abs(product_w) <= 1.0) return;
-        ++compared;
-        if (std::abs(power_w - product_w) > 0.2 * std::abs(product_w)) ++apart;
-    });
-    return compared >= 10 && 2 * apart > compared;
+    const auto pairs = compared_pairs(power, product);
+    const auto apart = std::ranges::count_if(
+        pairs, [](const PowerPair& pair) { return pair.apart_w() > 0.2 * std::abs(pair.product_w); });
+    return pairs.size() >= enough_pairs && 2 * apart > std::ssize(pairs);
 }
 
-/// How many samples of `power` are near to voltage times current.
+/// How many samples of `power` are near to voltage times current. Power may be a whole number.
 std::size_t samples_near(const Track& power, const Track& product) {
-    std::size_t near = 0;
-    for_each_pair(power, product, [&](double power_w, double product_w) {
-        if (std::abs(product_w) <= 1.0) return;
-        const double tolerance_w = 0.05 * std::abs(product_w) + 1.0;  // power may be a whole number
-        if (std::abs(power_w - product_w) <= tolerance_w) ++near;
-    });
-    return near;
+    const auto is_near = [](const PowerPair& pair) {
+        return pair.apart_w() <= 0.05 * std::abs(pair.product_w) + compared_w;
+    };
+    return static_cast<std::size_t>(std::ranges::count_if(compared_pairs(power, product), is_near));
+}
+
+/// The times, rising, at which power is not voltage times current although it usually is: more than 10 % and 1 W
+/// apart (ten times the median difference, where that is more). Nothing where most samples differ: that is another
+/// layout, not damage.
+std::vector<double> inconsistent_times(const Track& power, const Track& product) {
+    constexpr double contradicting_part = 0.10;
+    const auto pairs = pairs_of(power, product);
+    std::vector<double> parts;
+    parts.reserve(pairs.size());
+    for (const auto& pair : pairs)
+        if (pair.larger_w() > compared_w) parts.push_back(pair.apart_w() / pair.larger_w());
+    if (parts.size() < enough_pairs) return {};
+    const double part = std::max(contradicting_part, 10.0 * median_high(std::move(parts)));
+    std::vector<double> times_s;
+    for (const auto& pair : pairs)
+        if (pair.apart_w() > part * pair.larger_w() + compared_w) times_s.push_back(pair.time_s);
+    return times_s;
 }
 
 /// Voltage times current of a user's CSV.
@@ -91,21 +124,22 @@ bool measures_something(const Track& power) {
            std::any_of(power.value.begin(), power.value.end(), [](double value) { return value != 0.0; });
 }
 
-/// Takes a candidate if it measures something, or says why not.
-bool take(const FlightSeries& series, const Track& candidate, PowerSelection& choice,
+/// Takes a copy of a candidate if it measures something, or says why not.
+bool take(const FlightSeries& series, const Track& candidate, TrackSelection& choice,
           const std::vector<double>& contradicted_s = {}) {
     auto sound = remove_outliers(candidate, contradicted_s, dropout_throttle(series, candidate));
-    if (measures_something(sound.of(candidate))) {
-        choice.power_w = sound.take(candidate);
-        if (!sound.removal_note.empty()) choice.left_out.push_back(std::move(sound.removal_note));
+    auto& rejected = choice.rejected_sources;
+    if (measures_something(sound.track())) {
+        choice.derived = std::move(sound.own());
+        choice.removal_notes = std::move(sound.removal_notes);
         return true;
     }
-    if (sound.of(candidate).empty() && !sound.removal_note.empty()) {
-        choice.passed_over.push_back(std::move(sound.removal_note));
-        return false;
+    if (sound.track().empty() && !sound.removal_notes.empty()) {
+        rejected.push_back(std::move(sound.removal_notes.front()));
+    } else {
+        rejected.push_back(candidate.source +
+                           (candidate.time_s.size() < 2 ? " has no two finite values" : " is 0 throughout"));
     }
-    choice.passed_over.push_back(candidate.source +
-                                 (candidate.time_s.size() < 2 ? " has no two finite values" : " is 0 throughout"));
     return false;
 }
 
@@ -143,27 +177,24 @@ std::vector<double> contradicted_times(const FlightSeries& series, std::string_v
 
 Track dropout_throttle(const FlightSeries& series, const Track& candidate) {
     if (std::ranges::find(candidate.value, 0.0) == candidate.value.end()) return {};
-    const auto found = std::ranges::find_if(series.tracks, [](const Track& track) {
-        return track.name == "throttle_percent" && track.device.empty() && track.source != commanded_throttle &&
-               !is_constant(track);
+    const auto* throttle = find_track(series, "throttle_percent", [](const Track& track) {
+        return track.device.empty() && track.source != commanded_throttle && !is_constant(track);
     });
-    return found == series.tracks.end() ? Track{} : within_bounds(*found);
+    return throttle == nullptr ? Track{} : within_bounds(*throttle);
 }
 
-PowerSelection select_power(const FlightSeries& series) {
-    PowerSelection choice;
+TrackSelection select_power(const FlightSeries& series) {
+    TrackSelection choice;
     if (const auto* plain = find_plain(series, "power_w")) {
         // Believed even where it is 0 throughout.
-        auto sound =
-            remove_outliers(*plain, contradicted_times(series, plain->source), dropout_throttle(series, *plain));
-        choice.power_w = sound.take(*plain);
-        if (!sound.removal_note.empty()) choice.left_out.push_back(std::move(sound.removal_note));
+        choice = remove_outliers(*plain, contradicted_times(series, plain->source), dropout_throttle(series, *plain));
+        choice.own();
         return choice;
     }
     const auto* product = find_product(series, "ENERGY.");
     if (const auto power = energy_power(series); !power.source.empty()) {
         if (product != nullptr && contradicts(power, *product)) {
-            choice.passed_over.emplace_back("ENERGY.power is not voltage times current");
+            choice.rejected_sources.emplace_back("ENERGY.power is not voltage times current");
         } else if (take(series, power, choice, contradicted_times(series, power.source))) {
             return choice;
         }
@@ -172,23 +203,24 @@ PowerSelection select_power(const FlightSeries& series) {
     const auto is_bat = [](const Track& track) { return track.source.starts_with("BAT."); };
     if (std::ranges::any_of(series.tracks, is_bat)) {
         const auto* bat = find_product(series, "BAT.");
-        if (bat == nullptr) choice.passed_over.emplace_back("BAT has no current");
+        if (bat == nullptr) choice.rejected_sources.emplace_back("BAT has no current");
         if (bat != nullptr && take(series, *bat, choice)) return choice;
     }
     for (const auto* message : {"ESC", "POWER_DEVICE"}) {
         auto sum = sum_over_devices(series, "power_w", message);
-        if (!sum.ambiguity.empty()) choice.passed_over.push_back(std::move(sum.ambiguity));
+        if (!sum.ambiguity.empty()) choice.rejected_sources.push_back(std::move(sum.ambiguity));
         if (sum.track.source.empty() || !take(series, sum.track, choice)) continue;
-        std::ranges::move(sum.notes, std::back_inserter(choice.left_out));
+        std::ranges::move(sum.notes, std::back_inserter(choice.removal_notes));
         return choice;
     }
     for (const auto* message : {"ENERGY", "ESC", "POWER_DEVICE"}) {
         const auto is_of = [&](const Track& track) {
             return track.source.substr(0, track.source.find('.')) == message;
         };
-        const bool is_power = find_power(series, is_of) != nullptr;
+        const bool is_power = find_track(series, "power_w", is_of) != nullptr;
         if (!is_power && std::ranges::any_of(series.tracks, is_of))
-            choice.passed_over.push_back(fmt::format("{} has no power in W, nor current in A with voltage", message));
+            choice.rejected_sources.push_back(
+                fmt::format("{} has no power in W, nor current in A with voltage", message));
     }
     return choice;
 }

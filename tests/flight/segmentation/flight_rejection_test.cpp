@@ -72,6 +72,30 @@ TEST(FlightRejection, WhereTheAltitudeChangesFasterThanAircraftClimb) {
     EXPECT_THAT(why_none(test::series_of(columns)), HasSubstr("m/s for 30 s: an estimator that ran away"));
 }
 
+TEST(FlightRejection, WhereTheAltitudeChangesForFiveSecondsFasterThanAircraftClimb) {
+    const auto climbing = [](double climb_m_per_s) {
+        const double top_m = 6.0 * climb_m_per_s;
+        return why_none(test::series_of(columns_of(
+            {{0, 0, 0}, {60, 0, 0}, {61, 0, 100}, {67, top_m, 100}, {160, top_m, 50}, {200, 0, 0}, {280, 0, 0}}, 0.5)));
+    };
+    EXPECT_THAT(climbing(66.0), HasSubstr("m/s for 5 s: an estimator that ran away"));
+    EXPECT_EQ(climbing(55.0), "1 sorties");
+}
+
+TEST(FlightRejection, WhereAGpsMovesByLessThanHalfOfTheLeastHeight) {
+    const auto gps_moves_by = [](double spread_m) {
+        auto series = test::series_of(columns_of(sortie(100)));
+        auto gps = select_track(series, "altitude_m");
+        gps.source = "GPS.alt";
+        for (std::size_t i = 0; i < gps.value.size(); ++i)
+            gps.value[i] = 600.0 + 0.25 * spread_m * static_cast<double>(i % 5);
+        series.tracks.push_back(gps);
+        return why_none(series);
+    };
+    EXPECT_THAT(gps_moves_by(4.8), HasSubstr("GPS.alt by 4.8 m: an estimator that ran away"));
+    EXPECT_EQ(gps_moves_by(5.2), "1 sorties");
+}
+
 TEST(FlightRejection, WhereItDrivesAtOneHeightAndTheGroundIsNotSeen) {
     std::vector<test::Point> points;
     for (int i = 0; i < 20; ++i) {

@@ -68,6 +68,17 @@ TEST(DeviceDoubts, TellOfAMotorThatReportsNothing) {
     EXPECT_THAT(test::said_of(noise), HasSubstr("ESC 1 reports next to nothing"));
 }
 
+TEST(DeviceDoubts, CountAsNothingWhatIsLessThanATwentiethOfTheOthers) {
+    const auto with_part = [](double part) {
+        return test::said_of(with_devices("ESC", 4, [part](int motor, double, Report pack) {
+            const auto report = a_quarter(pack);
+            return motor == 3 ? Report{part * report.current_a, report.voltage_v} : report;
+        }));
+    };
+    EXPECT_THAT(with_part(0.04), HasSubstr("ESC 3 reports next to nothing"));
+    EXPECT_THAT(with_part(0.06), Not(HasSubstr("ESC 3 reports")));
+}
+
 TEST(DeviceDoubts, TellOfADeviceThatRepeatsItsLastValue) {
     for (const auto* message : {"ESC", "POWER_DEVICE"}) {
         for (const double value_a : {0.0123, 0.2, 1.5}) {

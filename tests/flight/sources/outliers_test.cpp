@@ -2,6 +2,11 @@
 
 #include "flight/selected_track.h"
 
+#include <initializer_list>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 namespace flightwatt::flight {
@@ -43,6 +48,58 @@ TEST(PhysicalBounds, AreKeptByTheChosenTrack) {
     EXPECT_EQ(select_track(series, "altitude_m").value.size(), 99U);
     EXPECT_EQ(warnings_of(series).at(0),
               "1 of 100 samples of altitude_m (ESTIMATOR.z) are left out: 1 beyond what can be");
+}
+
+/// A track of 100 samples of `value`, of which `changed` are others.
+Track track_with(const char* name, double value, std::initializer_list<std::pair<std::size_t, double>> changed) {
+    Track track{.name = name, .source = "ENERGY.x", .value = std::vector<double>(100, value)};
+    for (std::size_t i = 0; i < track.value.size(); ++i) track.time_s.push_back(static_cast<double>(i));
+    for (const auto& [i, other] : changed) track.value[i] = other;
+    return track;
+}
+
+std::size_t removed(const Track& track, const Track& throttle = {}) {
+    return track.value.size() - remove_outliers(track, {}, throttle).track().value.size();
+}
+
+TEST(Outliers, AreSpikesOfPowerAndCurrent) {
+    EXPECT_EQ(removed(track_with("power_w", 20.0, {{50, 66.0}, {51, 66.0}})), 2U) << "three times 20 W, and 5 W";
+    EXPECT_EQ(removed(track_with("power_w", 20.0, {{50, 64.0}, {51, 64.0}})), 0U);
+    EXPECT_EQ(removed(track_with("power_w", 20.0, {{50, 66.0}, {51, 66.0}, {52, 66.0}})), 0U) << "held";
+    EXPECT_EQ(removed(track_with("current_a", 2.0, {{50, 7.1}})), 1U) << "three times 2 A, and 1 A";
+    EXPECT_EQ(removed(track_with("current_a", 2.0, {{50, 6.9}})), 0U);
+    EXPECT_EQ(removed(track_with("power_w", 20.0, {{49, 34.0}, {50, 67.0}})), 0U) << "less than twice its neighbour";
+}
+
+TEST(Outliers, AreSpikesOfVoltage) {
+    EXPECT_EQ(removed(track_with("voltage_v", 10.0, {{50, 6.9}})), 1U);
+    EXPECT_EQ(removed(track_with("voltage_v", 10.0, {{50, 7.1}})), 0U);
+    EXPECT_EQ(removed(track_with("voltage_v", 10.0, {{50, 6.9}, {51, 6.9}, {52, 6.9}})), 0U);
+}
+
+TEST(Outliers, AreSamplesOutOfTheOrderOfACounter) {
+    const auto counter = [](double by) {
+        auto track = track_with("energy_wh", 0.0, {});
+        for (std::size_t i = 0; i < 100; ++i) track.value[i] = 0.1 * static_cast<double>(i);  // to 9.9 Wh
+        track.value[50] += by;
+        return track;
+    };
+    EXPECT_EQ(removed(counter(-0.21)), 1U);
+    EXPECT_EQ(removed(counter(-0.18)), 0U) << "less than 1 % below the one before";
+    EXPECT_EQ(removed(counter(0.21)), 1U);
+    EXPECT_EQ(removed(counter(0.18)), 0U);
+}
+
+TEST(Outliers, AreDropoutsWhileTheThrottleIsOpen) {
+    const auto throttle = [](double percent) { return track_with("throttle_percent", percent, {}); };
+    const auto dropout = track_with("power_w", 20.0, {{50, 0.0}, {51, 0.0}, {52, 0.0}});
+    EXPECT_EQ(removed(dropout, throttle(31.0)), 3U);
+    EXPECT_EQ(removed(dropout, throttle(29.0)), 0U);
+    EXPECT_EQ(removed(dropout), 0U) << "no throttle is known";
+    EXPECT_EQ(removed(track_with("power_w", 20.0, {{50, 0.0}, {51, 0.0}, {52, 0.0}, {53, 0.0}}), throttle(50.0)), 0U);
+    EXPECT_EQ(removed(track_with("power_w", 20.0, {{49, 4.9}, {50, 0.0}}), throttle(50.0)), 0U)
+        << "beside less than a quarter of the median";
+    EXPECT_EQ(removed(track_with("power_w", 20.0, {{49, 5.1}, {50, 0.0}}), throttle(50.0)), 1U);
 }
 
 }  // namespace

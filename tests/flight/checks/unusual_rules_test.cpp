@@ -1,6 +1,5 @@
-#include "flight/checks/power_warnings.h"
-
 #include "base/number.h"
+#include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
 #include "flight/selected_track.h"
 #include "helpers/damaged_logs.h"

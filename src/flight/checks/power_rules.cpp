@@ -1,0 +1,285 @@
+#include "flight/checks/power_rules.h"
+
+#include "base/units.h"
+#include "flight/checks/runs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace flightwatt::flight {
+namespace {
+
+constexpr std::size_t standing = 30;  // samples alike
+constexpr double loaded_rest_a = 5.0;
+constexpr double doubtful_rest_a = 1.0;
+constexpr double doubtful_rest_percent = 5.0;  // of the mean in flight
+constexpr double gliding_sink_m_per_s = 0.5;
+constexpr double usual_factor = 0.65;      // of the power at the same throttle
+constexpr double max_pack_v = 60.0;        // 14 LiPo cells
+constexpr double min_pack_v = 2.5;         // one cell, empty
+constexpr double min_voltage_part = 0.55;  // 2.3 V of a cell that began full
+constexpr double min_mean_power_w = 3.0;
+
+using Test = bool (*)(const PowerRecord&, std::size_t);
+
+constexpr Test always = [](const PowerRecord&, std::size_t) { return true; };
+constexpr Test in_flight = [](const PowerRecord& r, std::size_t i) { return r.is_flown(i); };
+
+/// Of what a rule's share is.
+enum class Share { samples, time, energy, time_or_energy };
+enum class Consequence { warning, fault };
+
+/// A rule that looks at samples has `holds`, one that looks at the record as a whole `when`, an unusual one `texts`.
+struct PowerRule {
+    const char* text = "";  ///< with the arguments of text_of()
+    bool (*when)(const PowerRecord&) = nullptr;
+    Texts (*texts)(const PowerRecord&) = nullptr;
+    /// Among the samples of which `applies` is true, those in runs of which `holds` is.
+    Test applies = in_flight;
+    Test holds = nullptr;
+    Test continues = always;     ///< a run ends where it is false of a sample and the one before it
+    std::size_t least_run = 1;   ///< samples, from which a run counts
+    double least_level_s = 0.0;  ///< from so long on a run counts, and if it does not sink
+    std::size_t min_samples = 0;
+    double min_s = 0.0;  ///< of all runs
+    Share share = Share::samples;
+    double (*energy_w)(const PowerRecord&, std::size_t) = [](const PowerRecord& r, std::size_t i) {
+        return r.power_w[i];
+    };
+    double limit = 0.0;  ///< of the share: reported above it
+    Consequence consequence = Consequence::warning;
+    bool needs_energy = true;      ///< of a warning: not where the energy in flight is not above 0, which is a fault
+    bool unless_previous = false;  ///< not where the rule before found something
+};
+
+bool is_loaded_at_rest(const PowerRecord& r) {
+    if (!r.at_rest || std::ranges::none_of(r.in_flight, &IndexSpan::size)) return false;
+    return std::abs(r.at_rest->mean_a) >= doubtful_rest_a || r.rest_percent() >= doubtful_rest_percent;
+}
+
+bool is_constant_in_flight(const PowerRecord& r) {
+    constexpr std::size_t enough = 10;
+    return std::ranges::any_of(r.in_flight, [&](const IndexSpan& flown) {
+        const auto power_w = part_of(r.power_w, flown);
+        return power_w.size() >= enough && std::ranges::count(power_w, power_w.front()) == std::ssize(power_w);
+    });
+}
+
+bool has_pack_voltage(const PowerRecord& r) { return r.max_v >= min_pack_v && r.max_v <= max_pack_v; }
+
+/// From when to when the altitude is logged; without one as the power is.
+std::pair<double, double> altitude_span(const PowerRecord& r) {
+    const auto& time_s = r.altitude_time_s.empty() ? r.time_s : r.altitude_time_s;
+    return {time_s.front(), time_s.back()};
+}
+
+double doubtful_lack_s(const PowerRecord& r) {
+    const auto [from_s, to_s] = altitude_span(r);
+    return std::max(30.0, 0.05 * (to_s - from_s));
+}
+
+/// In the order of the reports. Every doubt that could hide 5 % of the energy is reported (docs/methods.md says why each
+/// limit is what it is).
+constexpr PowerRule rules[] = {
+    {.text = "more than 5 A in {percent:.0f} % of the samples on the ground with the motor off",
+     .applies = [](const PowerRecord& r, std::size_t i) { return r.is_at_rest(i) && r.has_current(); },
+     .holds = [](const PowerRecord& r, std::size_t i) { return std::abs(r.current_a[i]) > loaded_rest_a; },
+     .min_samples = 10,
+     .limit = 0.10,
+     .consequence = Consequence::fault},
+    {.texts = power_is_no_product, .consequence = Consequence::fault},
+    {.texts = counters_run_back, .consequence = Consequence::fault},
+    {.texts = counters_contradict, .consequence = Consequence::fault},
+    {.text = "power is negative on average in flight",
+     .when = [](const PowerRecord& r) { return r.power_sum_w < 0.0; },
+     .consequence = Consequence::fault},
+    {.text = "power does not change in flight", .when = is_constant_in_flight, .consequence = Consequence::fault},
+
+    {.text =
+         "the current is {rest_a:.2f} A at rest on the ground, {rest_percent:.0f} % of the mean in flight: what the "
+         "electronics draw, or an offset of the sensor that its counters share; --correct-idle-offset takes it out",
+     .when = is_loaded_at_rest,
+     .needs_energy = false},
+    {.texts = current_at_rest_drifts, .needs_energy = false},
+    {.text = "a voltage of {max_v:.4g} V is that of more than 14 LiPo cells: is its unit V?",
+     .when = [](const PowerRecord& r) { return r.max_v > max_pack_v; },
+     .needs_energy = false},
+    {.text = "a voltage of {max_v:.4g} V is less than a LiPo cell's: is its unit V?",
+     .when = [](const PowerRecord& r) { return r.max_v < min_pack_v; },
+     .needs_energy = false},
+    {.text = "the voltage falls to {min_v:.4g} V from {max_v:.4g} V: no pack stands that",
+     .when = [](const PowerRecord& r) { return has_pack_voltage(r) && r.min_v < min_voltage_part * r.max_v; },
+     .needs_energy = false},
+    {.texts = counters_differ},
+    {.texts = phases_differ_from_counter},
+    {.texts = gain_drifts, .unless_previous = true},
+    {.texts = devices_contradict_themselves},
+    {.texts = altitude_pauses},
+    {.texts = power_pauses},
+    {.texts = power_changes_briefly},
+    {.text = "power is far from what it usually is at the same throttle in {samples} samples in flight: "
+             "{less_percent:.0f} % of the energy less, {more_percent:.0f} % more",
+     .holds =
+         [](const PowerRecord& r, std::size_t i) {
+             const double power_w = r.power_w[i];
+             return power_w < usual_factor * r.usual_w[i] || usual_factor * power_w > r.usual_w[i];
+         },
+     .share = Share::energy,
+     .energy_w = [](const PowerRecord& r, std::size_t i) { return r.power_w[i] - r.usual_w[i]; },
+     .limit = 0.04},
+    {.text = "power stands still at {power_w:.2f} W from {from_s:.1f} to {to_s:.1f} s, {percent:.0f} % of the flight",
+     .holds = [](const PowerRecord& r, std::size_t i) { return r.power_w[i] != 0.0 || r.is_open(i); },
+     .continues = [](const PowerRecord& r, std::size_t i) { return r.power_w[i] == r.power_w[i - 1]; },
+     .least_run = standing,
+     .share = Share::time_or_energy,
+     .limit = 0.04},
+    {.text = "the current stands still in {percent:.0f} % of the samples in flight: a sensor that hangs?",
+     .holds = [](const PowerRecord& r, std::size_t i) { return r.has_current() && r.current_a[i] > 0.0; },
+     .continues = [](const PowerRecord& r, std::size_t i) { return r.current_a[i] == r.current_a[i - 1]; },
+     .least_run = standing,
+     .limit = 0.04},
+    {.text = "the current is {max_a:.4g} A, its highest, in {percent:.0f} % of the samples in flight: does its sensor "
+             "reach further?",
+     .holds = [](const PowerRecord& r, std::size_t i) { return r.has_current() && r.current_a[i] == r.max_a; },
+     .min_samples = standing,
+     .limit = 0.05,
+     .unless_previous = true},
+    {.text = "{source} is 0 for {lasts_s:.0f} s in flight without a descent, the longest from {from_s:.0f} s on: "
+             "{percent:.0f} % of the flight has no power",
+     .holds = [](const PowerRecord& r,
+                 std::size_t i) { return r.power_w[i] == 0.0 && (r.is_open(i) || !r.has_throttle()); },
+     .least_level_s = 5.0,
+     .share = Share::time,
+     .limit = 0.02},
+    {.text = "power is negative in {samples} samples in flight, {percent:.0f} % of the energy",
+     .holds = [](const PowerRecord& r, std::size_t i) { return r.power_w[i] < 0.0; },
+     .share = Share::energy,
+     .limit = 0.02},
+    {.text = "no power in {percent:.0f} % of the samples in flight with more than 30 % throttle",
+     .applies = [](const PowerRecord& r, std::size_t i) { return r.is_flown(i) && r.is_open(i); },
+     .holds = [](const PowerRecord& r, std::size_t i) { return std::abs(r.power_w[i]) <= r.powerless_w; },
+     .min_samples = 5,
+     .limit = 0.15},
+    {.text = "{energy_wh:.3f} Wh, {percent:.0f} % of the energy in flight, were drawn outside of it with more than "
+             "30 % throttle: a long run-up, or is the altitude wrong?",
+     .applies = [](const PowerRecord& r, std::size_t i) { return !r.is_flown(i); },
+     .holds = [](const PowerRecord& r, std::size_t i) { return r.is_open(i); },
+     .min_s = 30.0,
+     .share = Share::energy,
+     .limit = 0.05},
+    {.texts = climbs_without_power},
+    {.text = "a mean of {mean_w:.3g} W in flight: hardly anything flies on that; is its unit W?",
+     .when = [](const PowerRecord& r) { return r.energy_j / r.duration_s < min_mean_power_w; }},
+    {.text =
+         "power is logged from {power_from_s:.0f} s, altitude from {altitude_from_s:.0f} s: what was flown before is "
+         "not seen",
+     .when = [](const PowerRecord& r) { return r.time_s.front() - altitude_span(r).first > doubtful_lack_s(r); },
+     .needs_energy = false},
+    {.text =
+         "power is logged to {power_to_s:.0f} s, altitude to {altitude_to_s:.0f} s: what was flown after is not seen",
+     .when = [](const PowerRecord& r) { return altitude_span(r).second - r.time_s.back() > doubtful_lack_s(r); },
+     .needs_energy = false},
+};
+
+/// What a rule for samples found.
+struct Found {
+    std::size_t applied = 0;
+    std::size_t samples = 0;
+    double lasts_s = 0.0;
+    double more_j = 0.0;  ///< where the rule's power is positive
+    double less_j = 0.0;  ///< where it is negative
+    IndexSpan longest{0, 0};
+
+    double energy_j() const { return more_j + less_j; }
+};
+
+/// Whether a run sinks as an aircraft does that glides.
+bool sinks(const PowerRecord& record, const IndexSpan& run) {
+    if (record.altitude_m.empty()) return true;
+    const double sunk_m = record.altitude_m[run.begin] - record.altitude_m[run.end - 1];
+    return sunk_m > gliding_sink_m_per_s * (record.time_s[run.end - 1] - record.time_s[run.begin]);
+}
+
+Found scan(const PowerRule& rule, const PowerRecord& record) {
+    const auto count = record.time_s.size();
+    Found found;
+    for (std::size_t i = 0; i < count; ++i) found.applied += rule.applies(record, i) ? 1 : 0;
+    const auto joins = [&](std::size_t i) { return rule.applies(record, i) && rule.holds(record, i); };
+    const auto continues = [&](std::size_t i) { return rule.continues(record, i); };
+    for (const auto& run : runs_of({0, count}, joins, continues)) {
+        const double run_s = record.time_s[run.end - 1] - record.time_s[run.begin];
+        if (run.size() < rule.least_run || run_s < rule.least_level_s) continue;
+        if (rule.least_level_s > 0.0 && sinks(record, run)) continue;
+        found.samples += run.size();
+        for (auto i = run.begin; i < run.end; ++i) {
+            const double energy_j = rule.energy_w(record, i) * record.step_s[i];
+            found.lasts_s += record.step_s[i];
+            (energy_j < 0.0 ? found.less_j : found.more_j) += std::abs(energy_j);
+        }
+        if (run.size() > found.longest.size()) found.longest = run;
+    }
+    return found;
+}
+
+double share_of(const PowerRule& rule, const Found& found, const PowerRecord& record) {
+    const double of_time = found.lasts_s / record.duration_s;
+    const double of_energy = found.energy_j() / record.energy_j;
+    switch (rule.share) {
+        case Share::samples:
+            return static_cast<double>(found.samples) / static_cast<double>(found.applied);
+        case Share::time:
+            return of_time;
+        case Share::energy:
+            return of_energy;
+        case Share::time_or_energy:
+            return std::max(of_time, of_energy);
+    }
+    return 0.0;
+}
+
+std::string text_of(const PowerRule& rule, const PowerRecord& record, const Found& found, double share) {
+    const auto last = std::max<std::size_t>(found.longest.end, 1) - 1;
+    return fmt::format(
+        fmt::runtime(rule.text), fmt::arg("percent", share * units::percent_per_whole),
+        fmt::arg("samples", found.samples), fmt::arg("lasts_s", found.lasts_s),
+        fmt::arg("from_s", record.time_s[found.longest.begin]), fmt::arg("to_s", record.time_s[last]),
+        fmt::arg("power_w", record.power_w[found.longest.begin]), fmt::arg("max_a", record.max_a),
+        fmt::arg("energy_wh", units::wh_from_joule(found.energy_j())), fmt::arg("source", record.power_source),
+        fmt::arg("less_percent", units::percentage(found.less_j, record.energy_j)),
+        fmt::arg("more_percent", units::percentage(found.more_j, record.energy_j)),
+        fmt::arg("rest_a", record.at_rest ? record.at_rest->mean_a : 0.0),
+        fmt::arg("rest_percent", record.at_rest ? record.rest_percent() : 0.0), fmt::arg("max_v", record.max_v),
+        fmt::arg("min_v", record.min_v), fmt::arg("mean_w", record.energy_j / record.duration_s),
+        fmt::arg("power_from_s", record.time_s.front()), fmt::arg("power_to_s", record.time_s.back()),
+        fmt::arg("altitude_from_s", altitude_span(record).first),
+        fmt::arg("altitude_to_s", altitude_span(record).second));
+}
+
+Texts apply(const PowerRule& rule, const PowerRecord& record) {
+    if (rule.texts != nullptr) return rule.texts(record);
+    if (rule.when != nullptr) return rule.when(record) ? Texts{text_of(rule, record, {}, 0.0)} : Texts{};
+    const auto found = scan(rule, record);
+    const double share = found.samples > 0 ? share_of(rule, found, record) : 0.0;
+    const bool counts = share > rule.limit && found.samples >= rule.min_samples && found.lasts_s >= rule.min_s;
+    return counts ? Texts{text_of(rule, record, found, share)} : Texts{};
+}
+
+}  // namespace
+
+void apply_power_rules(const PowerRecord& record, PowerReport& report) {
+    bool was_reported = false;
+    for (const auto& rule : rules) {
+        const bool is_fault = rule.consequence == Consequence::fault;
+        if (!is_fault && rule.needs_energy && !(record.energy_j > 0.0)) continue;
+        if (rule.unless_previous && was_reported) continue;
+        const auto texts = apply(rule, record);
+        was_reported = !texts.empty();
+        auto& to = is_fault ? report.power_faults : report.warnings;
+        to.insert(to.end(), texts.begin(), texts.end());
+    }
+}
+
+}  // namespace flightwatt::flight

@@ -1,0 +1,399 @@
+#include "flight/checks/power_rules.h"
+
+#include "flight/checks/power_record.h"
+
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::flight {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr std::size_t first = 100;
+constexpr std::size_t last = 1100;  // a thousand samples in flight, one a second
+
+/// A sound record: 20 W in flight, 0.4 W at rest, no two neighbours alike.
+PowerRecord sound_record() {
+    PowerRecord record;
+    for (std::size_t i = 0; i < last + first; ++i) {
+        const bool flies = i >= first && i < last;
+        const double ripple = 1.0 + 0.01 * std::sin(static_cast<double>(i));
+        record.time_s.push_back(static_cast<double>(i));
+        record.power_w.push_back((flies ? 20.0 : 0.4) * ripple);
+        record.current_a.push_back((flies ? 2.0 : 0.04) * ripple);
+        record.throttle_percent.push_back(flies ? 50.0 : 0.0);
+        record.altitude_m.push_back(flies ? 100.0 : 0.0);
+    }
+    record.power_source = "ESC";
+    record.in_flight = {{first, last}};
+    record.energy_j = 20.0 * static_cast<double>(last - first);
+    record.duration_s = static_cast<double>(last - first);
+    return record;
+}
+
+std::vector<std::size_t> resting() {
+    std::vector<std::size_t> samples;
+    for (std::size_t i = 0; i < first; ++i) samples.push_back(i);
+    return samples;
+}
+
+PowerReport found_in(PowerRecord record, const std::vector<std::size_t>& at_rest = resting()) {
+    PowerReport report;
+    add_facts(record, at_rest);
+    apply_power_rules(record, report);
+    return report;
+}
+
+/// What is found where the first `count` samples in flight (from 200 on) are changed.
+PowerReport found(std::size_t count, const std::function<void(PowerRecord&, std::size_t)>& change) {
+    auto record = sound_record();
+    for (std::size_t i = 200; i < 200 + count; ++i) change(record, i);
+    return found_in(std::move(record));
+}
+
+TEST(PowerRules, FindNothingInASoundRecord) {
+    const auto findings = found(0, [](PowerRecord&, std::size_t) {});
+    EXPECT_THAT(findings.warnings, IsEmpty());
+    EXPECT_THAT(findings.power_faults, IsEmpty());
+}
+
+TEST(PowerRules, OfALoadAtRest) {
+    const auto loaded = [](std::size_t count, double current_a) {
+        auto record = sound_record();
+        for (std::size_t i = 0; i < count; ++i) record.current_a[i] = current_a;
+        return found_in(std::move(record)).power_faults;
+    };
+    EXPECT_THAT(loaded(11, 5.1), Contains("more than 5 A in 11 % of the samples on the ground with the motor off"));
+    EXPECT_THAT(loaded(10, 5.1), IsEmpty());
+    EXPECT_THAT(loaded(11, 4.9), IsEmpty());
+}
+
+TEST(PowerRules, OfPowerThatStandsStill) {
+    const auto stands = [](std::size_t count) {
+        return found(count, [](PowerRecord& record, std::size_t i) { record.power_w[i] = 21.0; }).warnings;
+    };
+    EXPECT_THAT(stands(45), Contains("power stands still at 21.00 W from 200.0 to 244.0 s, 5 % of the flight"));
+    EXPECT_THAT(stands(38), IsEmpty()) << "4 % of the energy";
+}
+
+TEST(PowerRules, OfACurrentThatStandsStillOrIsAtItsHighest) {
+    const auto stands = [](std::size_t count) {
+        return found(count, [](PowerRecord& record, std::size_t i) { record.current_a[i] = 1.9; }).warnings;
+    };
+    EXPECT_THAT(stands(41), Contains(HasSubstr("the current stands still in 4 % of the samples in flight")));
+    EXPECT_THAT(stands(40), IsEmpty());
+    const auto saturated = [](std::size_t count) {
+        return found(2 * count,
+                     [](PowerRecord& record, std::size_t i) {
+                         if (i % 2 == 0) record.current_a[i] = 2.5;
+                     })
+            .warnings;
+    };
+    EXPECT_THAT(saturated(51), Contains(HasSubstr("the current is 2.5 A, its highest, in 5 % of the samples")));
+    EXPECT_THAT(saturated(50), IsEmpty());
+}
+
+TEST(PowerRules, OfDevicesThatReportNothing) {
+    const auto dead = [](std::size_t count, double sink_m_per_s, bool has_throttle = false) {
+        return found(count,
+                     [&](PowerRecord& record, std::size_t i) {
+                         if (!has_throttle) record.throttle_percent.clear();
+                         record.power_w[i] = 0.0;
+                         record.current_a[i] = 0.0;
+                         record.altitude_m[i] -= sink_m_per_s * static_cast<double>(i - 200);
+                     })
+            .warnings;
+    };
+    const auto is_dead =
+        Contains(HasSubstr("in flight without a descent, the longest from 200 s on: 2 % of the flight"));
+    EXPECT_THAT(dead(21, 0.0), is_dead);
+    EXPECT_THAT(dead(20, 0.0), Not(is_dead));
+    EXPECT_THAT(dead(21, 0.4), is_dead);
+    EXPECT_THAT(dead(21, 0.6), Not(is_dead)) << "it glides";
+    EXPECT_THAT(dead(21, 0.0, true), is_dead) << "with an open throttle";
+    const auto shut =
+        found(21, [](PowerRecord& record, std::size_t i) { record.power_w[i] = record.throttle_percent[i] = 0.0; });
+    EXPECT_THAT(shut.warnings, Not(is_dead));
+}
+
+TEST(PowerRules, OfNegativePower) {
+    const auto negative = [](std::size_t count) {
+        return found(count, [](PowerRecord& record, std::size_t i) { record.power_w[i] *= -1.0; }).warnings;
+    };
+    EXPECT_THAT(negative(22), Contains("power is negative in 22 samples in flight, 2 % of the energy"));
+    EXPECT_THAT(negative(19), IsEmpty());
+}
+
+TEST(PowerRules, OfAnOpenThrottleWithoutPower) {
+    const auto powerless = [](std::size_t count, double power_w) {
+        return found(count, [&](PowerRecord& record,
+                                std::size_t i) { record.power_w[i] = power_w + 1e-6 * static_cast<double>(i); })
+            .warnings;
+    };
+    const auto is_powerless = Contains(HasSubstr("no power in 15 % of the samples in flight"));
+    EXPECT_THAT(powerless(151, 0.9), is_powerless);
+    EXPECT_THAT(powerless(149, 0.9), Not(is_powerless));
+    EXPECT_THAT(powerless(151, 1.1), Not(is_powerless));
+}
+
+TEST(PowerRules, OfPowerOutsideOfTheFlight) {
+    const auto outside = [](std::size_t count) {
+        auto record = sound_record();
+        for (std::size_t i = last + 10; i < last + 10 + count; ++i) {
+            record.throttle_percent[i] = 31.0;
+            record.power_w[i] = 22.0 + 0.01 * static_cast<double>(i % 3);
+        }
+        return found_in(std::move(record)).warnings;
+    };
+    EXPECT_THAT(outside(50), Contains(HasSubstr("of the energy in flight, were drawn outside of it")));
+    EXPECT_THAT(outside(44), IsEmpty());
+}
+
+TEST(PowerRules, OfACurrentAtRest) {
+    const auto at_rest = [](double rest_a, double in_flight_factor) {
+        auto record = sound_record();
+        for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+            const bool flies = i >= first && i < last;
+            record.current_a[i] = flies ? in_flight_factor * record.current_a[i] : rest_a;
+        }
+        return found_in(std::move(record)).warnings;
+    };
+    const auto is_loaded = Contains(HasSubstr("A at rest on the ground, "));
+    EXPECT_THAT(at_rest(1.01, 20.0), is_loaded) << "2.5 % of the mean";
+    EXPECT_THAT(at_rest(0.99, 20.0), IsEmpty());
+    EXPECT_THAT(at_rest(0.101, 1.0), is_loaded) << "5 % of the mean";
+    EXPECT_THAT(at_rest(0.099, 1.0), IsEmpty());
+}
+
+TEST(PowerRules, OfVoltagesThatNoPackHas) {
+    const auto at = [](double low_v, double high_v) {
+        auto record = sound_record();
+        record.voltage_v.assign(record.time_s.size(), high_v);
+        for (std::size_t i = 200; i < 300; ++i) record.voltage_v[i] = low_v;
+        record.current_a.clear();
+        return found_in(std::move(record)).warnings;
+    };
+    EXPECT_THAT(at(60.1, 60.1), Contains(HasSubstr("that of more than 14 LiPo cells")));
+    EXPECT_THAT(at(59.9, 59.9), IsEmpty());
+    EXPECT_THAT(at(2.4, 2.4), Contains(HasSubstr("less than a LiPo cell's")));
+    EXPECT_THAT(at(2.6, 2.6), IsEmpty());
+    EXPECT_THAT(at(5.4, 10.0), Contains("the voltage falls to 5.4 V from 10 V: no pack stands that"));
+    EXPECT_THAT(at(5.6, 10.0), IsEmpty());
+}
+
+TEST(PowerRules, OfPowerThatIsFarFromThatAtTheSameThrottle) {
+    const auto unusual = [](std::size_t count, double power_w) {
+        auto record = sound_record();
+        for (std::size_t i = 600; i < last; ++i) record.throttle_percent[i] = 60.0;
+        for (std::size_t i = 200; i < 200 + count; ++i) record.power_w[i] = power_w;
+        return found_in(std::move(record)).warnings;
+    };
+    const auto is_unusual = Contains(HasSubstr("power is far from what it usually is at the same throttle in "));
+    EXPECT_THAT(unusual(42, 40.0), is_unusual);
+    EXPECT_THAT(unusual(42, 40.0), Contains(HasSubstr("42 samples in flight: 0 % of the energy less, 4 % more")));
+    EXPECT_THAT(unusual(38, 40.0), Not(is_unusual));
+    EXPECT_THAT(unusual(150, 12.5), is_unusual);
+    EXPECT_THAT(unusual(150, 13.5), Not(is_unusual));
+    EXPECT_THAT(unusual(150, 31.5), is_unusual);
+    EXPECT_THAT(unusual(150, 30.0), Not(is_unusual));
+    auto record = sound_record();
+    for (std::size_t i = 200; i < 350; ++i) record.power_w[i] = 12.5;
+    EXPECT_THAT(found_in(std::move(record)).warnings, Not(is_unusual)) << "one throttle throughout";
+}
+
+TEST(PowerRules, OfAMeanThatNothingFliesOn) {
+    const auto of_mean = [](double mean_w) {
+        auto record = sound_record();
+        record.energy_j = mean_w * record.duration_s;
+        return found_in(std::move(record)).warnings;
+    };
+    EXPECT_THAT(of_mean(2.9), Contains("a mean of 2.9 W in flight: hardly anything flies on that; is its unit W?"));
+    EXPECT_THAT(of_mean(3.1), IsEmpty());
+}
+
+TEST(PowerRules, OfAMeanBelowZeroAndOfPowerThatDoesNotChange) {
+    const auto faults_at = [](double power_w, double last_w) {
+        auto record = sound_record();
+        for (std::size_t i = first; i < last; ++i) record.power_w[i] = power_w;
+        record.power_w[last - 1] = last_w;
+        return found_in(std::move(record)).power_faults;
+    };
+    EXPECT_THAT(faults_at(-0.1, 0.0), Contains("power is negative on average in flight"));
+    EXPECT_THAT(faults_at(0.1, 0.0), IsEmpty());
+    EXPECT_THAT(faults_at(0.1, 0.1), Contains("power does not change in flight"));
+}
+
+/// A sortie of the samples in flight that is all cruise, or begins with a take-off of so many seconds.
+Sortie sortie_of(const PowerRecord& record, double takeoff_s = 0.0) {
+    Sortie sortie;
+    const double start_s = record.time_s[first];
+    const auto add = [&](Phase phase, double from_s, double to_s) {
+        sortie.phases.emplace_back();
+        sortie.phases.back().phase = phase;
+        sortie.phases.back().start.time_s = from_s;
+        sortie.phases.back().end.time_s = to_s;
+    };
+    if (takeoff_s > 0.0) add(Phase::takeoff, start_s, start_s + takeoff_s);
+    add(Phase::cruise, start_s + takeoff_s, record.time_s[last - 1]);
+    return sortie;
+}
+
+TEST(PowerRules, OfPowerThatIsNotVoltageTimesCurrent) {
+    const auto apart = [](double factor) {
+        auto record = sound_record();
+        for (std::size_t i = 0; i < record.time_s.size(); ++i)
+            record.voltage_v.push_back(record.power_w[i] / (factor * record.current_a[i]));
+        return found_in(std::move(record)).power_faults;
+    };
+    EXPECT_THAT(apart(1.11), Contains("power is 11 % away from voltage times current"));
+    EXPECT_THAT(apart(1.09), IsEmpty());
+}
+
+TEST(PowerRules, OfCountersThatRunBackOrContradict) {
+    const auto runs_back = [](double by_wh) {
+        auto record = sound_record();
+        for (std::size_t i = 0; i < record.time_s.size(); ++i)
+            record.energy_wh.value.push_back(0.01 * static_cast<double>(i) - (i < 500 ? 0.0 : by_wh));
+        return found_in(std::move(record)).power_faults;
+    };
+    EXPECT_THAT(runs_back(0.6), Contains("the energy counter ran back by 6 % of what it counted in flight"));
+    EXPECT_THAT(runs_back(0.4), IsEmpty());
+    const auto away = [](double percent, double rounding_percent) {
+        auto record = sound_record();
+        record.charge_ah.closure_percent = percent;
+        record.charge_ah.rounding_percent = rounding_percent;
+        return found_in(std::move(record));
+    };
+    EXPECT_THAT(away(-10.1, 0.0).power_faults,
+                Contains("what was measured is -10 % away from the on-board charge counter"));
+    EXPECT_THAT(away(-10.1, 0.0).warnings, IsEmpty()) << "said as a fault";
+    EXPECT_THAT(away(9.9, 0.0).power_faults, IsEmpty());
+    EXPECT_THAT(away(10.5, 1.0).power_faults, IsEmpty());
+    EXPECT_THAT(away(3.5, 1.0).warnings, IsEmpty());
+}
+
+TEST(PowerRules, OfPhasesThatDifferFromTheCounter) {
+    const auto differs = [](double takeoff_s, double in_takeoff, double in_cruise) {
+        auto record = sound_record();
+        double counted_wh = 0.0;
+        for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+            const double since_s = record.time_s[i] - record.time_s[first];
+            counted_wh += record.power_w[i] / (since_s <= takeoff_s ? in_takeoff : in_cruise) / 3600.0;
+            record.energy_wh.value.push_back(counted_wh);
+        }
+        record.energy_wh.closure_percent = 0.0;
+        record.sorties = {sortie_of(record, takeoff_s)};
+        return found_in(std::move(record)).warnings;
+    };
+    EXPECT_THAT(differs(0.0, 1.0, 1.11), Contains(HasSubstr("cruise at 100 s: ")));
+    EXPECT_THAT(differs(0.0, 1.0, 1.09), IsEmpty());
+    EXPECT_THAT(differs(70.0, 1.5, 1.0), Contains(HasSubstr("takeoff at 100 s: "))) << "2.3 % of the flight";
+    EXPECT_THAT(differs(50.0, 1.5, 1.0), IsEmpty()) << "1.7 % of the flight";
+}
+
+TEST(PowerRules, OfACurrentAtRestThatDrifts) {
+    const auto drifts = [](double by_a) {
+        auto record = sound_record();
+        record.sorties = {sortie_of(record)};
+        auto at_rest = resting();
+        for (auto i = last; i < record.time_s.size(); ++i) {
+            record.current_a[i] += by_a;
+            at_rest.push_back(i);
+        }
+        return found_in(std::move(record), at_rest).warnings;
+    };
+    const auto does_drift = Contains(HasSubstr("A before sortie 1 and "));
+    EXPECT_THAT(drifts(0.11), does_drift);
+    EXPECT_THAT(drifts(0.09), Not(does_drift));
+}
+
+TEST(PowerRules, OfAltitudesThatPauseOrGoOnForLonger) {
+    const auto with_altitudes = [](double from_s, double pause_s) {
+        auto record = sound_record();
+        record.sorties = {sortie_of(record)};
+        for (double t = from_s; t < 1200.0; t += 1.0)
+            if (t <= 500.0 || t >= 500.0 + pause_s) record.altitude_time_s.push_back(t);
+        return found_in(std::move(record)).warnings;
+    };
+    EXPECT_THAT(with_altitudes(0.0, 62.0),
+                Contains("1 gaps in the altitude in flight, 62 s in all: no message came, or the clock jumped; 6 % of "
+                         "the energy lies in them, and no counter confirms it"));
+    EXPECT_THAT(with_altitudes(0.0, 60.0), IsEmpty());
+    EXPECT_THAT(with_altitudes(-65.0, 0.0),
+                Contains("power is logged from 0 s, altitude from -65 s: what was flown before is not seen"));
+    EXPECT_THAT(with_altitudes(-62.0, 0.0), IsEmpty()) << "5 % of the log";
+}
+
+TEST(PowerRules, OfAClimbWithoutPower) {
+    const auto towed = [](std::size_t samples, double power_w, double climb_m_per_s) {
+        auto record = sound_record();
+        record.sorties = {sortie_of(record, 60.0)};
+        for (std::size_t i = first; i < last; ++i)
+            record.altitude_m[i] = climb_m_per_s * static_cast<double>(i - first);
+        for (std::size_t i = first; i < first + samples; ++i) record.power_w[i] = power_w;
+        return found_in(std::move(record)).warnings;
+    };
+    const auto is_towed = Contains(HasSubstr("without power: was it towed"));
+    EXPECT_THAT(towed(5, 1.9, 2.6), is_towed) << "10.4 m";
+    EXPECT_THAT(towed(5, 1.9, 2.4), Not(is_towed)) << "9.6 m";
+    EXPECT_THAT(towed(5, 2.1, 2.6), Not(is_towed)) << "a tenth of the power";
+    EXPECT_THAT(towed(3, 1.9, 20.0), is_towed);
+    EXPECT_THAT(towed(2, 1.9, 20.0), Not(is_towed));
+}
+
+/// With a gap of so many seconds more than usual after sample 600, and the counter's closure.
+std::vector<std::string> found_with_gap(double gap_s, std::optional<double> closure_percent) {
+    auto record = sound_record();
+    for (std::size_t i = 601; i < record.time_s.size(); ++i) record.time_s[i] += gap_s;
+    record.sorties = {sortie_of(record)};
+    record.charge_ah.closure_percent = closure_percent;
+    return found_in(std::move(record)).warnings;
+}
+
+TEST(PowerRules, OfGapsAndCounters) {
+    EXPECT_THAT(found_with_gap(51.0, {}),
+                Contains("1 gap in the power, 52 s in all, the longest 52 s from 600.0 s on: 5 % of the energy is a "
+                         "straight line across, and no counter confirms it"));
+    EXPECT_THAT(found_with_gap(49.0, {}), IsEmpty());
+    EXPECT_THAT(found_with_gap(51.0, 2.9), IsEmpty()) << "the counter confirms it";
+    EXPECT_THAT(found_with_gap(0.0, -3.1),
+                Contains("what was measured in flight is -3.1 % away from the on-board charge counter"));
+}
+
+TEST(PowerRules, OfBriefChanges) {
+    const auto changes = [](std::size_t length, double factor, std::function<void(PowerRecord&)> also = {}) {
+        auto record = sound_record();
+        for (std::size_t i = 200; i < 1000; i += 20)
+            for (std::size_t k = 0; k < length; ++k) record.power_w[i + k] *= factor;
+        if (also) also(record);
+        return found_in(std::move(record)).warnings;
+    };
+    const auto is_brief = Contains(HasSubstr("the power rises or falls for up to 5 samples"));
+    EXPECT_THAT(changes(5, 0.6), is_brief);
+    EXPECT_THAT(changes(6, 0.6), Not(is_brief));
+    EXPECT_THAT(changes(5, 0.7), Not(is_brief));
+    EXPECT_THAT(changes(5, 1.6), is_brief);
+    EXPECT_THAT(changes(5, 1.5), Not(is_brief));
+    const auto without_throttle = [](PowerRecord& record) { record.throttle_percent.clear(); };
+    EXPECT_THAT(changes(3, 0.25, without_throttle), is_brief);
+    EXPECT_THAT(changes(3, 0.35, without_throttle), Not(is_brief));
+    EXPECT_THAT(changes(4, 0.25, without_throttle), Not(is_brief));
+    const auto shuts = [](PowerRecord& record) {
+        for (std::size_t i = 200; i < 1000; i += 20) record.throttle_percent[i] = 0.0;
+    };
+    EXPECT_THAT(changes(1, 0.15, shuts), is_brief);
+    EXPECT_THAT(changes(1, 0.25, shuts), Not(is_brief));
+}
+
+}  // namespace
+}  // namespace flightwatt::flight
