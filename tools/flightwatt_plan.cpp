@@ -71,11 +71,11 @@ void note_sources(const cli::StageCall& call, const mission::MissionSetup& missi
     const auto report = infeasibility_report(
         problem, plan, [&](double cruise_s) { return file.read_with_cruise(cruise_s); }, probability(call));
     if (call.json) {
-        auto json = cli::to_json(plan, problem);
+        auto json = cli::to_json(plan, problem.setup);
         json["shortfall"] = cli::to_json(report);
         cli::print(cli::json_text(json));
     }
-    throw NoResultError(fmt::format("{}: {}", problem.name, describe(problem, report)));
+    throw NoResultError(fmt::format("{}: {}", problem.setup.name, describe(problem.setup, report)));
 }
 
 int make_plan(const cli::StageCall& call, const MissionFile& file) {
@@ -86,22 +86,23 @@ int make_plan(const cli::StageCall& call, const MissionFile& file) {
         throw InputError({setup_of(mission).file}, "the mission has a schedule already: there is nothing to plan",
                          "add [plan], and what [[schedule]] says is fixed and the rest planned");
     }
-    cli::warn_of_setup(call, *problem);
+    cli::warn_of_setup(call, problem->setup);
     auto plan = plan_mission(*problem, chance);
-    plan.summary.by_flights = landing_by_flights(*problem, plan.mission.schedule);
+    plan.summary.by_flights = landing_by_flights(problem->setup, plan.mission.schedule);
     if (!plan.plan.feasible) refuse_infeasible(call, file, *problem, plan);
-    const auto text = describe(plan, *problem);
+    const auto text = describe(plan, problem->setup);
     // The files that the result names are found from where it will stand.
     const auto folder = std::filesystem::absolute(call.output.value_or("result")).parent_path();
-    const auto planned = planned_mission_toml(file.text, file.path, problem->compute, plan.mission.schedule, folder);
+    const auto planned =
+        planned_mission_toml(file.text, file.path, problem->setup.compute, plan.mission.schedule, folder);
     cli::write_result(call, fmt::format("# {}\n", cli::one_line(text)) + planned.text);
     cli::warn_of_lost_comments(call, planned);
     if (call.json) {
-        cli::print(cli::json_text(cli::to_json(plan, *problem)));
+        cli::print(cli::json_text(cli::to_json(plan, problem->setup)));
     } else {
         cli::note(call, text);
-        cli::note_power_model(call, *problem);
-        if (plan.sources) note_sources(call, *problem, *plan.sources, plan.probability_standard_error);
+        cli::note_power_model(call, problem->setup);
+        if (plan.sources) note_sources(call, problem->setup, *plan.sources, plan.probability_standard_error);
     }
     return cli::ok;
 }

@@ -121,7 +121,7 @@ double find_capacity_ah(const LimitSearch& search, double own_ah) {
 
 /// Its interval, if it has one, in proportion.
 Mission with_capacity(Mission mission, double capacity_ah) {
-    auto& battery = mission.battery;
+    auto& battery = mission.setup.battery;
     if (auto& interval = battery.intervals.capacity_ah) {
         interval->low *= capacity_ah / battery.capacity_ah;
         interval->high *= capacity_ah / battery.capacity_ah;
@@ -179,10 +179,11 @@ FeasibilityLimit longest_cruise(const MissionVariation& with_cruise_s, const std
 
 Mission with_payload(const Mission& mission, double payload_w) {
     auto loaded = mission;
-    const auto index = loaded.compute.components.size();
-    loaded.compute.components.push_back({"payload", compute::make_power_profile("payload", {}, {{{}, payload_w, {}}})});
-    if (!loaded.utilities.empty()) loaded.utilities.resize(index + 1);
-    loaded.uncertainty.compute_sd_percent.resize(index + 1);
+    const auto index = loaded.setup.compute.components.size();
+    loaded.setup.compute.components.push_back(
+        {"payload", compute::make_power_profile("payload", {}, {{{}, payload_w, {}}})});
+    if (!loaded.setup.utilities.empty()) loaded.setup.utilities.resize(index + 1);
+    loaded.setup.uncertainty.compute_sd_percent.resize(index + 1);
     for (auto& segment : loaded.schedule) segment.run.push_back({index, {}});
     return loaded;
 }
@@ -192,7 +193,7 @@ FeasibilityLimit largest_payload(const MissionVariant& mission, const std::optio
     LimitSearch search([&](double payload_w) { return with_payload(bare, payload_w); }, probability);
     const double payload_w = search.find_with_margin([&] { return find_payload_w(search); });
     auto most = search.limit(payload_w, payload_w * (1.0 + 1e-9) + 1e-9);
-    if (probability) most.sources = collect_uncertainty(bare).sources;
+    if (probability) most.sources = collect_uncertainty(bare.setup).sources;
     return most;
 }
 
@@ -200,7 +201,7 @@ std::optional<double> min_capacity_ah(const MissionVariant& mission, const std::
     const auto bare = with_minimum_energy_schedule(mission);
     LimitSearch search([&](double capacity_ah) { return with_capacity(bare, capacity_ah); }, probability);
     try {
-        return search.find_with_margin([&] { return find_capacity_ah(search, bare.battery.capacity_ah); });
+        return search.find_with_margin([&] { return find_capacity_ah(search, bare.setup.battery.capacity_ah); });
     } catch (const NoResultError&) {
         return std::nullopt;
     }
@@ -293,10 +294,9 @@ std::optional<double> spare_without_fixed(PlanningProblem problem, const std::op
     if (problem.fixed.empty()) return std::nullopt;
     problem.fixed.clear();
     const auto least = with_minimum_energy_schedule(problem);
-    const double spare =
-        probability
-            ? draw_landings_until_known(least, collect_uncertainty(least), *probability).spare_percent(*probability)
-            : surplus_percent(least);
+    const double spare = probability ? draw_landings_until_known(least, collect_uncertainty(least.setup), *probability)
+                                           .spare_percent(*probability)
+                                     : surplus_percent(least);
     return spare < 0.0 ? std::nullopt : std::optional(spare);
 }
 
@@ -329,11 +329,11 @@ InfeasibilityReport infeasibility_report(const PlanningProblem& problem, const M
                                          const std::optional<double>& probability) {
     InfeasibilityReport report;
     const double possible = plan.plan.final_soc_percent - plan.margin_percent;
-    report.shortfall_percent = problem.reserve_soc_percent - possible;
-    report.shortfall_wh = units::amount_from_percent(full_energy_wh(problem.battery), report.shortfall_percent);
+    report.shortfall_percent = problem.setup.reserve_soc_percent - possible;
+    report.shortfall_wh = units::amount_from_percent(full_energy_wh(problem.setup.battery), report.shortfall_percent);
     report.cut_off_at_s = plan.summary.cut_off_at_s;
     report.cruise_s = cruise_that_lands(with_cruise_s, probability);
-    report.cruise_differs_now = probability && cruise_duration_varies(problem);
+    report.cruise_differs_now = probability && cruise_duration_varies(problem.setup);
     report.min_fixed_surplus_percent = spare_without_fixed(problem, probability);
     if (possible >= 0.0 && plan.summary.feasible) report.reserve_soc_percent = possible;
     report.capacity_ah = min_capacity_ah(problem, probability);

@@ -20,9 +20,9 @@ namespace {
 
 void require_few_decisions(const PlanningProblem& known) {
     constexpr double most = 20000.0;
-    const double decisions = timeline_of(known.duration_s).duration_s / known.adaptive->decide_every_s;
+    const double decisions = timeline_of(known.setup.duration_s).duration_s / known.adaptive->decide_every_s;
     if (decisions <= most) return;
-    throw InputError({known.file},
+    throw InputError({known.setup.file},
                      fmt::format("a plan every {:.6g} s makes {:.3g} plans, more than {:.0f}",
                                  known.adaptive->decide_every_s, decisions, most),
                      "make decide_every_s in [policy] longer");
@@ -42,7 +42,7 @@ SearchLimits effort_for(const PlanningTables& planner, double slots_left) {
 double expected_reach(const PlanningProblem& mission) {
     constexpr double sd_if_unknown_percent = 5.0;
     const auto& policy = *mission.adaptive;
-    if (policy.mechanical_sd_percent || !has_flight_variability(mission)) {
+    if (policy.mechanical_sd_percent || !has_flight_variability(mission.setup)) {
         const double sd_percent = policy.mechanical_sd_percent.value_or(sd_if_unknown_percent);
         return sd_percent / units::percent_per_whole * normal_quantile(policy.probability);
     }
@@ -50,10 +50,10 @@ double expected_reach(const PlanningProblem& mission) {
     double variance = 0.0;
     double freedom = infinite_dof;
     for (const auto phase : all_phases) {
-        const double duration_s = mission.duration_s[phase];
+        const double duration_s = mission.setup.duration_s[phase];
         if (!(duration_s > 0.0)) continue;
-        const auto deviation = level_deviation(mission, phase);
-        energy += mean_level_w(mission, phase) * duration_s;
+        const auto deviation = level_deviation(mission.setup, phase);
+        energy += mean_level_w(mission.setup, phase) * duration_s;
         variance += std::pow(deviation.sd_w * duration_s, 2);
         freedom = std::min(freedom, deviation.degrees_of_freedom);
     }
@@ -81,7 +81,8 @@ AdaptivePlanner make_adaptive_planner(const PlanningProblem& problem) {
     auto tables = make_planning_tables(problem);
     if (auto& step_s = tables.step_s) {
         double quick_s = 2.0;  // what that is off is far below what flights differ by
-        if (problem.battery.thevenin) quick_s = std::min(quick_s, problem.battery.thevenin->rc_time_constant_s / 2.0);
+        if (problem.setup.battery.thevenin)
+            quick_s = std::min(quick_s, problem.setup.battery.thevenin->rc_time_constant_s / 2.0);
         step_s = std::max(*step_s, quick_s);
     }
     return {problem, std::make_shared<const PlanningTables>(std::move(tables))};
@@ -90,8 +91,8 @@ AdaptivePlanner make_adaptive_planner(const PlanningProblem& problem) {
 FlightReplanner::FlightReplanner(const AdaptivePlanner& planner)
     : adaptive_(planner),
       nominal_(planner.nominal),
-      planned_(timeline_of(nominal_.duration_s)),
-      known_load_(std::make_shared<const MissionLoad>(make_mission_load(nominal_))) {
+      planned_(timeline_of(nominal_.setup.duration_s)),
+      known_load_(std::make_shared<const MissionLoad>(make_mission_load(nominal_.setup))) {
     required_deviation_ = expected_reach(nominal_);
 }
 
@@ -113,8 +114,8 @@ double FlightReplanner::rest_mechanical_percent(const PhaseTime& moment) const {
     for (const auto phase : all_phases) {
         if (phase < moment.phase) continue;
         const double from_s = phase == moment.phase ? moment.time_s : 0.0;
-        if (from_s < nominal_.duration_s[phase])
-            percent += mechanical_percent({phase, from_s, nominal_.duration_s[phase]});
+        if (from_s < nominal_.setup.duration_s[phase])
+            percent += mechanical_percent({phase, from_s, nominal_.setup.duration_s[phase]});
     }
     return percent;
 }
@@ -134,7 +135,7 @@ FlightReplanner::PredictedDepletion FlightReplanner::predict(const PhaseSegment&
         battery::Discharge now{state};
         for (const auto& scheduled : run)
             for (const auto& segment : disturbed({load_segment(*known_load_, scheduled)}, {wind}))
-                now = advance_segment(nominal_.battery, 0.0, segment, now);
+                now = advance_segment(nominal_.setup.battery, 0.0, segment, now);
         return state.soc_percent - now.soc_percent;
     };
     const double percent = lost_percent(1.0);
@@ -153,7 +154,7 @@ Plan FlightReplanner::replan(const PhaseTime& moment, const battery::BatteryStat
         policy.learning_time_s > 0.0 ? policy.learning_time_s / (learned_.time_s + policy.learning_time_s) : 0.0;
     const double to_come = policy.learning_time_s / (planned_.duration_s - start.time_s);
     const double margin = required_deviation_ * std::sqrt(seen + to_come);  // of the mechanical power that is left
-    double reserve_percent = nominal_.reserve_soc_percent;
+    double reserve_percent = nominal_.setup.reserve_soc_percent;
     if (state_counts())
         start.mechanical_factor += margin;  // its voltage falls as well
     else

@@ -10,7 +10,7 @@
 namespace flightwatt::mission {
 
 const MissionSetup& setup_of(const MissionVariant& mission) {
-    return std::visit([](const MissionSetup& setup) -> const MissionSetup& { return setup; }, mission);
+    return std::visit([](const auto& either) -> const MissionSetup& { return either.setup; }, mission);
 }
 
 std::optional<Interval> capacity_interval_ah(const MissionSetup& mission) {

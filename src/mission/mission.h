@@ -73,7 +73,8 @@ struct MissionSetup {
 };
 
 /// A mission that can be flown.
-struct Mission : MissionSetup {
+struct Mission {
+    MissionSetup setup;
     Schedule schedule;  ///< in order, covers each instant of each phase exactly once
 };
 
@@ -101,7 +102,8 @@ struct AdaptivePolicy {
 };
 
 /// A mission whose schedule is yet to be made.
-struct PlanningProblem : MissionSetup {
+struct PlanningProblem {
+    MissionSetup setup;
     Schedule fixed;  ///< in order: what is scheduled beforehand
     PlanSettings plan;
     std::optional<AdaptivePolicy> adaptive;  ///< the schedule is made in flight, again and again

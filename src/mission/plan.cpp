@@ -39,23 +39,23 @@ struct Trial {
 
 Trial fly(const PlanningProblem& problem, Schedule schedule) {
     Trial trial{std::move(schedule), {}, 0.0};
-    trial.summary = simulate(problem, trial.schedule).summary;
-    trial.deficit_percent = reserve_deficit_percent(problem, trial.summary, problem.reserve_soc_percent);
+    trial.summary = simulate(problem.setup, trial.schedule).summary;
+    trial.deficit_percent = reserve_deficit_percent(problem.setup, trial.summary, problem.setup.reserve_soc_percent);
     return trial;
 }
 
-PlanStart start_of(const PlanningProblem& problem) { return {0.0, problem.initial_soc_percent}; }
+PlanStart start_of(const PlanningProblem& problem) { return {0.0, problem.setup.initial_soc_percent}; }
 
 /// What the search is asked anew where the simulation says that a schedule does not land, by a rounding error: for a
 /// little more than that.
 void make_stricter(const Trial& trial, double part, PlanningProblem& problem) {
     constexpr double search_slack_percent = 3e-6;
     if (trial.summary.undeliverable)
-        problem.battery.resistance_ohm *= 1.0 + part;
+        problem.setup.battery.resistance_ohm *= 1.0 + part;
     else if (trial.summary.cut_off_at_s)
-        problem.cutoff_voltage_v *= 1.0 + part;
+        problem.setup.cutoff_voltage_v *= 1.0 + part;
     else
-        problem.reserve_soc_percent += std::max(trial.deficit_percent, 0.0) + search_slack_percent;
+        problem.setup.reserve_soc_percent += std::max(trial.deficit_percent, 0.0) + search_slack_percent;
 }
 
 /// The best schedule found by the search that lands, and into `plan` the bound of the problem as stated.
@@ -63,7 +63,7 @@ Trial searched(const PlanningProblem& problem, const PlanningTables& planner, co
     auto stricter = problem;
     double part = 1e-8;
     for (int round = 0; round < max_search_rounds; ++round) {
-        const auto found = plan_remaining(stricter, planner, start_of(problem), stricter.reserve_soc_percent);
+        const auto found = plan_remaining(stricter, planner, start_of(problem), stricter.setup.reserve_soc_percent);
         if (round == 0) {
             plan.utility_bound = found.utility_bound;
             plan.bound_is_proven = found.bound_is_proven;
@@ -92,9 +92,9 @@ MissionPlan plan_by_search(const PlanningProblem& problem) {
         plan.utility_bound = std::max(plan.utility_bound, plan.utility);
     }
     plan.schedule = std::move(found.schedule);
-    plan.final_soc_percent = problem.reserve_soc_percent - found.deficit_percent;
+    plan.final_soc_percent = problem.setup.reserve_soc_percent - found.deficit_percent;
     result.summary = std::move(found.summary);
-    result.mission = {problem, plan.schedule};
+    result.mission = {problem.setup, plan.schedule};
     return result;
 }
 
@@ -103,7 +103,7 @@ MissionPlan plan_by_tables(const PlanningProblem& problem) {
     MissionPlan result;
     const auto planner = make_planning_tables(problem);
     const auto start = start_of(problem);
-    double planned_percent = problem.reserve_soc_percent;
+    double planned_percent = problem.setup.reserve_soc_percent;
     std::optional<double> bound;
     Schedule schedule;
     bool lands = false;
@@ -112,20 +112,21 @@ MissionPlan plan_by_tables(const PlanningProblem& problem) {
         if (!bound) bound = result.plan.utility_bound;
         result.plan.utility_bound = result.plan.feasible ? *bound : 0.0;
         schedule = result.plan.deliverable ? result.plan.schedule : minimum_energy_schedule(problem);
-        result.summary = simulate(problem, schedule).summary;
+        result.summary = simulate(problem.setup, schedule).summary;
         if (!result.plan.feasible) break;
-        const double deficit_percent = reserve_deficit_percent(problem, result.summary, problem.reserve_soc_percent);
+        const double deficit_percent =
+            reserve_deficit_percent(problem.setup, result.summary, problem.setup.reserve_soc_percent);
         lands = result.summary.feasible && deficit_percent <= 0.0;
         planned_percent += std::max(deficit_percent, 0.0) + 1e-12;
     }
     result.plan.feasible = lands;  // where it is not: none was found, which is not to say that there is none
-    result.mission = {problem, std::move(schedule)};
+    result.mission = {problem.setup, std::move(schedule)};
     return result;
 }
 
 /// The plan of a mission whose flights do not differ.
 MissionPlan plan_certain(const PlanningProblem& problem) {
-    const bool state_counts = problem.battery.thevenin || problem.cutoff_voltage_v > 0.0;
+    const bool state_counts = problem.setup.battery.thevenin || problem.setup.cutoff_voltage_v > 0.0;
     return state_counts ? plan_by_search(problem) : plan_by_tables(problem);
 }
 
@@ -146,8 +147,8 @@ MissionPlan least_plan(const PlanningProblem& problem, const FlightUncertainty& 
 
 /// Plans with a margin above the reserve, and looks for the least with which enough of the plan's flights keep it.
 MissionPlan plan_with_chance(const PlanningProblem& problem, double probability) {
-    require_known_spread(problem);
-    const auto spreads = collect_uncertainty(problem);
+    require_known_spread(problem.setup);
+    const auto spreads = collect_uncertainty(problem.setup);
     auto best = least_plan(problem, spreads, probability);
     best.sources = spreads.sources;
     if (!best.plan.feasible) {
@@ -162,13 +163,13 @@ MissionPlan plan_with_chance(const PlanningProblem& problem, double probability)
          ++round) {
         const double planned_percent = std::max(search.margin_percent(), 0.0);  // as stated, it keeps the reserve too
         auto stricter = problem;
-        stricter.reserve_soc_percent += planned_percent;
+        stricter.setup.reserve_soc_percent += planned_percent;
         auto plan = plan_certain(stricter);
         if (!plan.plan.feasible) {
             search.mark_infeasible();
             continue;
         }
-        plan.mission.reserve_soc_percent = problem.reserve_soc_percent;
+        plan.mission.setup.reserve_soc_percent = problem.setup.reserve_soc_percent;
         if (plan.mission.schedule != last) landings = draw_landings_until_known(plan.mission, spreads, probability);
         last = plan.mission.schedule;
         const double slack_percent = landings.spare_percent(probability);

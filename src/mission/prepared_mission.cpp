@@ -14,7 +14,7 @@ namespace {
 std::vector<PhaseSegment> intervals_of(const PlanningProblem& known) {
     std::vector<PhaseSegment> intervals;
     for (const auto phase : all_phases) {
-        const double duration_s = known.duration_s[phase];
+        const double duration_s = known.setup.duration_s[phase];
         const double every_s = known.adaptive->decide_every_s;
         const auto count =
             static_cast<std::size_t>(std::ceil((duration_s - same_time_tolerance_s(duration_s)) / every_s));
@@ -51,7 +51,7 @@ class Flight {
 
     AdaptiveResult landed() {
         flight_.schedule =
-            rescale_to_flown_durations(std::move(flight_.schedule), known_.duration_s, actual_.duration_s);
+            rescale_to_flown_durations(std::move(flight_.schedule), known_.setup.duration_s, actual_.duration_s);
         flight_.decisions.mechanical_factor = decider_.mechanical_factor();
         return std::move(flight_);
     }
@@ -60,7 +60,7 @@ class Flight {
     /// Runs a segment of the plan in the flight as it is.
     void fly(const ScheduleSegment& planned) {
         append_merged(flight_.schedule, planned);
-        const auto flown = rescale_to_flown_durations({planned}, known_.duration_s, actual_.duration_s);
+        const auto flown = rescale_to_flown_durations({planned}, known_.setup.duration_s, actual_.duration_s);
         for (const auto& segment : disturbed(split_at_jumps(load_segment(load_, flown.front())), disturbances_))
             charge_ = advance_segment(battery_, actual_.cutoff_voltage_v, segment, charge_);
     }

@@ -128,7 +128,7 @@ ReplayedSchedule invariant(const LeaveOneOutMission& folded, const PlanningProbl
 }
 
 ReplayedSchedule phased(const LeaveOneOutMission& folded, PlanningProblem problem) {
-    problem.plan.slot_s = std::ranges::max(problem.duration_s.values);
+    problem.plan.slot_s = std::ranges::max(problem.setup.duration_s.values);
     problem.plan.dwell_s = 0.0;
     return planned_before(folded, problem, ScheduleMethod::phased);
 }
@@ -153,7 +153,7 @@ void add_hindsight(const LeaveOneOutMission& folded, PlanningProblem problem, Re
     }
     problem.fixed =
         rescale_to_flown_durations(std::move(problem.fixed), folded.known.duration_s, folded.actual.duration_s);
-    static_cast<MissionSetup&>(problem) = folded.actual;
+    problem.setup = folded.actual;
     const auto plan = plan_mission(problem);
     ReplayedSchedule best;
     best.way = ScheduleMethod::hindsight;
@@ -182,7 +182,8 @@ void add_hindsight(const LeaveOneOutMission& folded, PlanningProblem problem, Re
 /// What may be chosen in hindsight where the mission does not say so: what was profiled, and what its schedule runs.
 PlanningProblem choices_in_hindsight(const Mission& mission, const MissionSetup& known) {
     PlanningProblem problem{known, {}, {}, std::nullopt};
-    for (const auto& component : mission.compute.components) problem.plan.choices.push_back({component.profile.axes});
+    for (const auto& component : mission.setup.compute.components)
+        problem.plan.choices.push_back({component.profile.axes});
     auto& choices = problem.plan.choices;
     for (const auto& run : configurations_of(mission.schedule)) {
         for (std::size_t c = 0; c < choices.size(); ++c) {
@@ -200,14 +201,10 @@ PlanningProblem choices_in_hindsight(const Mission& mission, const MissionSetup&
     return problem;
 }
 
-bool has_utility(const MissionSetup& mission) {
-    return std::ranges::any_of(mission.utilities, [](const auto& utility) { return utility.has_value(); });
-}
-
 void replay_given(const Mission& mission, const LeaveOneOutMission& folded, Replay& replay) {
-    const auto known = rescale_to_flown_durations(mission.schedule, mission.duration_s, folded.known.duration_s);
+    const auto known = rescale_to_flown_durations(mission.schedule, mission.setup.duration_s, folded.known.duration_s);
     replay.schedules.push_back(flown_schedule(folded, ScheduleMethod::given, known, ScheduleOrigin::given));
-    if (has_utility(mission))
+    if (std::ranges::any_of(mission.setup.utilities, [](const auto& utility) { return utility.has_value(); }))
         add_hindsight(folded, choices_in_hindsight(mission, folded.known), replay);
     else
         replay.notes.emplace_back("the mission states no utility: hindsight has nothing to choose by");
@@ -215,8 +212,9 @@ void replay_given(const Mission& mission, const LeaveOneOutMission& folded, Repl
 
 void replay_planned(const PlanningProblem& stated, const LeaveOneOutMission& folded, Replay& replay) {
     auto problem = stated;
-    static_cast<MissionSetup&>(problem) = folded.known;
-    problem.fixed = rescale_to_flown_durations(std::move(problem.fixed), stated.duration_s, folded.known.duration_s);
+    problem.setup = folded.known;
+    problem.fixed =
+        rescale_to_flown_durations(std::move(problem.fixed), stated.setup.duration_s, folded.known.duration_s);
     if (!problem.adaptive) {
         problem.adaptive.emplace();
         problem.adaptive->decide_every_s = problem.plan.slot_s;
@@ -227,7 +225,7 @@ void replay_planned(const PlanningProblem& stated, const LeaveOneOutMission& fol
     schedules.push_back(phased(folded, problem));
     schedules.push_back(planned_before(folded, problem, ScheduleMethod::planned));
     try {
-        require_known_spread(problem);
+        require_known_spread(problem.setup);
         schedules.push_back(
             planned_before(folded, problem, ScheduleMethod::planned_with_margin, problem.adaptive->probability));
     } catch (const InputError& error) {

@@ -35,11 +35,7 @@ class Sampler {
   public:
     Sampler(const PreparedMission& prepared, const Disturbances& disturbances, const FlightUncertainty& spreads,
             const SamplingOptions& options)
-        : prepared_(prepared),
-          setup_(without_model_metadata(prepared.setup)),
-          disturbances_(disturbances),
-          spreads_(spreads),
-          options_(options) {
+        : prepared_(prepared), disturbances_(disturbances), spreads_(spreads), options_(options) {
         const double duration_s = timeline_of(prepared.setup.duration_s).duration_s;
         for (std::size_t i = 0; i < options.band_points; ++i) {
             times_s_.push_back(duration_s * static_cast<double>(i) / static_cast<double>(options.band_points - 1));
@@ -60,8 +56,8 @@ class Sampler {
   private:
     void fly_side_by_side(std::vector<FlightOutcome>& landings) const {
         constexpr std::size_t at_once = 256;
-        const SimdFlightSimulator lanes(setup_, spreads_, prepared_.schedule, times_s_);
-        const auto normal_count = count_normals(setup_);
+        const SimdFlightSimulator lanes(prepared_.setup, spreads_, prepared_.schedule, times_s_);
+        const auto normal_count = count_normals(prepared_.setup);
         for_each_in_parallel((landings.size() + at_once - 1) / at_once, [&](std::size_t block) {
             const auto own = std::span(landings)
                                  .subspan(block * at_once)
@@ -74,15 +70,14 @@ class Sampler {
     }
 
     FlightOutcome fly_one(std::size_t index) const {
-        const auto& planned_s = setup_.duration_s;
-        const auto setup = draw_flight(setup_, spreads_, options_.seed, index);
+        const auto& planned_s = prepared_.setup.duration_s;
+        const auto setup = draw_flight(prepared_.setup, spreads_, options_.seed, index);
         auto times_s = times_s_;
         for (auto& time_s : times_s) time_s = rescale_to_flown_durations_s(time_s, planned_s, setup.duration_s);
         return simulate_flight(scheduled(prepared_, setup, disturbances_), times_s);
     }
 
     const PreparedMission& prepared_;
-    MissionSetup setup_;
     const Disturbances& disturbances_;
     const FlightUncertainty& spreads_;
     const SamplingOptions& options_;
@@ -225,17 +220,15 @@ std::optional<SampledDifference> sample_difference(const PreparedMission& a, con
     const auto spreads_b = collect_uncertainty(b.setup);
     if (spreads_a.sources.varied.empty() || spreads_b.sources.varied.empty()) return std::nullopt;
     const auto common = common_sources(a.setup, b.setup);
-    const auto setup_a = without_model_metadata(a.setup);
-    const auto setup_b = without_model_metadata(b.setup);
     const auto other_seed = ~options.seed;  // of what is not in common
     std::vector<FlownQuantities> of_a(options.samples);
     std::vector<FlownQuantities> of_b(options.samples);
     for_each_in_parallel(options.samples, [&](std::size_t i) {
-        const auto normals_a = draw_normals(count_normals(setup_a), options.seed, i);
-        const auto normals_b = correlated_normals(setup_a, setup_b, common, normals_a,
-                                                  draw_normals(count_normals(setup_b), other_seed, i));
-        of_a[i] = flown_quantities(a, apply_draw(setup_a, spreads_a, normals_a));
-        of_b[i] = flown_quantities(b, apply_draw(setup_b, spreads_b, normals_b));
+        const auto normals_a = draw_normals(count_normals(a.setup), options.seed, i);
+        const auto normals_b = correlated_normals(a.setup, b.setup, common, normals_a,
+                                                  draw_normals(count_normals(b.setup), other_seed, i));
+        of_a[i] = flown_quantities(a, apply_draw(a.setup, spreads_a, normals_a));
+        of_b[i] = flown_quantities(b, apply_draw(b.setup, spreads_b, normals_b));
     });
     SampledDifference difference;
     difference.samples = options.samples;

@@ -149,7 +149,7 @@ Simulation simulate(const MissionSetup& mission, const Schedule& schedule, const
 }
 
 Simulation simulate(const Mission& mission, const SimulationOptions& steps, const Disturbances& disturbances) {
-    return simulate(mission, mission.schedule, steps, disturbances);
+    return simulate(mission.setup, mission.schedule, steps, disturbances);
 }
 
 std::optional<EstimatedLanding> landing_by_flights(const MissionSetup& mission, const Schedule& schedule,

@@ -20,7 +20,7 @@ using namespace flightwatt;
 
 /// How far the share of flights below the reserve is from what was asked for [standard errors].
 double deviations(const mission::Mission& flown, double probability, std::size_t flights) {
-    const auto sampled = mission::sample_flights({flown, flown.schedule, std::nullopt}, {}, {flights, 1, 0});
+    const auto sampled = mission::sample_flights({flown.setup, flown.schedule, std::nullopt}, {}, {flights, 1, 0});
     return (sampled.probability_below_reserve - (1.0 - probability)) /
            std::sqrt(probability * (1.0 - probability) / static_cast<double>(flights));
 }

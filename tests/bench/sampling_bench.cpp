@@ -22,13 +22,11 @@ using namespace flightwatt::mission;
 struct Sampled {
     explicit Sampled(const char* path)
         : mission(std::get<Mission>(read_mission(std::filesystem::path(FLIGHTWATT_SOURCE_DIR) / path))),
-          spreads(collect_uncertainty(mission)),
-          setup(without_model_metadata(mission)),
-          lanes(setup, spreads, mission.schedule) {}
+          spreads(collect_uncertainty(mission.setup)),
+          lanes(mission.setup, spreads, mission.schedule) {}
 
     Mission mission;
     FlightUncertainty spreads;
-    MissionSetup setup;
     SimdFlightSimulator lanes;
 };
 
@@ -39,7 +37,7 @@ void side_by_side(benchmark::State& state, const char* path) {
     std::vector<FlightOutcome> landings(at_once);
     std::size_t flights = 0;
     for (auto _ : state) {
-        for (auto& numbers : normals) numbers = draw_normals(count_normals(sampled.setup), 1, flights++);
+        for (auto& numbers : normals) numbers = draw_normals(count_normals(sampled.mission.setup), 1, flights++);
         sampled.lanes.simulate(normals, landings);
         benchmark::DoNotOptimize(landings.data());
     }
@@ -51,7 +49,8 @@ void one_at_a_time(benchmark::State& state, const char* path) {
     std::size_t flights = 0;
     for (auto _ : state)
         benchmark::DoNotOptimize(
-            sampled.lanes.simulate_scalar(draw_normals(count_normals(sampled.setup), 1, flights++)).remaining_percent);
+            sampled.lanes.simulate_scalar(draw_normals(count_normals(sampled.mission.setup), 1, flights++))
+                .remaining_percent);
     state.SetItemsProcessed(static_cast<std::int64_t>(flights));
 }
 
@@ -59,16 +58,16 @@ void one_at_a_time(benchmark::State& state, const char* path) {
 void off_runge_kutta(benchmark::State& state, const char* path) {
     const Sampled sampled(path);
     std::vector<std::vector<double>> normals;
-    for (std::size_t i = 0; i < 100; ++i) normals.push_back(draw_normals(count_normals(sampled.setup), 1, i));
+    for (std::size_t i = 0; i < 100; ++i) normals.push_back(draw_normals(count_normals(sampled.mission.setup), 1, i));
     std::vector<FlightOutcome> landings(normals.size());
     for (auto _ : state) sampled.lanes.simulate(normals, landings);
     double worst_percent = 0.0;
     std::size_t compared = 0;
     for (std::size_t i = 0; i < normals.size(); ++i) {
         if (landings[i].battery_failure) continue;
-        const auto flight = apply_draw(sampled.setup, sampled.spreads, normals[i]);
+        const auto flight = apply_draw(sampled.mission.setup, sampled.spreads, normals[i]);
         const auto schedule =
-            rescale_to_flown_durations(sampled.mission.schedule, sampled.setup.duration_s, flight.duration_s);
+            rescale_to_flown_durations(sampled.mission.schedule, sampled.mission.setup.duration_s, flight.duration_s);
         const auto reference = simulate(flight, schedule, {60.0, 0.25}).summary.final_soc_percent;
         worst_percent = std::max(worst_percent, std::abs(landings[i].final_soc_percent - reference.value()));
         ++compared;

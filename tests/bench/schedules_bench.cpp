@@ -58,10 +58,11 @@ std::vector<std::vector<mission::IndexedSegment>> draw_schedules(const Problem& 
 class ScheduleRate {
   public:
     explicit ScheduleRate(const Problem& problem)
-        : battery_(problem.mission.battery), timeline_(mission::timeline_of(problem.mission.duration_s)) {
-        for (const auto phase : flight::all_phases) curves_[phase] = problem.mission.mechanical->phases[phase].fourier;
+        : battery_(problem.mission.setup.battery), timeline_(mission::timeline_of(problem.mission.setup.duration_s)) {
+        for (const auto phase : flight::all_phases)
+            curves_[phase] = problem.mission.setup.mechanical->phases[phase].fourier;
         for (const auto& run : problem.planner.depletions.configurations) {
-            choice_w_.push_back(power_w(problem.mission.compute, run));
+            choice_w_.push_back(power_w(problem.mission.setup.compute, run));
         }
     }
 
@@ -117,7 +118,7 @@ double worst_difference(const Problem& problem, const std::vector<std::vector<mi
         for (const auto& segment : schedules[i])
             schedule.push_back({segment, problem.planner.depletions.configurations[segment.configuration]});
         const double reference =
-            simulate(problem.mission, schedule, {100.0, 0.1}).summary.final_soc_percent.value_or(std::nan(""));
+            simulate(problem.mission.setup, schedule, {100.0, 0.1}).summary.final_soc_percent.value_or(std::nan(""));
         worst = std::max(worst, std::abs(soc[i] - reference));
     }
     return lasting == 0 ? std::nan("") : worst;

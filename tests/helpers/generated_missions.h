@@ -26,7 +26,7 @@ class MissionGenerator {
     GeneratedMission make(bool with_reserve = true) {
         GeneratedMission made;
         auto& problem = made.problem;
-        problem.name = "generated";
+        problem.setup.name = "generated";
         add_flight(problem);
         add_software(problem);
         add_battery(problem);
@@ -37,9 +37,9 @@ class MissionGenerator {
         made.probability = pick({0.8, 0.9, 0.95, 0.98});
         size_battery(problem);
         if (with_reserve) choose_reserve(made);
-        made.kind = kind_ + (problem.battery.thevenin               ? "thevenin"
-                             : problem.battery.resistance_ohm > 0.0 ? "resistance"
-                                                                    : "ideal");
+        made.kind = kind_ + (problem.setup.battery.thevenin               ? "thevenin"
+                             : problem.setup.battery.resistance_ohm > 0.0 ? "resistance"
+                                                                          : "ideal");
         return made;
     }
 
@@ -57,14 +57,14 @@ class MissionGenerator {
         const flight::PerPhase<double> lasts_s{{between(20.0, 40.0), between(400.0, 1200.0), between(30.0, 80.0)}};
         const bool of_flights = maybe(0.5);
         const auto flights = static_cast<std::size_t>(between(2.0, 9.0));
-        auto& model = problem.mechanical.emplace();
+        auto& model = problem.setup.mechanical.emplace();
         if (of_flights) model.flights.resize(flights);
         for (const auto phase : flight::all_phases) {
             auto& part = model.phases[phase];
             part.fourier = {
                 between(2.0, 8.0) / lasts_s[phase], mean_w[phase], {between(-2.0, 2.0)}, {between(-2.0, 2.0)}};
             part.duration_s = lasts_s[phase];
-            problem.duration_s[phase] = lasts_s[phase];
+            problem.setup.duration_s[phase] = lasts_s[phase];
             if (of_flights) {
                 part.flights = flights;
                 part.level_spread =
@@ -75,15 +75,15 @@ class MissionGenerator {
                         mechanical::PhaseContribution{1.0 / static_cast<double>(flights), flown_s, 1.0, 100};
                 }
             } else {
-                problem.uncertainty.level_sd_percent[phase] = between(1.0, 12.0);
+                problem.setup.uncertainty.level_sd_percent[phase] = between(1.0, 12.0);
             }
         }
         if (maybe(0.5)) {
-            problem.duration_s[Phase::cruise] *= between(0.7, 1.3);
-            problem.duration_is_stated[Phase::cruise] = true;
+            problem.setup.duration_s[Phase::cruise] *= between(0.7, 1.3);
+            problem.setup.duration_is_stated[Phase::cruise] = true;
         }
-        if (maybe(0.4)) problem.uncertainty.duration_sd_s[Phase::cruise] = between(5.0, 60.0);
-        if (maybe(0.3)) problem.phase_clock = mechanical::PhaseTimeScaling::absolute;
+        if (maybe(0.4)) problem.setup.uncertainty.duration_sd_s[Phase::cruise] = between(5.0, 60.0);
+        if (maybe(0.3)) problem.setup.phase_clock = mechanical::PhaseTimeScaling::absolute;
         kind_ = of_flights ? "model's flights, " : "stated, ";
     }
 
@@ -97,15 +97,15 @@ class MissionGenerator {
             if (has_errors) node.standard_error_w = between(0.05, 0.5);
             nodes.push_back(node);
         }
-        problem.compute.components.push_back({"detection", compute::make_power_profile("p", {"fps"}, nodes)});
-        problem.utilities.push_back(mission::Utility{0, 1.0, mission::UtilityShape::square_root, {}, {}});
+        problem.setup.compute.components.push_back({"detection", compute::make_power_profile("p", {"fps"}, nodes)});
+        problem.setup.utilities.push_back(mission::Utility{0, 1.0, mission::UtilityShape::square_root, {}, {}});
         problem.plan.choices.push_back({{fps_}, false});
-        problem.uncertainty.compute_sd_percent.resize(1);
-        if (maybe(0.4)) problem.uncertainty.compute_sd_percent[0] = between(1.0, 8.0);
+        problem.setup.uncertainty.compute_sd_percent.resize(1);
+        if (maybe(0.4)) problem.setup.uncertainty.compute_sd_percent[0] = between(1.0, 8.0);
     }
 
     void add_battery(mission::PlanningProblem& problem) {
-        auto& battery = problem.battery;
+        auto& battery = problem.setup.battery;
         battery.capacity_ah = 30.0;
         battery.resistance_ohm = maybe(0.7) ? between(0.02, 0.09) : 0.0;
         if (thevenin_) {
@@ -126,15 +126,15 @@ class MissionGenerator {
         }
         if (battery.resistance_ohm > 0.0 && maybe(0.5))
             battery.intervals.resistance_ohm = Interval{battery.resistance_ohm * 0.7, battery.resistance_ohm * 1.4};
-        if (maybe(0.5)) problem.uncertainty.capacity_sd_percent = between(1.0, 5.0);
-        if (thevenin_ && maybe(0.3)) problem.cutoff_voltage_v = between(9.5, 10.2);
-        problem.initial_soc_percent = maybe(0.3) ? between(90.0, 100.0) : 100.0;
+        if (maybe(0.5)) problem.setup.uncertainty.capacity_sd_percent = between(1.0, 5.0);
+        if (thevenin_ && maybe(0.3)) problem.setup.cutoff_voltage_v = between(9.5, 10.2);
+        problem.setup.initial_soc_percent = maybe(0.3) ? between(90.0, 100.0) : 100.0;
     }
 
     /// So that the mission's mean flight with the least computing uses a part of the charge.
     void size_battery(mission::PlanningProblem& problem) {
         const auto used_percent = 100.0 - *simulate(with_minimum_energy_schedule(problem)).summary.final_soc_percent;
-        problem.battery.capacity_ah /= between(60.0, 85.0) / used_percent;
+        problem.setup.battery.capacity_ah /= between(60.0, 85.0) / used_percent;
     }
 
     /// So that there is charge for a part of what the software may do.
@@ -142,16 +142,16 @@ class MissionGenerator {
         auto& problem = made.problem;
         auto flown = with_minimum_energy_schedule(problem);
         const auto left_percent = [&] {
-            return draw_landings(flown, collect_uncertainty(flown)).quantile_percent(made.probability);
+            return draw_landings(flown, collect_uncertainty(flown.setup)).quantile_percent(made.probability);
         };
         double least_percent = left_percent();
         while (least_percent < 10.0) {  // too many fail
-            flown.battery.capacity_ah = problem.battery.capacity_ah *= 1.2;
+            flown.setup.battery.capacity_ah = problem.setup.battery.capacity_ah *= 1.2;
             least_percent = left_percent();
         }
         for (auto& segment : flown.schedule) segment.run.front().qos = {fps_.back()};
         const double max_percent = std::max(left_percent(), 0.0);
-        problem.reserve_soc_percent = max_percent + between(0.3, 0.7) * (least_percent - max_percent);
+        problem.setup.reserve_soc_percent = max_percent + between(0.3, 0.7) * (least_percent - max_percent);
     }
 
     const std::vector<double> fps_{5.0, 10.0, 16.0, 25.0, 32.0};

@@ -48,13 +48,13 @@ class UnknownAircraft {
         mission::Mission promised;
         double least_percent = 0.0;
         if (trial.by_plan) {
-            problem.reserve_soc_percent = least_percent = reserve_percent();
+            problem.setup.reserve_soc_percent = least_percent = reserve_percent();
             auto plan = plan_mission(problem, trial.probability);
             if (!plan.plan.feasible) return std::nullopt;
             promised = plan.mission;
         } else {
             promised = with_highest_quality(problem);
-            auto spreads = collect_uncertainty(promised);
+            auto spreads = collect_uncertainty(promised.setup);
             if (trial.as_if_known) spreads.of_flights.clear();
             least_percent = draw_landings(promised, spreads).quantile_percent(trial.probability);
         }
@@ -140,36 +140,36 @@ class UnknownAircraft {
 
     mission::PlanningProblem problem_of(mechanical::MechanicalModel model) const {
         mission::PlanningProblem problem;
-        problem.name = "unknown aircraft";
+        problem.setup.name = "unknown aircraft";
         for (const auto phase : flight::all_phases) {
-            problem.duration_s[phase] = durations_are_stated_ ? lasts_s_[phase] : model.phases[phase].duration_s;
-            problem.duration_is_stated[phase] = durations_are_stated_;
+            problem.setup.duration_s[phase] = durations_are_stated_ ? lasts_s_[phase] : model.phases[phase].duration_s;
+            problem.setup.duration_is_stated[phase] = durations_are_stated_;
         }
-        problem.mechanical = std::move(model);
+        problem.setup.mechanical = std::move(model);
         std::vector<compute::ProfileNode> nodes;
         for (const double value : fps_) nodes.push_back({{value}, 1.0 + 0.65 * value, {}});
-        problem.compute.components.push_back({"detection", compute::make_power_profile("p", {"fps"}, nodes)});
-        problem.utilities.push_back(mission::Utility{0, 1.0, mission::UtilityShape::square_root, {}, {}});
-        problem.uncertainty.compute_sd_percent.resize(1);
+        problem.setup.compute.components.push_back({"detection", compute::make_power_profile("p", {"fps"}, nodes)});
+        problem.setup.utilities.push_back(mission::Utility{0, 1.0, mission::UtilityShape::square_root, {}, {}});
+        problem.setup.uncertainty.compute_sd_percent.resize(1);
         problem.plan.choices.push_back({{fps_}, false});
         problem.plan.slot_s = 20.0;
-        problem.battery.capacity_ah = 1.6;
-        problem.battery.voltage_v = 11.1;
-        if (kind_ > 0) problem.battery.resistance_ohm = 0.05;
+        problem.setup.battery.capacity_ah = 1.6;
+        problem.setup.battery.voltage_v = 11.1;
+        if (kind_ > 0) problem.setup.battery.resistance_ohm = 0.05;
         if (kind_ == 2) {
             battery::TheveninCircuit circuit;
             circuit.open_circuit = {{0.0, 10.0, 30.0, 60.0, 100.0}, {9.9, 11.0, 11.3, 11.6, 12.5}};
             circuit.rc_resistance_ohm = 0.02;
             circuit.rc_time_constant_s = 30.0;
-            problem.battery.thevenin = circuit;
+            problem.setup.battery.thevenin = circuit;
         }
         return problem;
     }
 
     mission::Mission with_highest_quality(const mission::PlanningProblem& problem) const {
-        mission::Mission mission{problem, {}};
+        mission::Mission mission{problem.setup, {}};
         for (const auto phase : flight::all_phases)
-            mission.schedule.push_back({phase, 0.0, problem.duration_s[phase], {{0, {fps_.back()}}}});
+            mission.schedule.push_back({phase, 0.0, problem.setup.duration_s[phase], {{0, {fps_.back()}}}});
         return mission;
     }
 
@@ -186,18 +186,20 @@ class UnknownAircraft {
         }
         const auto mission = with_highest_quality(problem_of(std::move(model)));
         return *simulate(mission).summary.final_soc_percent +
-               3.0 * units::percentage(units::wh_from_joule(std::sqrt(variance_j2)), full_energy_wh(mission.battery));
+               3.0 * units::percentage(units::wh_from_joule(std::sqrt(variance_j2)),
+                                       full_energy_wh(mission.setup.battery));
     }
 
     mission::FlightOutcome land_next(const mission::Mission& promised) {
         const auto flown = fly();
-        auto flight = mission::without_model_metadata(promised);
+        auto flight = promised.setup;
         flight.duration_s = flown.duration_s;
         for (const auto phase : flight::all_phases) {
             flight.mechanical->phases[phase].fourier = curve_of(phase, flown);
             flight.mechanical->phases[phase].duration_s = flown.duration_s[phase];
         }
-        const auto schedule = rescale_to_flown_durations(promised.schedule, promised.duration_s, flown.duration_s);
+        const auto schedule =
+            rescale_to_flown_durations(promised.schedule, promised.setup.duration_s, flown.duration_s);
         return mission::simulate_flight({flight, flight.battery, load_segments(flight, schedule)});
     }
 

@@ -32,14 +32,14 @@ class SmallMissionGenerator {
     SmallMission make_long(bool dwells, bool may_be_cut_off) {
         SmallMission made;
         auto& problem = made.problem;
-        problem.name = "long";
+        problem.setup.name = "long";
         add_flight(problem);
-        problem.duration_s[Phase::cruise] = 600.0;
+        problem.setup.duration_s[Phase::cruise] = 600.0;
         add_component(problem, 16);
         problem.plan.slot_s = 10.0;
         if (dwells) problem.plan.dwell_s = 30.0;
         add_battery(problem);
-        if (may_be_cut_off) problem.cutoff_voltage_v = least_voltage_v(problem) - 0.05;
+        if (may_be_cut_off) problem.setup.cutoff_voltage_v = least_voltage_v(problem) - 0.05;
         made.kind =
             std::string("16 levels") + (dwells ? ", dwell of 3 slots" : "") + (may_be_cut_off ? ", cut-off" : "");
         return made;
@@ -48,11 +48,11 @@ class SmallMissionGenerator {
     SmallMission make() {
         SmallMission made;
         auto& problem = made.problem;
-        problem.name = "small";
+        problem.setup.name = "small";
         add_flight(problem);
         const auto components = whole(2, 3);
         for (std::size_t c = 0; c < components; ++c) add_component(problem, whole(2, 4));
-        const double cruise_s = problem.duration_s[Phase::cruise];
+        const double cruise_s = problem.setup.duration_s[Phase::cruise];
         problem.plan.slot_s = cruise_s / static_cast<double>(whole(2, 6)) * between(1.0, 1.2);
         if (maybe(0.4)) {
             const double start_s = cruise_s * between(0.1, 0.6);
@@ -65,10 +65,11 @@ class SmallMissionGenerator {
         }
         add_battery(problem);
         if (maybe(0.5)) {
-            problem.cutoff_voltage_v = least_voltage_v(problem) - (maybe(0.5) ? between(0.0, 0.1) : between(0.0, 0.5));
+            problem.setup.cutoff_voltage_v =
+                least_voltage_v(problem) - (maybe(0.5) ? between(0.0, 0.1) : between(0.0, 0.5));
             made.kind += "cut-off ";
         }
-        made.kind += problem.reserve_soc_percent > 0.0 ? "reserve" : "reserve 0";
+        made.kind += problem.setup.reserve_soc_percent > 0.0 ? "reserve" : "reserve 0";
         return made;
     }
 
@@ -83,11 +84,11 @@ class SmallMissionGenerator {
 
     void add_flight(mission::PlanningProblem& problem) {
         const flight::PerPhase<double> mean_w{{between(35.0, 60.0), between(15.0, 30.0), between(6.0, 15.0)}};
-        problem.duration_s = {{between(15.0, 40.0), between(120.0, 900.0), between(20.0, 80.0)}};
-        auto& model = problem.mechanical.emplace();
+        problem.setup.duration_s = {{between(15.0, 40.0), between(120.0, 900.0), between(20.0, 80.0)}};
+        auto& model = problem.setup.mechanical.emplace();
         for (const auto phase : flight::all_phases) {
             auto& part = model.phases[phase];
-            part.duration_s = problem.duration_s[phase];
+            part.duration_s = problem.setup.duration_s[phase];
             part.fourier = {between(2.0, 8.0) / part.duration_s,
                             mean_w[phase],
                             {between(-2.0, 2.0), between(-1.0, 1.0)},
@@ -106,10 +107,10 @@ class SmallMissionGenerator {
             level += between(1.0, 10.0);
             power_w += between(0.3, 5.0) * 4.0 / static_cast<double>(std::max<std::size_t>(count, 4));
         }
-        const auto name = std::string("component ") + std::to_string(problem.compute.components.size());
-        problem.compute.components.push_back({name, compute::make_power_profile(name, {"q"}, nodes)});
+        const auto name = std::string("component ") + std::to_string(problem.setup.compute.components.size());
+        problem.setup.compute.components.push_back({name, compute::make_power_profile(name, {"q"}, nodes)});
         const auto shape = maybe(0.5) ? mission::UtilityShape::linear : mission::UtilityShape::square_root;
-        problem.utilities.push_back(mission::Utility{0, between(0.2, 1.0), shape, {}, {}});
+        problem.setup.utilities.push_back(mission::Utility{0, between(0.2, 1.0), shape, {}, {}});
         problem.plan.choices.push_back({{levels}, maybe(0.5)});
     }
 
@@ -124,7 +125,7 @@ class SmallMissionGenerator {
 
     /// One that the least schedule takes a part of.
     void add_battery(mission::PlanningProblem& problem) {
-        auto& battery = problem.battery;
+        auto& battery = problem.setup.battery;
         battery.resistance_ohm = between(0.02, 0.12);
         battery::TheveninCircuit circuit;
         auto& [soc, voltage] = circuit.open_circuit;
@@ -135,11 +136,12 @@ class SmallMissionGenerator {
         circuit.rc_resistance_ohm = maybe(0.8) ? between(0.0, 0.1) : 0.0;
         circuit.rc_time_constant_s = between(5.0, 120.0);
         battery.thevenin = circuit;
-        problem.initial_soc_percent = maybe(0.5) ? 100.0 : between(60.0, 100.0);
-        problem.reserve_soc_percent = maybe(0.4) ? 0.0 : between(1.0, 30.0);
+        problem.setup.initial_soc_percent = maybe(0.5) ? 100.0 : between(60.0, 100.0);
+        problem.setup.reserve_soc_percent = maybe(0.4) ? 0.0 : between(1.0, 30.0);
         battery.capacity_ah = 100.0;
-        const double spent_percent = problem.initial_soc_percent - *simulated_least(problem).summary.final_soc_percent;
-        const double budget_percent = problem.initial_soc_percent - problem.reserve_soc_percent;
+        const double spent_percent =
+            problem.setup.initial_soc_percent - *simulated_least(problem).summary.final_soc_percent;
+        const double budget_percent = problem.setup.initial_soc_percent - problem.setup.reserve_soc_percent;
         battery.capacity_ah *= spent_percent / budget_percent / between(0.45, 0.95);
     }
 
@@ -165,7 +167,7 @@ inline SmallMission small_mission(unsigned seed) { return SmallMissionGenerator(
 class EverySchedule {
   public:
     EverySchedule(const mission::PlanningProblem& problem, const mission::PlanningTables& planner)
-        : problem_(problem), slots_(mission::make_slots(problem)), load_(mission::make_mission_load(problem)) {
+        : problem_(problem), slots_(mission::make_slots(problem)), load_(mission::make_mission_load(problem.setup)) {
         const auto& runs = planner.depletions.configurations;
         for (std::size_t c = 0; c < runs.size(); ++c) choices_.push_back({runs[c], planner.utility_per_s[c]});
         free_choices_ = planner.free_choices;
@@ -175,7 +177,7 @@ class EverySchedule {
     /// The most utility a second of those that land with the reserve; none if none does. Only what has more than
     /// `known` is looked for, if that is the utility of one that does.
     std::optional<double> max_utility(std::optional<double> known = std::nullopt) const {
-        std::map<Run, std::vector<State>> now{{Run{}, {State{problem_.initial_soc_percent, 0.0, 0.0}}}};
+        std::map<Run, std::vector<State>> now{{Run{}, {State{problem_.setup.initial_soc_percent, 0.0, 0.0}}}};
         double duration_s = 0.0;
         for (std::size_t i = 0; i < slots_.size(); ++i) {
             std::map<Run, std::vector<State>> next;
@@ -196,7 +198,7 @@ class EverySchedule {
         for (const auto& [run, states] : now) {
             if (!may_end(run, slots_.size())) continue;
             for (const auto& state : states)
-                if (state.soc_percent >= problem_.reserve_soc_percent)
+                if (state.soc_percent >= problem_.setup.reserve_soc_percent)
                     most = std::max(most.value_or(-1.0), state.utility / duration_s);
         }
         return most;
@@ -222,7 +224,7 @@ class EverySchedule {
 
     /// The charge over the slots if the least is drawn in each.
     void fly_least() {
-        State state{problem_.initial_soc_percent, 0.0, 0.0};
+        State state{problem_.setup.initial_soc_percent, 0.0, 0.0};
         for (std::size_t i = 0; i < slots_.size(); ++i) {
             least_percent_.push_back(state.soc_percent);
             std::size_t least = 0;  // the choices are in the order of their power
@@ -239,10 +241,10 @@ class EverySchedule {
 
     /// What a battery of less charge has to have at least: it takes no less to the end than the one above.
     double needed_percent(std::size_t i) const {
-        return problem_.reserve_soc_percent + least_percent_[i] - least_percent_.back() - 1e-6;
+        return problem_.setup.reserve_soc_percent + least_percent_[i] - least_percent_.back() - 1e-6;
     }
 
-    double whole_s() const { return mission::timeline_of(problem_.duration_s).duration_s; }
+    double whole_s() const { return mission::timeline_of(problem_.setup.duration_s).duration_s; }
 
     /// The most utility that any choice has in the slots from `i` on.
     double most_from(std::size_t i) const {
@@ -284,8 +286,8 @@ class EverySchedule {
         const auto power_w = [&](double time_s) { return mission::power_w(segment, time_s); };
         for (const auto& state : states) {
             const auto end =
-                battery::discharge(problem_.battery, {power_w, segment.start_s, segment.end_s},
-                                   {state.soc_percent, state.rc_voltage_v}, {2.0, problem_.cutoff_voltage_v});
+                battery::discharge(problem_.setup.battery, {power_w, segment.start_s, segment.end_s},
+                                   {state.soc_percent, state.rc_voltage_v}, {2.0, problem_.setup.cutoff_voltage_v});
             if (end.ended_at_s() || end.undeliverable) continue;
             to.push_back({end.soc_percent, end.rc_voltage_v,
                           state.utility + choices_[choice].utility_per_s * slots_[i].duration_s()});

@@ -17,14 +17,14 @@ const flight::PerPhase<double> durations{{100.0, 600.0, 50.0}};
 /// 100 % are 10 Wh, or 36 kJ; 15 W to compute and 5 W mechanical over 1000 s take 55.6 points.
 Mission steady_flight() {
     Mission mission;
-    mission.name = "steady";
-    mission.duration_s[flight::Phase::cruise] = 1000.0;
-    mission.battery = {"", 10.0, 0.0, 1.0};
-    mission.compute.components.push_back({"load", compute::make_power_profile("load", {}, {{{}, 15.0, {}}})});
+    mission.setup.name = "steady";
+    mission.setup.duration_s[flight::Phase::cruise] = 1000.0;
+    mission.setup.battery = {"", 10.0, 0.0, 1.0};
+    mission.setup.compute.components.push_back({"load", compute::make_power_profile("load", {}, {{{}, 15.0, {}}})});
     mission.schedule = {{flight::Phase::cruise, 0.0, 1000.0, {{0, {}}}}};
-    mission.mechanical = mechanical::MechanicalModel();
-    mission.mechanical->phases[flight::Phase::cruise].fourier = {0.01, 5.0, {}, {}};
-    mission.mechanical->phases[flight::Phase::cruise].duration_s = 1000.0;
+    mission.setup.mechanical = mechanical::MechanicalModel();
+    mission.setup.mechanical->phases[flight::Phase::cruise].fourier = {0.01, 5.0, {}, {}};
+    mission.setup.mechanical->phases[flight::Phase::cruise].duration_s = 1000.0;
     return mission;
 }
 
@@ -70,7 +70,7 @@ TEST(Disturbance, TogetherMultiplyFirstAndAddThenInAnyOrder) {
 
 TEST(Disturbance, AddsPowerWhereNothingFlew) {
     auto mission = steady_flight();
-    mission.mechanical.reset();
+    mission.setup.mechanical.reset();
     Disturbance wind;
     wind.mechanical_factor = 2.0;
     wind.mechanical_w = 3.0;

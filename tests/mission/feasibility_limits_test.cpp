@@ -27,9 +27,9 @@ MissionVariation paper(const std::string& name, double resistance_ohm, double re
     return [=](double cruise_s) {
         auto mission = read_mission(path, {true, cruise_s});
         std::visit(
-            [&](MissionSetup& setup) {
-                if (resistance_ohm > 0.0) setup.battery = {"", 3.6, resistance_ohm, 3.4};
-                setup.reserve_soc_percent = reserve_soc_percent;
+            [&](auto& either) {
+                if (resistance_ohm > 0.0) either.setup.battery = {"", 3.6, resistance_ohm, 3.4};
+                either.setup.reserve_soc_percent = reserve_soc_percent;
             },
             mission);
         return mission;
@@ -74,7 +74,7 @@ TEST(LargestPayload, EndsOnTheReserve) {
 
 TEST(LargestPayload, EndsWhereTheBatteryCannotDeliver) {
     auto mission = std::get<Mission>(paper("mechanical-only", 0.0, 0.0)(600.0));
-    mission.battery = {"", 11.1, 0.5, 100.0};  // charge enough, but 61.605 W at most
+    mission.setup.battery = {"", 11.1, 0.5, 100.0};  // charge enough, but 61.605 W at most
     const auto most = largest_payload(mission);
     EXPECT_EQ(most.limited_by, LimitingFactor::power);
     EXPECT_GT(most.residual_percent, 10.0);
@@ -87,7 +87,7 @@ TEST(LargestPayload, HasNoAnswerWhereTheMissionDoesNotLandAsItIs) {
 }
 
 MissionVariant with_reserve(Mission mission, double reserve_percent) {
-    mission.reserve_soc_percent = reserve_percent;
+    mission.setup.reserve_soc_percent = reserve_percent;
     return mission;
 }
 
@@ -105,7 +105,7 @@ TEST(PathLimits, CountTheCirclesThatTheReserveAllows) {
     EXPECT_EQ(most.limited_by, LimitingFactor::charge);
     EXPECT_NEAR(most.final_soc_percent,
                 simulate(std::get<Mission>(mission_of(most.value))).summary.final_soc_percent.value(), 1e-12);
-    EXPECT_EQ(reach_unit_of(std::get<Mission>(mission_of(3.0))), ReachUnit::circles);
+    EXPECT_EQ(reach_unit_of(std::get<Mission>(mission_of(3.0)).setup), ReachUnit::circles);
     const auto too_far = [&](double circles) { return with_reserve(std::get<Mission>(mission_of(circles)), 90.0); };
     EXPECT_THROW(max_circles(too_far), NoResultError);
 }
@@ -113,7 +113,7 @@ TEST(PathLimits, CountTheCirclesThatTheReserveAllows) {
 TEST(PathLimits, FindTheFarthestPlaceToReturnFrom) {
     const FlightPath path{{path_element(Leg{6000.0, 0.0}), path_element(Leg{9000.0, 90.0})}};
     const Wind wind{5.0, 0.0};
-    EXPECT_EQ(reach_unit_of(path_mission(path)), ReachUnit::return_m);
+    EXPECT_EQ(reach_unit_of(path_mission(path).setup), ReachUnit::return_m);
     const auto mission_of = [&](double after_m) {
         return with_reserve(path_mission(out_and_back(path, after_m, {}), wind), 20.0);
     };
@@ -152,7 +152,7 @@ TEST(PathLimits, StopWhereTheWindForbidsTheWayBack) {
 TEST(PathLimits, KeepTheReserveWithAChance) {
     const auto mission_of = [](double circles) {
         auto mission = path_mission({{path_element(Circles{100.0, circles})}}, {3.0, 0.0, 1.0, 10.0});
-        mission.uncertainty.level_sd_percent[flight::Phase::cruise] = 4.0;
+        mission.setup.uncertainty.level_sd_percent[flight::Phase::cruise] = 4.0;
         return with_reserve(std::move(mission), 30.0);
     };
     const auto certain = max_circles(mission_of);
@@ -163,7 +163,7 @@ TEST(PathLimits, KeepTheReserveWithAChance) {
     EXPECT_GE(likely.residual_percent, -1e-6);
     const auto spare_percent = [&](double circles) {
         const auto mission = std::get<Mission>(mission_of(circles));
-        return draw_landings(mission, collect_uncertainty(mission)).spare_percent(0.95);
+        return draw_landings(mission, collect_uncertainty(mission.setup)).spare_percent(0.95);
     };
     EXPECT_GE(spare_percent(likely.value), 0.0);
     EXPECT_LT(spare_percent(likely.value + 1.0), 0.0);
@@ -175,7 +175,7 @@ TEST(PathLimits, KeepTheReserveWithAChance) {
 MissionVariation paper_plan(double reserve_soc_percent) {
     return [=](double cruise_s) {
         auto problem = std::get<PlanningProblem>(read_mission(test::paper_mission_path("plan"), {true, cruise_s}));
-        problem.reserve_soc_percent = reserve_soc_percent;
+        problem.setup.reserve_soc_percent = reserve_soc_percent;
         return problem;
     };
 }
@@ -198,10 +198,10 @@ TEST(InfeasibilityReport, NamesWhatWouldDo) {
     EXPECT_NEAR(final_soc(with_minimum_energy_schedule(other)), 9.0 + *report.min_fixed_surplus_percent, 1e-6);
     for (const double step : {-1e-6, 1e-6}) {
         other = mission;
-        other.reserve_soc_percent = *report.reserve_soc_percent + step;
+        other.setup.reserve_soc_percent = *report.reserve_soc_percent + step;
         EXPECT_EQ(plan_mission(other).plan.feasible, step < 0.0);
         other = mission;
-        other.battery.capacity_ah = *report.capacity_ah - step;
+        other.setup.battery.capacity_ah = *report.capacity_ah - step;
         EXPECT_EQ(plan_mission(other).plan.feasible, step < 0.0);
     }
 }

@@ -58,8 +58,8 @@ TEST(FlightReplanner, ExpectsFlightsToDifferAsTheMissionSaysTheyDo) {
     double energy_j = 0.0;
     double squares = 0.0;
     for (const auto phase : all_phases) {
-        problem.uncertainty.level_sd_percent[phase] = 10.0;
-        const double own_j = mean_level_w(problem, phase) * problem.duration_s[phase];
+        problem.setup.uncertainty.level_sd_percent[phase] = 10.0;
+        const double own_j = mean_level_w(problem.setup, phase) * problem.setup.duration_s[phase];
         energy_j += own_j;
         squares += own_j * own_j;
     }
@@ -74,8 +74,8 @@ TEST(FlightReplanner, ExpectsFlightsToDifferAsTheMissionSaysTheyDo) {
     const auto by_flights = decided(std::nullopt);
     EXPECT_EQ(by_flights, decided(10.0 * std::sqrt(squares) / energy_j));
     EXPECT_NE(by_flights, decided(0.0));
-    for (const auto phase : all_phases) problem.uncertainty.level_sd_percent[phase].reset();
-    problem.mechanical->phases[Phase::cruise].level_spread.reset();
+    for (const auto phase : all_phases) problem.setup.uncertainty.level_sd_percent[phase].reset();
+    problem.setup.mechanical->phases[Phase::cruise].level_spread.reset();
     EXPECT_EQ(decided(std::nullopt), decided(5.0)) << "nothing says how they differ";
 }
 

@@ -56,26 +56,26 @@ Mission scheduled(const std::string& text, const std::filesystem::path& path) {
 
 TEST(MissionFile, ReadsAMission) {
     const auto mission = scheduled(good, mission_folder() / "m.toml");
-    EXPECT_EQ(mission.name, "test");
-    EXPECT_FALSE(mission.mechanical);
-    EXPECT_EQ(mission.duration_s[flight::Phase::cruise], 600.0);
-    EXPECT_EQ(mission.battery.resistance_ohm, 0.1);
-    EXPECT_EQ(mission.initial_soc_percent, 90.0);
+    EXPECT_EQ(mission.setup.name, "test");
+    EXPECT_FALSE(mission.setup.mechanical);
+    EXPECT_EQ(mission.setup.duration_s[flight::Phase::cruise], 600.0);
+    EXPECT_EQ(mission.setup.battery.resistance_ohm, 0.1);
+    EXPECT_EQ(mission.setup.initial_soc_percent, 90.0);
     ASSERT_EQ(mission.schedule.size(), 5U);
     EXPECT_EQ(mission.schedule[2].start_s, 240.0);
     EXPECT_EQ(mission.schedule[2].end_s, 360.0);
-    EXPECT_EQ(power_w(mission.compute, mission.schedule[2].run), 42.0);
-    EXPECT_EQ(power_w(mission.compute, mission.schedule[0].run), 20.0);
+    EXPECT_EQ(power_w(mission.setup.compute, mission.schedule[2].run), 42.0);
+    EXPECT_EQ(power_w(mission.setup.compute, mission.schedule[0].run), 20.0);
 }
 
 TEST(MissionFile, HasDefaults) {
     const auto text =
         "mechanical = \"opterra.toml\"\nbattery = { voltage_v = 4, resistance_ohm = 0, capacity_ah = 1 }\n";
     const auto mission = scheduled(text, mission_folder() / "flight.toml");
-    EXPECT_EQ(mission.name, "flight");
-    EXPECT_EQ(mission.duration_s.values, (std::array{28.0, 600.0, 60.0}));
-    EXPECT_EQ(mission.phase_clock, mechanical::PhaseTimeScaling::stretched);
-    EXPECT_EQ(mission.initial_soc_percent, 100.0);
+    EXPECT_EQ(mission.setup.name, "flight");
+    EXPECT_EQ(mission.setup.duration_s.values, (std::array{28.0, 600.0, 60.0}));
+    EXPECT_EQ(mission.setup.phase_clock, mechanical::PhaseTimeScaling::stretched);
+    EXPECT_EQ(mission.setup.initial_soc_percent, 100.0);
     ASSERT_EQ(mission.schedule.size(), 3U);
     EXPECT_TRUE(mission.schedule[1].run.empty());
 }
@@ -85,13 +85,13 @@ TEST(MissionFile, ReadsWhatTheBatteryIsHeldTo) {
     const auto mission =
         scheduled(with("initial_soc", "capacity_ah = 2.5\ncutoff_voltage_v = 9\nreserve_soc_percent = 20\ninitial_soc"),
                   folder / "m.toml");
-    EXPECT_EQ(mission.battery.capacity_ah, 2.5);
-    EXPECT_EQ(mission.cutoff_voltage_v, 9.0);
-    EXPECT_EQ(mission.reserve_soc_percent, 20.0);
+    EXPECT_EQ(mission.setup.battery.capacity_ah, 2.5);
+    EXPECT_EQ(mission.setup.cutoff_voltage_v, 9.0);
+    EXPECT_EQ(mission.setup.reserve_soc_percent, 20.0);
     const auto plain = scheduled(good, folder / "m.toml");
-    EXPECT_EQ(plain.battery.capacity_ah, 3.0);
-    EXPECT_EQ(plain.cutoff_voltage_v, 0.0);
-    EXPECT_EQ(plain.reserve_soc_percent, 0.0);
+    EXPECT_EQ(plain.setup.battery.capacity_ah, 3.0);
+    EXPECT_EQ(plain.setup.cutoff_voltage_v, 0.0);
+    EXPECT_EQ(plain.setup.reserve_soc_percent, 0.0);
 }
 
 TEST(MissionFile, ReadsATheveninBattery) {
@@ -101,11 +101,11 @@ TEST(MissionFile, ReadsATheveninBattery) {
                "rc_time_constant_s = 30\n[open_circuit]\nsoc_percent = [0, 100]\nvoltage_v = [9.9, 12.5]\n"
                "[intervals]\ncapacity_ah = [1.8, 2.2]\n");
     const std::string text = "mechanical = \"opterra.toml\"\nbattery = \"pack.toml\"\n";
-    const auto own = scheduled(text, folder / "m.toml").battery;
+    const auto own = scheduled(text, folder / "m.toml").setup.battery;
     ASSERT_TRUE(own.thevenin);
     EXPECT_EQ(own.thevenin->rc_time_constant_s, 30.0);
     EXPECT_TRUE(own.intervals.capacity_ah);
-    const auto other = scheduled(text + "capacity_ah = 3\n", folder / "m.toml").battery;
+    const auto other = scheduled(text + "capacity_ah = 3\n", folder / "m.toml").setup.battery;
     EXPECT_EQ(other.capacity_ah, 3.0);
     EXPECT_FALSE(other.intervals.capacity_ah);  // it was of the other capacity
 }
@@ -115,8 +115,8 @@ TEST(MissionFile, TakesDurationsFromTheMissionFirst) {
         "mechanical = \"opterra.toml\"\nduration_s = { cruise = 900 }\nphase_clock = \"absolute\"\n"
         "battery = { voltage_v = 4, resistance_ohm = 0, capacity_ah = 1 }\n";
     const auto mission = scheduled(text, mission_folder() / "m.toml");
-    EXPECT_EQ(mission.duration_s.values, (std::array{28.0, 900.0, 60.0}));
-    EXPECT_EQ(mission.phase_clock, mechanical::PhaseTimeScaling::absolute);
+    EXPECT_EQ(mission.setup.duration_s.values, (std::array{28.0, 900.0, 60.0}));
+    EXPECT_EQ(mission.setup.phase_clock, mechanical::PhaseTimeScaling::absolute);
 }
 
 TEST(MissionFile, ReadsModelsRelativeToTheMissionFile) {

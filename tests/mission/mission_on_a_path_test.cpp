@@ -32,7 +32,7 @@ const path::FlightPath up_and_on{{path_element(Leg{1300.0, 0.0}), path_element(H
 TEST(MissionOnAPath, IsFlownBySimulation) {
     const auto mission = path_mission(up_and_on);
     const auto flown = simulate(mission);
-    const double energy_wh = energy_j(*mission.cruise_path) / 3600.0;
+    const double energy_wh = energy_j(*mission.setup.cruise_path) / 3600.0;
     EXPECT_NEAR(flown.summary.mechanical_energy_wh, energy_wh, 1e-9);
     EXPECT_NEAR(*flown.summary.final_soc_percent, 100.0 - energy_wh / 10.0 * 100.0, 1e-9);  // 10 V, 1 Ah
     const auto is_jump = [](const SocRow& a, const SocRow& b) {
@@ -52,29 +52,29 @@ TEST(MissionOnAPath, IsTabledAsItIsSimulated) {
     auto mission = path_mission({{path_element(Leg{1300.0, 0.0}), path_element(Circles{60.0, 3.3}),
                                   path_element(Leg{900.0, 200.0}, 14.5, 70.0)}},
                                 {5.0, 30.0});
-    mission.battery.resistance_ohm = 0.2;
-    mission.reserve_soc_percent = 10.0;
-    ASSERT_GT(mission.cruise_path->pieces->size(), 20U);
+    mission.setup.battery.resistance_ohm = 0.2;
+    mission.setup.reserve_soc_percent = 10.0;
+    ASSERT_GT(mission.setup.cruise_path->pieces->size(), 20U);
     const double simulated = *simulate(mission).summary.final_soc_percent;
     EXPECT_NEAR(surplus_percent(mission), simulated - 10.0, 1e-7);
-    battery::Discharge state{{mission.initial_soc_percent}};
-    for (const auto& segment : load_segments(mission, mission.schedule))
-        state = advance_segment(mission.battery, 0.0, segment, state);
+    battery::Discharge state{{mission.setup.initial_soc_percent}};
+    for (const auto& segment : load_segments(mission.setup, mission.schedule))
+        state = advance_segment(mission.setup.battery, 0.0, segment, state);
     EXPECT_NEAR(state.soc_percent, simulated, 1e-7);
-    const auto whole = load_segment(make_mission_load(mission), mission.schedule.front());
-    EXPECT_NEAR(mechanical_energy_j(whole, whole.end_s), energy_j(*mission.cruise_path), 1e-9);
-    EXPECT_EQ(mechanical_w(whole, 10.0), mission.cruise_path->pieces->front().power_w);
+    const auto whole = load_segment(make_mission_load(mission.setup), mission.schedule.front());
+    EXPECT_NEAR(mechanical_energy_j(whole, whole.end_s), energy_j(*mission.setup.cruise_path), 1e-9);
+    EXPECT_EQ(mechanical_w(whole, 10.0), mission.setup.cruise_path->pieces->front().power_w);
     // More than the battery can deliver in one piece alone.
-    mission.battery.resistance_ohm = 100.0 / 4.0 / 25.0;
+    mission.setup.battery.resistance_ohm = 100.0 / 4.0 / 25.0;
     EXPECT_LT(surplus_percent(mission), 0.0);
 }
 
 TEST(MissionOnAPath, DiffersWithTheWind) {
     auto mission =
         path_mission({{path_element(Leg{4000.0, 0.0}), path_element(Leg{4000.0, 180.0})}}, {4.0, 0.0, 1.5, 20.0});
-    mission.uncertainty.level_sd_percent = {{0.0, 0.0, 0.0}};
+    mission.setup.uncertainty.level_sd_percent = {{0.0, 0.0, 0.0}};
     const auto drawn =
-        sample_flights({mission, mission.schedule, std::nullopt, ScheduleOrigin::given}, {}, {4000, 7, 0});
+        sample_flights({mission.setup, mission.schedule, std::nullopt, ScheduleOrigin::given}, {}, {4000, 7, 0});
     // By the same numbers, flown one by one.
     std::mt19937_64 random(5);
     std::normal_distribution<double> normal;
@@ -83,7 +83,7 @@ TEST(MissionOnAPath, DiffersWithTheWind) {
     constexpr int flights = 4000;
     for (int i = 0; i < flights; ++i) {
         const Wind wind{std::max(0.0, 4.0 + 1.5 * normal(random)), 20.0 * normal(random)};
-        const auto flown = compute_cruise(mission.cruise_path->plan, wind, path::InfeasibleLegPolicy::refuse);
+        const auto flown = compute_cruise(mission.setup.cruise_path->plan, wind, path::InfeasibleLegPolicy::refuse);
         const double final_percent = 100.0 - energy_j(flown) / 3600.0 * 10.0;
         sum += final_percent;
         square_sum += final_percent * final_percent;
@@ -98,16 +98,17 @@ TEST(MissionOnAPath, DiffersWithTheWind) {
     EXPECT_EQ(drawn.sources.varied, expected);
     // Where a drawn wind leaves less than 2 % of the airspeed (0.26 m/s) over ground, the flight fails.
     const auto windy = path_mission({{path_element(Leg{40.0, 0.0})}}, {12.0, 0.0, 2.0, 0.0});
-    const auto stormy = sample_flights({windy, windy.schedule, std::nullopt, ScheduleOrigin::given}, {}, {4000, 7, 0});
+    const auto stormy =
+        sample_flights({windy.setup, windy.schedule, std::nullopt, ScheduleOrigin::given}, {}, {4000, 7, 0});
     EXPECT_NEAR(stormy.probability_below_reserve, 0.5 * std::erfc(0.37 / std::sqrt(2.0)), 0.025);
 }
 
 /// The level moves the power of every piece by the same part.
 TEST(MissionOnAPath, DiffersWithTheLevel) {
     auto mission = path_mission(up_and_on);
-    mission.uncertainty.level_sd_percent[flight::Phase::cruise] = 5.0;
+    mission.setup.uncertainty.level_sd_percent[flight::Phase::cruise] = 5.0;
     const auto drawn =
-        sample_flights({mission, mission.schedule, std::nullopt, ScheduleOrigin::given}, {}, {4000, 3, 0});
+        sample_flights({mission.setup, mission.schedule, std::nullopt, ScheduleOrigin::given}, {}, {4000, 3, 0});
     const double used = 100.0 - *simulate(mission).summary.final_soc_percent;
     EXPECT_NEAR(drawn.final_soc_sd_percent, 0.05 * used, 0.004 * used);
 }

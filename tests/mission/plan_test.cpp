@@ -21,7 +21,7 @@ using test::paper_problem;
 
 PlanningProblem paper_with_reserve(double reserve_soc_percent) {
     auto mission = paper_problem("plan");
-    mission.reserve_soc_percent = reserve_soc_percent;
+    mission.setup.reserve_soc_percent = reserve_soc_percent;
     return mission;
 }
 
@@ -36,8 +36,8 @@ double best_simulated(const PlanningProblem& mission) {
         for (std::size_t i = 0; i < slots.size(); ++i) {
             schedule.push_back({slots[i], slots[i].fixed.value_or(planner.depletions.configurations[choices[i]])});
         }
-        const auto summary = simulate(mission, schedule, {1e3, 1.0}).summary;
-        if (summary.feasible && *summary.final_soc_percent >= mission.reserve_soc_percent) {
+        const auto summary = simulate(mission.setup, schedule, {1e3, 1.0}).summary;
+        if (summary.feasible && *summary.final_soc_percent >= mission.setup.reserve_soc_percent) {
             best = std::max(best, *summary.utility);
         }
         std::size_t i = 0;
@@ -49,13 +49,13 @@ double best_simulated(const PlanningProblem& mission) {
 TEST(Plan, ReachesThePapersAdaptiveScheduleWithItsReserve) {
     const auto adaptive = simulate(paper_mission("adaptive")).summary;
     const auto mission = paper_problem("plan");
-    EXPECT_NEAR(mission.reserve_soc_percent, *adaptive.final_soc_percent, 1e-9);
-    EXPECT_LE(mission.reserve_soc_percent, *adaptive.final_soc_percent);
+    EXPECT_NEAR(mission.setup.reserve_soc_percent, *adaptive.final_soc_percent, 1e-9);
+    EXPECT_LE(mission.setup.reserve_soc_percent, *adaptive.final_soc_percent);
     const auto plan = plan_mission(mission);
     ASSERT_TRUE(plan.plan.feasible);
     EXPECT_GE(*plan.summary.utility, *adaptive.utility - 1e-12);
     EXPECT_LE(plan.plan.utility_bound, *plan.summary.utility * 1.001);
-    EXPECT_GE(*plan.summary.final_soc_percent, mission.reserve_soc_percent);
+    EXPECT_GE(*plan.summary.final_soc_percent, mission.setup.reserve_soc_percent);
 }
 
 TEST(Plan, SpendsWhatTheReserveLeaves) {
@@ -92,9 +92,9 @@ TEST(Plan, IsTheBestOfAllSimulatedSchedules) {
         mission.plan.slot_s = 100.0;
         mission.plan.choices[0].levels = {{5.8, 12.0 + 20.0 * uniform(random)}};
         mission.plan.choices[1].levels = {{32.0}};
-        mission.battery = {"", 3.6, i % 2 == 0 ? 0.0 : 0.01, 3.4};
+        mission.setup.battery = {"", 3.6, i % 2 == 0 ? 0.0 : 0.01, 3.4};
         const double least = simulate(with_minimum_energy_schedule(mission)).summary.final_soc_percent.value();
-        mission.reserve_soc_percent = uniform(random) * least;
+        mission.setup.reserve_soc_percent = uniform(random) * least;
         const auto plan = plan_mission(mission);
         const double best = best_simulated(mission);
         ASSERT_EQ(plan.plan.feasible, best >= 0.0);
@@ -142,7 +142,7 @@ TEST(Plan, MayBeMadeAnewInFlight) {
     EXPECT_EQ(rest.schedule.front().start_s, 300.0 - 28.0);
     EXPECT_EQ(rest.schedule.front().run, (compute::Configuration{{0, {32.0}}, {1, {448.0}}}));  // still fixed
     double utility_before = 0.0;
-    const auto timeline = timeline_of(mission.duration_s);
+    const auto timeline = timeline_of(mission.setup.duration_s);
     for (const auto& s : whole.schedule) {
         const double starts_s = timeline.start_s[s.phase];
         const double before_s = std::min(starts_s + s.end_s, 300.0) - (starts_s + s.start_s);
@@ -169,10 +169,10 @@ TEST(Plan, ReplansWithWhatRuns) {
 
 TEST(Plan, AnswersWhereTheBatteryIsCharged) {
     auto mission = paper_with_reserve(0.0);
-    mission.initial_soc_percent = 100.0;
-    mission.mechanical->phases[flight::Phase::takeoff].fourier.a0_w = -60.0;  // down a slope: full at once
+    mission.setup.initial_soc_percent = 100.0;
+    mission.setup.mechanical->phases[flight::Phase::takeoff].fourier.a0_w = -60.0;  // down a slope: full at once
     EXPECT_THROW(plan_mission(mission), InputError) << "nobody said that it may";
-    mission.may_charge = true;
+    mission.setup.may_charge = true;
     const auto plan = plan_mission(mission);
     ASSERT_TRUE(plan.plan.feasible);
     EXPECT_GE(*plan.summary.final_soc_percent, 0.0);
@@ -186,18 +186,18 @@ TEST(Plan, SaysThatItIsInfeasible) {
     EXPECT_TRUE(plan.plan.deliverable);
     EXPECT_NEAR(*plan.summary.final_soc_percent, 7.4306, 1e-4);
     auto weak = paper_with_reserve(0.0);
-    weak.battery = {"", 11.1, 0.5, 3.2};
+    weak.setup.battery = {"", 11.1, 0.5, 3.2};
     EXPECT_FALSE(plan_mission(weak).plan.deliverable);
     EXPECT_TRUE(plan_mission(weak).summary.undeliverable);
 }
 
 TEST(Plan, KeepsAMarginForFlightsThatDiffer) {
     auto mission = paper_with_reserve(2.0);
-    mission.uncertainty.level_sd_percent = {};
+    mission.setup.uncertainty.level_sd_percent = {};
     EXPECT_THROW(plan_mission(mission, 0.95), InputError);
     for (const auto phase : flight::all_phases) {
-        mission.mechanical->phases[phase].flights = 5;
-        mission.mechanical->phases[phase].level_spread = {5, 0.2, 0.1, 20.0};
+        mission.setup.mechanical->phases[phase].flights = 5;
+        mission.setup.mechanical->phases[phase].level_spread = {5, 0.2, 0.1, 20.0};
     }
     const auto plan = plan_mission(mission, 0.95);
     ASSERT_TRUE(plan.plan.feasible);
@@ -207,7 +207,7 @@ TEST(Plan, KeepsAMarginForFlightsThatDiffer) {
     EXPECT_NEAR(plan.margin_percent, 2.1318468 * sd_j / (3.416 * 3.2 * 36.0), 0.03);
     EXPECT_GE(*plan.summary.final_soc_percent, 2.0 + plan.margin_percent);
     EXPECT_NEAR(plan_mission(mission, 0.5).margin_percent, 0.0, 0.012);
-    mission.uncertainty.capacity_sd_percent = 3.0;
+    mission.setup.uncertainty.capacity_sd_percent = 3.0;
     const auto wider = plan_mission(mission, 0.95);
     EXPECT_GT(wider.margin_percent, 1.5 * plan.margin_percent) << "what is drawn counts, whatever it is";
     EXPECT_EQ(wider.sources->varied.size(), plan.sources->varied.size() + 1);
@@ -220,10 +220,10 @@ TEST(Plan, IsWrittenAsAMission) {
     const auto plan = plan_mission(mission);
     const auto folder = test::scratch_dir();
     const auto text =
-        planned_mission_toml(read_file(path), path, plan.mission.compute, plan.mission.schedule, folder).text;
+        planned_mission_toml(read_file(path), path, plan.mission.setup.compute, plan.mission.schedule, folder).text;
     const auto again = std::get<Mission>(parse_mission(text, folder / "planned.toml"));
-    EXPECT_EQ(again.name, "plan");
-    EXPECT_EQ(again.reserve_soc_percent, paper_problem("plan").reserve_soc_percent);
+    EXPECT_EQ(again.setup.name, "plan");
+    EXPECT_EQ(again.setup.reserve_soc_percent, paper_problem("plan").setup.reserve_soc_percent);
     const auto summary = simulate(again).summary;
     EXPECT_EQ(summary.final_soc_percent, plan.summary.final_soc_percent);
     EXPECT_EQ(summary.utility, plan.summary.utility);
@@ -241,7 +241,7 @@ WrittenPlan planned_and_written(const std::string& text) {
     const auto problem = parse_mission(text, path, {.allow_unplanned = true});
     const auto plan = plan_mission(std::get<PlanningProblem>(problem));
     const auto written =
-        planned_mission_toml(text, path, plan.mission.compute, plan.mission.schedule, test::source_dir());
+        planned_mission_toml(text, path, plan.mission.setup.compute, plan.mission.schedule, test::source_dir());
     return {plan, written.text, written.lost_comments};
 }
 
@@ -311,9 +311,9 @@ TEST(Plan, IsWrittenWhateverWayTheFileIsWritten) {
 TEST(Planner, DropsWhatIsDominated) {
     auto mission = paper_problem("plan");
     EXPECT_EQ(make_planning_tables(mission).free_choices, 4U);  // longer keys have no utility here
-    mission.utilities[1]->weight = 0.01;
+    mission.setup.utilities[1]->weight = 0.01;
     EXPECT_GT(make_planning_tables(mission).free_choices, 4U);
-    mission.utilities.assign(2, std::nullopt);
+    mission.setup.utilities.assign(2, std::nullopt);
     EXPECT_THROW(make_planning_tables(mission), InputError);
 }
 

@@ -23,8 +23,8 @@ TEST(PreparedMission, LandsAsTheFlightsOfItsPackIndicateToo) {
     auto mission = test::paper_mission("computing-only");
     EXPECT_FALSE(simulate_prepared(prepare_mission(mission)).simulation.summary.by_flights);
     const double left_percent = *simulate(mission).summary.final_soc_percent;
-    mission.battery.flight_estimate = std::make_shared<battery::FlightEstimate>(
-        battery::FlightEstimate{2.0 * mission.battery.capacity_ah, {5.0, 8.0}});
+    mission.setup.battery.flight_estimate = std::make_shared<battery::FlightEstimate>(
+        battery::FlightEstimate{2.0 * mission.setup.battery.capacity_ah, {5.0, 8.0}});
     const auto summary = simulate_prepared(prepare_mission(mission)).simulation.summary;
     EXPECT_NEAR(*summary.final_soc_percent, left_percent, 1e-9);
     ASSERT_TRUE(summary.by_flights);
@@ -38,7 +38,7 @@ TEST(PreparedMission, HasAPlanWhereNoneIsGiven) {
     EXPECT_EQ(flown.simulation.summary.schedule, ScheduleOrigin::optimal);
     EXPECT_TRUE(flown.simulation.summary.keeps_reserve);
     auto infeasible = problem;
-    infeasible.reserve_soc_percent = 60.0;
+    infeasible.setup.reserve_soc_percent = 60.0;
     const auto summary = simulate_prepared(prepare_mission(infeasible)).simulation.summary;
     EXPECT_EQ(summary.schedule, ScheduleOrigin::infeasible);
     EXPECT_FALSE(summary.feasible);
@@ -159,8 +159,8 @@ TEST(AdaptiveFlight, DecidesAsOftenAsItIsTold) {
 
 TEST(AdaptiveFlight, FliesAPackWhoseVoltageFalls) {
     auto mission = paper_problem("adaptive-replanned");
-    mission.battery = battery::read_battery(test::source_dir() / "fits" / "battery" / "synthetic-3s.toml");
-    mission.battery.capacity_ah = 1.05;
+    mission.setup.battery = battery::read_battery(test::source_dir() / "fits" / "battery" / "synthetic-3s.toml");
+    mission.setup.battery.capacity_ah = 1.05;
     for (const double factor : {1.0, 1.1}) {
         const auto summary = flown(mission, {headwind(factor)});
         EXPECT_TRUE(summary.keeps_reserve) << *summary.final_soc_percent;
@@ -170,18 +170,18 @@ TEST(AdaptiveFlight, FliesAPackWhoseVoltageFalls) {
 
 TEST(AdaptiveFlight, ForeseesACutOff) {
     auto mission = paper_problem("adaptive-replanned");
-    mission.battery = battery::read_battery(test::source_dir() / "fits" / "battery" / "synthetic-3s.toml");
-    mission.battery.capacity_ah = 1.05;
-    mission.cutoff_voltage_v = 10.9;
+    mission.setup.battery = battery::read_battery(test::source_dir() / "fits" / "battery" / "synthetic-3s.toml");
+    mission.setup.battery.capacity_ah = 1.05;
+    mission.setup.cutoff_voltage_v = 10.9;
     mission.fixed.clear();
     auto careless = mission;
-    careless.cutoff_voltage_v = 0.0;
+    careless.setup.cutoff_voltage_v = 0.0;
     for (const double factor : {1.0, 1.05}) {
         const auto summary = flown(mission, {headwind(factor)});
         EXPECT_FALSE(summary.cut_off_at_s) << factor;
         EXPECT_TRUE(summary.keeps_reserve) << factor;
         const auto schedule = simulate_prepared(prepare_mission(careless), {}, {headwind(factor)}).schedule;
-        EXPECT_TRUE(simulate(mission, schedule, {}, {headwind(factor)}).summary.cut_off_at_s)
+        EXPECT_TRUE(simulate(mission.setup, schedule, {}, {headwind(factor)}).summary.cut_off_at_s)
             << factor << ": without foresight it is cut off";
     }
 }

@@ -50,7 +50,7 @@ void set_reserve(PlanningProblem& problem) {
     const auto least = with_minimum_energy_schedule(problem);
     auto most = least;
     for (auto& segment : most.schedule) segment.run.front().qos = {problem.plan.choices.front().levels.front().back()};
-    problem.reserve_soc_percent =
+    problem.setup.reserve_soc_percent =
         (*simulate(least).summary.final_soc_percent + *simulate(most).summary.final_soc_percent) / 2.0;
 }
 
@@ -58,10 +58,10 @@ void set_reserve(PlanningProblem& problem) {
 PlanningProblem constant_problem(unsigned seed) {
     auto problem = generated_mission(seed).problem;
     for (const auto phase : all_phases) {
-        auto& curve = problem.mechanical->phases[phase].fourier;
+        auto& curve = problem.setup.mechanical->phases[phase].fourier;
         curve.cos_w.clear();
         curve.sin_w.clear();
-        problem.duration_is_stated[phase] = true;
+        problem.setup.duration_is_stated[phase] = true;
     }
     set_reserve(problem);
     return problem;
@@ -69,16 +69,16 @@ PlanningProblem constant_problem(unsigned seed) {
 
 /// The same with a battery whose state counts and that may be cut off, few slots, and no spread to keep a margin for.
 PlanningProblem with_thevenin(PlanningProblem problem) {
-    problem.battery.resistance_ohm = 0.04;
-    auto& circuit = problem.battery.thevenin.emplace();
+    problem.setup.battery.resistance_ohm = 0.04;
+    auto& circuit = problem.setup.battery.thevenin.emplace();
     circuit.open_circuit = {{0.0, 10.0, 30.0, 60.0, 100.0}, {9.9, 11.0, 11.3, 11.6, 12.5}};
     circuit.rc_resistance_ohm = 0.02;
     circuit.rc_time_constant_s = 40.0;
-    problem.cutoff_voltage_v = 9.6;
+    problem.setup.cutoff_voltage_v = 9.6;
     problem.plan.slot_s = 120.0;
-    problem.uncertainty.level_sd_percent = {};
-    problem.mechanical->flights.clear();
-    for (auto& phase : problem.mechanical->phases.values) phase.level_spread.reset();
+    problem.setup.uncertainty.level_sd_percent = {};
+    problem.setup.mechanical->flights.clear();
+    for (auto& phase : problem.setup.mechanical->phases.values) phase.level_spread.reset();
     set_reserve(problem);
     return problem;
 }
@@ -91,8 +91,8 @@ TEST(Replay, OfTheModelsOwnPowerEndsAsSimulateEnds) {
         SCOPED_TRACE(has_circuit);
         const auto problem = constant_problem(1);
         auto mission = with_minimum_energy_schedule(has_circuit ? with_thevenin(problem) : problem);
-        if (mission.battery.thevenin) mission.utilities.clear();  // hindsight would take long
-        const auto replay = only_replay(mission, flight_of_model("same", mission), with_model_of(mission));
+        if (mission.setup.battery.thevenin) mission.setup.utilities.clear();  // hindsight would take long
+        const auto replay = only_replay(mission, flight_of_model("same", mission.setup), with_model_of(mission.setup));
         const auto& given = *by(replay, ScheduleMethod::given);
         const auto simulated = simulate(mission).summary;
         EXPECT_NEAR(*given.summary.final_soc_percent, *simulated.final_soc_percent, 1e-7);
@@ -108,11 +108,11 @@ TEST(Replay, OfSamplesOfACurveEndsAsTheCurve) {
         SCOPED_TRACE(has_circuit);
         auto problem = generated_mission(11).problem;
         if (has_circuit) problem = with_thevenin(problem);
-        for (const auto phase : all_phases) problem.duration_is_stated[phase] = true;
+        for (const auto phase : all_phases) problem.setup.duration_is_stated[phase] = true;
         auto mission = with_minimum_energy_schedule(problem);
-        if (mission.battery.thevenin) mission.utilities.clear();  // hindsight would take long
+        if (mission.setup.battery.thevenin) mission.setup.utilities.clear();  // hindsight would take long
         const auto replay =
-            only_replay(mission, flight_of_model("same", mission, 1.0, 1.0, 0.05), with_model_of(mission));
+            only_replay(mission, flight_of_model("same", mission.setup, 1.0, 1.0, 0.05), with_model_of(mission.setup));
         EXPECT_NEAR(*by(replay, ScheduleMethod::given)->summary.final_soc_percent,
                     *simulate(mission).summary.final_soc_percent, 2e-4);
     }
@@ -144,7 +144,7 @@ TEST(Replay, HindsightIsAtLeastAsGoodAsEverythingThatKeepsTheReserve) {
         std::mt19937 random(seed);
         auto problem = generated_mission(seed).problem;
         if (seed == 25U) problem = with_thevenin(problem);
-        const auto replay = only_replay(problem, any_flight(problem, random), with_model_of(problem));
+        const auto replay = only_replay(problem, any_flight(problem.setup, random), with_model_of(problem.setup));
         const auto& hindsight = *by(replay, ScheduleMethod::hindsight);
         for (const auto& replayed : replay.schedules) {
             if (!replayed.summary.keeps_reserve) {
@@ -170,7 +170,7 @@ TEST(Replay, HindsightIsAtLeastAsGoodAsEverythingThatKeepsTheReserve) {
 /// Slots alike on a battery without resistance: all ways to spend a part are as good by the slope of the relaxation.
 TEST(Replay, HindsightComesCloseToItsBoundOnManySlots) {
     const auto problem = test::paper_problem("adaptive-replanned");
-    auto options = with_model_of(problem);
+    auto options = with_model_of(problem.setup);
     options.model->phases[Phase::cruise].duration_s = 1517.0;
     options.model->phases[Phase::landing].duration_s = 37.0;
     std::mt19937 random(1);
@@ -185,12 +185,13 @@ TEST(Replay, HindsightComesCloseToItsBoundOnManySlots) {
 /// More power than the model has, which a plan without a margin does not survive, and less.
 TEST(Replay, SaysWhatReplanningWasWorth) {
     const auto problem = constant_problem(1);
-    const auto options = with_model_of(problem);
+    const auto options = with_model_of(problem.setup);
     const std::array missions{MissionVariant(problem)};
-    const std::array flights{flight_of_model("as the model", problem), flight_of_model("headwind", problem, 1.05),
-                             flight_of_model("tailwind", problem, 0.9)};
+    const std::array flights{flight_of_model("as the model", problem.setup),
+                             flight_of_model("headwind", problem.setup, 1.05),
+                             flight_of_model("tailwind", problem.setup, 0.9)};
     const auto replays = replay_flights(missions, flights, options).replays;
-    const auto comparisons = compare_replanned(replays, problem.name, ScheduleMethod::planned);
+    const auto comparisons = compare_replanned(replays, problem.setup.name, ScheduleMethod::planned);
     ASSERT_EQ(comparisons.size(), 3U);
     EXPECT_NE(comparisons[0].verdict, ComparisonOutcome::better) << "nothing was to be learned";
     EXPECT_EQ(comparisons[1].verdict, ComparisonOutcome::better);
@@ -200,7 +201,7 @@ TEST(Replay, SaysWhatReplanningWasWorth) {
     EXPECT_GT(comparisons[2].more_utility, 0.0);
     EXPECT_LT(*comparisons[2].more_soc_percent, 0.0) << "what was saved was spent";
     for (const auto& replay : replays) {
-        EXPECT_GE(*by(replay, ScheduleMethod::planned)->expected_soc_percent, problem.reserve_soc_percent);
+        EXPECT_GE(*by(replay, ScheduleMethod::planned)->expected_soc_percent, problem.setup.reserve_soc_percent);
         EXPECT_FALSE(by(replay, ScheduleMethod::replanned)->expected_soc_percent) << "nobody knew beforehand";
     }
 }
@@ -208,7 +209,7 @@ TEST(Replay, SaysWhatReplanningWasWorth) {
 TEST(Replay, InvariantAndPhasedRunOneConfigurationAllTheWayAndAPhase) {
     auto problem = constant_problem(3);
     problem.fixed.clear();
-    const auto replay = only_replay(problem, flight_of_model("f", problem), with_model_of(problem));
+    const auto replay = only_replay(problem, flight_of_model("f", problem.setup), with_model_of(problem.setup));
     const auto& invariant = *by(replay, ScheduleMethod::invariant);
     EXPECT_EQ(configurations_of(invariant.schedule).size(), 1U);
     EXPECT_TRUE(invariant.summary.keeps_reserve);
@@ -221,16 +222,17 @@ TEST(Replay, InvariantAndPhasedRunOneConfigurationAllTheWayAndAPhase) {
     const auto next = std::ranges::upper_bound(levels, invariant.schedule.front().run.front().qos.front());
     ASSERT_NE(next, levels.end());
     Schedule more;
-    for (const auto phase : all_phases) more.push_back({{phase, 0.0, problem.duration_s[phase]}, {{0, {*next}}}});
-    EXPECT_FALSE(simulate(problem, more).summary.keeps_reserve);
+    for (const auto phase : all_phases) more.push_back({{phase, 0.0, problem.setup.duration_s[phase]}, {{0, {*next}}}});
+    EXPECT_FALSE(simulate(problem.setup, more).summary.keeps_reserve);
 }
 
 TEST(Replay, SpendsWhatDurationsKnownBeforehandAllow) {
     auto problem = constant_problem(5);
-    for (auto& stated : problem.duration_is_stated.values) stated = false;
-    for (const auto phase : all_phases) problem.mechanical->phases[phase].duration_s = problem.duration_s[phase];
-    const auto flight = flight_of_model("short", problem, 1.0, 0.9);
-    auto options = with_model_of(problem);
+    for (auto& stated : problem.setup.duration_is_stated.values) stated = false;
+    for (const auto phase : all_phases)
+        problem.setup.mechanical->phases[phase].duration_s = problem.setup.duration_s[phase];
+    const auto flight = flight_of_model("short", problem.setup, 1.0, 0.9);
+    auto options = with_model_of(problem.setup);
     const auto as_planned = only_replay(problem, flight, options);
     options.durations_are_known = true;
     const auto known = only_replay(problem, flight, options);
@@ -243,9 +245,9 @@ TEST(Replay, SpendsWhatDurationsKnownBeforehandAllow) {
 
 TEST(Replay, ModelsAreOfTheOtherFlightsAlone) {
     auto problem = constant_problem(1);
-    for (auto& stated : problem.duration_is_stated.values) stated = false;
+    for (auto& stated : problem.setup.duration_is_stated.values) stated = false;
     std::vector<mechanical::MeasuredFlight> flights;
-    const auto duration_s = problem.duration_s;
+    const auto duration_s = problem.setup.duration_s;
     const std::array level_w{20.0, 22.0, 30.0};
     for (std::size_t i = 0; i < 3; ++i) {
         flights.push_back(flight_with_power(
@@ -266,22 +268,24 @@ TEST(Replay, ModelsAreOfTheOtherFlightsAlone) {
 
 TEST(Replay, SaysWhetherAGivenModelSawTheFlight) {
     const auto mission = planned_mission(constant_problem(1));
-    auto options = with_model_of(mission);
+    auto options = with_model_of(mission.setup);
     options.model->flights = {{"one", {}}, {"two", {}}};
-    EXPECT_EQ(only_replay(mission, flight_of_model("two", mission), options).model_saw_flight, TrainingOverlap::yes);
-    EXPECT_EQ(only_replay(mission, flight_of_model("three", mission), options).model_saw_flight, TrainingOverlap::no);
+    EXPECT_EQ(only_replay(mission, flight_of_model("two", mission.setup), options).model_saw_flight,
+              TrainingOverlap::yes);
+    EXPECT_EQ(only_replay(mission, flight_of_model("three", mission.setup), options).model_saw_flight,
+              TrainingOverlap::no);
     options.model->flights.clear();
-    EXPECT_EQ(only_replay(mission, flight_of_model("two", mission), options).model_saw_flight,
+    EXPECT_EQ(only_replay(mission, flight_of_model("two", mission.setup), options).model_saw_flight,
               TrainingOverlap::unknown);
 }
 
 TEST(Replay, LeavesOutWhatCannotBeFlown) {
     const auto mission = planned_mission(constant_problem(1));
-    auto cut = flight_of_model("cut", mission);
+    auto cut = flight_of_model("cut", mission.setup);
     cut.power[Phase::landing].reset();
     const std::array missions{MissionVariant(mission)};
-    const std::array flights{cut, flight_of_model("whole", mission)};
-    const auto replays = replay_flights(missions, flights, with_model_of(mission));
+    const std::array flights{cut, flight_of_model("whole", mission.setup)};
+    const auto replays = replay_flights(missions, flights, with_model_of(mission.setup));
     ASSERT_EQ(replays.replays.size(), 1U);
     EXPECT_EQ(replays.replays[0].flight, "whole");
     ASSERT_EQ(replays.not_replayed.size(), 1U);
@@ -291,32 +295,32 @@ TEST(Replay, LeavesOutWhatCannotBeFlown) {
 
 TEST(Replay, RefusesWhatHasNoAnswer) {
     const auto mission = planned_mission(constant_problem(1));
-    const auto flight = flight_of_model("f", mission);
+    const auto flight = flight_of_model("f", mission.setup);
     const std::array missions{MissionVariant(mission)};
     const std::array one{flight};
     EXPECT_THROW(replay_flights(missions, one), NoResultError) << "no other flight";
     const std::array twice{flight, flight};
-    EXPECT_THROW(replay_flights(missions, twice, with_model_of(mission)), UsageError);
+    EXPECT_THROW(replay_flights(missions, twice, with_model_of(mission.setup)), UsageError);
     auto grounded = mission;
-    grounded.mechanical.reset();
+    grounded.setup.mechanical.reset();
     const std::array nothing_flies{MissionVariant(grounded)};
-    EXPECT_THROW(replay_flights(nothing_flies, one, with_model_of(mission)), InputError);
+    EXPECT_THROW(replay_flights(nothing_flies, one, with_model_of(mission.setup)), InputError);
 }
 
 TEST(Replay, CountsPowerBelowZeroAsNothingAndSaysSo) {
     const auto mission = planned_mission(constant_problem(1));
-    const auto flight = flight_with_power("offset", mission.duration_s,
+    const auto flight = flight_with_power("offset", mission.setup.duration_s,
                                           [](auto phase, double) { return phase == Phase::landing ? -3.0 : 20.0; });
-    const auto replay = only_replay(mission, flight, with_model_of(mission));
+    const auto replay = only_replay(mission, flight, with_model_of(mission.setup));
     EXPECT_THAT(replay.notes, ElementsAre(HasSubstr("below 0 counts as 0")));
-    const auto seconds = mission.duration_s[Phase::takeoff] + mission.duration_s[Phase::cruise];
+    const auto seconds = mission.setup.duration_s[Phase::takeoff] + mission.setup.duration_s[Phase::cruise];
     EXPECT_NEAR(replay.measured_mechanical_wh, 20.0 * seconds / 3600.0, 1e-6);
 }
 
 TEST(Replay, OfAMissionWithoutUtilityHasNoHindsight) {
     auto mission = planned_mission(constant_problem(1));
-    mission.utilities.clear();
-    const auto replay = only_replay(mission, flight_of_model("f", mission), with_model_of(mission));
+    mission.setup.utilities.clear();
+    const auto replay = only_replay(mission, flight_of_model("f", mission.setup), with_model_of(mission.setup));
     ASSERT_EQ(replay.schedules.size(), 1U);
     EXPECT_FALSE(replay.schedules[0].regret);
     EXPECT_THAT(replay.notes, ElementsAre(HasSubstr("no utility")));

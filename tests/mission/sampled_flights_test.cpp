@@ -19,8 +19,8 @@ using test::paper_mission;
 /// 20 W +- 5 % over 1000 s from 36 kJ, so that 55.6 +- 2.78 points are lost.
 Mission gaussian_depletion(double reserve_soc_percent) {
     auto mission = test::steady_mission();
-    mission.reserve_soc_percent = reserve_soc_percent;
-    mission.uncertainty.level_sd_percent[flight::Phase::cruise] = 5.0;
+    mission.setup.reserve_soc_percent = reserve_soc_percent;
+    mission.setup.uncertainty.level_sd_percent[flight::Phase::cruise] = 5.0;
     return mission;
 }
 
@@ -48,7 +48,7 @@ TEST(SampledFlights, AgreeWithTheClosedFormOfAGaussianDepletion) {
 
 TEST(SampledFlights, CountEmptyBatteriesAsBelowAnyReserve) {
     auto mission = gaussian_depletion(0.0);
-    mission.initial_soc_percent = 20.0 / 0.36;  // empty in half of the flights
+    mission.setup.initial_soc_percent = 20.0 / 0.36;  // empty in half of the flights
     const auto flights = sampled(mission, 10000, 1);
     EXPECT_NEAR(flights.probability_below_reserve, 0.5, 4.0 * 0.005);
     EXPECT_EQ(flights.probability_depleted, flights.probability_below_reserve);
@@ -57,25 +57,25 @@ TEST(SampledFlights, CountEmptyBatteriesAsBelowAnyReserve) {
 
 TEST(SampledFlights, AreTheSameForASeed) {
     auto mission = paper_mission("phased");
-    mission.uncertainty.level_sd_percent[flight::Phase::cruise] = 3.0;
-    mission.uncertainty.duration_sd_s[flight::Phase::cruise] = 10.0;
+    mission.setup.uncertainty.level_sd_percent[flight::Phase::cruise] = 3.0;
+    mission.setup.uncertainty.duration_sd_s[flight::Phase::cruise] = 10.0;
     const auto first = sampled(mission, 500, 7);
     const auto again = sampled(mission, 500, 7);
     EXPECT_EQ(first.final_soc_mean_percent, again.final_soc_mean_percent);
     EXPECT_EQ(first.final_soc_quantiles_percent, again.final_soc_quantiles_percent);
     EXPECT_NE(first.final_soc_mean_percent, sampled(mission, 500, 8).final_soc_mean_percent);
     // A flight depends on its number alone, not on how many there are or who flies it.
-    const auto spreads = collect_uncertainty(mission);
-    EXPECT_EQ(draw_flight(mission, spreads, 7, 3).duration_s.values,
-              draw_flight(mission, spreads, 7, 3).duration_s.values);
-    EXPECT_NE(draw_flight(mission, spreads, 7, 3).duration_s.values,
-              draw_flight(mission, spreads, 7, 4).duration_s.values);
+    const auto spreads = collect_uncertainty(mission.setup);
+    EXPECT_EQ(draw_flight(mission.setup, spreads, 7, 3).duration_s.values,
+              draw_flight(mission.setup, spreads, 7, 3).duration_s.values);
+    EXPECT_NE(draw_flight(mission.setup, spreads, 7, 3).duration_s.values,
+              draw_flight(mission.setup, spreads, 7, 4).duration_s.values);
 }
 
 TEST(SampledFlights, DepleteInProportionToDurations) {
     auto mission = gaussian_depletion(10.0);
-    mission.uncertainty.level_sd_percent[flight::Phase::cruise].reset();
-    mission.uncertainty.duration_sd_s[flight::Phase::cruise] = 50.0;
+    mission.setup.uncertainty.level_sd_percent[flight::Phase::cruise].reset();
+    mission.setup.uncertainty.duration_sd_s[flight::Phase::cruise] = 50.0;
     const auto flights = sampled(mission, 20000, 1);
     EXPECT_NEAR(flights.final_soc_sd_percent, 0.05 * 20.0 / 0.36, 0.06);
 }
@@ -108,7 +108,7 @@ TEST(SampledFlights, AreTheSameWithBandsOnATheveninPack) {
 
 TEST(SampledFlights, LetAnAdaptivePolicyAnswerEachFlight) {
     auto adaptive = test::paper_problem("adaptive-replanned");
-    adaptive.uncertainty.level_sd_percent[flight::Phase::cruise] = 5.0;
+    adaptive.setup.uncertainty.level_sd_percent[flight::Phase::cruise] = 5.0;
     auto beforehand = adaptive;
     beforehand.adaptive.reset();
     EXPECT_LT(sampled(adaptive, 100, 1).probability_below_reserve, 0.1);
@@ -117,14 +117,14 @@ TEST(SampledFlights, LetAnAdaptivePolicyAnswerEachFlight) {
 
 TEST(SampledFlights, SayWhatIsDrawnAndWhatIsNot) {
     auto mission = paper_mission("phased");
-    mission.uncertainty.level_sd_percent = {};
-    EXPECT_NE(test::rejected([&] { require_uncertainty(mission); }).find("there is nothing to draw flights from"),
+    mission.setup.uncertainty.level_sd_percent = {};
+    EXPECT_NE(test::rejected([&] { require_uncertainty(mission.setup); }).find("there is nothing to draw flights from"),
               std::string::npos);
-    EXPECT_FALSE(has_uncertainty(mission));
-    mission.uncertainty.compute_sd_percent[0] = 2.0;
-    EXPECT_TRUE(has_uncertainty(mission));
-    mission.uncertainty.capacity_sd_percent = 0.0;
-    const auto spreads = collect_uncertainty(mission);
+    EXPECT_FALSE(has_uncertainty(mission.setup));
+    mission.setup.uncertainty.compute_sd_percent[0] = 2.0;
+    EXPECT_TRUE(has_uncertainty(mission.setup));
+    mission.setup.uncertainty.capacity_sd_percent = 0.0;
+    const auto spreads = collect_uncertainty(mission.setup);
     EXPECT_EQ(spreads.sources.varied, std::vector<std::string>{"power of detection (sd 2 %, stated)"});
     EXPECT_EQ(spreads.sources.fixed.size(), 10U);
 }
@@ -132,7 +132,7 @@ TEST(SampledFlights, SayWhatIsDrawnAndWhatIsNot) {
 /// A cruise of so long at 20 W +- 5 %, that keeps 36 kJ.
 Mission cruise_of(double duration_s) {
     auto mission = gaussian_depletion(0.0);
-    mission.duration_s[flight::Phase::cruise] = duration_s;
+    mission.setup.duration_s[flight::Phase::cruise] = duration_s;
     mission.schedule = {{flight::Phase::cruise, 0.0, duration_s, {}}};
     return mission;
 }
@@ -157,7 +157,7 @@ TEST(SampleDifference, OfOneAircraftIsThatOfTheDay) {
 
 TEST(SampleDifference, OfTwoAircraftIsWider) {
     auto other = cruise_of(1000.0);
-    other.mechanical->phases[flight::Phase::cruise].fourier.a0_w = 22.0;
+    other.setup.mechanical->phases[flight::Phase::cruise].fourier.a0_w = 22.0;
     const auto drawn = sample_difference(prepare_mission(cruise_of(1000.0)), prepare_mission(other), {20000, 1});
     ASSERT_TRUE(drawn);
     EXPECT_EQ(drawn->shared_sources, (std::vector<std::string>{"battery"}));

@@ -16,10 +16,11 @@ using test::paper_mission;
 /// Computing at `power` alone for an hour, with a battery of `battery_wh` that has no resistance.
 Mission constant(double power, double battery_wh) {
     Mission mission;
-    mission.name = "constant";
-    mission.duration_s[flight::Phase::cruise] = 3600.0;
-    mission.battery = {"", 10.0, 0.0, battery_wh / 10.0};
-    mission.compute.components.push_back({"load", compute::make_power_profile("load.csv", {}, {{{}, power, {}}})});
+    mission.setup.name = "constant";
+    mission.setup.duration_s[flight::Phase::cruise] = 3600.0;
+    mission.setup.battery = {"", 10.0, 0.0, battery_wh / 10.0};
+    mission.setup.compute.components.push_back(
+        {"load", compute::make_power_profile("load.csv", {}, {{{}, power, {}}})});
     mission.schedule = {{flight::Phase::cruise, 0.0, 3600.0, {{0, {}}}}};
     return mission;
 }
@@ -27,11 +28,11 @@ Mission constant(double power, double battery_wh) {
 /// Constant mechanical power in the cruise alone.
 Mission flight(double power, double duration_s, const battery::Battery& battery) {
     Mission mission;
-    mission.name = "flight";
-    mission.mechanical.emplace();
-    mission.mechanical->phases[flight::Phase::cruise] = {{1.0, power, {}, {}}, duration_s, {}, {}, 0, 0};
-    mission.duration_s[flight::Phase::cruise] = duration_s;
-    mission.battery = battery;
+    mission.setup.name = "flight";
+    mission.setup.mechanical.emplace();
+    mission.setup.mechanical->phases[flight::Phase::cruise] = {{1.0, power, {}, {}}, duration_s, {}, {}, 0, 0};
+    mission.setup.duration_s[flight::Phase::cruise] = duration_s;
+    mission.setup.battery = battery;
     mission.schedule = {{flight::Phase::cruise, 0.0, duration_s, {}}};
     return mission;
 }
@@ -66,7 +67,7 @@ TEST(Simulation, HasARowAtEveryStepAndTwoAtEveryJump) {
     EXPECT_NE(rows[7].compute_w, rows[8].compute_w);
     for (const auto& row : rows) {
         EXPECT_EQ(row.power_w, row.mechanical_w + row.compute_w);
-        EXPECT_EQ(row.current_a, internal_current_a(paper_mission("phased").battery, row.power_w));
+        EXPECT_EQ(row.current_a, internal_current_a(paper_mission("phased").setup.battery, row.power_w));
     }
 }
 
@@ -98,8 +99,8 @@ TEST(Simulation, RowsIntegrateToTheSummary) {
 
 TEST(Simulation, DoesNotDependOnTheSteps) {
     auto mission = paper_mission("phased");
-    mission.battery.resistance_ohm = 0.005;
-    mission.battery.voltage_v = 3.6;
+    mission.setup.battery.resistance_ohm = 0.005;
+    mission.setup.battery.voltage_v = 3.6;
     const auto reference = simulate(mission, {1.0, 0.01}).summary;
     for (const auto& steps : {SimulationOptions{1.0, 0.1}, {0.03, 0.1}, {7.77, 0.1}, {1e6, 0.1}, {1.0, 0.5}}) {
         const auto summary = simulate(mission, steps).summary;
@@ -158,7 +159,7 @@ TEST(Simulation, IsFeasibleIfEmptyExactlyAtTheEnd) {
 
 TEST(Simulation, BeginsWithTheInitialCharge) {
     auto mission = constant(25.0, 100.0);
-    mission.initial_soc_percent = 40.0;
+    mission.setup.initial_soc_percent = 40.0;
     const auto [curve, summary] = simulate(mission);
     EXPECT_EQ(curve.rows.front().soc_percent, 40.0);
     EXPECT_NEAR(*summary.final_soc_percent, 15.0, 1e-9);
@@ -167,9 +168,9 @@ TEST(Simulation, BeginsWithTheInitialCharge) {
 TEST(Simulation, ChargesOnNegativePowerAndStaysBelowFull) {
     const battery::Battery pack{"", 10.0, 0.01, 1.0};
     auto mission = flight(-10.0, 360.0, pack);
-    mission.may_charge = true;
+    mission.setup.may_charge = true;
     EXPECT_EQ(*simulate(mission).summary.final_soc_percent, 100.0);
-    mission.initial_soc_percent = 50.0;
+    mission.setup.initial_soc_percent = 50.0;
     const auto summary = simulate(mission).summary;
     EXPECT_NEAR(*summary.final_soc_percent, 50.0 - 10.0 * internal_current_a(pack, -10.0), 1e-9);
     EXPECT_GT(*summary.final_soc_percent, 59.9);
@@ -178,7 +179,7 @@ TEST(Simulation, ChargesOnNegativePowerAndStaysBelowFull) {
 
 TEST(Simulation, ReportsPowerThatTheBatteryCannotDeliver) {
     auto mission = paper_mission("phased");
-    mission.battery = {"", 11.1, 0.5, 3.2};  // at most 61.6 W; the middle of the cruise needs 68
+    mission.setup.battery = {"", 11.1, 0.5, 3.2};  // at most 61.6 W; the middle of the cruise needs 68
     const auto [curve, summary] = simulate(mission);
     ASSERT_TRUE(summary.undeliverable);
     EXPECT_EQ(summary.undeliverable->time_s, 268.0);
@@ -217,21 +218,21 @@ TEST(Simulation, ShowsTheTerminalVoltage) {
 TEST(Simulation, FliesTheExampleOnTheSyntheticPack) {
     auto mission =
         std::get<Mission>(read_mission(test::source_dir() / "missions" / "synthetic" / "thevenin-pack.toml"));
-    ASSERT_TRUE(mission.battery.thevenin);
-    EXPECT_NEAR(mission.battery.resistance_ohm, 0.06, 0.001);  // what the logs were made with
+    ASSERT_TRUE(mission.setup.battery.thevenin);
+    EXPECT_NEAR(mission.setup.battery.resistance_ohm, 0.06, 0.001);  // what the logs were made with
     const auto summary = simulate(mission, {60.0, 0.1}).summary;
     EXPECT_TRUE(summary.keeps_reserve);
     // The charge is the energy by the mean voltage, which is between those at both ends.
-    const double drawn_ah = (100.0 - *summary.final_soc_percent) / 100.0 * mission.battery.capacity_ah;
+    const double drawn_ah = (100.0 - *summary.final_soc_percent) / 100.0 * mission.setup.battery.capacity_ah;
     EXPECT_GT(drawn_ah, summary.energy_wh / 12.24);
     EXPECT_LT(drawn_ah, summary.energy_wh / 11.07);
-    mission.cutoff_voltage_v = 11.5;
+    mission.setup.cutoff_voltage_v = 11.5;
     EXPECT_TRUE(simulate(mission).summary.cut_off_at_s);
 }
 
 TEST(Simulation, EndsAtCutOff) {
     auto mission = flight(40.0, 3000.0, thevenin_pack(3.0));
-    mission.cutoff_voltage_v = 10.5;
+    mission.setup.cutoff_voltage_v = 10.5;
     const auto [curve, summary] = simulate(mission);
     ASSERT_TRUE(summary.cut_off_at_s);
     EXPECT_FALSE(summary.depleted_at_s);
@@ -251,7 +252,7 @@ TEST(Simulation, EndsAtCutOff) {
     EXPECT_EQ(loaded, static_cast<std::size_t>(*summary.cut_off_at_s) + 2);
     // Without a load the voltage recovers to that of the open circuit.
     EXPECT_NEAR(curve.rows.back().terminal_voltage_v,
-                open_circuit_voltage_v(mission.battery, *summary.final_soc_percent), 1e-3);
+                open_circuit_voltage_v(mission.setup.battery, *summary.final_soc_percent), 1e-3);
     EXPECT_EQ(describe(summary).substr(0, 21), "flight: cut off after");
     for (const auto& steps : {SimulationOptions{7.77, 0.1}, {1.0, 0.01}, {1e6, 0.05}}) {
         EXPECT_NEAR(*simulate(mission, steps).summary.cut_off_at_s, *summary.cut_off_at_s, 1e-6);
@@ -260,13 +261,13 @@ TEST(Simulation, EndsAtCutOff) {
 
 TEST(Simulation, KeepsTheReserveOrSaysThatItDoesNot) {
     auto mission = constant(25.0, 100.0);
-    mission.reserve_soc_percent = 75.001;
+    mission.setup.reserve_soc_percent = 75.001;
     const auto missed = simulate(mission).summary;
     EXPECT_TRUE(missed.feasible);  // the battery lasts
     EXPECT_FALSE(missed.keeps_reserve);
     EXPECT_EQ(missed.reserve_soc_percent, 75.001);
     EXPECT_EQ(describe(missed).substr(0, 69), "constant: 75.00 % left after 1 h, less than the reserve of 75.001 %; ");
-    mission.reserve_soc_percent = 74.999;
+    mission.setup.reserve_soc_percent = 74.999;
     EXPECT_TRUE(simulate(mission).summary.keeps_reserve);
 }
 
@@ -280,31 +281,31 @@ TEST(Simulation, DescribesItsOutcome) {
 /// `constant` on a pack of 20 Ah whose flights indicate 10 Ah, 8 to 12.
 Mission on_doubtful_pack(double power) {
     auto mission = constant(power, 200.0);
-    mission.battery.flight_estimate =
+    mission.setup.battery.flight_estimate =
         std::make_shared<battery::FlightEstimate>(battery::FlightEstimate{10.0, {8.0, 12.0}});
     return mission;
 }
 
 TEST(Simulation, LandsWithTheCapacityThatTheFlightsIndicate) {
     auto mission = on_doubtful_pack(25.0);
-    mission.reserve_soc_percent = 80.0;
-    const auto landing = landing_by_flights(mission, mission.schedule);
+    mission.setup.reserve_soc_percent = 80.0;
+    const auto landing = landing_by_flights(mission.setup, mission.schedule);
     ASSERT_TRUE(landing);
     EXPECT_EQ(landing->capacity_ah, 10.0);
     EXPECT_NEAR(landing->final_soc_percent.value(), 75.0, 1e-9);
     EXPECT_FALSE(landing->fails_at_s);
     EXPECT_FALSE(landing->keeps_reserve) << "as modelled, with 87.5 %, it does";
     EXPECT_EQ(describe(*landing), "75.00 % with the 10 Ah that the flights indicate");
-    mission.battery.capacity_ah = 12.0;
-    EXPECT_FALSE(landing_by_flights(mission, mission.schedule)) << "the capacity is one that they allow";
-    mission.battery.flight_estimate.reset();
-    EXPECT_FALSE(landing_by_flights(mission, mission.schedule)) << "a pack of no flights";
+    mission.setup.battery.capacity_ah = 12.0;
+    EXPECT_FALSE(landing_by_flights(mission.setup, mission.schedule)) << "the capacity is one that they allow";
+    mission.setup.battery.flight_estimate.reset();
+    EXPECT_FALSE(landing_by_flights(mission.setup, mission.schedule)) << "a pack of no flights";
 }
 
 TEST(Simulation, FailsWithTheCapacityThatTheFlightsIndicate) {
     const auto mission = on_doubtful_pack(125.0);
     EXPECT_TRUE(simulate(mission).summary.feasible);
-    const auto landing = landing_by_flights(mission, mission.schedule).value();
+    const auto landing = landing_by_flights(mission.setup, mission.schedule).value();
     EXPECT_NEAR(landing.fails_at_s.value(), 2880.0, 1e-3);
     EXPECT_EQ(describe(landing), "the battery fails after 48 min with the 10 Ah that the flights indicate");
     auto summary = simulate(mission).summary;

@@ -179,8 +179,8 @@ MissionVariant with_read_schedule(const TomlTable& root, const MissionReadOption
     if (!reading.allow_unplanned && !adaptive) require_schedule(root, lacks_schedule);
     if (lacks_schedule || root.has("plan") || adaptive) {
         PlanningProblem problem{std::move(setup), {}, {}, adaptive};
-        problem.plan = read_plan_settings(root, problem.compute);
-        problem.fixed = resolve_fixed_segments(entries, problem.duration_s);
+        problem.plan = read_plan_settings(root, problem.setup.compute);
+        problem.fixed = resolve_fixed_segments(entries, problem.setup.duration_s);
         if (problem.adaptive && problem.adaptive->decide_every_s == 0.0)
             problem.adaptive->decide_every_s = problem.plan.slot_s;
         return problem;

@@ -15,14 +15,14 @@
 namespace flightwatt::mission {
 
 double surplus_percent(const Mission& mission) {
-    if (!mission.battery.thevenin) {
-        const auto table = make_depletion_table(mission, configurations_of(mission.schedule));
+    if (!mission.setup.battery.thevenin) {
+        const auto table = make_depletion_table(mission.setup, configurations_of(mission.schedule));
         if (const auto soc = soc_after_schedule(table, to_indexed(mission.schedule, table)))
-            return *soc - mission.reserve_soc_percent;
+            return *soc - mission.setup.reserve_soc_percent;
     }
     const auto summary = simulate(mission).summary;
-    if (summary.feasible) return *summary.final_soc_percent - mission.reserve_soc_percent;
-    return -mission.reserve_soc_percent -
+    if (summary.feasible) return *summary.final_soc_percent - mission.setup.reserve_soc_percent;
+    return -mission.setup.reserve_soc_percent -
            units::percentage(summary.duration_s - powered_end_s(summary), summary.duration_s) - 1e-9;
 }
 
@@ -38,7 +38,7 @@ std::optional<Mission> LimitSearch::mission_if_it_fits(double value) {
 }
 
 double LimitSearch::surplus(Mission changed) const {
-    changed.reserve_soc_percent += margin_percent_;
+    changed.setup.reserve_soc_percent += margin_percent_;
     return surplus_percent(changed);
 }
 
@@ -47,8 +47,8 @@ std::optional<double> LimitSearch::drawn_surplus(double value, Accuracy accuracy
     try {
         const auto changed = mission(value);
         if (!probability_) return surplus_percent(changed);
-        require_known_spread(changed);
-        const auto spreads = collect_uncertainty(changed);
+        require_known_spread(changed.setup);
+        const auto spreads = collect_uncertainty(changed.setup);
         if (accuracy == Accuracy::rough)
             return draw_landings(changed, spreads, rough_flights).spare_percent(*probability_);
         const auto landings = draw_landings_until_known(changed, spreads, *probability_);
@@ -74,8 +74,8 @@ double LimitSearch::find_with_margin(const std::function<double()>& find) {
         try {
             const double value = find();
             const auto found = mission(value);
-            require_known_spread(found);
-            const auto landings = draw_landings_until_known(found, collect_uncertainty(found), *probability_);
+            require_known_spread(found.setup);
+            const auto landings = draw_landings_until_known(found, collect_uncertainty(found.setup), *probability_);
             if (!nearest || landings.below() < nearest->below()) nearest = landings;
             const double slack_percent = landings.spare_percent(*probability_);
             if (slack_percent < 0.0) search.raise_lower_bound(landings.nominal_spare_percent());
@@ -107,12 +107,12 @@ FeasibilityLimit LimitSearch::limit(double value, double beyond) const {
     most.value = value;
     most.margin_percent = probability_ ? margins_percent_.at(value) : 0.0;
     most.final_soc_percent = simulate(at).summary.final_soc_percent.value_or(0.0);
-    most.residual_percent = most.final_soc_percent - most.margin_percent - at.reserve_soc_percent;
+    most.residual_percent = most.final_soc_percent - most.margin_percent - at.setup.reserve_soc_percent;
     const auto further = simulate(mission(beyond)).summary;
     most.limited_by = further.undeliverable  ? LimitingFactor::power
                       : further.cut_off_at_s ? LimitingFactor::cut_off
                                              : LimitingFactor::charge;
-    if (probability_) most.sources = collect_uncertainty(at).sources;
+    if (probability_) most.sources = collect_uncertainty(at.setup).sources;
     return most;
 }
 

@@ -52,7 +52,7 @@ void require_few(const PlanningProblem& problem) {
         combinations *= ways + (component.may_be_off ? 1.0 : 0.0);
     }
     if (combinations <= max_combinations) return;
-    throw InputError({problem.file},
+    throw InputError({problem.setup.file},
                      fmt::format("the components have {:.3g} combinations of levels, more than {:.0e} to choose from",
                                  combinations, max_combinations),
                      "say with `levels` in [plan] which ones may be chosen");
@@ -73,8 +73,8 @@ std::vector<Choice> every_choice(const PlanningProblem& problem) {
     std::vector<Choice> choices;
     choices.reserve(runs.size());
     for (auto& run : runs) {
-        const double draws_w = power_w(problem.compute, run);
-        const double per_s = utility_per_s(problem.utilities, run);
+        const double draws_w = power_w(problem.setup.compute, run);
+        const double per_s = utility_per_s(problem.setup.utilities, run);
         choices.push_back({std::move(run), draws_w, per_s});
     }
     return choices;
@@ -106,10 +106,10 @@ void add_free_slots(PhaseSegment free, double slot_s, double tolerance_s, std::v
 void require_few_slots(const PlanningProblem& problem, double duration_s) {
     double slots = 0.0;
     for (const auto phase : all_phases)
-        slots += problem.duration_s[phase] / (problem.plan.slot_s * problem.plan.slot_scale[phase]);
+        slots += problem.setup.duration_s[phase] / (problem.plan.slot_s * problem.plan.slot_scale[phase]);
     if (slots <= max_slots) return;
     throw InputError(
-        {problem.file},
+        {problem.setup.file},
         fmt::format("{:.6g} s in slots of {:.6g} s are more than {} slots", duration_s, problem.plan.slot_s, max_slots),
         "make slot_s in [plan] longer");
 }
@@ -149,7 +149,7 @@ std::vector<PhaseSegment> parts_of(const std::vector<MissionSlot>& slots) { retu
 
 std::vector<double> compute_w_of(const PlanningProblem& problem, const PlanningTables& planner) {
     std::vector<double> compute_w;
-    for (const auto& run : planner.depletions.configurations) compute_w.push_back(power_w(problem.compute, run));
+    for (const auto& run : planner.depletions.configurations) compute_w.push_back(power_w(problem.setup.compute, run));
     return compute_w;
 }
 
@@ -158,8 +158,8 @@ std::vector<double> compute_w_of(const PlanningProblem& problem, const PlanningT
 SlotDynamics dynamics_of(const PlanningProblem& problem, const PlanningTables& planner, const PlanStart& start,
                          const std::vector<MissionSlot>& slots, double step_s) {
     const double longer_s = std::max(step_s, *planner.step_s);
-    auto dynamics =
-        make_slot_dynamics(problem, parts_of(slots), compute_w_of(problem, planner), longer_s, start.mechanical_factor);
+    auto dynamics = make_slot_dynamics(problem.setup, parts_of(slots), compute_w_of(problem, planner), longer_s,
+                                       start.mechanical_factor);
     if (longer_s > *planner.step_s) {
         const double part = longer_s / planner.quick_step_s * (longer_s / planner.quick_step_s);
         dynamics.error_percent = part * coarse_error_percent;
@@ -192,8 +192,8 @@ compute::Configuration min_power_configuration(const PlanningProblem& problem) {
 }
 
 PlanningTables make_planning_tables(const PlanningProblem& problem) {
-    if (std::ranges::none_of(problem.utilities, [](const auto& u) { return !!u; })) {
-        throw InputError({problem.file}, "the mission states no utility",
+    if (std::ranges::none_of(problem.setup.utilities, [](const auto& u) { return !!u; })) {
+        throw InputError({problem.setup.file}, "the mission states no utility",
                          "give a component utility = { parameter = ..., weight = ... }");
     }
     require_few(problem);
@@ -209,25 +209,26 @@ PlanningTables make_planning_tables(const PlanningProblem& problem) {
     for (const auto& run : fixed) {
         if (index_of(planner.depletions, run)) continue;
         configurations.push_back(run);
-        planner.utility_per_s.push_back(utility_per_s(problem.utilities, run));
+        planner.utility_per_s.push_back(utility_per_s(problem.setup.utilities, run));
     }
-    if (problem.battery.thevenin || problem.cutoff_voltage_v > 0.0) {
+    if (problem.setup.battery.thevenin || problem.setup.cutoff_voltage_v > 0.0) {
         const auto slots = parts_of(make_slots(problem));
-        planner.step_s = choose_step_s(problem, slots, compute_w_of(problem, planner));
-        planner.quick_step_s = choose_coarse_step_s(problem, slots, compute_w_of(problem, planner), *planner.step_s);
+        planner.step_s = choose_step_s(problem.setup, slots, compute_w_of(problem, planner));
+        planner.quick_step_s =
+            choose_coarse_step_s(problem.setup, slots, compute_w_of(problem, planner), *planner.step_s);
         return planner;
     }
-    planner.depletions = make_depletion_table(problem, std::move(configurations));
-    planner.mechanical_depletion = make_depletion_table(problem, {{}});
+    planner.depletions = make_depletion_table(problem.setup, std::move(configurations));
+    planner.mechanical_depletion = make_depletion_table(problem.setup, {{}});
     return planner;
 }
 
 std::vector<MissionSlot> make_slots(const PlanningProblem& problem, double time_s) {
-    const auto timeline = timeline_of(problem.duration_s);
+    const auto timeline = timeline_of(problem.setup.duration_s);
     require_few_slots(problem, timeline.duration_s);
     std::vector<MissionSlot> slots;
     for (const auto phase : all_phases) {
-        const double duration_s = problem.duration_s[phase];
+        const double duration_s = problem.setup.duration_s[phase];
         const double tolerance_s = same_time_tolerance_s(duration_s);
         double covered_s = std::max(0.0, time_s - timeline.start_s[phase]);
         const auto fill_until = [&](double until_s) {
@@ -254,7 +255,7 @@ Schedule minimum_energy_schedule(const PlanningProblem& problem) {
 
 Mission with_minimum_energy_schedule(const MissionVariant& mission) {
     if (const auto* problem = std::get_if<PlanningProblem>(&mission))
-        return {*problem, minimum_energy_schedule(*problem)};
+        return {problem->setup, minimum_energy_schedule(*problem)};
     return std::get<Mission>(mission);
 }
 

@@ -271,25 +271,4 @@ MissionSetup draw_flight(const MissionSetup& mission, const FlightUncertainty& s
     return apply_draw(mission, spreads, draw_normals(count_normals(mission), seed, index));
 }
 
-MissionSetup without_model_metadata(MissionSetup mission) {
-    if (mission.mechanical) {
-        mission.mechanical->flights.clear();
-        mission.mechanical->physical.reset();
-        mission.mechanical->validation.reset();
-        for (const auto phase : all_phases) {
-            const auto& model = mission.mechanical->phases[phase];
-            mechanical::PhaseModel curve;
-            curve.fourier = model.fourier;
-            curve.duration_s = model.duration_s;
-            mission.mechanical->phases[phase] = std::move(curve);
-        }
-    }
-    mission.battery.intervals = {};
-    for (auto& component : mission.compute.components) {
-        component.profile.standard_error_w.clear();
-        component.profile.is_measured.clear();
-    }
-    return mission;
-}
-
 }  // namespace flightwatt::mission

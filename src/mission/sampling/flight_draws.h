@@ -48,7 +48,4 @@ std::vector<double> correlated_normals(const MissionSetup& a, const MissionSetup
 MissionSetup draw_flight(const MissionSetup& mission, const FlightUncertainty& spreads, std::uint64_t seed,
                          std::uint64_t index);
 
-/// The mission without what only says where its models come from, which copies faster.
-MissionSetup without_model_metadata(MissionSetup mission);
-
 }  // namespace flightwatt::mission

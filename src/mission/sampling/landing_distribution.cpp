@@ -22,12 +22,11 @@ class LandingSampler {
   public:
     LandingSampler(const Mission& mission, const FlightUncertainty& uncertainty)
         : uncertainty_(uncertainty),
-          setup_(without_model_metadata(mission)),
-          normal_count_(count_normals(setup_)),
-          simulator_(setup_, uncertainty_, mission.schedule) {
+          normal_count_(count_normals(mission.setup)),
+          simulator_(mission.setup, uncertainty_, mission.schedule) {
         const std::vector<double> as_stated(normal_count_);
         result_.nominal_percent = simulator_.simulate_scalar(as_stated).remaining_percent;
-        result_.reserve_percent = mission.reserve_soc_percent;
+        result_.reserve_percent = mission.setup.reserve_soc_percent;
         if (uncertainty.sources.varied.empty()) result_.left_percent = {result_.nominal_percent};
     }
 
@@ -61,7 +60,6 @@ class LandingSampler {
     }
 
     FlightUncertainty uncertainty_;
-    MissionSetup setup_;
     std::size_t normal_count_;
     SimdFlightSimulator simulator_;
     std::size_t drawn_ = 0;

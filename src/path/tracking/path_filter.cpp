@@ -60,7 +60,6 @@ class Positions {
     std::size_t sample_ = 0;
 };
 
-// Chosen by what they mean; none was fitted to flights.
 constexpr double course_weight = 2.0;
 constexpr double off_sds = 3.5;  // from there on it is likelier that the path was left
 constexpr double negligible = 1e-15;

@@ -63,7 +63,7 @@ VegaJson name_rows(const std::vector<UtilityPoint>& points) {
 VegaJson bar_rows(const mission::Mission& mission) {
     FigureData data({"from_s", "to_s", "middle_s", "power_w", "long_s"}, {"component", "runs"});
     for (const auto& running : run_intervals(mission)) {
-        const auto& component = mission.compute.components[running.component];
+        const auto& component = mission.setup.compute.components[running.component];
         data.add({running.start_s, running.end_s, std::midpoint(running.start_s, running.end_s),
                   power_w(component.profile, running.qos), running.end_s - running.start_s},
                  {component.name, describe_qos(component, running.qos)});
@@ -73,10 +73,10 @@ VegaJson bar_rows(const mission::Mission& mission) {
 
 VegaJson phase_rows(const mission::Mission& mission) {
     FigureData data({"begin_s", "middle_s"}, {"phase"});
-    const auto timeline = mission::timeline_of(mission.duration_s);
+    const auto timeline = mission::timeline_of(mission.setup.duration_s);
     for (const auto phase : flight::all_phases) {
-        if (mission.duration_s[phase] <= 0.0) continue;
-        data.add({timeline.start_s[phase], timeline.start_s[phase] + mission.duration_s[phase] / 2.0},
+        if (mission.setup.duration_s[phase] <= 0.0) continue;
+        data.add({timeline.start_s[phase], timeline.start_s[phase] + mission.setup.duration_s[phase] / 2.0},
                  {phase_word(phase)});
     }
     return data.json();
@@ -85,7 +85,7 @@ VegaJson phase_rows(const mission::Mission& mission) {
 }  // namespace
 
 std::vector<RunInterval> run_intervals(const mission::Mission& mission) {
-    const auto timeline = mission::timeline_of(mission.duration_s);
+    const auto timeline = mission::timeline_of(mission.setup.duration_s);
     std::vector<RunInterval> times;
     std::map<std::size_t, std::size_t> last;  // of each component, its index in `times`
     for (const auto& segment : mission.schedule) {
@@ -132,12 +132,12 @@ Figure strip_figure(const SimulatedMission& planned, const std::string& id) {
     const auto& mission = planned.mission;
     auto description = fmt::format("What {} runs when.", planned.title);
     for (const auto& running : run_intervals(mission)) {
-        const auto& component = mission.compute.components[running.component];
+        const auto& component = mission.setup.compute.components[running.component];
         description += fmt::format(" {} {} from {:.0f} to {:.0f} s.", component.name,
                                    describe_qos(component, running.qos), running.start_s, running.end_s);
     }
     constexpr double min_part = 0.13;  // of the time: a shorter bar has no room for its words
-    const double duration_s = mission::timeline_of(mission.duration_s).duration_s;
+    const double duration_s = mission::timeline_of(mission.setup.duration_s).duration_s;
     return new_figure("strip", id, "What runs when, coloured by its power; a component without a bar is off.",
                       description,
                       {{"bars", bar_rows(mission)},

@@ -46,7 +46,7 @@ VegaJson dashes_of(Missions missions) {
 VegaJson published_rows(Missions missions, const PublishedFigures& published) {
     FigureData data({"time_s", "soc_percent", "mission_number"});
     for (std::size_t m = 0; m < missions.size(); ++m) {
-        const auto found = published.soc.find(missions[m].mission.name);
+        const auto found = published.soc.find(missions[m].mission.setup.name);
         if (found == published.soc.end()) continue;
         const auto& [time_s, soc_percent] = found->second;
         for (std::size_t i = 0; i < time_s.size(); ++i) data.add({time_s[i], soc_percent[i], static_cast<double>(m)});
@@ -81,9 +81,9 @@ VegaJson reserve_rows(Missions missions) {
 
 /// The phases, where all missions have the same.
 VegaJson phase_rows(Missions missions) {
-    const auto& durations_s = missions.front().mission.duration_s;
+    const auto& durations_s = missions.front().mission.setup.duration_s;
     const bool all_alike = std::ranges::all_of(
-        missions, [&](const auto& other) { return other.mission.duration_s.values == durations_s.values; });
+        missions, [&](const auto& other) { return other.mission.setup.duration_s.values == durations_s.values; });
     if (!all_alike) return nullptr;
     FigureData data({"start_s", "end_s", "middle_s"}, {"word"});
     const auto timeline = mission::timeline_of(durations_s);
@@ -100,11 +100,11 @@ VegaJson strip_rows(Missions missions) {
     FigureData data({"start_s", "end_s", "compute_w"}, {"mission", "phase", "runs"});
     for (const auto& simulated : missions) {
         const auto& mission = simulated.mission;
-        const auto timeline = mission::timeline_of(mission.duration_s);
+        const auto timeline = mission::timeline_of(mission.setup.duration_s);
         for (const auto& segment : mission.schedule) {
             const double start_s = timeline.start_s[segment.phase];
-            data.add({start_s + segment.start_s, start_s + segment.end_s, power_w(mission.compute, segment.run)},
-                     {simulated.title, phase_word(segment.phase), describe(mission.compute, segment.run)});
+            data.add({start_s + segment.start_s, start_s + segment.end_s, power_w(mission.setup.compute, segment.run)},
+                     {simulated.title, phase_word(segment.phase), describe(mission.setup.compute, segment.run)});
         }
     }
     return data.json();

@@ -20,8 +20,9 @@ template <typename Same>
 std::vector<const SimulatedMission*> first_of_each(Missions missions, const Same& same) {
     std::vector<const SimulatedMission*> firsts;
     for (const auto& simulated : missions) {
-        if (std::ranges::none_of(
-                firsts, [&](const SimulatedMission* first) { return same(first->mission, simulated.mission); })) {
+        if (std::ranges::none_of(firsts, [&](const SimulatedMission* first) {
+                return same(first->mission.setup, simulated.mission.setup);
+            })) {
             firsts.push_back(&simulated);
         }
     }
@@ -46,7 +47,7 @@ std::vector<Section> model_sections(Missions missions, const PublishedFigures& p
                                     std::span<const mechanical::MechanicalModel> shown) {
     std::vector<Section> sections;
     for (const auto* simulated : first_of_each(missions, have_same_model)) {
-        const auto& mechanical = simulated->mission.mechanical;
+        const auto& mechanical = simulated->mission.setup.mechanical;
         const auto is_this = [&](const auto& other) { return drawn_text(*mechanical) == drawn_text(other); };
         if (!mechanical || std::ranges::any_of(shown, is_this)) continue;
         ReportModel model{*mechanical, mechanical->validation ? "The missions' model, as they use it."
@@ -60,7 +61,7 @@ std::vector<Section> model_sections(Missions missions, const PublishedFigures& p
 Section profile_section(Missions missions) {
     Section section{"computing", "Computing profile"};
     for (const auto* simulated : first_of_each(missions, have_same_software)) {
-        const auto& compute = simulated->mission.compute;
+        const auto& compute = simulated->mission.setup.compute;
         if (compute.components.empty()) continue;
         add_figure(section, profile_figure(compute, fmt::format("profile-{}", section.figures.size() + 1)));
     }
@@ -109,12 +110,12 @@ std::string titles_of(Missions missions) {
 Section map_section(Missions missions, const PublishedFigures& published) {
     Section section{"quality-of-service", "Quality of service"};
     for (const auto* simulated : first_of_each(missions, have_same_map)) {
-        const auto& mission = simulated->mission;
+        const auto& mission = simulated->mission.setup;
         const auto map = qos_map(mission);
         if (!map) continue;
         std::vector<SimulatedMission> alike;
         std::ranges::copy_if(missions, std::back_inserter(alike),
-                             [&](const auto& other) { return have_same_map(mission, other.mission); });
+                             [&](const auto& other) { return have_same_map(mission, other.mission.setup); });
         section.html +=
             fmt::format("<h3>{}: {}</h3>\n", mission.mechanical ? "Flight and computing" : "Computing alone",
                         html_escaped(titles_of(alike)));
@@ -131,8 +132,8 @@ std::vector<UtilityPoint> utility_points(const SimulatedMission& planned, Missio
     std::vector<UtilityPoint> points;
     for (const auto& other : missions) {
         const auto& summary = other.simulation.summary;
-        if (!have_same_map(planned.mission, other.mission) || !summary.final_soc_percent) continue;
-        const auto utility = mean_utility(planned.mission, other.mission.schedule, powered_end_s(summary));
+        if (!have_same_map(planned.mission.setup, other.mission.setup) || !summary.final_soc_percent) continue;
+        const auto utility = mean_utility(planned.mission.setup, other.mission.schedule, powered_end_s(summary));
         if (!utility) continue;
         points.push_back({other.title, *summary.final_soc_percent, *utility, other.planned.has_value()});
     }
@@ -150,7 +151,7 @@ std::optional<double> gap_percent(const SimulatedMission& simulated) {
 TextTable running_table(const mission::Mission& mission) {
     TextTable table{{"from [s]", "to [s]", "component", "runs", "power [W]"}, {}};
     for (const auto& running : run_intervals(mission)) {
-        const auto& component = mission.compute.components[running.component];
+        const auto& component = mission.setup.compute.components[running.component];
         table.rows.push_back({fixed(running.start_s, 0), fixed(running.end_s, 0), component.name,
                               describe_qos(component, running.qos), fixed(power_w(component.profile, running.qos), 2)});
     }
@@ -176,7 +177,7 @@ void add_plan(Section& section, const SimulatedMission& planned, Missions missio
             "tells what is short.",
             "warning");
     }
-    if (planned.mission.compute.components.empty()) return;
+    if (planned.mission.setup.compute.components.empty()) return;
     add_figure(section, strip_figure(planned, fmt::format("plan-{}-strip", number)));
     section.html += table_html(running_table(planned.mission), {"What the plan runs when", true, {}});
     const auto points = utility_points(planned, missions);

@@ -37,7 +37,7 @@ SimulatedMission fly_for_report(const mission::MissionVariant& mission, const mi
     if (problem != nullptr && !problem->adaptive) {
         const auto plan = plan_mission(*problem);
         simulated.planned = PlannedSchedule{plan.plan.feasible, plan.plan.utility_bound, plan.margin_percent};
-        prepared = {*problem, plan.mission.schedule, std::nullopt, mission::ScheduleOrigin::planned};
+        prepared = {problem->setup, plan.mission.schedule, std::nullopt, mission::ScheduleOrigin::planned};
         summary = summary_with_origin(plan);
     } else {
         prepared = prepare_mission(mission);
@@ -113,7 +113,7 @@ std::string reserve_line(const SimulatedMission& simulated) {
 
 std::string now_flown(const SimulatedMission& simulated, const mission::Reach& reach) {
     if (reach.unit != mission::ReachUnit::cruise_s) return "";
-    return fmt::format(" (now {})", duration_text(simulated.mission.duration_s[flight::Phase::cruise]));
+    return fmt::format(" (now {})", duration_text(simulated.mission.setup.duration_s[flight::Phase::cruise]));
 }
 
 std::string reach_line(const SimulatedMission& simulated, const MissionAssessment& answer) {
@@ -143,7 +143,7 @@ std::string as_sentence(std::string text) {
 /// Whether less of what the mission flies would keep the reserve.
 bool shorter_helps(const SimulatedMission& simulated, const mission::Reach& reach) {
     return reach.unit != mission::ReachUnit::cruise_s ||
-           reach.limit.value < simulated.mission.duration_s[flight::Phase::cruise];
+           reach.limit.value < simulated.mission.setup.duration_s[flight::Phase::cruise];
 }
 
 /// "fly 24 min of cruise at most". Such a length has to be stated: where nothing states that of the mission, flights
@@ -151,14 +151,14 @@ bool shorter_helps(const SimulatedMission& simulated, const mission::Reach& reac
 std::string shorter_way(const SimulatedMission& simulated, const MissionAssessment& answer,
                         const mission::Reach& reach) {
     if (!answer.cruise_differs_now) return fmt::format("fly {} at most", in_words(reach));
-    const double now_s = simulated.mission.duration_s[flight::Phase::cruise];
+    const double now_s = simulated.mission.setup.duration_s[flight::Phase::cruise];
     return "fly " + mission::describe_stated_cruise(reach.limit.value, now_s);
 }
 
 /// What would make the mission keep its reserve; empty where nothing is known that would.
 std::string remedy_line(const SimulatedMission& simulated, const MissionAssessment& answer) {
     const auto& reach = answer.reach_at_95_percent ? answer.reach_at_95_percent : answer.reach;
-    const double capacity_ah = simulated.mission.battery.capacity_ah;
+    const double capacity_ah = simulated.mission.setup.battery.capacity_ah;
     std::vector<std::string> ways;
     const bool shorter = reach && shorter_helps(simulated, *reach);
     // Beyond what the least software reaches, no plan does.
@@ -227,7 +227,7 @@ MissionAssessment assess_mission(const SimulatedMission& simulated, const missio
     const auto chance = answer.reach_at_95_percent ? std::optional(reach_probability) : std::nullopt;
     const auto capacity_ah = ask([&] { return min_capacity_ah(*mission, chance); }).value_or(std::nullopt);
     // Of the least software, which may land with the pack as it is where what was planned may not.
-    if (capacity_ah && *capacity_ah > simulated.mission.battery.capacity_ah) answer.capacity_ah = capacity_ah;
+    if (capacity_ah && *capacity_ah > simulated.mission.setup.battery.capacity_ah) answer.capacity_ah = capacity_ah;
     return answer;
 }
 
@@ -240,10 +240,11 @@ ReserveStatus verdict_of(const SimulatedMission& simulated) {
 
 std::vector<std::string> card_lines(const SimulatedMission& simulated, const MissionAssessment& answer) {
     std::vector<std::string> lines{landing_line(simulated), reserve_line(simulated), reach_line(simulated, answer)};
-    if (auto warning = capacity_warning(simulated.mission.battery); !warning.empty())
+    if (auto warning = capacity_warning(simulated.mission.setup.battery); !warning.empty())
         lines.insert(lines.begin() + 1, "Warning: " + warning);
     if (simulated.simulation.summary.utility) lines.push_back(utility_line(simulated));
-    if (const auto& model = simulated.mission.power_model) lines.push_back(as_sentence(mission::describe(*model)));
+    if (const auto& model = simulated.mission.setup.power_model)
+        lines.push_back(as_sentence(mission::describe(*model)));
     if (verdict_as_modelled(simulated.simulation.summary) == ReserveStatus::keeps) return lines;
     if (auto remedy = remedy_line(simulated, answer); !remedy.empty()) lines.push_back(std::move(remedy));
     return lines;

@@ -90,17 +90,17 @@ TEST(MissionJson, HoldsTheChancesOfSampledFlights) {
 TEST(PlanJson, HoldsUtilityAndProvenBound) {
     const auto problem = test::paper_problem("plan");
     const auto plan = plan_mission(problem);
-    const auto json = to_json(plan, problem);
+    const auto json = to_json(plan, problem.setup);
     EXPECT_TRUE(json["feasible"].get<bool>());
     EXPECT_EQ(json["utility"], *plan.summary.utility);
     EXPECT_GE(json["bound"].get<double>(), json["utility"].get<double>());
-    EXPECT_EQ(json["reserve_soc_percent"], problem.reserve_soc_percent);
+    EXPECT_EQ(json["reserve_soc_percent"], problem.setup.reserve_soc_percent);
 }
 
 TEST(PlanJson, HasNullForWhatAnInfeasiblePlanLacks) {
     auto problem = test::paper_problem("plan");
-    problem.reserve_soc_percent = 60.0;
-    const auto json = to_json(plan_mission(problem), problem);
+    problem.setup.reserve_soc_percent = 60.0;
+    const auto json = to_json(plan_mission(problem), problem.setup);
     EXPECT_FALSE(json["feasible"].get<bool>());
     EXPECT_TRUE(json["utility"].is_null());
     EXPECT_TRUE(json["bound"].is_null());

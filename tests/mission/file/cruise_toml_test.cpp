@@ -47,15 +47,15 @@ Mission scheduled(const std::string& text, const std::filesystem::path& path) {
 TEST(ConditionsToml, SetsTheCruiseLevelByTheStatedConditions) {
     const auto folder = folder_with_law();
     const auto mission = scheduled(on_model("law.toml", "conditions = { height_m = 105 }"), folder / "m.toml");
-    const auto& cruise = mission.mechanical->phases[flight::Phase::cruise];
+    const auto& cruise = mission.setup.mechanical->phases[flight::Phase::cruise];
     EXPECT_NEAR(energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s, 28.0, 1e-9);
-    ASSERT_TRUE(mission.cruise_level);
-    EXPECT_NEAR(mission.cruise_level->mean_w, 28.0, 1e-12);
-    EXPECT_NEAR(mission.cruise_level->sd_w.value(), 1.5 * std::sqrt(1.25 + 0.25 / 4.0), 1e-12);
+    ASSERT_TRUE(mission.setup.cruise_level);
+    EXPECT_NEAR(mission.setup.cruise_level->mean_w, 28.0, 1e-12);
+    EXPECT_NEAR(mission.setup.cruise_level->sd_w.value(), 1.5 * std::sqrt(1.25 + 0.25 / 4.0), 1e-12);
     // Without conditions: the average of the flights, as before.
     const auto plain = scheduled(on_model("law.toml", ""), folder / "m.toml");
-    EXPECT_FALSE(plain.cruise_level);
-    EXPECT_EQ(plain.mechanical->phases[flight::Phase::cruise].fourier.a0_w,
+    EXPECT_FALSE(plain.setup.cruise_level);
+    EXPECT_EQ(plain.setup.mechanical->phases[flight::Phase::cruise].fourier.a0_w,
               mechanical::read_mechanical_model(folder / "opterra.toml").phases[flight::Phase::cruise].fourier.a0_w);
 }
 
@@ -75,19 +75,19 @@ TEST(ConditionsToml, SetsTheCruiseLevelByTheAirspeed) {
         return scheduled(on_model(law, "airspeed_m_per_s = " + airspeed), folder / "m.toml");
     };
     const auto mean_w = [](const Mission& mission) {
-        const auto& cruise = mission.mechanical->phases[flight::Phase::cruise];
+        const auto& cruise = mission.setup.mechanical->phases[flight::Phase::cruise];
         return energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s;
     };
     const auto mission = at("law.toml", "13.5");
     const double cubed = 13.5 * 13.5 * 13.5 / 2197.0;
     EXPECT_NEAR(mean_w(mission), 27.0 * cubed, 1e-9);
-    EXPECT_NEAR(mission.cruise_level->sd_w.value(), 1.5 * cubed * std::sqrt(4.0 / 3.0), 1e-9);
-    EXPECT_NEAR(mission.cruise_level->degrees_of_freedom, 2.0, 1e-12);
-    EXPECT_TRUE(mission.notes.empty());
+    EXPECT_NEAR(mission.setup.cruise_level->sd_w.value(), 1.5 * cubed * std::sqrt(4.0 / 3.0), 1e-9);
+    EXPECT_NEAR(mission.setup.cruise_level->degrees_of_freedom, 2.0, 1e-12);
+    EXPECT_TRUE(mission.setup.notes.empty());
     EXPECT_NEAR(mean_w(at("line.toml", "13.5")), 28.5, 1e-9);
     // Beyond what was flown drag's law is used and said, a line is not.
     EXPECT_EQ(
-        at("law.toml", "15").notes.front(),
+        at("law.toml", "15").setup.notes.front(),
         "airspeed_m_per_s = 15 is beyond what the model's flights flew: the 3 flights of its law flew 12 to 14 m/s, "
         "and drag's law reaches further");
     const auto refusal = [&](const std::string& law, const std::string& airspeed) {
@@ -104,7 +104,7 @@ TEST(ConditionsToml, SetsTheCruiseLevelByTheAirspeed) {
     model.physical->bin_s = 30.0;
     write_text(folder / "wing.toml", mechanical::to_toml(model));
     EXPECT_NEAR(mean_w(at("wing.toml", "12")), 0.01 * 1728.0, 1e-9);
-    EXPECT_NEAR(at("wing.toml", "12").cruise_level->sd_w.value(), 0.04 * 17.28, 1e-9);
+    EXPECT_NEAR(at("wing.toml", "12").setup.cruise_level->sd_w.value(), 0.04 * 17.28, 1e-9);
     EXPECT_NE(refusal("opterra.toml", "13").find("does not know airspeed"), std::string::npos);
     EXPECT_NE(refusal("none", "13").find("no meaning"), std::string::npos);
     EXPECT_NE(refusal("law.toml", "13\nconditions = { height_m = 100 }").find("give one"), std::string::npos);
@@ -126,27 +126,27 @@ TEST(ConditionsToml, NamesTheModelThatSaysThePowerAndItsError) {
         return scheduled(on_model("model.toml", lines), folder / "m.toml");
     };
     const auto cruise_w = [](const Mission& mission) {
-        const auto& of = mission.mechanical->phases[flight::Phase::cruise];
+        const auto& of = mission.setup.mechanical->phases[flight::Phase::cruise];
         return energy_j(of.fourier, of.duration_s) / of.duration_s;
     };
-    EXPECT_EQ(read("").power_model.value().model, "constant_mean");
+    EXPECT_EQ(read("").setup.power_model.value().model, "constant_mean");
     EXPECT_DOUBLE_EQ(cruise_w(read("")), 25.0);
     model.validation->prefers_curve = true;
-    EXPECT_EQ(read("").power_model.value().mean_absolute_error_percent, 15.0);
+    EXPECT_EQ(read("").setup.power_model.value().mean_absolute_error_percent, 15.0);
     EXPECT_NE(cruise_w(read("")), 25.0);
     // The law of airspeed has no error there: its use is a warning.
-    EXPECT_FALSE(read("airspeed_m_per_s = 13").power_model);
-    EXPECT_NE(read("airspeed_m_per_s = 13").notes.front().find("is unproven"), std::string::npos);
+    EXPECT_FALSE(read("airspeed_m_per_s = 13").setup.power_model);
+    EXPECT_NE(read("airspeed_m_per_s = 13").setup.notes.front().find("is unproven"), std::string::npos);
     model.physical = test::made_up_wing();
     model.physical->bins = 100;
     model.physical->bin_s = 30.0;
     const auto physical = read("airspeed_m_per_s = 12");
-    EXPECT_EQ(physical.power_model.value().model, "physical");
+    EXPECT_EQ(physical.setup.power_model.value().model, "physical");
     EXPECT_NEAR(cruise_w(physical), 0.01 * 1728.0, 1e-9) << "the law of airspeed says another power";
-    EXPECT_TRUE(physical.notes.empty());
+    EXPECT_TRUE(physical.setup.notes.empty());
     model.validation.reset();
-    EXPECT_FALSE(read("airspeed_m_per_s = 12").power_model) << "nothing is known of its error";
-    EXPECT_TRUE(read("airspeed_m_per_s = 12").notes.empty());
+    EXPECT_FALSE(read("airspeed_m_per_s = 12").setup.power_model) << "nothing is known of its error";
+    EXPECT_TRUE(read("airspeed_m_per_s = 12").setup.notes.empty());
 }
 
 TEST(ConditionsToml, RefusesConditionsThatNothingSupports) {
@@ -210,29 +210,29 @@ TEST(PathToml, DurationAndPowerFollowFromThePath) {
     const auto folder = path_folder();
     const auto mission = read(folder, "wing.toml", out_and_back);
     const double climb = 30.0 / (900.0 / 17.0);  // nearly: the climb takes a little of the airspeed
-    EXPECT_NEAR(mission.duration_s[Phase::cruise], 900.0 / 9.0 + 900.0 / 17.0, 0.05);
-    EXPECT_TRUE(mission.duration_is_stated[Phase::cruise]);
-    ASSERT_TRUE(mission.cruise_path && mission.cruise_level);
-    const auto& pieces = *mission.cruise_path->pieces;
+    EXPECT_NEAR(mission.setup.duration_s[Phase::cruise], 900.0 / 9.0 + 900.0 / 17.0, 0.05);
+    EXPECT_TRUE(mission.setup.duration_is_stated[Phase::cruise]);
+    ASSERT_TRUE(mission.setup.cruise_path && mission.setup.cruise_level);
+    const auto& pieces = *mission.setup.cruise_path->pieces;
     ASSERT_EQ(pieces.size(), 2U);
     EXPECT_NEAR(pieces[0].power_w, 21.97, 1e-9);
     EXPECT_NEAR(pieces[1].power_w, 21.97 + 8.0 * climb, 0.01);
-    EXPECT_NEAR(mission.cruise_level->mean_w, mean_power_w(*mission.cruise_path), 1e-12);
-    EXPECT_NEAR(*mission.cruise_level->sd_w, 0.04 * mission.cruise_level->mean_w, 0.02);
-    EXPECT_TRUE(mission.notes.empty());
+    EXPECT_NEAR(mission.setup.cruise_level->mean_w, mean_power_w(*mission.setup.cruise_path), 1e-12);
+    EXPECT_NEAR(*mission.setup.cruise_level->sd_w, 0.04 * mission.setup.cruise_level->mean_w, 0.02);
+    EXPECT_TRUE(mission.setup.notes.empty());
     const auto flown = simulate(mission);
     const double takeoff_and_landing_wh =
         simulate(read(folder, "wing.toml", "duration_s = { cruise = 0 }\n")).summary.mechanical_energy_wh;
-    EXPECT_NEAR(flown.summary.mechanical_energy_wh, takeoff_and_landing_wh + energy_j(*mission.cruise_path) / 3600.0,
-                1e-9);
+    EXPECT_NEAR(flown.summary.mechanical_energy_wh,
+                takeoff_and_landing_wh + energy_j(*mission.setup.cruise_path) / 3600.0, 1e-9);
 }
 
 TEST(PathToml, FliesByTheLawOfAirspeedWhereThePathIsLevel) {
     const auto folder = path_folder();
     const std::string level = "[path]\nairspeed_m_per_s = 12\nleg = [{ length_m = 1200, course_deg = 0 }]\n";
     const auto mission = read(folder, "airspeed.toml", level);
-    EXPECT_NEAR(mean_power_w(*mission.cruise_path), 0.01 * 1728.0, 1e-9);
-    EXPECT_NEAR(mission.duration_s[Phase::cruise], 100.0, 1e-9);
+    EXPECT_NEAR(mean_power_w(*mission.setup.cruise_path), 0.01 * 1728.0, 1e-9);
+    EXPECT_NEAR(mission.setup.duration_s[Phase::cruise], 100.0, 1e-9);
     EXPECT_NE(rejected([&] { read(folder, "airspeed.toml", out_and_back); }).find("knows airspeed and not climb"),
               std::string::npos);
     EXPECT_EQ(
@@ -248,11 +248,12 @@ TEST(PathToml, ReadsWaypointsFromFiles) {
     write_text(folder / "plan.xml", R"(<flight_plan lat0="43" lon0="1" alt="200"><waypoints>
         <waypoint name="A" x="500" y="0"/><waypoint name="B" x="500" y="650"/></waypoints></flight_plan>)");
     const std::string path = "[path]\nairspeed_m_per_s = 13\n";
-    EXPECT_NEAR(read(folder, "wing.toml", path + "waypoints = \"w.csv\"\n").duration_s[Phase::cruise], 200.0, 1e-9);
-    EXPECT_NEAR(read(folder, "wing.toml", path + "waypoints = \"w.geojson\"\n").duration_s[Phase::cruise],
+    EXPECT_NEAR(read(folder, "wing.toml", path + "waypoints = \"w.csv\"\n").setup.duration_s[Phase::cruise], 200.0,
+                1e-9);
+    EXPECT_NEAR(read(folder, "wing.toml", path + "waypoints = \"w.geojson\"\n").setup.duration_s[Phase::cruise],
                 1111.32 / 13.0, 0.01);
     const std::string plan = "altitude_m = 200\nflight_plan = \"plan.xml\"\nwaypoint_order = [\"A\", \"B\"]\n";
-    EXPECT_NEAR(read(folder, "wing.toml", path + plan).duration_s[Phase::cruise], 1150.0 / 13.0, 1e-9);
+    EXPECT_NEAR(read(folder, "wing.toml", path + plan).setup.duration_s[Phase::cruise], 1150.0 / 13.0, 1e-9);
     EXPECT_NE(rejected([&] {
                   read(folder, "wing.toml", path + "flight_plan = \"plan.xml\"\n");
               }).find("flight_plan and waypoint_order belong together"),
@@ -266,12 +267,14 @@ TEST(PathToml, ReadsWaypointsFromFiles) {
 TEST(PathToml, FliesOtherExtents) {
     const auto folder = path_folder();
     const std::string circles = "[path]\nairspeed_m_per_s = 13\nleg = [{ circles = 2, radius_m = 65 }]\n";
-    const double one_s = read(folder, "wing.toml", circles).duration_s[Phase::cruise] / 2.0;
-    EXPECT_NEAR(read(folder, "wing.toml", circles, {.circles = 7.0}).duration_s[Phase::cruise], 7.0 * one_s, 1e-9);
+    const double one_s = read(folder, "wing.toml", circles).setup.duration_s[Phase::cruise] / 2.0;
+    EXPECT_NEAR(read(folder, "wing.toml", circles, {.circles = 7.0}).setup.duration_s[Phase::cruise], 7.0 * one_s,
+                1e-9);
     const std::string home =
         "[path]\nairspeed_m_per_s = 13\nreturn_to_start = true\nleg = [{ length_m = 1300, course_deg = 0 }]\n";
-    EXPECT_NEAR(read(folder, "wing.toml", home).duration_s[Phase::cruise], 200.0, 1e-9);
-    EXPECT_NEAR(read(folder, "wing.toml", home, {.return_after_m = 650.0}).duration_s[Phase::cruise], 100.0, 1e-9);
+    EXPECT_NEAR(read(folder, "wing.toml", home).setup.duration_s[Phase::cruise], 200.0, 1e-9);
+    EXPECT_NEAR(read(folder, "wing.toml", home, {.return_after_m = 650.0}).setup.duration_s[Phase::cruise], 100.0,
+                1e-9);
     EXPECT_THROW(read(folder, "wing.toml", home, {.cruise_s = 100.0}), NoResultError);
 }
 
@@ -305,8 +308,8 @@ TEST(PathToml, RefusesWhatContradictsThePath) {
 TEST(PathToml, SaysWhatIsExtrapolated) {
     const auto mission = read(path_folder(), "wing.toml",
                               "[path]\nairspeed_m_per_s = 19\nleg = [{ length_m = 1200, course_deg = 0 }]\n");
-    ASSERT_EQ(mission.notes.size(), 1U);
-    EXPECT_NE(mission.notes.front().find("beyond what the model's flights flew"), std::string::npos);
+    ASSERT_EQ(mission.setup.notes.size(), 1U);
+    EXPECT_NE(mission.setup.notes.front().find("beyond what the model's flights flew"), std::string::npos);
 }
 
 TEST(PathToml, APlannedMissionFindsItsWaypoints) {
@@ -317,10 +320,10 @@ TEST(PathToml, APlannedMissionFindsItsWaypoints) {
     const auto mission = std::get<Mission>(parse_mission(text, folder / "m.toml"));
     std::filesystem::create_directories(folder / "below");
     const auto planned =
-        planned_mission_toml(text, folder / "m.toml", mission.compute, mission.schedule, folder / "below").text;
+        planned_mission_toml(text, folder / "m.toml", mission.setup.compute, mission.schedule, folder / "below").text;
     EXPECT_NE(planned.find("../w.csv"), std::string::npos) << planned;
     const auto again = std::get<Mission>(parse_mission(planned, folder / "below" / "p.toml"));
-    EXPECT_EQ(again.duration_s[Phase::cruise], mission.duration_s[Phase::cruise]);
+    EXPECT_EQ(again.setup.duration_s[Phase::cruise], mission.setup.duration_s[Phase::cruise]);
 }
 
 }  // namespace

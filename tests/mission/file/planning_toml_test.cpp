@@ -107,7 +107,7 @@ TEST(PlanSettingsToml, HasDefaults) {
     EXPECT_EQ(mission.plan.choices[0].levels, (std::vector<std::vector<double>>{{10.0, 30.0}}));
     EXPECT_FALSE(mission.plan.choices[0].may_be_off);
     EXPECT_TRUE(mission.fixed.empty());
-    EXPECT_EQ(mission.reserve_soc_percent, 0.0);
+    EXPECT_EQ(mission.setup.reserve_soc_percent, 0.0);
     EXPECT_TRUE(std::holds_alternative<Mission>(read(""))) << "nothing to run, nothing to plan";
 }
 

@@ -15,7 +15,7 @@ using test::paper_mission;
 
 /// State of charge after the mission's own schedule, by a table.
 std::optional<double> tabled_soc(const Mission& mission) {
-    const auto table = make_depletion_table(mission, configurations_of(mission.schedule));
+    const auto table = make_depletion_table(mission.setup, configurations_of(mission.schedule));
     return soc_after_schedule(table, to_indexed(mission.schedule, table));
 }
 
@@ -25,7 +25,7 @@ std::vector<ScheduleSegment> random_schedule(const Mission& mission, std::mt1993
     std::uniform_int_distribution<std::size_t> any(0, known.size() - 1);
     std::vector<ScheduleSegment> schedule;
     for (const auto phase : flight::all_phases) {
-        const double duration_s = mission.duration_s[phase];
+        const double duration_s = mission.setup.duration_s[phase];
         std::uniform_real_distribution<double> length_s(0.01, 90.0);
         for (double start_s = 0.0; start_s < duration_s;) {
             const double end_s = std::min(duration_s, start_s + length_s(random));
@@ -51,7 +51,7 @@ TEST(DepletionTable, AgreesWithRungeKuttaOnRandomSchedules) {
     std::mt19937 random(3);
     for (const double resistance_ohm : {0.0, 0.002, 0.02, 0.04}) {
         auto mission = paper_mission("phased");
-        mission.battery = {"", 3.6, resistance_ohm, 6.0};
+        mission.setup.battery = {"", 3.6, resistance_ohm, 6.0};
         for (int i = 0; i < 10; ++i) {
             mission.schedule = random_schedule(mission, random);
             const auto soc = tabled_soc(mission);
@@ -65,8 +65,8 @@ TEST(DepletionTable, AgreesWithRungeKuttaOnRandomSchedules) {
 
 TEST(DepletionTable, SaysItsError) {
     auto mission = paper_mission("phased");
-    mission.battery = {"", 3.6, 0.02, 6.0};
-    const auto table = make_depletion_table(mission, configurations_of(mission.schedule));
+    mission.setup.battery = {"", 3.6, 0.02, 6.0};
+    const auto table = make_depletion_table(mission.setup, configurations_of(mission.schedule));
     EXPECT_LE(table.error_percent, 1e-8);
     EXPECT_GT(table.error_percent, 0.0);
 }
@@ -74,8 +74,8 @@ TEST(DepletionTable, SaysItsError) {
 TEST(DepletionTable, FollowsBothPhaseClocks) {
     for (const auto clock : {mechanical::PhaseTimeScaling::stretched, mechanical::PhaseTimeScaling::absolute}) {
         auto mission = paper_mission("mechanical-only");
-        mission.phase_clock = clock;
-        mission.duration_s[flight::Phase::cruise] = 900.5;
+        mission.setup.phase_clock = clock;
+        mission.setup.duration_s[flight::Phase::cruise] = 900.5;
         mission.schedule = {{flight::Phase::takeoff, 0, 28, {}},
                             {flight::Phase::cruise, 0, 900.5, {}},
                             {flight::Phase::landing, 0, 60, {}}};
@@ -85,7 +85,7 @@ TEST(DepletionTable, FollowsBothPhaseClocks) {
 
 TEST(DepletionTable, KnowsWhereTheBatteryCannotDeliver) {
     auto mission = paper_mission("phased");
-    mission.battery = {"", 11.1, 0.5, 3.2};  // at most 61.6 W; the middle of the cruise needs 68
+    mission.setup.battery = {"", 11.1, 0.5, 3.2};  // at most 61.6 W; the middle of the cruise needs 68
     EXPECT_TRUE(simulate(mission).summary.undeliverable);
     EXPECT_FALSE(tabled_soc(mission));
     mission.schedule = paper_mission("invariant-5.8fps-32bit").schedule;
@@ -95,13 +95,13 @@ TEST(DepletionTable, KnowsWhereTheBatteryCannotDeliver) {
 
 TEST(DepletionTable, DoesNotAnswerWhereTheBatteryIsCharged) {
     auto mission = paper_mission("mechanical-only");
-    mission.mechanical->phases[flight::Phase::landing].fourier.a0_w -= 40.0;
+    mission.setup.mechanical->phases[flight::Phase::landing].fourier.a0_w -= 40.0;
     EXPECT_FALSE(tabled_soc(mission));
 }
 
 TEST(DepletionTable, RefusesAConfigurationThatItDoesNotHold) {
     const auto mission = paper_mission("phased");
-    const auto table = make_depletion_table(mission, {mission.schedule.front().run});
+    const auto table = make_depletion_table(mission.setup, {mission.schedule.front().run});
     EXPECT_THROW(to_indexed(mission.schedule, table), std::invalid_argument);
 }
 

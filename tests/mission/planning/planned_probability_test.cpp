@@ -16,7 +16,8 @@ namespace {
 constexpr std::size_t samples = 1000;
 
 double share_below(const Mission& mission) {
-    return sample_flights({mission, mission.schedule, std::nullopt}, {}, {samples, 11, 0}).probability_below_reserve;
+    return sample_flights({mission.setup, mission.schedule, std::nullopt}, {}, {samples, 11, 0})
+        .probability_below_reserve;
 }
 
 double standard_errors(double share, double probability) {
@@ -31,7 +32,7 @@ void expect_what_the_flights_keep(unsigned seed) {
     EXPECT_LT(errors, 3.5) << kind;
     EXPECT_GT(errors, -3.5) << kind;
     EXPECT_LT(*plan.summary.utility, std::sqrt(32.0) - 0.01) << "has charge for everything: no test of the line above";
-    EXPECT_GE(*plan.summary.final_soc_percent, problem.reserve_soc_percent + plan.margin_percent - 1e-6);
+    EXPECT_GE(*plan.summary.final_soc_percent, problem.setup.reserve_soc_percent + plan.margin_percent - 1e-6);
 }
 
 TEST(PlannedProbability, IsWhatTheFlightsOfThePlanKeep) {
@@ -51,13 +52,13 @@ TEST(PlannedProbability, IsWhatTheFlightsOfAnAnswerKeep) {
     EXPECT_NEAR(standard_errors(share_below(with_payload(least, payload.value)), probability), 0.0, 3.5);
     EXPECT_NEAR(payload.residual_percent, 0.0, 0.02);
     auto smaller = least;
-    smaller.battery.capacity_ah = min_capacity_ah(least, probability).value();
+    smaller.setup.battery.capacity_ah = min_capacity_ah(least, probability).value();
     EXPECT_NEAR(standard_errors(share_below(smaller), probability), 0.0, 3.5);
     const auto mission_of = [&](double cruise_s) {
         auto other = problem;
         other.fixed.clear();
-        other.duration_s[flight::Phase::cruise] = cruise_s;
-        other.duration_is_stated[flight::Phase::cruise] = true;
+        other.setup.duration_s[flight::Phase::cruise] = cruise_s;
+        other.setup.duration_is_stated[flight::Phase::cruise] = true;
         return other;
     };
     const auto cruise = longest_cruise(mission_of, probability);
@@ -69,13 +70,13 @@ TEST(PlannedProbability, NamesRemediesThatAreOnes) {
     auto made = test::generated_mission(3);
     auto& problem = made.problem;
     const double probability = made.probability;
-    problem.battery.capacity_ah *= 0.7;
+    problem.setup.battery.capacity_ah *= 0.7;
     const auto plan = plan_mission(problem, probability);
     ASSERT_FALSE(plan.plan.feasible);
     const auto mission_of = [&](double cruise_s) {
         auto other = problem;
-        other.duration_s[flight::Phase::cruise] = cruise_s;
-        other.duration_is_stated[flight::Phase::cruise] = true;
+        other.setup.duration_s[flight::Phase::cruise] = cruise_s;
+        other.setup.duration_is_stated[flight::Phase::cruise] = true;
         return other;
     };
     const auto report = infeasibility_report(problem, plan, mission_of, probability);
@@ -85,7 +86,7 @@ TEST(PlannedProbability, NamesRemediesThatAreOnes) {
     EXPECT_FALSE(plan_mission(mission_of(*report.cruise_s + 0.5), probability).plan.feasible);
     for (const double more_ah : {-0.005, 0.005}) {
         auto other = problem;
-        other.battery.capacity_ah = *report.capacity_ah + more_ah;
+        other.setup.battery.capacity_ah = *report.capacity_ah + more_ah;
         EXPECT_EQ(plan_mission(other, probability).plan.feasible, more_ah > 0.0);
     }
 }

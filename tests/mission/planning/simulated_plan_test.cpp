@@ -24,8 +24,8 @@ std::function<PlanningProblem(double)> thevenin_plan(double reserve_soc_percent 
     return [=](double cruise_s) {
         auto mission = std::get<PlanningProblem>(
             read_mission(test::source_dir() / "missions" / "synthetic" / "thevenin-plan.toml", {true, cruise_s}));
-        mission.reserve_soc_percent = reserve_soc_percent;
-        mission.cutoff_voltage_v = cutoff_voltage_v;
+        mission.setup.reserve_soc_percent = reserve_soc_percent;
+        mission.setup.cutoff_voltage_v = cutoff_voltage_v;
         return mission;
     };
 }
@@ -34,9 +34,9 @@ std::function<PlanningProblem(double)> thevenin_plan(double reserve_soc_percent 
 PlanningProblem small_mission(std::mt19937& random) {
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
     auto mission = thevenin_plan(0.0, 0.0)(1500.0);
-    mission.battery.resistance_ohm = 0.02 + 0.1 * uniform(random);
-    mission.battery.thevenin->rc_resistance_ohm = 0.1 * uniform(random);
-    mission.battery.thevenin->rc_time_constant_s = 10.0 + 100.0 * uniform(random);
+    mission.setup.battery.resistance_ohm = 0.02 + 0.1 * uniform(random);
+    mission.setup.battery.thevenin->rc_resistance_ohm = 0.1 * uniform(random);
+    mission.setup.battery.thevenin->rc_time_constant_s = 10.0 + 100.0 * uniform(random);
     mission.plan.slot_s = 150.0 + 100.0 * uniform(random);
     mission.plan.choices[0].levels = {{5.8, 12.0 + 20.0 * uniform(random)}};
     return mission;
@@ -57,7 +57,7 @@ double best_of_all(const PlanningProblem& mission, const PlanningTables& planner
             schedule.push_back({slots[i], planner.depletions.configurations[(code >> i) & 1]});
         }
         if (!may_land) continue;
-        const auto summary = simulate(mission, schedule, {1e3, 4.0}).summary;
+        const auto summary = simulate(mission.setup, schedule, {1e3, 4.0}).summary;
         lands[code] = summary.keeps_reserve;
         if (lands[code]) best = std::max(best, *summary.utility);
     }
@@ -86,8 +86,8 @@ TEST(SimulatedPlan, IsTheBestOfAllSimulatedSchedules) {
         const auto least = simulate(with_minimum_energy_schedule(mission)).summary;
         if (!least.feasible) continue;
         std::uniform_real_distribution<double> share(0.3, 1.0);
-        mission.reserve_soc_percent = share(random) * *least.final_soc_percent;
-        if (i % 2 == 1) mission.cutoff_voltage_v = 10.4;
+        mission.setup.reserve_soc_percent = share(random) * *least.final_soc_percent;
+        if (i % 2 == 1) mission.setup.cutoff_voltage_v = 10.4;
         const auto plan = plan_mission(mission);
         const double best = best_of_all(mission, make_planning_tables(mission));
         ASSERT_EQ(plan.plan.feasible, best >= 0.0);
@@ -151,15 +151,15 @@ TEST(SimulatedPlan, IsNotCutOff) {
     for (const auto& row : simulate(plan.mission).curve.rows) ASSERT_GE(row.terminal_voltage_v, 11.0);
     // What has most utility without a cut-off would be.
     auto careless = plan_mission(thevenin_plan(20.0, 0.0)(1800.0)).mission;
-    careless.cutoff_voltage_v = 11.0;
+    careless.setup.cutoff_voltage_v = 11.0;
     EXPECT_TRUE(simulate(careless).summary.cut_off_at_s);
 }
 
 TEST(SimulatedPlan, KeepsThePapersBatteryFromItsCutOff) {
     auto mission = test::paper_problem("plan");
     mission.fixed.clear();
-    mission.reserve_soc_percent = 1.0;
-    mission.battery = {"", 3.6, 0.02, 3.4};
+    mission.setup.reserve_soc_percent = 1.0;
+    mission.setup.battery = {"", 3.6, 0.02, 3.4};
     const double min_v = [&] {
         const auto rows = simulate(with_minimum_energy_schedule(mission)).curve.rows;
         return std::min_element(
@@ -167,12 +167,12 @@ TEST(SimulatedPlan, KeepsThePapersBatteryFromItsCutOff) {
                    [](const auto& a, const auto& b) { return a.terminal_voltage_v < b.terminal_voltage_v; })
             ->terminal_voltage_v;
     }();
-    mission.cutoff_voltage_v = min_v - 0.005;
+    mission.setup.cutoff_voltage_v = min_v - 0.005;
     const auto plan = plan_mission(mission);
     ASSERT_TRUE(plan.plan.feasible);
     EXPECT_TRUE(plan.summary.keeps_reserve);
     EXPECT_LE(plan.plan.utility_bound, *plan.summary.utility * 1.001) << "a constant source: tables are exact";
-    mission.cutoff_voltage_v = min_v + 0.005;
+    mission.setup.cutoff_voltage_v = min_v + 0.005;
     EXPECT_FALSE(plan_mission(mission).plan.feasible);
 }
 
@@ -186,15 +186,15 @@ TEST(PlanRest, AnswersALearnedFactorOnAPackWhoseVoltageFalls) {
     ASSERT_TRUE(plan.feasible);
     auto windy = problem;
     for (const auto phase : flight::all_phases) {
-        auto& curve = windy.mechanical->phases[phase].fourier;
+        auto& curve = windy.setup.mechanical->phases[phase].fourier;
         curve.a0_w *= 1.1;
         for (auto* terms_w : {&curve.cos_w, &curve.sin_w})
             for (auto& term_w : *terms_w) term_w *= 1.1;
     }
     battery::Discharge state{{80.0, 0.02}};
-    for (const auto& segment : load_segments(windy, plan.schedule)) {
+    for (const auto& segment : load_segments(windy.setup, plan.schedule)) {
         const auto power = [&](double time_s) { return power_w(segment, time_s); };
-        state = discharge(problem.battery, {power, segment.start_s, segment.end_s}, state, {0.1, 10.5});
+        state = discharge(problem.setup.battery, {power, segment.start_s, segment.end_s}, state, {0.1, 10.5});
     }
     EXPECT_FALSE(state.ended_at_s() || state.undeliverable);
     EXPECT_NEAR(plan.final_soc_percent, state.soc_percent, 3e-6);
@@ -211,23 +211,23 @@ TEST(SimulatedPlanStudy, KeepsTheReserveWithAProbability) {
     auto mission = thevenin_plan()(1800.0);
     EXPECT_THROW(plan_mission(mission, 0.95), InputError) << "a model that does not say how flights differ";
     for (const auto phase : flight::all_phases) {
-        mission.mechanical->phases[phase].flights = 5;
-        mission.mechanical->phases[phase].level_spread = {5, 0.5, 0.1, 20.0};
+        mission.setup.mechanical->phases[phase].flights = 5;
+        mission.setup.mechanical->phases[phase].level_spread = {5, 0.5, 0.1, 20.0};
     }
     const auto plan = plan_mission(mission, 0.95);
     ASSERT_TRUE(plan.plan.feasible);
     EXPECT_GT(plan.margin_percent, 0.5);
     EXPECT_NEAR(*plan.summary.final_soc_percent, 20.0 + plan.margin_percent, 0.05);
     constexpr std::size_t flights = 1000;
-    const auto sampled = sample_flights({plan.mission, plan.mission.schedule, std::nullopt}, {}, {flights, 1, 0});
+    const auto sampled = sample_flights({plan.mission.setup, plan.mission.schedule, std::nullopt}, {}, {flights, 1, 0});
     EXPECT_NEAR(sampled.probability_below_reserve, 0.05, 3.0 * std::sqrt(0.05 * 0.95 / flights));
     EXPECT_EQ(sampled.sources.varied, plan.sources->varied);
 }
 
 TEST(SimulatedPlan, ProvesNothingWhereTheBatteryIsCharged) {
     auto mission = thevenin_plan()(1800.0);
-    mission.mechanical->phases[flight::Phase::landing].fourier.a0_w = -60.0;
-    mission.may_charge = true;
+    mission.setup.mechanical->phases[flight::Phase::landing].fourier.a0_w = -60.0;
+    mission.setup.may_charge = true;
     const auto plan = plan_mission(mission);
     ASSERT_TRUE(plan.plan.feasible);
     EXPECT_FALSE(plan.plan.bound_is_proven);
@@ -248,7 +248,7 @@ TEST(SimulatedPlan, SaysWhatIsMissing) {
     EXPECT_FALSE(plan_mission(mission_of(*report.cruise_s + 0.1)).plan.feasible);
     for (const double more_ah : {-1e-5, 1e-5}) {
         auto other = mission;
-        other.battery.capacity_ah = *report.capacity_ah + more_ah;
+        other.setup.battery.capacity_ah = *report.capacity_ah + more_ah;
         EXPECT_EQ(plan_mission(other).plan.feasible, more_ah > 0.0);
     }
 }

@@ -23,19 +23,19 @@ Prepared prepared(unsigned seed, double mechanical_factor = 1.0) {
     made.runs = make_planning_tables(made.problem).depletions.configurations;
     for (const auto& slot : make_slots(made.problem)) made.slots.push_back(slot);
     std::vector<double> compute_w;
-    for (const auto& run : made.runs) compute_w.push_back(power_w(made.problem.compute, run));
-    const double step_s = choose_step_s(made.problem, made.slots, compute_w);
-    made.dynamics = make_slot_dynamics(made.problem, made.slots, compute_w, step_s, mechanical_factor);
+    for (const auto& run : made.runs) compute_w.push_back(power_w(made.problem.setup.compute, run));
+    const double step_s = choose_step_s(made.problem.setup, made.slots, compute_w);
+    made.dynamics = make_slot_dynamics(made.problem.setup, made.slots, compute_w, step_s, mechanical_factor);
     return made;
 }
 
 battery::Discharge discharged(const Prepared& made, std::size_t slot, std::size_t choice,
                               const battery::BatteryState& state) {
-    const auto load = make_mission_load(made.problem);
+    const auto load = make_mission_load(made.problem.setup);
     const auto segment = load_segment(load, {made.slots[slot], made.runs[choice]});
     const auto power = [&](double time_s) { return power_w(segment, time_s); };
-    return discharge(made.problem.battery, {power, segment.start_s, segment.end_s}, state,
-                     {0.1, made.problem.cutoff_voltage_v});
+    return discharge(made.problem.setup.battery, {power, segment.start_s, segment.end_s}, state,
+                     {0.1, made.problem.setup.cutoff_voltage_v});
 }
 
 TEST(SlotDynamics, AreOffByLittleInQuickSteps) {
@@ -44,14 +44,14 @@ TEST(SlotDynamics, AreOffByLittleInQuickSteps) {
     for (unsigned seed = 1; seed <= 20; ++seed) {
         const auto made = prepared(seed);
         const auto& compute_w = made.dynamics.compute_w;
-        const double step_s = choose_step_s(made.problem, made.slots, compute_w);
-        const double quick_s = choose_coarse_step_s(made.problem, made.slots, compute_w, step_s);
+        const double step_s = choose_step_s(made.problem.setup, made.slots, compute_w);
+        const double quick_s = choose_coarse_step_s(made.problem.setup, made.slots, compute_w, step_s);
         longer += quick_s > step_s ? 1 : 0;
-        auto quick = make_slot_dynamics(made.problem, made.slots, compute_w, quick_s);
+        auto quick = make_slot_dynamics(made.problem.setup, made.slots, compute_w, quick_s);
         quick.error_v = coarse_error_v;
         std::uniform_int_distribution<std::size_t> any(0, made.runs.size() - 1);
         for (int schedule = 0; schedule < 20; ++schedule) {
-            std::optional<battery::BatteryState> exact(battery::BatteryState{made.problem.initial_soc_percent});
+            std::optional<battery::BatteryState> exact(battery::BatteryState{made.problem.setup.initial_soc_percent});
             auto quickly = exact;
             for (std::size_t i = 0; i < made.slots.size() && exact && exact->soc_percent > 0.0; ++i) {
                 const auto choice = any(random);
@@ -72,7 +72,7 @@ TEST(SlotDynamics, AgreeWithTheDischarge) {
     for (unsigned seed = 1; seed <= 10; ++seed) {
         const auto made = prepared(seed);
         for (std::size_t choice = 0; choice < made.runs.size(); choice += 3) {
-            battery::BatteryState state{made.problem.initial_soc_percent};
+            battery::BatteryState state{made.problem.setup.initial_soc_percent};
             for (std::size_t i = 0; i < made.slots.size(); ++i) {
                 const auto expected = discharged(made, i, choice, state);
                 const auto after = advance_slot(made.dynamics, i, choice, state);

@@ -32,7 +32,7 @@ TEST(PowerPieces, GiveNothingBack) {
 }
 
 TEST(KnownMission, TakesTheModelAndWhatTheMissionStates) {
-    auto stated = static_cast<MissionSetup>(test::steady_mission());
+    auto stated = test::steady_mission().setup;
     auto model = *stated.mechanical;
     model.phases[Phase::cruise].duration_s = 700.0;
     model.phases[Phase::landing].duration_s = 60.0;
@@ -46,7 +46,7 @@ TEST(KnownMission, TakesTheModelAndWhatTheMissionStates) {
 }
 
 TEST(FlownMission, HasPowerAndDurationsOfTheFlight) {
-    const auto known = static_cast<MissionSetup>(test::steady_mission());
+    const auto known = test::steady_mission().setup;
     const auto flight = test::flight_with_power("f", {{10.0, 500.0, 10.0}}, [](auto, double) { return 30.0; });
     const auto flown = measured_mission(known, flight);
     EXPECT_EQ(flown.duration_s[Phase::cruise], 500.0);

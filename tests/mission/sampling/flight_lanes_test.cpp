@@ -21,10 +21,10 @@ std::vector<std::vector<double>> drawn_numbers(const MissionSetup& setup, std::s
 /// A made-up mission, flown with most and least computing by turns; of less charge, so that some flights fail.
 Mission flown_mission(unsigned seed, double charge_part) {
     auto problem = test::generated_mission(seed, false).problem;
-    problem.battery.capacity_ah *= charge_part;
-    Mission mission{problem, {}};
+    problem.setup.battery.capacity_ah *= charge_part;
+    Mission mission{problem.setup, {}};
     for (const auto phase : all_phases) {
-        const double planned_s = mission.duration_s[phase];
+        const double planned_s = mission.setup.duration_s[phase];
         for (int k = 0; k < 6; ++k)
             mission.schedule.push_back(
                 {{phase, planned_s * k / 6.0, planned_s * (k + 1) / 6.0}, {{0, {k % 2 == 0 ? 5.0 : 32.0}}}});
@@ -39,14 +39,15 @@ TEST(FlightLanes, LandAsRungeKuttaDoes) {
     std::size_t failed = 0;
     for (unsigned seed = 1; seed <= 40; ++seed) {
         const auto mission = flown_mission(seed, seed % 3 == 0 ? 0.8 : 1.0);
-        const auto spreads = collect_uncertainty(mission);
-        const auto normals = drawn_numbers(mission, 3);
+        const auto spreads = collect_uncertainty(mission.setup);
+        const auto normals = drawn_numbers(mission.setup, 3);
         std::vector<FlightOutcome> landings(normals.size());
-        SimdFlightSimulator(mission, spreads, mission.schedule).simulate(normals, landings);
+        SimdFlightSimulator(mission.setup, spreads, mission.schedule).simulate(normals, landings);
         for (std::size_t i = 0; i < normals.size(); ++i) {
-            auto flight = apply_draw(mission, spreads, normals[i]);
+            auto flight = apply_draw(mission.setup, spreads, normals[i]);
             flight.may_charge = true;
-            const auto schedule = rescale_to_flown_durations(mission.schedule, mission.duration_s, flight.duration_s);
+            const auto schedule =
+                rescale_to_flown_durations(mission.schedule, mission.setup.duration_s, flight.duration_s);
             const auto exact = simulate(flight, schedule, {60.0, 0.25}).summary;
             const bool has_failed = exact.depleted_at_s || exact.cut_off_at_s || exact.undeliverable;
             EXPECT_EQ(landings[i].battery_failure, has_failed) << seed << ", flight " << i;
@@ -66,11 +67,11 @@ TEST(FlightLanes, LandAsRungeKuttaDoes) {
 TEST(FlightLanes, LandAsFlightsAlone) {
     for (const unsigned seed : {1U, 2U, 3U, 4U, 5U, 6U, 18U}) {  // of 18 flights fail one after the other
         const auto mission = flown_mission(seed, seed % 3 == 0 ? 0.8 : 1.0);
-        const auto spreads = collect_uncertainty(mission);
-        const auto normals = drawn_numbers(mission, 70);
+        const auto spreads = collect_uncertainty(mission.setup);
+        const auto normals = drawn_numbers(mission.setup, 70);
         std::vector<FlightOutcome> landings(normals.size());
         const std::vector<double> times_s{0.0, 31.0, 250.0, 400.0, 2000.0};
-        const SimdFlightSimulator lanes(mission, spreads, mission.schedule, times_s);
+        const SimdFlightSimulator lanes(mission.setup, spreads, mission.schedule, times_s);
         lanes.simulate(normals, landings);
         for (std::size_t i = 0; i < normals.size(); ++i) {
             const auto alone = lanes.simulate_scalar(normals[i]);
@@ -88,9 +89,9 @@ TEST(FlightLanes, LandAsFlightsAlone) {
 
 TEST(FlightLanes, DependOnNothingBeside) {
     const auto mission = flown_mission(2, 0.9);
-    const auto spreads = collect_uncertainty(mission);
-    auto normals = drawn_numbers(mission, 45);
-    const SimdFlightSimulator lanes(mission, spreads, mission.schedule);
+    const auto spreads = collect_uncertainty(mission.setup);
+    auto normals = drawn_numbers(mission.setup, 45);
+    const SimdFlightSimulator lanes(mission.setup, spreads, mission.schedule);
     std::vector<FlightOutcome> landings(normals.size());
     lanes.simulate(normals, landings);
     std::ranges::reverse(normals);
@@ -102,10 +103,10 @@ TEST(FlightLanes, DependOnNothingBeside) {
 
 TEST(FlightLanes, FlyAloneWhatIsFarOut) {
     auto mission = test::paper_mission("phased");
-    const auto spreads = collect_uncertainty(mission);
-    std::vector<std::vector<double>> normals(1, std::vector<double>(count_normals(mission)));
+    const auto spreads = collect_uncertainty(mission.setup);
+    std::vector<std::vector<double>> normals(1, std::vector<double>(count_normals(mission.setup)));
     normals[0][level_index(Phase::cruise)] = -40.0;
-    const SimdFlightSimulator lanes(mission, spreads, mission.schedule);
+    const SimdFlightSimulator lanes(mission.setup, spreads, mission.schedule);
     std::vector<FlightOutcome> landings(1);
     lanes.simulate(normals, landings);
     EXPECT_EQ(landings[0].final_soc_percent, lanes.simulate_scalar(normals[0]).final_soc_percent);

@@ -17,7 +17,7 @@ namespace {
 
 Mission mechanical_only() { return test::paper_mission("mechanical-only"); }
 
-std::vector<LoadSegment> load_of(const Mission& mission) { return load_segments(mission, mission.schedule); }
+std::vector<LoadSegment> load_of(const Mission& mission) { return load_segments(mission.setup, mission.schedule); }
 
 /// The integral of the demand's mechanical power by Simpson's rule, to compare with the closed form.
 double integral_j(const LoadSegment& segment) {
@@ -67,12 +67,12 @@ TEST(LoadSegment, SplittingAPhaseChangesNoEnergy) {
 
 TEST(LoadSegment, ClocksAPhaseFlownLonger) {
     auto mission = mechanical_only();
-    const auto& cruise = mission.mechanical->phases[flight::Phase::cruise].fourier;
+    const auto& cruise = mission.setup.mechanical->phases[flight::Phase::cruise].fourier;
     const auto as_fitted = load_of(mission)[1];
-    mission.duration_s[flight::Phase::cruise] = 900.0;
+    mission.setup.duration_s[flight::Phase::cruise] = 900.0;
     mission.schedule[1].end_s = 900.0;
     const auto stretched = load_of(mission)[1];
-    mission.phase_clock = mechanical::PhaseTimeScaling::absolute;
+    mission.setup.phase_clock = mechanical::PhaseTimeScaling::absolute;
     const auto absolute = load_of(mission)[1];
     for (const double t : {0.0, 100.0, 450.0, 900.0}) {
         EXPECT_NEAR(mechanical_w(stretched, 28.0 + t), mechanical_w(as_fitted, 28.0 + t / 1.5), 1e-12);
@@ -84,12 +84,12 @@ TEST(LoadSegment, ClocksAPhaseFlownLonger) {
 TEST(SegmentDischarge, AgreesWithTheSimulation) {
     for (const double resistance_ohm : {0.0, 0.01}) {
         auto mission = test::paper_mission("phased");
-        mission.battery.resistance_ohm = resistance_ohm;
-        mission.battery.capacity_ah = 4.0;
+        mission.setup.battery.resistance_ohm = resistance_ohm;
+        mission.setup.battery.capacity_ah = 4.0;
         battery::Discharge charge;
         charge.soc_percent = 100.0;
-        for (const auto& segment : load_segments(mission, mission.schedule))
-            charge = advance_segment(mission.battery, mission.cutoff_voltage_v, segment, charge);
+        for (const auto& segment : load_segments(mission.setup, mission.schedule))
+            charge = advance_segment(mission.setup.battery, mission.setup.cutoff_voltage_v, segment, charge);
         EXPECT_NEAR(charge.soc_percent, *simulate(mission).summary.final_soc_percent, 1e-6);
     }
 }
@@ -117,8 +117,8 @@ TEST(LeastPower, IsThatOfAFineGrid) {
 /// The paper's mission with a landing that takes power back.
 Mission with_negative_landing() {
     auto mission = test::paper_mission("mechanical-only");
-    mission.file = "m.toml";
-    mission.mechanical->phases[Phase::landing].fourier = {0.05, -2.0, {1.0}, {0.0}};
+    mission.setup.file = "m.toml";
+    mission.setup.mechanical->phases[Phase::landing].fourier = {0.05, -2.0, {1.0}, {0.0}};
     return mission;
 }
 
@@ -129,10 +129,10 @@ TEST(Charging, IsRefusedUnlessItIsMeant) {
               "m.toml: mechanical-only: 60.0 s into the landing it draws -2.99 W (-2.99 W mechanical, 0 W computing), "
               "which charges the battery in flight");
     EXPECT_THROW(simulate_prepared(prepare_mission(mission)), InputError);
-    mission.may_charge = true;
+    mission.setup.may_charge = true;
     EXPECT_TRUE(simulate(mission).summary.feasible);
-    mission.may_charge = false;
-    mission.compute.components.push_back({"camera", compute::make_power_profile("p", {}, {{{}, 5.0, {}}})});
+    mission.setup.may_charge = false;
+    mission.setup.compute.components.push_back({"camera", compute::make_power_profile("p", {}, {{{}, 5.0, {}}})});
     for (auto& segment : mission.schedule) segment.run = {{0, {}}};
     EXPECT_TRUE(simulate(mission).summary.feasible) << "with what computes, nothing charges";
 }
@@ -146,19 +146,19 @@ TEST(Charging, IsAskedForByADisturbance) {
 
 TEST(Charging, HappensInNoFlightThatIsDrawn) {
     auto mission = test::paper_mission("mechanical-only");
-    for (const auto phase : flight::all_phases) mission.uncertainty.level_sd_percent[phase] = 60.0;
-    mission.phase_clock = mechanical::PhaseTimeScaling::absolute;
-    const auto spreads = collect_uncertainty(mission);
+    for (const auto phase : flight::all_phases) mission.setup.uncertainty.level_sd_percent[phase] = 60.0;
+    mission.setup.phase_clock = mechanical::PhaseTimeScaling::absolute;
+    const auto spreads = collect_uncertainty(mission.setup);
     double mean_w = 0.0;
     constexpr int flights = 4000;
     for (std::uint64_t i = 0; i < flights; ++i) {
-        auto flight = Mission{draw_flight(mission, spreads, 1, i), mission.schedule};
-        for (const auto& segment : load_segments(flight, flight.schedule))
+        auto flight = Mission{draw_flight(mission.setup, spreads, 1, i), mission.schedule};
+        for (const auto& segment : load_segments(flight.setup, flight.schedule))
             EXPECT_GE(min_power_w(*segment.mechanical, {0.0, segment.end_s - segment.phase_start_s}).power_w, -1e-9);
-        const auto& cruise = flight.mechanical->phases[Phase::cruise].fourier;
+        const auto& cruise = flight.setup.mechanical->phases[Phase::cruise].fourier;
         mean_w += energy_j(cruise, 600.0) / 600.0 / flights;
     }
-    const auto& stated = mission.mechanical->phases[Phase::cruise].fourier;
+    const auto& stated = mission.setup.mechanical->phases[Phase::cruise].fourier;
     const double stated_w = energy_j(stated, 600.0) / 600.0;
     // A normal number that stops at 0: 5 % of the flights are there.
     EXPECT_NEAR(mean_w / stated_w, 1.0 + 0.6 * 0.0212, 0.03);

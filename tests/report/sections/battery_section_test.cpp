@@ -90,7 +90,7 @@ mission::MissionVariant mission_on(const std::vector<ReportFlight>& flights, dou
     battery::IdentificationOptions options;
     options.capacity_ah = given_ah;
     options.name = "pack";
-    mission.battery = identify_for_report(flights, options, 12).identified.value().battery;
+    mission.setup.battery = identify_for_report(flights, options, 12).identified.value().battery;
     return mission;
 }
 
@@ -118,7 +118,7 @@ TEST(BatterySection, IsNotAboutPacksOfOtherFlights) {
     EXPECT_NE(battery.identified.value().battery.capacity_ah, 10.0);
     EXPECT_TRUE(battery.notes.empty());
     auto stated = std::get<mission::Mission>(mission_on(flights, 10.0));
-    stated.capacity_is_stated = true;
+    stated.setup.capacity_is_stated = true;
     const auto by_flights = identify_for_report(flights, {}, 12, std::vector<mission::MissionVariant>{stated});
     EXPECT_NE(by_flights.identified.value().battery.capacity_ah, 10.0) << "that is the mission's alone";
 }
@@ -134,7 +134,7 @@ TEST(BatterySection, SaysWhereTheMissionsFlyOnSeveralPacks) {
 TEST(BatterySection, GoesOnWhereNewFlightsDrewMoreThanThePackHas) {
     const auto flights = flights_on(test::known_pack(), 1);
     auto mission = std::get<mission::Mission>(mission_on(flights, 2.4));
-    mission.battery.capacity_ah = 0.1;
+    mission.setup.battery.capacity_ah = 0.1;
     const auto battery = identify_for_report(flights, {}, 12, std::vector<mission::MissionVariant>{mission});
     EXPECT_TRUE(battery.identified);
     EXPECT_THAT(battery.notes, testing::ElementsAre(HasSubstr("is not used: --capacity is 0.1 Ah")));

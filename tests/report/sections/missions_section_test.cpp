@@ -22,7 +22,7 @@ std::vector<SimulatedMission> simulated(const std::vector<std::string>& names) {
 }
 
 TEST(QosMap, IsThePapersGridAndEndsWhereTheMissionsEnd) {
-    const auto map = qos_map(paper_mission("invariant-10fps-240bit"));
+    const auto map = qos_map(paper_mission("invariant-10fps-240bit").setup);
     ASSERT_TRUE(map);
     EXPECT_EQ(map->x.nodes.size(), 10U);
     EXPECT_EQ(map->y.nodes.size(), 13U);
@@ -39,9 +39,9 @@ TEST(QosMap, IsThePapersGridAndEndsWhereTheMissionsEnd) {
 }
 
 TEST(QosMap, NeedsTwoParameters) {
-    EXPECT_FALSE(qos_map(paper_mission("mechanical-only")));
-    EXPECT_TRUE(have_same_map(paper_mission("phased"), paper_mission("adaptive")));
-    EXPECT_FALSE(have_same_map(paper_mission("phased"), paper_mission("computing-only")));
+    EXPECT_FALSE(qos_map(paper_mission("mechanical-only").setup));
+    EXPECT_TRUE(have_same_map(paper_mission("phased").setup, paper_mission("adaptive").setup));
+    EXPECT_FALSE(have_same_map(paper_mission("phased").setup, paper_mission("computing-only").setup));
 }
 
 TEST(MissionSections, HaveEachModelAndSoftwareOnce) {
@@ -56,7 +56,7 @@ TEST(MissionSections, HaveEachModelAndSoftwareOnce) {
 
 TEST(MissionSections, ShowWhereTheBatteryCannotDeliver) {
     auto weak = paper_mission("phased");
-    weak.battery.resistance_ohm = 1.0;
+    weak.setup.battery.resistance_ohm = 1.0;
     const auto sections = mission_sections(simulate_for_report({weak}), {});
     bool said = false;
     for (const auto& section : sections) said = said || section.html.find("cannot deliver") != std::string::npos;
@@ -107,7 +107,7 @@ TEST(PlanSection, ShowsThePlanBesideMissionsOfItsKind) {
 
 TEST(PlanSection, SaysWhereNoPlanKeepsTheReserve) {
     auto mission = test::paper_problem("plan");
-    mission.reserve_soc_percent = 60.0;
+    mission.setup.reserve_soc_percent = 60.0;
     const auto missions = simulate_for_report({mission});
     EXPECT_FALSE(missions[0].planned->feasible);
     const auto html = plan_section(missions).html;
@@ -121,7 +121,7 @@ TEST(RunningTimes, JoinEqualNeighboursOverPhases) {
     ASSERT_EQ(times.size(), 6U) << "two components: little, much, little";
     EXPECT_EQ(times[0].start_s, 0.0);
     EXPECT_NEAR(times[2].end_s - times[2].start_s, 120.0, 1e-9);
-    EXPECT_EQ(describe_qos(mission.compute.components[times[2].component], times[2].qos), "fps 32");
+    EXPECT_EQ(describe_qos(mission.setup.compute.components[times[2].component], times[2].qos), "fps 32");
     EXPECT_NEAR(times[4].end_s, 688.0, 1.0);
 }
 

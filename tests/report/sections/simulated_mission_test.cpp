@@ -29,7 +29,7 @@ TEST(SimulateForReport, TellsHowFarItIs) {
 
 TEST(SimulateForReport, EndsTheCurveWhereTheBatteryCannotDeliver) {
     auto weak = test::paper_mission("phased");
-    weak.battery.resistance_ohm = 1.0;
+    weak.setup.battery.resistance_ohm = 1.0;
     const auto missions = simulate_for_report({weak});
     const auto& [mission, simulation, title, planned] = missions.front();
     ASSERT_TRUE(simulation.summary.undeliverable);
@@ -73,7 +73,7 @@ TEST(MissionAnswer, SaysWhatWouldKeepTheReserve) {
     EXPECT_EQ(verdict_of(simulated), ReserveStatus::fails);
     const auto answer = assess_mission(simulated, reading_of("invariant-32fps-448bit"));
     ASSERT_TRUE(answer.capacity_ah);
-    EXPECT_GT(*answer.capacity_ah, simulated.mission.battery.capacity_ah);
+    EXPECT_GT(*answer.capacity_ah, simulated.mission.setup.battery.capacity_ah);
     const auto lines = card_lines(simulated, answer);
     EXPECT_THAT(lines.front(), StartsWith("Runs empty after 9 min"));
     EXPECT_THAT(lines.back(), StartsWith("For a chance of 95 %: fly 7 min"));
@@ -92,7 +92,7 @@ TEST(MissionAnswer, KnowsNoChanceWhereNothingSaysHowFlightsDiffer) {
 /// "computing-only", whose pack of 3.2 Ah is of flights that indicate another capacity.
 mission::Mission on_pack_of_flights(double indicated_ah) {
     auto mission = test::paper_mission("computing-only");
-    mission.battery.flight_estimate = std::make_shared<battery::FlightEstimate>(
+    mission.setup.battery.flight_estimate = std::make_shared<battery::FlightEstimate>(
         battery::FlightEstimate{indicated_ah, {0.9 * indicated_ah, 1.1 * indicated_ah}});
     return mission;
 }
@@ -125,7 +125,7 @@ TEST(MissionAnswer, OffersAPlanWithAMarginWhereOneIsInReach) {
     const auto reading_with = [](double reserve_percent) -> mission::MissionLoader {
         return [reserve_percent](const mission::MissionReadOptions& how) {
             auto problem = std::get<mission::PlanningProblem>(reading_of("plan")(how));
-            problem.reserve_soc_percent = reserve_percent;
+            problem.setup.reserve_soc_percent = reserve_percent;
             return mission::MissionVariant(std::move(problem));
         };
     };
@@ -172,7 +172,7 @@ TEST(MissionAnswer, SaysWhichModelIsUsedAndHowItPredicts) {
     auto simulated = flown("computing-only");
     const auto answer = assess_mission(simulated, reading_of("computing-only"));
     EXPECT_THAT(card_lines(simulated, answer), testing::Not(Contains(HasSubstr("left out of the fit"))));
-    simulated.mission.power_model = mechanical::HeldOutScore{"constant_mean", 4, 18.6};
+    simulated.mission.setup.power_model = mechanical::HeldOutScore{"constant_mean", 4, 18.6};
     EXPECT_THAT(card_lines(simulated, answer),
                 Contains("Power by each phase's mean: 18.6 % off on 4 flights left out of the fit"));
 }
