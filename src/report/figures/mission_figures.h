@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flight/flight_phases.h"
 #include "report/figure.h"
 #include "report/sections/simulated_mission.h"
 
