@@ -37,8 +37,8 @@ struct PowerReport {
     std::vector<std::string> warnings;             ///< what is doubtful, though it can be
 };
 
-/// Checks a power record by the rules of docs/methods.md. The closure is over the sorties, lift-off to touchdown (that of
-/// a phase stands in its statistics); the idle current over the rests with the motor off.
+/// Checks a power record by the rules of docs/methods.md. The closure is over the sorties, lift-off to touchdown (that
+/// of a phase stands in its statistics); the idle current over the rests with the motor off.
 PowerReport check_power_record(const SelectedTracks& tracks, const FlightPhases& phases,
                                const SegmentationOptions& options = {});
 
