@@ -32,13 +32,13 @@ struct PowerReport {
     std::optional<IdleCurrent> idle;
     std::optional<double> energy_closure_percent;  ///< in flight: integral of power over counter, less 100 %
     std::optional<double> charge_closure_percent;  ///< the same of current and the charge counter
-    std::vector<PowerGap> gaps;                    ///< within the sorties
+    std::vector<SampleGap> gaps;                   ///< within the sorties
     std::vector<std::string> power_faults;         ///< what cannot be: such a record is not fitted
     std::vector<std::string> warnings;             ///< what is doubtful, though it can be
 };
 
-/// Checks a power record by the rules of docs/methods.md. The closure is over the sorties, lift-off to touchdown (that of
-/// a phase stands in its statistics); the idle current over the rests with the motor off.
+/// Checks a power record by the rules of docs/methods.md. The closure is over the sorties, lift-off to touchdown (that
+/// of a phase stands in its statistics); the idle current over the rests with the motor off.
 PowerReport check_power_record(const SelectedTracks& tracks, const FlightPhases& phases,
                                const SegmentationOptions& options = {});
 

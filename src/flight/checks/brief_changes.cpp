@@ -28,30 +28,30 @@ struct BriefChanges {
     }
     /// Of the samples before and after.
     static auto beside(const std::vector<double>& values, const IndexSpan& change) {
-        return std::ranges::minmax({values[change.begin - 1], values[change.end]});
+        return std::minmax({values[change.begin - 1], values[change.end]});
     }
 
     bool is_fall(const IndexSpan& change) const {
         const auto& throttle = record.throttle_percent;
         const double max_w = range(record.power_w, change).max;
-        const double lower_w = beside(record.power_w, change).min;
+        const double lower_w = beside(record.power_w, change).first;
         if (lower_w <= min_neighbour_part * held_w) return false;
         if (change.size() == 1 && max_w < single_fall_factor * lower_w) return true;
         if (throttle.empty())
             return change.size() <= max_fall_without_throttle && max_w < fall_factor_without_throttle * lower_w;
         const double least = range(throttle, change).min;
         return max_w < change_factor * lower_w && least > open_throttle_percent &&
-               least >= throttle_factor * beside(throttle, change).min;
+               least >= throttle_factor * beside(throttle, change).first;
     }
 
     bool is_rise(const IndexSpan& change) const {
         const auto& throttle = record.throttle_percent;
         const double min_w = range(record.power_w, change).min;
-        const double higher_w = beside(record.power_w, change).max;
+        const double higher_w = beside(record.power_w, change).second;
         if (change.size() == 1 && min_w - higher_w > single_rise_part * held_w) return true;
         if (throttle.empty() || min_w - higher_w <= min_neighbour_part * held_w) return false;
         return change_factor * min_w > higher_w &&
-               range(throttle, change).max <= beside(throttle, change).max / throttle_factor + coarse_percent;
+               range(throttle, change).max <= beside(throttle, change).second / throttle_factor + coarse_percent;
     }
 
     double carried_j(const IndexSpan& change) const {

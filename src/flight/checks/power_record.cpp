@@ -6,7 +6,6 @@
 #include "flight/sources/device_sum.h"
 
 #include <map>
-#include <tuple>
 #include <utility>
 
 namespace flightwatt::flight {
@@ -120,7 +119,10 @@ void add_sums(PowerRecord& record) {
         record.mean_a = mean(currents_a);
         record.max_a = std::max(0.0, std::ranges::max(currents_a));
     }
-    if (!voltages_v.empty()) std::tie(record.min_v, record.max_v) = std::ranges::minmax(voltages_v);
+    if (!voltages_v.empty()) {
+        record.min_v = std::ranges::min(voltages_v);
+        record.max_v = std::ranges::max(voltages_v);
+    }
     std::ranges::sort(running_w);
     if (!running_w.empty()) record.powerless_w = powerless_fraction * quantile(running_w, 0.75);
 }

@@ -81,8 +81,8 @@ double doubtful_lack_s(const PowerRecord& r) {
     return std::max(30.0, 0.05 * (to_s - from_s));
 }
 
-/// In the order of the reports. Every doubt that could hide 5 % of the energy is reported (docs/methods.md says why each
-/// limit is what it is).
+/// In the order of the reports. Every doubt that could hide 5 % of the energy is reported (docs/methods.md says why
+/// each limit is what it is).
 constexpr PowerRule rules[] = {
     {.text = "more than 5 A in {percent:.0f} % of the samples on the ground with the motor off",
      .applies = [](const PowerRecord& r, std::size_t i) { return r.is_at_rest(i) && r.has_current(); },

@@ -7,8 +7,8 @@
 
 namespace flightwatt::flight {
 
-/// Applies the table of power_rules.cpp: every rule of what cannot be (faults exclude a flight from fits), or can but is
-/// doubtful, in a power record. docs/methods.md has the thresholds and why.
+/// Applies the table of power_rules.cpp to a power record: what cannot be (faults exclude a flight from fits), and what
+/// can but is doubtful. docs/methods.md has the thresholds and why.
 void apply_power_rules(const PowerRecord& record, PowerReport& report);
 
 // The unusual rules, which the table names: each returns what it finds.

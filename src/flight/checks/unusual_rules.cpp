@@ -189,7 +189,8 @@ Texts devices_contradict_themselves(const PowerRecord& record) {
     const double more_j = record.energy_j - product_j;
     if (!(product_j > 0.0) || std::abs(more_j) <= doubtful_product_part * product_j) return {};
     return {fmt::format(
-        "the power of {} makes {:.2f} Wh in flight, its voltage times current {:.2f} Wh ({:+.0f} %): one of them is wrong",
+        "the power of {} makes {:.2f} Wh in flight, its voltage times current {:.2f} Wh ({:+.0f} %): one of them is "
+        "wrong",
         record.power_source, units::wh_from_joule(record.energy_j), units::wh_from_joule(product_j),
         units::percentage(more_j, product_j))};
 }

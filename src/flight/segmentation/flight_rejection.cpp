@@ -33,7 +33,7 @@ constexpr double standing_extent_m = 30.0;
 constexpr double least_airspeed_m_per_s = 7.0;
 constexpr double climb_window_s = 20.0;
 constexpr double climbed_by_motor_m = 15.0;
-constexpr std::size_t enough = 10;  // values that change: a receiver without a fix repeats its last one
+constexpr std::size_t enough_changes = 10;  // values that change: a receiver without a fix repeats its last one
 
 std::vector<double> sorted(std::span<const double> values) {
     std::vector<double> in_order(values.begin(), values.end());
@@ -158,7 +158,7 @@ std::string is_contradicted(const FlightCandidate& c) {
         const double other_m = other.empty() ? 0.0 : spread_of(other);
         if (other_m >= min_confirming_fraction * own_m) return "";
         const bool is_alive =
-            other.size() >= enough && 2 * changes_within(track, c.grid, c.activity.moving) >= other.size();
+            other.size() >= enough_changes && 2 * changes_within(track, c.grid, c.activity.moving) >= other.size();
         const bool stands = other_m < max_gps_motion_fraction * own_m && other_m < 0.5 * c.options.flight_height_m;
         if (is_alive && stands && track.source.starts_with("GPS")) {
             contradicts = fmt::format("{} moves by {:.0f} m, {} by {:.1f} m: an estimator that ran away", chosen.source,
@@ -228,7 +228,7 @@ std::string stands_still(const FlightCandidate& c) {
         return "";
     const auto time_s = c.grid.times_s(c.activity.span);
     const auto is_dead = [&](const char* name) {
-        return changes_within(c.tracks[name], c.grid, c.activity.span) < enough;
+        return changes_within(c.tracks[name], c.grid, c.activity.span) < enough_changes;
     };
     if (is_dead("ground_speed_m_per_s") || is_dead("east_m") || is_dead("north_m")) return "";
     const auto east_m = resample(c.tracks["east_m"], time_s);

@@ -27,9 +27,9 @@ Track within_bounds(const Track& track);
 /// Takes the samples at `times_s`, which rise, out of the track. Returns how many.
 std::size_t erase_times(Track& track, const std::vector<double>& times_s);
 
-/// The candidate without what cannot be, and what was left out and why: the samples beyond the physical bounds, those at
-/// `contradicted_s` (rising), dropouts as `throttle` (empty if not known) tells, and spikes. Empty if nothing of it is
-/// to be believed.
+/// The candidate without what cannot be, and what was left out and why: the samples beyond the physical bounds, those
+/// at `contradicted_s` (rising), dropouts as `throttle` (empty if not known) tells, and spikes. Empty if nothing of it
+/// can be used.
 TrackSelection remove_outliers(const Track& candidate, const std::vector<double>& contradicted_s = {},
                                const Track& throttle = {});
 

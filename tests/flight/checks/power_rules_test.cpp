@@ -371,7 +371,7 @@ TEST(PowerRules, OfGapsAndCounters) {
 }
 
 TEST(PowerRules, OfBriefChanges) {
-    const auto changes = [](std::size_t length, double factor, std::function<void(PowerRecord&)> also = {}) {
+    const auto changes = [](std::size_t length, double factor, const std::function<void(PowerRecord&)>& also = {}) {
         auto record = sound_record();
         for (std::size_t i = 200; i < 1000; i += 20)
             for (std::size_t k = 0; k < length; ++k) record.power_w[i + k] *= factor;
