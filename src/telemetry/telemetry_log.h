@@ -66,9 +66,11 @@ struct TelemetryLog {
 TelemetryLog read_telemetry(std::string_view text, const std::filesystem::path& data_file,
                             std::optional<LogConfiguration> configuration, const std::vector<MessageRequest>& wanted);
 
-/// The same for any text, which need not hold telemetry. Throws InputError for more than 300 senders alone.
+/// The same for any text, which need not hold telemetry. Throws InputError for more than 300 senders alone. A long text
+/// is cut at line ends and read on all cores; `parts` says in how many pieces (0: as suits it): the result is the same.
 TelemetryLog parse_telemetry(std::string_view text, const std::filesystem::path& data_file,
-                             std::optional<LogConfiguration> configuration, const std::vector<MessageRequest>& wanted);
+                             std::optional<LogConfiguration> configuration, const std::vector<MessageRequest>& wanted,
+                             std::size_t parts = 0);
 
 /// Single messages to rows of a log's tables, as they come in: the same values that reading a whole log gives.
 class MessageDecoder {

@@ -14,6 +14,8 @@
 namespace flightwatt::bench {
 namespace {
 
+constexpr std::size_t one_part = 1;  // on one core, as binary logs are read
+
 void count_bytes(benchmark::State& state, const telemetry::DataFile& data) {
     state.SetBytesProcessed(static_cast<std::int64_t>(data.text().size()) * state.iterations());
 }
@@ -25,7 +27,7 @@ void energy_messages_of_a_log(benchmark::State& state) {
     if (const auto log_file = telemetry::find_log_file(path))
         configuration = telemetry::read_log_configuration(*log_file);
     for (auto _ : state) {
-        benchmark::DoNotOptimize(parse_telemetry(data.text(), path, configuration, energy_messages()));
+        benchmark::DoNotOptimize(parse_telemetry(data.text(), path, configuration, energy_messages(), one_part));
     }
     count_bytes(state, data);
 }
@@ -80,7 +82,7 @@ BENCHMARK(energy_messages_of_a_card)->Unit(benchmark::kMillisecond);
 void energy_messages_of_its_text(benchmark::State& state) {
     const auto made = card_and_text();
     for (auto _ : state)
-        benchmark::DoNotOptimize(parse_telemetry(made.text, "x.data", made.configuration, energy_messages()));
+        benchmark::DoNotOptimize(parse_telemetry(made.text, "x.data", made.configuration, energy_messages(), one_part));
     state.SetItemsProcessed(made.count * state.iterations());
     state.SetBytesProcessed(static_cast<std::int64_t>(made.text.size()) * state.iterations());
 }

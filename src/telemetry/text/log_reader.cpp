@@ -1,4 +1,6 @@
+#include "base/error.h"
 #include "base/number.h"
+#include "base/parallel.h"
 #include "telemetry/columns/message_plan.h"
 #include "telemetry/telemetry_log.h"
 #include "telemetry/text/line_scanner.h"
@@ -16,11 +18,21 @@
 namespace flightwatt::telemetry {
 namespace {
 
+void append_rows(MessageTable& table, const MessageTable& later) {
+    table.time_s.insert(table.time_s.end(), later.time_s.begin(), later.time_s.end());
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        auto& values = table.columns[i].values;
+        values.insert(values.end(), later.columns[i].values.begin(), later.columns[i].values.end());
+    }
+}
+
 /// Reads the lines of one log into its tables: the only state of the hot loop.
 class LogReader {
   public:
-    LogReader(TelemetryLog& log, const std::vector<MessageRequest>& wanted, std::string_view text)
-        : log_(log), text_(text), skips_(text), tables_(log, wanted.size()) {
+    /// To read `part` of `text`.
+    LogReader(TelemetryLog& log, const std::vector<MessageRequest>& wanted, std::string_view text,
+              std::string_view part)
+        : log_(log), part_(part), skips_(text), tables_(log, wanted.size()) {
         for (const auto& request : wanted) {
             plans_.push_back(make_decode_plan(request, log.configuration));
             wanted_.add(request.message);
@@ -34,6 +46,29 @@ class LogReader {
             return;
         }
         if (const auto index = wanted_.find(name); index != MessageNameSet::none) read_message(index, line);
+    }
+
+    /// Takes over what `later` has read of the part behind this one's, which begins behind `lines_before` lines. False
+    /// where both chose another definition of a message: what `later` read is then not what this one would have.
+    bool append(LogReader& later, std::size_t lines_before) {
+        for (std::size_t i = 0; i < plans_.size(); ++i) {
+            if (plans_[i].definition == nullptr) {
+                plans_[i] = std::move(later.plans_[i]);
+            } else if (const auto* other = later.plans_[i].definition) {
+                if (other - later.plans_[i].candidates.data() != plans_[i].definition - plans_[i].candidates.data())
+                    return false;
+            }
+        }
+        for (const auto& sender : later.log_.senders) {
+            const auto place = tables_.sender_index(sender.id, lines_before);
+            for (const auto& table : sender.tables) {
+                const auto plan = place_of(table.message);
+                tables_.table_of(place, plan, plans_[plan]);
+            }
+        }
+        append_tables(later.log_);
+        skips_.append(later.skips_, lines_before);
+        return true;
     }
 
     /// Turns the counters into reasons for people. `ends_with_break`: whether the last line was whole.
@@ -50,6 +85,17 @@ class LogReader {
 
   private:
     using Reason = SkipReason;
+
+    /// The rows of `later`, for all of which there are tables.
+    void append_tables(const TelemetryLog& later) {
+        std::vector<std::pair<MessageTable*, const MessageTable*>> joined;
+        for (const auto& sender : later.senders) {
+            auto& tables = std::ranges::find(log_.senders, sender.id, &SenderLog::id)->tables;
+            for (const auto& table : sender.tables)
+                joined.emplace_back(&*std::ranges::find(tables, table.message, &MessageTable::message), &table);
+        }
+        for_each_in_parallel(joined.size(), [&](std::size_t i) { append_rows(*joined[i].first, *joined[i].second); });
+    }
 
     void read_message(std::size_t index, const ScannedLine& line) {
         auto& plan = plans_[index];
@@ -79,7 +125,7 @@ class LogReader {
             return skips_.add({Reason::other_field_count, index}, time_s, line.number);
         }
         auto& table = table_of(sender, index, line);
-        if (table.time_s.size() == table.time_s.capacity()) reserve_rows(table, bytes_read(line), text_.size());
+        if (table.time_s.size() == table.time_s.capacity()) reserve_rows(table, bytes_read(line), part_.size());
         table.time_s.push_back(time_s);
         for (std::size_t i = 0; i < plan.targets.size(); ++i) {
             const auto& target = plan.targets[i];
@@ -95,8 +141,8 @@ class LogReader {
     }
 
     std::size_t bytes_read(const ScannedLine& line) const {
-        const bool in_place = line.begin >= text_.data() && line.begin < text_.data() + text_.size();
-        return in_place ? static_cast<std::size_t>(line.end - text_.data()) : text_.size();
+        const bool in_place = line.begin >= part_.data() && line.begin < part_.data() + part_.size();
+        return in_place ? static_cast<std::size_t>(line.end - part_.data()) : part_.size();
     }
 
     MessageTable& table_of(std::string_view sender, std::size_t plan_index, const ScannedLine& line) {
@@ -106,6 +152,11 @@ class LogReader {
         return tables_.table_of(last_sender_, plan_index, plans_[plan_index]);
     }
 
+    std::size_t place_of(const std::string& message) const {
+        const auto is_its = [&](const DecodePlan& plan) { return plan.request.message == message; };
+        return static_cast<std::size_t>(std::ranges::find_if(plans_, is_its) - plans_.begin());
+    }
+
     std::string describe(const SkipKind& skip) const {
         const bool is_value = skip.reason == Reason::not_a_number;
         return describe_skipped(skip.reason, plans_[is_value ? skip.detail / max_fields : skip.detail],
@@ -113,7 +164,7 @@ class LogReader {
     }
 
     TelemetryLog& log_;
-    std::string_view text_;
+    std::string_view part_;
     MessageNameSet wanted_;
     std::vector<DecodePlan> plans_;
     SkipCounter skips_;
@@ -121,15 +172,65 @@ class LogReader {
     std::size_t last_sender_ = std::numeric_limits<std::size_t>::max();
 };
 
+/// Whole lines of `text`, cut in `count` parts of about one size, or in fewer where lines are long. Behind each but the
+/// last, the text goes on for what the scanner reads ahead.
+std::vector<std::string_view> parts_of(std::string_view text, std::size_t count) {
+    std::vector<std::string_view> parts;
+    std::size_t begin = 0;
+    for (std::size_t k = 1; k < count; ++k) {
+        const auto line_end = text.find('\n', std::max(begin, text.size() / count * k));
+        if (line_end == std::string_view::npos || line_end + 1 + read_ahead > text.size()) break;
+        parts.push_back(text.substr(begin, line_end + 1 - begin));
+        begin = line_end + 1;
+    }
+    parts.push_back(text.substr(begin));
+    return parts;
+}
+
+/// Reads a text in parts, on all cores, which gives what reading it as a whole does. std::nullopt where it cannot: the
+/// parts take a message for different ones, or the text is refused.
+std::optional<TelemetryLog> parse_in_parts(const TelemetryLog& empty, const std::vector<MessageRequest>& wanted,
+                                           std::string_view text, const std::vector<std::string_view>& parts) {
+    std::vector<TelemetryLog> logs(parts.size(), empty);
+    std::vector<LogReader> readers;
+    // The first one's columns have room for all.
+    for (std::size_t k = 0; k < parts.size(); ++k)
+        readers.emplace_back(logs[k], wanted, text, k == 0 ? text : parts[k]);
+    std::vector<std::size_t> lines(parts.size());
+    try {
+        for_each_in_parallel(parts.size(), [&](std::size_t k) {
+            const auto read = [&](const ScannedLine& line) { readers[k].read_line(line); };
+            const auto* const begin = parts[k].data();
+            lines[k] = k + 1 < parts.size() ? scan_padded_lines(begin, begin + parts[k].size(), 1, read) - 1
+                                            : scan_lines(parts[k], read);
+        });
+        std::size_t lines_before = lines[0];
+        for (std::size_t k = 1; k < parts.size(); lines_before += lines[k++]) {
+            if (!readers[0].append(readers[k], lines_before)) return std::nullopt;
+            logs[k] = {};
+        }
+        readers[0].finish(lines_before, text.ends_with('\n'));
+    } catch (const InputError&) {
+        return std::nullopt;  // its line counts from the part's beginning
+    }
+    return std::move(logs[0]);
+}
+
 }  // namespace
 
 TelemetryLog parse_telemetry(std::string_view text, const std::filesystem::path& data_file,
-                             std::optional<LogConfiguration> configuration, const std::vector<MessageRequest>& wanted) {
+                             std::optional<LogConfiguration> configuration, const std::vector<MessageRequest>& wanted,
+                             std::size_t parts) {
+    constexpr std::size_t min_part_bytes = 4'000'000;  // reading less takes no longer than joining
     TelemetryLog log;
     log.data_file = data_file;
     log.flight = flight_name(data_file);
     log.configuration = std::move(configuration);
-    LogReader reader(log, wanted, text);
+    if (parts == 0) parts = threads_for(text.size() / min_part_bytes);
+    if (parts > 1) {
+        if (auto joined = parse_in_parts(log, wanted, text, parts_of(text, parts))) return std::move(*joined);
+    }
+    LogReader reader(log, wanted, text, text);
     const auto lines = scan_lines(text, [&](const ScannedLine& line) { reader.read_line(line); });
     reader.finish(lines, text.ends_with('\n'));
     return log;

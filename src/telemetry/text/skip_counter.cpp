@@ -30,6 +30,11 @@ void SkipCounter::add(const SkipKind& kind, double time_s, std::size_t line_numb
     }
 }
 
+void SkipCounter::append(const SkipCounter& later, std::size_t lines_before) {
+    for (const auto& [kind, skipped] : later.skips_)
+        for (const auto& at : skipped.lines) add(kind, at.time_s, lines_before + at.first_line, at.count);
+}
+
 void SkipCounter::add_without_time(const SkipKind& kind, const ScannedLine& line) {
     add(kind, time_behind_s(line.end), line.number);
 }

@@ -38,6 +38,9 @@ class SkipCounter {
     /// A line without a time counts to the next one in the text that has one. Fast in the order of the text.
     void add_without_time(const SkipKind& kind, const ScannedLine& line);
 
+    /// Adds what was counted in a later part of the same text, which begins behind `lines_before` lines.
+    void append(const SkipCounter& later, std::size_t lines_before);
+
     /// What was counted, by first line. `reason` is left empty.
     std::vector<std::pair<SkipKind, SkippedLines>> take();
 
