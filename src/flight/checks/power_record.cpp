@@ -11,7 +11,8 @@
 namespace flightwatt::flight {
 namespace {
 
-constexpr double powerless_fraction = 0.05;  // of the upper quartile of the power at an open throttle
+constexpr double powerless_fraction = 0.05;   // of the upper quartile of the power at an open throttle
+constexpr std::size_t min_step_samples = 10;  // in a step of throttle, to know its usual power
 
 /// The decimal place that a counter is rounded to, from 1 down to a millionth: the first of which all its values are
 /// multiples. However seldom it is logged, that is how well it is known.
@@ -85,14 +86,13 @@ std::optional<IdleCurrent> idle_current(const std::vector<double>& current_a, co
 /// a throttle that stands still.
 std::vector<double> usual_power_w(const PowerRecord& record) {
     constexpr double step_percent = 5.0;
-    constexpr std::size_t enough = 10;
     std::vector<double> usual_w(record.time_s.size(), std::numeric_limits<double>::quiet_NaN());
     std::map<int, std::vector<std::size_t>> by_throttle;
     for (std::size_t i = 0; i < usual_w.size(); ++i) {
         if (record.is_flown(i) && record.is_open(i))
             by_throttle[static_cast<int>(record.throttle_percent[i] / step_percent)].push_back(i);
     }
-    std::erase_if(by_throttle, [](const auto& step) { return step.second.size() < enough; });
+    std::erase_if(by_throttle, [](const auto& step) { return step.second.size() < min_step_samples; });
     if (by_throttle.size() < 2) return usual_w;
     for (const auto& [step, samples] : by_throttle) {
         std::vector<double> powers_w(samples.size());

@@ -1,9 +1,8 @@
-#include "report/sections/sections.h"
-
 #include "flight/load_flight.h"
 #include "helpers/test_paths.h"
 #include "mechanical/measured_flight.h"
 #include "report/figures/flight_figures.h"
+#include "report/sections/sections.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
