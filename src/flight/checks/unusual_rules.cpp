@@ -23,7 +23,9 @@ constexpr double doubtful_phase_of_flight = 0.02;  // and of the flight's
 constexpr double doubtful_gain_drift = 0.10;
 constexpr double resolved_counts = 100.0;  // steps of the counter in a quarter of a flight
 constexpr double doubtful_product_part = 0.05;
-constexpr double doubtful_gaps_fraction = 0.05;  // links drop out for seconds all the time
+constexpr double large_gap_fraction = 0.02;  // links drop out for seconds all the time
+constexpr double doubtful_large_gaps_fraction = 0.04;
+constexpr double doubtful_gaps_fraction = 0.05;  // all together, beyond usual intervals
 constexpr double doubtful_silence_fraction = 0.06;
 constexpr double doubtful_drift_fraction = 0.05;  // of the mean current in flight
 constexpr double powerless_climb_m = 10.0;
@@ -208,14 +210,21 @@ Texts altitude_pauses(const PowerRecord& record) {
         sum.gaps, sum.together_s, units::percentage(sum.carried_j, record.energy_j))};
 }
 
-/// A gap that begins or ends a sortie hides when that was: no counter helps.
+/// A gap that begins or ends a sortie hides when that was: no counter helps. Many short ones add up: of these what is
+/// beyond a usual interval.
 Texts power_pauses(const PowerRecord& record) {
-    const auto& power_w = record.power_w;
-    const auto sum = sum_of(
-        record.gaps, median_interval_s(record.time_s),
-        [&](const SampleGap& gap) { return !gap.is_within || !record.is_counted(); },
-        [&](const SampleGap& gap) { return std::abs(power_w[gap.end - 1] + power_w[gap.end]) / 2.0; });
-    if (sum.carried_j <= doubtful_gaps_fraction * record.energy_j) return {};
+    const auto mean_w = [&](const SampleGap& gap) {
+        return std::abs(record.power_w[gap.end - 1] + record.power_w[gap.end]) / 2.0;
+    };
+    const auto is_unconfirmed = [&](const SampleGap& gap) { return !gap.is_within || !record.is_counted(); };
+    const auto is_large = [&](const SampleGap& gap) {
+        return is_unconfirmed(gap) && mean_w(gap) * gap.duration_s >= large_gap_fraction * record.energy_j;
+    };
+    const auto all = sum_of(record.gaps, median_interval_s(record.time_s), is_unconfirmed, mean_w);
+    const auto large = sum_of(record.gaps, 0.0, is_large, mean_w);
+    const bool are_many = all.carried_j > doubtful_gaps_fraction * record.energy_j;
+    if (!are_many && large.carried_j <= doubtful_large_gaps_fraction * record.energy_j) return {};
+    const auto& sum = are_many ? all : large;
     return {
         fmt::format("{} gap{} in the power, {:.0f} s in all, the longest {:.0f} s from {:.1f} s on: {:.0f} "
                     "% of the energy is a straight line across, and no counter confirms it",
