@@ -59,9 +59,10 @@ void warn_if_never_full(const cli::StageCall& call, const battery::BatteryIdenti
     if (identified.curve_start_depletion_ah <= 0.0) return;
     cli::warn(call,
               fmt::format(
-                  "no flight begins full: the fullest rests at {:.3f} V; by the usual chart of {} LiPo cells "
+                  "no flight begins full: the fullest rests at {:.3f} V; by the usual chart of {} {} cells "
                   "{:.0f} % are left{}",
-                  highest_resting_v(identified), identified.cells, identified.observed_max_soc_percent,
+                  highest_resting_v(identified), identified.cells, to_string(identified.chemistry),
+                  identified.observed_max_soc_percent,
                   identified.flights.size() == 1 ? ". One flight does not tell both capacity and initial charge" : ""));
 }
 
@@ -93,10 +94,10 @@ void note_what_it_rests_on(const cli::StageCall& call, const battery::BatteryIde
                                     cli::describe(identified.capacity)));
     }
     if (identified.observed_min_soc_percent > 0.0) {
-        cli::note(call,
-                  fmt::format("below {:.0f} % ({:.3f} Ah drawn) no flight shows the open-circuit voltage: "
-                              "it goes on in parallel to the usual chart of {} LiPo cells",
-                              identified.observed_min_soc_percent, identified.fit.knots_ah.back(), identified.cells));
+        cli::note(call, fmt::format("below {:.0f} % ({:.3f} Ah drawn) no flight shows the open-circuit voltage: "
+                                    "it goes on in parallel to the usual chart of {} {} cells",
+                                    identified.observed_min_soc_percent, identified.fit.knots_ah.back(),
+                                    identified.cells, to_string(identified.chemistry)));
     }
     if (identified.fit.rc_resistance_ohm == 0.0) {
         cli::warn(call, "no RC pair explains anything: the battery has none");
@@ -156,7 +157,7 @@ the pack's state of health. Flights whose current was computed from throttle are
     auto add = stage.options.add_options();
     add("capacity", cli::value<double>("AH"),
         "the pack's capacity, compared with what the flights indicate; without it, what a flight drew from full to "
-        "empty, or else a guess after the usual chart of LiPo cells");
+        "empty, or else a guess after the usual charts of lithium cells");
     add("cells", cli::value("N"),
         "cells in series, checked against the voltage at rest; default: by the highest resting voltage");
     cli::add_folds_option(stage.options, battery::max_battery_folds);

@@ -194,8 +194,9 @@ IdentificationResult identify_common(std::span<const DischargeRecord> records, c
     result.cells = cells;
     result.cells_are_given = options.cells.has_value();
     result.capacity = estimate_capacity(result.fit.knots_ah.back(), posterior, options.capacity_ah);
+    result.chemistry = most_probable_chemistry(posterior);
     result.curve_start_depletion_ah = estimate_depletion_ah(posterior);
-    const auto extended = extrapolate_curve(result.fit, result.errors.open_circuit_standard_error_v,
+    const auto extended = extrapolate_curve(result.fit, result.errors.open_circuit_standard_error_v, result.chemistry,
                                             result.capacity.value_ah, result.curve_start_depletion_ah);
     result.observed_min_soc_percent = extended.known_down_to_percent;
     result.observed_max_soc_percent = extended.known_up_to_percent;
@@ -221,9 +222,10 @@ std::shared_ptr<const FlightEstimate> flight_estimate(const IdentificationResult
         const auto free_capacity = estimate_capacity(fit.knots_ah.back(), free, std::nullopt);
         estimate->capacity_ah = free_capacity.value_ah;
         estimate->capacity_interval_ah = free_capacity.interval_ah.value();
-        estimate->open_circuit = extrapolate_curve(fit, identification.errors.open_circuit_standard_error_v,
-                                                   estimate->capacity_ah, estimate_depletion_ah(free))
-                                     .curve;
+        estimate->open_circuit =
+            extrapolate_curve(fit, identification.errors.open_circuit_standard_error_v, most_probable_chemistry(free),
+                              estimate->capacity_ah, estimate_depletion_ah(free))
+                .curve;
         return estimate;
     } catch (const NoResultError&) {
         return nullptr;

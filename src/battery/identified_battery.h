@@ -18,14 +18,19 @@ namespace flightwatt::battery {
 /// chart; or, where the number was not given, full high-voltage cells (up to 4.45 V), one less. Empty if nothing is.
 std::string cells_warning(double resting_voltage_v, int cells, bool is_given);
 
-/// How packs differ from the LiPo chart, a cell, as a standard deviation: see chart_match.h.
-inline constexpr double lipo_chart_sd_v = 0.08;
+/// What a cell is made of; each has a chart of its usual open-circuit voltage (chart_match.h).
+enum class Chemistry { lipo, nmc, high_voltage };
+
+std::string to_string(Chemistry chemistry);
+
+/// How packs differ from their chart, a cell, as a standard deviation: see chart_match.h.
+inline constexpr double chart_sd_v = 0.08;
 
 /// Where a capacity comes from.
 enum class CapacityOrigin {
     given,     ///< by the user
     measured,  ///< the flights drew nearly all of it
-    chart      ///< from the part of the LiPo chart that the open-circuit voltage went down
+    chart      ///< from the part of the charts that the open-circuit voltage went down
 };
 
 std::string to_string(CapacityOrigin origin);
@@ -153,8 +158,9 @@ struct BatteryIdentification {
     Capacity capacity;
     int cells = 0;
     bool cells_are_given = false;
+    Chemistry chemistry = Chemistry::lipo;    ///< the most probable one
     double curve_start_depletion_ah = 0.0;    ///< from the full pack, where the curve begins
-    double observed_min_soc_percent = 0.0;    ///< state of charge; below, the curve is the LiPo chart's
+    double observed_min_soc_percent = 0.0;    ///< state of charge; below, the curve is the chart's
     double observed_max_soc_percent = 100.0;  ///< above, likewise
     std::vector<IdentifiedFlight> flights;
     std::optional<ResistanceTrend> trend;  ///< over the flights in the order of their clocks, else as given

@@ -77,8 +77,8 @@ std::string add_wear_of(std::span<FlightTrendData* const> flown, std::size_t mos
                                           mean_ah * capacity->ratio_interval.high};
     }
     if (without == 0) {
-        return is_guess ? "the level of the capacities is a guess after the usual chart of LiPo cells: their trend is "
-                          "in percent of it; give the pack's capacity with --capacity"
+        return is_guess ? "the level of the capacities is a guess after the usual charts of lithium cells: their "
+                          "trend is in percent of it; give the pack's capacity with --capacity"
                         : "";
     }
     if (flown.size() == 1) return single;

@@ -32,9 +32,10 @@ bool print_row(const test::BatteryCase& made, std::uint64_t seed, std::size_t pa
     const auto capacities = coverage.capacity_width_percent.size();
     const auto capacity = capacities == 0 ? "-" : fmt::format("{:.0f}", of(coverage.capacities_held, capacities));
     const auto width = capacities == 0 ? "-" : fmt::format("{:.0f}", median(coverage.capacity_width_percent));
-    fmt::print("{:<8}  {:>7}  {:<5}  {:<5}  {:>6.2f}  {:>5.2f}  {:>10}  {:>8}  {:>9.0f}  {:>8.1f}  {:>8}\n",
+    const auto error = capacities == 0 ? "-" : fmt::format("{:+.1f}", median(coverage.capacity_error_percent));
+    fmt::print("{:<8}  {:>7}  {:<5}  {:<5}  {:>6.2f}  {:>5.2f}  {:>10}  {:>8}  {:>8}  {:>9.0f}  {:>8.1f}  {:>8}\n",
                to_string(made.curve), made.flights, made.begins_full ? "yes" : "no", made.capacity_given ? "yes" : "no",
-               made.resistance_spread, made.slow_resistance_ohm, capacity, width,
+               made.resistance_spread, made.slow_resistance_ohm, capacity, width, error,
                of(coverage.initial_charges_held, coverage.flights), median_or_zero(coverage.initial_width_percent),
                coverage.without_answer);
     std::fflush(stdout);
@@ -50,11 +51,12 @@ bool print_row(const test::BatteryCase& made, std::uint64_t seed, std::size_t pa
 bool run(std::size_t packs, std::uint64_t seed) {
     fmt::print(
         "{} packs a row, seeds from {}. Flights begin at 40 to 100 %; of a pack that begins full, the first one does.\n"
-        "Widths: medians of 95 % intervals, in percent of the capacity.\n\n"
-        "curve     flights  full   given  spread   slow  capacity %  width %  initial %   width %  no answer\n",
+        "Widths of 95 % intervals and errors: medians, in percent of the capacity.\n\n"
+        "curve     flights  full   given  spread   slow  capacity %   width %   error %  initial %   width %  no answer\n",
         packs, seed);
     bool all_cover = true;
-    for (const auto curve : {test::PackCurve::known, test::PackCurve::polymer, test::PackCurve::straight}) {
+    for (const auto curve : {test::PackCurve::known, test::PackCurve::polymer, test::PackCurve::nmc,
+                             test::PackCurve::high, test::PackCurve::straight}) {
         for (const std::size_t flights : {1U, 2U, 4U}) {
             for (const bool full : {true, false}) {
                 all_cover = print_row({curve, flights, full, false, 0.0, 0.0}, seed, packs) && all_cover;

@@ -21,17 +21,36 @@ namespace flightwatt::test {
 enum class PackCurve {
     known,    ///< known_pack's
     polymer,  ///< Chen and Rincon-Mora 2006, a cell
+    nmc,      ///< LG M50, Chen et al. 2020: both electrodes' potentials between 2.5 and 4.2 V
+    high,     ///< ours: the polymer cell charged to 4.35 V
     straight  ///< of the synthetic logs: 12.5 V falling by 1.4 V
 };
 
 inline std::string to_string(PackCurve curve) {
-    return std::array{"known", "polymer", "straight"}.at(static_cast<std::size_t>(curve));
+    return std::array{"known", "polymer", "nmc", "high", "straight"}.at(static_cast<std::size_t>(curve));
+}
+
+inline double nmc_cell_v(double s) {
+    const double anode = std::lerp(0.0279, 0.9014, s);
+    const double cathode = std::lerp(0.9084, 0.2661, s);
+    const auto step = [](double x, double height, double steepness, double at) {
+        return height * std::tanh(steepness * (x - at));
+    };
+    return 4.4875 - 0.8090 * cathode - step(cathode, 0.0428, 18.5138, 0.5542) -
+           step(cathode, 17.7326, 15.7890, 0.3117) + step(cathode, 17.5842, 15.9308, 0.3120) -
+           (1.9793 * std::exp(-39.3631 * anode) + 0.2482 - step(anode, 0.0909, 29.8538, 0.1234) -
+            step(anode, 0.04478, 14.9159, 0.2769) - step(anode, 0.0205, 30.4444, 0.6103));
+}
+
+inline double polymer_cell_v(double s) {
+    return -1.031 * std::exp(-35.0 * s) + 3.685 + 0.2156 * s - 0.1178 * s * s + 0.3201 * s * s * s;
 }
 
 inline double pack_voltage_v(PackCurve curve, double s) {
     if (curve == PackCurve::straight) return 11.1 + 1.4 * s;
-    if (curve == PackCurve::polymer)
-        return 3.0 * (-1.031 * std::exp(-35.0 * s) + 3.685 + 0.2156 * s - 0.1178 * s * s + 0.3201 * s * s * s);
+    if (curve == PackCurve::polymer) return 3.0 * polymer_cell_v(s);
+    if (curve == PackCurve::nmc) return 3.0 * nmc_cell_v(s);
+    if (curve == PackCurve::high) return 3.0 * (polymer_cell_v(s) + 0.247 * s * s * s);
     return open_circuit_voltage_v(known_pack(), 100.0 * s);
 }
 
@@ -53,6 +72,7 @@ struct BatteryCoverage {
     std::size_t all_initial_charges_held = 0;  ///< of packs: of all their flights
     std::size_t without_answer = 0;
     std::vector<double> capacity_width_percent;  ///< of the interval, of the capacity
+    std::vector<double> capacity_error_percent;
     std::vector<double> initial_width_percent;
 };
 
@@ -115,6 +135,7 @@ inline BatteryCoverage battery_coverage(const BatteryCase& made, std::uint64_t f
             if (const auto& range = found.capacity.interval_ah) {
                 coverage.capacities_held += holds(*range, whole_ah) ? 1 : 0;
                 coverage.capacity_width_percent.push_back(width_percent(*range));
+                coverage.capacity_error_percent.push_back(100.0 * (found.capacity.value_ah / whole_ah - 1.0));
             }
             bool all = true;
             for (std::size_t f = 0; f < drawn.records.size(); ++f) {

@@ -21,8 +21,20 @@ namespace {
 
 constexpr std::array chart_soc_percent{0.0,  5.0,  10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0,
                                        55.0, 60.0, 65.0, 70.0, 75.0, 80.0, 85.0, 90.0, 95.0, 100.0};
-constexpr std::array chart_cell_v{3.27, 3.61, 3.69, 3.71, 3.73, 3.75, 3.77, 3.79, 3.80, 3.82, 3.84,
-                                  3.85, 3.87, 3.91, 3.95, 3.98, 4.02, 4.08, 4.11, 4.15, 4.20};
+
+/// How probable a chemistry is beforehand (a guess of ours), and its voltage at these states of charge.
+struct Chart {
+    double probability;
+    std::array<double, chart_soc_percent.size()> cell_v;
+};
+
+/// In the order of Chemistry.
+constexpr std::array charts{Chart{0.75, {3.27, 3.61, 3.69, 3.71, 3.73, 3.75, 3.77, 3.79, 3.80, 3.82, 3.84,
+                                         3.85, 3.87, 3.91, 3.95, 3.98, 4.02, 4.08, 4.11, 4.15, 4.20}},
+                            Chart{0.15, {2.80, 3.20, 3.36, 3.46, 3.51, 3.55, 3.58, 3.61, 3.64, 3.67, 3.71,
+                                         3.75, 3.80, 3.86, 3.91, 3.96, 4.01, 4.05, 4.09, 4.13, 4.19}},
+                            Chart{0.10, {3.30, 3.63, 3.69, 3.72, 3.75, 3.77, 3.79, 3.81, 3.84, 3.87, 3.90,
+                                         3.94, 3.98, 4.02, 4.06, 4.11, 4.15, 4.20, 4.25, 4.30, 4.35}}};
 constexpr int capacities_tried = 120;
 constexpr double missing_step = 0.0125;
 constexpr double full_step = 0.005;
@@ -36,7 +48,7 @@ constexpr double loaded_sd_v = 0.03;      // a cell; what slow relaxation takes 
 constexpr double rounding_percent = 0.01;
 constexpr double max_beyond_percent = 10.0;
 
-/// What of the pack is compared with the chart: the rest first, then the curve.
+/// What of the pack is compared with a chart: the rest first, then the curve.
 struct Compared {
     Eigen::VectorXd charge_ah;
     Eigen::VectorXd cell_v;
@@ -65,7 +77,7 @@ Compared compared(const ObservedOcv& shown) {
     all.covariance_v2.bottomRightCorner(points, points) =
         between * shown.covariance_v2 * between.transpose() / (shown.cells * shown.cells) +
         Eigen::MatrixXd::Constant(points, points, loaded_sd_v * loaded_sd_v);
-    all.covariance_v2.diagonal().array() += lipo_chart_local_sd_v * lipo_chart_local_sd_v;
+    all.covariance_v2.diagonal().array() += chart_local_sd_v * chart_local_sd_v;
     return all;
 }
 
@@ -93,24 +105,25 @@ std::vector<MissingPart> missing_parts() {
 }
 
 /// The logarithm of the likelihood of a scale; -infinity where more was drawn than there is by so many percent.
-double log_likelihood(const Compared& shown, double capacity_ah, double missing_ah, double beyond_percent) {
+double log_likelihood(const Compared& shown, Chemistry chemistry, double capacity_ah, double missing_ah,
+                      double beyond_percent) {
     const Eigen::VectorXd soc = (1.0 - (shown.charge_ah.array() + missing_ah) / capacity_ah) * units::percent_per_whole;
     if (soc.minCoeff() < -beyond_percent) return -std::numeric_limits<double>::infinity();
     const auto n = soc.size();
     Eigen::VectorXd difference(n);
     Eigen::VectorXd slope(n);
     for (Eigen::Index i = 0; i < n; ++i) {
-        difference[i] = shown.cell_v[i] - lipo_chart_voltage_v(soc[i]);
-        const double low = std::clamp(soc[i] - lipo_chart_soc_sd_percent, 0.0, units::percent_per_whole - 1.0);
-        const double high = std::clamp(soc[i] + lipo_chart_soc_sd_percent, 1.0, units::percent_per_whole);
-        slope[i] = (lipo_chart_voltage_v(high) - lipo_chart_voltage_v(low)) / (high - low);
+        difference[i] = shown.cell_v[i] - chart_voltage_v(chemistry, soc[i]);
+        const double low = std::clamp(soc[i] - chart_soc_sd_percent, 0.0, units::percent_per_whole - 1.0);
+        const double high = std::clamp(soc[i] + chart_soc_sd_percent, 1.0, units::percent_per_whole);
+        slope[i] = (chart_voltage_v(chemistry, high) - chart_voltage_v(chemistry, low)) / (high - low);
     }
     Eigen::MatrixXd covariance = shown.covariance_v2;
     for (Eigen::Index i = 0; i < n; ++i) {
         for (Eigen::Index j = 0; j < n; ++j) {
-            const double apart = (soc[i] - soc[j]) / lipo_chart_correlation_percent;
-            const double variance = lipo_chart_sd_v * lipo_chart_sd_v +
-                                    slope[i] * slope[j] * lipo_chart_soc_sd_percent * lipo_chart_soc_sd_percent;
+            const double apart = (soc[i] - soc[j]) / chart_correlation_percent;
+            const double variance =
+                chart_sd_v * chart_sd_v + slope[i] * slope[j] * chart_soc_sd_percent * chart_soc_sd_percent;
             covariance(i, j) += variance * std::exp(-apart * apart / 2.0);
         }
     }
@@ -151,8 +164,8 @@ double part_below(double limit) {
 
 }  // namespace
 
-double lipo_chart_voltage_v(double soc_percent) {
-    return interpolate_clamped(chart_soc_percent, chart_cell_v, soc_percent);
+double chart_voltage_v(Chemistry chemistry, double soc_percent) {
+    return interpolate_clamped(chart_soc_percent, charts.at(static_cast<std::size_t>(chemistry)).cell_v, soc_percent);
 }
 
 std::vector<CapacityHypothesis> capacity_posterior(const ObservedOcv& shown, std::optional<double> given_ah) {
@@ -162,18 +175,21 @@ std::vector<CapacityHypothesis> capacity_posterior(const ObservedOcv& shown, std
     std::vector<CapacityHypothesis> posterior;
     double most = -std::numeric_limits<double>::infinity();
     const auto parts = missing_parts();
-    for (const double capacity_ah : capacities(shown, given_ah)) {
-        for (const auto& [part, prior, is_full] : parts) {
-            const double missing_ah = part * capacity_ah;
-            // Any part of what the pack held may have been drawn; the grid is one of logarithms.
-            const double drawn_fraction = std::min(1.0, shown.charge_ah.back() / (capacity_ah - missing_ah));
-            const double logarithm =
-                log_likelihood(all, capacity_ah, missing_ah, beyond_percent) + std::log(prior * drawn_fraction);
-            if (!std::isfinite(logarithm)) continue;
-            posterior.push_back({capacity_ah, missing_ah, logarithm, is_full});
-            most = std::max(most, logarithm);
-        }
-    }
+    const auto add = [&](std::size_t chart, double capacity_ah, const MissingPart& missing) {
+        const auto chemistry = static_cast<Chemistry>(chart);
+        if (chemistry != Chemistry::high_voltage && all.cell_v[0] > max_charged_cell_v) return;
+        const double missing_ah = missing.part * capacity_ah;
+        // Any part of what the pack held may have been drawn; the grid is one of logarithms.
+        const double drawn_fraction = std::min(1.0, shown.charge_ah.back() / (capacity_ah - missing_ah));
+        const double logarithm = log_likelihood(all, chemistry, capacity_ah, missing_ah, beyond_percent) +
+                                 std::log(charts.at(chart).probability * missing.probability * drawn_fraction);
+        if (!std::isfinite(logarithm)) return;
+        posterior.push_back({capacity_ah, missing_ah, logarithm, missing.is_full, chemistry});
+        most = std::max(most, logarithm);
+    };
+    for (std::size_t chart = 0; chart < charts.size(); ++chart)
+        for (const double capacity_ah : capacities(shown, given_ah))
+            for (const auto& missing : parts) add(chart, capacity_ah, missing);
     if (posterior.empty()) {
         throw UsageError(fmt::format("--capacity is {} Ah, and {:.3f} Ah were drawn from the pack",
                                      given_ah.value_or(0.0), shown.charge_ah.back()));
@@ -185,6 +201,12 @@ std::vector<CapacityHypothesis> capacity_posterior(const ObservedOcv& shown, std
     for (const auto& scale : posterior) sum += scale.probability;
     for (auto& scale : posterior) scale.probability /= sum;
     return posterior;
+}
+
+Chemistry most_probable_chemistry(std::span<const CapacityHypothesis> posterior) {
+    std::array<double, charts.size()> sums{};
+    for (const auto& scale : posterior) sums.at(static_cast<std::size_t>(scale.chemistry)) += scale.probability;
+    return static_cast<Chemistry>(std::ranges::max_element(sums) - sums.begin());
 }
 
 double capacity_quantile_ah(std::span<const CapacityHypothesis> posterior, double probability) {

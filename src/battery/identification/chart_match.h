@@ -11,14 +11,15 @@
 
 namespace flightwatt::battery {
 
-/// The open-circuit voltage that lithium-polymer packs are commonly said to have, a cell: 4.20 V full, 3.84 V half,
-/// 3.27 V empty (the voltage chart that sellers of packs print, e.g. blog.ampow.com/lipo-voltage-chart). Packs differ
-/// from it by some 80 mV; it stands in only for what no flight has shown.
+/// The usual open-circuit voltage of a cell [V] at a state of charge, 0 to 100; it stands in only for what no flight has
+/// shown. LiPo: the chart that sellers of packs print (e.g. blog.ampow.com/lipo-voltage-chart). The other two are round
+/// numbers of ours: NMC near the LG M50 (Chen et al. 2020), high-voltage LiPo as a LiPo charged to 4.35 V.
+double chart_voltage_v(Chemistry chemistry, double soc_percent);
 
-/// [V] a cell at a state of charge, 0 to 100.
-double lipo_chart_voltage_v(double soc_percent);
+/// A charged cell rests at most at this voltage, other than one of high voltage.
+inline constexpr double max_charged_cell_v = 4.25;
 
-/// What flights show of a pack's open-circuit voltage, to be laid onto the LiPo chart.
+/// What flights show of a pack's open-circuit voltage, to be laid onto a chart.
 struct ObservedOcv {
     std::vector<double> charge_ah;   ///< from where the curve begins, 0; rising
     std::vector<double> voltage_v;   ///< under load, falling
@@ -28,14 +29,14 @@ struct ObservedOcv {
     int cells = 0;
 };
 
-/// How packs differ from the chart, a cell, as standard deviations: lipo_chart_sd_v, alike over 40 % of the charge, and
-/// 10 mV at each point that is compared. Chen's and Rincon-Mora's curve of a polymer cell (2006) differs from it by 55
-/// mV, the two curves of the synthetic packs by 72 and 83 mV; the constants were chosen with these three in view. The
+/// How packs differ from their chart, a cell, as standard deviations: chart_sd_v, alike over 40 % of the charge, and
+/// 10 mV at each point that is compared. Chen's and Rincon-Mora's curve of a polymer cell (2006) differs from LiPo's by
+/// 55 mV, the two curves of the synthetic packs by 72 and 83 mV; the constants were chosen with these three in view. The
 /// 10 mV keep a curve's smoothness from telling the capacity: real curves are smoother than any model of their
 /// difference.
-inline constexpr double lipo_chart_correlation_percent = 40.0;
-inline constexpr double lipo_chart_local_sd_v = 0.01;
-inline constexpr double lipo_chart_soc_sd_percent = 4.0;  ///< an error of its charge, which counts where it is steep
+inline constexpr double chart_correlation_percent = 40.0;
+inline constexpr double chart_local_sd_v = 0.01;
+inline constexpr double chart_soc_sd_percent = 4.0;  ///< an error of its charge, which counts where it is steep
 
 /// How probable a capacity is, with a charge missing where the curve begins.
 struct CapacityHypothesis {
@@ -43,14 +44,17 @@ struct CapacityHypothesis {
     double missing_ah = 0.0;
     double probability = 0.0;
     bool is_full = false;  ///< as a charger leaves it: then `missing_ah` is 0 to some percent
+    Chemistry chemistry = Chemistry::lipo;
 };
 
-/// The posterior on a grid, probabilities summing to 1: four points of the curve follow the chart with an error as
-/// above, a common one of 30 mV a cell under load, and one of 20 mV at rest. Prior: any part of the charge may have
-/// been drawn, from all to a fiftieth (or the capacity is `given_ah`); half of all packs begin full, within 3 % (half a
-/// normal distribution), the others 0 to 90 % short. Throws UsageError if the curve exceeds the given capacity by a
-/// tenth.
+/// The posterior on a grid, probabilities summing to 1: four points of the curve follow one of the charts with an error
+/// as above, a common one of 30 mV a cell under load, and one of 20 mV at rest. Prior: 75 % LiPo, 15 % NMC, 10 % of
+/// high voltage, or that alone above max_charged_cell_v; any part of the charge may have been drawn, from all to a
+/// fiftieth (or the capacity is `given_ah`); half of all packs begin full, within 3 % (half a normal distribution), the
+/// others 0 to 90 % short. Throws UsageError if the curve exceeds the given capacity by a tenth.
 std::vector<CapacityHypothesis> capacity_posterior(const ObservedOcv& shown, std::optional<double> given_ah);
+
+Chemistry most_probable_chemistry(std::span<const CapacityHypothesis> posterior);
 
 /// Quantile of the capacity.
 double capacity_quantile_ah(std::span<const CapacityHypothesis> posterior, double probability);

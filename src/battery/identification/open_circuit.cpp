@@ -13,7 +13,6 @@
 namespace flightwatt::battery {
 namespace {
 
-constexpr double max_charged_cell_v = 4.25;
 constexpr double greatest_high_voltage_cell_v = 4.45;
 constexpr double min_part = 0.03;  // of the charge: less tells no capacity
 constexpr double flown_fraction = 0.95;
@@ -38,17 +37,18 @@ void require_possible_cells(double resting_voltage_v, int cells) {
 
 std::string cells_warning(double resting_voltage_v, int cells, bool is_given) {
     const double cell_v = resting_voltage_v / cells;
-    if (cell_v < lipo_chart_voltage_v(0.0)) {
+    const double empty_v = chart_voltage_v(Chemistry::lipo, 0.0);
+    if (cell_v < empty_v) {
         return fmt::format(
             "{} cells rest at {:.2f} V each before take-off, below an empty LiPo cell ({} V): check the number with "
             "--cells",
-            cells, cell_v, lipo_chart_voltage_v(0.0));
+            cells, cell_v, empty_v);
     }
     if (cell_v > max_charged_cell_v) {
         return fmt::format(
-            "{} cells rest at {:.2f} V each, above a full LiPo cell ({:.2f} V): the chart, and the capacity by it, are "
-            "less accurate for high-voltage cells",
-            cells, cell_v, lipo_chart_voltage_v(100.0));
+            "{} cells rest at {:.2f} V each, above a full LiPo cell ({:.2f} V): check the number with --cells, if they "
+            "are no high-voltage cells",
+            cells, cell_v, chart_voltage_v(Chemistry::lipo, 100.0));
     }
     const double one_less_v = resting_voltage_v / std::max(1, cells - 1);
     if (is_given || cells == 1 || one_less_v > greatest_high_voltage_cell_v) return "";
@@ -58,8 +58,13 @@ std::string cells_warning(double resting_voltage_v, int cells, bool is_given) {
 }
 
 std::string to_string(CapacityOrigin origin) {
-    constexpr std::array names{"given", "flights drew nearly all of it", "the LiPo chart"};
+    constexpr std::array names{"given", "flights drew nearly all of it", "charts of lithium cells"};
     return names.at(static_cast<std::size_t>(origin));
+}
+
+std::string to_string(Chemistry chemistry) {
+    constexpr std::array names{"LiPo", "NMC", "high-voltage LiPo"};
+    return names.at(static_cast<std::size_t>(chemistry));
 }
 
 Capacity estimate_capacity(double drawn_ah, std::span<const CapacityHypothesis> posterior,
@@ -76,8 +81,8 @@ Capacity estimate_capacity(double drawn_ah, std::span<const CapacityHypothesis> 
     return capacity;
 }
 
-ExtendedCurve extrapolate_curve(const CircuitFit& fit, const std::vector<double>& standard_error_v, double capacity_ah,
-                                double missing_ah) {
+ExtendedCurve extrapolate_curve(const CircuitFit& fit, const std::vector<double>& standard_error_v, Chemistry chemistry,
+                                double capacity_ah, double missing_ah) {
     const auto soc_at = [&](double charge_ah) {
         return std::max(0.0, units::percent_per_whole - units::percentage(missing_ah + charge_ah, capacity_ah));
     };
@@ -91,10 +96,10 @@ ExtendedCurve extrapolate_curve(const CircuitFit& fit, const std::vector<double>
     const int cells = fit.weights.cells;
     // A knot that the chart adds, parallel to it from one that was flown.
     const auto add_knot = [&](double percent, double from_percent, double from_v, double error_v) {
-        const double above_v = cells * (lipo_chart_voltage_v(percent) - lipo_chart_voltage_v(from_percent));
+        const double above_v = cells * (chart_voltage_v(chemistry, percent) - chart_voltage_v(chemistry, from_percent));
         soc.push_back(percent);
         extended.curve.voltage_v.push_back(std::max(from_v + above_v, from_v / 2.0));
-        extended.standard_error_v.push_back(std::hypot(error_v, cells * lipo_chart_sd_v));
+        extended.standard_error_v.push_back(std::hypot(error_v, cells * chart_sd_v));
     };
     double percent = 0.0;
     for (; percent < extended.known_down_to_percent - 0.5; percent += added_step_percent)

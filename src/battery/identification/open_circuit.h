@@ -26,7 +26,7 @@ void require_possible_cells(double resting_voltage_v, int cells);
 Capacity estimate_capacity(double drawn_ah, std::span<const CapacityHypothesis> posterior,
                            std::optional<double> given_ah);
 
-/// The fitted curve over state of charge; beyond its ends it goes on in parallel to the LiPo chart of that many cells.
+/// The fitted curve over state of charge; beyond its ends it goes on in parallel to the chart of that many cells.
 struct ExtendedCurve {
     OpenCircuitVoltage curve;
     std::vector<double> standard_error_v;  ///< 80 mV a cell more where the chart stands in
@@ -35,7 +35,7 @@ struct ExtendedCurve {
 };
 
 /// `missing_ah` is what was missing from the full pack where the curve begins.
-ExtendedCurve extrapolate_curve(const CircuitFit& fit, const std::vector<double>& standard_error_v, double capacity_ah,
-                                double missing_ah);
+ExtendedCurve extrapolate_curve(const CircuitFit& fit, const std::vector<double>& standard_error_v, Chemistry chemistry,
+                                double capacity_ah, double missing_ah);
 
 }  // namespace flightwatt::battery

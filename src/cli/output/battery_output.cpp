@@ -13,9 +13,9 @@ namespace flightwatt::cli {
 std::string describe(const battery::Capacity& capacity) {
     auto text = fmt::format("capacity {:.3g} Ah ({})", capacity.value_ah, to_string(capacity.origin));
     if (!capacity.interval_ah) return text;
-    return text + fmt::format(", {:.3g} to {:.3g} Ah in 95 % if packs differ from the chart by {:.0f} mV a cell (1 sd)",
-                              capacity.interval_ah->low, capacity.interval_ah->high,
-                              units::mv_from_v(battery::lipo_chart_sd_v));
+    return text +
+           fmt::format(", {:.3g} to {:.3g} Ah in 95 % if packs differ from their chart by {:.0f} mV a cell (1 sd)",
+                       capacity.interval_ah->low, capacity.interval_ah->high, units::mv_from_v(battery::chart_sd_v));
 }
 
 std::string describe_given_capacity(const battery::Battery& pack) {
@@ -109,8 +109,8 @@ std::string provenance(const battery::BatteryIdentification& identified) {
                         identified.observed_min_soc_percent, identified.fit.knots_ah.back());
     text += identified.observed_min_soc_percent > 0.0
                 ? fmt::format(
-                      "; below, it goes on in\n# parallel to the usual chart of LiPo cells, {:.0f} mV a cell unsure.\n",
-                      units::mv_from_v(battery::lipo_chart_sd_v))
+                      "; below, it goes on in\n# parallel to the usual chart of {} cells, {:.0f} mV a cell unsure.\n",
+                      to_string(identified.chemistry), units::mv_from_v(battery::chart_sd_v))
                 : ".\n";
     if (identified.curve_start_depletion_ah > 0.0) {
         text += fmt::format("# No flight begins full: above {:.1f} % it is parallel to that chart, too.\n",
@@ -165,6 +165,7 @@ Json to_json(const battery::BatteryIdentification& identified, const std::vector
     Json json;
     json["capacity_ah"] = identified.capacity.value_ah;
     json["capacity_from"] = to_string(identified.capacity.origin);
+    json["chemistry"] = to_string(identified.chemistry);
     json["capacity_interval_ah"] = interval_json(identified.capacity.interval_ah);
     const auto& by_flights = identified.battery.flight_estimate;
     json["flight_estimate_ah"] =

@@ -218,7 +218,7 @@ FigureData knot_rows(const battery::BatteryIdentification& identified) {
         // Knots are rounded to their state of charge: the last one that was flown belongs to the flights.
         const bool flown = curve.soc_percent[i] >= identified.observed_min_soc_percent - 1e-6;
         data.add({curve.soc_percent[i], curve.voltage_v[i], curve.voltage_v[i] - reach_v, curve.voltage_v[i] + reach_v},
-                 {flown ? "from flights" : "after the LiPo chart"});
+                 {flown ? "from flights" : "after the chart"});
     }
     return data;
 }
@@ -248,9 +248,10 @@ Figure open_circuit_figure(const battery::BatteryIdentification& identified, con
     std::string caption = "Open-circuit voltage with the 95 % intervals of its knots.";
     if (identified.observed_min_soc_percent > 0.0) {
         caption += fmt::format(
-            " Below {:.0f} % no flight shows it: there it goes on in parallel to the usual chart of {} LiPo "
+            " Below {:.0f} % no flight shows it: there it goes on in parallel to the usual chart of {} {} "
             "cells, {:.0f} mV a cell unsure.",
-            identified.observed_min_soc_percent, identified.cells, units::mv_from_v(battery::lipo_chart_sd_v));
+            identified.observed_min_soc_percent, identified.cells, to_string(identified.chemistry),
+            units::mv_from_v(battery::chart_sd_v));
     }
     auto figure = new_figure(
         "open_circuit", id, caption,

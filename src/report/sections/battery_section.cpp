@@ -108,8 +108,8 @@ void add_identified(Section& section, const ReportBattery& battery, const Sectio
         section.html += paragraph("Warning: " + warning + ".", "warning");
     if (identified.capacity.origin == battery::CapacityOrigin::chart) {
         section.html += paragraph(
-            "No flight tells the capacity, as none runs empty: it is a guess after the usual chart of LiPo "
-            "cells. Give what the pack says with --capacity.",
+            "No flight tells the capacity, as none runs empty: it is a guess after the usual charts of "
+            "lithium cells. Give what the pack says with --capacity.",
             "warning");
     }
     if (identified.fit.rc_resistance_ohm == 0.0) {

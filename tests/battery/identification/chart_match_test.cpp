@@ -1,4 +1,4 @@
-// Capacity and missing charge by the LiPo chart.
+// Capacity, missing charge and chemistry by the charts.
 
 #include "battery/identification/chart_match.h"
 
@@ -11,13 +11,13 @@ namespace flightwatt::battery {
 namespace {
 
 /// A pack of 2 Ah whose voltage is the chart's, flown from one state of charge to another.
-ObservedOcv shown(double from_percent, double to_percent, int knots = 6) {
+ObservedOcv shown(double from_percent, double to_percent, int knots = 6, Chemistry chemistry = Chemistry::lipo) {
     ObservedOcv curve;
     curve.cells = 3;
     for (int k = 0; k <= knots; ++k) {
         const double drawn_percent = (from_percent - to_percent) * k / knots;
         curve.charge_ah.push_back(0.02 * drawn_percent);
-        curve.voltage_v.push_back(3.0 * lipo_chart_voltage_v(from_percent - drawn_percent));
+        curve.voltage_v.push_back(3.0 * chart_voltage_v(chemistry, from_percent - drawn_percent));
     }
     curve.covariance_v2 = 1e-6 * Eigen::MatrixXd::Identity(knots + 1, knots + 1);
     curve.resting_voltage_v = curve.voltage_v.front();
@@ -32,7 +32,23 @@ TEST(ChartMatch, FindsTheCapacityOfAPackThatFollowsTheChart) {
     EXPECT_EQ(estimate_depletion_ah(posterior), 0.0);
     EXPECT_LT(capacity_quantile_ah(posterior, 0.025), 2.0);
     EXPECT_GT(capacity_quantile_ah(posterior, 0.975), 2.0);
-    EXPECT_NEAR(capacity_quantile_ah(posterior, 0.5), 2.0, 0.3);
+    EXPECT_NEAR(capacity_quantile_ah(posterior, 0.5), 2.0, 0.4);
+}
+
+TEST(ChartMatch, RecognizesTheChemistryOfAFullPackFlownDeep) {
+    for (const auto chemistry : {Chemistry::lipo, Chemistry::nmc, Chemistry::high_voltage}) {
+        const auto posterior = capacity_posterior(shown(100.0, 10.0, 6, chemistry), std::nullopt);
+        EXPECT_EQ(most_probable_chemistry(posterior), chemistry) << to_string(chemistry);
+        EXPECT_NEAR(capacity_quantile_ah(posterior, 0.5), 2.0, 0.4) << to_string(chemistry);
+    }
+}
+
+TEST(ChartMatch, TakesAPackAbove4V25ForOneOfHighVoltage) {
+    auto curve = shown(100.0, 80.0);
+    curve.resting_voltage_v = 3.0 * 4.2501;
+    EXPECT_EQ(most_probable_chemistry(capacity_posterior(curve, std::nullopt)), Chemistry::high_voltage);
+    curve.resting_voltage_v = 3.0 * 4.2499;
+    EXPECT_EQ(most_probable_chemistry(capacity_posterior(curve, std::nullopt)), Chemistry::lipo);
 }
 
 TEST(ChartMatch, IsTheSurerTheDeeperWasFlown) {

@@ -1,4 +1,4 @@
-// The LiPo chart, and what it stands in for: the capacity, and the end of the curve.
+// The charts, and what they stand in for: the capacity, and the end of the curve.
 
 #include "battery/identification/open_circuit.h"
 
@@ -22,20 +22,22 @@ CircuitFit fit_down_to(double last_cell_v) {
 }
 
 TEST(LipoChart, HasThePublishedVoltages) {
-    EXPECT_DOUBLE_EQ(lipo_chart_voltage_v(100.0), 4.20);
-    EXPECT_DOUBLE_EQ(lipo_chart_voltage_v(50.0), 3.84);
-    EXPECT_DOUBLE_EQ(lipo_chart_voltage_v(0.0), 3.27);
-    EXPECT_DOUBLE_EQ(lipo_chart_voltage_v(97.5), 0.5 * (4.15 + 4.20));
+    EXPECT_DOUBLE_EQ(chart_voltage_v(Chemistry::lipo, 100.0), 4.20);
+    EXPECT_DOUBLE_EQ(chart_voltage_v(Chemistry::lipo, 50.0), 3.84);
+    EXPECT_DOUBLE_EQ(chart_voltage_v(Chemistry::lipo, 0.0), 3.27);
+    EXPECT_DOUBLE_EQ(chart_voltage_v(Chemistry::lipo, 97.5), 0.5 * (4.15 + 4.20));
 }
 
 TEST(LipoChart, EndsWhereItIsFullAndEmpty) {
-    EXPECT_DOUBLE_EQ(lipo_chart_voltage_v(120.0), 4.20);
-    EXPECT_DOUBLE_EQ(lipo_chart_voltage_v(-5.0), 3.27);
+    EXPECT_DOUBLE_EQ(chart_voltage_v(Chemistry::lipo, 120.0), 4.20);
+    EXPECT_DOUBLE_EQ(chart_voltage_v(Chemistry::lipo, -5.0), 3.27);
 }
 
-TEST(LipoChart, Rises) {
-    for (double soc_percent = 0.5; soc_percent < 100.0; soc_percent += 0.5)
-        EXPECT_GT(lipo_chart_voltage_v(soc_percent), lipo_chart_voltage_v(soc_percent - 0.5)) << soc_percent;
+TEST(Charts, Rise) {
+    for (const auto chemistry : {Chemistry::lipo, Chemistry::nmc, Chemistry::high_voltage})
+        for (double soc_percent = 0.5; soc_percent < 100.0; soc_percent += 0.5)
+            EXPECT_GT(chart_voltage_v(chemistry, soc_percent), chart_voltage_v(chemistry, soc_percent - 0.5))
+                << to_string(chemistry) << " at " << soc_percent;
 }
 
 TEST(LipoCells, AreAsManyAsTheRestingVoltageNeeds) {
@@ -98,7 +100,7 @@ TEST(OpenCircuit, TakesTheMedianOfWhatIsProbable) {
 }
 
 TEST(OpenCircuit, GoesOnInParallelToTheChart) {
-    const auto extended = extrapolate_curve(fit_down_to(3.84), {0.01, 0.02, 0.03}, 2.4, 0.0);
+    const auto extended = extrapolate_curve(fit_down_to(3.84), {0.01, 0.02, 0.03}, Chemistry::lipo, 2.4, 0.0);
     const auto& curve = extended.curve;
     EXPECT_DOUBLE_EQ(extended.known_down_to_percent, 50.0);
     EXPECT_DOUBLE_EQ(extended.known_up_to_percent, 100.0);
@@ -108,29 +110,32 @@ TEST(OpenCircuit, GoesOnInParallelToTheChart) {
     EXPECT_NEAR(curve.voltage_v.front(), 3.0 * 3.27, 1e-9);
     EXPECT_TRUE(std::is_sorted(curve.voltage_v.begin(), curve.voltage_v.end()));
     EXPECT_EQ(curve.soc_percent.size(), 13U);  // 0 to 45 in steps of 5, and the three knots
-    EXPECT_NEAR(extended.standard_error_v.front(), std::hypot(0.03, 3.0 * lipo_chart_sd_v), 1e-9);
+    EXPECT_NEAR(extended.standard_error_v.front(), std::hypot(0.03, 3.0 * chart_sd_v), 1e-9);
     EXPECT_EQ(extended.standard_error_v.back(), 0.01);
 }
 
 TEST(OpenCircuit, GoesOnAboveWhatWasFlownToo) {
-    const auto extended = extrapolate_curve(fit_down_to(3.84), {0.01, 0.02, 0.03}, 2.4, 0.6);  // from 75 to 25 %
+    const auto extended =
+        extrapolate_curve(fit_down_to(3.84), {0.01, 0.02, 0.03}, Chemistry::lipo, 2.4, 0.6);  // from 75 to 25 %
     const auto& [soc, volts] = extended.curve;
     EXPECT_DOUBLE_EQ(extended.known_up_to_percent, 75.0);
     EXPECT_DOUBLE_EQ(extended.known_down_to_percent, 25.0);
     EXPECT_EQ(soc.back(), 100.0);
     EXPECT_NEAR(volts.back(), 12.5 + 3.0 * (4.20 - 3.98), 1e-9);
+    const auto nmc = extrapolate_curve(fit_down_to(3.84), {0.01, 0.02, 0.03}, Chemistry::nmc, 2.4, 0.6);
+    EXPECT_NEAR(nmc.curve.voltage_v.back(), 12.5 + 3.0 * (4.19 - 3.96), 1e-9);
     EXPECT_TRUE(std::ranges::adjacent_find(soc, std::greater_equal<>()) == soc.end());
 }
 
 TEST(OpenCircuit, NeedsNoChartWhereAllWasFlown) {
-    const auto extended = extrapolate_curve(fit_down_to(3.4), {0.01, 0.02, 0.03}, 1.2, 0.0);
+    const auto extended = extrapolate_curve(fit_down_to(3.4), {0.01, 0.02, 0.03}, Chemistry::lipo, 1.2, 0.0);
     EXPECT_EQ(extended.known_down_to_percent, 0.0);
     EXPECT_EQ(extended.curve.soc_percent, (std::vector<double>{0.0, 50.0, 100.0}));
     EXPECT_EQ(extended.standard_error_v, (std::vector<double>{0.03, 0.02, 0.01}));
 }
 
 TEST(OpenCircuit, EndsWhereACapacityThatWasGivenEnds) {
-    const auto extended = extrapolate_curve(fit_down_to(3.4), {0.01, 0.02, 0.03}, 1.15, 0.0);
+    const auto extended = extrapolate_curve(fit_down_to(3.4), {0.01, 0.02, 0.03}, Chemistry::lipo, 1.15, 0.0);
     EXPECT_EQ(extended.curve.soc_percent.size(), 3U);
     EXPECT_EQ(extended.curve.soc_percent.front(), 0.0);
     EXPECT_EQ(extended.curve.voltage_v.front(), 3.0 * 3.4);
