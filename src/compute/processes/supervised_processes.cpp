@@ -159,10 +159,10 @@ class Supervisor {
     std::vector<::pid_t> commands_;  ///< -1 once ended
 };
 
-/// Starts the commands, adopts what they fork, tells of each that ends, and on SIGTERM, or when `parent` is
-/// gone, ends all of them. To be called in a forked process.
+/// Starts the commands, adopts what they fork, reports each that ends, and on SIGTERM, or when `parent` is gone, ends
+/// all of them. `starting` is closed here and by each command that is executed. To be called in a forked process.
 [[noreturn]] void supervise(const std::vector<std::vector<std::string>>& commands, const SupervisionOptions& options,
-                            int events, ::pid_t parent) {
+                            int events, int starting, ::pid_t parent) {
     ::setpgid(0, 0);  // Ctrl-C on the terminal is the profiler's to answer
     sigset_t awaited;
     sigemptyset(&awaited);
@@ -174,6 +174,7 @@ class Supervisor {
     if (::getppid() != parent) ::_exit(0);  // it has died before the line above
     Supervisor supervisor(events, options.kill_timeout);
     for (const auto& words : commands) supervisor.start(words, options);
+    ::close(starting);
     while (true) {
         int signal = 0;
         if (::sigwait(&awaited, &signal) != 0 || signal == SIGTERM) break;
@@ -181,6 +182,17 @@ class Supervisor {
     }
     report(events, {{}, supervisor.end_all()});
     ::_exit(0);
+}
+
+struct Pipe {
+    int reads = -1;
+    int writes = -1;
+};
+
+Pipe make_pipe() {
+    int ends[2] = {-1, -1};
+    if (::pipe2(ends, O_CLOEXEC) != 0) throw OutputError(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
+    return {ends[0], ends[1]};
 }
 
 std::optional<SupervisorEvent> next_event(int events) {
@@ -207,20 +219,25 @@ std::string to_string(const FinishedCommand& ended) {
 
 SupervisedProcesses::SupervisedProcesses(const std::vector<std::vector<std::string>>& commands,
                                          const SupervisionOptions& options) {
-    int ends[2] = {-1, -1};
-    if (::pipe2(ends, O_CLOEXEC) != 0) {
-        throw OutputError(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
-    }
+    const auto events = make_pipe();
+    const auto starting = make_pipe();
     const auto parent = ::getpid();
     supervisor_ = ::fork();
     if (supervisor_ == 0) {
-        ::close(ends[0]);
-        supervise(commands, options, ends[1], parent);
+        ::close(events.reads);
+        ::close(starting.reads);
+        supervise(commands, options, events.writes, starting.writes, parent);
     }
     const int error = errno;
-    ::close(ends[1]);
-    events_ = ends[0];
+    ::close(events.writes);
+    ::close(starting.writes);
+    events_ = events.reads;
     ::fcntl(events_, F_SETFL, O_NONBLOCK);
+    // At its end when the supervisor and all commands have closed it: each is executed, or reported as not started.
+    char nothing = 0;
+    while (::read(starting.reads, &nothing, 1) < 0 && errno == EINTR) {
+    }
+    ::close(starting.reads);
     if (supervisor_ > 0) return;
     ::close(events_);
     throw OutputError(fmt::format("cannot start a process: {}", std::strerror(error)));

@@ -38,6 +38,7 @@ std::string to_string(const FinishedCommand& ended);
 /// by programs of one thread. Throws OutputError if the system has no more processes or files.
 class SupervisedProcesses {
   public:
+    /// Waits until each command is executed, or is among those that ended() reports as not started.
     SupervisedProcesses(const std::vector<std::vector<std::string>>& commands, const SupervisionOptions& options);
     ~SupervisedProcesses();
     SupervisedProcesses(const SupervisedProcesses&) = delete;

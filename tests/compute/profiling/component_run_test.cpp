@@ -124,6 +124,15 @@ TEST(ComponentRun, CannotBeStarted) {
     EXPECT_EQ(done.note, "cannot be started: No such file or directory");
 }
 
+TEST(ComponentRun, CannotBeStartedHoweverShortTheRun) {
+    auto sampler = constant_sampler(3.0);
+    RunContext frame;
+    frame.sampler = &sampler;
+    ProfileTiming over_at_once;
+    over_at_once.duration_s = 1e-9;
+    EXPECT_EQ(run_component({{"there-is-no-such-component"}}, over_at_once, frame).status, RunStatus::not_started);
+}
+
 TEST(ComponentRun, EndsWithTheFirstOfThoseThatRunTogether) {
     auto sampler = constant_sampler(3.0);
     RunContext frame;
