@@ -109,6 +109,73 @@ TEST(AltitudeRecord, RefusesAnEstimatorThatRunsAway) {
     EXPECT_TRUE(wanders.sorties.empty());
 }
 
+struct Held {
+    double altitude_m;
+    int samples;
+    bool is_stuck = false;  ///< repeats one value; others move by a centimetre from sample to sample
+};
+
+/// An altitude, a sample each `step_s`, that holds each level in turn.
+Track held(const std::vector<Held>& levels, double step_s = 1.0) {
+    Track track{.name = "altitude_m", .source = "GPS.alt"};
+    for (const auto& [altitude_m, samples, is_stuck] : levels) {
+        for (int k = 0; k < samples; ++k) {
+            track.time_s.push_back(step_s * static_cast<double>(track.time_s.size()));
+            track.value.push_back(altitude_m + (is_stuck ? 0.0 : 0.01 * k));
+        }
+    }
+    return track;
+}
+
+std::size_t jumps_of(const std::vector<Held>& levels, double step_s = 1.0) {
+    return clean_altitude(held(levels, step_s)).jumps_s.size();
+}
+
+TEST(AltitudeRecord, JumpsByMoreThan10MetresAnd60MetresPerSecond) {
+    EXPECT_EQ(jumps_of({{0, 60}, {70, 60}}), 0U);
+    EXPECT_EQ(jumps_of({{0, 60}, {71, 60}}), 1U);
+    EXPECT_EQ(jumps_of({{0, 60}, {130, 60}}, 2.0), 0U);
+    EXPECT_EQ(jumps_of({{0, 60}, {131, 60}}, 2.0), 1U);
+}
+
+TEST(AltitudeRecord, JumpsWithLessWhereItStoodStillForTenSecondsAndFiveSamples) {
+    EXPECT_EQ(jumps_of({{0, 40, true}, {64, 60}}), 0U) << "60 m and 5 m/s";
+    EXPECT_EQ(jumps_of({{0, 40, true}, {66, 60}}), 1U);
+    EXPECT_EQ(jumps_of({{-20, 30}, {0, 10, true}, {66, 60}}), 0U) << "nine seconds";
+    EXPECT_EQ(jumps_of({{-20, 30}, {0, 11, true}, {66, 60}}), 1U) << "ten seconds";
+    EXPECT_EQ(jumps_of({{-20, 30}, {0, 4, true}, {100, 60}}, 4.0), 0U) << "four samples";
+    EXPECT_EQ(jumps_of({{-20, 30}, {0, 5, true}, {100, 60}}, 4.0), 1U) << "five samples";
+}
+
+TEST(AltitudeRecord, LeavesOutWhatComesBackWithin30SecondsOr120WhereItStoodStill) {
+    EXPECT_EQ(jumps_of({{0, 300}, {500, 29}, {3, 300}}), 0U);
+    EXPECT_EQ(jumps_of({{0, 300}, {500, 31}, {3, 300}}), 2U);
+    EXPECT_EQ(jumps_of({{0, 300}, {500, 119, true}, {3, 300}}), 0U);
+    EXPECT_EQ(jumps_of({{0, 300}, {500, 121, true}, {3, 300}}), 2U);
+}
+
+TEST(AltitudeRecord, LeavesOutPiecesOfLessThanFiveSeconds) {
+    EXPECT_EQ(jumps_of({{0, 60}, {400, 5}, {800, 60}}), 1U);
+    EXPECT_EQ(jumps_of({{0, 60}, {400, 6}, {800, 60}}), 2U);
+}
+
+TEST(AltitudeRecord, IsUnusableWithMoreThanTenJumpsOrOneOfAKilometre) {
+    const auto stairs = [](int steps) {
+        std::vector<Held> levels;
+        for (int k = 0; k <= steps; ++k) levels.push_back({100.0 * k, 40});
+        return clean_altitude(held(levels)).unusable_reason;
+    };
+    EXPECT_EQ(stairs(10), "");
+    EXPECT_THAT(stairs(11), HasSubstr("runs from 0 to 1100.39 m with 11 jumps"));
+    const auto after = [](double jump_m, int samples) {
+        return clean_altitude(held({{0, samples}, {jump_m, 60}})).unusable_reason;
+    };
+    EXPECT_EQ(after(999.0, 60), "");
+    EXPECT_THAT(after(1001.0, 60), HasSubstr("with 1 jumps"));
+    EXPECT_EQ(after(1001.0, 20), "") << "19 s";
+    EXPECT_NE(after(1001.0, 21), "") << "20 s";
+}
+
 TEST(AltitudeRecord, KeepsWhatASmallAircraftFlies) {
     // A hotliner: 100 m in 3 s, and down again as fast, from an altitude that stands still to the millimetre.
     std::vector<test::Point> points{{0, 0, 0}, {60, 0, 0}, {61, 0, 100}, {64, 100, 100}, {65, 100, 0}};

@@ -230,6 +230,8 @@ TEST(UnitDoubt, ComparesWithTheClimbRate) {
         return warnings.empty() ? std::string() : warnings.front();
     };
     EXPECT_EQ(warning_of(1.0), "");
+    EXPECT_EQ(warning_of(1.65), "");
+    EXPECT_THAT(warning_of(1.75), HasSubstr("is one of them in another unit than m?"));
     EXPECT_THAT(warning_of(3.28084),
                 HasSubstr("times as much as the climb rate of GPS.climb says: is one of them in feet?"));
     EXPECT_THAT(warning_of(0.3048), HasSubstr("is one of them in feet?"));

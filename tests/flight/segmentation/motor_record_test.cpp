@@ -79,6 +79,20 @@ TEST(MotorRecord, LeavesOutThrottleThatTheMotorDoesNotFollow) {
     EXPECT_THAT(phases.warnings, testing::Contains(HasSubstr("while the power stays at its idle: they were left out")));
 }
 
+TEST(MotorRecord, TakesAThrottleWithoutPowerForAGlitchUpToTenSeconds) {
+    const auto opens_for = [](double length_s) {
+        auto columns = measured_flight();
+        for (std::size_t i = 0; i < columns.time_s.size(); ++i) {
+            const double since_s = columns.time_s[i] - columns.time_s.back() + 60.0;
+            if (since_s >= 0.0 && since_s < length_s) columns.throttle_percent[i] = 60.0;
+        }
+        return segment(test::series_of(columns)).warnings;
+    };
+    const auto glitch = testing::Contains(HasSubstr("while the power stays at its idle: they were left out"));
+    EXPECT_THAT(opens_for(10.0), glitch);
+    EXPECT_THAT(opens_for(13.0), Not(glitch));
+}
+
 TEST(MotorRecord, SaysThatNothingTellsOfTheMotor) {
     auto columns = measured_flight();
     columns.throttle_percent.clear();

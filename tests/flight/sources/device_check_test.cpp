@@ -148,8 +148,106 @@ TEST(DeviceDoubts, LetLiftMotorsStandWhileThePusherRuns) {
     EXPECT_THAT(test::said_of(loaded), Not(HasSubstr("reports")));
 }
 
+/// What devices at 12 V are doubted of that report a hundred times, one second apart, given the current of each.
+std::vector<std::string> doubts_of(const std::string& message, int count,
+                                   const std::function<double(int device, int second)>& current_a) {
+    std::string text;
+    for (int second = 0; second < 100; ++second) {
+        for (int device = 0; device < count; ++device) {
+            const double a = current_a(device, second);
+            const double time_s = second + 0.001 * device;
+            text += message == "ESC"
+                        ? fmt::format("{:.3f} 7 ESC {:.5f} 12 {:.5f} 5000 12 0 {}\n", time_s, a, 12.0 * a, device)
+                        : fmt::format("{:.3f} 7 POWER_DEVICE 1 {} {:.5f} 12\n", time_s, device, a);
+        }
+    }
+    return find_suspect_devices(flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), "7"),
+                                message);
+}
+
+double wavering_a(int second) { return 4.0 + 0.01 * std::sin(second); }
+
+TEST(DeviceDoubts, CountFromFourPercentOfTheEnergyOn) {
+    const auto silent_for = [](int seconds) {
+        return doubts_of("ESC", 4, [seconds](int motor, int second) {
+            return motor == 3 && second < seconds ? 0.0 : wavering_a(second);
+        });
+    };
+    EXPECT_THAT(silent_for(15), testing::IsEmpty()) << "3.9 % of what all draw";
+    EXPECT_THAT(silent_for(17), testing::ElementsAre(HasSubstr("ESC 3 reports next to nothing"))) << "4.4 %";
+    const auto turned = [](double fraction) {
+        return doubts_of("POWER_DEVICE", 2, [fraction](int device, int second) {
+            return device == 0 ? wavering_a(second) : -fraction * wavering_a(second);
+        });
+    };
+    EXPECT_THAT(turned(0.035), testing::IsEmpty());
+    EXPECT_THAT(turned(0.05), testing::ElementsAre(HasSubstr("POWER_DEVICE 1/1 reports negative power, -5 %")));
+}
+
+TEST(DeviceDoubts, CountAMotorAsOffWhereTheOthersDrawAFifthOfTheirUpperQuartile) {
+    const auto off_while_others_draw = [](double fraction) {
+        return doubts_of("ESC", 4, [fraction](int motor, int second) {
+            if (second < 30) return wavering_a(second);
+            return motor == 3 ? 0.001 * std::sin(second) : fraction * wavering_a(second);
+        });
+    };
+    EXPECT_THAT(off_while_others_draw(0.19), testing::IsEmpty());
+    EXPECT_THAT(off_while_others_draw(0.21), testing::ElementsAre(HasSubstr("ESC 3 reports next to nothing")));
+}
+
+TEST(DeviceDoubts, TakeThirtyReportsAlikeForAValueThatIsRepeated) {
+    const auto repeats = [](int times) {
+        return doubts_of("ESC", 4, [times](int motor, int second) {
+            return motor == 3 && second >= 40 && second < 40 + times ? 8.0 : wavering_a(second);
+        });
+    };
+    EXPECT_THAT(repeats(29), testing::IsEmpty());
+    EXPECT_THAT(repeats(30), testing::ElementsAre(HasSubstr("ESC 3 reports the same value again and again (96.00 W)")));
+}
+
+TEST(DeviceDoubts, TakeASteadyLoadOfAQuarterOfTheEnergyForASensorThatIsStuck) {
+    const auto steady = [](double fraction) {
+        return doubts_of("POWER_DEVICE", 2, [fraction](int device, int second) {
+            return device == 0 ? (1.0 - fraction) * wavering_a(second) : 4.0 * fraction;
+        });
+    };
+    EXPECT_THAT(steady(0.24), testing::IsEmpty());
+    EXPECT_THAT(steady(0.26), testing::ElementsAre(HasSubstr("POWER_DEVICE 1/1 reports the same value")));
+}
+
+TEST(DeviceDoubts, TakeADeviceForTheSumOfTheOthersWithinATwentieth) {
+    const auto sum_times = [](double factor) {
+        return doubts_of("POWER_DEVICE", 3, [factor](int device, int second) {
+            return device == 0 ? factor * 2.0 * wavering_a(second) : wavering_a(second);
+        });
+    };
+    EXPECT_THAT(sum_times(0.96), testing::ElementsAre(HasSubstr("1/0 reports what all others do together")));
+    EXPECT_THAT(sum_times(0.94), testing::IsEmpty());
+}
+
+TEST(DeviceDoubts, AreNotLookedForAmongMoreThan32) {
+    const auto alike = [](int count) {
+        return doubts_of("ESC", count, [](int motor, int second) { return motor == 5 ? 0.0 : wavering_a(second); });
+    };
+    EXPECT_THAT(alike(33), testing::ElementsAre("33 ESC devices: none is judged beside the others"));
+    EXPECT_THAT(alike(32), testing::IsEmpty()) << "one of 32 draws 3.1 %";
+    EXPECT_THAT(alike(20), testing::ElementsAre(HasSubstr("ESC 5 reports next to nothing")));
+}
+
+TEST(DeviceDoubts, TakeVoltagesForDifferentFromATenthOn) {
+    const auto reason_at = [](double second_v) {
+        std::string text;
+        for (int k = 0; k < 60; ++k)
+            text += fmt::format("{} 7 POWER_DEVICE 1 0 2.0 12\n{}.1 7 POWER_DEVICE 1 1 2.0 {}\n", k, k, second_v);
+        return differing_voltages_reason(
+            flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), "7"));
+    };
+    EXPECT_EQ(reason_at(13.1), "");
+    EXPECT_THAT(reason_at(13.3), HasSubstr("have 12.0 to 13.3 V"));
+}
+
 TEST(DeviceDoubts, NameIdsThatAreMissingBetweenOthers) {
-    const auto doubts_of = [](const std::vector<std::string>& ids) {
+    const auto doubts_with = [](const std::vector<std::string>& ids) {
         std::string text;
         for (int k = 0; k < 60; ++k)
             for (const auto& id : ids)
@@ -157,13 +255,13 @@ TEST(DeviceDoubts, NameIdsThatAreMissingBetweenOthers) {
         return find_suspect_devices(
             flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), "7"), "POWER_DEVICE");
     };
-    EXPECT_THAT(doubts_of({"1 0", "1 2", "1 3"}),
+    EXPECT_THAT(doubts_with({"1 0", "1 2", "1 3"}),
                 testing::ElementsAre("POWER_DEVICE 1 is missing between 0 and 2: what it draws is not in the sum"));
-    EXPECT_THAT(doubts_of({"1 0", "1 3", "1 4", "1 5"}),
+    EXPECT_THAT(doubts_with({"1 0", "1 3", "1 4", "1 5"}),
                 testing::ElementsAre(HasSubstr("1, 2 are missing between 0 and 3")));
-    EXPECT_THAT(doubts_of({"1 0", "1 1", "1 2"}), testing::IsEmpty());
-    EXPECT_THAT(doubts_of({"1 5", "1 9"}), testing::IsEmpty()) << "numbered by other rules";
-    EXPECT_THAT(doubts_of({"1 0", "2 0", "3 0"}), testing::IsEmpty()) << "one circuit a node";
+    EXPECT_THAT(doubts_with({"1 0", "1 1", "1 2"}), testing::IsEmpty());
+    EXPECT_THAT(doubts_with({"1 5", "1 9"}), testing::IsEmpty()) << "numbered by other rules";
+    EXPECT_THAT(doubts_with({"1 0", "2 0", "3 0"}), testing::IsEmpty()) << "one circuit a node";
 }
 
 }  // namespace
