@@ -46,6 +46,16 @@ TEST(SampledFlights, AgreeWithTheClosedFormOfAGaussianDepletion) {
     }
 }
 
+TEST(SampledFlights, SayWhatPartOfTheProbabilityRestsOnMorePowerThanWasMeasured) {
+    auto mission = gaussian_depletion(100.0 - 20.0 / 0.36);  // half of the flights miss it
+    EXPECT_EQ(sampled(mission, 10000, 1).probability_below_reserve_outside_measured, 0.0) << "nothing was measured";
+    mission.setup.mechanical->phases[flight::Phase::cruise].spread = mechanical::FlightEnvelope{{18.0}, {21.0}, {1.0}};
+    const auto flights = sampled(mission, 10000, 1);
+    EXPECT_NEAR(flights.probability_below_reserve, 0.5, 4.0 * 0.005);
+    EXPECT_NEAR(flights.probability_below_reserve_outside_measured, 0.1587, 4.0 * 0.0037) << "one standard deviation";
+    EXPECT_NE(describe(flights).find(" with more power than any flight had)"), std::string::npos);
+}
+
 TEST(SampledFlights, CountEmptyBatteriesAsBelowAnyReserve) {
     auto mission = gaussian_depletion(0.0);
     mission.setup.initial_soc_percent = 20.0 / 0.36;  // empty in half of the flights

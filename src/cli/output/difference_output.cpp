@@ -134,7 +134,7 @@ std::vector<Difference> mission_difference(const mission::Simulation& a, const m
 TextTable difference_table(const Differences& differences, std::string_view form) {
     auto rows = to_json(differences)["differences"];
     for (auto& row : rows)
-        if (row["basis"] == "") row["basis"] = nullptr;
+        if (row["basis"].get_ref<const std::string&>().empty()) row["basis"] = nullptr;
     return table_of(
         rows,
         {"part", "quantity", "unit", "a", "a_interval/0: a_low", "a_interval/1: a_high", "b", "b_interval/0: b_low",

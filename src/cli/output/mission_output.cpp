@@ -21,6 +21,7 @@ void add_to_json(const mission::MonteCarloResult& flights, Json& json) {
     json["probability_below_reserve_standard_error"] = flights.probability_below_reserve_standard_error;
     json["probability_below_reserve_low"] = flights.probability_below_reserve_95.low;
     json["probability_below_reserve_high"] = flights.probability_below_reserve_95.high;
+    json["probability_below_reserve_outside_measured"] = flights.probability_below_reserve_outside_measured;
     json["probability_depleted"] = flights.probability_depleted;
     json["probability_battery_failure"] = flights.probability_battery_failure;
     json["samples"] = flights.samples;

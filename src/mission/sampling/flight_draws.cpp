@@ -123,7 +123,8 @@ PhaseDeviations phase_deviations(const FlightUncertainty& spreads, std::span<con
     return deviations;
 }
 
-void move_phases(const MissionSetup& mission, const PhaseDeviations& deviations, MissionSetup& flight) {
+void move_phases(const MissionSetup& mission, const PhaseDeviations& deviations, const PerPhase<double>& max_rise_w,
+                 MissionSetup& flight) {
     for (const auto phase : all_phases) {
         const double planned_s = mission.duration_s[phase];
         if (planned_s == 0.0) continue;
@@ -135,6 +136,7 @@ void move_phases(const MissionSetup& mission, const PhaseDeviations& deviations,
         if (!flight.mechanical) continue;
         double moved_w = deviations.of.at(level);
         if (deviations.is_joint.at(level) && deviations.is_joint.at(duration)) moved_w *= planned_s / flown_s;
+        moved_w = std::min(moved_w, max_rise_w[phase]);
         auto& model = flight.mechanical->phases[phase];
         model.fourier = mission.mechanical->phases[phase].fourier;
         const bool stretched = mission.phase_clock == mechanical::PhaseTimeScaling::stretched;
@@ -251,7 +253,7 @@ MissionSetup apply_draw(const MissionSetup& mission, const FlightUncertainty& sp
 void apply_draw_to(const MissionSetup& mission, const FlightUncertainty& spreads, std::span<const double> normals,
                    MissionSetup& flight) {
     const auto deviations = phase_deviations(spreads, normals);
-    move_phases(mission, deviations, flight);
+    move_phases(mission, deviations, spreads.max_rise_w, flight);
     Normals normal(normals.subspan(phase_quantities));
     flight.battery = mission.battery;
     move_battery(spreads.battery, normal, flight.battery);
@@ -263,7 +265,8 @@ void apply_draw_to(const MissionSetup& mission, const FlightUncertainty& spreads
     if (!mission.cruise_path) return;
     const double wind_speed_z = normal();
     const double wind_direction_z = normal();
-    fly_drawn_path(deviations.of.at(level_index(Phase::cruise)), wind_speed_z, wind_direction_z, mission, flight);
+    const double moved_w = std::min(deviations.of.at(level_index(Phase::cruise)), spreads.max_rise_w[Phase::cruise]);
+    fly_drawn_path(moved_w, wind_speed_z, wind_direction_z, mission, flight);
 }
 
 MissionSetup draw_flight(const MissionSetup& mission, const FlightUncertainty& spreads, std::uint64_t seed,

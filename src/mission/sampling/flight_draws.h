@@ -23,8 +23,8 @@ std::vector<double> draw_normals(std::size_t count, std::uint64_t seed, std::uin
 /// a phase's energy moves by the sum of what level and duration do. Levels move a phase's whole curve; where that would
 /// take it further below 0 than it was, the curve is scaled to the same mean, down to 0. The knots of an open-circuit
 /// voltage move together, each by its own error. An interval has a deviation for each side; a time constant is normal
-/// in its logarithm. Durations stop at a tenth of the planned and at ten times it, what cannot be negative at 0 (or a
-/// thousandth).
+/// in its logarithm. Durations stop at a tenth of the planned and at ten times it, levels at FlightUncertainty::max_rise_w,
+/// what cannot be negative at 0 (or a thousandth).
 MissionSetup apply_draw(const MissionSetup& mission, const FlightUncertainty& spreads, std::span<const double> normals);
 
 /// The same onto `flight`, a copy of the mission that may have been another flight before: copying less is faster.

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -207,6 +208,18 @@ double mean_level_w(const MissionSetup& mission, Phase phase) {
     return std::abs(energy_j(flown, duration_s) / duration_s);
 }
 
+double highest_measured_power_w(const mechanical::MechanicalModel& model) {
+    double highest_w = -std::numeric_limits<double>::infinity();
+    for (const auto phase : all_phases) {
+        if (const auto& spread = model.phases[phase].spread; spread && !spread->high_w.empty())
+            highest_w = std::max(highest_w, std::ranges::max(spread->high_w));
+        for (const auto& flight : model.flights)
+            if (const auto& part = flight.phases[phase])
+                highest_w = std::max(highest_w, part->mean_power_w.value_or(highest_w));
+    }
+    return highest_w > 0.0 ? highest_w : std::numeric_limits<double>::infinity();
+}
+
 bool has_flight_variability(const MissionSetup& mission) {
     return mission.mechanical && std::ranges::all_of(all_phases, [&](Phase phase) {
                return !(mission.duration_s[phase] > 0.0) || is_of_flights(level_deviation(mission, phase));
@@ -247,9 +260,14 @@ void require_flight_variability(const MissionSetup& mission) {
 FlightUncertainty collect_uncertainty(const MissionSetup& mission) {
     FlightUncertainty spreads;
     std::vector<EstimatedSpread> estimated;
+    const double highest_w =
+        mission.mechanical ? highest_measured_power_w(*mission.mechanical) : std::numeric_limits<double>::infinity();
     for (const auto phase : all_phases) {
         if (mission.duration_s[phase] == 0.0) continue;
-        if (mission.mechanical) find_level(mission, phase, spreads, estimated);
+        if (mission.mechanical) {
+            find_level(mission, phase, spreads, estimated);
+            spreads.max_rise_w[phase] = std::max(0.0, power_margin * highest_w - mean_level_w(mission, phase));
+        }
         find_duration(mission, phase, spreads, estimated);
     }
     spreads.of_flights = estimate_joint_distributions(estimated);

@@ -59,10 +59,18 @@ struct FlightUncertainty {
     PerPhase<double> level_sd_w;  ///< of a phase's mean mechanical power
     PerPhase<double> duration_sd_s;
     std::vector<JointDistribution> of_flights;  ///< those of them that few flights show, and not the mission states
+    PerPhase<double> max_rise_w;                ///< a level is drawn no further above the mission's
     std::vector<ComponentSpread> components;    ///< one a component of the mission
     battery::BatteryIntervals battery;          ///< 95 % intervals of what differs
     UncertaintySources sources;
 };
+
+/// The highest power [W] that a flight of the model had in any phase, by its curve or on average; infinite where the
+/// model keeps neither.
+double highest_measured_power_w(const mechanical::MechanicalModel& model);
+
+/// An aircraft draws a quarter more than it was measured to, at most: so far levels are drawn.
+inline constexpr double power_margin = 1.25;
 
 /// What the mission's [uncertainty] states, which is normal. Else: levels as level_deviation says; durations as the
 /// model's flights show, in proportion, with the same factor for a flight to come, unless the mission states the

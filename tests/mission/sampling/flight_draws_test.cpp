@@ -8,6 +8,7 @@
 #include "mission/simulation/load_segments.h"
 
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <random>
 #include <vector>
@@ -52,6 +53,24 @@ TEST(FlightDraws, TakeLevelsOfFewFlightsByStudentT) {
         << "what is stated is normal";
 }
 
+TEST(FlightDraws, DrawNoLevelFurtherThanAQuarterAboveTheHighestMeasured) {
+    auto mission = of_flights({19.0, 20.0, 21.0}, {1000.0, 1000.0, 1000.0});
+    const auto drawn_w = [&](double normal) {
+        std::vector<double> normals(count_normals(mission.setup));
+        normals[level_index(flight::Phase::cruise)] = normal;
+        return level_w(apply_draw(mission.setup, collect_uncertainty(mission.setup), normals));
+    };
+    const double limit_z = normal_from_student(6.25 / std::sqrt(1.0 + 1.0 / 3.0), 2.0);
+    EXPECT_NEAR(drawn_w(0.99 * limit_z), 26.1, 0.15);
+    EXPECT_LT(drawn_w(0.99 * limit_z), 26.25);
+    EXPECT_NEAR(drawn_w(1.01 * limit_z), 26.25, 1e-9);
+    EXPECT_NEAR(drawn_w(5.0), 26.25, 1e-9);
+    auto& cruise = mission.setup.mechanical->phases[flight::Phase::cruise];
+    cruise.spread = mechanical::FlightEnvelope{{18.0}, {40.0}, {1.0}};
+    EXPECT_NEAR(drawn_w(5.0), 50.0, 1e-9) << "a curve went higher";
+    EXPECT_EQ(highest_measured_power_w(mechanical::MechanicalModel()), std::numeric_limits<double>::infinity());
+}
+
 TEST(FlightDraws, MoveTogetherWhatWentTogether) {
     // Strong flights were short ones, and their energy the same but for a second order: so is that of flights to come.
     const auto mission = of_flights({19.0, 21.0}, {1050.0, 950.0});
@@ -59,7 +78,7 @@ TEST(FlightDraws, MoveTogetherWhatWentTogether) {
     for (std::uint64_t i = 0; i < 200; ++i) {
         const auto flight = draw_flight(mission.setup, spreads, 5, i);
         const double duration_s = flight.duration_s[flight::Phase::cruise];
-        if (duration_s <= 100.0 || duration_s >= 10000.0) continue;  // cut off there
+        if (duration_s <= 100.0 || duration_s >= 10000.0 || level_w(flight) > 26.24) continue;  // cut off there
         EXPECT_NEAR(level_w(flight) * duration_s, 20.0 * 1000.0, 0.05);
     }
 }
