@@ -54,7 +54,7 @@ class FileTail {
         for (;;) {
             if (const auto count = read_more(zeros_are_padding); count > 0)
                 return {{bytes_.data(), count}, std::exchange(anew_, false)};
-            reopen_if_replaced();
+            if (reopen_if_replaced()) continue;
             const auto left = until - Clock::now();
             if (left <= Clock::duration::zero()) return {};
             std::this_thread::sleep_for(std::min<Clock::duration>(left, poll_interval));
@@ -90,15 +90,18 @@ class FileTail {
         return written;
     }
 
-    void reopen_if_replaced() {
+    /// True if there is another file now, of which nothing was read yet.
+    bool reopen_if_replaced() {
         struct stat named {};
-        if (::stat(path_.c_str(), &named) != 0) return;  // missing for a while: what is open is still read
+        if (::stat(path_.c_str(), &named) != 0) return false;  // missing for a while: what is open is still read
         struct stat opened {};
         const bool is_same = file_ >= 0 && ::fstat(file_, &opened) == 0 && opened.st_ino == named.st_ino &&
                              opened.st_dev == named.st_dev;
-        if (is_same) return;
+        if (is_same) return false;
         close();
-        if (open()) anew_ = true;
+        if (!open()) return false;
+        anew_ = true;
+        return true;
     }
 
     std::filesystem::path path_;

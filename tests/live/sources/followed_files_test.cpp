@@ -63,6 +63,18 @@ TEST(FollowedFiles, AFileThatIsCutOrReplacedBeginsAnew) {
     EXPECT_EQ(source->report().restarts, 2U);
 }
 
+TEST(FollowedFiles, AnotherFileIsReadHoweverShortTheWait) {
+    const auto folder = test::scratch_dir();
+    append(folder / "a.data", "1.0 20 PONG\n");
+    const auto source = follow_data_file(folder / "a.data");
+    EXPECT_EQ(received(*source).size(), 1U);
+    append(folder / "b.data", "0.5 20 PONG\n");
+    std::filesystem::rename(folder / "b.data", folder / "a.data");
+    std::vector<IncomingMessage> messages;
+    source->receive(milliseconds(0), messages);
+    EXPECT_EQ(messages.size(), 1U);
+}
+
 TEST(FollowedFiles, AFileThatIsGoneForAWhileIsWaitedFor) {
     const auto path = test::scratch_dir() / "a.data";
     append(path, "1.0 20 PONG\n");
