@@ -148,6 +148,7 @@ const std::vector<std::string>& track_names() {
                                                 "climb_m_per_s",
                                                 "roll_deg",
                                                 "air_temperature_c",
+                                                "motor_speed_rpm",
                                                 "mode",
                                                 "block",
                                                 "rover_mode",

@@ -163,6 +163,7 @@ const std::vector<FieldTrack>& field_tracks() {
         {"roll_deg", "ATTITUDE", "phi", degree, Merge::latest},
         {"roll_deg", "ROTORCRAFT_FP", "phi", degree, Merge::latest},
         {"air_temperature_c", "AIR_DATA", "temp", Quantity::celsius, Merge::mean},
+        {"motor_speed_rpm", "ESC", "rpm", std::nullopt, Merge::mean},
         {"mode", "PPRZ_MODE", "ap_mode", std::nullopt, Merge::latest},
         {"block", "NAVIGATION", "cur_block", std::nullopt, Merge::latest},
         {"rover_mode", "ROVER_STATUS", "ap_mode", std::nullopt, Merge::latest},
@@ -282,7 +283,8 @@ std::vector<telemetry::MessageRequest> flight_messages() {
     return {
         {"ENERGY", {"throttle", "voltage", "bat", "current", "amp", "power", "charge", "energy"}},
         {"BAT", {"throttle", "voltage", "amps", "energy"}},
-        {"ESC", {"amps", "bat_volts", "power", "node_id", "motor_id"}},
+        {"ESC", {"amps", "bat_volts", "power", "rpm", "node_id", "motor_id"}},
+        {"MOTOR", {"rpm"}},
         {"POWER_DEVICE", {"node_id", "circuit", "current", "voltage"}},
         {"COMMANDS", {"values[0]"}},
         {"ESTIMATOR", {"z", "z_dot"}},

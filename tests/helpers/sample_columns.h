@@ -22,6 +22,7 @@ struct SampleColumns {
     std::vector<double> energy_wh;
     std::vector<double> ground_speed_m_per_s;
     std::vector<double> wind_speed_m_per_s;
+    std::vector<double> motor_speed_rpm;
 };
 
 inline std::vector<std::pair<std::string, std::vector<double> SampleColumns::*>> named_columns() {
@@ -33,7 +34,8 @@ inline std::vector<std::pair<std::string, std::vector<double> SampleColumns::*>>
             {"charge_ah", &SampleColumns::charge_ah},
             {"energy_wh", &SampleColumns::energy_wh},
             {"ground_speed_m_per_s", &SampleColumns::ground_speed_m_per_s},
-            {"wind_speed_m_per_s", &SampleColumns::wind_speed_m_per_s}};
+            {"wind_speed_m_per_s", &SampleColumns::wind_speed_m_per_s},
+            {"motor_speed_rpm", &SampleColumns::motor_speed_rpm}};
 }
 
 /// A series of these columns; without power it measures 0 W.

@@ -99,7 +99,10 @@ std::string stays_low(const FlightCandidate& c) {
         return fmt::format("carried or rolled: height to {:.1f} m, {}", height_m,
                            by_power ? "power at its idle" : "motor off");
     const auto motor =
-        by_power ? std::string("power of a running motor") : fmt::format("throttle to {:.0f} %", motor_percent);
+        by_power
+            ? std::string("power of a running motor")
+            : fmt::format("{} to {:.0f} %", c.grid.motor_sign == MotorIndicator::throttle ? "throttle" : "motor speed",
+                          motor_percent);
     return fmt::format("run-up, taxi or hop: {}, height to {:.1f} m", motor, height_m);
 }
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -54,6 +55,21 @@ std::optional<PowerLevels> power_levels(const Track& power, const Track& altitud
     return apart ? std::optional(levels) : std::nullopt;
 }
 
+/// The motor's speed in percent of its full one; empty where nothing measures it or it tells nothing.
+MotorRecord record_of_motor_speed(const SelectedTracks& tracks) {
+    MotorRecord record;
+    auto speed = tracks["motor_speed_rpm"];
+    if (speed.empty() || is_constant(speed)) return record;
+    auto sorted_rpm = speed.value;
+    const double full_rpm = quantile_of(sorted_rpm, 0.98);
+    if (full_rpm < min_running_rpm) return record;
+    for (auto& value : speed.value) value = std::min(units::percentage(value, full_rpm), units::percent_per_whole);
+    record.sign = MotorIndicator::motor_speed;
+    record.evidence = fmt::format("{}: full {:.0f} rpm", speed.source, full_rpm);
+    record.percent = std::move(speed);
+    return record;
+}
+
 /// The throttle on the clock of the power samples, on which it is asked for everywhere, or on its own.
 Track throttle_of(const SelectedTracks& tracks, const Track& power) {
     auto throttle = tracks["throttle_percent"];
@@ -78,41 +94,66 @@ std::size_t take_out_glitches(Track& throttle, const Track& power, const PowerLe
     return count;
 }
 
-/// A throttle that idles while the power is that of a running motor for half a minute in all (manual mode, which the
-/// field of some autopilots leaves out): the power's percent, where the aircraft moves. Says where.
-std::string follow_power(const SelectedTracks& tracks, Track& throttle, const Track& power, const PowerLevels& levels,
-                         double idle_percent) {
+/// What shows that the motor runs while the throttle idles: how hard, on the throttle's clock.
+struct RunningEvidence {
+    std::vector<double> percent;
+    double idle_percent;
+    double flight_percent;
+};
+
+/// A throttle that idles while the motor runs for half a minute in all (manual mode, which the field of some autopilots
+/// leaves out): the evidence's percent, where the aircraft moves. Says where; `running` describes the mean percent.
+std::string follow_evidence(const SelectedTracks& tracks, Track& throttle, const RunningEvidence& evidence,
+                            double idle_percent, const std::function<std::string(double)>& running) {
     const auto& time_s = throttle.time_s;
     const auto speed_m_per_s = sample_selected_track(tracks, "ground_speed_m_per_s", time_s);
     const auto moves = [&](std::size_t i) {
         return speed_m_per_s.empty() || speed_m_per_s[i] > SegmentationOptions{}.rest_speed_m_per_s;
     };
-    const auto runs_by_power = [&](std::size_t i) {
-        return moves(i) && levels.percent(power.value[i]) > idle_power_percent;
-    };
+    const auto runs = [&](std::size_t i) { return moves(i) && evidence.percent[i] > evidence.idle_percent; };
     const auto idles = [&](std::size_t i) { return throttle.value[i] <= idle_percent; };
     const double gap_s = gap_threshold_s(time_s);
     double together_s = 0.0;
-    double mean_w = 0.0;
+    double mean_percent = 0.0;
     std::optional<double> first_s;
     for (const auto& run : runs_of({0, time_s.size()}, idles)) {
-        const double running_s = time_where(time_s, run, gap_s, runs_by_power);
+        const double running_s = time_where(time_s, run, gap_s, runs);
         if (running_s < contradicted_s) continue;
-        std::vector<double> running_w;
+        std::vector<double> running_percent;
         for (auto i = run.begin; i < run.end; ++i)
-            if (runs_by_power(i)) running_w.push_back(power.value[i]);
-        if (levels.percent(mean(running_w)) < flight_power_percent) continue;
+            if (runs(i)) running_percent.push_back(evidence.percent[i]);
+        if (mean(running_percent) < evidence.flight_percent) continue;
         for (auto i = run.begin; i < run.end; ++i)
-            if (moves(i)) throttle.value[i] = levels.percent(power.value[i]);
+            if (moves(i)) throttle.value[i] = evidence.percent[i];
         if (!first_s) first_s = time_s[run.begin];
-        mean_w = (mean_w * together_s + mean(running_w) * running_s) / (together_s + running_s);
+        mean_percent = (mean_percent * together_s + mean(running_percent) * running_s) / (together_s + running_s);
         together_s += running_s;
     }
     if (!first_s) return "";
-    return fmt::format(
-        "{} is at idle while the power is that of a running motor for {:.0f} s ({:.1f} W; idle {:.1f} W), "
-        "first from {:.0f} s on: the power counts there",
-        throttle.source, together_s, mean_w, levels.idle_w, *first_s);
+    return fmt::format("{} is at idle while {}, for {:.0f} s in all, first from {:.0f} s on: the latter counts there",
+                       throttle.source, running(mean_percent), together_s, *first_s);
+}
+
+/// By power where it tells, else by the motor's speed.
+std::string follow_motor(const SelectedTracks& tracks, Track& throttle, const std::optional<PowerLevels>& levels,
+                         double idle_percent) {
+    if (levels) {
+        RunningEvidence evidence{{}, idle_power_percent, flight_power_percent};
+        for (const double power_w : tracks["power_w"].value) evidence.percent.push_back(levels->percent(power_w));
+        return follow_evidence(tracks, throttle, evidence, idle_percent, [&](double percent) {
+            return fmt::format("the power is that of a running motor ({:.1f} W; idle {:.1f} W)",
+                               std::lerp(levels->idle_w, levels->running_w, percent / units::percent_per_whole),
+                               levels->idle_w);
+        });
+    }
+    const auto speed = record_of_motor_speed(tracks);
+    if (speed.percent.empty()) return "";
+    const SegmentationOptions limits;
+    return follow_evidence(
+        tracks, throttle,
+        {resample(speed.percent, throttle.time_s), limits.idle_throttle_percent, limits.flight_throttle_percent},
+        idle_percent,
+        [&](double percent) { return fmt::format("the motor turns at {:.0f} % ({})", percent, speed.evidence); });
 }
 
 }  // namespace
@@ -126,24 +167,29 @@ MotorRecord motor_record(const SelectedTracks& tracks, const Track& altitude_m) 
     if (!throttle.empty() && !(stands_still && levels)) {
         record.sign = MotorIndicator::throttle;
         record.evidence = throttle.source;
+        const double idle_percent =
+            std::max(*std::ranges::min_element(throttle.value), 0.0) + SegmentationOptions{}.idle_throttle_percent;
         if (levels) {
-            const double least = std::max(*std::ranges::min_element(throttle.value), 0.0);
-            const auto glitches =
-                take_out_glitches(throttle, power, *levels, least + SegmentationOptions{}.idle_throttle_percent);
+            const auto glitches = take_out_glitches(throttle, power, *levels, idle_percent);
             if (glitches > 0) {
                 record.warnings.push_back(fmt::format(
                     "{} throttles say that the motor runs while the power stays at its idle: they were left out",
                     glitches));
             }
-            auto said =
-                follow_power(tracks, throttle, power, *levels, least + SegmentationOptions{}.idle_throttle_percent);
-            if (!said.empty()) record.warnings.push_back(std::move(said));
         }
+        auto contradiction = follow_motor(tracks, throttle, levels, idle_percent);
+        if (!contradiction.empty()) record.warnings.push_back(std::move(contradiction));
         record.percent = std::move(throttle);
         return record;
     }
     const std::string lack = throttle.empty() ? "no throttle" : "the throttle never changes";
     if (!levels) {
+        record = record_of_motor_speed(tracks);
+        if (!record.percent.empty()) {
+            record.warnings.push_back(fmt::format(
+                "{} and no power that tells: the motor is taken to run by its speed ({})", lack, record.evidence));
+            return record;
+        }
         record.evidence = "nothing";
         record.warnings.push_back(lack + ": segmented by altitude alone");
         return record;

@@ -85,6 +85,9 @@ double wind_speed(const Row& east_north) {
 
 double percent_of_command(const Row& row) { return units::percent_from_pprz(row[0]); }
 
+/// Of MOTOR, whose definition has the field in Hz.
+double rpm_of_hertz(const Row& row) { return row[0] * 60.0; }
+
 double speed_of_components(const Row& row) { return std::hypot(row[0], row[1], row[2]); }
 
 const std::vector<MadeTrack>& made_tracks() {
@@ -93,6 +96,7 @@ const std::vector<MadeTrack>& made_tracks() {
         {"throttle_percent", "ROTORCRAFT_FP", {"thrust"}, {}, "ROTORCRAFT_FP.thrust", percent_of_command},
         // What the motor is commanded, also in manual mode.
         {"throttle_percent", "COMMANDS", {"values"}, {}, commanded_throttle, percent_of_command},
+        {"motor_speed_rpm", "MOTOR", {"rpm"}, {}, "MOTOR.rpm", rpm_of_hertz},
         {"ground_speed_m_per_s",
          "GPS_INT",
          {"ecef_xd", "ecef_yd", "ecef_zd"},

@@ -4,6 +4,7 @@
 #include "flight/selected_track.h"
 #include "helpers/flown_points.h"
 
+#include <algorithm>
 #include <random>
 
 #include <gmock/gmock.h>
@@ -105,6 +106,25 @@ TEST(MotorRecord, SaysThatNothingTellsOfTheMotor) {
     }
 }
 
+TEST(MotorRecord, TakesTheMotorsSpeedWhereNeitherThrottleNorPowerTells) {
+    auto columns = measured_flight();
+    const auto expected = segment(test::series_of(columns));
+    columns.power_w.assign(columns.time_s.size(), 12.0);
+    for (const double full_rpm : {min_running_rpm * 1.01, min_running_rpm * 0.99}) {
+        columns.motor_speed_rpm.clear();
+        for (const double percent : columns.throttle_percent)
+            columns.motor_speed_rpm.push_back(full_rpm * std::min(percent / 60.0, 1.0));
+        auto without = columns;
+        without.throttle_percent.clear();
+        const auto phases = segment(test::series_of(without));
+        const bool turns = full_rpm > min_running_rpm;
+        EXPECT_EQ(phases.motor_source, turns ? "series CSV: full 505 rpm" : "nothing");
+        EXPECT_THAT(phases.warnings, testing::Contains(HasSubstr(turns ? "the motor is taken to run by its speed"
+                                                                       : "segmented by altitude alone")));
+        if (turns) expect_same_phases(phases, expected);
+    }
+}
+
 TEST(MotorRecord, TakesAThrottleFromZeroToOneForAFraction) {
     for (const double watts : {1.0, 0.0}) {
         auto columns = measured_flight();
@@ -153,11 +173,11 @@ TEST(MotorRecord, TakesPowerWhereTheThrottleIsThatOfManualMode) {
     EXPECT_NEAR(phases.sorties[1].start_s() - phases.sorties[0].start_s(), 600.0, 2.0);
     EXPECT_NEAR(phases.sorties[1].end_s() - phases.sorties[0].end_s(), 600.0, 2.0);
     EXPECT_THAT(phases.warnings, testing::Contains(testing::AllOf(
-                                     HasSubstr("is at idle while the power is that of a running motor for 3"),
-                                     HasSubstr("the power counts there"))));
+                                     HasSubstr("is at idle while the power is that of a running motor ("),
+                                     HasSubstr("the latter counts there"))));
     // What stands, with power for its electronics, keeps its throttle.
     const auto standing = segment(manual_flight(3.9));
-    EXPECT_THAT(standing.warnings, Not(testing::Contains(HasSubstr("the power counts there"))));
+    EXPECT_THAT(standing.warnings, Not(testing::Contains(HasSubstr("the latter counts there"))));
 }
 
 TEST(MotorRecord, TakesPowerFromHalfAMinuteOn) {
@@ -169,9 +189,26 @@ TEST(MotorRecord, TakesPowerFromHalfAMinuteOn) {
         }
         return segment(test::series_of(columns)).warnings;
     };
-    const auto counts = testing::Contains(HasSubstr("the power counts there"));
+    const auto counts = testing::Contains(HasSubstr("the latter counts there"));
     EXPECT_THAT(with_power_for(28.0), Not(counts));
     EXPECT_THAT(with_power_for(33.0), counts);
+}
+
+TEST(MotorRecord, TakesTheMotorsSpeedWhereTheThrottleIdlesAndPowerTellsNothing) {
+    const auto turning_for = [](double turning_s) {
+        auto columns = columns_of(sortie(100));
+        columns.power_w.assign(columns.time_s.size(), 12.0);
+        for (const double percent : columns.throttle_percent) columns.motor_speed_rpm.push_back(100.0 * percent);
+        for (std::size_t i = 0; i < columns.time_s.size(); ++i) {
+            const double since_s = columns.time_s[i] - 480.0;  // after the landing
+            if (since_s >= 0.0 && since_s <= turning_s) columns.motor_speed_rpm[i] = 3000.0;
+        }
+        return segment(test::series_of(columns)).warnings;
+    };
+    const auto counts = testing::Contains(
+        testing::AllOf(HasSubstr("is at idle while the motor turns at"), HasSubstr("the latter counts there")));
+    EXPECT_THAT(turning_for(28.0), Not(counts));
+    EXPECT_THAT(turning_for(33.0), counts);
 }
 
 }  // namespace
