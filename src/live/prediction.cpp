@@ -153,7 +153,7 @@ mechanical::RemainingCruise predict_cruise(const PredictionInput& basis, const F
     if (!basis.motion) return predict_level(basis, flown, prediction.remaining_s, remarks);
     const auto& model = basis.model.physical.value();
     warn_of_motion(model, *basis.motion, remarks);
-    return predict_remaining_physical(model, flown, term_values(*basis.motion), prediction.remaining_s);
+    return predict_remaining_physical(model, flown, {term_values(*basis.motion), prediction.remaining_s});
 }
 
 /// The battery through the rest, from what was measured of it until now.

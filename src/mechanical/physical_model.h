@@ -44,6 +44,12 @@ struct TermValues {
     const double& operator[](PowerTerm term) const { return values[static_cast<std::size_t>(term)]; }
 };
 
+/// A motion for some time.
+struct MotionAhead {
+    TermValues mean_terms;
+    double duration_s = 0.0;
+};
+
 /// The terms' values. Throws std::invalid_argument unless the airspeed is positive and the load factor at least 0.
 TermValues term_values(const FlightState& motion);
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -265,24 +266,34 @@ EnergyEstimate predict_physical(const PhysicalModel& model, const TermValues& me
     return estimate;
 }
 
-RemainingCruise predict_remaining_physical(const PhysicalModel& model, const FlightProgress& flown,
-                                           const TermValues& ahead, double remaining_s) {
+std::vector<RemainingCruise> predict_remaining_physical(const PhysicalModel& model, const FlightProgress& flown,
+                                                        std::span<const MotionAhead> ahead) {
     if (!model.level_sd) throw NoResultError("the physical model does not say how flights differ: fit two or more");
-    RemainingCruise rest;
-    if (remaining_s == 0.0) return rest;
-    const auto power = predict_posterior_power(model, flown.motion.bins, flown.until_s, ahead, remaining_s);
-    const double wh_per_w = units::wh_from_joule(remaining_s);
-    rest.gain = power.level;
     std::vector<FlightBin> cruise;
-    for (const auto& bin : flown.motion.bins)
-        if (bin.phase == flight::Phase::cruise) cruise.push_back(bin);
-    rest.expected_w = std::max(sum_of_terms_w(model, mean_values(cruise)), 0.0);
-    rest.measured_w = units::joule_from_wh(flown.cruise_energy_wh) / flown.cruise_s();
-    rest.remaining_mean_w = power.mean_w;
-    rest.energy.energy_wh = power.mean_w * wh_per_w;
-    add_variance(rest.energy, {std::pow(power.parameter_sd_w * wh_per_w, 2), power.parameter_degrees_of_freedom});
-    add_variance(rest.energy, {std::pow(power.drift_sd_w * wh_per_w, 2), power.drift_degrees_of_freedom});
-    return rest;
+    std::ranges::copy_if(flown.motion.bins, std::back_inserter(cruise),
+                         [](const FlightBin& bin) { return bin.phase == flight::Phase::cruise; });
+    const double expected_w = std::max(sum_of_terms_w(model, mean_values(cruise)), 0.0);
+    const auto powers = predict_posterior_power(model, flown.motion.bins, flown.until_s, ahead);
+    std::vector<RemainingCruise> rests(ahead.size());
+    for (std::size_t i = 0; i < ahead.size(); ++i) {
+        if (ahead[i].duration_s == 0.0) continue;
+        const auto& power = powers[i];
+        const double wh_per_w = units::wh_from_joule(ahead[i].duration_s);
+        auto& rest = rests[i];
+        rest.gain = power.level;
+        rest.expected_w = expected_w;
+        rest.measured_w = units::joule_from_wh(flown.cruise_energy_wh) / flown.cruise_s();
+        rest.remaining_mean_w = power.mean_w;
+        rest.energy.energy_wh = power.mean_w * wh_per_w;
+        add_variance(rest.energy, {std::pow(power.parameter_sd_w * wh_per_w, 2), power.parameter_degrees_of_freedom});
+        add_variance(rest.energy, {std::pow(power.drift_sd_w * wh_per_w, 2), power.drift_degrees_of_freedom});
+    }
+    return rests;
+}
+
+RemainingCruise predict_remaining_physical(const PhysicalModel& model, const FlightProgress& flown,
+                                           const MotionAhead& ahead) {
+    return predict_remaining_physical(model, flown, std::span(&ahead, 1)).front();
 }
 
 }  // namespace flightwatt::mechanical

@@ -7,6 +7,8 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
+#include <vector>
 
 namespace flightwatt::mechanical {
 
@@ -105,9 +107,11 @@ RemainingCruise predict_remaining_cruise(const WeightedPhase& cruise, const Flig
 /// 0, and prediction_uncertainty it.
 EnergyEstimate predict_physical(const PhysicalModel& model, const TermValues& mean_values, double duration_s);
 
-/// The rest of a cruise whose motion is known, in flight (predict_posterior_power): `ahead` are the means of the terms
-/// over it. Throws NoResultError if the model rests on a single flight.
+/// The rest of a cruise whose motion is known, in flight (predict_posterior_power); of each motion that may lie ahead.
+/// Throws NoResultError if the model rests on a single flight.
+std::vector<RemainingCruise> predict_remaining_physical(const PhysicalModel& model, const FlightProgress& flown,
+                                                        std::span<const MotionAhead> ahead);
 RemainingCruise predict_remaining_physical(const PhysicalModel& model, const FlightProgress& flown,
-                                           const TermValues& ahead, double remaining_s);
+                                           const MotionAhead& ahead);
 
 }  // namespace flightwatt::mechanical

@@ -112,7 +112,7 @@ Estimates predict_cruise_in_flight(const Fold& fold, const MeasuredFlight& exclu
         update("in_flight_airspeed", CruisePrior::airspeed);
     }
     if (fold.all.physical && fold.all.physical->level_sd && !ahead.empty()) {
-        const auto rest = predict_remaining_physical(*fold.all.physical, flown, mean_values(ahead), remaining_s);
+        const auto rest = predict_remaining_physical(*fold.all.physical, flown, {mean_values(ahead), remaining_s});
         estimates.emplace_back("in_flight_path", after(known_wh, rest.energy));
     }
     return estimates;

@@ -95,15 +95,17 @@ PathForecast::Rest PathForecast::rest_of(const PathInWind& path, const PathPosit
 }
 
 RemainingPath PathForecast::predict(const mechanical::FlightProgress& flown, const PathPosition& place) const {
-    std::vector<double> energies_wh;
     RemainingPath rest;
+    std::vector<mechanical::MotionAhead> in_winds;
     for (const auto& path : in_likely_winds_) {
         const auto ahead = rest_of(path, place);
         if (ahead.is_forbidden) continue;
-        const auto cruise = predict_remaining_physical(plan_.power, flown, ahead.mean_terms, ahead.duration_s);
-        energies_wh.push_back(cruise.energy.energy_wh);
+        in_winds.push_back({ahead.mean_terms, ahead.duration_s});
         rest.duration_s += ahead.duration_s;
     }
+    std::vector<double> energies_wh;
+    for (const auto& cruise : predict_remaining_physical(plan_.power, flown, in_winds))
+        energies_wh.push_back(cruise.energy.energy_wh);
     const auto count = static_cast<double>(energies_wh.size());
     rest.infeasible_fraction = 1.0 - count / static_cast<double>(in_likely_winds_.size());
     if (rest.infeasible_fraction > 0.5)
@@ -111,7 +113,7 @@ RemainingPath PathForecast::predict(const mechanical::FlightProgress& flown, con
     rest.duration_s /= count;
     rest.trajectory = remaining_trajectory(flown_, place);
     const auto& ahead = rest.trajectory;
-    rest.cruise = predict_remaining_physical(plan_.power, flown, mean_terms(plan_.power, ahead), ahead.duration_s);
+    rest.cruise = predict_remaining_physical(plan_.power, flown, {mean_terms(plan_.power, ahead), ahead.duration_s});
     rest.cruise.energy.energy_wh = mean(energies_wh);
     if (rest.duration_s > 0.0)
         rest.cruise.remaining_mean_w = units::joule_from_wh(rest.cruise.energy.energy_wh) / rest.duration_s;

@@ -53,10 +53,11 @@ double time_where(const std::vector<double>& time_s, IndexSpan within, double ga
 
 /// The runs of at least so many samples that repeat one value.
 inline std::vector<IndexSpan> runs_of_equal(const std::vector<double>& values, std::size_t min_samples) {
-    auto runs = runs_of(
-        {0, values.size()}, [](std::size_t) { return true; },
-        [&](std::size_t i) { return values[i] == values[i - 1]; });
-    std::erase_if(runs, [&](const IndexSpan& run) { return run.size() < min_samples; });
+    std::vector<IndexSpan> runs;
+    for (std::size_t begin = 0, end = 0; begin < values.size(); begin = end) {
+        while (end < values.size() && values[end] == values[begin]) ++end;
+        if (end - begin >= min_samples) runs.push_back({begin, end});
+    }
     return runs;
 }
 

@@ -8,9 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <limits>
 
+#include <boost/circular_buffer.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -48,8 +48,9 @@ void add_altitude(ResampledFlight& grid, const CleanedAltitude& record, const st
 /// Points in a row whose heights differ by no more than `height_m`: it grows at its end and shrinks at its beginning.
 class ConstantHeightWindow {
   public:
-    ConstantHeightWindow(const std::vector<double>& altitude_m, double height_m)
-        : altitude_m_(altitude_m), height_m_(height_m) {}
+    /// Of up to `max_size` points.
+    ConstantHeightWindow(const std::vector<double>& altitude_m, double height_m, std::size_t max_size)
+        : altitude_m_(altitude_m), height_m_(height_m), low_(max_size), high_(max_size) {}
 
     /// Takes the next point; false, and without it, where the heights would differ by more.
     bool take(std::size_t i) {
@@ -84,8 +85,8 @@ class ConstantHeightWindow {
     double height_m_;
     std::size_t first_ = 0;
     std::size_t end_ = 0;
-    std::deque<std::size_t> low_;   ///< points that are the lowest from there to the end; their heights rise
-    std::deque<std::size_t> high_;  ///< the highest; they fall
+    boost::circular_buffer<std::size_t> low_;  ///< points that are the lowest from there to the end; their heights rise
+    boost::circular_buffer<std::size_t> high_;  ///< the highest; they fall
 };
 
 /// Where no speed tells rest from flight: the points from which it comes down by the height of a flight, or more,
@@ -186,10 +187,10 @@ std::vector<IndexSpan> find_rests(const ResampledFlight& grid, const Segmentatio
                within(grid.ground_speed_m_per_s, i, options.rest_speed_m_per_s);
     };
     const auto is_still = [&](std::size_t begin, std::size_t end, double height_m) {
-        ConstantHeightWindow stretch(grid.altitude_m, height_m);
+        const auto [low_m, high_m] = std::ranges::minmax(part_of(grid.altitude_m, {begin, end}));
         for (auto i = begin; i < end; ++i)
-            if (!is_idle(i) || !stretch.take(i)) return false;
-        return true;
+            if (!is_idle(i)) return false;
+        return high_m - low_m <= height_m;
     };
     // Where neither motor nor speed is known, a height that is kept is that of a rest only near the ground.
     const bool by_altitude = grid.motor_percent.empty() && grid.ground_speed_m_per_s.empty();
@@ -202,7 +203,7 @@ std::vector<IndexSpan> find_rests(const ResampledFlight& grid, const Segmentatio
     const auto edge = grid.steps(0.3 * options.rest_s) + 1;
     for (const auto& piece : grid.pieces) {
         const double max_m = max_rest_m(piece);
-        ConstantHeightWindow stretch(grid.altitude_m, options.rest_height_m);
+        ConstantHeightWindow stretch(grid.altitude_m, options.rest_height_m, window + 1);
         auto marked = piece.begin;
         for (auto end = piece.begin; end < piece.end; ++end) {
             if (!is_idle(end)) {

@@ -3,7 +3,10 @@
 #include "flight/segmentation.h"
 #include "flight/selected_track.h"
 
+#include <algorithm>
 #include <exception>
+#include <utility>
+#include <vector>
 
 namespace flightwatt::live {
 namespace {
@@ -25,32 +28,32 @@ void AircraftSelector::count(std::string_view text) {
     if (messages_.contains(sender) || messages_.size() < max_named) ++messages_[std::string(sender)];
 }
 
+void AircraftSelector::keep(TelemetryStore& store) {
+    if (is_locked_) return;
+    is_locked_ = true;
+    store.keep_only(chosen_);
+}
+
 flight::FlightSeries AircraftSelector::choose(TelemetryStore& store) {
     if (named_ && !is_locked_) {
         chosen_ = *named_;
-        is_locked_ = true;
-        store.keep_only(chosen_);
+        keep(store);
     }
     if (is_locked_) return store.series(chosen_);
-    const auto senders = store.senders();
-    const auto count_of = [&](const std::string& id) {
-        const auto found = messages_.find(id);
+    std::vector<flight::FlightSeries> candidates;
+    for (const auto& id : store.senders()) candidates.push_back(store.series(id));
+    if (candidates.empty()) return {};
+    const auto count_of = [&](const flight::FlightSeries& series) {
+        const auto found = messages_.find(series.aircraft_id);
         return found == messages_.end() ? std::size_t{0} : found->second;
     };
-    std::optional<flight::FlightSeries> most;
-    for (const auto& id : senders) {
-        auto series = store.series(id);
-        if (has_flown(series)) {
-            chosen_ = id;
-            is_locked_ = true;
-            store.keep_only(id);
-            return series;
-        }
-        if (!most || count_of(id) > count_of(most->aircraft_id)) most = std::move(series);
-    }
-    if (!most) return {};
-    chosen_ = most->aircraft_id;
-    return std::move(*most);
+    auto chosen = std::ranges::max_element(candidates, {}, count_of);
+    const auto others_flew = [&](const flight::FlightSeries& series) {
+        return &series != &*chosen && has_flown(series);
+    };
+    if (std::ranges::any_of(candidates, others_flew)) chosen = std::ranges::find_if(candidates, has_flown);
+    chosen_ = chosen->aircraft_id;
+    return std::move(*chosen);
 }
 
 std::map<std::string, std::size_t> AircraftSelector::others() const {

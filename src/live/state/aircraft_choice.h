@@ -21,8 +21,11 @@ class AircraftSelector {
 
     /// Counts a message by its sender.
     void count(std::string_view text);
-    /// The series of the aircraft that is watched; an empty one while none sends telemetry.
+    /// The series of the aircraft that is watched; an empty one while none sends telemetry. Of several the first that
+    /// flies is chosen for good.
     flight::FlightSeries choose(TelemetryStore& store);
+    /// The aircraft that is watched has flown: it is chosen for good.
+    void keep(TelemetryStore& store);
     /// How many messages the other senders have sent.
     std::map<std::string, std::size_t> others() const;
 

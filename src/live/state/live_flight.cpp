@@ -206,6 +206,7 @@ void LiveFlight::Impl::update_flight(const flight::SelectedTracks& tracks, LiveS
     state.current_a = last_of(tracks, "current_a");
     state.altitude_m = last_of(tracks, "altitude_m");
     if (phases_.sorties.empty()) return;
+    choice_.keep(store_);
     const auto& sortie = phases_.sorties.back();
     const double now_s = mechanical::last_time_s(tracks.series());
     update_flight_times(sortie, tracks["altitude_m"], now_s,

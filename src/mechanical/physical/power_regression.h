@@ -100,9 +100,9 @@ struct PosteriorPower {
 };
 
 /// What was flown moves level and coefficients as far as they are uncertain (Bayes' rule for normal errors), and the
-/// last drift dies away (docs/methods.md, Power from airspeed and climb). `ahead`: means of the terms over the next
-/// `remaining_s` seconds, more than 0. The model has a level spread; bins of `flown` lie before `now_s`, on one clock.
-PosteriorPower predict_posterior_power(const PhysicalModel& model, std::span<const FlightBin> flown, double now_s,
-                                       const TermValues& ahead, double remaining_s);
+/// last drift dies away (docs/methods.md, Power from airspeed and climb), for each motion that may lie ahead (nothing of 0 s).
+/// The model has a level spread; bins of `flown` lie before `now_s`, on one clock.
+std::vector<PosteriorPower> predict_posterior_power(const PhysicalModel& model, std::span<const FlightBin> flown,
+                                                    double now_s, std::span<const MotionAhead> ahead);
 
 }  // namespace flightwatt::mechanical

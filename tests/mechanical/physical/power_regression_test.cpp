@@ -4,6 +4,7 @@
 #include "mechanical/physical/term_choice.h"
 
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include <Eigen/Dense>
@@ -11,6 +12,11 @@
 
 namespace flightwatt::mechanical {
 namespace {
+
+PosteriorPower posterior_power(const PhysicalModel& model, std::span<const FlightBin> flown, double now_s,
+                               const MotionAhead& ahead) {
+    return predict_posterior_power(model, flown, now_s, {&ahead, 1}).front();
+}
 
 /// The same fit with the whole covariance matrix of all bins.
 struct DenseFit {
@@ -162,7 +168,7 @@ TEST(PathPrediction, IsTheConditionalMeanOfTheJointDistribution) {
     const double mean_w = rows(count, 2) + gain.dot(residual);
     const double variance_w2 = covariance(count, count) - gain.dot(covariance.topRightCorner(count, 1).col(0));
 
-    const auto power = predict_posterior_power(model, flown, now_s, ahead, remaining_s);
+    const auto power = posterior_power(model, flown, now_s, {ahead, remaining_s});
     EXPECT_NEAR(power.mean_w, mean_w, 1e-8 * mean_w);
     EXPECT_NEAR(power.parameter_sd_w * power.parameter_sd_w + power.drift_sd_w * power.drift_sd_w, variance_w2,
                 1e-8 * variance_w2);
@@ -172,7 +178,7 @@ TEST(PathPrediction, IsTheConditionalMeanOfTheJointDistribution) {
 TEST(PathPrediction, IsTheModelBeforeAnythingWasFlown) {
     const auto model = test::drag_and_climb_model();
     const auto ahead = term_values({.airspeed_m_per_s = 14.0});
-    const auto power = predict_posterior_power(model, {}, 0.0, ahead, 600.0);
+    const auto power = posterior_power(model, {}, 0.0, {ahead, 600.0});
     EXPECT_DOUBLE_EQ(power.mean_w, sum_of_terms_w(model, ahead));
     EXPECT_EQ(power.level, 0.0);
     const auto before = prediction_uncertainty(model, ahead, 600.0).value();
@@ -184,7 +190,7 @@ TEST(PathPrediction, LearnsTheFlightsLevel) {
     model.covariance = {{0.0, 0.0}, {0.0, 0.0}};
     auto flown = test::made_up_motions(1, 60, {.level_sd = 0.0, .drift_sd_w = 0.0}, 5).front().bins;
     for (auto& bin : flown) bin.power_w = 1.2 * sum_of_terms_w(model, bin.values);
-    const auto power = predict_posterior_power(model, flown, 1800.0, term_values({.airspeed_m_per_s = 14.0}), 600.0);
+    const auto power = posterior_power(model, flown, 1800.0, {term_values({.airspeed_m_per_s = 14.0}), 600.0});
     EXPECT_GT(power.level, 0.18);
     EXPECT_LT(power.level, 0.2);
     EXPECT_LT(power.parameter_sd_w, 0.1 * power.model_w / 2.0);
