@@ -32,8 +32,8 @@ void decode(std::string_view bytes, const MessageDictionary& messages, Framing f
             decoder.push(rest.substr(0, piece), sink);
         decoder.flush(sink);
         const auto& counts = decoder.counts();
-        if (counts.messages + counts.unknown + counts.other_lengths + counts.other_frames != counts.frames ||
-            counts.skipped_bytes + counts.zero_bytes > bytes.size() || characters > most_texts * bytes.size()) {
+        if (counts.messages + counts.unknown + counts.length_mismatches + counts.non_message_frames != counts.frames ||
+            counts.skipped_bytes + counts.padding_bytes > bytes.size() || characters > most_texts * bytes.size()) {
             throw std::logic_error("the counts of a decoder do not add up");
         }
     }
@@ -84,7 +84,7 @@ void flightwatt::fuzz::run(std::string_view bytes) {
     static const auto definitions = all_definitions();
     for (const auto framing : {Framing::card, Framing::link, Framing::xbee})
         decode(bytes, definitions.front().messages, framing);
-    const auto framing = binary_framing(bytes);
+    const auto framing = detect_binary_framing(bytes);
     if (!framing) return;
     for (const auto& each : definitions) {
         try {
