@@ -4,12 +4,15 @@
 #include "base/units.h"
 #include "mechanical/fit/flight_weights.h"
 #include "mechanical/model_fit.h"
+#include "mechanical/prediction.h"
 #include "mission/plan.h"
 #include "mission/sampling/flight_lanes.h"
 #include "mission/sampling/landing_distribution.h"
 #include "mission/simulation.h"
 
+#include <array>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -25,6 +28,13 @@ struct PromiseTrial {
     double probability = 0.95;  ///< that is promised
     std::size_t new_flights = 200;
 };
+
+/// Quantities whose 95 % intervals a fitted model gives, in the order of IntervalShares.
+inline constexpr std::array<const char*, 8> interval_quantities{
+    "mean take-off", "mean cruise", "mean landing", "Wh take-off", "Wh cruise", "Wh landing", "Wh total", "SoC"};
+
+/// Of each quantity, the share of the flights to come (of means: 0 or 1) whose truth is in the interval.
+using IntervalShares = std::array<double, interval_quantities.size()>;
 
 /// An aircraft that nobody knows: three phases whose levels, and in half of the seeds durations, differ between flights
 /// by normal deviations, the phases' more or less together; its flights, models of them, and what flights to come make
@@ -60,12 +70,46 @@ class UnknownAircraft {
         }
         std::size_t kept = 0;
         for (std::size_t i = 0; i < trial.new_flights; ++i)
-            if (land_next(promised).remaining_percent >= least_percent) ++kept;
+            if (land(promised, fly()).remaining_percent >= least_percent) ++kept;
         return static_cast<double>(kept) / static_cast<double>(trial.new_flights);
+    }
+
+    /// How often the intervals of a model, fitted to so many flights with that noise, hold flights to come.
+    IntervalShares interval_shares(std::size_t flights, double noise_w, std::size_t new_flights) {
+        const auto fitted = fitted_model(flights, noise_w);
+        const auto promised = with_highest_quality(problem_of(fitted));
+        const auto landings = draw_landings(promised, collect_uncertainty(promised.setup));
+        const Interval left_percent{landings.quantile_percent(0.975), landings.quantile_percent(0.025)};
+        IntervalShares shares{};
+        const double part = 1.0 / static_cast<double>(new_flights);
+        for (const auto phase : flight::all_phases) {
+            const auto mean = mechanical::mean_power(fitted, phase)->interval.value();
+            shares[index_of(phase)] = contains(mean, mean_w_[phase]) ? 1.0 : 0.0;
+        }
+        for (std::size_t i = 0; i < new_flights; ++i) {
+            const auto flown = fly();
+            mechanical::EnergyEstimate total;
+            double flown_wh = 0.0;
+            for (const auto phase : flight::all_phases) {
+                const double energy_wh = units::wh_from_joule(flown.level_w[phase] * flown.duration_s[phase]);
+                const auto estimate = predict_before_flight(forecast_of(fitted, phase), flown.duration_s[phase]);
+                if (interval_95(estimate)->contains(energy_wh)) shares[3 + index_of(phase)] += part;
+                total = sum_of(total, estimate);
+                flown_wh += energy_wh;
+            }
+            if (interval_95(total)->contains(flown_wh)) shares[6] += part;
+            if (contains(left_percent, land(promised, flown).remaining_percent)) shares[7] += part;
+        }
+        return shares;
     }
 
   private:
     using Phase = flight::Phase;
+
+    static std::size_t index_of(Phase phase) { return static_cast<std::size_t>(phase); }
+    static bool contains(const Interval& interval, double value) {
+        return interval.low <= value && value <= interval.high;
+    }
 
     struct Flown {
         flight::PerPhase<double> level_w;
@@ -117,9 +161,8 @@ class UnknownAircraft {
         return model;
     }
 
-    mechanical::MechanicalModel fitted_model(std::size_t flights) {
+    mechanical::MechanicalModel fitted_model(std::size_t flights, double noise_w = 0.24) {
         constexpr double gap_s = 2.0;
-        constexpr double noise_w = 0.24;
         std::vector<mechanical::FlightSamples> samples(flights);
         for (std::size_t i = 0; i < flights; ++i) {
             samples[i].flight = std::to_string(i);
@@ -190,8 +233,7 @@ class UnknownAircraft {
                                        full_energy_wh(mission.setup.battery));
     }
 
-    mission::FlightOutcome land_next(const mission::Mission& promised) {
-        const auto flown = fly();
+    mission::FlightOutcome land(const mission::Mission& promised, const Flown& flown) const {
         auto flight = promised.setup;
         flight.duration_s = flown.duration_s;
         for (const auto phase : flight::all_phases) {
