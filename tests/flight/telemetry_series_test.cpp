@@ -82,9 +82,72 @@ TEST(ClockCheck, KnowsNothingOfWhatComesLater) {
     }
 }
 
+/// Whether the clock runs back of a message that came at these times, in this order.
+bool runs_back(const std::vector<double>& time_s) {
+    telemetry::SenderLog sender{"7", {{"GPS", time_s, {}}}};
+    return find_clock_restart(sender).has_value();
+}
+
+/// Appends so many times.
+void add(std::vector<double>& time_s, int count, double from_s, double interval_s) {
+    for (int i = 0; i < count; ++i) time_s.push_back(from_s + interval_s * i);
+}
+
+TEST(ClockCheck, TakesOneRowOfMoreThanAMinuteBeforeForARestart) {
+    std::vector<double> time_s;
+    add(time_s, 101, 0.0, 1.0);
+    time_s.push_back(40.5);
+    EXPECT_FALSE(runs_back(time_s)) << "59.5 s";
+    time_s.back() = 39.5;
+    EXPECT_TRUE(runs_back(time_s)) << "60.5 s";
+}
+
+TEST(ClockCheck, TakesTenRowsOfMoreThanTwoSecondsBeforeForAnOverlap) {
+    const auto with_late = [](int rows, double by_s) {
+        std::vector<double> time_s;
+        add(time_s, 30, 0.0, 0.1);
+        for (int i = 0; i < rows; ++i) {
+            add(time_s, 10, 3.0 + i, 0.1);
+            time_s.push_back(3.9 + i - by_s);
+        }
+        return runs_back(time_s);
+    };
+    EXPECT_TRUE(with_late(10, 2.05));
+    EXPECT_FALSE(with_late(9, 2.05));
+    EXPECT_FALSE(with_late(10, 1.95));
+}
+
+TEST(ClockCheck, TakesRowsForAnOverlapWhereNoneWasMissing) {
+    const auto in_pauses_of = [](double pause_s) {
+        std::vector<double> time_s;
+        for (int i = 0; i < 15; ++i) add(time_s, 6, (2.5 + pause_s) * i, 0.5);
+        add(time_s, 10, 5.0 + 1.5 * pause_s, 2.5 + pause_s);
+        return runs_back(time_s);
+    };
+    EXPECT_TRUE(in_pauses_of(0.7)) << "1.4 intervals";
+    EXPECT_FALSE(in_pauses_of(0.8));
+    const auto after_rows = [](int rows) {
+        std::vector<double> time_s;
+        add(time_s, 20, 0.0, 1.0);
+        add(time_s, 10, rows - 0.5, 0.01);
+        return runs_back(time_s);
+    };
+    EXPECT_FALSE(after_rows(5)) << "the interval is not known";
+    EXPECT_TRUE(after_rows(6));
+    // The interval is that which a tenth of the last hundred do not exceed.
+    const auto after_slow_rows = [](int rows) {
+        std::vector<double> time_s;
+        add(time_s, 51, 0.0, 0.1);
+        add(time_s, rows + 5, 6.0, 1.0);
+        add(time_s, 10, 5.5 + rows, 0.01);
+        return runs_back(time_s);
+    };
+    EXPECT_FALSE(after_slow_rows(89));
+    EXPECT_TRUE(after_slow_rows(90));
+}
+
 using testing::Contains;
 using testing::ElementsAre;
-using testing::HasSubstr;
 
 FlightSeries series_of(const std::string& text, const std::string& id = "20") {
     auto series = flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), id);
@@ -307,42 +370,6 @@ TEST_F(ReadFlight, RefusesTheRealLogsThatMeasuredNoPower) {
     const auto flights = test::shared_dir() / "flights";
     EXPECT_THAT(refusal(flights / "17_07_06__10_21_07_SD.data"), HasSubstr("ENERGY.power is 0 throughout"));
     EXPECT_THAT(refusal(flights / "09_05_13__14_38_13.data"), HasSubstr("BAT has no current"));
-}
-
-/// Throttle 50 %, but for `manual_s` 0 as in manual mode, while the commands go on.
-FlightSeries with_commands(double manual_s, const std::string& commands, int until_s = 200) {
-    std::string text;
-    for (int i = 0; i <= 200; ++i) {
-        text += fmt::format("{} 20 ENERGY {} 11. 2. 22. 0.1 1.\n", i, i < 100 || i > 100 + manual_s ? 50 : 0);
-        if (i % 5 == 0 && i <= until_s) text += fmt::format("{} 20 COMMANDS {}\n", i, commands);
-    }
-    return flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), "20");
-}
-
-TEST(TelemetrySeries, TakesTheCommandsWhereTheThrottleIdlesInManualMode) {
-    const auto lowest = [](const FlightSeries& series) {
-        const auto throttle = select_track(series, "throttle_percent");
-        return *std::ranges::min_element(throttle.value);
-    };
-    const auto manual = with_commands(40.0, "4800,-20,30");
-    EXPECT_EQ(lowest(manual), 50.0);
-    EXPECT_THAT(warnings_of(manual), Contains(HasSubstr("ENERGY.throttle is at idle while COMMANDS.throttle is not for "
-                                                        "40 s, first from 100 s on: the latter counts there")));
-    EXPECT_EQ(lowest(with_commands(29.0, "4800,-20,30")), 0.0) << "half a minute";
-    EXPECT_EQ(lowest(with_commands(40.0, "4800,-20,30", 125)), 0.0) << "what stopped says nothing";
-    EXPECT_EQ(lowest(with_commands(40.0, "1900,-20,30")), 0.0) << "less than any flight takes";
-    EXPECT_NEAR(lowest(with_commands(40.0, "1930,-20,30")), 20.1, 0.01);
-}
-
-TEST(TelemetrySeries, TakesTheFirstCommandForAThrottleWhereItIsNeverNegative) {
-    const auto series_with = [](int first) {
-        std::string text;
-        for (int i = 0; i <= 20; ++i) text += fmt::format("{} 20 COMMANDS {},7,8\n", i, i == 9 ? first : 96 * i);
-        return flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), "20");
-    };
-    EXPECT_EQ(source_of(series_with(0), "throttle_percent"), "COMMANDS.throttle");
-    EXPECT_EQ(select_track(series_with(0), "throttle_percent").value.back(), 20.0);
-    EXPECT_EQ(source_of(series_with(-1), "throttle_percent"), "") << "a roll command";
 }
 
 }  // namespace

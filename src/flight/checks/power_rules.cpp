@@ -161,7 +161,6 @@ constexpr PowerRule rules[] = {
     {.text = "no power in {percent:.0f} % of the samples in flight with more than 30 % throttle",
      .applies = [](const PowerRecord& r, std::size_t i) { return r.is_flown(i) && r.is_open(i); },
      .holds = [](const PowerRecord& r, std::size_t i) { return std::abs(r.power_w[i]) <= r.powerless_w; },
-     .min_samples = 5,
      .limit = 0.15},
     {.text = "{energy_wh:.3f} Wh, {percent:.0f} % of the energy in flight, were drawn outside of it with more than "
              "30 % throttle: a long run-up, or is the altitude wrong?",

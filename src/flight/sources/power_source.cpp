@@ -162,7 +162,7 @@ bool energy_and_power_are_swapped(const FlightSeries& series) {
     const auto* product = find_product(series, "ENERGY.");
     if (as_read == nullptr || other == nullptr || product == nullptr) return false;
     const auto exchanged = samples_near(*other, *product);
-    return exchanged >= 10 && exchanged > 2 * samples_near(*as_read, *product);
+    return exchanged >= enough_pairs && exchanged > 2 * samples_near(*as_read, *product);
 }
 
 std::vector<double> contradicted_times(const FlightSeries& series, std::string_view source) {

@@ -260,8 +260,8 @@ TEST(PowerWarnings, CompareThePowerOfEscsWithVoltageTimesCurrent) {
     const auto scaled = [](double by) {
         return with_escs([by](double, double&, double&, double& watts) { watts *= by; }).warnings;
     };
-    EXPECT_THAT(scaled(1.06), compares);
-    EXPECT_THAT(scaled(1.04), Not(compares));
+    EXPECT_THAT(scaled(1.055), compares);
+    EXPECT_THAT(scaled(1.045), Not(compares));
 }
 
 TEST(PowerWarnings, TellOfDevicesThatAllReportNothingInFlight) {

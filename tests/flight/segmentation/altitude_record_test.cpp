@@ -139,7 +139,7 @@ TEST(AltitudeRecord, JumpsByMoreThan10MetresAnd60MetresPerSecond) {
 }
 
 TEST(AltitudeRecord, JumpsWithLessWhereItStoodStillForTenSecondsAndFiveSamples) {
-    EXPECT_EQ(jumps_of({{0, 40, true}, {64, 60}}), 0U) << "60 m and 5 m/s";
+    EXPECT_EQ(jumps_of({{0, 40, true}, {64.5, 60}}), 0U) << "60 m and 5 m/s";
     EXPECT_EQ(jumps_of({{0, 40, true}, {66, 60}}), 1U);
     EXPECT_EQ(jumps_of({{-20, 30}, {0, 10, true}, {66, 60}}), 0U) << "nine seconds";
     EXPECT_EQ(jumps_of({{-20, 30}, {0, 11, true}, {66, 60}}), 1U) << "ten seconds";

@@ -72,30 +72,6 @@ TEST(FlightRejection, WhereTheAltitudeChangesFasterThanAircraftClimb) {
     EXPECT_THAT(why_none(test::series_of(columns)), HasSubstr("m/s for 30 s: an estimator that ran away"));
 }
 
-TEST(FlightRejection, WhereTheAltitudeChangesForFiveSecondsFasterThanAircraftClimb) {
-    const auto climbing = [](double climb_m_per_s) {
-        const double top_m = 6.0 * climb_m_per_s;
-        return why_none(test::series_of(columns_of(
-            {{0, 0, 0}, {60, 0, 0}, {61, 0, 100}, {67, top_m, 100}, {160, top_m, 50}, {200, 0, 0}, {280, 0, 0}}, 0.5)));
-    };
-    EXPECT_THAT(climbing(66.0), HasSubstr("m/s for 5 s: an estimator that ran away"));
-    EXPECT_EQ(climbing(55.0), "1 sorties");
-}
-
-TEST(FlightRejection, WhereAGpsMovesByLessThanHalfOfTheLeastHeight) {
-    const auto gps_moves_by = [](double spread_m) {
-        auto series = test::series_of(columns_of(sortie(100)));
-        auto gps = select_track(series, "altitude_m");
-        gps.source = "GPS.alt";
-        for (std::size_t i = 0; i < gps.value.size(); ++i)
-            gps.value[i] = 600.0 + 0.25 * spread_m * static_cast<double>(i % 5);
-        series.tracks.push_back(gps);
-        return why_none(series);
-    };
-    EXPECT_THAT(gps_moves_by(4.8), HasSubstr("GPS.alt by 4.8 m: an estimator that ran away"));
-    EXPECT_EQ(gps_moves_by(5.2), "1 sorties");
-}
-
 TEST(FlightRejection, WhereItDrivesAtOneHeightAndTheGroundIsNotSeen) {
     std::vector<test::Point> points;
     for (int i = 0; i < 20; ++i) {
@@ -210,42 +186,6 @@ TEST(FlightRejection, SaysOfSeveralVehiclesWhatEachDid) {
     const auto log = test::shared_dir() / "archives" / "rovers" / "23_06_28__10_14_13.data";
     EXPECT_THAT(test::rejected([&] { load_flight(log); }),
                 HasSubstr("none of its aircraft flew: 2 (a ground vehicle: it sends ROVER_STATUS), 1 ("));
-}
-
-TEST(UnitDoubt, ComparesWithTheClimbRate) {
-    const auto warning_of = [](double factor) {
-        auto columns = columns_of(sortie(100));
-        auto series = test::series_of(columns);
-        Track climb{.name = "climb_m_per_s", .source = "GPS.climb", .time_s = columns.time_s};
-        const auto& altitude_m = columns.altitude_m;
-        for (std::size_t i = 0; i < altitude_m.size(); ++i) {
-            climb.value.push_back(i == 0 ? 0.0 : (altitude_m[i] - altitude_m[i - 1]) / 1.1);
-        }
-        series.tracks.push_back(climb);
-        for (auto& track : series.tracks) {
-            if (track.name != "altitude_m") continue;
-            for (auto& value : track.value) value *= factor;
-        }
-        const auto warnings = segment(series).warnings;
-        return warnings.empty() ? std::string() : warnings.front();
-    };
-    EXPECT_EQ(warning_of(1.0), "");
-    EXPECT_EQ(warning_of(1.65), "");
-    EXPECT_THAT(warning_of(1.75), HasSubstr("is one of them in another unit than m?"));
-    EXPECT_THAT(warning_of(3.28084),
-                HasSubstr("times as much as the climb rate of GPS.climb says: is one of them in feet?"));
-    EXPECT_THAT(warning_of(0.3048), HasSubstr("is one of them in feet?"));
-}
-
-TEST(UnitDoubt, ComparesWithOtherAltitudes) {
-    auto series = test::series_of(columns_of(sortie(100)));
-    auto gps = select_track(series, "altitude_m");
-    gps.source = "GPS.alt";
-    for (auto& value : gps.value) value = 100.0 * value;
-    series.tracks.push_back(gps);
-    EXPECT_THAT(
-        segment(series).warnings,
-        testing::Contains(HasSubstr("series CSV moves 0.01 times as much as GPS.alt says: is one of them in cm?")));
 }
 
 /// A log of an altitude that rises and falls with a throttle, while GPS moves as given; of a fixed wing.

@@ -108,5 +108,97 @@ TEST(DeviceSum, TakesEqualReportsAtOneTimeOnceAndSaysSo) {
                 HasSubstr("ESC 0 reports 4 times at one time: several devices under one id"));
 }
 
+/// A motor that reports 1 W at these times.
+Track motor(const std::string& id, const std::vector<double>& time_s) {
+    return {.name = "power_w",
+            .source = "ESC.power",
+            .device = id,
+            .time_s = time_s,
+            .value = std::vector<double>(time_s.size(), 1.0)};
+}
+
+DeviceSum sum_of(const std::vector<Track>& motors) {
+    FlightSeries series;
+    series.tracks = motors;
+    return sum_over_devices(series, "power_w", "ESC");
+}
+
+std::vector<double> each_second(int count, double from_s = 0.0) {
+    std::vector<double> time_s;
+    for (int i = 0; i < count; ++i) time_s.push_back(from_s + i);
+    return time_s;
+}
+
+/// At how many of 101 times, a second apart, there is a sum with a motor that reports at these.
+std::size_t summed_with(const std::vector<double>& time_s) {
+    return sum_of({motor("0", each_second(101)), motor("1", time_s)}).track.time_s.size();
+}
+
+TEST(DeviceSum, HasNoValueInPausesOfMoreThanFiveIntervals) {
+    const auto pauses = [](double from_s, double pause_s) {
+        auto time_s = each_second(51, from_s - 50.0);
+        for (double t = from_s + pause_s; t < 100.0; t += 1.0) time_s.push_back(t);
+        return summed_with(time_s);
+    };
+    EXPECT_EQ(pauses(50.0, 4.9), 101U);
+    EXPECT_EQ(pauses(50.0, 5.1), 97U);
+    EXPECT_EQ(pauses(50.15, 10.0), 101U - 8U) << "51 s is within 0.9 s of the last report, as 60 s of the next";
+    EXPECT_EQ(pauses(50.05, 10.0), 101U - 9U);
+}
+
+TEST(DeviceSum, HasNoValueMoreThanThreeIntervalsOutsideOfTheReports) {
+    EXPECT_EQ(summed_with(each_second(98, 2.9)), 101U);
+    EXPECT_EQ(summed_with(each_second(98, 3.1)), 100U);
+    EXPECT_EQ(summed_with(each_second(98, 0.1)), 101U) << "to 97.1 s";
+    EXPECT_EQ(summed_with(each_second(97, 0.9)), 100U) << "to 96.9 s";
+}
+
+TEST(DeviceSum, IsNoneWithLessThanAQuarterOfTheTimes) {
+    EXPECT_EQ(summed_with(each_second(23)), 26U);
+    EXPECT_EQ(summed_with(each_second(22)), 0U) << "25 of 101";
+}
+
+TEST(DeviceSum, IsOfDevicesThatReportMoreThanRarely) {
+    const auto is_rare = [](int reports, std::size_t most) {
+        return reports_rarely({"1", motor("1", each_second(reports)), {}}, most);
+    };
+    EXPECT_TRUE(is_rare(9, 1000));
+    EXPECT_FALSE(is_rare(10, 1000)) << "one percent";
+    EXPECT_TRUE(is_rare(2, 30));
+    EXPECT_FALSE(is_rare(3, 30));
+    EXPECT_FALSE(is_rare(2, 29));
+}
+
+TEST(DeviceSum, TakesManyShortIntervalsForBursts) {
+    const auto comes_in_bursts = [](int intervals, int shorter, double short_s) {
+        std::vector<double> time_s{0.0};
+        for (int i = 0; i < intervals; ++i) time_s.push_back(time_s.back() + (i < shorter ? short_s : 1.0));
+        return !sum_of({motor("0", time_s)}).notes.empty();
+    };
+    EXPECT_TRUE(comes_in_bursts(100, 41, 0.01));
+    EXPECT_FALSE(comes_in_bursts(100, 40, 0.01));
+    EXPECT_TRUE(comes_in_bursts(100, 50, 0.105)) << "a fifth of the mean is 0.11 s";
+    EXPECT_FALSE(comes_in_bursts(100, 50, 0.118));
+    EXPECT_TRUE(comes_in_bursts(29, 15, 0.01)) << "30 reports";
+    EXPECT_FALSE(comes_in_bursts(28, 15, 0.01));
+}
+
+TEST(DeviceSum, IsRefusedWhereRepeatedReportsDifferOrAreThree) {
+    // A motor of a hundred reports, and of so many a second and a third at the same time, of which some differ.
+    const auto is_refused = [](int second, int differing, int third = 0) {
+        std::vector<Track> motors{motor("0", each_second(100)), motor("0~2", each_second(second))};
+        for (std::size_t i = 0; i < static_cast<std::size_t>(differing); ++i) motors[1].value[i] = 2.0;
+        if (third > 0) motors.push_back(motor("0~3", each_second(third)));
+        return !sum_of(motors).ambiguity.empty();
+    };
+    EXPECT_TRUE(is_refused(6, 6));
+    EXPECT_FALSE(is_refused(5, 5)) << "less is damage";
+    EXPECT_TRUE(is_refused(20, 11));
+    EXPECT_FALSE(is_refused(20, 10)) << "half of them";
+    EXPECT_TRUE(is_refused(20, 0, 6));
+    EXPECT_FALSE(is_refused(20, 0, 5));
+    EXPECT_FALSE(is_refused(20, 0));
+}
+
 }  // namespace
 }  // namespace flightwatt::flight

@@ -18,10 +18,12 @@ Track altitude(std::vector<double> values) {
     return track;
 }
 
-TEST(PhysicalBounds, StandForEveryQuantityThatEnergyRestsOn) {
-    for (const auto* name : {"altitude_m", "power_w", "voltage_v", "current_a", "charge_ah", "energy_wh"})
-        EXPECT_TRUE(physical_bounds(name).has_value()) << name;
-    EXPECT_FALSE(physical_bounds("block").has_value());
+/// A track of 100 samples of `value`, of which `changed` are others.
+Track track_with(const char* name, double value, std::initializer_list<std::pair<std::size_t, double>> changed) {
+    Track track{.name = name, .source = "ENERGY.x", .value = std::vector<double>(100, value)};
+    for (std::size_t i = 0; i < track.value.size(); ++i) track.time_s.push_back(static_cast<double>(i));
+    for (const auto& [i, other] : changed) track.value[i] = other;
+    return track;
 }
 
 TEST(PhysicalBounds, LeaveOutFewSamplesAndBelieveNothingOfATrackOfMany) {
@@ -29,15 +31,42 @@ TEST(PhysicalBounds, LeaveOutFewSamplesAndBelieveNothingOfATrackOfMany) {
     heights[3] = 1e308;
     heights[40] = -116249.0;
     EXPECT_EQ(within_bounds(altitude(heights)).value, std::vector<double>(98, 50.0));
-    for (std::size_t i = 0; i < 11; ++i) heights[i] = 1e6;
+    for (std::size_t i = 0; i < 9; ++i) heights[i] = 1e6;
+    EXPECT_EQ(within_bounds(altitude(heights)).value, std::vector<double>(90, 50.0));
+    heights[9] = 1e6;
     EXPECT_TRUE(within_bounds(altitude(heights)).empty());
     EXPECT_EQ(within_bounds(altitude({1.0, 2.0})), altitude({1.0, 2.0}));
 }
 
-TEST(PhysicalBounds, AreTheSameForAltitudeAndThrottleEverywhere) {
-    EXPECT_EQ(physical_bounds("altitude_m")->low, -500.0);
-    EXPECT_EQ(physical_bounds("altitude_m")->high, 20e3);
-    EXPECT_EQ(physical_bounds("throttle_percent")->high, 105.0);
+TEST(PhysicalBounds, LeaveOutWhatLiesBeyondThem) {
+    struct Bounds {
+        const char* name;
+        double low;
+        double high;
+    };
+    const std::vector<Bounds> all{{"altitude_m", -500.0, 20e3},
+                                  {"throttle_percent", -5.0, 105.0},
+                                  {"voltage_v", 0.0, 500.0},
+                                  {"current_a", -2e3, 2e3},
+                                  {"power_w", -1e5, 1e5},
+                                  {"charge_ah", -1e4, 1e4},
+                                  {"energy_wh", -1e5, 1e5},
+                                  {"ground_speed_m_per_s", -1.0, 300.0},
+                                  {"airspeed_m_per_s", -50.0, 300.0},
+                                  {"wind_speed_m_per_s", 0.0, 100.0},
+                                  {"wind_east_m_per_s", -100.0, 100.0},
+                                  {"wind_north_m_per_s", -100.0, 100.0},
+                                  {"climb_m_per_s", -300.0, 300.0},
+                                  {"air_temperature_c", -80.0, 100.0}};
+    for (const auto& [name, low, high] : all) {
+        SCOPED_TRACE(name);
+        const auto kept = [&](double value) { return within_bounds(track_with(name, low, {{7, value}})).value.size(); };
+        EXPECT_EQ(kept(low - 0.1), 99U);
+        EXPECT_EQ(kept(low + 0.1), 100U);
+        EXPECT_EQ(kept(high - 0.1), 100U);
+        EXPECT_EQ(kept(high + 0.1), 99U);
+    }
+    EXPECT_FALSE(physical_bounds("block").has_value());
 }
 
 TEST(PhysicalBounds, AreKeptByTheChosenTrack) {
@@ -50,25 +79,25 @@ TEST(PhysicalBounds, AreKeptByTheChosenTrack) {
               "1 of 100 samples of altitude_m (ESTIMATOR.z) are left out: 1 beyond what can be");
 }
 
-/// A track of 100 samples of `value`, of which `changed` are others.
-Track track_with(const char* name, double value, std::initializer_list<std::pair<std::size_t, double>> changed) {
-    Track track{.name = name, .source = "ENERGY.x", .value = std::vector<double>(100, value)};
-    for (std::size_t i = 0; i < track.value.size(); ++i) track.time_s.push_back(static_cast<double>(i));
-    for (const auto& [i, other] : changed) track.value[i] = other;
-    return track;
-}
-
 std::size_t removed(const Track& track, const Track& throttle = {}) {
     return track.value.size() - remove_outliers(track, {}, throttle).track().value.size();
 }
 
 TEST(Outliers, AreSpikesOfPowerAndCurrent) {
     EXPECT_EQ(removed(track_with("power_w", 20.0, {{50, 66.0}, {51, 66.0}})), 2U) << "three times 20 W, and 5 W";
-    EXPECT_EQ(removed(track_with("power_w", 20.0, {{50, 64.0}, {51, 64.0}})), 0U);
+    EXPECT_EQ(removed(track_with("power_w", 20.0, {{50, 64.5}, {51, 64.5}})), 0U);
     EXPECT_EQ(removed(track_with("power_w", 20.0, {{50, 66.0}, {51, 66.0}, {52, 66.0}})), 0U) << "held";
     EXPECT_EQ(removed(track_with("current_a", 2.0, {{50, 7.1}})), 1U) << "three times 2 A, and 1 A";
     EXPECT_EQ(removed(track_with("current_a", 2.0, {{50, 6.9}})), 0U);
     EXPECT_EQ(removed(track_with("power_w", 20.0, {{49, 34.0}, {50, 67.0}})), 0U) << "less than twice its neighbour";
+    EXPECT_EQ(removed(track_with("power_w", 20.0, {{49, 33.0}, {50, 67.0}})), 1U);
+    auto of_ten = track_with("power_w", 20.0, {{5, 66.0}});
+    of_ten.time_s.resize(10);
+    of_ten.value.resize(10);
+    EXPECT_EQ(removed(of_ten), 1U);
+    of_ten.time_s.pop_back();
+    of_ten.value.pop_back();
+    EXPECT_EQ(removed(of_ten), 0U) << "too few to be judged";
 }
 
 TEST(Outliers, AreSpikesOfVoltage) {
