@@ -31,10 +31,6 @@ mechanical::ModelFitOptions read_options(const cli::StageCall& call) {
     const auto loss = mechanical::loss_from(name);
     if (!loss) throw UsageError(fmt::format("--loss {}: expected none or huber", name));
     options.phases.loss = *loss;
-    const auto curve_name = call.get<std::string>("curve");
-    const auto curve = mechanical::curve_from(curve_name);
-    if (!curve) throw UsageError(fmt::format("--curve {}: expected mean or least-squares", curve_name));
-    options.phases.curve = *curve;
     if (const auto covariate = call.get_optional<std::string>("level-covariate")) {
         options.level_covariate = mechanical::covariate_from(*covariate);
         if (!options.level_covariate) {
@@ -155,9 +151,6 @@ as TOML; with -o it goes to the file and Table I is shown.)" +
         "let the cruise level follow what 'flightwatt validate --covariate all' found to predict it: "
         "airspeed_m_per_s, height_m, wind_m_per_s ...; a mission then states it in [conditions]");
     add("loss", cli::value("HOW")->default_value("none"), "none or huber: how outliers count in the last refinement");
-    add("curve", cli::value("HOW")->default_value("mean"),
-        "mean or least-squares: the curve where the samples leave its frequency open. mean: over all frequencies that "
-        "may be, and never below 0 W unless that was measured");
     cli::add_choice_options(stage.options);
     cli::add_mix_option(stage.options);
     cli::add_flight_options(stage.options);

@@ -16,8 +16,6 @@
 /// What is asked of a fit, and what it finds.
 namespace flightwatt::mechanical {
 
-struct FrequencyPosterior;
-struct FrequencyScan;
 struct MeanCurve;
 struct PhaseSamples;
 
@@ -40,22 +38,6 @@ constexpr std::optional<Loss> loss_from(std::string_view name) {
     return std::nullopt;
 }
 
-/// What a phase's curves are where the samples leave the frequency open.
-enum class CurveEstimator {
-    mean,          ///< the mean over all frequencies that may be; never below 0 unless that was measured
-    least_squares  ///< that of the least sum of squares, whatever it is
-};
-
-constexpr std::string_view to_string(CurveEstimator curve) {
-    return curve == CurveEstimator::mean ? "mean" : "least-squares";
-}
-
-constexpr std::optional<CurveEstimator> curve_from(std::string_view name) {
-    for (const auto curve : {CurveEstimator::mean, CurveEstimator::least_squares})
-        if (name == to_string(curve)) return curve;
-    return std::nullopt;
-}
-
 struct PhaseFitOptions {
     int order = 3;  ///< of the Fourier series, 0 (a constant) to max_order
     /// Lowest omega * duration. The fewer periods a phase has, the more alike its harmonics are, and noise in
@@ -66,7 +48,6 @@ struct PhaseFitOptions {
     /// an aircraft does over and over in cruise is faster.
     double max_periods = 120.0;
     Loss loss = Loss::none;  ///< huber: outliers count less in the last refinement
-    CurveEstimator curve = CurveEstimator::mean;
 };
 
 /// One flight's own curve in one phase, in that flight's own seconds.
@@ -86,11 +67,9 @@ struct PhaseFit {
     double rms_w = 0.0;                ///< of all flights' residuals together
     std::size_t samples = 0;
     Loss loss = Loss::none;
-    double loss_scale_w = 0.0;           ///< of the noise as the loss saw it; 0 without a loss
-    bool is_frequency_averaged = false;  ///< the curves are means over frequencies (average_over_frequencies)
+    double loss_scale_w = 0.0;       ///< of the noise as the loss saw it; 0 without a loss
+    bool is_frequency_open = false;  ///< other frequencies are almost as good: constants stand for this curve alone
     bool is_clamped = false;  ///< curves were kept from falling below 0, or below negative power that was measured
-    std::shared_ptr<const FrequencyPosterior> posterior = {};  ///< if it was needed
-    std::shared_ptr<const FrequencyScan> scan = {};  ///< of the samples [W^2]; none with a loss, or of order 0
 };
 
 /// So many samples a flight needs at least: one more than its coefficients.

@@ -23,7 +23,7 @@ void use_mean_power(MechanicalModel& model, flight::Phase phase) {
             part->weight = counts(part) ? 1.0 / static_cast<double>(powers_w.size()) : 0.0;
     auto& mean_power = model.phases[phase];
     mean_power.fourier = {mean_power.fourier.omega_rad_per_s, mean(powers_w), {}, {}};
-    mean_power.mean_curve = mean_power.not_negative = false;
+    mean_power.open_frequency = mean_power.not_negative = false;
     mean_power.errors.reset();  // the curve's
     mean_power.spread.reset();
 }
@@ -159,10 +159,9 @@ std::vector<std::string> fit_notes(const MechanicalModel& model) {
                 fmt::format("{}: {} sample{} left out at its ends: the power is that of the neighbouring phase",
                             to_string(phase), fitted.edge_samples, fitted.edge_samples == 1 ? " was" : "s were"));
         }
-        if (fitted.mean_curve) {
+        if (fitted.open_frequency) {
             notes.push_back(
-                fmt::format("{}: the samples leave the frequency open: the curve is the mean over all that may be, and "
-                            "its constants stand for that curve alone",
+                fmt::format("{}: the samples leave the frequency open: the coefficients stand for this curve alone",
                             to_string(phase)));
         }
         if (fitted.not_negative) {

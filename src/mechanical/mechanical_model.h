@@ -104,7 +104,7 @@ struct PhaseModel {
     std::size_t samples = 0;
     std::size_t flights = 0;
     std::size_t edge_samples = 0;  ///< left out at the phase's ends: their power is the neighbouring phase's
-    bool mean_curve = false;       ///< the mean over all frequencies that may be, for the samples leave it open
+    bool open_frequency = false;   ///< other frequencies fit almost as well: the constants stand for this curve alone
     bool not_negative = false;     ///< the curve was kept from falling below 0, or below negative power measured
     std::optional<PhaseErrors> errors = {};     ///< absent unless they were asked for
     std::optional<FlightEnvelope> spread = {};  ///< absent too where a single flight counts
@@ -194,7 +194,7 @@ double rms_difference_w(const PhaseModel& a, const PhaseModel& b);
 std::vector<std::string> model_warnings(const MechanicalModel& model);
 
 /// How the fit came to its curves where that is not least squares of all samples, a line each: samples that were left
-/// out, a mean over frequencies, a curve that was held above 0 W.
+/// out, a frequency that these leave open, a curve that was held above 0 W.
 std::vector<std::string> fit_notes(const MechanicalModel& model);
 
 }  // namespace flightwatt::mechanical

@@ -205,7 +205,9 @@ void list_phase(TomlFields& fields, PhaseModel& phase) {
     if (fields.has("samples", phase.samples > 0)) fields.count("samples", phase.samples);
     if (fields.has("flights", phase.flights > 0)) fields.count("flights", phase.flights);
     if (fields.has("edge_samples", phase.edge_samples > 0)) fields.count("edge_samples", phase.edge_samples);
-    if (fields.has("mean_curve", phase.mean_curve)) fields.flag("mean_curve", phase.mean_curve);
+    bool mean_curve = false;  // of earlier versions
+    if (fields.has("mean_curve", mean_curve)) fields.flag("mean_curve", mean_curve);
+    if (fields.has("open_frequency", phase.open_frequency)) fields.flag("open_frequency", phase.open_frequency);
     if (fields.has("not_negative", phase.not_negative)) fields.flag("not_negative", phase.not_negative);
     fields.optional_table("level_spread", phase.level_spread, list_variance);
     fields.optional_table("level_law", phase.level_law, list_level_law);

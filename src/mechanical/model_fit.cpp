@@ -40,10 +40,9 @@ std::string orders_of(const ModelFitOptions& options) {
 
 std::string described(const ModelFitOptions& options, std::size_t flights) {
     const auto loss = options.phases.loss;
-    return fmt::format("fitted to {} flight{}: Fourier series {}, {}{}weights: {}; flightwatt {}", flights,
+    return fmt::format("fitted to {} flight{}: Fourier series {}, {}weights: {}; flightwatt {}", flights,
                        flights == 1 ? "" : "s", orders_of(options),
                        loss == Loss::none ? "" : fmt::format("loss: {}, ", to_string(loss)),
-                       options.phases.curve == CurveEstimator::mean ? "" : "curve: least-squares, ",
                        to_string(options.weights.weighting), FLIGHTWATT_VERSION);
 }
 

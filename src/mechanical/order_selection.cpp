@@ -104,8 +104,6 @@ OrderSelection select_order(flight::Phase phase, std::span<const PhaseSamples> f
     const bool by_hand = weights.weighting == Weighting::manual;
     const WeightOptions weighting{by_hand ? Weighting::uniform : weights.weighting, {}};
     auto tried = options;
-    tried.curve =
-        CurveEstimator::least_squares;  // a mean over frequencies costs a fit a hundred times, and orders are many
     for (int order = 0; order <= max_tested_order; ++order) {
         tried.order = order;
         choice.errors.push_back(error_of(phase, folds, tried, weighting));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -154,6 +155,19 @@ double median_gap(std::vector<double> tau) {
     for (std::size_t i = 1; i < tau.size(); ++i)
         if (tau[i] > tau[i - 1]) gaps.push_back(tau[i] - tau[i - 1]);
     return gaps.empty() ? 0.0 : median(std::move(gaps));
+}
+
+ScaledSamples sort_by_time(const ScaledSamples& samples) {
+    if (std::ranges::is_sorted(samples.tau)) return samples;
+    std::vector<std::size_t> places(samples.tau.size());
+    std::iota(places.begin(), places.end(), std::size_t{0});
+    std::ranges::stable_sort(places, {}, [&](std::size_t place) { return samples.tau[place]; });
+    ScaledSamples sorted{{}, {}, samples.flight};
+    for (const auto place : places) {
+        sorted.tau.push_back(samples.tau[place]);
+        sorted.value.push_back(samples.value[place]);
+    }
+    return sorted;
 }
 
 std::size_t sample_count(std::span<const ScaledSamples> flights) {

@@ -61,6 +61,9 @@ struct ScaledSamples {
     double scan_unit = 1.0;                       ///< whose values are to be multiplied by this
 };
 
+/// The same samples in the order of time.
+ScaledSamples sort_by_time(const ScaledSamples& samples);
+
 /// Of all flights together.
 std::size_t sample_count(std::span<const ScaledSamples> flights);
 

@@ -30,11 +30,11 @@ bool print_row(flight::Phase phase, const test::CoverageCase& made, const test::
     const auto percent = [](double part) { return units::percentage(part, 1.0); };
     fmt::print(
         "| {} | {} | {:.2f} | {:.1f} | {:.1f} ± {:.1f} | {:.1f} ± {:.1f} "
-        "| {:.2f} | {:.2f} | {:.2f} | {:.2f} | {} | {} |\n",
+        "| {:.2f} | {:.2f} | {:.2f} | {:.2f} | {} |\n",
         to_string(phase), made.together, made.noise_w, made.autocorrelation, percent(coverage.covered),
         percent(binomial_error(coverage.covered, coverage.fits)), percent(coverage.a0_covered),
         percent(binomial_error(coverage.a0_covered, coverage.fits)), coverage.half_width_w, coverage.a0_half_width_w,
-        coverage.curve_error_w, coverage.worst_curve_error_w, coverage.mean_curves, coverage.without_answer);
+        coverage.curve_error_w, coverage.worst_curve_error_w, coverage.without_answer);
     std::fflush(stdout);
     return test::is_at_least(coverage.covered, min_share, coverage.fits) &&
            test::is_at_least(coverage.a0_covered, min_share, coverage.fits);
@@ -48,9 +48,8 @@ bool run_coverage(std::size_t fits, std::span<const flight::Phase> phases) {
     bool all_cover = true;
     fmt::print("{} fits a row, seed {}; half widths and errors in W, medians of the fits.\n\n", fits, seed);
     fmt::print(
-        "| phase | flights | noise W | r | curve, % | a0, % | half width | of a0 | error | worst | mean curves "
-        "| no answer |\n"
-        "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
+        "| phase | flights | noise W | r | curve, % | a0, % | half width | of a0 | error | worst | no answer |\n"
+        "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
     for (const auto phase : phases) {
         for (const std::size_t together : {1U, 4U}) {
             for (const double noise_w : {0.24, 1.0}) {

@@ -46,7 +46,6 @@ struct Coverage {
     double a0_half_width_w = 0.0;  ///< median of the fits
     double curve_error_w = 0.0;    ///< root mean square over the curve, median of the fits
     double worst_curve_error_w = 0.0;
-    std::size_t mean_curves = 0;  ///< fits whose samples left the frequency open
     std::size_t fits = 0;
     std::size_t without_answer = 0;  ///< fits that did not converge, which say so and have no intervals
 };
@@ -99,7 +98,6 @@ inline Coverage coverage_of(flight::Phase phase, const CoverageCase& made, unsig
         half_widths_w.push_back(width_w / 2.0);
         a0_half_widths_w.push_back((a0.high - a0.low) / 2.0);
         curve_errors_w.push_back(std::sqrt(square_w2));
-        coverage.mean_curves += fit.is_frequency_averaged ? 1 : 0;
         ++coverage.fits;
     }
     const auto fits = static_cast<double>(coverage.fits);

@@ -167,7 +167,7 @@ TEST(ModelCheck, TellsWhatWasDoneToTheCurve) {
     auto model = published();
     auto& landing = model.phases[flight::Phase::landing];
     landing.edge_samples = 2;
-    landing.mean_curve = true;
+    landing.open_frequency = true;
     landing.not_negative = true;
     EXPECT_THAT(model_warnings(model), IsEmpty());
     EXPECT_THAT(fit_notes(model), ElementsAre(HasSubstr("landing: 2 samples were left out at its ends"),

@@ -199,7 +199,7 @@ Json to_json(const mechanical::MechanicalModel& model) {
                  {"a0_w", fitted.fourier.a0_w},         {"cos_w", fitted.fourier.cos_w},
                  {"sin_w", fitted.fourier.sin_w},       {"rms_w", fitted.rms_w.value_or(0.0)},
                  {"samples", fitted.samples},           {"flights", fitted.flights},
-                 {"edge_samples", fitted.edge_samples}, {"mean_curve", fitted.mean_curve},
+                 {"edge_samples", fitted.edge_samples}, {"open_frequency", fitted.open_frequency},
                  {"not_negative", fitted.not_negative}};
         if (const auto& law = fitted.level_law) {
             entry["level_law"] = {{"covariate", to_string(law->covariate)},

@@ -42,7 +42,7 @@ void describe_fit(PhaseErrors& errors, std::span<const PhaseSamples> flights, co
 
 /// What the nodes say of a linear function of the coefficients which depends on theta: row(theta) c.
 template <typename Row>
-StudentMixture mixture_of(std::span<const MeanCurveNode> nodes, const Row& row) {
+StudentMixture mixture_of(std::span<const PosteriorNode> nodes, const Row& row) {
     StudentMixture mixture;
     for (const auto& node : nodes) {
         const Eigen::VectorXd at = row(node.theta_rad);
@@ -60,7 +60,7 @@ Eigen::VectorXd curve_row(Eigen::Index coefficients, double theta_rad, double ta
 }
 
 StudentMixture curve_mixture(const ErrorAnalysis& analysis, double tau) {
-    return mixture_of(analysis.curve->nodes, [&](double theta_rad) {
+    return mixture_of(analysis.curve->posterior.nodes, [&](double theta_rad) {
         return curve_row(analysis.curve->coefficients_w.size(), theta_rad, tau);
     });
 }
@@ -70,7 +70,7 @@ Interval around(Interval interval, double value) {
 }
 
 /// Of the nodes below a frequency alone; without weights if they hold too little.
-StudentMixture below(const StudentMixture& mixture, std::span<const MeanCurveNode> nodes, double theta_rad) {
+StudentMixture below(const StudentMixture& mixture, std::span<const PosteriorNode> nodes, double theta_rad) {
     StudentMixture part;
     double sum = 0.0;
     for (std::size_t i = 0; i < mixture.weight.size(); ++i) {
@@ -91,7 +91,7 @@ Interval coefficient_interval(const ErrorAnalysis& analysis, const StudentMixtur
                               double value) {
     auto interval = around(mixture_interval(mixture, cdf), value);
     for (const double theta_rad : low_frequencies_rad) {
-        const auto part = below(mixture, analysis.curve->nodes, theta_rad);
+        const auto part = below(mixture, analysis.curve->posterior.nodes, theta_rad);
         if (part.weight.empty()) continue;
         const auto [low, high] = mixture_interval(part, cdf);
         interval = around(around(interval, low), high);
@@ -99,7 +99,7 @@ Interval coefficient_interval(const ErrorAnalysis& analysis, const StudentMixtur
     return interval;
 }
 
-double sd_of_frequency(std::span<const MeanCurveNode> nodes) {
+double sd_of_frequency(std::span<const PosteriorNode> nodes) {
     double mean = 0.0;
     for (const auto& node : nodes) mean += node.weight * node.theta_rad;
     double sum = 0.0;
@@ -108,7 +108,7 @@ double sd_of_frequency(std::span<const MeanCurveNode> nodes) {
 }
 
 /// Power without a frequency: what is known of a constant, as that of a series whose harmonics are 0.
-void add_harmonics(std::vector<MeanCurveNode>& nodes, Eigen::Index size) {
+void add_harmonics(std::vector<PosteriorNode>& nodes, Eigen::Index size) {
     for (auto& node : nodes) {
         node.coefficients.conservativeResizeLike(Eigen::VectorXd::Zero(size));
         node.scale.conservativeResizeLike(Eigen::MatrixXd::Zero(size, size));
@@ -122,7 +122,7 @@ void fill_coefficients(ErrorAnalysis& analysis, double duration_s) {
     const auto size = analysis.curve->coefficients_w.size();
     for (Eigen::Index k = 0; k < size; ++k) {
         Eigen::VectorXd unit = Eigen::VectorXd::Unit(size, k);
-        const auto mixture = mixture_of(analysis.curve->nodes, [&](double) { return unit; });
+        const auto mixture = mixture_of(analysis.curve->posterior.nodes, [&](double) { return unit; });
         const double sd = mixture_sd(mixture, errors.degrees_of_freedom);
         const auto [low, high] = coefficient_interval(analysis, mixture, cdf, analysis.curve->coefficients_w(k));
         (k == 0 ? errors.a0_w : k % 2 == 1 ? errors.cos_w.emplace_back() : errors.sin_w.emplace_back()) = sd;
@@ -134,9 +134,9 @@ void fill_coefficients(ErrorAnalysis& analysis, double duration_s) {
         intervals.omega_rad_per_s = {analysis.theta_rad / duration_s, analysis.theta_rad / duration_s};
         return;
     }
-    const auto [low, high] = around(frequency_interval(*analysis.curve->posterior), analysis.theta_rad);
+    const auto [low, high] = around(frequency_interval(analysis.curve->posterior), analysis.theta_rad);
     intervals.omega_rad_per_s = {low / duration_s, high / duration_s};
-    errors.omega_rad_per_s = sd_of_frequency(analysis.curve->nodes) / duration_s;
+    errors.omega_rad_per_s = sd_of_frequency(analysis.curve->posterior.nodes) / duration_s;
 }
 
 void fill_noise(PhaseErrors& errors, const FrequencyPosterior& posterior, std::span<const PhaseSamples> flights) {
@@ -144,20 +144,18 @@ void fill_noise(PhaseErrors& errors, const FrequencyPosterior& posterior, std::s
     errors.autocorrelation = std::clamp(errors.autocorrelation, 0.0, 1.0);
     errors.noise_lasts = is_autocorrelation_at_limit(posterior);
     for (const auto& flight : flights) {
-        const auto sorted = sort_by_time({flight.tau, {flight.power_w}, {}});
+        const auto sorted = sort_by_time({flight.tau, flight.power_w});
         errors.effective_samples +=
             effective_samples(sample_correlation(sorted.tau, median_gap(sorted.tau), errors.autocorrelation));
     }
 }
 
-std::shared_ptr<const FrequencyPosterior> posterior_of_fit(std::span<const PhaseSamples> flights, const PhaseFit& fit,
-                                                           bool constant) {
+FrequencyPosterior posterior_of_fit(std::span<const PhaseSamples> flights, const PhaseFit& fit,
+                                    std::span<const double> weights, int order) {
     std::vector<ScaledSamples> values;
     for (std::size_t i = 0; i < flights.size(); ++i)
         values.push_back(pseudo_observations(flights[i], fit.flights[i], fit));
-    const int order = constant ? 0 : static_cast<int>(fit.flights.front().fourier.cos_w.size());
-    return std::make_shared<const FrequencyPosterior>(
-        frequency_posterior(values, {order, fit.range, fit.theta_rad, fit.scan.get()}));
+    return frequency_posterior(values, weights, {order, fit.range, fit.theta_rad});
 }
 
 constexpr int points_a_side = 20;
@@ -173,16 +171,7 @@ double square_sum_w2(std::span<const PhaseSamples> flights, int order, double th
     return sum;
 }
 
-/// At a bound of the range the density is so much of its peak: the data do not end the interval there.
-constexpr double open_density = 0.1;
-
 }  // namespace
-
-double degrees_of_freedom(std::span<const MeanCurveNode> nodes) {
-    double sum = 0.0;
-    for (const auto& node : nodes) sum += node.weight * node.degrees_of_freedom;
-    return std::max(1.0, sum);
-}
 
 ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseFit& fit,
                              std::span<const double> weights) {
@@ -198,11 +187,11 @@ ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseF
     }
     analysis.theta_rad = fit.theta_rad;
     describe_fit(errors, flights, fit);
-    curve.posterior = fit.posterior ? fit.posterior : posterior_of_fit(flights, fit, errors.frequency_is_fixed);
-    curve.nodes = mean_curve_nodes(*curve.posterior, weights);
-    add_harmonics(curve.nodes, curve.coefficients_w.size());
-    errors.degrees_of_freedom = degrees_of_freedom(curve.nodes);
-    fill_noise(errors, *curve.posterior, flights);
+    const int order = errors.frequency_is_fixed ? 0 : static_cast<int>(fit.flights.front().fourier.cos_w.size());
+    curve.posterior = posterior_of_fit(flights, fit, weights, order);
+    add_harmonics(curve.posterior.nodes, curve.coefficients_w.size());
+    for (const auto& node : curve.posterior.nodes) errors.degrees_of_freedom += node.weight * node.degrees_of_freedom;
+    fill_noise(errors, curve.posterior, flights);
     analysis.curve = std::make_shared<const MeanCurve>(std::move(curve));
     fill_coefficients(analysis, duration_s);
     constexpr int points = 41;
@@ -235,13 +224,11 @@ FrequencyProfile frequency_profile(std::span<const PhaseSamples> flights, const 
     FrequencyProfile profile{{}, {}, fit.range.low_rad, fit.range.high_rad, true, true};
     if (order == 0 || analysis.errors.frequency_is_fixed) return profile;
 
-    const auto& density = analysis.curve->posterior->density;
-    const auto [low, high] = frequency_interval(*analysis.curve->posterior);
+    const auto [low, high] = frequency_interval(analysis.curve->posterior);
     profile.low_rad = std::min(low, fit.theta_rad);
     profile.high_rad = std::max(high, fit.theta_rad);
-    const auto& places = analysis.curve->posterior->theta_rad;
-    profile.low_is_open = places.front() <= fit.range.low_rad && density.front() >= open_density;
-    profile.high_is_open = places.back() >= fit.range.high_rad && density.back() >= open_density;
+    profile.low_is_open = analysis.curve->posterior.is_open_below;
+    profile.high_is_open = analysis.curve->posterior.is_open_above;
     const auto square_sum = [&](double theta_rad) { return square_sum_w2(flights, order, theta_rad); };
 
     const double first = std::max(fit.range.low_rad, 2.0 * profile.low_rad - fit.theta_rad);

@@ -13,14 +13,10 @@
 
 namespace flightwatt::mechanical {
 
-/// The weighted mean of the nodes' degrees of freedom, for which all are computed.
-double degrees_of_freedom(std::span<const MeanCurveNode> nodes);
-
 /// The weighted mean curve of a phase.
 struct MeanCurve {
     Eigen::VectorXd coefficients_w;  ///< a0, a1, b1, ...
-    std::shared_ptr<const FrequencyPosterior> posterior;
-    std::vector<MeanCurveNode> nodes;  ///< its weighted mean of the flights
+    FrequencyPosterior posterior;
 };
 
 /// Integrates over the frequency and the autocorrelation of the noise (frequency_posterior.h): the mean curve and its

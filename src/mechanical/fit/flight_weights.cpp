@@ -146,7 +146,7 @@ PhaseModel average_phase(const PhaseFit& fit, std::span<const double> weights) {
     model.range = fit.range;
     model.samples = fit.samples;
     model.flights = fit.flights.size();
-    model.mean_curve = fit.is_frequency_averaged;
+    model.open_frequency = fit.is_frequency_open;
     model.not_negative = fit.is_clamped;
     model.fourier.cos_w.resize(fit.flights.front().fourier.cos_w.size());
     model.fourier.sin_w.resize(model.fourier.cos_w.size());

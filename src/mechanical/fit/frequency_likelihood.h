@@ -1,14 +1,11 @@
 #pragma once
 
-#include "mechanical/fit/least_squares.h"
-#include "mechanical/mechanical_model.h"
 #include "mechanical/phase_samples.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -32,7 +29,7 @@ std::optional<FrequencyProjection> project_at_frequency(const ScaledSamples& sam
 /// gap apart: two that differ could not be, were their noise the same.
 std::vector<double> normalised_gaps(const ScaledSamples& samples);
 
-/// What one flight says of an autocorrelation r of its noise (R_jk = r^(gaps between), docs/methods.md, Eq. 13).
+/// What one flight says of an autocorrelation r of its noise (R_jk = r^(gaps between), docs/methods.md, Eq. 11).
 struct RestrictedLikelihood {
     double log_likelihood = 0.0;           ///< coefficients and the noise's variance integrated out
     double square_sum = 0.0;               ///< e'R^-1 e of generalised least squares
@@ -49,45 +46,11 @@ struct RestrictedLikelihood {
 /// coefficients is flat on that basis, so that a frequency does not count more because its harmonics are alike.
 RestrictedLikelihood restricted_likelihood(const FrequencyProjection& flight, double autocorrelation);
 
-/// x'R^-1 x and log |R|.
-struct WhitenedSum {
-    double square_sum = 0.0;
-    double log_determinant = 0.0;
-};
-WhitenedSum whitened_sum(std::span<const double> values, const std::vector<double>& gap, double autocorrelation);
-
-/// The autocorrelations that stand for all in a screen, from 0 to `highest`.
-std::vector<double> coarse_autocorrelations(double highest);
-
-/// The frequencies of the scan that noise of some autocorrelation up to `highest` does not rule out beside
-/// `least_squares_rad`, rising, and between them the lowest ones whatever they are. Their likelihood is told from the
-/// scan's sum of squares and the periodogram of the residuals at `least_squares_rad`, each harmonic's part weighed by
-/// the spectrum of the noise (Whittle 1953): operations a frequency do not grow with the samples. On the generous side:
-/// what is kept is to be computed. `flights` rise in time.
-std::vector<double> candidate_frequencies(std::span<const ScaledSamples> flights, int order,
-                                          const FrequencyRange& range, double found_rad, double highest);
-
-/// Whether least squares alone tells that there is one frequency: no flight has fewer than 100 samples, or there are 30
-/// flights and more; residuals of neighbours are correlated by at most 0.5 (in 30 flights together 0.8); and the
-/// likelihood, the samples counted as so many independent ones, is less by e^-25 wherever the highest harmonic turns by
-/// more than 0.5 rad from that at `least_squares_rad`, which lies inside the range. Quick, and rarely so of few real
-/// flights; false says nothing. `flights` rise in time; `scan` is theirs, if it is known.
-bool is_frequency_determined(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
-                             double found_rad, const FrequencyScan* scan = nullptr);
-
 /// The logarithm of a density, without its constant factor, at one place.
 struct DensityNode {
     double x = 0.0;
     double log_density = 0.0;
 };
-
-template <typename LogDensity>
-std::vector<DensityNode> evaluate_density(const LogDensity& log_density, const std::vector<double>& places) {
-    std::vector<DensityNode> nodes;
-    nodes.reserve(places.size());
-    for (const double place : places) nodes.push_back({place, log_density(place)});
-    return nodes;
-}
 
 /// Nodes that resolve a density: `starts` (rising) and, wherever the density is not negligible, as many between them
 /// as it takes for neighbours to differ by no more than a factor of two. A peak is found if one of the starts is on it
@@ -100,7 +63,8 @@ std::vector<DensityNode> refine_density_nodes(const LogDensity& log_density, con
     constexpr double same_place = 1e-10;  // relative
     constexpr int max_rounds = 40;
     constexpr std::size_t max_nodes = 600;
-    auto nodes = evaluate_density(log_density, starts);
+    std::vector<DensityNode> nodes;
+    for (const double place : starts) nodes.push_back({place, log_density(place)});
     for (int round = 0; round < max_rounds && nodes.size() < max_nodes; ++round) {
         const double top = std::ranges::max_element(nodes, {}, &DensityNode::log_density)->log_density;
         const auto rise = [&](std::size_t i) {

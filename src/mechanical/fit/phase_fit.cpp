@@ -113,6 +113,30 @@ JointFit least_squares(const Scaling& scaling, int order, const FrequencyRange& 
     return joint;
 }
 
+/// Whether the samples allow frequencies at which the highest harmonic turns by more than the scan's step otherwise: a
+/// likelihood ratio (95 %) in which samples count as independent ones do.
+bool is_open(const Scaling& scaling, const JointFit& joint, const FrequencyScan& scan, int order) {
+    constexpr double max_log_ratio = 1.92;  // half of chi^2's quantile with one degree of freedom
+    double squares = 0.0;
+    double products = 0.0;  // of neighbours
+    double freedom = 0.0;
+    for (std::size_t i = 0; i < scaling.flights.size(); ++i) {
+        const auto samples = sort_by_time(scaling.flights[i]);
+        const auto residual = fourier_residual(samples, joint.theta_rad, joint.coefficients[i]).residual;
+        squares += residual.squaredNorm();
+        products += residual.head(residual.size() - 1).dot(residual.tail(residual.size() - 1));
+        freedom += static_cast<double>(residual.size() - coefficient_count(order));
+    }
+    const double r = squares > 0.0 ? std::max(0.0, products / squares) : 0.0;
+    const double independent = freedom * (1.0 - r) / (1.0 + r);
+    const double max_square_sum = squares * std::exp(2.0 * max_log_ratio / independent);
+    for (std::size_t i = 0; i < scan.theta_rad.size(); ++i) {
+        const double apart_rad = std::abs(scan.theta_rad[i] - joint.theta_rad);
+        if (apart_rad > scan.step_rad && scan.square_sum[i] < max_square_sum) return true;
+    }
+    return false;
+}
+
 PhaseFit result_of(std::span<const PhaseSamples> flights, const Scaling& scaling, const JointFit& joint,
                    const FrequencyRange& range) {
     PhaseFit fit;
@@ -216,11 +240,8 @@ PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights, c
         if (options.loss != Loss::none) joint = refine_robustly(scaling.flights, range, std::move(joint));
         auto fit = result_of(flights, scaling, joint, range);
         fit.loss = options.loss;
-        if (scan && options.loss == Loss::none) {
-            for (double& sum : scan->square_sum) sum *= scaling.unit_w * scaling.unit_w;
-            fit.scan = std::make_shared<const FrequencyScan>(*std::move(scan));
-        }
-        if (options.curve == CurveEstimator::mean) average_over_frequencies(flights, fit);
+        fit.is_frequency_open = scan && is_open(scaling, joint, *scan, options.order);
+        hold_above_floor(flights, fit);
         return fit;
     } catch (const NoResultError& error) {
         throw NoResultError(fmt::format("{}: {}", to_string(phase), error.what()));

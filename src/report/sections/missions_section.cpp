@@ -39,7 +39,7 @@ std::string drawn_text(mechanical::MechanicalModel model) {
         phase.spread.reset();
         if (!model.validation) continue;
         phase.fourier = {};
-        phase.mean_curve = phase.not_negative = false;
+        phase.open_frequency = phase.not_negative = false;
     }
     if (model.validation) model.flights.clear();
     return to_toml(model);

@@ -76,8 +76,7 @@ TEST_P(FrequencyIdentification, IsWithinOnePerCentEveryTime) {
             std::mt19937 random(seed);
             const auto phase = test::cruise_of(periods, GetParam().cos_w, GetParam().sin_w);
             const auto samples = test::record(phase, {600.0, 0.1, 1.5, 0.0}, random);
-            const auto fit =
-                fit_phase(flight::Phase::cruise, std::vector{samples}, {.curve = CurveEstimator::least_squares});
+            const auto fit = fit_phase(flight::Phase::cruise, std::vector{samples});
             const auto& found = fit.flights.front().fourier;
             EXPECT_NEAR(found.omega_rad_per_s / phase.fourier.omega_rad_per_s, 1.0, 0.01)
                 << periods << " periods, seed " << seed;
@@ -101,8 +100,7 @@ TEST(PhaseFit, EstimatesTheFrequencyAsWellAsTheNoiseAllows) {
     for (unsigned seed = 1; seed <= seeds; ++seed) {
         std::mt19937 random(seed);
         const auto samples = test::record(published, {600.0, 1.1, 0.3, 0.0}, random);
-        const auto fit =
-            fit_phase(flight::Phase::cruise, std::vector{samples}, {.curve = CurveEstimator::least_squares});
+        const auto fit = fit_phase(flight::Phase::cruise, std::vector{samples});
         square_sum += std::pow(fit.theta_rad - test::theta_rad(published), 2);
         least_rad = least_deviation_rad(published, samples, 0.3);
     }
@@ -168,14 +166,24 @@ TEST(PhaseFit, TheSharedFrequencyIsTheSameForTwinsAsForOne) {
 
 TEST(PhaseFit, ReportsThatItStandsAtABound) {
     const auto flights = test::record_flights(flight::Phase::cruise, 2, 0.0, 8);  // theta is 5.04
-    const auto low =
-        fit_phase(flight::Phase::cruise, flights, {.min_theta_rad = 5.3, .curve = CurveEstimator::least_squares});
+    const auto low = fit_phase(flight::Phase::cruise, flights, {.min_theta_rad = 5.3});
     EXPECT_EQ(low.range.at_bound, FrequencyBound::low);
     EXPECT_NEAR(low.theta_rad, 5.3, 1e-5);
-    const auto high =
-        fit_phase(flight::Phase::cruise, flights, {.max_periods = 0.75, .curve = CurveEstimator::least_squares});
+    const auto high = fit_phase(flight::Phase::cruise, flights, {.max_periods = 0.75});
     EXPECT_EQ(high.range.at_bound, FrequencyBound::high);
     EXPECT_NEAR(high.theta_rad, 1.5 * std::numbers::pi, 1e-5);
+}
+
+TEST(PhaseFit, SaysWhereTheSamplesLeaveTheFrequencyOpen) {
+    for (const auto phase : flight::all_phases) {
+        EXPECT_FALSE(fit_phase(phase, test::record_flights(phase, 4, 0.01, 2)).is_frequency_open) << to_string(phase);
+    }
+    int open = 0;
+    for (unsigned seed = 1; seed <= 6; ++seed) {
+        const auto landings = test::record_flights(flight::Phase::landing, 1, 1.0, seed);
+        open += fit_phase(flight::Phase::landing, landings).is_frequency_open ? 1 : 0;
+    }
+    EXPECT_GE(open, 5) << "of 6 landings with 1 W of noise";
 }
 
 TEST(PhaseFit, TheRangeEndsWhereTheHighestHarmonicOutrunsTheSamples) {
