@@ -44,12 +44,10 @@ int check_interpolation(const cli::StageCall& call) {
     for (const auto& file : call.inputs) {
         const auto profile = read_power_profile(file, naming_of(call));
         if (const auto negative = negative_power_warning(profile); !negative.empty()) cli::warn(call, negative);
-        const auto errors = compute::interpolation_errors(profile);
+        const auto error = compute::leave_one_out(profile);
         if (!text.empty()) text += "\n";
-        text += cli::interpolation_text(file, profile.power_w.size(), errors, screen);
-        cli::Json methods = nlohmann::ordered_json::array();
-        for (const auto& error : errors) methods.push_back(cli::to_json(error));
-        json.push_back({{"file", file}, {"nodes", profile.power_w.size()}, {"leave_one_out", methods}});
+        text += cli::interpolation_text(file, profile.power_w.size(), error, screen);
+        json.push_back({{"file", file}, {"nodes", profile.power_w.size()}, {"leave_one_out", cli::to_json(error)}});
     }
     cli::write_result(call, text);
     if (call.json) cli::print(cli::json_text(json));
@@ -113,7 +111,6 @@ compute::ProfilerOptions options_of(const cli::StageCall& call, const SignalWatc
         for (const auto& line : sampler.found) cli::note(call, "found " + line);
         cli::note(call, fmt::format("sampling with {}: {}", to_string(sampler.kind), sampler.source));
     };
-    if (call.has("trials")) options.trials = cli::count_option(call, "trials");
     return options;
 }
 
@@ -182,8 +179,6 @@ Samplers: auto, ina238, ina3221 (either of ina3221-iio, ina3221-hwmon), rapl, po
     add("sysfs", cli::input_file("ROOT"), "look for sensors below ROOT instead of /sys");
     add("above-idle", "profiles hold the power above that of the idle computer");
     add("powprofiler", "write powprofiler's formats too, to DIR/powprofiler");
-    add("trials", cli::value("N"),
-        "run N configurations of each component, spread over its range, and interpolate the others");
     add("check-interpolation", "of profiles: find each node from the others, and print the errors");
     add("parameters", cli::value("A,B"), "the parameters' names, of a profile that has flags (--check-interpolation)");
     add("columns", cli::value("A,B,power_w"),

@@ -71,7 +71,6 @@ PowerProfile make_power_profile(const std::string& file, const std::vector<std::
     require_full_grid(profile, nodes);
     for (const auto& node : nodes) {
         profile.power_w.push_back(node.power_w);
-        profile.is_measured.push_back(node.is_measured);
         if (node.standard_error_w) profile.standard_error_w.push_back(*node.standard_error_w);
     }
     if (profile.standard_error_w.size() < nodes.size()) profile.standard_error_w.clear();

@@ -15,7 +15,6 @@ struct ProfileNode {
     double power_w = 0.0;
     Location where;
     std::optional<double> standard_error_w = {};
-    bool is_measured = true;  ///< false: found between measured ones
 };
 
 /// Power of a component as a function of its quality of service (QoS): the nodes of a full grid. A component
@@ -27,7 +26,6 @@ struct PowerProfile {
     std::vector<std::vector<double>> axes;      ///< the values that each parameter was profiled at, rising
     std::vector<double> power_w;                ///< of every node; the last parameter runs fastest
     std::vector<double> standard_error_w = {};  ///< of every node; empty unless all are known
-    std::vector<bool> is_measured = {};         ///< of every node; see ProfileNode
 };
 
 /// The grid of `nodes`, which may come in any order. Throws InputError for no nodes, for a node that is there

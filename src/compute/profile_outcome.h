@@ -1,7 +1,5 @@
 #pragma once
 
-#include "compute/profile_interpolation.h"
-
 #include <cstddef>
 #include <optional>
 #include <stdexcept>
@@ -78,18 +76,15 @@ struct ProfileRun {
 /// A configuration and its power.
 struct NodeEstimate {
     std::vector<double> qos;
-    PowerEstimate total;      ///< interpolated: power and standard error alone
-    bool is_measured = true;  ///< false: interpolated from the others
+    PowerEstimate total;
 };
 
 /// The power of a component over its configurations: layer 2.
 struct ComponentEstimate {
     std::string name;
     std::vector<std::string> parameters;
-    std::vector<NodeEstimate> nodes;  ///< without those that failed
-    std::size_t configurations = 0;
-    std::vector<ProfileRun> failures;                ///< runs without power
-    std::optional<LeaveOneOutErrors> interpolation;  ///< of the method that was used, on the measured nodes
+    std::vector<NodeEstimate> nodes;   ///< without those that failed
+    std::vector<ProfileRun> failures;  ///< runs without power
 };
 
 struct ProfileOutcome {

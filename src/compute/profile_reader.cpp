@@ -18,11 +18,9 @@ namespace {
 constexpr std::string_view power_column = "power_w";
 constexpr std::string_view ignored_column = "_";
 constexpr std::string_view error_column = "standard_error_w";
-constexpr std::string_view source_column = "source";
-constexpr std::string_view interpolated = "interpolated";
 /// What may follow power_w in a profile of ours: on what it rests.
 constexpr std::string_view evidence_columns[] = {
-    error_column, "total_power_w", "above_idle_power_w", "duration_s", "energy_j", "samples", "repeats", source_column};
+    error_column, "total_power_w", "above_idle_power_w", "duration_s", "energy_j", "samples", "repeats", "source"};
 
 void refuse_bad_names(const std::vector<std::string>& parameters, const Location& where) {
     std::set<std::string_view> seen;
@@ -107,12 +105,10 @@ PowerProfile profile_with_header(CsvTable table, const ProfileNaming& naming) {
     refuse_bad_names(parameters, {table.file, header.line});
     auto nodes = nodes_of(table, 0, columns, count);
     const auto error = place_of(table, error_column);
-    const auto source = place_of(table, source_column);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const auto& row = table.rows[i];
         // Of a single sample there is no error.
         if (error && !row.cells[*error].text.empty()) nodes[i].standard_error_w = cell_number(table, row, *error);
-        if (source) nodes[i].is_measured = row.cells[*source].text != interpolated;
     }
     return make_power_profile(table.file, parameters, std::move(nodes));
 }

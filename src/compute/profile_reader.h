@@ -20,8 +20,7 @@ struct ProfileNaming {
 
 /// Reads a profile in any of the formats:
 ///   - our own CSV: a header of the parameters' names and then power_w, '#' begins a comment line; on what it
-///     rests may follow, as `flightwatt profile` writes it: standard_error_w is kept, and
-///     whether a node was measured or interpolated
+///     rests may follow, as `flightwatt profile` writes it: standard_error_w is kept
 ///   - powprofiler layer 2: a header of flags (powprofiler.h), names from `naming.parameters`
 ///   - a CSV without header (powprofiler's and gnuplot's), names from `naming.columns`
 ///   - powprofiler layer 1, the recording of one configuration: constant power, its mean

@@ -29,13 +29,6 @@ std::string comments_of(const ComponentEstimate& component, const ProfileOutcome
     for (const auto& run : component.failures) {
         text += fmt::format("# {} repeat {} {}: {}\n", run.configuration, run.repeat, to_string(run.status), run.note);
     }
-    if (component.interpolation) {
-        text += fmt::format(
-            "# interpolated by {}; leaving out one of the {} measured nodes: RMS error {:.4g} W "
-            "(their standard_error_w), largest {:.4g} W\n",
-            component.interpolation->method, component.interpolation->nodes, component.interpolation->rms_w,
-            component.interpolation->largest_w);
-    }
     return text;
 }
 
@@ -46,9 +39,8 @@ std::string row_of(const NodeEstimate& node, const std::optional<PowerEstimate>&
     row += fmt::format("{:.6f},{},{:.6f},", reported.power_w, number_or(reported.standard_error_w, 6, ""),
                        node.total.power_w);
     if (idle) row += fmt::format("{:.6f},", node.total.power_w - idle->power_w);
-    if (!node.is_measured) return row + ",,0,0,interpolated\n";
-    return row + fmt::format("{:.6f},{:.6f},{},{},measured\n", node.total.duration_s,
-                             reported.power_w * node.total.duration_s, node.total.samples, node.total.repeats);
+    return row + fmt::format("{:.6f},{:.6f},{},{}\n", node.total.duration_s, reported.power_w * node.total.duration_s,
+                             node.total.samples, node.total.repeats);
 }
 
 /// The idle computer as a component without parameters, for missions of profiles above it.
@@ -60,7 +52,7 @@ std::string idle_csv(const PowerEstimate& idle) {
 }
 
 /// powprofiler's layer 2, header of flags: 200, 201, ... the parameters, 100 total power, 130 energy, power times
-/// duration. Measured nodes only: what powprofiler writes, it measured.
+/// duration.
 std::string powprofiler_layer2_csv(const ComponentEstimate& component) {
     std::string text;
     for (std::size_t i = 0; i < component.parameters.size(); ++i) {
@@ -68,7 +60,6 @@ std::string powprofiler_layer2_csv(const ComponentEstimate& component) {
     }
     text += "100,130\n";
     for (const auto& node : component.nodes) {
-        if (!node.is_measured) continue;
         for (const double value : node.qos) text += fmt::format("{},", value);
         text += fmt::format("{:.7g},{:.7g}\n", node.total.power_w, node.total.energy_j);
     }
@@ -106,7 +97,7 @@ std::string layer2_csv(const ComponentEstimate& component, const ProfileOutcome&
     for (const auto& name : component.parameters) text += name + ",";
     text += "power_w,standard_error_w,total_power_w,";
     if (outcome.idle) text += "above_idle_power_w,";
-    text += "duration_s,energy_j,samples,repeats,source\n";
+    text += "duration_s,energy_j,samples,repeats\n";
     for (const auto& node : component.nodes) text += row_of(node, outcome.idle, specification.above_idle);
     return text;
 }

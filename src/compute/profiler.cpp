@@ -6,42 +6,17 @@
 #include "compute/profiling/component_run.h"
 #include "compute/profiling/profile_runs.h"
 #include "compute/profiling/run_statistics.h"
-#include "compute/qos_range.h"
 #include "compute/sensors/power_trace.h"
 
 #include <algorithm>
 #include <chrono>
 #include <map>
-#include <numeric>
 
 #include <fmt/format.h>
 #include <poll.h>
 
 namespace flightwatt::compute {
 namespace {
-
-std::vector<std::vector<std::size_t>> chosen_nodes(const ProfileSpecification& specification,
-                                                   std::optional<std::size_t> trials) {
-    std::vector<std::vector<std::size_t>> chosen;
-    for (const auto& component : specification.components) {
-        std::vector<std::size_t> nodes(component.configurations.size());
-        std::iota(nodes.begin(), nodes.end(), std::size_t{0});
-        if (trials && *trials < nodes.size()) {
-            // As many as say how well they are interpolated: one more than a plane needs.
-            const auto fewest = std::max<std::size_t>(3, component.parameters.size() + 2);
-            if (*trials < fewest) {
-                throw UsageError(
-                    fmt::format("--trials is {}, expected {} or more for {}", *trials, fewest, component.name));
-            }
-            QosPoints points;
-            for (const auto& configuration : component.configurations) points.push_back(configuration.qos);
-            nodes = select_maximin(points, *trials);
-            std::ranges::sort(nodes);
-        }
-        chosen.push_back(std::move(nodes));
-    }
-    return chosen;
-}
 
 ComponentRun execute(const ProfileRun& run, const ProfileSpecification& specification, const RunContext& frame) {
     const auto& settings = specification.sampler;
@@ -105,39 +80,17 @@ void do_runs(std::vector<ProfileRun>& runs, const ProfileSpecification& specific
     write_runs(runs, options.folder);
 }
 
-/// Fills in the configurations that were not run.
-void interpolate(const QosPoints& missing, ComponentEstimate& estimate) {
-    if (missing.empty() || estimate.nodes.empty()) return;
-    QosPoints known;
-    std::vector<double> power_w;
-    for (const auto& node : estimate.nodes) {
-        known.push_back(node.qos);
-        power_w.push_back(node.total.power_w);
-    }
-    const auto choice = choose_scale(known, power_w, missing);
-    if (!choice) return;  // too many runs failed: the grid stays incomplete
-    estimate.interpolation = choice->error;
-    const auto found_w = interpolate_thin_plate(choice->scale, known, power_w, missing);
-    for (std::size_t i = 0; i < missing.size(); ++i) {
-        NodeEstimate node{missing[i], {}, false};
-        node.total.power_w = found_w[i];
-        node.total.standard_error_w = estimate.interpolation->rms_w;
-        estimate.nodes.push_back(std::move(node));
-    }
-    std::ranges::sort(estimate.nodes, {}, &NodeEstimate::qos);
-}
-
 PowerEstimate idle_of(const std::vector<ProfileRun>& runs) {
     const auto& idle = runs.front();
     if (idle.status == RunStatus::ok) return idle.estimate;
     throw NoResultError(fmt::format("no idle power: {} {}", to_string(idle.status), idle.note));
 }
 
-/// Layer 2 from the runs; configurations that were not to be run are interpolated, those that failed are not in it.
+/// Layer 2 from the runs, without configurations that failed.
 ComponentEstimate estimate_component(const ProfiledComponent& component, std::size_t index,
                                      const std::vector<ProfileRun>& runs) {
-    ComponentEstimate estimate{component.name, component.parameters, {}, component.configurations.size(), {}, {}};
-    std::map<std::size_t, std::vector<PowerEstimate>> repeats;  // of the nodes that were run
+    ComponentEstimate estimate{component.name, component.parameters, {}, {}};
+    std::map<std::size_t, std::vector<PowerEstimate>> repeats;
     for (const auto& run : runs) {
         if (run.component == idle_component || run.index != index) continue;
         auto& of_node = repeats[run.node];
@@ -146,16 +99,11 @@ ComponentEstimate estimate_component(const ProfiledComponent& component, std::si
         else
             estimate.failures.push_back(run);
     }
-    QosPoints missing;
     for (std::size_t node = 0; node < component.configurations.size(); ++node) {
-        const auto& qos = component.configurations[node].qos;
-        const auto found = repeats.find(node);
-        if (found == repeats.end())
-            missing.push_back(qos);
-        else if (!found->second.empty())
-            estimate.nodes.push_back({qos, combine_repeats(found->second), true});
+        const auto& of_node = repeats[node];
+        if (of_node.empty()) continue;
+        estimate.nodes.push_back({component.configurations[node].qos, combine_repeats(of_node)});
     }
-    interpolate(missing, estimate);
     return estimate;
 }
 
@@ -163,7 +111,7 @@ ComponentEstimate estimate_component(const ProfiledComponent& component, std::si
 
 ProfileOutcome profile(const ProfileSpecification& specification, const ProfilerOptions& options) {
     ProfileOutcome outcome;
-    outcome.runs = planned_runs(specification, chosen_nodes(specification, options.trials));
+    outcome.runs = planned_runs(specification);
     check_result_files(specification, outcome.runs, options.folder);
     load_completed_runs(outcome.runs, options.folder);
     const bool is_recorded = specification.sampler.kind == SamplerKind::recorded;

@@ -6,14 +6,12 @@
 
 #include <filesystem>
 #include <functional>
-#include <optional>
 
 namespace flightwatt::compute {
 
 struct ProfilerOptions {
-    std::filesystem::path folder;       ///< of the results
-    std::optional<std::size_t> trials;  ///< configurations of each component to run; absent: all
-    int signal_fd = -1;                 ///< as in RunContext
+    std::filesystem::path folder;  ///< of the results
+    int signal_fd = -1;            ///< as in RunContext
     std::function<int()> caught;
     std::function<void(const PowerSampler&)> on_sampler_opened;  ///< called before the first run
     /// Called after each run with how many are done.
@@ -21,9 +19,9 @@ struct ProfilerOptions {
 };
 
 /// Profiles: runs what is not done yet, one run after the other, keeping runs.csv and layer 1 in the folder up to
-/// date after each. Throws UsageError for trials too few to interpolate from, Interrupted (the folder then tells
-/// how far it came), NoResultError where there is no sampler or the idle computer could not be measured,
-/// InputError of the sampler's files.
+/// date after each. Throws UsageError for a folder with files of others, Interrupted (the folder then tells how far it
+/// came), NoResultError where there is no sampler or the idle computer could not be measured, InputError of the
+/// sampler's files.
 ProfileOutcome profile(const ProfileSpecification& specification, const ProfilerOptions& options);
 
 }  // namespace flightwatt::compute

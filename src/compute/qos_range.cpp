@@ -2,10 +2,7 @@
 
 #include "base/number.h"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,22 +13,6 @@ namespace {
 constexpr double rounding = 1e-9;  // of a step
 
 double rounded(double value) { return number_or_nan(fmt::format("{:.12g}", value)); }
-
-double squared_distance(const std::vector<double>& a, const std::vector<double>& b) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-    return sum;
-}
-
-bool is_corner(const std::vector<double>& unit_point) {
-    return std::ranges::all_of(unit_point, [](double x) { return x == 0.0 || x == 1.0; });
-}
-
-std::vector<double> values_on(const QosPoints& points, std::size_t axis) {
-    std::set<double> values;
-    for (const auto& point : points) values.insert(point[axis]);
-    return {values.begin(), values.end()};
-}
 
 }  // namespace
 
@@ -88,49 +69,6 @@ std::string substitute_qos(const std::string& text, const std::vector<std::strin
         }
     }
     return result;
-}
-
-QosPoints unit_points(const QosPoints& points, AxisScale scale) {
-    auto unit = points;
-    const std::size_t axes = points.empty() ? 0 : points.front().size();
-    for (std::size_t axis = 0; axis < axes; ++axis) {
-        const auto values = values_on(points, axis);
-        const double range = values.back() - values.front();
-        for (auto& point : unit) {
-            const auto place = std::lower_bound(values.begin(), values.end(), point[axis]) - values.begin();
-            if (values.size() == 1)
-                point[axis] = 0.0;
-            else if (scale == AxisScale::rank)
-                point[axis] = static_cast<double>(place) / static_cast<double>(values.size() - 1);
-            else
-                point[axis] = (point[axis] - values.front()) / range;
-        }
-    }
-    return unit;
-}
-
-std::vector<std::size_t> select_maximin(const QosPoints& points, std::size_t count) {
-    const auto unit = unit_points(points, AxisScale::rank);
-    std::vector<double> distance(points.size(), std::numeric_limits<double>::infinity());
-    std::vector<std::size_t> chosen;
-    bool corners = std::ranges::any_of(unit, is_corner);
-    while (chosen.size() < std::min(count, points.size())) {
-        std::size_t best = points.size();
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            if (distance[i] == 0.0 || (corners && !is_corner(unit[i]))) continue;
-            if (best == points.size() || distance[i] > distance[best]) best = i;
-        }
-        if (best == points.size()) {
-            if (!corners) break;  // what is left stands where another one does
-            corners = false;
-            continue;
-        }
-        chosen.push_back(best);
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            distance[i] = std::min(distance[i], squared_distance(unit[i], unit[best]));
-        }
-    }
-    return chosen;
 }
 
 }  // namespace flightwatt::compute

@@ -37,17 +37,4 @@ std::string format_qos(const std::vector<std::string>& parameters, const std::ve
 std::string substitute_qos(const std::string& text, const std::vector<std::string>& parameters,
                            const std::vector<double>& qos);
 
-/// How the values of a parameter become coordinates from 0 to 1.
-enum class AxisScale {
-    value,  ///< in proportion
-    rank    ///< by their place among the values that occur: fits ranges that double
-};
-
-/// Points in the unit cube, each axis scaled by the values that occur on it. An axis with one value is 0.
-QosPoints unit_points(const QosPoints& points, AxisScale scale);
-
-/// `count` of the points, as indices in the order chosen: first the corners of their range, then always the
-/// one farthest from those chosen (maximin), by rank. All of them if count is not less.
-std::vector<std::size_t> select_maximin(const QosPoints& points, std::size_t count);
-
 }  // namespace flightwatt::compute

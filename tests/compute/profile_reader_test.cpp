@@ -103,12 +103,11 @@ TEST(ProfileReader, KeepsTheEvidenceBehindPower) {
     const auto folder = scratch_dir();
     const auto text =
         "# c\nfps,power_w,standard_error_w,duration_s,energy_j,samples,repeats,source\n"
-        "1,2,0.1,10,20,100,1,measured\n2,4,0.3,,,0,0,interpolated\n";
+        "1,2,0.1,10,20,100,1,measured\n2,4,0.3,10,40,100,1,measured\n";
     const auto profile = read_power_profile(write_text(folder / "p.csv", text));
     EXPECT_EQ(profile.parameters, std::vector<std::string>{"fps"});
     EXPECT_EQ(profile.power_w, (std::vector<double>{2.0, 4.0}));
     EXPECT_EQ(profile.standard_error_w, (std::vector<double>{0.1, 0.3}));
-    EXPECT_EQ(profile.is_measured, (std::vector<bool>{true, false}));
     EXPECT_EQ(rejected([&] { read_power_profile(write_text(folder / "q.csv", "fps,power_w,key\n1,2,3\n")); }, folder),
               "q.csv:1:13: the column 'key' follows power_w; parameters stand before it, after it only what "
               "`flightwatt profile` writes there");

@@ -21,7 +21,7 @@ using testing::HasSubstr;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// 5 and 7 W at 1 and 2, and 6 W between them, interpolated; the idle computer takes 2 W.
+/// 5 and 7 W at 1 and 2; the idle computer takes 2 W.
 ProfileOutcome outcome() {
     ProfileOutcome made;
     made.sampler = "a meter";
@@ -29,9 +29,7 @@ ProfileOutcome outcome() {
     ComponentEstimate component;
     component.name = "load";
     component.parameters = {"n"};
-    component.nodes = {{{1.0}, {5.0, 0.3, 4.0, 20.0, 40, 2}, true},
-                       {{1.5}, {6.0, 0.5, 0.0, 0.0, 0, 0}, false},
-                       {{2.0}, {7.0, unknown, 4.0, 28.0, 40, 2}, true}};
+    component.nodes = {{{1.0}, {5.0, 0.3, 4.0, 20.0, 40, 2}}, {{2.0}, {7.0, unknown, 4.0, 28.0, 40, 2}}};
     made.components = {component};
     return made;
 }
@@ -59,12 +57,11 @@ TEST(LayerTwo, SaysOfWhatItsPowerConsists) {
     const auto made = outcome();
     const auto above = layer2_csv(made.components[0], made, specification(true));
     EXPECT_THAT(above, HasSubstr("on top of the idle computer, which draws 2 W"));
-    EXPECT_THAT(above, HasSubstr("\n1,3.000000,0.500000,5.000000,3.000000,4.000000,12.000000,40,2,measured\n"));
-    EXPECT_THAT(above, HasSubstr("\n1.5,4.000000,0.640312,6.000000,4.000000,,,0,0,interpolated\n"));
-    EXPECT_THAT(above, EndsWith("\n2,5.000000,,7.000000,5.000000,4.000000,20.000000,40,2,measured\n"));
+    EXPECT_THAT(above, HasSubstr("\n1,3.000000,0.500000,5.000000,3.000000,4.000000,12.000000,40,2\n"));
+    EXPECT_THAT(above, EndsWith("\n2,5.000000,,7.000000,5.000000,4.000000,20.000000,40,2\n"));
     const auto whole = layer2_csv(made.components[0], made, specification(false));
     EXPECT_THAT(whole, HasSubstr("the 2 W of the idle one among it"));
-    EXPECT_THAT(whole, HasSubstr("\n1,5.000000,0.300000,5.000000,3.000000,4.000000,20.000000,40,2,measured\n"));
+    EXPECT_THAT(whole, HasSubstr("\n1,5.000000,0.300000,5.000000,3.000000,4.000000,20.000000,40,2\n"));
 }
 
 TEST(LayerTwo, IsReadByMissions) {
@@ -73,8 +70,7 @@ TEST(LayerTwo, IsReadByMissions) {
     write_profiles(made, specification(true), folder, true);
     EXPECT_DOUBLE_EQ(power_w(read_power_profile(folder / "load.csv"), {1.25}), 3.5);
     EXPECT_DOUBLE_EQ(power_w(read_power_profile(folder / "idle.csv"), {}), 2.0);
-    EXPECT_EQ(read_file(folder / "powprofiler" / "load.csv"), "200,100,130\n1,5,20\n2,7,28\n")
-        << "measured nodes alone";
+    EXPECT_EQ(read_file(folder / "powprofiler" / "load.csv"), "200,100,130\n1,5,20\n2,7,28\n");
 }
 
 TEST(WriteProfiles, LeavesNoFileOfAComponentWithoutPower) {

@@ -1,11 +1,8 @@
 #include "compute/qos_range.h"
 
-#include "helpers/grid_points.h"
-
 #include <string>
 #include <vector>
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace flightwatt::compute {
@@ -43,26 +40,6 @@ TEST(WithQos, ReplacesTheParametersAlone) {
     EXPECT_EQ(format_qos({}, {}), "");
     EXPECT_EQ(substitute_qos("run-{fps} {key_bits} {fps}", parameters, {5.8, 32.0}), "run-5.8 32 5.8");
     EXPECT_EQ(substitute_qos("awk '{print $1}' {fsp}", parameters, {5.8, 32.0}), "awk '{print $1}' {fsp}");
-}
-
-using test::grid;
-using test::Points;
-
-TEST(SpreadNodes, TakesCornersFirstThenTheFarthest) {
-    const auto points = grid({1, 2, 4, 8, 16}, {0, 1, 2, 3, 4});
-    const auto four = select_maximin(points, 4);
-    EXPECT_THAT(four, testing::UnorderedElementsAre(0U, 4U, 20U, 24U));
-    EXPECT_EQ(four[1], 24U);                           // opposite to the first
-    EXPECT_EQ(select_maximin(points, 5).back(), 12U);  // the middle, by rank
-    EXPECT_EQ(select_maximin(points, 99).size(), 25U);
-    EXPECT_THAT(select_maximin({{7.0}}, 3), testing::ElementsAre(0U));
-    EXPECT_THAT(select_maximin({{}}, 3), testing::ElementsAre(0U));
-}
-
-TEST(UnitPoints, ScaleByValueOrByRank) {
-    const Points points{{1.0, 3.0}, {2.0, 3.0}, {5.0, 3.0}};
-    EXPECT_EQ(unit_points(points, AxisScale::value), (Points{{0.0, 0.0}, {0.25, 0.0}, {1.0, 0.0}}));
-    EXPECT_EQ(unit_points(points, AxisScale::rank), (Points{{0.0, 0.0}, {0.5, 0.0}, {1.0, 0.0}}));
 }
 
 }  // namespace

@@ -178,7 +178,6 @@ TEST(WrittenKeys, OfProfilesAreDocumented) {
     const auto folder = scratch_dir();
     write_specification(folder / "specification.toml");
     expect_summary("profile", {"specification.toml", "-o", "profiles"}, folder);
-    expect_summary("profile", {"specification.toml", "--trials", "4", "-o", "trials"}, folder);
     expect_summary("profile", {"--check-interpolation", path_of("fits/compute/tx2-detection.csv")}, folder);
 }
 

@@ -13,23 +13,22 @@ std::string component_table(const compute::ComponentEstimate& component, const c
     TextTable table;
     table.header = component.parameters;
     table.header.insert(table.header.end(),
-                        {"power_w", "standard_error_w", "duration_s", "energy_j", "samples", "repeats", "source"});
+                        {"power_w", "standard_error_w", "duration_s", "energy_j", "samples", "repeats"});
     for (const auto& node : component.nodes) {
         const auto reported = reported_power(node.total, outcome.idle, above_idle);
         std::vector<std::string> row;
         for (const double value : node.qos) row.push_back(fmt::format("{}", value));
         row.push_back(fixed(reported.power_w, 4));
         row.push_back(compute::number_or(reported.standard_error_w, 4, "-"));
-        row.push_back(node.is_measured ? fixed(node.total.duration_s, 2) : "-");
-        row.push_back(node.is_measured ? fixed(reported.power_w * node.total.duration_s, 2) : "-");
+        row.push_back(fixed(node.total.duration_s, 2));
+        row.push_back(fixed(reported.power_w * node.total.duration_s, 2));
         row.push_back(fmt::format("{}", node.total.samples));
         row.push_back(fmt::format("{}", node.total.repeats));
-        row.push_back(node.is_measured ? "measured" : "interpolated");
         table.rows.push_back(std::move(row));
     }
     if (component.nodes.empty()) return "nothing could be measured\n";
     ScreenTable shown{"", component.parameters};
-    shown.first.insert(shown.first.end(), {"power_w", "standard_error_w", "source"});
+    shown.first.insert(shown.first.end(), {"power_w", "standard_error_w"});
     return screen_text(table, screen, shown);
 }
 
@@ -56,19 +55,16 @@ Json to_json(const compute::ComponentEstimate& component, const compute::Profile
         entry["standard_error_w"] = reported.standard_error_w;
         entry["energy_j"] = reported.power_w * node.total.duration_s;
         entry["total_power_w"] = node.total.power_w;
-        entry["measured"] = node.is_measured;
         return entry;
     });
     json["failures"] = list_json(component.failures, failure_json);
-    if (component.interpolation) json["leave_one_out"] = cli::to_json(*component.interpolation);
     return json;
 }
 
 }  // namespace
 
 Json to_json(const compute::LeaveOneOutErrors& error) {
-    return {{"method", error.method},
-            {"nodes", error.nodes},
+    return {{"nodes", error.nodes},
             {"mean_absolute_error_w", error.mean_absolute_w},
             {"mean_absolute_error_percent", error.mean_absolute_percent},
             {"rms_error_w", error.rms_w},
@@ -87,14 +83,6 @@ std::string profile_text(const compute::ProfileOutcome& outcome, bool above_idle
     for (const auto& component : outcome.components) {
         text += fmt::format("\n{}{}\n", component.name, above_idle ? ", above idle" : "");
         text += component_table(component, outcome, above_idle, screen);
-        if (component.interpolation) {
-            const auto& error = *component.interpolation;
-            text += fmt::format(
-                "interpolated by {}; leaving one of {} nodes out: mean error {:.3f} W ({:.1f} %), "
-                "RMS {:.3f} W, largest {:.3f} W\n",
-                error.method, error.nodes, error.mean_absolute_w, error.mean_absolute_percent, error.rms_w,
-                error.largest_w);
-        }
         for (const auto& run : component.failures) {
             text +=
                 fmt::format("{} repeat {} {}: {}\n", run.configuration, run.repeat, to_string(run.status), run.note);
@@ -114,15 +102,13 @@ Json to_json(const compute::ProfileOutcome& outcome, bool above_idle) {
     return json;
 }
 
-std::string interpolation_text(const std::string& file, std::size_t nodes,
-                               const std::vector<compute::LeaveOneOutErrors>& errors, const Screen& screen) {
+std::string interpolation_text(const std::string& file, std::size_t nodes, const compute::LeaveOneOutErrors& error,
+                               const Screen& screen) {
     TextTable table;
-    table.header = {"each node from the others", "nodes", "mean |error| W", "mean |error| %", "RMS W", "largest W"};
-    for (const auto& error : errors) {
-        table.rows.push_back({error.method, fmt::format("{} of {}", error.nodes, nodes),
-                              fixed(error.mean_absolute_w, 4), compute::number_or(error.mean_absolute_percent, 2, "-"),
-                              fixed(error.rms_w, 4), fixed(error.largest_w, 4)});
-    }
+    table.header = {"nodes found from the others", "mean |error| W", "mean |error| %", "RMS W", "largest W"};
+    table.rows.push_back({fmt::format("{} of {}", error.nodes, nodes), fixed(error.mean_absolute_w, 4),
+                          compute::number_or(error.mean_absolute_percent, 2, "-"), fixed(error.rms_w, 4),
+                          fixed(error.largest_w, 4)});
     return file + "\n" + screen_text(table, screen);
 }
 

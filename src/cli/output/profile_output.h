@@ -22,7 +22,7 @@ Json to_json(const compute::ProfileOutcome& outcome, bool above_idle);
 Json to_json(const compute::LeaveOneOutErrors& error);
 
 /// The errors of interpolating a profile as a table under its name.
-std::string interpolation_text(const std::string& file, std::size_t nodes,
-                               const std::vector<compute::LeaveOneOutErrors>& errors, const Screen& screen = {});
+std::string interpolation_text(const std::string& file, std::size_t nodes, const compute::LeaveOneOutErrors& error,
+                               const Screen& screen = {});
 
 }  // namespace flightwatt::cli

@@ -104,8 +104,7 @@ void add_row(CsvWriter& csv, const ProfileRun& run) {
 
 }  // namespace
 
-std::vector<ProfileRun> planned_runs(const ProfileSpecification& specification,
-                                     const std::vector<std::vector<std::size_t>>& chosen) {
+std::vector<ProfileRun> planned_runs(const ProfileSpecification& specification) {
     std::vector<ProfileRun> runs;
     if (specification.idle_s > 0.0) runs.push_back(idle_run(specification));
     std::mt19937_64 random(specification.seed);
@@ -113,7 +112,7 @@ std::vector<ProfileRun> planned_runs(const ProfileSpecification& specification,
         const auto first = runs.size();
         for (std::size_t index = 0; index < specification.components.size(); ++index) {
             const auto& component = specification.components[index];
-            for (const auto node : chosen[index]) {
+            for (std::size_t node = 0; node < component.configurations.size(); ++node) {
                 const auto& configuration = component.configurations[node];
                 ProfileRun run;
                 run.component = component.name;

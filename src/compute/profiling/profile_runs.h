@@ -11,10 +11,8 @@
 namespace flightwatt::compute {
 
 /// The runs in their order: idle first; then repeat by repeat, each in an order shuffled by the seed, so that
-/// neither warming up nor a slow drift is taken for an effect of the configuration. `chosen` are the
-/// configurations of each component that are run.
-std::vector<ProfileRun> planned_runs(const ProfileSpecification& specification,
-                                     const std::vector<std::vector<std::size_t>>& chosen);
+/// neither warming up nor a slow drift is taken for an effect of the configuration.
+std::vector<ProfileRun> planned_runs(const ProfileSpecification& specification);
 
 /// Makes sure that the results replace nothing but those of an earlier profile. Throws UsageError where the folder has
 /// files of their names that no profile wrote, or where one of them is an input.

@@ -15,9 +15,9 @@
 namespace flightwatt::report {
 
 /// The profiled power of every component over its first parameter, a panel a component; one line for each
-/// value of the other parameters together. Points are what was profiled, told
-/// apart where some of them were interpolated, with 95 % intervals where standard errors are known. A
-/// component without parameters is a single point. The model has a component.
+/// value of the other parameters together. Points are what was profiled, with
+/// 95 % intervals where standard errors are known. A component without parameters is a single point. The model has
+/// a component.
 Figure profile_figure(const compute::ComputeModel& compute, const std::string& id);
 
 /// State of charge over time, a line a mission, as the paper's Fig. 3, with the phases of the first mission

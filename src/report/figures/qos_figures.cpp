@@ -155,23 +155,15 @@ std::string line_name(const compute::PowerProfile& profile, const std::vector<do
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-bool is_measured(const compute::PowerProfile& profile, std::size_t node) {
-    return profile.is_measured.empty() || profile.is_measured[node];
-}
-
-bool all_measured(const compute::PowerProfile& profile) {
-    return std::ranges::all_of(profile.is_measured, [](bool measured) { return measured; });
-}
-
 FigureData node_rows(const compute::PowerProfile& profile) {
-    FigureData data({"qos", "power_w", "error_w", "low_w", "high_w"}, {"line", "origin"});
+    FigureData data({"qos", "power_w", "error_w", "low_w", "high_w"}, {"line"});
     for (std::size_t node = 0; node < profile.power_w.size(); ++node) {
         const auto qos = qos_of_node(profile, node);
         const double power_w = profile.power_w[node];
         const double error_w = profile.standard_error_w.empty() ? std::nan("") : profile.standard_error_w[node];
         const double reach_w = normal_half_width() * error_w;
         data.add({qos.empty() ? 0.0 : qos.front(), power_w, error_w, power_w - reach_w, power_w + reach_w},
-                 {line_name(profile, qos), is_measured(profile, node) ? "measured" : "interpolated"});
+                 {line_name(profile, qos)});
     }
     return data;
 }
@@ -180,14 +172,7 @@ FigureData node_rows(const compute::PowerProfile& profile) {
 VegaJson panel_of(const compute::Component& component, VegaJson panel) {
     const auto& profile = component.profile;
     auto& nodes = panel["layer"][0];
-    auto& tooltip = nodes["encoding"]["tooltip"];  // power over the parameter, further parameters, error, origin
-    auto& points = nodes["layer"][2];              // on lines and intervals
-    if (all_measured(profile)) {
-        tooltip.erase(4);
-        points["encoding"].erase("shape");
-    } else {
-        points["mark"].erase("filled");
-    }
+    auto& tooltip = nodes["encoding"]["tooltip"];  // power over the parameter, further parameters, error
     if (profile.standard_error_w.empty()) {
         tooltip.erase(3);
         nodes["layer"].erase(1);
@@ -217,9 +202,7 @@ std::string profile_caption(const compute::ComputeModel& compute) {
         return std::ranges::any_of(compute.components,
                                    [&](const compute::Component& component) { return holds(component.profile); });
     };
-    const bool interpolated = any([](const auto& profile) { return !all_measured(profile); });
-    std::string text = interpolated ? "Circles were measured, crosses found between them;" : "Points were profiled,";
-    text += " lines are interpolated between them, and nothing is extrapolated.";
+    std::string text = "Points were profiled, lines are interpolated between them, and nothing is extrapolated.";
     if (any([](const auto& profile) { return !profile.standard_error_w.empty(); })) {
         text += " Bars are 95 % intervals, of the standard errors that the profile has.";
     }

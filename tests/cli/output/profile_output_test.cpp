@@ -17,7 +17,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// A measured and an interpolated node of one component, 2 W idle.
+/// Two nodes of one component, the second with a single sample, 2 W idle.
 compute::ProfileOutcome outcome() {
     compute::ProfileOutcome profiled;
     profiled.sampler = "command meter";
@@ -25,8 +25,8 @@ compute::ProfileOutcome outcome() {
     compute::ComponentEstimate component;
     component.name = "detection";
     component.parameters = {"fps"};
-    component.nodes.push_back({{10.0}, {5.0, 0.1, 4.0, 20.0, 40, 2}, true});
-    component.nodes.push_back({{20.0}, {6.0, std::nan(""), 0.0, 0.0, 0, 0}, false});
+    component.nodes.push_back({{10.0}, {5.0, 0.1, 4.0, 20.0, 40, 2}});
+    component.nodes.push_back({{20.0}, {6.0, std::nan(""), 4.0, 24.0, 1, 1}});
     profiled.components.push_back(component);
     return profiled;
 }
@@ -36,7 +36,7 @@ TEST(ProfileText, ShowsTotalPowerOrThatAboveIdle) {
     EXPECT_THAT(total, HasSubstr("idle: 2.0000 W"));
     EXPECT_THAT(total, HasSubstr("\ndetection\n"));
     EXPECT_THAT(total, HasSubstr("5.0000"));
-    EXPECT_THAT(total, HasSubstr("interpolated"));
+    EXPECT_THAT(total, HasSubstr("24.00"));
     const auto above = profile_text(outcome(), true);
     EXPECT_THAT(above, HasSubstr("\ndetection, above idle\n"));
     EXPECT_THAT(above, HasSubstr("3.0000"));
@@ -49,7 +49,7 @@ TEST(ProfileText, FitsTheScreen) {
     const auto text = profile_text(outcome(), false, narrow);
     EXPECT_THAT(text, HasSubstr("left out: "));
     EXPECT_THAT(text, HasSubstr("fps"));
-    EXPECT_THAT(text, HasSubstr("interpolated"));
+    EXPECT_THAT(text, HasSubstr("6.0000"));
     narrow.wide = true;
     EXPECT_THAT(profile_text(outcome(), false, narrow), Not(HasSubstr("left out: ")));
 }
@@ -68,17 +68,15 @@ TEST(ProfileJson, HoldsReportedAndTotalPower) {
     EXPECT_EQ(node["total_power_w"], 5.0);
     EXPECT_EQ(node["energy_j"], 12.0);
     EXPECT_NEAR(node["standard_error_w"].get<double>(), std::hypot(0.1, 0.1), 1e-12) << "that of idle as well";
-    EXPECT_FALSE(json["components"][0]["nodes"][1]["measured"].get<bool>());
+    EXPECT_EQ(json["components"][0]["nodes"][1]["energy_j"], 16.0);
 }
 
-TEST(InterpolationText, HasARowAMethodUnderTheProfilesName) {
+TEST(InterpolationText, HasItsRowUnderTheProfilesName) {
     const auto file = test::source_dir() / "fits" / "compute" / "tx2-detection.csv";
     const auto profile = compute::read_power_profile(file);
-    const auto errors = compute::interpolation_errors(profile);
-    ASSERT_FALSE(errors.empty());
-    const auto text = interpolation_text("a.csv", profile.power_w.size(), errors);
-    EXPECT_TRUE(text.starts_with("a.csv\neach node from the others"));
-    for (const auto& error : errors) EXPECT_THAT(text, HasSubstr(error.method));
+    const auto text = interpolation_text("a.csv", profile.power_w.size(), compute::leave_one_out(profile));
+    EXPECT_TRUE(text.starts_with("a.csv\nnodes found from the others"));
+    EXPECT_THAT(text, HasSubstr("2 of 4"));
 }
 
 }  // namespace
