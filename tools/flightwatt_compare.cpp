@@ -30,32 +30,14 @@ std::string ranking_json(const std::vector<mission::MissionSummary>& ranking, bo
 }
 
 /// Runs a mission; one that is yet to be planned is planned first.
-mission::Simulation simulation_of(const cli::StageCall& call, const mission::MissionVariant& mission,
-                                  const std::optional<mission::SamplingOptions>& sampling) {
+mission::MissionSummary simulated_summary(const cli::StageCall& call, const mission::MissionVariant& mission,
+                                          const std::optional<mission::SamplingOptions>& sampling) {
     const auto& setup = setup_of(mission);
     const auto disturbances = cli::read_disturb_option(call, setup);
     const auto prepared = prepare_mission(mission);
-    auto simulation = simulate_prepared(prepared, {}, disturbances).simulation;
-    if (sampling && has_uncertainty(setup))
-        simulation.summary.samples = sample_flights(prepared, disturbances, *sampling);
-    return simulation;
-}
-
-/// The curves under their ranks, as a picture; empty where the terminal shows none.
-std::string soc_picture(const cli::StageCall& call, const std::vector<mission::Simulation>& simulations,
-                        const std::vector<mission::MissionSummary>& ranking) {
-    const auto plot = terminal_plot(call, "state of charge [%] over time, by rank");
-    if (!plot || call.has("markdown") || call.has("csv")) return "";
-    std::vector<cli::TerminalLine> lines;
-    for (const auto& simulation : simulations) {
-        const auto place = std::ranges::find_if(ranking, [&](const mission::MissionSummary& summary) {
-            return summary.mission == simulation.summary.mission &&
-                   summary.final_soc_percent == simulation.summary.final_soc_percent;
-        });
-        const auto rank = static_cast<std::size_t>(place - ranking.begin()) + 1;
-        if (!simulation.curve.rows.empty()) lines.push_back(cli::soc_line(simulation.curve, rank));
-    }
-    return draw(*plot, lines);
+    auto summary = simulate_prepared(prepared, {}, disturbances).simulation.summary;
+    if (sampling && has_uncertainty(setup)) summary.samples = sample_flights(prepared, disturbances, *sampling);
+    return summary;
 }
 
 enum class Form { text, markdown, csv };
@@ -113,19 +95,15 @@ int compare_missions(const cli::StageCall& call) {
     missions.reserve(call.inputs.size());
     for (const auto& file : call.inputs) missions.push_back(mission::read_mission(file, {true, std::nullopt}));
     for (const auto& mission : missions) cli::warn_of_setup(call, setup_of(mission));
-    std::vector<mission::Simulation> simulations;
     std::vector<mission::MissionSummary> summaries;
-    for (const auto& mission : missions) {
-        simulations.push_back(simulation_of(call, mission, sampling));
-        summaries.push_back(simulations.back().summary);
-    }
+    summaries.reserve(missions.size());
+    for (const auto& mission : missions) summaries.push_back(simulated_summary(call, mission, sampling));
     if (sampling &&
         std::ranges::none_of(missions, [](const auto& mission) { return has_uncertainty(setup_of(mission)); })) {
         require_uncertainty(setup_of(missions.front()));  // says what is missing
     }
     const auto ranking = ranked(std::move(summaries));
     cli::write_result(call, ranking_text(call, ranking, form));
-    cli::print(soc_picture(call, simulations, ranking));
     if (call.json) cli::print(ranking_json(ranking, sampling.has_value()));
     for (const auto& mission : missions)
         if (!call.json) cli::note_power_model(call, setup_of(mission));

@@ -158,13 +158,11 @@ int segment_flights(const cli::StageCall& call) {
     if (call.has("cut-phases") && !call.has("cut")) throw UsageError("--cut-phases says how --cut DIR cuts: give that");
     const auto& file = call.inputs.front();
     std::error_code none;
-    std::optional<flight::LoadedFlight> only;
     SegmentedFlights segmented;
     if (call.inputs.size() > 1 || std::filesystem::is_directory(file, none)) {
         segmented = segment_several(call, options);
     } else {
-        only = cli::load_flight(call, file, options);
-        add_flight(call, file, *only, options, segmented);
+        add_flight(call, file, cli::load_flight(call, file, options), options, segmented);
     }
     const bool explain = call.has("explain");
     if (!explain || call.output) {
@@ -177,10 +175,6 @@ int segment_flights(const cli::StageCall& call) {
         cli::print(cli::json_text(segmented.are_several ? segmented.json : segmented.json.front()));
     } else if (explain) {
         cli::print(segmented.explained);
-    }
-    if (!only) return cli::ok;
-    if (const auto plot = terminal_plot(call, "altitude [m] over time")) {
-        cli::print(altitude_profile(*plot, only->series, only->phases));
     }
     return cli::ok;
 }

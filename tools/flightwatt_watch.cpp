@@ -182,7 +182,7 @@ int watch(const cli::StageCall& call) {
         options.on_lines = [&](std::string_view lines, bool anew) { recorder->write(lines, anew); };
     }
     live::LiveFlight flight(std::move(options), watched.basis, schedule_of(call, watched));
-    cli::WatchOutput speaker(call, watched.compute, watched.basis);
+    cli::WatchOutput speaker(call, watched.compute);
     DecisionHook hook(call, watched.compute);
     LivePage page(call, watched.compute, watched.basis);
     const auto update_flight = [&](double silent_s) -> std::string {

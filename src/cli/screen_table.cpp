@@ -378,16 +378,4 @@ void write_csv_result(const StageCall& call, const TextWriter& write_csv, const 
     print(screen_text(readable_table(csv), screen, options));
 }
 
-std::optional<TerminalPlot> terminal_plot(const StageCall& call, const std::string& title) {
-    const auto ability = standard_output_ability();
-    if (!ability.draws || call.output || call.json) return std::nullopt;
-    constexpr std::size_t max_columns = 100;
-    TerminalPlot plot;
-    plot.title = "\n" + title;
-    plot.x_label = "s";
-    plot.columns = std::min(ability.columns, max_columns);
-    plot.colors = ability.colors;
-    return plot;
-}
-
 }  // namespace flightwatt::cli

@@ -48,7 +48,4 @@ void write_csv_result(const StageCall& call, std::string_view csv, const ScreenT
 /// The same of a CSV in pieces.
 void write_csv_result(const StageCall& call, const TextWriter& write_csv, const ScreenTable& options);
 
-/// A plot as wide as the terminal, or std::nullopt where the result goes elsewhere or the terminal cannot show it.
-std::optional<TerminalPlot> terminal_plot(const StageCall& call, const std::string& title);
-
 }  // namespace flightwatt::cli

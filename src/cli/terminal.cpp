@@ -1,13 +1,8 @@
 #include "cli/terminal.h"
 
-#include "base/piecewise_linear.h"
-
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
 #include <cstdlib>
-#include <optional>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -22,107 +17,6 @@ namespace {
 std::string_view value_of(const Environment& environment, const char* name) {
     const char* value = environment(name);
     return value == nullptr ? std::string_view() : std::string_view(value);
-}
-
-/// The first of the three that is set decides, as in setlocale.
-bool is_utf8(const Environment& environment) {
-    for (const auto* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
-        std::string locale(value_of(environment, name));
-        if (locale.empty()) continue;
-        std::transform(locale.begin(), locale.end(), locale.begin(),
-                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-        return locale.ends_with("utf-8") || locale.ends_with("utf8");
-    }
-    return false;
-}
-
-constexpr std::size_t dots_across = 2;  // of a braille character
-constexpr std::size_t dots_down = 4;
-constexpr std::size_t axis_columns = 7;   // "100.0 ┤"
-constexpr std::size_t label_columns = 8;  // behind the area
-constexpr std::size_t min_columns = 20;
-/// Of the 256 colours those nearest to Okabe and Ito's, who chose them for the colour-blind.
-constexpr std::array<int, 6> color_codes{33, 166, 36, 175, 214, 74};
-
-/// The area, a character a cell, with the line that drew there last.
-struct Canvas {
-    std::size_t columns = 0;
-    std::size_t rows = 0;
-    double x_low = 0.0;
-    double x_high = 0.0;
-    std::vector<unsigned> dots = std::vector<unsigned>(columns * rows);
-    std::vector<std::size_t> line = std::vector<std::size_t>(columns * rows);
-
-    void set(std::size_t x, std::size_t y, std::size_t who) {
-        // Unicode numbers the dots of a cell down its left column, then its right, and the lowest two last.
-        constexpr std::array<std::array<unsigned, 4>, 2> bits{{{0x01, 0x02, 0x04, 0x40}, {0x08, 0x10, 0x20, 0x80}}};
-        const auto cell = y / dots_down * columns + x / dots_across;
-        dots[cell] |= bits[x % dots_across][y % dots_down];
-        line[cell] = who;
-    }
-};
-
-/// Linear between points; std::nullopt outside.
-std::optional<double> value_at(const TerminalLine& line, double x) {
-    if (x < line.x.front() || x > line.x.back()) return std::nullopt;
-    return interpolate_clamped(line.x, line.y, x);
-}
-
-std::size_t dot_row(const TerminalPlot& plot, const Canvas& canvas, double y) {
-    const double part = std::clamp((plot.y_high - y) / (plot.y_high - plot.y_low), 0.0, 1.0);
-    return static_cast<std::size_t>(std::lround(part * static_cast<double>(canvas.rows * dots_down - 1)));
-}
-
-void draw_line(const TerminalPlot& plot, Canvas& canvas, const TerminalLine& line, std::size_t who) {
-    const auto across = canvas.columns * dots_across;
-    std::optional<double> last_y;
-    for (std::size_t dot = 0; dot < across; ++dot) {
-        const double part = static_cast<double>(dot) / static_cast<double>(across - 1);
-        const double x = std::lerp(canvas.x_low, canvas.x_high, part);
-        const auto y = value_at(line, x);
-        if (y) {
-            const auto [from, to] =
-                std::minmax({dot_row(plot, canvas, *y), dot_row(plot, canvas, last_y.value_or(*y))});
-            for (auto row = from; row <= to; ++row) canvas.set(dot, row, who);
-        }
-        last_y = y;
-    }
-}
-
-/// The characters of braille stand in Unicode in the order of their dots.
-std::string braille(unsigned dots) {
-    const unsigned code = 0x2800U + dots;
-    return {static_cast<char>(0xE0U | (code >> 12U)), static_cast<char>(0x80U | ((code >> 6U) & 0x3FU)),
-            static_cast<char>(0x80U | (code & 0x3FU))};
-}
-
-std::string colored(const TerminalPlot& plot, const std::string& text, std::size_t who) {
-    if (!plot.colors) return text;
-    return fmt::format("\x1b[38;5;{}m{}\x1b[0m", color_codes[who % color_codes.size()], text);
-}
-
-/// One row of the area; neighbours of one line are coloured together.
-std::string row_text(const TerminalPlot& plot, const Canvas& canvas, std::size_t row) {
-    std::string text;
-    for (std::size_t column = 0; column < canvas.columns;) {
-        const auto cell = row * canvas.columns + column;
-        std::string run;
-        auto end = cell;
-        const auto row_end = (row + 1) * canvas.columns;
-        while (end < row_end && canvas.dots[end] != 0 && canvas.line[end] == canvas.line[cell]) {
-            run += braille(canvas.dots[end++]);
-        }
-        text += run.empty() ? " " : colored(plot, run, canvas.line[cell]);
-        column += std::max<std::size_t>(1, end - cell);
-    }
-    return text;
-}
-
-std::string axis_text(const TerminalPlot& plot, std::size_t row) {
-    const bool is_marked = row == 0 || row + 1 == plot.rows || row == plot.rows / 2;
-    if (!is_marked) return fmt::format("{:>{}}│", "", axis_columns - 1);
-    const double part = static_cast<double>(row) / static_cast<double>(plot.rows - 1);
-    return fmt::format("{:>{}.0f} ┤", std::lerp(plot.y_high, plot.y_low, part), axis_columns - 2);
 }
 
 constexpr auto min_interval = std::chrono::milliseconds(100);
@@ -173,9 +67,8 @@ TerminalCapabilities detect_capabilities(bool is_terminal, std::size_t columns, 
     if (columns > 0) ability.columns = columns;
     const auto kind = value_of(environment, "TERM");
     ability.is_terminal = is_terminal;
-    const bool is_able = is_terminal && !kind.empty() && kind != "dumb";
-    ability.draws = is_able && is_utf8(environment);
-    ability.colors = is_able && value_of(environment, "NO_COLOR").empty();
+    ability.redraws = is_terminal && !kind.empty() && kind != "dumb";
+    ability.colors = ability.redraws && value_of(environment, "NO_COLOR").empty();
     return ability;
 }
 
@@ -184,40 +77,6 @@ TerminalCapabilities standard_output_ability() { return ability_of(STDOUT_FILENO
 bool standard_error_has_colors() { return ability_of(STDERR_FILENO).colors; }
 
 std::FILE* standard_error_terminal() { return ::isatty(STDERR_FILENO) != 0 ? stderr : nullptr; }
-
-std::string draw(const TerminalPlot& plot, std::span<const TerminalLine> lines) {
-    if (lines.empty() || plot.rows < 2 || plot.columns < axis_columns + label_columns + min_columns) return "";
-    double x_low = lines.front().x.front();
-    double x_high = lines.front().x.back();
-    for (const auto& line : lines) {
-        x_low = std::min(x_low, line.x.front());
-        x_high = std::max(x_high, line.x.back());
-    }
-    if (x_high <= x_low) return "";
-    Canvas canvas{plot.columns - axis_columns - label_columns, plot.rows, x_low, x_high};
-    std::vector<std::string> labels(plot.rows);
-    std::vector<std::size_t> label_widths(plot.rows);
-    for (std::size_t who = 0; who < lines.size(); ++who) {
-        draw_line(plot, canvas, lines[who], who);
-        if (lines[who].label.empty()) continue;
-        const auto row = dot_row(plot, canvas, lines[who].y.back()) / dots_down;
-        // As many as there is room for; " +" stands for more.
-        const auto columns = label_widths[row] + 1 + lines[who].label.size();
-        if (columns + 2 <= label_columns) labels[row] += " " + colored(plot, lines[who].label, who);
-        if (columns + 2 > label_columns && label_widths[row] < label_columns) labels[row] += " +";
-        label_widths[row] = columns + 2 <= label_columns ? columns : label_columns;
-    }
-    auto text = plot.title + "\n";
-    for (std::size_t row = 0; row < plot.rows; ++row) {
-        text += axis_text(plot, row);
-        text += row_text(plot, canvas, row);
-        text += labels[row] + "\n";
-    }
-    const auto end = fmt::format("{:.0f} {}", x_high, plot.x_label);
-    const auto start = fmt::format("{:.0f}", x_low);
-    const auto blanks = canvas.columns > start.size() + end.size() ? canvas.columns - start.size() - end.size() : 1;
-    return text + fmt::format("{:>{}}{}{:>{}}{}\n", "", axis_columns, start, "", blanks, end);
-}
 
 std::string progress_text(const ProgressState& state, const std::string& unit, std::size_t width) {
     auto text = fmt::format("{}/{}", state.done, state.all);

@@ -5,30 +5,6 @@
 #include <algorithm>
 
 namespace flightwatt::live {
-namespace {
-
-void halve(std::vector<double>& values) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < values.size(); i += 2) values[kept++] = values[i];
-    values.resize(kept);
-}
-
-}  // namespace
-
-void CurveHistory::add(double time_s, double value) {
-    if (!curve_.time_s.empty() && time_s <= curve_.time_s.back()) {
-        if (time_s == curve_.time_s.back()) return;
-        *this = {};
-    }
-    if (added_++ % stride_ != 0) return;
-    curve_.time_s.push_back(time_s);
-    curve_.value.push_back(value);
-    if (curve_.time_s.size() < max_points) return;
-    halve(curve_.time_s);
-    halve(curve_.value);
-    stride_ *= 2;
-}
-
 TimeCurve soc_ahead(const LiveState& state, const PredictionInput& basis) {
     constexpr double max_points = 100.0;
     constexpr double finest_s = 10.0;

@@ -5,19 +5,6 @@
 namespace flightwatt::live {
 namespace {
 
-TEST(LiveCurves, AHistoryIsBoundedAndKeepsItsWholeTime) {
-    CurveHistory history;
-    for (int i = 0; i < 100'000; ++i) history.add(i, 2.0 * i);
-    const auto& curve = history.curve();
-    EXPECT_LT(curve.time_s.size(), CurveHistory::max_points);
-    EXPECT_GE(curve.time_s.size(), CurveHistory::max_points / 2);
-    EXPECT_EQ(curve.time_s.front(), 0.0);
-    EXPECT_GT(curve.time_s.back(), 99'000.0);
-    for (std::size_t i = 0; i < curve.time_s.size(); ++i) EXPECT_EQ(curve.value[i], 2.0 * curve.time_s[i]);
-    history.add(5.0, 1.0);
-    EXPECT_EQ(history.curve().time_s.size(), 1U) << "the clock began anew";
-}
-
 TEST(LiveCurves, TheChargeAheadEndsWithThePrediction) {
     PredictionInput basis;
     basis.battery = battery::Battery{};

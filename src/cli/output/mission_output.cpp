@@ -177,14 +177,4 @@ Json to_json(const mission::InfeasibilityReport& report) {
             {"smallest_capacity_ah", optional_json(report.capacity_ah)}};
 }
 
-TerminalLine soc_line(const mission::SocCurve& curve, std::size_t rank) {
-    TerminalLine line;
-    line.label = fmt::format("{}", rank);
-    for (const auto& row : curve.rows) {
-        line.x.push_back(row.time_s);
-        line.y.push_back(row.soc_percent);
-    }
-    return line;
-}
-
 }  // namespace flightwatt::cli

@@ -2,7 +2,6 @@
 
 #include "base/text_table.h"
 #include "cli/stage.h"
-#include "cli/terminal.h"
 #include "mission/disturbance.h"
 #include "mission/feasibility_limits.h"
 #include "mission/mission_file.h"
@@ -61,8 +60,5 @@ inline constexpr auto by_flights_key =
 Json to_json(const mission::MissionPlan& plan, const mission::MissionSetup& mission);
 
 Json to_json(const mission::InfeasibilityReport& report);
-
-/// A mission's curve under its rank.
-TerminalLine soc_line(const mission::SocCurve& curve, std::size_t rank);
 
 }  // namespace flightwatt::cli

@@ -187,25 +187,4 @@ Json to_json(const flight::FlightSeries& series, const flight::FlightPhases& pha
             {"warnings", warnings}};
 }
 
-std::string altitude_profile(TerminalPlot plot, const flight::FlightSeries& series,
-                             const flight::FlightPhases& phases) {
-    auto time_s = power_track(series).time_s;
-    if (time_s.empty()) time_s = select_track(series, "altitude_m").time_s;
-    const auto altitude_m = sample_selected_track(series, "altitude_m", time_s);
-    if (altitude_m.empty()) return "";
-    const auto [low, high] = std::ranges::minmax_element(altitude_m);
-    if (*high - *low < 1.0) return "";
-    plot.rows = 7;
-    plot.y_low = *low;
-    plot.y_high = *high;
-    auto text = draw(plot, std::vector<TerminalLine>{{time_s, altitude_m, ""}});
-    for (const auto& sortie : phases.sorties) {
-        for (const auto& span : sortie.phases) {
-            text += fmt::format("       {} {:.0f} to {:.0f} s\n", to_string(span.phase), span.start.time_s,
-                                span.end.time_s);
-        }
-    }
-    return text;
-}
-
 }  // namespace flightwatt::cli

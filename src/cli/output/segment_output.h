@@ -2,7 +2,6 @@
 
 #include "base/text_table.h"
 #include "cli/screen_table.h"
-#include "cli/terminal.h"
 #include "flight/edge_events.h"
 #include "flight/power_check.h"
 #include "flight/segmentation.h"
@@ -30,8 +29,5 @@ std::string explanation(const flight::FlightSeries& series, const flight::Flight
 /// warnings. null stands for what is not known.
 Json to_json(const flight::FlightSeries& series, const flight::FlightPhases& phases, const flight::PowerReport& power,
              const std::vector<std::string>& warnings);
-
-/// Altitude over the log, and below it where the phases are.
-std::string altitude_profile(TerminalPlot plot, const flight::FlightSeries& series, const flight::FlightPhases& phases);
 
 }  // namespace flightwatt::cli

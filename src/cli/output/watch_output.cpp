@@ -290,17 +290,17 @@ std::vector<std::string> WarningThrottle::final_updates(const std::vector<std::s
     return to_say;
 }
 
-WatchOutput::WatchOutput(const StageCall& call, const compute::ComputeModel& compute,
-                         const std::optional<live::PredictionInput>& basis)
-    : call_(call), compute_(compute), basis_(basis), plot_(terminal_plot(call, "state of charge, %")) {}
+WatchOutput::WatchOutput(const StageCall& call, const compute::ComputeModel& compute) : call_(call), compute_(compute) {
+    const auto ability = standard_output_ability();
+    if (ability.redraws && !call.output && !call.json) columns_ = ability.columns;
+}
 
 void WatchOutput::print_state(const live::LiveState& state) {
     warnings_ = state.warnings;
     const auto to_say = said_.due(warnings_, state.time_s);
     for (const auto& warning : to_say)
-        if (!plot_) warn(call_, warning);
-    if (state.battery && state.battery->state) soc_.add(state.time_s, state.battery->state->soc_percent);
-    if (plot_) {
+        if (!columns_) warn(call_, warning);
+    if (columns_) {
         draw(state);
     } else if (call_.json) {
         is_read_ = print_flushed(json_of(state, compute_).dump(-1, ' ', false, replace_invalid) + "\n");
@@ -331,19 +331,8 @@ void WatchOutput::draw(const live::LiveState& state) {
     auto lines = screen_of(state, compute_);
     for (const auto& warning : state.warnings) lines.push_back("          " + one_line(warning));
     std::string text = "\x1b[H\x1b[J";  // the whole screen anew
-    for (const auto& line : lines) text += wrapped(line, plot_->columns);
-    is_read_ = print_flushed(text + curve(state));
-}
-
-std::string WatchOutput::curve(const live::LiveState& state) const {
-    std::vector<TerminalLine> curves;
-    if (const auto& flown = soc_.curve(); flown.time_s.size() > 1)
-        curves.push_back({flown.time_s, flown.value, "flown"});
-    if (basis_) {
-        if (auto ahead = live::soc_ahead(state, *basis_); ahead.time_s.size() > 1)
-            curves.push_back({std::move(ahead.time_s), std::move(ahead.value), "ahead"});
-    }
-    return curves.empty() ? "" : cli::draw(*plot_, curves);
+    for (const auto& line : lines) text += wrapped(line, *columns_);
+    is_read_ = print_flushed(text);
 }
 
 }  // namespace flightwatt::cli

@@ -60,12 +60,11 @@ class WarningThrottle {
     std::map<std::string, Said> said_;  ///< by their texts without numbers
 };
 
-/// The standard output of watch: a screen with a plot on a terminal that shows one, else a line or with --json an object
-/// a state. What it is made from has to outlive it.
+/// The standard output of watch: a screen on a terminal, else a line or with --json an object a state. What it is made
+/// from has to outlive it.
 class WatchOutput {
   public:
-    WatchOutput(const StageCall& call, const compute::ComputeModel& compute,
-                const std::optional<live::PredictionInput>& basis);
+    WatchOutput(const StageCall& call, const compute::ComputeModel& compute);
 
     void print_state(const live::LiveState& state);
     bool is_read() const { return is_read_; }
@@ -74,13 +73,10 @@ class WatchOutput {
 
   private:
     void draw(const live::LiveState& state);
-    std::string curve(const live::LiveState& state) const;
 
     const StageCall& call_;
     const compute::ComputeModel& compute_;
-    const std::optional<live::PredictionInput>& basis_;
-    std::optional<TerminalPlot> plot_;
-    live::CurveHistory soc_;
+    std::optional<std::size_t> columns_;  ///< of the terminal that shows a screen
     WarningThrottle said_;
     std::vector<std::string> warnings_;  ///< of the latest state
     std::optional<std::chrono::steady_clock::time_point> drawn_;
