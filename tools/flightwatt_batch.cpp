@@ -101,7 +101,6 @@ FittedBatch fit_batch(const cli::StageCall& call, const batch::BatchFlights& fli
                       const batch::BatchOptions& batch) {
     auto options = read_fit_options(call);
     options.name = call.get<std::string>("name");
-    ::malloc_trim(0);  // what the search for copies needed
     auto measured = read_samples(flights, batch);
     std::vector<mechanical::FlightSamples> samples;
     samples.reserve(measured.size());
@@ -214,8 +213,8 @@ int finish(const cli::StageCall& call, batch::BatchFlights flights, const batch:
     const bool shows_physical = cli::model_kind(call) == cli::ModelKind::physical;  // how it came about is not kept
     const bool is_known = !call.has("no-fit") && !shows_physical && batch::is_fit_current(options.out, made_from);
     auto known = is_known ? std::optional(known_fit(options.out)) : std::nullopt;
-    auto repeated = known ? std::move(known->fit.repeated) : find_duplicates(flights, options.out);
-    exclude_duplicates(flights, repeated);
+    auto copies = find_duplicates(flights);
+    exclude_duplicates(flights, copies);
     report_notes(call, flights);
     {
         const batch::WriteGate::WriterGuard pass(*options.gate);
@@ -245,7 +244,7 @@ int finish(const cli::StageCall& call, batch::BatchFlights flights, const batch:
         refuse_mix(call, flights, options.out);
         auto [fit, physical] = known ? *std::move(known) : fit_batch(call, flights, options);
         ::malloc_trim(0);  // the samples
-        fit.repeated = std::move(repeated);
+        fit.copies = std::move(copies);
         fit.excluded = options.load.excluded;
         fit.keep = options.load.keep;
         fit.input_fingerprint = made_from;

@@ -45,7 +45,7 @@ Summary summary_of(const batch::MergePlan& plan, const batch::BatchFlights& flig
 }
 
 Json json_of(const cli::StageCall& call, const batch::MergePlan& plan, const batch::BatchFlights& flights,
-             const batch::Duplicates& repeated) {
+             const std::vector<batch::DuplicateFlight>& copies) {
     const auto summary = summary_of(plan, flights);
     Json json{{"folder", *call.output},       {"batches", Json::array()},
               {"flights", flights.size()},    {"accepted", summary.accepted},
@@ -59,7 +59,7 @@ Json json_of(const cli::StageCall& call, const batch::MergePlan& plan, const bat
         const auto& name = plan.folder.logs[i].flight;
         if (before != name) json["renamed"].push_back({{"folder", from}, {"before", before}, {"flight", name}});
     }
-    for (const auto& [flight, same_as, has_power] : repeated.copies)
+    for (const auto& [flight, same_as, has_power] : copies)
         if (has_power) json["copies"].push_back({{"flight", flight}, {"same_as", same_as}});
     return json;
 }
@@ -113,18 +113,17 @@ int merge(const cli::StageCall& call) {
     auto flights = batch::merge_flights(
         plan, options, [&](std::size_t done, std::size_t all, const auto&) { progress.show(done, all); });
     progress.hide();
-    const auto repeated = batch::find_duplicates(flights, out);
-    exclude_duplicates(flights, repeated);
-    const auto copies = std::ranges::count_if(repeated.copies, &batch::DuplicateFlight::has_power);
-    if (copies > 0) {
-        const auto& [flight, other, has_power] =
-            *std::ranges::find_if(repeated.copies, &batch::DuplicateFlight::has_power);
+    const auto copies = batch::find_duplicates(flights);
+    exclude_duplicates(flights, copies);
+    const auto count = std::ranges::count_if(copies, &batch::DuplicateFlight::has_power);
+    if (count > 0) {
+        const auto& [flight, other, has_power] = *std::ranges::find_if(copies, &batch::DuplicateFlight::has_power);
         cli::warn(call, fmt::format("{} of the flights are others under a second name, and are not fitted: {} is the "
                                     "same flight as {}{}; --json names all",
-                                    copies, flight, other, copies > 1 ? ", ..." : ""));
+                                    count, flight, other, count > 1 ? ", ..." : ""));
     }
     write_file_atomically(out / batch::catalogue_name, batch::catalogue_csv(flights), out / batch::temporary_folder);
-    cli::print(call.json ? cli::json_text(json_of(call, plan, flights, repeated)) : text_of(call, plan, flights));
+    cli::print(call.json ? cli::json_text(json_of(call, plan, flights, copies)) : text_of(call, plan, flights));
     cli::note(call, fmt::format("next: flightwatt fit {} -o MODEL.toml", cli::shell_quoted(out.string())));
     return cli::ok;
 }

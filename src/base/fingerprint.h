@@ -10,6 +10,7 @@ namespace flightwatt {
 class Fingerprint {
   public:
     void add(std::string_view content);
+    std::uint64_t value() const { return state_; }
     std::string hex() const;
 
   private:

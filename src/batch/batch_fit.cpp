@@ -77,11 +77,8 @@ constexpr std::size_t max_fit_bytes = 16'000'000;  // fit.json has some 100 kB
 Json json_of(const BatchFit& fit) {
     Json copies = Json::array();
     Json without_power = Json::array();
-    for (const auto& [flight, same_as, has_power] : fit.repeated.copies)
+    for (const auto& [flight, same_as, has_power] : fit.copies)
         (has_power ? copies : without_power).push_back({{"flight", flight}, {"of", same_as}});
-    Json overlaps = Json::array();
-    for (const auto& [flight, warning] : fit.repeated.overlaps)
-        overlaps.push_back({{"flight", flight}, {"warning", warning}});
     Json bands = Json::object();
     for (const auto phase : flight::all_phases) bands[std::string(to_string(phase))] = band_json(fit.bands[phase]);
     Json json{{"format", format_version},
@@ -90,7 +87,6 @@ Json json_of(const BatchFit& fit) {
               {"keep", fit.keep}};
     json[copies_key] = std::move(copies);
     json[copies_without_power_key] = std::move(without_power);
-    json["overlaps"] = std::move(overlaps);
     json["made_from"] = fit.input_fingerprint;
     json["bands"] = std::move(bands);
     return json;
@@ -113,10 +109,8 @@ void read_fit_json(const std::filesystem::path& file, BatchFit& fit) {
         fit.keep = json.at("keep").get<std::set<std::string>>();
         for (const auto* key : {copies_key, copies_without_power_key})
             for (const auto& copy : json.at(key))
-                fit.repeated.copies.push_back({copy.at("flight"), copy.at("of"), key == copies_key});
-        std::ranges::sort(fit.repeated.copies, {}, &DuplicateFlight::flight);
-        for (const auto& part : json.at("overlaps"))
-            fit.repeated.overlaps.emplace_back(part.at("flight"), part.at("warning"));
+                fit.copies.push_back({copy.at("flight"), copy.at("of"), key == copies_key});
+        std::ranges::sort(fit.copies, {}, &DuplicateFlight::flight);
         for (const auto phase : flight::all_phases) {
             fit.bands[phase] = band_from(json.at("bands").at(std::string(to_string(phase))));
         }

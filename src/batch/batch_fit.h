@@ -16,10 +16,10 @@ namespace flightwatt::batch {
 /// The fit of a batch, with all that is shown of it: nobody has to fit again.
 struct BatchFit {
     mechanical::ModelFitOptions options;
-    std::set<std::string> excluded;     ///< flights that were not to be used
-    std::set<std::string> keep;         ///< flights that were used in spite of what spoke against it
-    Duplicates repeated = {};           ///< flights that are another one under a second name, or share a part of one
-    mechanical::MechanicalModel model;  ///< with its errors
+    std::set<std::string> excluded;            ///< flights that were not to be used
+    std::set<std::string> keep;                ///< flights that were used in spite of what spoke against it
+    std::vector<DuplicateFlight> copies = {};  ///< flights that are another one under a second name
+    mechanical::MechanicalModel model;         ///< with its errors
     flight::PerPhase<mechanical::CurveBand> bands;
     std::string input_fingerprint;  ///< see fit_fingerprint; empty: not to be recognised
 };

@@ -211,7 +211,6 @@ BatchFlight without_samples(FlightRecord record, std::size_t min_samples, const 
     release(record.verdicts);
     release(record.log);
     release(record.current_origin);
-    release(record.content.hashes);
     record.phases.shrink_to_fit();
     done.record = std::move(record);
     return done;

@@ -28,7 +28,7 @@ struct Selection {
     std::vector<mechanical::Exclusion> exclusions;
 };
 
-/// One log of a batch, done or found up to date. Of its record without what its file alone holds: samples, marks,
+/// One log of a batch, done or found up to date. Of its record without what its file alone holds: samples,
 /// verdicts, path and origin of the current. A hundred thousand take 150 to 180 MB.
 struct BatchFlight {
     FlightRecord record;
@@ -74,21 +74,15 @@ struct DuplicateFlight {
     bool operator==(const DuplicateFlight&) const = default;
 };
 
-/// Flights that are there more than once.
-struct Duplicates {
-    std::vector<DuplicateFlight> copies;                          ///< by name
-    std::vector<std::pair<std::string, std::string>> overlaps{};  ///< flight and warning: it shares less than half
-};
-
-/// Each flight is used once: one with power, of these one whose log is still there, of these the better copy
-/// (is_preferred_duplicate), then the first. Reads the marks of their contents from the records in OUT.
-Duplicates find_duplicates(const BatchFlights& flights, const std::filesystem::path& out);
+/// Flights that are there more than once, by name. Each flight is used once: one with power, of these one whose log is
+/// still there, of these one with its definitions, then the first.
+std::vector<DuplicateFlight> find_duplicates(const BatchFlights& flights);
 
 /// What is used instead of a flight with power; nullptr if it is itself.
-const std::string* original_of(const std::string& flight, const Duplicates& repeated);
+const std::string* original_of(const std::string& flight, const std::vector<DuplicateFlight>& copies);
 
-/// Takes copies out of what is fitted, and says so; warns of overlaps.
-void exclude_duplicates(BatchFlights& flights, const Duplicates& repeated);
+/// Takes copies out of what is fitted, and says so.
+void exclude_duplicates(BatchFlights& flights, const std::vector<DuplicateFlight>& copies);
 
 /// Why a flight is not fitted that is a copy of another.
 std::string duplicate_reason(const std::string& other);

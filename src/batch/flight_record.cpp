@@ -86,9 +86,9 @@ void visit_fields(Of<mechanical::BinnedFlight> auto& motion, const auto& visit) 
     visit("bins", motion.bins);
 }
 
-void visit_fields(Of<flight::FlightSketch> auto& content, const auto& visit) {
+void visit_fields(Of<flight::FlightContent> auto& content, const auto& visit) {
+    visit("fingerprint", content.fingerprint);
     visit("has_definitions", content.has_definitions);
-    visit("samples", content.samples);
 }
 
 void visit_fields(Of<FlightRecord> auto& record, const auto& visit) {
@@ -111,7 +111,6 @@ void visit_fields(Of<FlightRecord> auto& record, const auto& visit) {
     visit("why_not_fitted", record.not_fitted_reason);
     visit("measured", record.measured);
     visit("content", record.content);
-    // Its marks follow: they stand last, so that all else can be read without them.
 }
 
 template <typename T>
@@ -156,15 +155,6 @@ struct RecordWriter {
             if (const auto& value = covariates[covariate]) json[std::string(to_string(covariate))] = *value;
         }
         return json;
-    }
-    static Json json_of(const FlightMarks& marks) {
-        Json fingerprints = Json::array();
-        Json times_s = Json::array();
-        for (const auto& [fingerprint, time_s] : marks) {
-            fingerprints.push_back(fingerprint);
-            times_s.push_back(time_s);
-        }
-        return Json::array({{{"fingerprints", fingerprints}, {"times_s", times_s}}});
     }
     static Json json_of(const mechanical::MeasuredFlights& measured) {
         Json flights = Json::array();
@@ -234,14 +224,6 @@ struct RecordReader {
     static void read(const Json& json, std::vector<T>& records) {
         for (const auto& entry : json) read(entry, records.emplace_back());
     }
-    /// The last of the array: earlier versions have those of rounded values before it.
-    static void read(const Json& json, FlightMarks& marks) {
-        const auto& exact = json.at(json.size() - 1);
-        const auto& fingerprints = exact.at("fingerprints");
-        const auto& times_s = exact.at("times_s");
-        for (std::size_t i = 0; i < fingerprints.size(); ++i)
-            marks.push_back({whole<std::uint64_t>(fingerprints.at(i)), times_s.at(i)});
-    }
     static void read(const Json& json, mechanical::MeasuredFlights& measured) {
         for (const auto& entry : json.at("flights")) {
             auto& flight = measured.flights.emplace_back();
@@ -269,16 +251,6 @@ std::string seal_of(std::string_view text) {
     return fmt::format("{}{}\"\n}}\n", seal_key, fingerprint.hex());
 }
 
-constexpr auto marks_name = "marks";
-
-/// Where the comma before the marks is. No text of JSON holds a line's end, so that this is the key. Throws
-/// std::out_of_range where there is none.
-std::size_t marks_at(const std::string& text) {
-    const auto at = text.rfind(",\n \"marks\": ");
-    if (at == std::string::npos) throw std::out_of_range("a record without marks");
-    return at;
-}
-
 /// What the best witness of an edge says.
 std::string verdict_text(const flight::EdgeReport& explained) {
     if (explained.matching_events.empty()) return explained.agreement;
@@ -297,7 +269,7 @@ FlightRecord record_of(const flight::LoadedFlight& loaded) {
     record.accepted = true;
     record.aircraft_id = series.aircraft_id;
     record.aircraft_name = series.aircraft_name;
-    record.content = make_sketch(series);
+    record.content = content_of(series);
     record.power_source = power_track(series).source;
     record.current_origin = to_string(series.current_origin);
     record.warnings = loaded.warnings;
@@ -321,7 +293,6 @@ FlightRecord record_of(const flight::LoadedFlight& loaded) {
 std::string to_json_text(const FlightRecord& record) {
     Json json;
     visit_fields(record, RecordWriter{json});
-    RecordWriter{json}(marks_name, record.content.hashes);
     // File names need not be UTF-8, and a record must never fail for that.
     auto text = json.dump(1, ' ', false, Json::error_handler_t::replace);
     text.resize(text.size() - std::string_view("\n}").size());
@@ -334,21 +305,10 @@ std::optional<FlightRecord> record_from_json(const std::string& text) {
         return std::nullopt;
     try {
         FlightRecord record;
-        visit_fields(record, RecordReader{Json::parse(text.substr(0, marks_at(text)) + "}")});
+        visit_fields(record, RecordReader{Json::parse(text.substr(0, end) + "}")});
         return record;
     } catch (const std::exception&) {
         return std::nullopt;  // of another version: the log is done again
-    }
-}
-
-std::optional<FlightMarks> marks_from_json(const std::string& text) {
-    try {
-        const auto json = Json::parse("{" + text.substr(marks_at(text) + 1));
-        FlightMarks marks;
-        RecordReader{json}(marks_name, marks);
-        return marks;
-    } catch (const std::exception&) {
-        return std::nullopt;
     }
 }
 

@@ -30,8 +30,6 @@ struct RecordedEdgeCheck {
     std::string text;     ///< "agrees with TAKEOFF (-0.4 s)", "no witness"
 };
 
-using FlightMarks = decltype(flight::FlightSketch::hashes);
-
 /// What became of one log: enough to go on without reading it again.
 struct FlightRecord {
     std::string flight;
@@ -52,19 +50,16 @@ struct FlightRecord {
     std::string no_power_reason;            ///< why no power was measured; empty if it was
     std::string not_fitted_reason;          ///< what its folder says: see LogFile
     mechanical::MeasuredFlights measured;   ///< of every complete phase, however few its samples
-    flight::FlightSketch content;           ///< to find it under another name; its marks are read where they are needed
+    flight::FlightContent content;          ///< to find it under another name
 };
 
 /// The record of a flight that was read and segmented.
 FlightRecord record_of(const flight::LoadedFlight& loaded);
 
-/// The record as JSON with a seal, the fingerprint of its text, and back, without the marks of its content. Reading
-/// gives std::nullopt for what is no record of this version, or was changed since.
+/// The record as JSON with a seal, the fingerprint of its text, and back. Reading gives std::nullopt for what
+/// is no record of this version, or was changed since.
 std::string to_json_text(const FlightRecord& record);
 std::optional<FlightRecord> record_from_json(const std::string& text);
-
-/// The marks of the record that this is the text of: most of it.
-std::optional<FlightMarks> marks_from_json(const std::string& text);
 
 /// Why a batch uses nothing of the flight: its power record, its folder or --exclude; empty if it does.
 std::string exclusion_reason(const FlightRecord& record, const flight::LoadOptions& options);

@@ -8,8 +8,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <unordered_map>
-#include <vector>
 
 /// Which flight of which aircraft a series is of, by what it holds rather than by its name.
 namespace flightwatt::flight {
@@ -18,57 +16,17 @@ namespace flightwatt::flight {
 /// name that stands. None where it does not, or is no time.
 std::optional<std::chrono::sys_seconds> start_in_name(const std::string& name);
 
-/// Two values of one field, some samples apart, and when: one of many by which a flight is known again.
-struct SketchHash {
-    std::uint64_t fingerprint = 0;  ///< of the two values and the time between them; odd: of an altitude
-    double time_s = 0.0;            ///< the log's own seconds
-    bool operator==(const SketchHash&) const = default;
+/// What its samples are, in short.
+struct FlightContent {
+    std::uint64_t fingerprint = 0;  ///< of all values of altitude, voltage, current and power; 0: none varies
+    bool has_definitions = true;    ///< its .log is beside it
+
+    bool operator==(const FlightContent&) const = default;
 };
 
-/// What its samples are, in short: marks of its altitude, voltage, current and power.
-struct FlightSketch {
-    std::vector<SketchHash> hashes = {};  ///< those with the least fingerprints, rising
-    bool has_definitions = true;          ///< its .log is beside it
-    std::size_t samples = 0;              ///< of power, or else of altitude
-
-    bool operator==(const FlightSketch&) const = default;
-};
-
-FlightSketch make_sketch(const FlightSeries& series);
-
-/// What two recordings have in common.
-struct SketchMatch {
-    bool is_same = false;   ///< at least half of the time that the shorter one tells of is in the other too
-    double shared_s = 0.0;  ///< how long, about; 0 if they have nothing in common
-};
-
-/// Whether two are recordings of one flight: marks of both at one offset of their clocks (docs/guide.md). So are copies
-/// that lost other lines, have another clock, begin or end elsewhere, or hold several flights. Two of which nothing
-/// varies are not, nor two whose values were rounded differently or that sampled the flight at other moments.
-SketchMatch compare_sketches(const FlightSketch& one, const FlightSketch& other);
-
-/// Which of two recordings of one flight is used: one with definitions, then one with more samples.
-bool is_preferred_duplicate(const FlightSketch& one, const FlightSketch& other);
-
-/// A warning that two flights, which both are used, share a part.
-std::string describe_overlap(const std::string& one, const std::string& other, const SketchMatch& likeness);
-
-/// Flights, to be asked for those that another is like, without comparing it with all.
-class SketchIndex {
-  public:
-    struct Hit {
-        std::size_t number = 0;  ///< in the order in which they were added
-        SketchMatch likeness = {};
-    };
-
-    std::vector<Hit> find(const FlightSketch& content) const;
-    void add(FlightSketch content);
-    const FlightSketch& operator[](std::size_t number) const { return contents_[number]; }
-
-  private:
-    std::vector<FlightSketch> contents_;
-    std::unordered_multimap<std::uint64_t, std::size_t> with_mark_;
-};
+/// Equal fingerprints: files with the same samples, under whatever name, compressed, as text or binary, as a log or as
+/// the CSV of its series. Times play no part.
+FlightContent content_of(const FlightSeries& series);
 
 /// A flight and the aircraft that flew it, as far as its file tells.
 struct FlightAircraft {

@@ -13,6 +13,7 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <unordered_map>
 #include <utility>
 
 #include <boost/geometry/algorithms/distance.hpp>
@@ -56,24 +57,21 @@ void refuse_one_folder_twice(std::span<const std::filesystem::path> outs) {
 
 /// Marks flights that an earlier folder holds too; says which.
 Names share_flights(std::vector<BatchContent>& batches) {
-    flight::SketchIndex known;
-    std::vector<ReportFlight*> places;
+    std::unordered_map<std::uint64_t, ReportFlight*> known;  // by what they hold
+    std::vector<const ReportFlight*> places;
     Names shared;
     for (auto& batch : batches) {
         for (auto& flight : batch.flights) {
             flight.folders = {batch.folder};
             if (!flight.rejected.empty()) continue;
-            auto content = make_sketch(flight.series);
-            const auto alike = known.find(content);
-            const auto same = std::ranges::find_if(alike, [&](const auto& like) {
-                return like.likeness.is_same && places[like.number]->batch != flight.batch;
-            });
-            if (same == alike.end()) {
+            const auto fingerprint = flight::content_of(flight.series).fingerprint;
+            const auto same = known.find(fingerprint);
+            if (same == known.end() || same->second->batch == flight.batch) {
                 places.push_back(&flight);
-                known.add(std::move(content));
+                if (fingerprint != 0) known.emplace(fingerprint, &flight);
                 continue;
             }
-            auto& first = *places[same->number];
+            auto& first = *same->second;
             flight.is_shown_elsewhere = true;
             first.folders.push_back(flight.name == first.name ? batch.folder
                                                               : fmt::format("{} as {}", batch.folder, flight.name));
@@ -220,7 +218,7 @@ BatchContent read_batch_content(const std::filesystem::path& out) {
         if (!damage.empty()) content.damaged.push_back(record.flight + ": " + damage);
         if (record.accepted) {
             auto selection = batch::select_for_fit(record, needed, load);
-            const auto* copy = batch::original_of(record.flight, fit.repeated);
+            const auto* copy = batch::original_of(record.flight, fit.copies);
             if (copy != nullptr) {
                 selection.flights.clear();
                 selection.exclusions.push_back({record.flight, std::nullopt, batch::duplicate_reason(*copy)});

@@ -31,7 +31,7 @@ void batch_of(const Paths& logs, const std::filesystem::path& out, double rest_s
     const auto plan = plan_batch(find_logs({logs.begin(), logs.end()}), out, false);
     prepare_folder(plan, out);
     auto flights = run_batch(plan.logs, options, [](std::size_t, std::size_t, const BatchFlight&) {});
-    exclude_duplicates(flights, find_duplicates(flights, out));
+    exclude_duplicates(flights, find_duplicates(flights));
     write_file_atomically(out / catalogue_name, catalogue_csv(flights));
 }
 
@@ -42,7 +42,7 @@ MergePlan merge(const Paths& batches, const std::filesystem::path& out, bool pru
     prepare_folder(plan.folder, out);
     WriteGate gate;
     auto flights = merge_flights(plan, {out, 8, gate}, [](std::size_t, std::size_t, const BatchFlight&) {});
-    exclude_duplicates(flights, find_duplicates(flights, out));
+    exclude_duplicates(flights, find_duplicates(flights));
     write_file_atomically(out / catalogue_name, catalogue_csv(flights));
     return plan;
 }

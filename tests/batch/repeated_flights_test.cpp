@@ -1,13 +1,10 @@
-#include "base/error.h"
 #include "batch/batch_run.h"
-#include "helpers/cut_logs.h"
 #include "helpers/sample_logs.h"
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,10 +18,10 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 /// Finds and excludes them.
-std::vector<DuplicateFlight> copies_of(BatchFlights& flights, const std::filesystem::path& out) {
-    const auto repeated = find_duplicates(flights, out);
-    exclude_duplicates(flights, repeated);
-    return repeated.copies;
+std::vector<DuplicateFlight> copies_of(BatchFlights& flights) {
+    auto copies = find_duplicates(flights);
+    exclude_duplicates(flights, copies);
+    return copies;
 }
 
 TEST(RepeatedFlights, UsesAFlightOnceUnderWhateverName) {
@@ -33,7 +30,7 @@ TEST(RepeatedFlights, UsesAFlightOnceUnderWhateverName) {
     copy_sample(1, folder / "in", "b");
     copy_sample(2, folder / "in", "c");
     auto flights = batch(folder / "in", folder / "out");
-    EXPECT_THAT(copies_of(flights, folder / "out"), ElementsAre(DuplicateFlight{"b", "a", true}));
+    EXPECT_THAT(copies_of(flights), ElementsAre(DuplicateFlight{"b", "a", true}));
     EXPECT_THAT(flights[1].selection.flights, IsEmpty());
     EXPECT_EQ(to_string(flights[1].selection.exclusions.back()),
               "b: it is excluded from the fit: it is the same flight as a, which is used");
@@ -41,43 +38,15 @@ TEST(RepeatedFlights, UsesAFlightOnceUnderWhateverName) {
     // Rather that of which the log is there.
     std::filesystem::remove(folder / "in" / "a.data");
     flights = batch(folder / "in", folder / "out");
-    EXPECT_THAT(copies_of(flights, folder / "out"), ElementsAre(DuplicateFlight{"a", "b", true}));
+    EXPECT_THAT(copies_of(flights), ElementsAre(DuplicateFlight{"a", "b", true}));
 }
 
-/// What another receiver made of a log: it lost every nth line.
-void lose_lines(const std::filesystem::path& log, std::size_t every) {
-    std::string text;
-    std::size_t number = 0;
-    for (const auto& line : test::lines_of(read_file(log)))
-        if (++number < 3 || number % every != 0) text += line;
-    write_file_atomically(log, text);
-}
-
-TEST(RepeatedFlights, UsesTheBetterOfTwoRecordingsOfAFlight) {
+TEST(RepeatedFlights, UsesTheCopyWithItsDefinitions) {
     const auto folder = test::scratch_dir();
-    lose_lines(copy_sample(1, folder / "in", "a"), 4);
-    lose_lines(copy_sample(1, folder / "in", "b"), 9);
-    auto flights = batch(folder / "in", folder / "out");
-    EXPECT_THAT(copies_of(flights, folder / "out"), ElementsAre(DuplicateFlight{"a", "b", true}));
-    // What has its definitions is used, however few its lines.
-    std::filesystem::remove(folder / "in" / "b.log");
-    flights = batch(folder / "in", folder / "out");
-    EXPECT_THAT(copies_of(flights, folder / "out"), ElementsAre(DuplicateFlight{"b", "a", true}));
-}
-
-TEST(RepeatedFlights, WarnsOfTwoRecordingsThatShareLittle) {
-    const auto folder = test::scratch_dir();
-    const auto text = read_file(test::sample(1));
     for (const auto* name : {"a", "b"}) copy_sample(1, folder / "in", name);
-    const auto first = test::cut_log(text, 480.0);
-    write_file_atomically(folder / "in" / "a.data", first.before);
-    const auto rest = test::cut_log(text, 350.0);
-    write_file_atomically(folder / "in" / "b.data",
-                          text.substr(0, text.find('\n') + 1) + fmt::format("{}", fmt::join(rest.after, "")));
+    std::filesystem::remove(folder / "in" / "a.log");
     auto flights = batch(folder / "in", folder / "out");
-    EXPECT_THAT(copies_of(flights, folder / "out"), IsEmpty());
-    EXPECT_THAT(flights[0].record.warnings.back() + flights[1].record.warnings.back(),
-                HasSubstr("of one flight both, less than half of either: it counts twice"));
+    EXPECT_THAT(copies_of(flights), ElementsAre(DuplicateFlight{"a", "b", true}));
 }
 
 TEST(RepeatedFlights, KnowsThatFlightsAreOfSeveralAircraft) {

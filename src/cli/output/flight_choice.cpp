@@ -97,7 +97,7 @@ std::string why_left_out(const FlightChoice& choice, const std::string& flight) 
 std::string why_batch_left_out(const std::optional<batch::BatchFit>& fit, const std::string& flight) {
     if (!fit) return "";
     if (fit->excluded.contains(flight)) return "its batch was told to --exclude it";
-    const auto* copy = batch::original_of(flight, fit->repeated);
+    const auto* copy = batch::original_of(flight, fit->copies);
     return copy == nullptr ? "" : "its batch found that it is " + *copy + " under another name";
 }
 

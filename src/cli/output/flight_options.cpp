@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <set>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -42,29 +43,22 @@ class UsedFlights {
     /// Whether it is to be read: false for a copy of one that is as good.
     bool take(const flight::LoadedFlight& loaded) {
         const auto& series = loaded.series;
-        auto content = make_sketch(series);
-        auto alike = known_.find(content);
-        std::erase_if(alike, [&](const auto& like) { return !is_used_[places_[like.number]]; });
-        const auto name_of = [&](const auto& like) { return flown_[places_[like.number]].flight; };
-        for (const auto& like : alike) {
-            if (!like.likeness.is_same || is_preferred_duplicate(content, known_[like.number])) continue;
-            exclude(series.flight, name_of(like));
+        const auto content = content_of(series);
+        const auto known = known_.find(content.fingerprint);
+        if (known != known_.end() && (known->second.has_definitions || !content.has_definitions)) {
+            exclude(series.flight, flown_[known->second.place].flight);
             return false;
         }
+        const auto place = flown_.size();
         flown_.push_back({series.flight, series.aircraft_id, series.aircraft_name});
         is_used_.push_back(true);
         is_sound_.push_back(loaded.exclusion.empty());
-        if (!loaded.exclusion.empty()) return true;
-        for (const auto& like : alike) {
-            if (like.likeness.is_same) {
-                is_used_[places_[like.number]] = false;
-                exclude(name_of(like), series.flight);
-            } else {
-                warn(call_, flight::describe_overlap(name_of(like), series.flight, like.likeness));
-            }
+        if (!loaded.exclusion.empty() || content.fingerprint == 0) return true;
+        if (known != known_.end()) {
+            is_used_[known->second.place] = false;
+            exclude(flown_[known->second.place].flight, series.flight);
         }
-        places_.push_back(flown_.size() - 1);
-        known_.add(std::move(content));
+        known_[content.fingerprint] = {content.has_definitions, place};
         return true;
     }
 
@@ -90,8 +84,12 @@ class UsedFlights {
     }
 
     const StageCall& call_;
-    flight::SketchIndex known_;
-    std::vector<std::size_t> places_;  ///< of the known ones in what follows
+    struct Known {
+        bool has_definitions = false;
+        std::size_t place = 0;  ///< in what follows
+    };
+
+    std::unordered_map<std::uint64_t, Known> known_;  ///< by fingerprint
     std::vector<flight::FlightAircraft> flown_;
     std::vector<bool> is_used_;
     std::vector<bool> is_sound_;
