@@ -165,7 +165,7 @@ int flightwatt::stages::profile_stage(int argc, char** argv) {
         R"(Runs each component of SPEC (TOML, or powprofiler's .cfg) over its quality of service while sampling
 power. DIR/NAME.csv is layer 2, configuration to mean power, energy and standard error, as missions
 take it; DIR/layer1 holds power over time of every run, DIR/runs.csv what became of each, DIR/idle.csv
-the idle computer. A component that fails or hangs is recorded and ended with all its children, the
+the idle computer. A component that fails or hangs is recorded and ended with its process group, the
 others go on; the exit code is then 4. Ctrl-C leaves nothing running; the same command goes on where
 it stopped. Without duration_s in SPEC a run is as long as its command, ended as hung after timeout_s;
 with it the command is ended when its time is over, whatever it does. Runs that succeeded are not done

@@ -102,7 +102,7 @@ TEST_F(Profiler, GoesOnPastThoseThatFail) {
                         " & echo sorry >&2; exit 3']\n[components.hang]\ncommand = ['sleep', '" + marker +
                         "']\n[components.good]\ncommand = ['sleep', '" + marker + "']\n");
     EXPECT_EQ(profile("p.toml"), 4);
-    EXPECT_THAT(text("out/runs.csv"), HasSubstr("crash,,1,failed,\"exit code 3; left 1 process behind, ended\""));
+    EXPECT_THAT(text("out/runs.csv"), HasSubstr("crash,,1,failed,\"exit code 3; left processes behind, ended\""));
     EXPECT_EQ(text("out/layer1/crash/repeat_1.txt"), "sorry\n");
     EXPECT_FALSE(std::filesystem::exists(folder / "out/crash.csv"));
     EXPECT_NEAR(power_w(read_power_profile(folder / "out/good.csv"), {}), 2.0, 1e-9);
@@ -126,7 +126,7 @@ TEST_F(Profiler, ReplacesResultsOfAProfileAlone) {
 TEST_F(Profiler, CtrlCLeavesNothingAndIsResumed) {
     const auto marker = test::new_marker();
     // Each start leaves a line in `starts`; the third configuration hangs until it is interrupted.
-    write("p.toml", std::string(meter) + "[components.a]\ncommand = ['sh', '-c', 'echo {n} >> starts; setsid sleep " +
+    write("p.toml", std::string(meter) + "[components.a]\ncommand = ['sh', '-c', 'echo {n} >> starts; sleep " +
                         marker + " & [ -e free ] || [ $(wc -l < starts) -lt 3 ] || sleep " + marker +
                         "; sleep 0.05']\nqos = { n = [1, 2, 3, 4] }\n");
     auto spec = text("p.toml");

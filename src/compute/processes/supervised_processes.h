@@ -1,7 +1,6 @@
 #pragma once
 
 #include <chrono>
-#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -17,9 +16,8 @@ struct SupervisionOptions {
 
 /// What was found when the commands were ended.
 struct ShutdownReport {
-    std::size_t orphans = 0;    ///< processes that were alive beside the commands themselves
-    bool killed = false;        ///< SIGTERM was not enough
-    std::size_t survivors = 0;  ///< processes that not even SIGKILL ended
+    bool left_processes = false;  ///< a command had ended and left processes of its group
+    bool killed = false;          ///< SIGTERM was not enough
 };
 
 /// A command that has ended, or that could not be started.
@@ -32,10 +30,10 @@ struct FinishedCommand {
 /// "exit code 3", "killed by SIGSEGV", "cannot be started: No such file or directory".
 std::string to_string(const FinishedCommand& ended);
 
-/// Commands (no shell) that run at the same time, each in a process group of its own, below a supervisor: a process of
-/// ours that adopts whatever they fork, also what takes itself away with setsid(). When this object goes, or the
-/// program ends in whatever way, the supervisor ends all of them: SIGTERM first, SIGKILL after the patience. To be used
-/// by programs of one thread. Throws OutputError if the system has no more processes or files.
+/// Commands (no shell) that run at the same time, each in a process group of its own. When this object goes, all
+/// processes of these groups are ended: SIGTERM first, SIGKILL after the patience. Where the program itself is killed,
+/// the commands are. To be used by programs of one thread. Throws OutputError if the system has no more processes or
+/// files.
 class SupervisedProcesses {
   public:
     /// Waits until each command is executed, or is among those that ended() reports as not started.
@@ -45,16 +43,28 @@ class SupervisedProcesses {
     SupervisedProcesses& operator=(const SupervisedProcesses&) = delete;
 
     /// A file that poll() finds readable when a command has ended.
-    int poll_fd() const { return events_; }
+    int poll_fd() const { return poll_fd_; }
     /// The commands that have ended since the last call.
     std::vector<FinishedCommand> ended();
     /// Ends everything that still runs and waits for that.
     ShutdownReport end();
 
   private:
-    int events_ = -1;
-    ::pid_t supervisor_ = -1;
-    ShutdownReport report_;
+    struct Command {
+        ::pid_t group = -1;  ///< its process, which leads the group
+        int process = -1;    ///< readable when it has ended (pidfd_open); -1: ended() reported it
+    };
+
+    explicit SupervisedProcesses(const SupervisionOptions& options);
+    void start(const std::vector<std::string>& words, const SupervisionOptions& options);
+    bool any_lives() const;
+    bool wait_for_end(std::chrono::milliseconds patience) const;
+    void signal_all(int signal) const;
+
+    std::chrono::milliseconds kill_timeout_;
+    int poll_fd_ = -1;
+    std::vector<Command> commands_;
+    std::vector<FinishedCommand> not_started_;
 };
 
 }  // namespace flightwatt::compute

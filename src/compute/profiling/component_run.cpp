@@ -146,11 +146,8 @@ class Watch {
 void note(ComponentRun& run, const std::string& text) { run.note += (run.note.empty() ? "" : "; ") + text; }
 
 void note_ending(const ShutdownReport& report, bool ended_by_itself, ComponentRun& run) {
-    if (ended_by_itself && report.orphans > 0) {
-        note(run, fmt::format("left {} process{} behind, ended", report.orphans, report.orphans == 1 ? "" : "es"));
-    }
+    if (ended_by_itself && report.left_processes) note(run, "left processes behind, ended");
     if (report.killed) note(run, "did not answer SIGTERM, killed");
-    if (report.survivors > 0) note(run, fmt::format("{} processes cannot be ended", report.survivors));
 }
 
 }  // namespace
