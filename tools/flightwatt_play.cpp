@@ -30,18 +30,11 @@ telemetry::MessageDictionary read_definitions(const cli::StageCall& call) {
                      "give --messages messages.xml");
 }
 
-telemetry::LinkVersion link_version(const cli::StageCall& call) {
-    return cli::count_option(call, "link-version", 1, 2) == 1 ? telemetry::LinkVersion::v1 : telemetry::LinkVersion::v2;
-}
-
 live::PlaybackTargetSetup target_setup(const cli::StageCall& call, const std::string& to) {
     const bool to_frames = to.starts_with("udp:") || to.starts_with("serial:");
-    if (!to_frames && !call.options["link-version"].defaulted())
-        throw UsageError("--link-version is of frames: it goes with --to udp:ADDRESS:PORT and serial:DEVICE:BAUD");
     if (!to.starts_with("ivy:") && call.has("as-aircraft"))
         throw UsageError("--as-aircraft goes with --to ivy:ADDRESS:PORT");
     live::PlaybackTargetSetup setup;
-    setup.version = link_version(call);
     setup.as_aircraft = call.has("as-aircraft");
     if (to_frames) setup.definitions = read_definitions(call);
     return setup;
@@ -137,7 +130,6 @@ output).)"};
     add("speed", cli::value<double>("X"), "so many times as fast (1)");
     add("messages", cli::input_file("FILE"),
         "definitions of the messages, for udp, serial and binary logs: a messages.xml, or a .log (the one beside the log)");
-    add("link-version", cli::value("N")->default_value("2"), "of pprzlink, for udp and serial: 1 or 2");
     add("as-aircraft", "for ivy: messages as the aircraft itself would say them, without their time");
     return cli::run_stage(argc, argv, stage, play);
 }

@@ -71,15 +71,6 @@ void apply_options(const cli::StageCall& call, compute::ProfileSpecification& sp
         }
         sampler.kind = *kind;
     }
-    if (const auto sysfs = call.get_optional<std::string>("sysfs")) {
-        std::error_code error;
-        if (!std::filesystem::is_directory(*sysfs, error)) {
-            const bool is_absent = !error || error == std::errc::no_such_file_or_directory;
-            throw UsageError(
-                fmt::format("--sysfs {}: {}", *sysfs, is_absent ? "there is no such folder" : error.message()));
-        }
-        sampler.sysfs = *sysfs;
-    }
     if (call.has("above-idle")) specification.above_idle = true;
     if (specification.above_idle && specification.idle_s == 0.0) {
         throw InputError({specification.file}, "power above idle is asked for, and idle power is not measured",
@@ -176,7 +167,6 @@ Samplers: auto, ina238, ina3221 (either of ina3221-iio, ina3221-hwmon), rapl, po
     stage.shows_table = true;
     auto add = stage.options.add_options();
     add("sampler", cli::value("KIND"), "sample with this instead of what SPEC says");
-    add("sysfs", cli::input_file("ROOT"), "look for sensors below ROOT instead of /sys");
     add("above-idle", "profiles hold the power above that of the idle computer");
     add("powprofiler", "write powprofiler's formats too, to DIR/powprofiler");
     add("check-interpolation", "of profiles: find each node from the others, and print the errors");

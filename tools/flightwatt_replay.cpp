@@ -46,7 +46,6 @@ std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call,
 int replay(const cli::StageCall& call) {
     mission::ReplayOptions options;
     options.fit = cli::read_fit_options(call);
-    options.durations_are_known = call.has("know-durations");
     const auto missions = read_missions(call);
     if (const auto file = call.get_optional<std::string>("model"))
         options.model = mechanical::read_mechanical_model(*file);
@@ -94,7 +93,6 @@ beforehand. -o writes the table of schedules as CSV.)" +
     add("mission", cli::input_files("FILE"), "a mission whose schedules are replayed; may be given several times");
     add("model", cli::input_file("MODEL.toml"),
         "what is known before each flight is this model, instead of one fitted to the other flights");
-    add("know-durations", "schedules are made for the durations that were flown, as if they had been known before");
     cli::add_fit_options(stage.options);
     cli::add_mix_option(stage.options);
     cli::add_flight_options(stage.options);

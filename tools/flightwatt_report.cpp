@@ -39,8 +39,8 @@ std::optional<double> figure_width_pt(const cli::StageCall& call) {
 
 report::ReportInput read_inputs(const cli::StageCall& call) {
     report::ReportInput inputs;
-    inputs.max_validation_flights = cli::count_option(call, "max-validation-flights");
-    inputs.max_battery_flights = cli::count_option(call, "max-battery-flights");
+    inputs.max_validation_flights = report::usual_validation_flights;
+    inputs.max_battery_flights = report::usual_battery_flights;
     inputs.capacity_ah = cli::capacity_option(call);
     figure_width_pt(call);  // a bad one is refused before any work
     inputs.published_file = call.get_optional<std::string>("published");
@@ -132,13 +132,9 @@ the bands that the batch stored.)"};
     add("reference-figures", cli::input_file("DIR"),
         "show the paper's figures, digitised, beside ours: fig2_cruise.csv and others");
     add("title", cli::value("TITLE"), "of the page");
-    add("max-validation-flights", cli::value("N")->default_value("30"),
-        "validate by leave-one-out with no more than N flights: the work grows with their square");
     add("capacity", cli::value<double>("AH"),
         "the capacity of the flights' battery; without it that of the missions' pack, if it is of these flights, or "
         "else what flightwatt battery would say");
     add("replay", "fly the missions' schedules on the power that the batch's flights measured (flightwatt replay)");
-    add("max-battery-flights", cli::value("N")->default_value("12"),
-        "identify the battery from no more than N flights: the work grows with their square");
     return cli::run_stage(argc, argv, stage, write_page);
 }

@@ -37,31 +37,13 @@ mechanical::CurveBand band_from(const Json& json) {
 }
 
 Json options_json(const mechanical::ModelFitOptions& options) {
-    Json by_hand = Json::array();
-    for (const auto& [flight, phase, weight] : options.weights.by_hand) {
-        by_hand.push_back(
-            {{"flight", flight}, {"phase", phase ? Json(to_string(*phase)) : Json()}, {"weight", weight}});
-    }
-    return {{"order", options.phases.order},
-            {"least_omega_duration_rad", options.phases.min_theta_rad},
-            {"most_periods", options.phases.max_periods},
-            {"weights", to_string(options.weights.weighting)},
-            {"weights_by_hand", by_hand}};
+    return {{"order", options.phases.order}, {"weights", to_string(options.weights.weighting)}};
 }
 
 mechanical::ModelFitOptions options_from(const Json& json) {
     mechanical::ModelFitOptions options;
     options.phases.order = json.at("order");
-    options.phases.min_theta_rad = json.at("least_omega_duration_rad");
-    options.phases.max_periods = json.at("most_periods");
     options.weights.weighting = mechanical::weighting_from(json.at("weights").get<std::string>()).value();
-    for (const auto& entry : json.at("weights_by_hand")) {
-        mechanical::ManualWeight weight{entry.at("flight"), std::nullopt, entry.at("weight")};
-        if (const auto& phase = entry.at("phase"); !phase.is_null()) {
-            weight.phase = flight::phase_from(phase.get<std::string>()).value();
-        }
-        options.weights.by_hand.push_back(std::move(weight));
-    }
     return options;
 }
 

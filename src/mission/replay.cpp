@@ -264,12 +264,9 @@ void require_flies(const MissionSetup& mission) {
 }
 
 Replay replay_one(const MissionVariant& mission, const mechanical::MeasuredFlight& flight,
-                  const mechanical::MechanicalModel& model, const ReplayOptions& options) {
+                  const mechanical::MechanicalModel& model) {
     const auto& stated = setup_of(mission);
-    PerPhase<double> flown_s;
-    for (const auto phase : all_phases)
-        if (flight.power[phase]) flown_s[phase] = flight.power[phase]->time_s.back();
-    auto known = nominal_mission(stated, model, options.durations_are_known ? std::optional(flown_s) : std::nullopt);
+    auto known = nominal_mission(stated, model);
     auto actual = measured_mission(known, flight);
     const LeaveOneOutMission folded{std::move(known), std::move(actual)};
     Replay replay;
@@ -340,7 +337,7 @@ Replays replay_flights(std::span<const MissionVariant> missions, std::span<const
             if (!reason.empty())
                 result.not_replayed.push_back({flights[i].samples.flight, setup.name, std::move(reason)});
             else
-                result.replays.push_back(replay_one(mission, flights[i], *models[i], options));
+                result.replays.push_back(replay_one(mission, flights[i], *models[i]));
         }
     }
     return result;

@@ -69,7 +69,6 @@ struct SkippedReplay {
 struct ReplayOptions {
     mechanical::ModelFitOptions fit;                        ///< of the model of the other flights
     std::optional<mechanical::MechanicalModel> model = {};  ///< instead of that
-    bool durations_are_known = false;                       ///< schedules are made for the durations that were flown
 };
 
 struct Replays {

@@ -120,14 +120,8 @@ std::string aircraft_of(const BatchContent& batch) {
 /// What the fit was told, but for which flights it was to use.
 std::vector<std::pair<std::string, std::string>> told_options(const batch::BatchFit& fit) {
     const auto& options = fit.options;
-    Names by_hand;
-    for (const auto& weight : options.weights.by_hand)
-        by_hand.push_back(fmt::format("{} {:.6g}", weight.flight, weight.weight));
     return {{"order", fmt::format("{}", options.phases.order)},
-            {"lowest frequency", fmt::format("{:.6g} rad a phase", options.phases.min_theta_rad)},
-            {"most periods", fmt::format("{:.6g} a phase", options.phases.max_periods)},
-            {"weights", std::string(to_string(options.weights.weighting))},
-            {"weights by hand", by_hand.empty() ? "none" : fmt::format("{}", fmt::join(by_hand, " and "))}};
+            {"weights", std::string(to_string(options.weights.weighting))}};
 }
 
 /// "order 3 (a), 2 (b)" for each option in which the fits differ.

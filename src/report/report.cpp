@@ -274,14 +274,13 @@ std::string model_latex(const mechanical::MechanicalModel& model) {
 
 std::string batch_latex(const BatchContent& content, std::span<const mission::MissionVariant> missions,
                         const std::optional<double>& capacity_ah, const ReportLog& log) {
-    constexpr std::size_t max_battery_flights = 12;  // the work grows with their square
     for (const auto& damaged : content.damaged) log.warn(damaged);
     auto text = to_latex(flights_tables(content.flights)) + "\n";
     if (content.fit) text += model_latex(content.fit->model) + "\n" + validation_latex(content) + "\n";
     if (!aircraft_mix(content).empty()) return text;
     battery::IdentificationOptions options;
     options.capacity_ah = capacity_ah;
-    const auto battery = identify_for_report(content.flights, options, max_battery_flights, missions);
+    const auto battery = identify_for_report(content.flights, options, usual_battery_flights, missions);
     if (!battery.identified) log.note("no table of the battery: " + battery.no_result_reason);
     return text + to_latex(battery_section(battery).tables);
 }

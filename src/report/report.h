@@ -27,6 +27,10 @@ struct ReportLog {
     std::function<Progress(const std::string& unit)> progress = {};
 };
 
+/// Flights that are validated, and that a battery is identified from: the work grows with the square of either.
+inline constexpr std::size_t usual_validation_flights = 30;
+inline constexpr std::size_t usual_battery_flights = 12;
+
 struct ReportInput {
     std::vector<std::filesystem::path> outs;  ///< folders of flightwatt batch
     std::vector<mission::MissionVariant> missions;

@@ -37,7 +37,6 @@ TEST(BatchFit, IsReadBackAsItWasWritten) {
     EXPECT_EQ(to_toml(read.model), to_toml(fit.model));
     EXPECT_TRUE(read.model.phases[flight::Phase::cruise].errors);
     EXPECT_EQ(read.options.phases.order, 2);
-    EXPECT_EQ(read.options.phases.min_theta_rad, fit.options.phases.min_theta_rad);
     EXPECT_EQ(read.options.weights.weighting, mechanical::Weighting::uniform);
     EXPECT_EQ(read.excluded, fit.excluded);
     EXPECT_EQ(read.keep, fit.keep);

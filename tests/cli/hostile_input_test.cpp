@@ -239,9 +239,6 @@ TEST_F(HostileInput, IsANumberThatIsNone) {
         "simulate " + mission + "--samples=",
         "plan " + mission + "--probability=",
         "fit " + log + "--order=",
-        "fit " + log + "--min-periods=",
-        "fit " + log + "--max-periods=",
-        "fit " + log + "--weight opterra_synthetic_01=",
         "battery " + log + "--capacity=",
         "battery " + log + "--cells=",
         "predict " + log + "--model " + model + "--remaining 10 --until=",
@@ -255,8 +252,6 @@ TEST_F(HostileInput, IsANumberThatIsNone) {
         "synthesize " + model + "-o s --current-noise=",
         "synthesize " + model + "-o s --cruise=",
         "batch " + log + "-o out --jobs=",
-        "report " + mission + "-o r.html --max-validation-flights=",
-        "report " + mission + "-o r.html --max-battery-flights=",
         "report " + mission + "-o r.html --capacity=",
     };
     for (const auto& command : commands) {

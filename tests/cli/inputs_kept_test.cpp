@@ -251,9 +251,9 @@ const std::set<std::string> no_files{"N",
                                      "WIDTH"};
 
 /// Options that name files to read; those that write have a command above.
-const std::set<std::string> reading{"--published", "--model",      "--mission",           "--disturb",   "--sysfs",
-                                    "--battery",   "--path-from",  "--reference-figures", "--follow",    "--log",
-                                    "--messages",  "--mechanical", "--profile",           "--files-from"};
+const std::set<std::string> reading{
+    "--published", "--model", "--mission",  "--disturb",    "--battery", "--path-from", "--reference-figures",
+    "--follow",    "--log",   "--messages", "--mechanical", "--profile", "--files-from"};
 
 class InputsKept : public testing::Test {
   protected:

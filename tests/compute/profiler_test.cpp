@@ -126,8 +126,8 @@ TEST_F(Profiler, ReplacesResultsOfAProfileAlone) {
 TEST_F(Profiler, CtrlCLeavesNothingAndIsResumed) {
     const auto marker = test::new_marker();
     // Each start leaves a line in `starts`; the third configuration hangs until it is interrupted.
-    write("p.toml", std::string(meter) + "[components.a]\ncommand = ['sh', '-c', 'echo {n} >> starts; sleep " +
-                        marker + " & [ -e free ] || [ $(wc -l < starts) -lt 3 ] || sleep " + marker +
+    write("p.toml", std::string(meter) + "[components.a]\ncommand = ['sh', '-c', 'echo {n} >> starts; sleep " + marker +
+                        " & [ -e free ] || [ $(wc -l < starts) -lt 3 ] || sleep " + marker +
                         "; sleep 0.05']\nqos = { n = [1, 2, 3, 4] }\n");
     auto spec = text("p.toml");
     spec.replace(spec.find("duration_s = 1\n"), 15, "timeout_s = 120\n");
@@ -226,9 +226,9 @@ TEST_F(Profiler, ReadsAJetsonTree) {
     write("tree/sys/bus/i2c/drivers/ina3221x/6-0040/iio:device0/rail_name_0", "POM_5V_IN\n");
     write("tree/sys/bus/i2c/drivers/ina3221x/6-0040/iio:device0/in_power0_input", "2545\n");
     write("p.toml",
-          "idle_s = 0.1\nduration_s = 0.2\n[sampler]\ninterval_s = 0.02\n[components.a]\n"
-          "command = ['sleep', '60']\n");
-    ASSERT_EQ(profile("p.toml", {"--sysfs", "tree"}), 0) << text("stderr");
+          "idle_s = 0.1\nduration_s = 0.2\n[sampler]\ninterval_s = 0.02\nsysfs = 'tree'\n"
+          "[components.a]\ncommand = ['sleep', '60']\n");
+    ASSERT_EQ(profile("p.toml"), 0) << text("stderr");
     EXPECT_THAT(text("stderr"), HasSubstr("found ina3221-iio: POM_5V_IN\n"));
     EXPECT_THAT(text("stderr"), HasSubstr("sampling with ina3221-iio: POM_5V_IN (tree/sys/bus/i2c/"));
     EXPECT_NEAR(power_w(read_power_profile(folder / "out/a.csv"), {}), 2.545, 1e-9);

@@ -226,23 +226,6 @@ TEST(Replay, InvariantAndPhasedRunOneConfigurationAllTheWayAndAPhase) {
     EXPECT_FALSE(simulate(problem.setup, more).summary.keeps_reserve);
 }
 
-TEST(Replay, SpendsWhatDurationsKnownBeforehandAllow) {
-    auto problem = constant_problem(5);
-    for (auto& stated : problem.setup.duration_is_stated.values) stated = false;
-    for (const auto phase : all_phases)
-        problem.setup.mechanical->phases[phase].duration_s = problem.setup.duration_s[phase];
-    const auto flight = flight_of_model("short", problem.setup, 1.0, 0.9);
-    auto options = with_model_of(problem.setup);
-    const auto as_planned = only_replay(problem, flight, options);
-    options.durations_are_known = true;
-    const auto known = only_replay(problem, flight, options);
-    EXPECT_NEAR(as_planned.planned_s[Phase::cruise] * 0.9, as_planned.flown_s[Phase::cruise], 1e-9);
-    EXPECT_EQ(known.planned_s[Phase::cruise], known.flown_s[Phase::cruise]);
-    EXPECT_GT(*by(known, ScheduleMethod::planned)->summary.utility,
-              *by(as_planned, ScheduleMethod::planned)->summary.utility);
-    EXPECT_NEAR(*by(known, ScheduleMethod::planned)->regret, 0.0, 1e-2);
-}
-
 TEST(Replay, ModelsAreOfTheOtherFlightsAlone) {
     auto problem = constant_problem(1);
     for (auto& stated : problem.setup.duration_is_stated.values) stated = false;

@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/statistics.h"
-#include "base/units.h"
 #include "cli/output/records.h"
 #include "mechanical/fit_records.h"
 #include "mechanical/mechanical_model.h"
@@ -18,23 +17,6 @@
 
 namespace flightwatt::cli {
 namespace {
-
-/// "FLIGHT=0.4" or "FLIGHT:cruise=0.4".
-mechanical::ManualWeight parse_hand_weight(const std::string& text) {
-    const auto equals = text.rfind('=');
-    const auto value = equals == std::string::npos ? std::nullopt : parse_number(text.substr(equals + 1));
-    if (!value) throw UsageError(fmt::format("--weight {}: expected FLIGHT=NUMBER or FLIGHT:PHASE=NUMBER", text));
-    mechanical::ManualWeight weight{text.substr(0, equals), std::nullopt, *value};
-    if (const auto colon = weight.flight.rfind(':'); colon != std::string::npos) {
-        weight.phase = flight::phase_from(weight.flight.substr(colon + 1));
-        if (!weight.phase) {
-            throw UsageError(fmt::format("--weight {}: no phase '{}', expected takeoff, cruise or landing", text,
-                                         weight.flight.substr(colon + 1)));
-        }
-        weight.flight.resize(colon);
-    }
-    return weight;
-}
 
 Json intervals_json(const std::vector<Interval>& intervals) {
     return list_json(intervals, [](const auto& interval) { return interval_json(interval); });
@@ -108,12 +90,6 @@ void add_fit_options(boost::program_options::options_description& options, AutoO
               "a flight that was not fitted (blocks of time of a single flight)"
             : "order of the Fourier series, 0 to 8");
     add("weights", value("HOW")->default_value("agreement"), "uniform, inverse-variance or agreement");
-    add("weight", value<std::vector<std::string>>("FLIGHT[:PHASE]=W")->composing(),
-        "a weight by hand; then every flight needs one");
-    add("min-periods", value<double>("X")->default_value(0.5, "0.5"),
-        "least periods of the series in a phase; fewer make its basis collinear");
-    add("max-periods", value<double>("X")->default_value(120.0, "120"),
-        "most periods in a phase; the sampling may allow fewer");
 }
 
 std::optional<int> read_order(const StageCall& call, AutoOrder automatic) {
@@ -132,22 +108,12 @@ std::optional<int> read_order(const StageCall& call, AutoOrder automatic) {
 mechanical::ModelFitOptions read_fit_options(const StageCall& call, AutoOrder automatic) {
     mechanical::ModelFitOptions options;
     options.phases.order = read_order(call, automatic).value_or(options.phases.order);
-    options.phases.min_theta_rad = units::rad_from_turns(call.get<double>("min-periods"));
-    options.phases.max_periods = call.get<double>("max-periods");
-    admissible_frequencies({}, options.phases);  // refuses bad options before any log is read
     const auto name = call.get<std::string>("weights");
     const auto weighting = mechanical::weighting_from(name);
     if (!weighting || *weighting == mechanical::Weighting::manual) {
-        throw UsageError(fmt::format("--weights {}: expected uniform, inverse-variance or agreement{}", name,
-                                     weighting ? "; give weights by hand with --weight" : ""));
+        throw UsageError(fmt::format("--weights {}: expected uniform, inverse-variance or agreement", name));
     }
     options.weights.weighting = *weighting;
-    if (const auto weights = call.get_optional<std::vector<std::string>>("weight")) {
-        if (!call.options["weights"].defaulted())
-            throw UsageError("--weights and --weight exclude each other: give one of them");
-        options.weights.weighting = mechanical::Weighting::manual;
-        for (const auto& text : *weights) options.weights.by_hand.push_back(parse_hand_weight(text));
-    }
     return options;
 }
 

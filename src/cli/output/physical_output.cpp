@@ -153,7 +153,7 @@ mechanical::PhysicalFit fit_motion(const StageCall& call, std::span<const mechan
     std::vector<mechanical::BinnedFlight> motions;
     motions.reserve(measured.size());
     for (const auto& flight : measured) motions.push_back(flight.motion);
-    if (call.has("weight") || !call.options["weights"].defaulted())
+    if (!call.options["weights"].defaulted())
         note(call, "the weights are those of the curves over time: [physical] finds its own from how flights differ");
     auto physical = mechanical::fit_physical_model(motions);
     warn_of_physical(call, physical);

@@ -29,21 +29,15 @@ path::PiecewisePower measured_power_profile(const mechanical::PhasePower& measur
     return pieces;
 }
 
-MissionSetup nominal_mission(const MissionSetup& stated, const mechanical::MechanicalModel& model,
-                             const std::optional<PerPhase<double>>& flown_s) {
+MissionSetup nominal_mission(const MissionSetup& stated, const mechanical::MechanicalModel& model) {
     auto known = stated;
     known.mechanical = model;
     known.cruise_level.reset();
     known.cruise_path.reset();
     known.power_model.reset();
     for (const auto phase : all_phases) {
-        if (stated.duration_s[phase] == 0.0) continue;
-        if (flown_s) {
-            known.duration_s[phase] = (*flown_s)[phase];
-            known.duration_is_stated[phase] = true;
-        } else if (!stated.duration_is_stated[phase]) {
-            known.duration_s[phase] = model.phases[phase].duration_s;
-        }
+        if (stated.duration_s[phase] == 0.0 || stated.duration_is_stated[phase]) continue;
+        known.duration_s[phase] = model.phases[phase].duration_s;
     }
     return known;
 }

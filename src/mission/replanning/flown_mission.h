@@ -10,10 +10,8 @@ namespace flightwatt::mission {
 path::PiecewisePower measured_power_profile(const mechanical::PhasePower& measured);
 
 /// What is known of a mission before a flight: the mission with another mechanical model. Conditions and path are
-/// dropped. Phases whose duration the mission does not state take as long as the model's; with `flown_s` the phases
-/// that are flown take that long.
-MissionSetup nominal_mission(const MissionSetup& stated, const mechanical::MechanicalModel& model,
-                             const std::optional<PerPhase<double>>& flown_s);
+/// dropped. Phases whose duration the mission does not state take as long as the model's.
+MissionSetup nominal_mission(const MissionSetup& stated, const mechanical::MechanicalModel& model);
 
 /// The mission as a flight was: with its power and its durations. The flight must have every phase that is flown.
 MissionSetup measured_mission(const MissionSetup& known, const mechanical::MeasuredFlight& flight);

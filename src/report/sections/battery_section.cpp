@@ -70,8 +70,8 @@ std::string rests_on(const ReportBattery& battery) {
         units::mv_from_v(battery.identified->fit.rms_v));
     if (battery.records.size() < battery.usable) {
         text += fmt::format(
-            " They are spread evenly among the {} that could be used: --max-battery-flights "
-            "limits them, because the work grows with their square.",
+            " They are spread evenly among the {} that could be used, because the work grows with "
+            "their square.",
             battery.usable);
     }
     return text;
@@ -145,8 +145,7 @@ ReportBattery identify_with(std::span<const ReportFlight> flights, const battery
     battery.usable = battery.records.size();
     battery.records = spread_evenly(std::move(battery.records), most);
     if (battery.records.empty()) {
-        battery.no_result_reason = battery.usable == 0 ? "no flight has a voltage and a current to identify it from"
-                                                       : "--max-battery-flights is 0";
+        battery.no_result_reason = "no flight has a voltage and a current to identify it from";
         return battery;
     }
     try {
