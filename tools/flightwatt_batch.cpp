@@ -309,11 +309,6 @@ batch::BatchPlan make_plan(const cli::StageCall& call, batch::BatchOptions& opti
 }
 
 void tell_plan(const cli::StageCall& call, const batch::BatchPlan& plan) {
-    if (plan.earlier.is_of_earlier_version) {
-        cli::note(call, fmt::format("{} has no {}: taken for the folder of an earlier version, whose records say that "
-                                    "{} flights in it are the batch's",
-                                    *call.output, batch::manifest_name, plan.earlier.flights.size()));
-    }
     for (const auto& dropped : plan.dropped) {
         cli::note(call, fmt::format("dropped: {}, {}", dropped.flight, dropped.reason));
     }

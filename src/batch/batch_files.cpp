@@ -90,8 +90,8 @@ StoredFlight read_recorded(const std::filesystem::path& out, const LogFile& list
 std::vector<StoredFlight> read_stored(const std::filesystem::path& out, bool with_series) {
     const auto folder = out / "flights";
     std::error_code none;
-    if (!std::filesystem::is_directory(folder, none)) {
-        throw InputError({out.string()}, "this is no folder of flightwatt batch: there is no flights/ in it",
+    if (!std::filesystem::exists(out / manifest_name, none)) {
+        throw InputError({out.string()}, "this is no folder of flightwatt batch: there is no batch.json in it",
                          fmt::format("make it with: flightwatt batch LOGS -o {}", out.string()));
     }
     register_input(out / manifest_name);

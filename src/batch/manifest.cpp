@@ -64,53 +64,6 @@ bool is_there(const std::filesystem::path& path) {
     return std::filesystem::exists(path, unknown);
 }
 
-bool begins_with(const std::filesystem::path& file, std::string_view beginning) {
-    std::error_code none;
-    return std::filesystem::is_regular_file(file, none) && read_file(file).starts_with(beginning);
-}
-
-std::vector<std::string> file_names(const std::filesystem::path& folder) {
-    std::vector<std::string> names;
-    std::error_code none;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
-        names.push_back(entry.path().filename().string());
-    }
-    std::sort(names.begin(), names.end());
-    return names;
-}
-
-/// The flight of a record of any version; std::nullopt for another program's file.
-std::optional<LogFile> flight_of_record(const std::filesystem::path& file, const std::string& name) {
-    try {
-        const auto json = ManifestJson::parse(read_file(file));
-        for (const auto* key : {"flight", "fingerprint", "accepted", "measured"})
-            if (!json.contains(key)) return std::nullopt;
-        const std::string log = json.at("log");
-        LogFile flight{log, name, json.value("why_not_fitted", "")};
-        flight.place = canonical_path(log);
-        return flight;
-    } catch (const InputError&) {
-        return std::nullopt;
-    } catch (const ManifestJson::exception&) {
-        return std::nullopt;
-    }
-}
-
-/// Before there was a batch.json, records told what a batch had written.
-Manifest manifest_of_records(const std::filesystem::path& out) {
-    Manifest manifest;
-    for (const auto& name : recorded_flights(out / "flights")) {
-        auto flight = flight_of_record(result_path(out, name, record_suffix), name);
-        if (flight) manifest.flights.push_back(*std::move(flight));
-    }
-    manifest.is_of_earlier_version = !manifest.flights.empty();
-    if (manifest.is_of_earlier_version && begins_with(out / catalogue_name, "flight,sortie,phase,")) {
-        manifest.files.insert(catalogue_name);
-        manifest.files.insert(model_names.begin(), model_names.end());
-    }
-    return manifest;
-}
-
 /// Names this run's logs. Returns the names of the earlier flights that are among them.
 std::unordered_set<std::string_view> name_logs(std::vector<LogFile>& logs, const std::vector<LogFile>& earlier,
                                                bool prune) {
@@ -223,16 +176,6 @@ std::filesystem::path result_path(const std::filesystem::path& out, std::string_
     return out / "flights" / (std::string(flight) + ending);
 }
 
-std::vector<std::string> recorded_flights(const std::filesystem::path& folder) {
-    std::vector<std::string> flights;
-    for (const auto& file : file_names(folder)) {
-        if (file.ends_with(record_suffix)) {
-            flights.push_back(file.substr(0, file.size() - std::string_view(record_suffix).size()));
-        }
-    }
-    return flights;
-}
-
 void remove_results(const std::filesystem::path& out, const std::string& flight) {
     std::error_code ignored;
     for (const auto* ending : result_suffixes) std::filesystem::remove(result_path(out, flight, ending), ignored);
@@ -242,11 +185,7 @@ Manifest read_manifest(const std::filesystem::path& out) {
     const OverwriteExemption own;
     const auto file = out / manifest_name;
     std::error_code none;
-    if (std::filesystem::symlink_status(file, none).type() == std::filesystem::file_type::not_found) {
-        return manifest_of_records(out);
-    }
-    const std::string hint =
-        "choose another folder with -o; if a batch made this one, remove that file: its records then say what is its";
+    if (std::filesystem::symlink_status(file, none).type() == std::filesystem::file_type::not_found) return {};
     try {
         Manifest manifest;
         const auto json = parse_json(read_file(file));
@@ -266,7 +205,8 @@ Manifest read_manifest(const std::filesystem::path& out) {
     } catch (const InputError&) {
         throw;
     } catch (const std::exception&) {
-        throw InputError({file.string()}, "this is no list of what a batch wrote, or it is damaged", hint);
+        throw InputError({file.string()}, "this is no list of what a batch wrote, or it is damaged",
+                         "choose another folder with -o");
     }
 }
 

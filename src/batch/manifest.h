@@ -36,9 +36,6 @@ inline constexpr std::array model_names{model_name,     model_errors_name, fit_n
 /// Where one of these stands: OUT/flights/NAME.series.csv, ...
 std::filesystem::path result_path(const std::filesystem::path& out, std::string_view flight, const char* ending);
 
-/// The flights that have a record in the folder OUT/flights, by name.
-std::vector<std::string> recorded_flights(const std::filesystem::path& folder);
-
 /// Removes what a batch wrote of a flight.
 void remove_results(const std::filesystem::path& out, const std::string& flight);
 
@@ -47,13 +44,12 @@ void remove_results(const std::filesystem::path& out, const std::string& flight)
 nlohmann::ordered_json parse_json(const std::string& text);
 
 struct Manifest {
-    std::set<std::string> files;         ///< in OUT itself
-    std::vector<LogFile> flights;        ///< whose files are the batch's, by name
-    bool is_of_earlier_version = false;  ///< there is none: it was made up from the records
+    std::set<std::string> files;   ///< in OUT itself
+    std::vector<LogFile> flights;  ///< whose files are the batch's, by name
 };
 
-/// OUT/batch.json; where there is none, what records of an earlier version stand for (nothing in an empty or new
-/// folder). Throws InputError where batch.json is damaged, another program's, or of a newer format.
+/// OUT/batch.json; nothing where there is none. Throws InputError where it is damaged, another program's, or of a newer
+/// format.
 Manifest read_manifest(const std::filesystem::path& out);
 
 void write_manifest(const Manifest& manifest, const std::filesystem::path& out);

@@ -29,8 +29,8 @@ struct ListedFlight {
 /// The flights of one batch. Throws InputError for what is no batch's folder, or of one that was not finished.
 std::vector<ListedFlight> flights_of(const std::filesystem::path& batch) {
     std::error_code none;
-    if (!std::filesystem::is_directory(batch / "flights", none)) {
-        throw InputError({batch.string()}, "this is no folder of flightwatt batch: there is no flights/ in it",
+    if (!std::filesystem::exists(batch / manifest_name, none)) {
+        throw InputError({batch.string()}, "this is no folder of flightwatt batch: there is no batch.json in it",
                          "make it with: flightwatt batch LOGS --no-fit -o FOLDER");
     }
     std::vector<ListedFlight> flights;

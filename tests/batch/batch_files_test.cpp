@@ -40,7 +40,8 @@ TEST(StoredFlights, AreWhatTheBatchLeft) {
 
 TEST(StoredFlights, RefuseWhatIsNoBatchFolder) {
     const auto scratch = test::scratch_dir();
-    EXPECT_THAT(test::rejected([&] { read_stored_flights(scratch); }), HasSubstr("no flights/ in it"));
+    EXPECT_THAT(test::rejected([&] { read_stored_flights(scratch); }), HasSubstr("no batch.json in it"));
+    write_manifest({}, scratch);
     make_directories(scratch / "flights");
     EXPECT_THAT(test::rejected([&] { read_stored_flights(scratch); }), HasSubstr("no record of a flight"));
     test::write_text(scratch / "flights" / "a.record.json", "{}");

@@ -58,7 +58,6 @@ TEST(Manifest, HoldsAnyName) {
     EXPECT_EQ(read.flights[1].why_not_fitted, "why");
     EXPECT_EQ(read.flights[1].place, "/a");
     EXPECT_TRUE(nlohmann::json::parse(read_file(out / manifest_name)).at("flights").is_array());
-    EXPECT_FALSE(read.is_of_earlier_version);
 }
 
 TEST(Manifest, IsRefusedWhereItIsNone) {
@@ -94,24 +93,6 @@ TEST(Manifest, PassesOverWhatALaterVersionAdds) {
     const auto flights = read_manifest(out).flights;
     ASSERT_EQ(flights.size(), 1U);
     EXPECT_EQ(flights[0].flight, "x");
-}
-
-TEST(Manifest, IsMadeOfTheRecordsOfAnEarlierVersion) {
-    const auto out = test::scratch_dir();
-    make_directories(out / "flights");
-    write_text(out / "flights" / "a.record.json",
-               R"({"flight": "a", "log": "in/a.data", "fingerprint": "", "accepted": true, "measured": {}})");
-    write_text(out / "flights" / "mine.record.json", R"({"flight": "mine"})");
-    write_text(out / "flights" / "rubbish.record.json", "rubbish");
-    write_text(out / "flights.csv", "flight,sortie,phase,start_s\n");
-    auto manifest = read_manifest(out);
-    EXPECT_TRUE(manifest.is_of_earlier_version);
-    ASSERT_EQ(manifest.flights.size(), 1U);
-    EXPECT_EQ(manifest.flights[0].flight, "a");
-    EXPECT_EQ(manifest.flights[0].place, canonical_path("in/a.data"));
-    EXPECT_TRUE(manifest.files.contains("model.toml"));
-    write_text(out / "flights.csv", "my own list\n");
-    EXPECT_THAT(read_manifest(out).files, IsEmpty());
 }
 
 TEST(BatchPlan, RefusesFilesOfOthersWhereABatchWrites) {

@@ -143,9 +143,7 @@ void add_flights_of_batch(const StageCall& call, std::vector<SeriesFile> of_batc
     }
 }
 
-bool is_of_batch(const std::filesystem::path& folder) {
-    return std::filesystem::exists(folder / batch::manifest_name) || std::filesystem::is_directory(folder / "flights");
-}
+bool is_of_batch(const std::filesystem::path& folder) { return std::filesystem::exists(folder / batch::manifest_name); }
 
 void add_logs_of_folder(const StageCall& call, const std::string& folder, const flight::LoadOptions& options,
                         std::vector<std::string>& files) {
