@@ -31,13 +31,6 @@ mechanical::ModelFitOptions read_options(const cli::StageCall& call) {
     const auto loss = mechanical::loss_from(name);
     if (!loss) throw UsageError(fmt::format("--loss {}: expected none or huber", name));
     options.phases.loss = *loss;
-    if (const auto covariate = call.get_optional<std::string>("level-covariate")) {
-        options.level_covariate = mechanical::covariate_from(*covariate);
-        if (!options.level_covariate) {
-            throw UsageError(
-                fmt::format("--level-covariate {}: expected one of {}", *covariate, mechanical::covariate_names()));
-        }
-    }
     return options;
 }
 
@@ -133,6 +126,7 @@ frequency for all flights, averaged over the flights with weights. The model goe
 as TOML; with -o it goes to the file and Table I is shown.)" +
             std::string(cli::several_flights_text)};
     stage.shows_table = true;
+    stage.removed_options = {{"--level-covariate", "fit by airspeed and climb instead: --model physical"}};
     add_fit_options(stage.options, cli::AutoOrder::accepted);
     cli::add_model_option(stage.options, cli::ModelKind::fourier);
     auto add = stage.options.add_options();
@@ -147,9 +141,6 @@ as TOML; with -o it goes to the file and Table I is shown.)" +
     add("intervals", "Table I with 95 % intervals; implies --errors");
     add("curves", cli::output_file("FILE.csv"),
         "write the curves with their band and the flights' envelope; implies --errors");
-    add("level-covariate", cli::value("NAME"),
-        "let the cruise level follow what 'flightwatt validate --covariate all' found to predict it: "
-        "airspeed_m_per_s, height_m, wind_m_per_s ...; a mission then states it in [conditions]");
     add("loss", cli::value("HOW")->default_value("none"), "none or huber: how outliers count in the last refinement");
     cli::add_choice_options(stage.options);
     cli::add_mix_option(stage.options);

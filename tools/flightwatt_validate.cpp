@@ -8,13 +8,11 @@
 #include "cli/stage.h"
 #include "cli/terminal.h"
 #include "flight/selected_track.h"
-#include "mechanical/covariates.h"
 #include "mechanical/measured_flight.h"
 #include "stages.h"
 
 #include <algorithm>
 
-#include <boost/algorithm/string/split.hpp>
 #include <fmt/format.h>
 
 namespace {
@@ -57,44 +55,22 @@ std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call,
     });
 }
 
-/// --covariate NAME[,NAME] or all.
-std::vector<mechanical::Covariate> read_covariates(const cli::StageCall& call) {
-    const auto text = call.get_optional<std::string>("covariate");
-    if (!text) return {};
-    if (call.has("until")) throw UsageError("--covariate is for predictions before the flight: give it or --until");
-    if (*text == "all") return {mechanical::all_covariates.begin(), mechanical::all_covariates.end()};
-    std::vector<std::string> names;
-    boost::algorithm::split(names, *text, [](char c) { return c == ','; });
-    std::vector<mechanical::Covariate> covariates;
-    for (const auto& name : names) {
-        const auto covariate = mechanical::covariate_from(name);
-        if (!covariate) {
-            throw UsageError(fmt::format("--covariate {}: expected all, {}", name, mechanical::covariate_names()));
-        }
-        if (std::ranges::find(covariates, *covariate) == covariates.end()) covariates.push_back(*covariate);
-    }
-    return covariates;
-}
-
 std::vector<mechanical::ValidatedFlight> validate(const std::vector<mechanical::MeasuredFlight>& flights,
-                                                  const mechanical::ModelFitOptions& options,
-                                                  const std::vector<mechanical::Covariate>& covariates,
-                                                  std::size_t folds) {
+                                                  const mechanical::ModelFitOptions& options, std::size_t folds) {
     cli::ProgressBar fitting("fits");
-    return leave_one_out(flights, options, covariates, fitting.callback(), folds);
+    return leave_one_out(flights, options, fitting.callback(), folds);
 }
 
 int validate_flights(const cli::StageCall& call) {
     const auto options = read_fit_options(call);
     const auto until_s = cli::positive_option(call, "until", "s since lift-off");
-    const auto covariates = read_covariates(call);
     const auto folds = cli::count_option(call, "folds", 2);
     const auto flights = read_flights(call, mechanical::min_samples(options.phases.order));
     cli::note_folds(call, flights.size(), folds);
-    auto validated = validate(flights, options, covariates, folds);
-    for (const auto& rejected : remove_rejected(validated)) cli::note(call, rejected);
+    auto validated = validate(flights, options, folds);
+    if (const auto rejected = remove_rejected(validated); !rejected.empty()) cli::note(call, rejected);
     const auto screen = call.output ? cli::Screen() : screen_of(call);
-    cli::write_result(call, cli::validation_text(validated, covariates, until_s.has_value(), screen));
+    cli::write_result(call, cli::validation_text(validated, until_s.has_value(), screen));
     if (call.json) {
         auto json = cli::scores_json(validated);
         json["folds"] = std::min(flights.size(), folds);
@@ -113,30 +89,23 @@ from their durations alone; then compares with the integral of the power that wa
   fourier         the Fourier series of this project
   constant_mean   the other flights' mean power in the phase
   nearest_flight  the mean power of the one flight whose durations are nearest
-  airspeed_cubed  cruise power proportional to the mean cube of the airspeed that was flown, as if it
-                  had been known before; where flights measured it
   physical        power from the airspeed and climb that were flown, as if they had been known before
                   (flightwatt fit --model physical); where flights measured them
 With --until S: S seconds after its lift-off a flight has measured its energy up to then; the rest of
 the cruise and the landing are predicted, by the models above as before the flight, and by
   in_flight           the cruise level shrunk between model and flight (see flightwatt predict)
   in_flight_constant  the same about the model's mean power
-  in_flight_airspeed  the same about the power that the airspeed so far and the others' later airspeed
-                      let expect
   in_flight_path      the physical model at this flight's own level, on the airspeed and climb of the
                       rest as they were flown, as if they had been known
 Errors in percent are parts of the phase's measured energy, the flown part included; none for landing,
-whose power is near zero. Bias is predicted less measured. airspeed_cubed and physical are rejected, and not
-shown, where the mean power predicts better.)" +
+whose power is near zero. Bias is predicted less measured. physical is rejected, and not shown,
+where the mean power predicts better.)" +
             std::string(cli::several_flights_text)};
     stage.shows_table = true;
+    stage.removed_options = {{"--covariate", "'physical' predicts by airspeed and climb, where they were measured"}};
     cli::add_fit_options(stage.options);
     auto add = stage.options.add_options();
     add("until", cli::value<double>("S"), "validate the prediction in flight, S seconds after lift-off");
-    add("covariate", cli::value("NAME[,NAME]"),
-        "also predict the cruise by what is known before the flight (height_m, initial_voltage_v, "
-        "time_to_cruise_s) or in the first 60 s of the cruise (wind_m_per_s, airspeed_m_per_s, "
-        "ground_speed_m_per_s, airspeed_cubed_m3_per_s3), or all: one further model by_NAME each");
     cli::add_folds_option(stage.options, mechanical::max_validation_folds);
     cli::add_mix_option(stage.options);
     cli::add_flight_options(stage.options);

@@ -123,7 +123,6 @@ std::string text_of(const mechanical::ModelFitOptions& options) {
     auto json = options_json(options);
     json["name"] = options.name;
     json["loss"] = to_string(options.phases.loss);
-    json["level"] = options.level_covariate ? to_string(*options.level_covariate) : "";
     for (const auto phase : flight::all_phases) json[std::string(to_string(phase))] = options.order(phase);
     return json.dump();
 }

@@ -48,9 +48,6 @@ template <typename Flight, typename Samples, typename Visit>
 void visit_measured_phase(Flight& flight, flight::Phase phase, Samples& samples, const Visit& visit) {
     visit("duration_s", samples.duration_s);
     visit("start_s", samples.start_s);
-    visit("airspeed_cubed_m3_per_s3", samples.airspeed_cubed_m3_per_s3);
-    visit("airspeed_cubed_parts_m3_per_s3", samples.airspeed_cubed_parts);
-    visit("covariates", samples.covariates);
     visit("edge_samples", samples.edge_samples);
     visit("energy_wh", flight.energy_wh[phase]);
     visit("counter_energy_wh", flight.counter_energy_wh[phase]);
@@ -149,13 +146,6 @@ struct RecordWriter {
         return value ? json_of(*value) : Json();
     }
     static Json json_of(flight::Phase phase) { return to_string(phase); }
-    static Json json_of(const mechanical::Covariates& covariates) {
-        Json json = Json::object();
-        for (const auto covariate : mechanical::all_covariates) {
-            if (const auto& value = covariates[covariate]) json[std::string(to_string(covariate))] = *value;
-        }
-        return json;
-    }
     static Json json_of(const mechanical::MeasuredFlights& measured) {
         Json flights = Json::array();
         for (std::size_t i = 0; i < measured.flights.size(); ++i) {
@@ -188,7 +178,7 @@ T whole(const Json& json) {
 }
 
 /// Reads what it visits from an object. Throws what nlohmann::json throws, or std::bad_optional_access for a
-/// phase or covariate that there is none of.
+/// phase that there is none of.
 struct RecordReader {
     const Json& json;
 
@@ -214,11 +204,6 @@ struct RecordReader {
     }
     static void read(const Json& json, flight::Phase& phase) {
         phase = flight::phase_from(json.get<std::string>()).value();
-    }
-    static void read(const Json& json, mechanical::Covariates& covariates) {
-        for (const auto& [name, value] : json.items()) {
-            covariates[mechanical::covariate_from(name).value()] = value.get<double>();
-        }
     }
     template <HasFields T>
     static void read(const Json& json, std::vector<T>& records) {

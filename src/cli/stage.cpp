@@ -97,7 +97,11 @@ void close_standard_output() {
     if (std::fclose(stdout) != 0) cannot_print();
 }
 
-[[noreturn]] void refuse_option(const po::unknown_option& error, const po::options_description& known) {
+[[noreturn]] void refuse_option(const po::unknown_option& error, const StageDefinition& definition,
+                                const po::options_description& known) {
+    if (const auto removed = definition.removed_options.find(error.get_option_name());
+        removed != definition.removed_options.end())
+        throw UsageError(fmt::format("{} was removed: {}", removed->first, removed->second));
     std::vector<std::string> names;
     for (const auto& option : known.options()) names.push_back("--" + option->long_name());
     const auto near = nearest_word(error.get_option_name(), names);
@@ -149,7 +153,7 @@ StageCall parse(int argc, char** argv, const StageDefinition& definition, const 
         auto parser = po::command_line_parser(argc, argv).options(all).positional(positional).style(style);
         po::store(parser.run(), call.options);
     } catch (const po::unknown_option& error) {
-        refuse_option(error, visible);
+        refuse_option(error, definition, visible);
     }
     po::notify(call.options);
     call.json = call.has("json");

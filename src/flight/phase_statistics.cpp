@@ -23,25 +23,6 @@ double integrated_energy_wh(const Track& power_w, double start_s, double end_s) 
     return units::wh_from_joule(integrated(power_w.time_s, power_w.value, start_s, end_s));
 }
 
-std::optional<double> mean_cubed_airspeed_m3_per_s3(const Track& airspeed, double start_s, double end_s) {
-    constexpr double reach_s = 5.0;
-    const auto& time_s = airspeed.time_s;
-    double sum = 0.0;
-    double covered_s = 0.0;
-    double covered_until_s = start_s;
-    std::size_t count = 0;
-    for (auto i = first_at_or_after(time_s, start_s); i < time_s.size() && time_s[i] <= end_s; ++i) {
-        const double speed = airspeed.value[i];
-        sum += speed * speed * speed;
-        ++count;
-        const double until_s = std::min(time_s[i] + reach_s, end_s);
-        covered_s += until_s - std::max(covered_until_s, std::max(time_s[i] - reach_s, start_s));
-        covered_until_s = until_s;
-    }
-    if (count == 0 || covered_s < 0.5 * (end_s - start_s)) return std::nullopt;
-    return sum / static_cast<double>(count);
-}
-
 PowerStatistics::PowerStatistics(const FlightSeries& series)
     : power_(power_track(series)),
       counter_wh_(sample_selected_track(series, "energy_wh", power_.time_s)),

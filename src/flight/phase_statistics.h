@@ -38,8 +38,4 @@ double integrated_energy_wh(const FlightSeries& series, double start_s, double e
 /// The same of its power track.
 double integrated_energy_wh(const Track& power_w, double start_s, double end_s);
 
-/// The mean of airspeed^3 [m^3/s^3] of the samples in [start_s, end_s]: gusts count, as they do for drag.
-/// std::nullopt if fewer than half of the seconds between have a sample within 5 s.
-std::optional<double> mean_cubed_airspeed_m3_per_s3(const Track& airspeed, double start_s, double end_s);
-
 }  // namespace flightwatt::flight

@@ -12,28 +12,7 @@
 namespace flightwatt::live {
 namespace {
 
-using mechanical::CruisePrior;
 using mechanical::FlightProgress;
-
-/// The level law where the model has one and the flight tells its covariate.
-CruisePrior automatic_source(const mechanical::PhaseModel& cruise, const FlightProgress& flown, Diagnostics& remarks) {
-    if (!cruise.level_law) return CruisePrior::curve;
-    const auto covariate = cruise.level_law->covariate;
-    if (flown.covariates[covariate]) return CruisePrior::covariate;
-    remarks.warnings.push_back(fmt::format(
-        "the model's level follows {}, which this flight does not tell: expected by the curve", to_string(covariate)));
-    return CruisePrior::curve;
-}
-
-/// What a law says beyond its flights is told, not refused: the flight is as it is.
-void warn_of_reach(const mechanical::PhaseModel& cruise, const FlightProgress& flown, Diagnostics& remarks) {
-    const auto& law = cruise.level_law.value();
-    const double value = flown.covariates[law.covariate].value();
-    if (predict_mean_power(law, value).within_flights) return;
-    remarks.warnings.push_back(fmt::format(
-        "{} = {:.4g} is beyond what the model's flights showed, {:.4g} to {:.4g}{}", to_string(law.covariate), value,
-        law.least, law.most, law.covariate == mechanical::Covariate::airspeed_cubed ? "" : ": taken as the nearest"));
-}
 
 /// A motion that the model's flights did not fly.
 void warn_of_motion(const mechanical::PhysicalModel& model, const mechanical::FlightState& motion,
@@ -125,16 +104,6 @@ mechanical::RemainingCruise predict_along(const PredictionInput& basis, const Fl
     return rest.cruise;
 }
 
-/// The cruise by the model's curve or laws.
-mechanical::RemainingCruise predict_level(const PredictionInput& basis, const FlightProgress& flown, double remaining_s,
-                                          Diagnostics& remarks) {
-    const auto& cruise = basis.model.phases[flight::Phase::cruise];
-    const auto source = basis.level ? *basis.level : automatic_source(cruise, flown, remarks);
-    auto rest = predict_remaining_cruise(forecast_of(basis.model, flight::Phase::cruise), flown, remaining_s, source);
-    if (source == CruisePrior::covariate) warn_of_reach(cruise, flown, remarks);
-    return rest;
-}
-
 mechanical::RemainingCruise predict_cruise(const PredictionInput& basis, const FlightProgress& flown,
                                            const std::optional<path::PathFix>& sighting, Prediction& prediction,
                                            Diagnostics& remarks) {
@@ -150,7 +119,9 @@ mechanical::RemainingCruise predict_cruise(const PredictionInput& basis, const F
                         "is not known (--remaining says it)",
                         -prediction.remaining_s, *basis.cruise_s));
     }
-    if (!basis.motion) return predict_level(basis, flown, prediction.remaining_s, remarks);
+    if (!basis.motion)
+        return predict_remaining_cruise(forecast_of(basis.model, flight::Phase::cruise), flown, prediction.remaining_s,
+                                        basis.level.value_or(mechanical::CruisePrior::curve));
     const auto& model = basis.model.physical.value();
     warn_of_motion(model, *basis.motion, remarks);
     return predict_remaining_physical(model, flown, {term_values(*basis.motion), prediction.remaining_s});
@@ -190,7 +161,6 @@ PredictionInput basis_of(const mission::MissionSetup& setup) {
     basis.limits = {setup.cutoff_voltage_v, setup.reserve_soc_percent};
     if (setup.cruise_path) {
         basis.path = std::make_shared<const path::PathForecast>(*setup.cruise_path->plan);
-        basis.model.physical = basis.path->plan().power;  // where the model has but a law of airspeed, that
     } else {
         basis.cruise_s = setup.duration_s[flight::Phase::cruise];
     }

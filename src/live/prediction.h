@@ -20,7 +20,7 @@ namespace flightwatt::live {
 /// What a prediction rests on beside the flight.
 struct PredictionInput {
     mechanical::MechanicalModel model;
-    std::optional<mechanical::CruisePrior> level = {};  ///< none: the level law where there is one, else the curve
+    std::optional<mechanical::CruisePrior> level = {};  ///< none: the curve
     double landing_s = 0.0;
     std::optional<double> remaining_s = {};  ///< of the cruise, from the moment on, whatever was flown
     std::optional<double> cruise_s = {};     ///< else: what is left of so long; none: what is left of the path
@@ -50,7 +50,7 @@ struct Prediction {
     std::optional<double> on_path_s = {};  ///< where on its path the flight is, in the path's planned time
     bool is_from_position = false;         ///< there, by its positions; else by the time
     double remaining_s = 0.0;
-    bool uses_physical_model = false;  ///< the cruise, by airspeed and climb; else by the curve or a law
+    bool uses_physical_model = false;  ///< the cruise, by airspeed and climb; else by the curve
     mechanical::RemainingCruise cruise;
     std::vector<battery::ConstantLoad> remaining_power = {};  ///< the cruise's course along a path; empty: even
     mechanical::EnergyEstimate landing;

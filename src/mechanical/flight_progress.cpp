@@ -108,9 +108,6 @@ FlightProgress progress_of(const flight::SelectedTracks& known, const flight::So
     const auto& power = known["power_w"];
     flown.cruise_energy_wh = integrated_energy_wh(power, flown.cruise_start_s, until_s);
     flown.energy_wh = integrated_energy_wh(power, flown.lift_off_s, flown.cruise_start_s) + flown.cruise_energy_wh;
-    flown.airspeed_cubed_m3_per_s3 =
-        mean_cubed_airspeed_m3_per_s3(known["airspeed_m_per_s"], flown.cruise_start_s, until_s);
-    flown.covariates = covariates_of(known, *sortie);
     flown.motion = bin_flight(known, {{flight::Phase::takeoff, flown.lift_off_s, flown.cruise_start_s},
                                       {flight::Phase::cruise, flown.cruise_start_s, until_s}});
     return flown;

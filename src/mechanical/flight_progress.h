@@ -3,7 +3,6 @@
 #include "flight/flight_series.h"
 #include "flight/segmentation.h"
 #include "flight/selected_track.h"
-#include "mechanical/covariates.h"
 #include "mechanical/flight_bins.h"
 
 #include <cstddef>
@@ -18,9 +17,7 @@ struct FlightProgress {
     double until_s = 0.0;
     double energy_wh = 0.0;  ///< measured from lift-off until now
     double cruise_energy_wh = 0.0;
-    std::optional<double> airspeed_cubed_m3_per_s3;  ///< mean over the cruise so far
-    Covariates covariates;                           ///< covariates_of what was known
-    BinnedFlight motion = {};                        ///< until now
+    BinnedFlight motion = {};  ///< until now
     double cruise_s() const { return until_s - cruise_start_s; }
 };
 

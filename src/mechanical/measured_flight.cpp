@@ -3,7 +3,6 @@
 #include "base/piecewise_linear.h"
 #include "flight/phase_statistics.h"
 #include "flight/selected_track.h"
-#include "mechanical/covariates.h"
 #include "mechanical/phase_samples.h"
 
 #include <algorithm>
@@ -43,18 +42,6 @@ PhaseSamples samples_of(const flight::Track& power, const flight::PhaseSpan& spa
         samples.power_w.push_back(power.value[i]);
     }
     return samples;
-}
-
-std::vector<double> airspeed_cubed_parts(const flight::Track& airspeed, const flight::PhaseSpan& span) {
-    std::vector<double> parts;
-    const double part_s = (span.end.time_s - span.start.time_s) / static_cast<double>(airspeed_parts);
-    for (std::size_t i = 0; i < airspeed_parts; ++i) {
-        const double start_s = span.start.time_s + static_cast<double>(i) * part_s;
-        const auto cubed = mean_cubed_airspeed_m3_per_s3(airspeed, start_s, start_s + part_s);
-        if (!cubed) return {};
-        parts.push_back(*cubed);
-    }
-    return parts;
 }
 
 PhasePower power_over(const flight::Track& power, const flight::PhaseSpan& span, flight::PhaseStatistics statistics) {
@@ -106,12 +93,6 @@ MeasuredFlights extract_flights(const flight::FlightSeries& series, const flight
             if (!why.empty()) {
                 measured.exclusions.push_back({flight.samples.flight, span.phase, std::move(why)});
                 continue;
-            }
-            samples.airspeed_cubed_m3_per_s3 =
-                mean_cubed_airspeed_m3_per_s3(tracks["airspeed_m_per_s"], start_s, span.end.time_s);
-            if (span.phase == flight::Phase::cruise) {
-                samples.covariates = covariates_of(tracks, sortie);
-                samples.airspeed_cubed_parts = airspeed_cubed_parts(tracks["airspeed_m_per_s"], span);
             }
             flight.energy_wh[span.phase] = statistics.energy_wh;
             flight.counter_energy_wh[span.phase] = statistics.counter_energy_wh;

@@ -2,7 +2,6 @@
 
 #include "base/statistics.h"
 #include "flight/flight_phases.h"
-#include "mechanical/covariates.h"
 #include "mechanical/physical_model.h"
 
 #include <filesystem>
@@ -89,6 +88,13 @@ struct VarianceComponents {
     double correlation_s = 0.0;        ///< for how long that deviation lasts (exponential correlation)
 };
 
+/// A phase's power as one constant.
+struct ConstantPower {
+    double mean_w = 0.0;
+    std::optional<double> sd_w;  ///< of a flight's mean power about it, its own error included
+    double degrees_of_freedom = 0.0;
+};
+
 struct PhaseModel;
 
 /// The coefficients' intervals: those of its errors, or of files of 0.2 symmetric ones by Student's t. The phase must
@@ -110,11 +116,6 @@ struct PhaseModel {
     std::optional<FlightEnvelope> spread = {};  ///< absent too where a single flight counts
     /// Absent with fewer than 2 flights, or if published without.
     std::optional<VarianceComponents> level_spread = {};
-    std::optional<CovariateRegression> level_law = {};  ///< absent unless it was asked for
-    /// Of airspeed_cubed; absent unless 2 flights or more measured their airspeed.
-    std::optional<CovariateRegression> airspeed_law = {};
-    /// Mean cube of the airspeed in equal parts of the phase, over the flights that measured it in all; may be empty.
-    std::vector<double> airspeed_cubed_parts_m3_per_s3 = {};
 };
 
 /// One flight's part in one phase.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <Eigen/Core>
@@ -132,59 +131,14 @@ void list_variance(TomlFields& fields, VarianceComponents& spread) {
     fields.real("correlation_s", spread.correlation_s, more_than(0.0));
 }
 
-Covariate read_covariate(const TomlTable& table) {
-    const auto name = table.string("covariate");
-    if (const auto covariate = covariate_from(name)) return *covariate;
-    throw InputError(table.where("covariate"), fmt::format("there is no covariate '{}'", name),
-                     fmt::format("it is one of {}", covariate_names()));
-}
-
-void list_level_law(TomlFields& fields, CovariateRegression& law) {
-    const auto* table = fields.source();
-    double residual_sd_w = table != nullptr ? 0.0 : law.residual_sd_w.value();
-    fields.name("covariate", law.covariate, read_covariate);
-    fields.count("flights", law.flights, min_regression_flights(law.covariate));
-    fields.real("mean", law.mean);
-    fields.real("sd", law.sd, more_than(0.0));
-    fields.real("least", law.least);
-    fields.real("most", law.most);
-    fields.real("mean_power_w", law.mean_power_w, more_than(0.0));
-    fields.real("slope_w", law.slope_w);
-    fields.real("residual_sd_w", residual_sd_w, at_least(0.0));
-    law.residual_sd_w = residual_sd_w;
-    if (table == nullptr) return;
-    require_in(between(law.least, law.most), law.mean, "mean", table->where("mean"),
-               "the mean lies between least and most");
-    if (is_through_origin(law.covariate)) require_in(more_than(0.0), law.mean, "mean", table->where("mean"));
-}
-
-void list_airspeed_law(TomlFields& fields, CovariateRegression& law) {
-    list_level_law(fields, law);
-    if (law.covariate == Covariate::airspeed_cubed || fields.source() == nullptr) return;
-    throw InputError(fields.source()->where("covariate"),
-                     fmt::format("an airspeed law of {}", to_string(law.covariate)),
-                     fmt::format("it follows {}", to_string(Covariate::airspeed_cubed)));
-}
-
-/// The airspeed law as FlightWatt 0.1 wrote it, which did not keep its flights' airspeeds.
-CovariateRegression read_airspeed_of_0_1(const TomlTable& table) {
-    const auto flights = count_in(table, "flights", 2);
-    const double coefficient = number_in(more_than(0.0), table, "coefficient_w_s3_per_m3");
-    const double relative_sd = number_in(at_least(0.0), table, "relative_sd");
-    table.refuse_unknown_keys();
-    constexpr double most = std::numeric_limits<double>::max();
-    return {Covariate::airspeed_cubed, flights, 1.0, 1.0, 0.0, most, coefficient, coefficient,
-            coefficient * relative_sd};
-}
-
-void list_airspeed_parts(TomlFields& fields, std::vector<double>& parts) {
-    constexpr std::string_view key = "airspeed_cubed_parts_m3_per_s3";
-    const auto* table = fields.source();
-    if (!fields.has(key, !parts.empty())) return;
-    fields.reals(key, parts);
-    if (table == nullptr) return;
-    if (parts.empty()) throw InputError(table->where(key), fmt::format("{} holds no number", key));
-    for (const double part : parts) require_in(at_least(0.0), part, key, table->where(key));
+/// What earlier versions wrote: a law that was asked for changed predictions, the others served airspeeds that missions
+/// state, which need [physical] now.
+void read_what_was_removed(const TomlTable& phase) {
+    if (phase.is_table("level_law"))
+        throw InputError(phase.where("level_law"), "a level law: cruises follow no covariate any more",
+                         "remove it: the cruise has the flights' average level; or fit by airspeed and climb: "
+                         "flightwatt fit --model physical FLIGHT...");
+    for (const auto* key : {"airspeed", "airspeed_law", "airspeed_cubed_parts_m3_per_s3"}) phase.has(key);
 }
 
 void list_phase(TomlFields& fields, PhaseModel& phase) {
@@ -210,16 +164,12 @@ void list_phase(TomlFields& fields, PhaseModel& phase) {
     if (fields.has("open_frequency", phase.open_frequency)) fields.flag("open_frequency", phase.open_frequency);
     if (fields.has("not_negative", phase.not_negative)) fields.flag("not_negative", phase.not_negative);
     fields.optional_table("level_spread", phase.level_spread, list_variance);
-    fields.optional_table("level_law", phase.level_law, list_level_law);
-    fields.optional_table("airspeed_law", phase.airspeed_law, list_airspeed_law);
-    list_airspeed_parts(fields, phase.airspeed_cubed_parts_m3_per_s3);
+    if (table != nullptr) read_what_was_removed(*table);
     if (phase.errors) fields.line("");
     const auto list_of_order = [order](TomlFields& of, PhaseErrors& errors) { list_errors(of, errors, order); };
     fields.optional_table("errors", phase.errors, list_of_order, TomlLayout::section);
     if (phase.spread) fields.line("");
     fields.optional_table("spread", phase.spread, list_envelope, TomlLayout::section);
-    if (table == nullptr) return;
-    if (const auto old = table->optional_table("airspeed")) phase.airspeed_law = read_airspeed_of_0_1(*old);
 }
 
 void list_contribution(TomlFields& fields, PhaseContribution& part) {
@@ -344,6 +294,7 @@ void list_physical(TomlFields& fields, PhysicalModel& model) {
     fields.real("bin_s", model.bin_s, more_than(0.0));
     fields.count("samples", model.samples);
     fields.real("mean_airspeed_m_per_s", model.mean_airspeed_m_per_s, at_least(0.0));
+    fields.optional_real("cubic_mean_airspeed_m_per_s", model.cubic_mean_airspeed_m_per_s, more_than(0.0));
     fields.table("airspeed_m_per_s", model.airspeed_m_per_s, list_range);
     fields.table("climb_m_per_s", model.climb_m_per_s, list_range);
     fields.optional_table("level", model.level_sd, [&](TomlFields& level, double& sd) {

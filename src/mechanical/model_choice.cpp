@@ -5,7 +5,6 @@
 #include "mechanical/validation.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -18,7 +17,6 @@ namespace {
 constexpr auto mean_model = "constant_mean";
 constexpr auto curve = "fourier";
 constexpr auto physical = "physical";
-constexpr std::array models_of_motion{physical, "airspeed_cubed"};  // they know how the flight was flown
 
 /// The flights that the model predicts as a whole.
 std::vector<ValidatedFlight> predicted_by(std::span<const ValidatedFlight> flights, const std::string& model) {
@@ -60,20 +58,15 @@ std::vector<MeasuredFlight> validated_flights(std::span<const MeasuredFlight> fl
 
 }  // namespace
 
-std::vector<std::string> remove_rejected(std::vector<ValidatedFlight>& flights) {
-    std::vector<std::string> reasons;
-    for (const std::string model : models_of_motion) {
-        const auto predicted = predicted_by(flights, model);
-        const auto own = held_out_score(predicted, model);
-        const auto of_mean = held_out_score(predicted, mean_model);
-        if (!own || !of_mean || own->mean_absolute_error_percent <= of_mean->mean_absolute_error_percent) continue;
-        reasons.push_back(fmt::format("{} is rejected: {:.1f} % off on {} flights left out, the mean power {:.1f} %",
-                                      model, own->mean_absolute_error_percent, own->flights,
-                                      of_mean->mean_absolute_error_percent));
-        for (auto& flight : flights)
-            std::erase_if(flight.predictions, [&](const auto& prediction) { return prediction.model == model; });
-    }
-    return reasons;
+std::string remove_rejected(std::vector<ValidatedFlight>& flights) {
+    const auto predicted = predicted_by(flights, physical);
+    const auto own = held_out_score(predicted, physical);
+    const auto of_mean = held_out_score(predicted, mean_model);
+    if (!own || !of_mean || own->mean_absolute_error_percent <= of_mean->mean_absolute_error_percent) return "";
+    for (auto& flight : flights)
+        std::erase_if(flight.predictions, [](const auto& prediction) { return prediction.model == physical; });
+    return fmt::format("{} is rejected: {:.1f} % off on {} flights left out, the mean power {:.1f} %", physical,
+                       own->mean_absolute_error_percent, own->flights, of_mean->mean_absolute_error_percent);
 }
 
 std::optional<ModelValidation> validation_of(std::vector<ValidatedFlight> flights) {
@@ -83,9 +76,8 @@ std::optional<ModelValidation> validation_of(std::vector<ValidatedFlight> flight
     if (!of_mean || !of_curve) return std::nullopt;
     std::erase_if(flights, [](const auto& flight) { return !predicted_energy(flight, curve, std::nullopt); });
     ModelValidation validation{is_curve_better(flights, *of_curve, *of_mean), {*of_mean, *of_curve}};
-    for (const std::string model : models_of_motion)
-        if (auto score = held_out_score(predicted_by(flights, model), model))
-            validation.scores.push_back(*std::move(score));
+    if (auto score = held_out_score(predicted_by(flights, physical), physical))
+        validation.scores.push_back(*std::move(score));
     return validation;
 }
 
@@ -93,9 +85,7 @@ void add_best_power(MechanicalModel& model, std::span<const MeasuredFlight> flig
                     const std::function<void(std::size_t, std::size_t)>& progress) {
     if (flights.size() < 2 || options.weights.weighting == Weighting::manual) return;
     try {
-        auto plain = options;
-        plain.level_covariate.reset();
-        model.validation = validation_of(leave_one_out(validated_flights(flights), plain, {}, progress));
+        model.validation = validation_of(leave_one_out(validated_flights(flights), options, progress));
         const auto is_physical = [](const auto& score) { return score.model == physical; };
         if (!model.validation || std::ranges::none_of(model.validation->scores, is_physical)) return;
         std::vector<BinnedFlight> motions(flights.size());

@@ -15,7 +15,7 @@ struct Estimate {
     std::optional<Interval> interval;
 };
 
-/// The 95 % interval of b - a from theirs, which need not be symmetric; `correlation` of the two, -1 to 1 (Eq. 45,
+/// The 95 % interval of b - a from theirs, which need not be symmetric; `correlation` of the two, -1 to 1 (Eq. 42,
 /// Zou 2007). std::nullopt where one has none.
 std::optional<Interval> interval_of_difference(const Estimate& a, const Estimate& b, double correlation);
 

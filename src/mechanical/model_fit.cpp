@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/statistics.h"
-#include "mechanical/covariates.h"
 #include "mechanical/fit/flight_variation.h"
 #include "mechanical/fit/flight_weights.h"
 #include "mechanical/fit/fourier_basis.h"
@@ -51,33 +50,6 @@ void refuse_what_is_no_number(flight::Phase phase, const FourierModel& model) {
     if (coefficients_of(model).allFinite()) return;
     throw NoResultError(fmt::format("{}: the fit's coefficients are no numbers; is the power of all samples possible?",
                                     to_string(phase)));
-}
-
-/// A law with the spread that a prediction needs.
-CovariateRegression wanted_law(std::span<const PhaseSamples> flights, Covariate covariate) {
-    const auto law = fit_covariate_regression(flights, covariate);
-    const auto having = law ? law->flights : 0;
-    constexpr std::size_t needed = 3;
-    if (having >= needed) return *law;
-    throw NoResultError(fmt::format(
-        "the cruise level cannot follow {}: {}, expected {} flights or more that have it and differ in it",
-        to_string(covariate),
-        having == 0 ? "fewer than 2 flights tell it, or all tell the same" : fmt::format("{} flights tell it", having),
-        needed));
-}
-
-std::vector<double> mean_airspeed_cubed_parts(std::span<const PhaseSamples> flights) {
-    std::vector<double> sum;
-    std::size_t count = 0;
-    for (const auto& flight : flights) {
-        const auto& parts = flight.airspeed_cubed_parts;
-        if (parts.empty()) continue;
-        if (sum.empty()) sum.assign(parts.size(), 0.0);
-        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += parts[i];
-        ++count;
-    }
-    for (auto& value : sum) value /= static_cast<double>(count);
-    return sum;
 }
 
 /// Without the flights that weights by hand exclude.
@@ -138,11 +110,6 @@ FittedPhase fit_phase_model(flight::Phase phase, std::span<const PhaseSamples> f
     for (const auto& samples : flights) fitted.model.edge_samples += samples.edge_samples;
     refuse_what_is_no_number(phase, fitted.model.fourier);
     fitted.model.level_spread = estimate_variance_components(fitted.model, counted(flights, fitted.weights));
-    if (phase == flight::Phase::cruise) {
-        fitted.model.airspeed_law = fit_covariate_regression(flights, Covariate::airspeed_cubed);
-        fitted.model.airspeed_cubed_parts_m3_per_s3 = mean_airspeed_cubed_parts(flights);
-        if (options.level_covariate) fitted.model.level_law = wanted_law(flights, *options.level_covariate);
-    }
     return fitted;
 }
 

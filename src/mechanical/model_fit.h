@@ -15,7 +15,6 @@ struct ModelFitOptions {
     std::string name = "fitted";  ///< of the model
     PhaseFitOptions phases = {};
     WeightOptions weights = {};
-    std::optional<Covariate> level_covariate = {};     ///< of the cruise: what its level is to follow
     flight::PerPhase<std::optional<int>> orders = {};  ///< where a phase's is to be another than phases.order
 
     int order(flight::Phase phase) const { return orders[phase].value_or(phases.order); }
@@ -28,9 +27,7 @@ struct FittedPhase {
     std::vector<double> weights;  ///< of fit.flights
 };
 
-/// Fits and averages one phase (Eqs. 1, 5-7), with its spread and, for the cruise, its airspeed law and the
-/// level law that was asked for. Throws NoResultError for a level covariate that fewer than 3 flights have,
-/// or that does not differ between them, and what fit_phase and flight_weights throw.
+/// Fits and averages one phase (Eqs. 1, 5-7), with its spread. Throws what fit_phase and flight_weights throw.
 FittedPhase fit_phase_model(flight::Phase phase, std::span<const PhaseSamples> flights,
                             const ModelFitOptions& options = {});
 

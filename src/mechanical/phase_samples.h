@@ -2,7 +2,6 @@
 
 #include "flight/flight_phases.h"
 #include "flight/flight_series.h"
-#include "mechanical/covariates.h"
 
 #include <cstddef>
 #include <memory>
@@ -13,9 +12,6 @@
 
 namespace flightwatt::mechanical {
 
-/// In how many parts of a cruise the airspeed is known, so that a flight in the air knows how others went on.
-inline constexpr std::size_t airspeed_parts = 10;
-
 struct FlightScan;
 
 /// Power over one phase of one flight, on that flight's own normalised time.
@@ -25,11 +21,6 @@ struct PhaseSamples {
     std::vector<double> tau;      ///< (time - begin of phase) / duration_s, in [0, 1]; gaps are allowed
     std::vector<double> power_w;  ///< as long as tau
     double start_s = 0.0;         ///< when the phase began, on the log's own clock
-    /// Mean of the cube of the airspeed measured in the phase; absent without a sensor.
-    std::optional<double> airspeed_cubed_m3_per_s3 = {};
-    /// Of a cruise: the same in each of airspeed_parts equal parts of it; empty unless it was measured in all.
-    std::vector<double> airspeed_cubed_parts = {};
-    Covariates covariates = {};  ///< of the cruise, for a level that follows one
     /// Samples at the phase's ends that are not among these: their power is the neighbouring phase's (count_neighbour_samples).
     std::size_t edge_samples = 0;
     std::shared_ptr<const FlightScan> scan = {};  ///< of these samples, if it is kept for several fits (scan_flight)

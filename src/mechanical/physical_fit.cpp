@@ -85,10 +85,12 @@ void add_value(FlownRange& range, double value, bool first) {
 /// What the model rests on.
 void describe_flights(PhysicalModel& model, std::span<const BinnedFlight> flights) {
     std::vector<double> cruise_speeds;
+    std::vector<double> cruise_cubes;
     double duration_s = 0.0;
     for (const auto& flight : flights) {
         model.flights.push_back(flight.flight);
         double sum = 0.0;
+        double cubes = 0.0;
         double of_cruise_s = 0.0;
         for (const auto& bin : flight.bins) {
             add_value(model.airspeed_m_per_s, bin.airspeed_m_per_s, model.bins == 0);
@@ -98,12 +100,17 @@ void describe_flights(PhysicalModel& model, std::span<const BinnedFlight> flight
             duration_s += bin.duration_s;
             if (bin.phase != flight::Phase::cruise) continue;
             sum += bin.airspeed_m_per_s * bin.duration_s;
+            cubes += bin.values[PowerTerm::drag] * bin.duration_s;
             of_cruise_s += bin.duration_s;
         }
-        if (of_cruise_s > 0.0) cruise_speeds.push_back(sum / of_cruise_s);
+        if (!(of_cruise_s > 0.0)) continue;
+        cruise_speeds.push_back(sum / of_cruise_s);
+        cruise_cubes.push_back(cubes / of_cruise_s);
     }
     model.bin_s = duration_s / static_cast<double>(model.bins);
-    if (!cruise_speeds.empty()) model.mean_airspeed_m_per_s = mean(cruise_speeds);
+    if (cruise_speeds.empty()) return;
+    model.mean_airspeed_m_per_s = mean(cruise_speeds);
+    model.cubic_mean_airspeed_m_per_s = std::cbrt(mean(cruise_cubes));
 }
 
 /// A sum of squares of so many normal numbers differs between flights as their drifts' variances do (2 / v is its

@@ -83,6 +83,8 @@ struct PhysicalModel {
     FlownRange airspeed_m_per_s;  ///< of the bins' means
     FlownRange climb_m_per_s;
     double mean_airspeed_m_per_s = 0.0;  ///< of the flights' cruises, each counting the same
+    /// The root of their mean cube, at which drag takes its mean power; absent in files of 0.2.
+    std::optional<double> cubic_mean_airspeed_m_per_s = {};
 };
 
 /// The power of a motion [W], 0 where the terms sum to less: in a steep descent the motor stands, and gives nothing

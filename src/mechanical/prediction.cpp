@@ -9,8 +9,6 @@
 #include <cmath>
 #include <iterator>
 
-#include <fmt/format.h>
-
 namespace flightwatt::mechanical {
 namespace {
 
@@ -23,7 +21,6 @@ struct Expectation {
     double degrees_of_freedom = 1.0;  ///< of level_sd_w
     double shape_flown_w = 0.0;       ///< what the curve says beyond `measured_w`, where its shape is not believed
     double shape_remaining_w = 0.0;
-    double ahead_sd_w = 0.0;  ///< of what remains alone: an airspeed that is not known yet
 };
 
 Expectation expect_by_curve(const WeightedPhase& cruise, double flown_s, double remaining_s) {
@@ -35,53 +32,6 @@ Expectation expect_by_curve(const WeightedPhase& cruise, double flown_s, double 
             cruise.weight_square_sum, static_cast<double>(spread.flights - 1)};
 }
 
-/// Mean cube of the airspeed of the model's flights from a part of their cruise on; `otherwise` where the model does
-/// not say.
-double later_airspeed_cubed(const PhaseModel& model, double flown_fraction, double otherwise) {
-    const auto& parts = model.airspeed_cubed_parts_m3_per_s3;
-    if (parts.empty()) return otherwise;
-    const auto count = static_cast<double>(parts.size());
-    double sum = 0.0;
-    double weight = 0.0;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        const double ahead = std::clamp(static_cast<double>(i + 1) - flown_fraction * count, 0.0, 1.0);
-        sum += ahead * parts[i];
-        weight += ahead;
-    }
-    return weight > 0.0 ? sum / weight : parts.back();
-}
-
-/// By the airspeed so far, and in what remains by the mean of that and the other flights' later one: all tend to
-/// fly on as they do, and to end as flights end.
-void expect_by_airspeed(Expectation& expected, const PhaseModel& model, const FlightProgress& flown,
-                        double flown_fraction) {
-    if (!model.airspeed_law) {
-        throw NoResultError("the model has no airspeed law: fewer than 2 of its flights measured airspeed");
-    }
-    if (!flown.airspeed_cubed_m3_per_s3) throw NoResultError("the flight has not measured its airspeed");
-    constexpr double own_fraction = 0.5;
-    const auto& law = *model.airspeed_law;
-    const double so_far = *flown.airspeed_cubed_m3_per_s3;
-    const double ahead =
-        own_fraction * so_far + (1.0 - own_fraction) * later_airspeed_cubed(model, flown_fraction, so_far);
-    const auto level = predict_mean_power(law, ahead);
-    expected.flown_w = predict_mean_power(law, so_far).power_w;
-    expected.remaining_w = level.power_w;
-    expected.level_sd_w = level.sd_w.value();
-    expected.weight_square_sum = level.law_variance;
-    expected.degrees_of_freedom = level.degrees_of_freedom;
-    expected.ahead_sd_w = own_fraction * law.slope_w;  // of the others' airspeed, one standard deviation off
-}
-
-/// What the model's level law lets expect of this flight.
-RegressionPrediction level_by_law(const PhaseModel& model, const FlightProgress& flown) {
-    if (!model.level_law) throw NoResultError("the model has no level law: it was fitted without --level-covariate");
-    const auto covariate = model.level_law->covariate;
-    if (const auto& value = flown.covariates[covariate]) return predict_mean_power(*model.level_law, *value);
-    throw NoResultError(
-        fmt::format("the flight does not tell its {}, which the model's level follows", to_string(covariate)));
-}
-
 Expectation expect(const WeightedPhase& cruise, const FlightProgress& flown, double remaining_s, CruisePrior source) {
     const double flown_s = flown.cruise_s();
     auto expected = expect_by_curve(cruise, flown_s, remaining_s);
@@ -90,16 +40,6 @@ Expectation expect(const WeightedPhase& cruise, const FlightProgress& flown, dou
     expected.shape_flown_w = expected.flown_w - mean_w;
     expected.shape_remaining_w = expected.remaining_w - mean_w;
     expected.flown_w = expected.remaining_w = mean_w;
-    if (source == CruisePrior::constant) return expected;
-    if (source == CruisePrior::airspeed) {
-        expect_by_airspeed(expected, cruise.model, flown, flown_s / (flown_s + remaining_s));
-        return expected;
-    }
-    const auto level = level_by_law(cruise.model, flown);
-    expected.flown_w = expected.remaining_w = level.power_w;
-    expected.level_sd_w = level.sd_w.value();
-    expected.weight_square_sum = level.law_variance;
-    expected.degrees_of_freedom = level.degrees_of_freedom;
     return expected;
 }
 
@@ -136,7 +76,6 @@ void add_shares(RemainingCruise& rest, const Expectation& expected, const Varian
     add_variance(energy, {average * kept * kept * of.level_w2 * wh2_per_w2, expected.degrees_of_freedom});
     add_variance(energy, {average * drift_w2 * wh2_per_w2, drift_degrees_of_freedom});
     add_variance(energy, {shape_w * shape_w * wh2_per_w2, drift_degrees_of_freedom});
-    add_variance(energy, {std::pow(expected.ahead_sd_w, 2) * wh2_per_w2, expected.degrees_of_freedom});
     add_variance(energy,
                  {average * gain_w2 * wh2_per_w2, std::min(expected.degrees_of_freedom, drift_degrees_of_freedom)});
 }

@@ -79,10 +79,8 @@ EnergyEstimate predict_remaining_before_flight(const WeightedPhase& phase, doubl
 
 /// Where the cruise level is expected before this flight's own power is looked at.
 enum class CruisePrior {
-    curve,     ///< the model's Fourier curve
-    constant,  ///< the curve's mean, for flights whose power has no shape in common
-    airspeed,  ///< the airspeed law at the airspeed so far; in what remains at the mean of that and the others' later
-    covariate  ///< the model's level law at what is known of its covariate, even over the time
+    curve,    ///< the model's Fourier curve
+    constant  ///< the curve's mean, for flights whose power has no shape in common
 };
 
 /// The rest of a cruise in flight.
@@ -98,8 +96,7 @@ struct RemainingCruise {
 
 /// Shrinks between model and flight (docs/methods.md, Eqs. 19 and 20): the difference between measured and
 /// expected mean power so far goes on as far as the flights' levels differ more than power drifts within one.
-/// Throws NoResultError if the model has no spread or, for CruisePrior::airspeed and covariate, no law, or the
-/// flight did not measure what it asks for.
+/// Throws NoResultError if the model has no spread.
 RemainingCruise predict_remaining_cruise(const WeightedPhase& cruise, const FlightProgress& flown, double remaining_s,
                                          CruisePrior source);
 

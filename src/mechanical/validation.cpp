@@ -53,14 +53,6 @@ EnergyEstimate after(double known_wh, EnergyEstimate rest) {
     return rest;
 }
 
-/// The cruise by the covariate's value, where it is known and the others tell its effect; other phases by their mean.
-void add_by_covariate(Estimates& estimates, const Fold& fold, const std::string& model, Covariate covariate,
-                      const std::optional<double>& value) {
-    const auto power = fold.phase == flight::Phase::cruise ? power_by_covariate(fold.others, covariate, value)
-                                                           : constant_mean(fold.others);
-    if (power) estimates.emplace_back(model, energy_of(*power, fold.flown.duration_s));
-}
-
 /// By the motion that was flown.
 std::optional<EnergyEstimate> physical_estimate(const MeasuredFlight& flight, const Fold& fold) {
     if (!fold.all.physical || flight.motion.bins.empty()) return std::nullopt;
@@ -73,21 +65,17 @@ std::optional<EnergyEstimate> physical_estimate(const MeasuredFlight& flight, co
 
 Estimates predict_phase(const Fold& fold) {
     const double duration_s = fold.flown.duration_s;
-    Estimates estimates{{"fourier", predict_before_flight(forecast_of_others(fold), duration_s)},
-                        {"constant_mean", energy_of(constant_mean(fold.others), duration_s)},
-                        {"nearest_flight", energy_of(single_flight_power(fold.others, fold.nearest), duration_s)}};
-    add_by_covariate(estimates, fold, "airspeed_cubed", Covariate::airspeed_cubed, fold.flown.airspeed_cubed_m3_per_s3);
-    return estimates;
+    return {{"fourier", predict_before_flight(forecast_of_others(fold), duration_s)},
+            {"constant_mean", energy_of(constant_mean(fold.others), duration_s)},
+            {"nearest_flight", energy_of(single_flight_power(fold.others, fold.nearest), duration_s)}};
 }
 
 /// The landing of a flight in the air: all models that look at the cruise say what the Fourier series says.
 Estimates predict_landing_in_flight(const Fold& fold) {
     auto estimates = predict_phase(fold);
-    std::erase_if(estimates, [](const auto& entry) { return entry.first == "airspeed_cubed"; });
     const auto fourier = estimates.front().second;
     estimates.emplace_back("in_flight", fourier);
     estimates.emplace_back("in_flight_constant", fourier);
-    estimates.emplace_back("in_flight_airspeed", fourier);
     estimates.emplace_back("in_flight_path", fourier);
     return estimates;
 }
@@ -108,9 +96,6 @@ Estimates predict_cruise_in_flight(const Fold& fold, const MeasuredFlight& exclu
     };
     update("in_flight", CruisePrior::curve);
     update("in_flight_constant", CruisePrior::constant);
-    if (forecast.model.airspeed_law && flown.airspeed_cubed_m3_per_s3) {
-        update("in_flight_airspeed", CruisePrior::airspeed);
-    }
     if (fold.all.physical && fold.all.physical->level_sd && !ahead.empty()) {
         const auto rest = predict_remaining_physical(*fold.all.physical, flown, {mean_values(ahead), remaining_s});
         estimates.emplace_back("in_flight_path", after(known_wh, rest.energy));
@@ -118,13 +103,10 @@ Estimates predict_cruise_in_flight(const Fold& fold, const MeasuredFlight& exclu
     return estimates;
 }
 
-Estimates estimates_of(const MeasuredFlight& excluded, const Fold& fold, std::span<const Covariate> covariates) {
+Estimates estimates_of(const MeasuredFlight& excluded, const Fold& fold) {
     if (!excluded.flown) {
         auto estimates = predict_phase(fold);
         if (const auto physical = physical_estimate(excluded, fold)) estimates.emplace_back("physical", *physical);
-        for (const auto covariate : covariates)
-            add_by_covariate(estimates, fold, fmt::format("by_{}", to_string(covariate)), covariate,
-                             fold.flown.covariates[covariate]);
         return estimates;
     }
     if (fold.phase == flight::Phase::takeoff) return {};
@@ -165,25 +147,23 @@ Others others_of(std::span<const MeasuredFlight> flights, std::span<const Flight
     return others;
 }
 
-ValidatedFlight validate_flight(const MeasuredFlight& excluded, Others& others, const ModelFitOptions& options,
-                                std::span<const Covariate> covariates) {
+ValidatedFlight validate_flight(const MeasuredFlight& excluded, Others& others, const ModelFitOptions& options) {
     ValidatedFlight flight{excluded.samples.flight, {}, {}, {}};
     for (const auto phase : flight::all_phases) {
         if (!excluded.samples.phases[phase]) continue;
         const auto nearest = nearest_flight(others.samples, phase, excluded.samples);
         if (!nearest) continue;
         const Fold fold{phase, *excluded.samples.phases[phase], others.phases[phase], *nearest, others, options};
-        for (const auto& [model, estimate] : estimates_of(excluded, fold, covariates)) {
+        for (const auto& [model, estimate] : estimates_of(excluded, fold)) {
             prediction_of(flight, model).phases[phase] = estimate;
             flight.measured_wh[phase] = excluded.energy_wh[phase];
             flight.counter_wh[phase] = excluded.counter_energy_wh[phase];
         }
     }
     // A model that cannot tell the cruise (no airspeed, no spread) only repeats others in the other phases.
-    std::erase_if(flight.predictions, [&](const auto& prediction) {
-        return !prediction.phases[flight::Phase::cruise] &&
-               (flight.measured_wh[flight::Phase::cruise] || prediction.model == "airspeed_cubed");
-    });
+    if (flight.measured_wh[flight::Phase::cruise])
+        std::erase_if(flight.predictions,
+                      [](const auto& prediction) { return !prediction.phases[flight::Phase::cruise]; });
     return flight;
 }
 
@@ -204,7 +184,6 @@ void require_distinct(std::span<const MeasuredFlight> flights) {
 }
 
 std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights, const ModelFitOptions& options,
-                                           std::span<const Covariate> covariates,
                                            const std::function<void(std::size_t, std::size_t)>& progress,
                                            std::size_t max_folds) {
     if (flights.size() < 2) {
@@ -221,7 +200,7 @@ std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> fligh
     std::size_t done = 0;
     for_each_in_parallel(folds.size(), [&](std::size_t fold) {
         auto others = others_of(flights, samples, folds[fold]);
-        for (const auto i : folds[fold]) validated[i] = validate_flight(flights[i], others, options, covariates);
+        for (const auto i : folds[fold]) validated[i] = validate_flight(flights[i], others, options);
         if (!progress) return;
         const std::lock_guard lock(mutex);
         progress(++done, folds.size());

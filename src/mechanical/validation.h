@@ -36,21 +36,16 @@ void require_distinct(std::span<const MeasuredFlight> flights);
 ///   fourier          the model of this project (fit_phase_model)
 ///   constant_mean    the mean power of the other flights
 ///   nearest_flight   the mean power of the flight with the nearest durations
-///   airspeed_cubed   cruise: the CovariateRegression of airspeed_cubed at the airspeed that was flown, as if it had been
-///                    known; other phases as constant_mean; only if the flight and two others measured airspeed
 ///   physical         fit_physical_model of the others at the motion that was flown, as if it had been known; a
 ///                    phase without bins as constant_mean; only if the flight and another have bins
-///   by_NAME          cruise: power_by_covariate, for each of `covariates`; other phases as constant_mean
-/// Where a flight has `flown`, the take-off is past and not predicted; what the models above (without airspeed_cubed
-/// and covariates) say of the rest of the cruise is added to what was measured until then, and beside them
+/// Where a flight has `flown`, the take-off is past and not predicted; what the models above (without physical)
+/// say of the rest of the cruise is added to what was measured until then, and beside them
 ///   in_flight            predict_remaining_cruise by the curve
 ///   in_flight_constant   predict_remaining_cruise by the curve's mean
-///   in_flight_airspeed   predict_remaining_cruise by the airspeed so far and the others' later airspeed
 ///   in_flight_path       predict_posterior_power: the rest's airspeed and climb as flown, as if they had been known
 /// `progress` is told how many of how many folds are done, by one thread at a time.
 /// Throws NoResultError for fewer than 2 flights, and what fit_phase_model throws.
 std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights, const ModelFitOptions& options = {},
-                                           std::span<const Covariate> covariates = {},
                                            const std::function<void(std::size_t, std::size_t)>& progress = {},
                                            std::size_t max_folds = max_validation_folds);
 
@@ -76,9 +71,9 @@ struct PredictedEnergy {
 std::optional<PredictedEnergy> predicted_energy(const ValidatedFlight& flight, const std::string& model,
                                                 std::optional<flight::Phase> phase);
 
-/// Removes from all flights the predictions of models that know the flown motion and yet are further off than the mean
-/// power, over the flights that they predict as a whole. Returns why, a sentence each.
-std::vector<std::string> remove_rejected(std::vector<ValidatedFlight>& flights);
+/// Removes from all flights the predictions of the physical model where it knows the flown motion and yet is further off
+/// than the mean power, over the flights that it predicts as a whole. Returns why; empty: it is not removed.
+std::string remove_rejected(std::vector<ValidatedFlight>& flights);
 
 /// For a mission to use the curve, its mean error must be less than the mean power's by this part of it, and its error
 /// less in more than half of the flights.

@@ -28,7 +28,7 @@ struct PhaseTime {
 
 /// Decides in flight as an adaptive policy does, in a real flight or a simulated one: the best plan of the rest from
 /// the state of charge reached, with the factor of mechanical power that what was flown has taught (docs/methods.md,
-/// Eqs. 36 and 37). The planner must outlive it.
+/// Eqs. 33 and 34). The planner must outlive it.
 class FlightReplanner {
   public:
     explicit FlightReplanner(const AdaptivePlanner& planner);

@@ -50,7 +50,7 @@ struct MissionSetup {
     std::string name;
     std::optional<mechanical::MechanicalModel> mechanical;  ///< none: computing alone
     mechanical::PhaseTimeScaling phase_clock = mechanical::PhaseTimeScaling::stretched;
-    /// The cruise's mean power under the stated conditions, or along its path; the cruise has this level then.
+    /// The cruise's mean power at the stated airspeed, or along its path; the cruise has this level then.
     std::optional<mechanical::ConstantPower> cruise_level = {};
     std::optional<path::CruisePath> cruise_path =
         {};  ///< what the cruise's power is then, instead of the model's curve

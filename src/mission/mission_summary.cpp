@@ -51,13 +51,10 @@ std::string describe(const EstimatedLanding& landing, int decimals) {
 
 std::string describe(const mechanical::HeldOutScore& power_model) {
     const auto& model = power_model.model;
-    const auto* used = model == "physical"         ? "cruise power by the physical model"
-                       : model == "airspeed_cubed" ? "cruise power by airspeed cubed"
-                       : model == "constant_mean"  ? "power by each phase's mean"
-                                                   : "power by each phase's curve";
-    const auto* known = model == "physical"         ? ", their airspeed and climb known"
-                        : model == "airspeed_cubed" ? ", their airspeed known"
-                                                    : "";
+    const auto* used = model == "physical"        ? "cruise power by the physical model"
+                       : model == "constant_mean" ? "power by each phase's mean"
+                                                  : "power by each phase's curve";
+    const auto* known = model == "physical" ? ", their airspeed and climb known" : "";
     return fmt::format("{}: {:.1f} % off on {} flights left out of the fit{}", used,
                        power_model.mean_absolute_error_percent, power_model.flights, known);
 }

@@ -37,7 +37,7 @@ struct AdaptiveResult {
 /// Flies `actual`, the mission as it really is (other durations, battery, powers), under disturbances that the policy
 /// does not know. At each decision it makes the best plan of the rest anew, from the state of charge reached, the RC
 /// voltage (which charge, voltage and current tell), the part of the phase flown (an aircraft knows how much of its way
-/// lies behind it), and the factor of mechanical power learned (docs/methods.md, Eqs. 36 and 37). Where no plan keeps
+/// lies behind it), and the factor of mechanical power learned (docs/methods.md, Eqs. 33 and 34). Where no plan keeps
 /// the reserve, and stays above the cut-off voltage, with its margin, what demands least energy is run; fixed segments
 /// are kept in any case.
 AdaptiveResult simulate_adaptive(const AdaptivePlanner& planner, const MissionSetup& actual,

@@ -47,7 +47,7 @@ void note_what_differs(const MissionSetup& mission, const mechanical::MeasuredFl
         replay.notes.emplace_back(
             "the mission's path is not flown: its duration is planned for, with the model's cruise");
     else if (mission.cruise_level)
-        replay.notes.emplace_back("the mission's conditions are not used: the model's cruise is as it was fitted");
+        replay.notes.emplace_back("the mission's airspeed is not used: the model's cruise is as it was fitted");
     for (const auto phase : all_phases) {
         if (mission.duration_s[phase] > 0.0 || !flight.power[phase]) continue;
         replay.notes.push_back(fmt::format("the mission has no {}: that of the flight is left out", to_string(phase)));

@@ -113,24 +113,6 @@ mechanical::TermValues mean_terms(const mechanical::PhysicalModel& model, const 
     return sums;
 }
 
-mechanical::PhysicalModel physical_model_from_drag(const mechanical::CovariateRegression& law) {
-    const double coefficient = law.mean_power_w / law.mean;
-    mechanical::PhysicalModel model;
-    model.terms = {mechanical::PowerTerm::drag};
-    model.coefficients[mechanical::PowerTerm::drag] = coefficient;
-    const auto flights = static_cast<double>(law.flights);
-    double variance = 0.0;
-    if (law.residual_sd_w) {
-        model.level_sd = *law.residual_sd_w / law.mean_power_w;
-        variance = std::pow(*model.level_sd * coefficient, 2) / flights;
-    }
-    model.covariance = {{variance}};
-    model.degrees_of_freedom = flights - 1.0;
-    model.airspeed_m_per_s = {std::cbrt(law.least), std::cbrt(law.most)};
-    model.mean_airspeed_m_per_s = std::cbrt(law.mean);
-    return model;
-}
-
 std::vector<std::string> path_warnings(const PlannedPath& plan, const PathTrajectory& flown) {
     constexpr double steep_load_factor = 2.0;  // a bank of 60 degrees
     constexpr double felt_load_factor = 1.1;   // a tenth more lift is a fifth more drag of lift

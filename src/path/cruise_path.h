@@ -1,7 +1,6 @@
 #pragma once
 
 #include "flight/flight_phases.h"
-#include "mechanical/covariates.h"
 #include "mechanical/physical_model.h"
 #include "path/path.h"
 #include "path/trajectory.h"
@@ -68,9 +67,6 @@ std::vector<PathElementResult> path_element_results(const PlannedPath& plan);
 /// motor stands (power_w is 0) the terms count as zeros, so that their power is the mean power. Zeros for a path that
 /// takes no time.
 mechanical::TermValues mean_terms(const mechanical::PhysicalModel& model, const PathTrajectory& flown);
-
-/// The model that a law of airspeed cubed makes, for level flight alone (docs/methods.md, Eq. 23).
-mechanical::PhysicalModel physical_model_from_drag(const mechanical::CovariateRegression& law);
 
 /// For people: the elements that the model's flights did not fly so, and banks above 60 degrees; empty if there are
 /// none.

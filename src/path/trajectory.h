@@ -32,7 +32,7 @@ enum class InfeasibleLegPolicy {
 };
 
 /// Flies a path in a steady wind: airspeed is held, the course over ground kept by a drift angle (docs/methods.md,
-/// Eqs. 43 and 44). Around circles ground speed and bank change, which is integrated. Throws InputError, placed at the
+/// Eqs. 40 and 41). Around circles ground speed and bank change, which is integrated. Throws InputError, placed at the
 /// element, for one that the wind forbids, that is too short or too steep for its climb, or for a path of more than
 /// 1e7 s.
 PathTrajectory compute_trajectory(const FlightPath& path, const Wind& wind,

@@ -72,8 +72,9 @@ void add_model(Draft& page, const BatchContent& content, const SectionScope& of)
         return;
     }
     if (auto section = physical_section(content.measured, of)) sections.push_back(std::move(*section));
-    auto validated = leave_one_out(content.measured, content.fit->options, {}, page.log.progress("fits"));
-    for (const auto& rejected : remove_rejected(validated)) notes.push_back(of_folder(of, rejected + "."));
+    auto validated = leave_one_out(content.measured, content.fit->options, page.log.progress("fits"));
+    if (const auto rejected = remove_rejected(validated); !rejected.empty())
+        notes.push_back(of_folder(of, rejected + "."));
     const bool synthetic = any_synthetic(content.flights);
     page.answers.validated.push_back({of.folder, std::move(validated), synthetic});
     sections.push_back(validation_section(page.answers.validated.back().flights, synthetic, of));

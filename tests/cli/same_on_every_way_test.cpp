@@ -63,8 +63,8 @@ std::vector<std::filesystem::path> real_logs() {
 void expect_same_of_all(const std::vector<std::filesystem::path>& logs) {
     const auto folder = test::scratch_dir();
     const auto all = parse_all(logs, folder);
-    expect_same("fit --name x --errors --level-covariate wind_m_per_s", all, folder);
-    expect_same("validate --covariate all", all, folder);
+    expect_same("fit --name x --errors", all, folder);
+    expect_same("validate", all, folder);
     expect_same("validate --until 300", all, folder);
     expect_same("battery --name x", all, folder);
     expect_same("battery --name x --correct-idle-offset", all, folder);
@@ -77,8 +77,8 @@ TEST(SameOnEveryWayStudy, FitsTheRealFlights) {
     expect_same_of_all(real_logs());
     const auto folder = test::scratch_dir();
     const auto ways = parse_all(real_logs(), folder);
-    const auto fit = test::run_shell("flightwatt fit" + ways.series, folder);
-    EXPECT_THAT(fit.out, HasSubstr("airspeed_law = {"));
+    const auto fit = test::run_shell("flightwatt fit --model physical" + ways.series, folder);
+    EXPECT_THAT(fit.out, HasSubstr("[physical]"));
 }
 
 TEST(SameOnEveryWay, SegmentsEveryLog) {
@@ -153,16 +153,13 @@ TEST(NoHindsight, PredictsTheSameWhateverTheLogSaysLater) {
     const auto folder = test::scratch_dir();
     std::string logs;
     for (const auto& log : sample_logs()) logs += " " + test::shell_quoted(log);
-    for (const auto* law : {"", "--level-covariate wind_m_per_s"}) {
-        const auto model = folder.parent_path() / "no_hindsight_model.toml";
-        const auto fit =
-            test::run_shell(fmt::format("flightwatt fit {}{} -o {}", law, logs, test::shell_quoted(model)), folder);
-        ASSERT_EQ(fit.code, 0) << fit.err;
-        const auto options = "--remaining 200 --model " + test::shell_quoted(model);
-        expect_no_hindsight(sample_logs()[0], options, "--until-log-time 134.499");
-        expect_no_hindsight(sample_logs()[0], options, "--until 120");
-        expect_no_hindsight(sample_logs()[2], options, "--until 300");
-    }
+    const auto model = folder.parent_path() / "no_hindsight_model.toml";
+    const auto fit = test::run_shell(fmt::format("flightwatt fit {} -o {}", logs, test::shell_quoted(model)), folder);
+    ASSERT_EQ(fit.code, 0) << fit.err;
+    const auto options = "--remaining 200 --model " + test::shell_quoted(model);
+    expect_no_hindsight(sample_logs()[0], options, "--until-log-time 134.499");
+    expect_no_hindsight(sample_logs()[0], options, "--until 120");
+    expect_no_hindsight(sample_logs()[2], options, "--until 300");
 }
 
 TEST(NoHindsight, PredictsTheSameOfTheRealFlights) {
@@ -171,9 +168,10 @@ TEST(NoHindsight, PredictsTheSameOfTheRealFlights) {
     std::string logs;
     for (const auto& log : real_logs()) logs += " " + test::shell_quoted(log);
     const auto model = folder.parent_path() / "no_hindsight_real.toml";
-    const auto fit = test::run_shell(fmt::format("flightwatt fit {} -o {}", logs, test::shell_quoted(model)), folder);
+    const auto fit = test::run_shell(
+        fmt::format("flightwatt fit --model physical {} -o {}", logs, test::shell_quoted(model)), folder);
     ASSERT_EQ(fit.code, 0) << fit.err;
-    const auto options = "--level airspeed --remaining 300 --model " + test::shell_quoted(model);
+    const auto options = "--airspeed 13 --remaining 300 --model " + test::shell_quoted(model);
     for (const auto& log : real_logs()) {
         expect_no_hindsight(log, options, "--until 300");
     }

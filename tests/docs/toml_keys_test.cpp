@@ -5,7 +5,6 @@
 #include "flight/series_file.h"
 #include "helpers/document.h"
 #include "helpers/test_paths.h"
-#include "mechanical/covariates.h"
 #include "mechanical/mechanical_model.h"
 #include "mission/disturbance.h"
 #include "mission/mission_file.h"
@@ -56,30 +55,15 @@ void write(const std::filesystem::path& file, const std::string& text) {
     std::ofstream(file) << text;
 }
 
-/// A folder with all examples as files, KIND_NUMBER.toml, and what they name. Those that name a covariate stand there
-/// once for each: a reader asks for the one that the model follows.
+/// A folder with all examples as files, KIND_NUMBER.toml, and what they name.
 std::vector<std::filesystem::path> write_examples(const std::filesystem::path& folder) {
-    const std::string example_covariate = "wind_m_per_s";
     std::vector<std::filesystem::path> files;
-    for (const auto covariate : mechanical::all_covariates) {
-        const auto below = folder / to_string(covariate);
-        const auto with_covariate = [&](const std::string& text) {
-            return std::regex_replace(text, std::regex(example_covariate), std::string(to_string(covariate)));
-        };
-        std::filesystem::create_directories(below);
-        std::filesystem::create_directory_symlink(source_dir() / "fits", below / "fits");
-        for (const auto& page : pages()) {
-            for (const auto& example : page.examples) {
-                if (!sections.contains(example.kind)) continue;
-                if (example.kind == "model") {
-                    std::filesystem::create_directories(below / "mechanical");
-                    write(below / "wind-model.toml", with_covariate(example.text));
-                }
-                const bool follows = example.text.find(example_covariate) != std::string::npos;
-                if (!follows && to_string(covariate) != example_covariate) continue;
-                files.push_back(below / (example.kind + "_" + std::to_string(files.size()) + ".toml"));
-                write(files.back(), with_covariate(example.text));
-            }
+    std::filesystem::create_directory_symlink(source_dir() / "fits", folder / "fits");
+    for (const auto& page : pages()) {
+        for (const auto& example : page.examples) {
+            if (!sections.contains(example.kind)) continue;
+            files.push_back(folder / (example.kind + "_" + std::to_string(files.size()) + ".toml"));
+            write(files.back(), example.text);
         }
     }
     return files;
@@ -90,7 +74,7 @@ DocumentedKey as_documented(const RequestedKey& asked) {
     const std::string inline_battery = "battery";
     auto kind = kind_of(asked.file);
     auto table = asked.table;
-    if (kind.empty()) kind = asked.file.ends_with("wind-model.toml") ? "model" : "mission";
+    if (kind.empty()) kind = "mission";
     if (kind == "mission" && table.starts_with(inline_battery)) {
         kind = "battery";
         table = table.size() > inline_battery.size() ? table.substr(inline_battery.size() + 1) : "";

@@ -39,12 +39,16 @@ std::vector<std::string> models_of(const ModelValidation& validation) {
 }
 
 TEST(RemoveRejected, RemovesWhatIsFurtherOffThanTheMeanPower) {
-    std::vector flights{flight_of({{"constant_mean", 10.0}, {"airspeed_cubed", 102.0}, {"physical", -10.0}}),
-                        flight_of({{"constant_mean", -8.0}, {"airspeed_cubed", 30.0}, {"physical", 8.0}})};
-    EXPECT_THAT(remove_rejected(flights),
-                ElementsAre("airspeed_cubed is rejected: 66.0 % off on 2 flights left out, the mean power 9.0 %"));
+    const auto flights_off = [](double first_wh, double second_wh) {
+        return std::vector{flight_of({{"constant_mean", 10.0}, {"physical", first_wh}}),
+                           flight_of({{"constant_mean", -8.0}, {"physical", second_wh}})};
+    };
+    auto flights = flights_off(-10.0, 8.0);
+    EXPECT_EQ(remove_rejected(flights), "");
     EXPECT_THAT(model_names(flights), ElementsAre("constant_mean", "physical")) << "as far off is kept";
-    EXPECT_THAT(remove_rejected(flights), IsEmpty());
+    flights = flights_off(102.0, 30.0);
+    EXPECT_EQ(remove_rejected(flights), "physical is rejected: 66.0 % off on 2 flights left out, the mean power 9.0 %");
+    EXPECT_THAT(model_names(flights), ElementsAre("constant_mean"));
 }
 
 TEST(RemoveRejected, ComparesOnTheFlightsThatAModelPredicts) {
@@ -52,7 +56,7 @@ TEST(RemoveRejected, ComparesOnTheFlightsThatAModelPredicts) {
                         flight_of({{"constant_mean", 1.0}})};  // without an airspeed
     EXPECT_THAT(remove_rejected(flights), IsEmpty());
     flights = {flight_of({{"constant_mean", 8.0}, {"physical", 9.0}}), flight_of({{"constant_mean", 50.0}})};
-    EXPECT_THAT(remove_rejected(flights), ElementsAre(StartsWith("physical is rejected: 9.0 % off on 1 flights")));
+    EXPECT_THAT(remove_rejected(flights), StartsWith("physical is rejected: 9.0 % off on 1 flights"));
 }
 
 TEST(RemoveRejected, KeepsBaselines) {
@@ -77,13 +81,11 @@ TEST(ValidationOf, PrefersTheCurveOnlyWhereItIsBetterByFivePercentAndInMostFligh
 }
 
 TEST(ValidationOf, HasTheScoresOfWhatMissionsCanUse) {
-    const auto validation = validation_of({flight_of({{"fourier", 3.0},
-                                                      {"constant_mean", 4.0},
-                                                      {"nearest_flight", 1.0},
-                                                      {"airspeed_cubed", 30.0},
-                                                      {"physical", 2.0}}),
-                                           flight_of({{"fourier", 5.0}, {"constant_mean", -6.0}})})
-                                .value();
+    const auto validation =
+        validation_of(
+            {flight_of({{"fourier", 3.0}, {"constant_mean", 4.0}, {"nearest_flight", 1.0}, {"physical", 2.0}}),
+             flight_of({{"fourier", 5.0}, {"constant_mean", -6.0}})})
+            .value();
     EXPECT_THAT(models_of(validation), ElementsAre("constant_mean", "fourier", "physical"));
     EXPECT_EQ(validation.scores[0].flights, 2U);
     EXPECT_NEAR(validation.scores[0].mean_absolute_error_percent, 5.0, 1e-12);

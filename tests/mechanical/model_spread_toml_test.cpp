@@ -11,8 +11,6 @@ namespace {
 MechanicalModel model_with_spread() {
     auto model = test::published_model();
     model.phases[flight::Phase::cruise].level_spread = VarianceComponents{4, 5.5, 8.25, 61.0};
-    model.phases[flight::Phase::cruise].airspeed_law =
-        CovariateRegression{Covariate::airspeed_cubed, 3, 2000.0, 100.0, 1900.0, 2100.0, 21.0, 1.05, 0.84};
     return model;
 }
 
@@ -27,19 +25,31 @@ TEST(ModelSpread, ReadsBackAsItWasWritten) {
     const auto model = read_back(text);
     EXPECT_EQ(to_toml(model), text);
     EXPECT_EQ(model.phases[flight::Phase::cruise].level_spread->correlation_s, 61.0);
-    EXPECT_EQ(model.phases[flight::Phase::cruise].airspeed_law->slope_w, 1.05);
     EXPECT_FALSE(model.phases[flight::Phase::landing].level_spread.has_value());
 }
 
-TEST(ModelSpread, ReadsTheAirspeedLawOfVersion01) {
-    auto model = test::published_model();
-    auto text = to_toml(model);
-    text.insert(text.find("\n[landing]"),
-                "airspeed = { flights = 3, coefficient_w_s3_per_m3 = 0.0105, relative_sd = 0.04 }\n");
-    const auto level = predict_mean_power(read_back(text).phases[flight::Phase::cruise].airspeed_law.value(), 3000.0);
-    EXPECT_NEAR(level.power_w, 31.5, 1e-12);
-    EXPECT_NEAR(level.sd_w.value(), 0.04 * 31.5, 1e-12);
-    EXPECT_EQ(level.degrees_of_freedom, 2.0);
+std::string with_cruise_line(const std::string& line) {
+    auto text = to_toml(test::published_model());
+    return text.insert(text.find("\n[landing]"), line + "\n");
+}
+
+TEST(ModelSpread, ReadsFilesWithTheAirspeedLawsOfEarlierVersions) {
+    const auto plain = to_toml(test::published_model());
+    for (const auto* line : {"airspeed = { flights = 3, coefficient_w_s3_per_m3 = 0.0105, relative_sd = 0.04 }",
+                             "airspeed_law = { covariate = \"airspeed_cubed_m3_per_s3\", flights = 3, mean = 2700.0 }",
+                             "airspeed_cubed_parts_m3_per_s3 = [2500.0, 2600.0]"})
+        EXPECT_EQ(to_toml(read_back(with_cruise_line(line))), plain) << line;
+}
+
+TEST(ModelSpread, RefusesTheLevelLawOfEarlierVersions) {
+    try {
+        read_back(with_cruise_line("level_law = { covariate = \"wind_m_per_s\", flights = 3 }"));
+        FAIL() << "it was read";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("cruises follow no covariate"), std::string::npos) << error.what();
+        EXPECT_NE(error.hint().find("--model physical"), std::string::npos) << error.hint();
+        EXPECT_GT(error.where().line, 1U);
+    }
 }
 
 TEST(ModelSpread, RefusesNonsense) {
@@ -48,12 +58,6 @@ TEST(ModelSpread, RefusesNonsense) {
     EXPECT_THROW(read_back(to_toml(model)), InputError);
     model = model_with_spread();
     model.phases[flight::Phase::cruise].level_spread->between_flight_sd_w = -1.0;
-    EXPECT_THROW(read_back(to_toml(model)), InputError);
-    model = model_with_spread();
-    model.phases[flight::Phase::cruise].airspeed_law->mean_power_w = 0.0;
-    EXPECT_THROW(read_back(to_toml(model)), InputError);
-    model = model_with_spread();
-    model.phases[flight::Phase::cruise].airspeed_law->covariate = Covariate::wind;
     EXPECT_THROW(read_back(to_toml(model)), InputError);
 }
 

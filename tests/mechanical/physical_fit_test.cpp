@@ -38,6 +38,18 @@ TEST(PhysicalFit, FindsTheTermsThatTheFlightsObey) {
     EXPECT_EQ(fit.trials.size(), power_term_count + 1);
 }
 
+TEST(PhysicalFit, KnowsTheAirspeedWhoseDragIsTheMean) {
+    auto flights = made_up_motions(2, 20, {}, 1);
+    for (std::size_t i = 0; i < 2; ++i)
+        for (auto& bin : flights[i].bins) {
+            bin.airspeed_m_per_s = i == 0 ? 10.0 : 20.0;
+            bin.values[PowerTerm::drag] = i == 0 ? 1000.0 : 8000.0;
+        }
+    const auto model = fit_power_terms(flights, {PowerTerm::drag});
+    EXPECT_NEAR(model.mean_airspeed_m_per_s, 15.0, 1e-9);
+    EXPECT_NEAR(model.cubic_mean_airspeed_m_per_s.value(), std::cbrt(4500.0), 1e-9);
+}
+
 TEST(PhysicalFit, SaysWhatBecameOfEveryTerm) {
     const auto fit = fit_physical_model(made_up_motions(6, 50, {}, 1));
     for (const auto* kept : {"drag", "climb", "descent"}) EXPECT_TRUE(trial_of(fit, kept).kept) << kept;

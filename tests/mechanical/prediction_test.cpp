@@ -151,33 +151,6 @@ TEST(Prediction, HoldsOneLevelWhereAsked) {
     EXPECT_NEAR(rest.energy.variance_wh2, shape_wh * shape_wh, 1e-4 * shape_wh * shape_wh);
 }
 
-TEST(Prediction, FollowsTheAirspeedWhereAsked) {
-    auto cruise = forecast({4, 5.0, 1e-3, 1.0});
-    auto flight = flown(300.0, 20.0);
-    EXPECT_THROW(predict_remaining_cruise(cruise, flight, 900.0, CruisePrior::airspeed), NoResultError);
-    cruise.model.airspeed_law =
-        CovariateRegression{Covariate::airspeed_cubed, 3, 2000.0, 100.0, 1900.0, 2100.0, 20.0, 1.0, 0.0};
-    EXPECT_THROW(predict_remaining_cruise(cruise, flight, 900.0, CruisePrior::airspeed), NoResultError);
-    flight.airspeed_cubed_m3_per_s3 = 2500.0;
-    const auto rest = predict_remaining_cruise(cruise, flight, 900.0, CruisePrior::airspeed);
-    EXPECT_NEAR(rest.expected_w, 25.0, 1e-12);
-    // All flights have obeyed the law exactly: it is trusted more than 300 s of power.
-    EXPECT_NEAR(rest.remaining_mean_w, 25.0, 0.05);
-}
-
-TEST(Prediction, FollowsTheCovariateOfTheLevelLawWhereAsked) {
-    auto cruise = forecast({4, 5.0, 1e-3, 1.0});
-    auto flight = flown(300.0, 20.0);
-    EXPECT_THROW(predict_remaining_cruise(cruise, flight, 900.0, CruisePrior::covariate), NoResultError);
-    cruise.model.level_law = CovariateRegression{Covariate::height, 4, 100.0, 10.0, 90.0, 110.0, 30.0, 4.0, 0.0};
-    EXPECT_THROW(predict_remaining_cruise(cruise, flight, 900.0, CruisePrior::covariate), NoResultError);
-    flight.covariates[Covariate::height] = 105.0;
-    const auto rest = predict_remaining_cruise(cruise, flight, 900.0, CruisePrior::covariate);
-    EXPECT_NEAR(rest.expected_w, 32.0, 1e-12);
-    // All flights have obeyed the law exactly: it is trusted more than 300 s of power.
-    EXPECT_NEAR(rest.remaining_mean_w, 32.0, 0.05);
-}
-
 TEST(Prediction, SaysWhenTheModelHasNoSpread) {
     const WeightedPhase cruise{test::published_model().phases[flight::Phase::cruise], 1.0};
     EXPECT_THROW(predict_remaining_cruise(cruise, flown(300.0, 20.0), 900.0, CruisePrior::curve), NoResultError);

@@ -31,7 +31,7 @@ TEST(Validation, PredictsFlightsThatAreAllAlikeExactly) {
         flights.push_back(measured(name, published_model().phases, random));
     }
     std::vector<std::size_t> done;
-    const auto validated = leave_one_out(flights, {}, {}, [&](std::size_t flight, std::size_t all) {
+    const auto validated = leave_one_out(flights, {}, [&](std::size_t flight, std::size_t all) {
         done.push_back(flight);
         EXPECT_EQ(all, 3U);
     });
@@ -70,7 +70,7 @@ TEST(Validation, LeavesGroupsOut) {
         flights.push_back(measured(fmt::format("{}", i), i % 3 == 2 ? stray : published_model().phases, random));
     std::vector<std::size_t> done;
     const auto validated = leave_one_out(
-        flights, {}, {}, [&](std::size_t so_many, std::size_t) { done.push_back(so_many); }, 3);
+        flights, {}, [&](std::size_t so_many, std::size_t) { done.push_back(so_many); }, 3);
     EXPECT_THAT(done, ElementsAre(1U, 2U, 3U));
     for (const auto i : {2U, 5U}) {
         EXPECT_EQ(validated[i].flight, fmt::format("{}", i));
@@ -124,39 +124,6 @@ TEST(Validation, PredictsOnlyWhatIsThere) {
     EXPECT_EQ(score_of(validated, "fourier", flight::Phase::cruise)->flights, 3u);
     EXPECT_FALSE(score_of(validated, "fourier", flight::Phase::landing).has_value());
     EXPECT_EQ(score_of(validated, "fourier", std::nullopt)->flights, 3u);
-}
-
-TEST(Validation, UsesTheAirspeedWhereItWasMeasured) {
-    std::mt19937 random(1);
-    std::vector<MeasuredFlight> flights;
-    double level_w = -3.0;
-    for (const auto* name : {"a", "b", "c", "d"}) {
-        auto truth = published_model().phases;
-        truth[flight::Phase::cruise].fourier.a0_w += level_w += 2.0;
-        flights.push_back(measured(name, truth, random));
-        auto& cruise = *flights.back().samples.phases[flight::Phase::cruise];
-        const double mean_w =
-            units::joule_from_wh(*flights.back().energy_wh[flight::Phase::cruise]) / cruise.duration_s;
-        cruise.airspeed_cubed_m3_per_s3 = 100.0 * mean_w;
-    }
-    const auto validated = leave_one_out(flights);
-    EXPECT_LT(score_of(validated, "airspeed_cubed", flight::Phase::cruise)->mean_absolute_error_percent.value(), 0.5);
-    EXPECT_GT(score_of(validated, "constant_mean", flight::Phase::cruise)->mean_absolute_error_percent.value(), 5.0);
-}
-
-/// A take-off alone has no airspeed of a cruise.
-TEST(Validation, SaysNothingByAirspeedOfAFlightWithoutOne) {
-    std::mt19937 random(1);
-    std::vector<MeasuredFlight> flights;
-    double airspeed_cubed = 2000.0;
-    for (const auto* name : {"a", "b", "c", "d"}) {
-        flights.push_back(measured(name, published_model().phases, random));
-        flights.back().samples.phases[flight::Phase::cruise]->airspeed_cubed_m3_per_s3 = airspeed_cubed += 50.0;
-    }
-    flights[0].samples.phases[flight::Phase::cruise].reset();
-    const auto validated = leave_one_out(flights);
-    EXPECT_THAT(model_names(std::span(validated).first(1)), ElementsAre("fourier", "constant_mean", "nearest_flight"));
-    EXPECT_THAT(model_names(std::span(validated).subspan(1)), testing::Contains("airspeed_cubed"));
 }
 
 /// Errors of the cruises of independent generated flights, in half widths of their 95 % intervals, rising.
@@ -243,9 +210,9 @@ TEST(ScoreOf, IsOfTheModelsThatPredictedAllThatAnotherDid) {
     EXPECT_FALSE(score_of(flights, "constant_mean", Phase::cruise));
     EXPECT_FALSE(score_of(flights, "fourier", Phase::takeoff)) << "no flight has one";
     flights[0].predictions.push_back(flights[0].predictions[0]);
-    flights[0].predictions[1].model = "airspeed_cubed";
-    EXPECT_FALSE(score_of(flights, "airspeed_cubed", Phase::cruise)) << "the second flight was not predicted";
-    EXPECT_THAT(model_names(flights), testing::ElementsAre("fourier", "airspeed_cubed"));
+    flights[0].predictions[1].model = "physical";
+    EXPECT_FALSE(score_of(flights, "physical", Phase::cruise)) << "the second flight was not predicted";
+    EXPECT_THAT(model_names(flights), testing::ElementsAre("fourier", "physical"));
 }
 
 TEST(PredictedEnergy, OfTheWholeIsTheSumOfWhatWasMeasured) {

@@ -51,8 +51,6 @@ TEST(DescribePowerModel, SaysWhatIsUsedAndHowItPredicts) {
         describe(mechanical::HeldOutScore{"physical", 3, 2.7}),
         "cruise power by the physical model: 2.7 % off on 3 flights left out of the fit, their airspeed and climb "
         "known");
-    EXPECT_EQ(describe(mechanical::HeldOutScore{"airspeed_cubed", 3, 4.4}),
-              "cruise power by airspeed cubed: 4.4 % off on 3 flights left out of the fit, their airspeed known");
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "path/cruise_path.h"
 
 #include "helpers/made_up_paths.h"
-#include "mechanical/covariates.h"
 #include "path/trajectory.h"
 
 #include <optional>
@@ -52,19 +51,6 @@ TEST(CruisePath, HasTheMeanOfItsTerms) {
     const auto model = test::made_up_wing();
     EXPECT_NEAR(sum_of_terms_w(model, mean_terms(model, flown)),
                 mean_power_w(test::made_up_cruise(up_and_on, {3.0, 45.0})), 1e-9);
-}
-
-TEST(CruisePath, FollowsALawOfAirspeedAsTheLawDoes) {
-    const mechanical::CovariateRegression law{
-        mechanical::Covariate::airspeed_cubed, 4, 2200.0, 200.0, 1900.0, 2500.0, 24.0, 24.0 * 200.0 / 2200.0, 1.2};
-    const auto model = physical_model_from_drag(law);
-    const double cubed = 13.2 * 13.2 * 13.2;
-    const auto level = predict_mean_power(law, cubed);
-    EXPECT_NEAR(power_w(model, {13.2}), level.power_w, 1e-12);
-    const auto constant = constant_power(level);
-    const auto uncertainty = prediction_uncertainty(model, mechanical::term_values({13.2}), 600.0);
-    EXPECT_NEAR(uncertainty->sd_w, constant.sd_w.value(), 1e-12);
-    EXPECT_NEAR(uncertainty->degrees_of_freedom, constant.degrees_of_freedom, 1e-9);
 }
 
 TEST(CruisePath, WarnsOfWhatNobodyFlew) {

@@ -167,17 +167,6 @@ Json to_json(const mechanical::MechanicalModel& model) {
                  {"samples", fitted.samples},           {"flights", fitted.flights},
                  {"edge_samples", fitted.edge_samples}, {"open_frequency", fitted.open_frequency},
                  {"not_negative", fitted.not_negative}};
-        if (const auto& law = fitted.level_law) {
-            entry["level_law"] = {{"covariate", to_string(law->covariate)},
-                                  {"flights", law->flights},
-                                  {"mean", law->mean},
-                                  {"sd", law->sd},
-                                  {"least", law->least},
-                                  {"most", law->most},
-                                  {"mean_power_w", law->mean_power_w},
-                                  {"slope_w", law->slope_w},
-                                  {"residual_sd_w", law->residual_sd_w.value()}};
-        }
         if (const auto power = mean_power(model, phase)) {
             entry["mean_power_w"] = power->mean_w;
             entry["mean_power_interval_95_w"] = interval_json(power->interval);

@@ -42,13 +42,13 @@ mechanical::MechanicalModel read_model(const StageCall& call) {
 std::optional<mechanical::CruisePrior> level_option(const StageCall& call) {
     const auto name = call.get<std::string>("level");
     static const std::map<std::string, mechanical::CruisePrior> sources{
-        {"curve", mechanical::CruisePrior::curve},
-        {"constant", mechanical::CruisePrior::constant},
-        {"airspeed", mechanical::CruisePrior::airspeed},
-        {"covariate", mechanical::CruisePrior::covariate}};
+        {"curve", mechanical::CruisePrior::curve}, {"constant", mechanical::CruisePrior::constant}};
     if (name == "auto") return std::nullopt;
     if (const auto found = sources.find(name); found != sources.end()) return found->second;
-    throw UsageError(fmt::format("--level {}: expected auto, curve, constant, airspeed or covariate", name));
+    const bool was_removed = name == "airspeed" || name == "covariate";
+    throw UsageError(
+        fmt::format("--level {}: expected auto, curve or constant{}", name,
+                    was_removed ? "; or --airspeed M_PER_S with a model of 'flightwatt fit --model physical'" : ""));
 }
 
 /// How the rest of the cruise is to be flown, where --airspeed says it.
@@ -157,10 +157,8 @@ void add_basis_options(boost::program_options::options_description& options, Pat
         "seconds from the moment until landing begins; with --mission only where the flight is not as far along the "
         "path as its positions say, or, without any, the time since its cruise began");
     add("level", value("HOW")->default_value("auto"),
-        "what is expected of the cruise before its own power is looked at: the model's curve, the curve's mean "
-        "(constant), the power that the airspeed so far and the other flights' later one stand for (airspeed), or that "
-        "of the model's level law (covariate); auto is covariate for a model that was fitted with --level-covariate, "
-        "and else curve");
+        "what is expected of the cruise before its own power is looked at: the model's curve, or the curve's mean "
+        "(constant); auto is curve, and constant where the flight is not known from its take-off on");
     add("airspeed", value<double>("M_PER_S"),
         "how fast the rest of the cruise is flown: predicts it by the model's [physical] at this flight's own level");
     add("climb", value<double>("M_PER_S"), "and how fast it climbs (0; below 0 it descends)");

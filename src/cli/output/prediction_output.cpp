@@ -79,23 +79,6 @@ std::string comparison(const std::string& part, const std::string& challenger, c
                        theirs.mean_absolute_error_wh);
 }
 
-/// Which covariates beat the constant mean in cruise, and which cannot be judged.
-std::string verdicts_on(const std::vector<mechanical::Covariate>& covariates,
-                        const std::vector<mechanical::ValidatedFlight>& flights) {
-    std::string text;
-    const auto mean = score_of(flights, "constant_mean", flight::Phase::cruise);
-    for (const auto covariate : covariates) {
-        const auto model = fmt::format("by_{}", to_string(covariate));
-        const auto score = score_of(flights, model, flight::Phase::cruise);
-        text += score && mean ? comparison("cruise", model, *score, "constant_mean", *mean)
-                              : fmt::format("cruise: {} is not known of all flights\n", model);
-    }
-    if (!covariates.empty() && flights.size() <= 3) {
-        text += "a line through 2 flights or fewer fits any covariate: what beats the mean here may be chance\n";
-    }
-    return text;
-}
-
 }  // namespace
 
 std::string text_of(const Prediction& prediction) {
@@ -203,8 +186,7 @@ std::string verdict(const std::vector<mechanical::ValidatedFlight>& flights, con
     return text;
 }
 
-std::string validation_text(const std::vector<mechanical::ValidatedFlight>& flights,
-                            const std::vector<mechanical::Covariate>& covariates, bool in_flight,
+std::string validation_text(const std::vector<mechanical::ValidatedFlight>& flights, bool in_flight,
                             const Screen& screen) {
     const ScreenTable shown{fmt::format("{} flights, each predicted by the others", flights.size()),
                             {"flight", "phase", "model", "error %", "measured Wh", "predicted Wh", "error Wh"}};
@@ -212,7 +194,6 @@ std::string validation_text(const std::vector<mechanical::ValidatedFlight>& flig
                 screen_text(scores_table(flights), screen, {"how well they predict", {}}) + "\n" +
                 verdict(flights, "fourier", "constant_mean");
     if (in_flight) text += verdict(flights, "in_flight", "fourier");
-    text += verdicts_on(covariates, flights);
     constexpr std::size_t few = 20;
     if (flights.size() < few) {
         text += fmt::format("coverage over {} flights means little: each counts for {:.0f} points\n", flights.size(),

@@ -4,7 +4,6 @@
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "live/prediction.h"
-#include "mechanical/covariates.h"
 #include "mechanical/validation.h"
 
 #include <string>
@@ -34,9 +33,9 @@ TextTable scores_table(const std::vector<mechanical::ValidatedFlight>& flights);
 std::string verdict(const std::vector<mechanical::ValidatedFlight>& flights, const std::string& challenger,
                     const std::string& baseline);
 
-/// Both tables, and the verdicts on the models, on those by `covariates`, and on the one in flight where it was tried.
-std::string validation_text(const std::vector<mechanical::ValidatedFlight>& flights,
-                            const std::vector<mechanical::Covariate>& covariates, bool in_flight, const Screen& screen);
+/// Both tables, and the verdicts on the models and on the one in flight where it was tried.
+std::string validation_text(const std::vector<mechanical::ValidatedFlight>& flights, bool in_flight,
+                            const Screen& screen);
 
 /// The scores by phase and model.
 Json scores_json(const std::vector<mechanical::ValidatedFlight>& flights);

@@ -30,8 +30,6 @@ mechanical::FlightProgress progress_from_air(const flight::FlightSeries& series,
     flown.cruise_energy_wh = integrated_energy_wh(series, flown.cruise_start_s, flown.until_s);
     flown.energy_wh = integrated_energy_wh(series, flown.lift_off_s, flown.cruise_start_s) + flown.cruise_energy_wh;
     const flight::SelectedTracks tracks(series);
-    flown.airspeed_cubed_m3_per_s3 =
-        mean_cubed_airspeed_m3_per_s3(tracks["airspeed_m_per_s"], flown.cruise_start_s, flown.until_s);
     flown.motion = mechanical::bin_flight(tracks, {{Phase::cruise, flown.cruise_start_s, flown.until_s}});
     return flown;
 }

@@ -10,51 +10,6 @@
 namespace flightwatt::mechanical {
 namespace {
 
-/// The flights' values of a covariate and their mean powers.
-struct Points {
-    std::vector<double> covariate;
-    std::vector<double> power_w;
-};
-
-Points points_of(std::span<const PhaseSamples> flights, Covariate covariate) {
-    Points points;
-    for (const auto& flight : flights) {
-        const auto& value =
-            is_through_origin(covariate) ? flight.airspeed_cubed_m3_per_s3 : flight.covariates[covariate];
-        if (!value || (is_through_origin(covariate) && *value <= 0.0)) continue;
-        points.covariate.push_back(*value);
-        points.power_w.push_back(mean_power_w(flight));
-    }
-    return points;
-}
-
-/// Each flight's own coefficient counts the same.
-void fit_through_origin(CovariateRegression& law, const Points& points) {
-    std::vector<double> coefficients;
-    for (std::size_t i = 0; i < points.covariate.size(); ++i) {
-        coefficients.push_back(points.power_w[i] / points.covariate[i]);
-    }
-    law.mean_power_w = mean(coefficients) * law.mean;
-    law.slope_w = mean(coefficients) * law.sd;
-    law.residual_sd_w = sample_sd(coefficients) * law.mean;
-}
-
-void fit_line(CovariateRegression& law, const Points& points) {
-    const auto flights = static_cast<double>(law.flights);
-    double product_sum = 0.0;
-    for (std::size_t i = 0; i < points.covariate.size(); ++i) {
-        product_sum += (points.covariate[i] - law.mean) / law.sd * (points.power_w[i] - law.mean_power_w);
-    }
-    law.slope_w = product_sum / flights;
-    if (law.flights < min_regression_flights(law.covariate)) return;
-    double residual_square_sum = 0.0;
-    for (std::size_t i = 0; i < points.covariate.size(); ++i) {
-        const double fitted_w = law.mean_power_w + law.slope_w * (points.covariate[i] - law.mean) / law.sd;
-        residual_square_sum += std::pow(points.power_w[i] - fitted_w, 2);
-    }
-    law.residual_sd_w = std::sqrt(residual_square_sum / (flights - 2.0));
-}
-
 constexpr double block_s = 30.0;
 constexpr std::size_t min_blocks = 10;  // of the shortest flight
 
@@ -166,29 +121,6 @@ ConstantPower with_spread(double mean_w, const std::vector<double>& powers_w, do
 
 }  // namespace
 
-std::optional<CovariateRegression> fit_covariate_regression(std::span<const PhaseSamples> flights,
-                                                            Covariate covariate) {
-    const auto points = points_of(flights, covariate);
-    if (points.covariate.size() < 2 || !(sample_sd(points.covariate) > 0.0)) return std::nullopt;
-    const auto [least, most] = std::ranges::minmax(points.covariate);
-    CovariateRegression law{covariate,
-                            points.covariate.size(),
-                            mean(points.covariate),
-                            sample_sd(points.covariate),
-                            least,
-                            most,
-                            mean(points.power_w),
-                            0.0,
-                            {}};
-    if (!is_through_origin(covariate)) {
-        fit_line(law, points);
-        return law;
-    }
-    fit_through_origin(law, points);
-    if (!(law.mean_power_w > 0.0)) return std::nullopt;
-    return law;
-}
-
 std::optional<VarianceComponents> estimate_variance_components(const PhaseModel& model,
                                                                std::span<const PhaseSamples> flights) {
     if (flights.size() < 2) return std::nullopt;
@@ -218,13 +150,6 @@ ConstantPower constant_mean(std::span<const PhaseSamples> flights) {
 ConstantPower single_flight_power(std::span<const PhaseSamples> flights, std::size_t index) {
     const auto powers_w = mean_powers_w(flights);
     return with_spread(powers_w[index], powers_w, std::sqrt(2.0));
-}
-
-std::optional<ConstantPower> power_by_covariate(std::span<const PhaseSamples> flights, Covariate covariate,
-                                                const std::optional<double>& value) {
-    const auto law = fit_covariate_regression(flights, covariate);
-    if (!value || !law) return std::nullopt;
-    return constant_power(predict_mean_power(*law, *value));
 }
 
 std::optional<std::size_t> nearest_flight(std::span<const FlightSamples> flights, flight::Phase phase,

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "mechanical/covariates.h"
 #include "mechanical/mechanical_model.h"
 #include "mechanical/phase_samples.h"
 
@@ -10,11 +9,6 @@
 
 /// How the flights of one phase differ.
 namespace flightwatt::mechanical {
-
-/// The law of `flights` (those that have the covariate), each counting the same; std::nullopt if fewer than 2
-/// have it, it is the same in all of them, or, for airspeed_cubed, their power is 0 on average. For
-/// airspeed_cubed the flights' values are means over the whole phase, not over its beginning.
-std::optional<CovariateRegression> fit_covariate_regression(std::span<const PhaseSamples> flights, Covariate covariate);
 
 /// The spread of `flights` about the model's phase; std::nullopt for fewer than 2. level_sd_w: sample standard
 /// deviation of the flights' mean powers. The drift is what the model's curve, put at each flight's own level, leaves
@@ -29,11 +23,6 @@ ConstantPower constant_mean(std::span<const PhaseSamples> flights);
 
 /// One flight's mean power for another: 2 s^2, s that of all `flights`.
 ConstantPower single_flight_power(std::span<const PhaseSamples> flights, std::size_t index);
-
-/// The constant power that the law of `flights` lets expect of another with `value`; std::nullopt if the value
-/// is unknown, or the law is. For 2 flights a line has no spread.
-std::optional<ConstantPower> power_by_covariate(std::span<const PhaseSamples> flights, Covariate covariate,
-                                                const std::optional<double>& value);
 
 /// Among the flights that have the phase, counted from 0, the one whose durations are nearest to those of
 /// `other`: the least sum of squared log ratios over the phases that both have, divided by their number.

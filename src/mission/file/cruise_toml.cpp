@@ -5,28 +5,22 @@
 #include "path/waypoint_files.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
 namespace flightwatt::mission {
 namespace {
 
-/// A law through the origin reaches beyond what its flights showed, up to so many times their power and down to its
-/// inverse.
+/// A power is extrapolated up to so many times that of the airspeeds that were flown, and down to its inverse.
 constexpr double max_power_ratio = 2.0;
 
-const mechanical::CovariateRegression& law_of(const TomlTable& conditions,
-                                              const std::optional<mechanical::MechanicalModel>& mechanical) {
-    if (!mechanical) {
-        throw InputError(conditions.where(), "conditions have no meaning with mechanical = \"none\"", "leave them out");
-    }
-    const auto& law = mechanical->phases[Phase::cruise].level_law;
-    if (law) return *law;
+/// Throws InputError at the place that needs it where the model does not know what motion takes.
+const mechanical::PhysicalModel& physical_of(const mechanical::MechanicalModel& model, const Location& where) {
+    if (model.physical) return *model.physical;
     throw InputError(
-        conditions.where(),
-        fmt::format("the cruise level of the mechanical model '{}' follows no condition", mechanical->name),
-        "fit it with one: flightwatt fit --level-covariate NAME FLIGHT...; or leave the conditions out");
+        where,
+        fmt::format("the mechanical model '{}' does not know what motion takes: it has no [physical]", model.name),
+        "fit one: flightwatt fit --model physical FLIGHT... -o MODEL.toml, of flights that measured their airspeed");
 }
 
 /// Shifts the model's cruise so that its mean over the model's own duration is this power.
@@ -37,95 +31,15 @@ void set_cruise_level(const mechanical::ConstantPower& level, MissionSetup& miss
     mission.cruise_level = level;
 }
 
-/// What the flights of the law did not show is refused: a plan can be changed, and a power that nothing supports should
-/// not look like a result.
-void apply_stated_conditions(const TomlTable& conditions, MissionSetup& mission) {
-    const auto& law = law_of(conditions, mission.mechanical);
-    const auto name = to_string(law.covariate);
-    for (const auto& key : conditions.keys()) {
-        if (key == name) continue;
-        throw InputError(conditions.where(key),
-                         fmt::format("the cruise level of this mechanical model does not follow '{}'", key),
-                         fmt::format("it follows {}, from {:.4g} to {:.4g}", name, law.least, law.most));
-    }
-    const double value = conditions.number(name);
-    const auto level = predict_mean_power(law, value);
-    if (!level.within_flights) {
-        throw InputError(
-            conditions.where(name), fmt::format("{} = {} is beyond what the model's flights showed", name, value),
-            fmt::format("the {} flights of its level law were from {:.4g} to {:.4g}; give one of these, or "
-                        "fit a model to flights that were flown so",
-                        law.flights, law.least, law.most));
-    }
-    set_cruise_level(constant_power(level), mission);
-}
-
-/// Level flight at an airspeed by the physical model.
-void apply_physical(double airspeed_m_per_s, const mechanical::PhysicalModel& physical, MissionSetup& mission) {
-    const mechanical::FlightState motion{airspeed_m_per_s};
-    if (!is_within_flown_range(physical, motion)) {
-        mission.notes.push_back(fmt::format(
-            "airspeed_m_per_s = {} is beyond what the model's flights flew ({:.4g} to {:.4g} m/s): its power is extrapolated",
-            airspeed_m_per_s, physical.airspeed_m_per_s.low, physical.airspeed_m_per_s.high));
-    }
-    mechanical::ConstantPower level{power_w(physical, motion), std::nullopt, 0.0};
-    const double duration_s = mission.mechanical->phases[Phase::cruise].duration_s;
-    if (const auto uncertainty = prediction_uncertainty(physical, term_values(motion), duration_s)) {
+/// The level of the cruise and how flights differ about it, from the means of the terms over its time.
+mechanical::ConstantPower level_of(const mechanical::PhysicalModel& model, const mechanical::TermValues& terms,
+                                   double duration_s, double mean_w) {
+    mechanical::ConstantPower level{mean_w, std::nullopt, 0.0};
+    if (const auto uncertainty = prediction_uncertainty(model, terms, duration_s)) {
         level.sd_w = uncertainty->sd_w;
         level.degrees_of_freedom = uncertainty->degrees_of_freedom;
     }
-    set_cruise_level(level, mission);
-}
-
-/// By drag's law of the flights that measured their airspeed, else by the covariate that the model was fitted with.
-const mechanical::CovariateRegression* airspeed_law_of(const mechanical::PhaseModel& cruise) {
-    if (cruise.airspeed_law) return &*cruise.airspeed_law;
-    if (!cruise.level_law) return nullptr;
-    const bool follows_airspeed = cruise.level_law->covariate == mechanical::Covariate::airspeed ||
-                                  cruise.level_law->covariate == mechanical::Covariate::airspeed_cubed;
-    return follows_airspeed ? &*cruise.level_law : nullptr;
-}
-
-void apply_airspeed(const TomlTable& root, MissionSetup& mission) {
-    constexpr std::string_view key = "airspeed_m_per_s";
-    const double airspeed = number_in(more_than_up_to(0.0, 300.0), root, "airspeed_m_per_s");
-    const auto refuse = [&](const std::string& message, const std::string& hint) {
-        throw InputError(root.where(key), message, hint);
-    };
-    if (!mission.mechanical) refuse("airspeed_m_per_s has no meaning with mechanical = \"none\"", "leave it out");
-    if (root.has("conditions"))
-        refuse("airspeed_m_per_s and conditions both state the level of the cruise", "give one");
-    if (mission.mechanical->physical) {
-        const auto physical = *mission.mechanical->physical;
-        const double power = power_w(physical, {airspeed});
-        if (power > max_power_ratio * power_w(physical, {physical.airspeed_m_per_s.high}) ||
-            power * max_power_ratio < power_w(physical, {physical.airspeed_m_per_s.low})) {
-            refuse(fmt::format("airspeed_m_per_s = {} is beyond what the model's flights flew", airspeed),
-                   fmt::format("they flew {:.4g} to {:.4g} m/s; give an airspeed near these, or fit a model to flights "
-                               "that were flown so",
-                               physical.airspeed_m_per_s.low, physical.airspeed_m_per_s.high));
-        }
-        apply_physical(airspeed, physical, mission);
-        return;
-    }
-    const auto* law = airspeed_law_of(mission.mechanical->phases[Phase::cruise]);
-    if (law == nullptr) {
-        refuse(fmt::format("the cruise of the mechanical model '{}' does not know airspeed", mission.mechanical->name),
-               "fit it to two flights or more that measured their airspeed (AIRSPEED or AIR_DATA in their logs)");
-    }
-    const bool is_drag = is_through_origin(law->covariate);
-    const double value = is_drag ? airspeed * airspeed * airspeed : airspeed;
-    const double low = is_drag ? std::cbrt(law->least) : law->least;
-    const double high = is_drag ? std::cbrt(law->most) : law->most;
-    const auto level = predict_mean_power(*law, value);
-    const bool is_near = is_drag && value <= max_power_ratio * law->most && value >= law->least / max_power_ratio;
-    const auto beyond = fmt::format("airspeed_m_per_s = {} is beyond what the model's flights flew", airspeed);
-    const auto flown = fmt::format("the {} flights of its law flew {:.4g} to {:.4g} m/s", law->flights, low, high);
-    if (!level.within_flights && !is_near) {
-        refuse(beyond, flown + "; give an airspeed near these, or fit a model to flights that were flown so");
-    }
-    if (!level.within_flights) mission.notes.push_back(beyond + ": " + flown + ", and drag's law reaches further");
-    set_cruise_level(constant_power(level), mission);
+    return level;
 }
 
 constexpr double max_wind_m_per_s = 100.0;
@@ -237,11 +151,9 @@ void refuse_what_the_path_decides(const TomlTable& root) {
     if (const auto durations = root.optional_table("duration_s"); durations && durations->has("cruise"))
         refuse(durations->where("cruise"), "the duration of the cruise follows from [path]",
                "leave it out, or the path");
-    for (const std::string_view key : {"conditions", "airspeed_m_per_s"}) {
-        if (!root.has(key)) continue;
-        refuse(root.where(key), fmt::format("{} and [path] both say how the cruise is flown", key),
+    if (root.has("airspeed_m_per_s"))
+        refuse(root.where("airspeed_m_per_s"), "airspeed_m_per_s and [path] both say how the cruise is flown",
                "leave it out: [path] has airspeed_m_per_s of its own, and [wind] stands beside it");
-    }
     const auto uncertainty = root.optional_table("uncertainty");
     if (!uncertainty) return;
     if (const auto durations = uncertainty->optional_table("duration_sd_s"); durations && durations->has("cruise"))
@@ -249,28 +161,11 @@ void refuse_what_the_path_decides(const TomlTable& root) {
                "state how the wind differs: speed_sd_m_per_s and direction_sd_deg in [wind]");
 }
 
-/// What the motion takes: by the model's own terms, else by drag's law for a level path.
-mechanical::PhysicalModel power_model(const TomlTable& path, const MissionSetup& mission, bool is_level) {
+/// What the motion takes.
+const mechanical::PhysicalModel& power_model(const TomlTable& path, const MissionSetup& mission) {
     if (!mission.mechanical)
         throw InputError(path.where(), "a path has no meaning with mechanical = \"none\"", "leave it out");
-    if (mission.mechanical->physical) return *mission.mechanical->physical;
-    const auto& law = mission.mechanical->phases[Phase::cruise].airspeed_law;
-    const std::string fit =
-        "fit one: flightwatt fit --model physical FLIGHT... -o MODEL.toml, of flights that measured "
-        "their airspeed";
-    if (!law) {
-        throw InputError(path.where(),
-                         fmt::format("the mechanical model '{}' does not know what motion takes: it has no [physical]",
-                                     mission.mechanical->name),
-                         fit);
-    }
-    if (!is_level) {
-        throw InputError(path.where(),
-                         fmt::format("the mechanical model '{}' knows airspeed and not climb: it has no [physical]",
-                                     mission.mechanical->name),
-                         "fly at one altitude, or " + fit);
-    }
-    return path::physical_model_from_drag(*law);
+    return physical_of(*mission.mechanical, path.where());
 }
 
 /// The entry whose circles may be repeated: the last that has some.
@@ -294,23 +189,30 @@ path::FlightPath read_path(const TomlTable& table, const MissionReadOptions& rea
     return path;
 }
 
-/// The level of the cruise and how flights differ about it.
-mechanical::ConstantPower level_of(const mechanical::PhysicalModel& model, const path::PathTrajectory& flown,
-                                   double mean_w) {
-    mechanical::ConstantPower level{mean_w, std::nullopt, 0.0};
-    if (const auto uncertainty = prediction_uncertainty(model, mean_terms(model, flown), flown.duration_s)) {
-        level.sd_w = uncertainty->sd_w;
-        level.degrees_of_freedom = uncertainty->degrees_of_freedom;
-    }
-    return level;
-}
-
 }  // namespace
 
-void apply_conditions(const TomlTable& mission_table, MissionSetup& mission) {
-    const auto conditions = mission_table.optional_table("conditions");
-    if (mission_table.has("airspeed_m_per_s")) apply_airspeed(mission_table, mission);
-    if (conditions) apply_stated_conditions(*conditions, mission);
+void apply_airspeed(const TomlTable& mission_table, MissionSetup& mission) {
+    constexpr std::string_view key = "airspeed_m_per_s";
+    if (!mission_table.has(key)) return;
+    const double airspeed = number_in(more_than_up_to(0.0, 300.0), mission_table, "airspeed_m_per_s");
+    const auto where = mission_table.where(key);
+    if (!mission.mechanical)
+        throw InputError(where, "airspeed_m_per_s has no meaning with mechanical = \"none\"", "leave it out");
+    const auto& physical = physical_of(*mission.mechanical, where);
+    const auto& [low, high] = physical.airspeed_m_per_s;
+    const mechanical::FlightState motion{airspeed};
+    const double power = power_w(physical, motion);
+    const auto beyond = fmt::format("airspeed_m_per_s = {} is beyond what the model's flights flew", airspeed);
+    if (power > max_power_ratio * power_w(physical, {high}) || power * max_power_ratio < power_w(physical, {low})) {
+        throw InputError(where, beyond,
+                         fmt::format("they flew {:.4g} to {:.4g} m/s; give an airspeed near these, or fit a model to "
+                                     "flights that were flown so",
+                                     low, high));
+    }
+    if (!is_within_flown_range(physical, motion))
+        mission.notes.push_back(fmt::format("{} ({:.4g} to {:.4g} m/s): its power is extrapolated", beyond, low, high));
+    const double duration_s = mission.mechanical->phases[Phase::cruise].duration_s;
+    set_cruise_level(level_of(physical, term_values(motion), duration_s, power), mission);
 }
 
 void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& reading, MissionSetup& mission) {
@@ -325,14 +227,13 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
     path::PlannedPath plan;
     plan.path = read_path(*table, reading);
     plan.wind = read_wind(mission_table);
-    const bool is_level =
-        std::ranges::all_of(plan.path.elements, [](const auto& element) { return element.altitude_change_m == 0.0; });
-    plan.power = power_model(*table, mission, is_level);
+    plan.power = power_model(*table, mission);
     const auto flown = compute_trajectory(plan.path, plan.wind);
     for (auto& warning : path_warnings(plan, flown)) mission.notes.push_back(std::move(warning));
     const auto shared = std::make_shared<const path::PlannedPath>(std::move(plan));
     mission.cruise_path = compute_cruise(shared, shared->wind, path::InfeasibleLegPolicy::refuse);
-    mission.cruise_level = level_of(shared->power, flown, mean_power_w(*mission.cruise_path));
+    mission.cruise_level =
+        level_of(shared->power, mean_terms(shared->power, flown), flown.duration_s, mean_power_w(*mission.cruise_path));
     mission.duration_s[Phase::cruise] = duration_s(*mission.cruise_path);
     mission.duration_is_stated[Phase::cruise] = true;
 }

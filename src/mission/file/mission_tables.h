@@ -14,10 +14,9 @@ namespace flightwatt::mission {
 /// The file that a key names, relative to the mission file. Throws InputError at the key where it cannot be read.
 std::filesystem::path file_of(const TomlTable& table, std::string_view key);
 
-/// Sets the level of the cruise to what the mission states of it, [conditions] or airspeed_m_per_s, by the model's
-/// laws; leaves it where nothing is stated. Throws InputError for what no law of the model follows, or beyond its
-/// flights.
-void apply_conditions(const TomlTable& mission_table, MissionSetup& mission);
+/// Sets the level of the cruise to that of the mission's airspeed_m_per_s by the physical model; leaves it where none is
+/// stated. Throws InputError for a model without one, and far beyond what its flights flew.
+void apply_airspeed(const TomlTable& mission_table, MissionSetup& mission);
 
 /// Reads [path] and [wind] of a mission file (docs/missions.md), where there is a path, and makes the cruise of it: its
 /// path, duration and level. `reading` may change how much of it is flown. Throws InputError for a key missing, unknown

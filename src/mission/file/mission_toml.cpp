@@ -27,12 +27,10 @@ std::optional<mechanical::MechanicalModel> read_mechanical(const TomlTable& root
 /// The model that says the power, where its file knows how it predicts flights; of a mission with an airspeed, or a
 /// path, that of the cruise.
 void find_power_model(const TomlTable& root, MissionSetup& mission) {
-    if (!mission.mechanical || !mission.mechanical->validation || root.has("conditions")) return;
+    if (!mission.mechanical || !mission.mechanical->validation) return;
     const auto& validation = *mission.mechanical->validation;
     const bool knows_airspeed = root.has("airspeed_m_per_s") || root.has("path");
-    const std::string model(!knows_airspeed                ? default_model(validation)
-                            : mission.mechanical->physical ? "physical"
-                                                           : "airspeed_cubed");
+    const std::string model(knows_airspeed ? "physical" : default_model(validation));
     const auto score = std::ranges::find(validation.scores, model, &mechanical::HeldOutScore::model);
     if (score != validation.scores.end())
         mission.power_model = *score;
@@ -215,25 +213,13 @@ MissionVariant parse_mission(std::string_view text, const std::filesystem::path&
                              const MissionReadOptions& reading) {
     const auto root = parse_toml(text, path.string());
     require_kind(root, FileKind::mission);
-    root.refuse_keys_except({"format",
-                             "name",
-                             "mechanical",
-                             "duration_s",
-                             "phase_clock",
-                             "airspeed_m_per_s",
-                             "conditions",
-                             "path",
-                             "wind",
-                             "battery",
-                             "initial_soc_percent",
-                             "capacity_ah",
-                             "cutoff_voltage_v",
-                             "reserve_soc_percent",
-                             "may_charge",
-                             "components",
-                             "schedule",
-                             "plan",
-                             "policy",
+    if (root.is_table("conditions"))
+        throw InputError(root.where("conditions"), "conditions are no longer read: a cruise follows its airspeed alone",
+                         "leave them out, or state airspeed_m_per_s beside the mission's other keys, on a model of "
+                         "flightwatt fit --model physical");
+    root.refuse_keys_except({"format", "name", "mechanical", "duration_s", "phase_clock", "airspeed_m_per_s", "path",
+                             "wind", "battery", "initial_soc_percent", "capacity_ah", "cutoff_voltage_v",
+                             "reserve_soc_percent", "may_charge", "components", "schedule", "plan", "policy",
                              "uncertainty"});
     require_known_format(root);
     MissionSetup mission;
@@ -241,7 +227,7 @@ MissionVariant parse_mission(std::string_view text, const std::filesystem::path&
     mission.name = root.optional_string("name").value_or(path.stem().string());
     mission.mechanical = read_mechanical(root);
     mission.phase_clock = read_clock(root, mission.mechanical.has_value());
-    if (!root.has("path")) apply_conditions(root, mission);
+    if (!root.has("path")) apply_airspeed(root, mission);
     read_durations(root, mission);
     read_cruise_path(root, reading, mission);
     find_power_model(root, mission);

@@ -2,7 +2,6 @@
 #include "mission/mission_file.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <string_view>
@@ -52,14 +51,6 @@ std::string if_so(bool condition, const char* text = "yes") { return condition ?
 
 std::string list_of(const std::vector<double>& values) { return fmt::format("[{}]", fmt::join(values, ", ")); }
 
-/// The airspeed of the model's flights in cruise [m/s]: the root of its mean cube, whose power is their mean power.
-double airspeed_of(const mechanical::MechanicalModel& model) {
-    constexpr double of_a_small_wing = 13.0;
-    if (const auto& law = model.phases[flight::Phase::cruise].airspeed_law) return std::cbrt(law->mean);
-    const auto& physical = model.physical;
-    return physical && physical->mean_airspeed_m_per_s > 0.0 ? physical->mean_airspeed_m_per_s : of_a_small_wing;
-}
-
 void add_aircraft(const mechanical::MechanicalModel& model, Values& values) {
     for (const auto phase : all_phases)
         values[std::string(to_string(phase)) + "_s"] = fmt::format("{:.0f}", model.phases[phase].duration_s);
@@ -67,15 +58,10 @@ void add_aircraft(const mechanical::MechanicalModel& model, Values& values) {
     const bool is_physical = model.physical && model.physical->mean_airspeed_m_per_s > 0.0;
     values["physical"] = if_so(is_physical);
     values["not_physical"] = if_so(!is_physical);
-    values["airspeed"] = fmt::format("{:.1f}", airspeed_of(model));
-    // Of each condition the mean of the model's law, or a usual value where the model follows another.
-    constexpr std::array<double, mechanical::covariate_count> usual{80.0, 12.4, 28.0, 3.0, 13.0, 12.0, 2200.0};
-    const auto& law = model.phases[flight::Phase::cruise].level_law;
-    for (std::size_t i = 0; i < usual.size(); ++i) {
-        const auto covariate = mechanical::all_covariates.at(i);
-        const double value = law && law->covariate == covariate ? law->mean : usual.at(i);
-        values[std::string(to_string(covariate))] = fmt::format("{:.6g}", value);
-    }
+    double airspeed_m_per_s = 13.0;  // of a small wing
+    if (is_physical)
+        airspeed_m_per_s = model.physical->cubic_mean_airspeed_m_per_s.value_or(model.physical->mean_airspeed_m_per_s);
+    values["airspeed"] = fmt::format("{:.1f}", airspeed_m_per_s);
 }
 
 /// As the battery says; else of LiPo cells, by the voltage of a full pack, or by the paper's constant one.

@@ -34,7 +34,7 @@ struct RunTransition {
 /// An upper bound of the utility that can follow from any state in which a slot may be reached.
 ///
 /// If nothing charges, more charge and less RC voltage are better at any later time: with y = -U_rc the right sides of
-/// Eqs. 26 and 29 rise with the other variable (a cooperative system). So no schedule has more charge or less RC
+/// Eqs. 23 and 26 rise with the other variable (a cooperative system). So no schedule has more charge or less RC
 /// voltage than the one of least power, the difference of two charges never shrinks, and RC voltage above the least can
 /// be traded for charge: `rc_low` points a volt are no loss, `rc_high` are no gain.
 struct UtilityBound {

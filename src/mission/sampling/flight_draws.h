@@ -19,7 +19,7 @@ std::vector<double> draw_normals(std::size_t count, std::uint64_t seed, std::uin
 /// The mission as the flight of these numbers flies it, each of which moves one quantity by so many deviations: of each
 /// phase level and duration, of the battery capacity, voltage, resistance, RC resistance and RC time constant, of each
 /// component its power and that of each node, of a path the wind's speed and direction. Those that are estimated
-/// together move together (docs/methods.md, Eq. 34); a level's deviation counts for the planned duration then, so that
+/// together move together (docs/methods.md, Eq. 31); a level's deviation counts for the planned duration then, so that
 /// a phase's energy moves by the sum of what level and duration do. Levels move a phase's whole curve; where that would
 /// take it further below 0 than it was, the curve is scaled to the same mean, down to 0. The knots of an open-circuit
 /// voltage move together, each by its own error. An interval has a deviation for each side; a time constant is normal

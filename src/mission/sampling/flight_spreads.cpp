@@ -37,9 +37,7 @@ std::string basis_of(const MeanPowerDeviation& deviation) {
             return "the model has no spread: fit two flights or more";
         case DeviationSource::stated:
             return sd + "stated";
-        case DeviationSource::conditions:
-            return sd + "of the flights about what the conditions say, " + student_words(deviation.degrees_of_freedom);
-        case DeviationSource::path:
+        case DeviationSource::motion:
             return sd + "of the flights about what their motion says, " + student_words(deviation.degrees_of_freedom);
         case DeviationSource::flights:
             return sd +
@@ -231,8 +229,7 @@ MeanPowerDeviation level_deviation(const MissionSetup& mission, Phase phase) {
     if (const auto percent = mission.uncertainty.level_sd_percent[phase])
         return {units::amount_from_percent(mean_level_w(mission, phase), *percent), DeviationSource::stated};
     if (phase == Phase::cruise && mission.cruise_level && mission.cruise_level->sd_w)
-        return {*mission.cruise_level->sd_w, mission.cruise_path ? DeviationSource::path : DeviationSource::conditions,
-                0, mission.cruise_level->degrees_of_freedom};
+        return {*mission.cruise_level->sd_w, DeviationSource::motion, 0, mission.cruise_level->degrees_of_freedom};
     if (const auto& spread = model.level_spread) {
         const double weight_square_sum = forecast_of(*mission.mechanical, phase).weight_square_sum;
         return {spread->between_flight_sd_w * std::sqrt(1.0 + weight_square_sum), DeviationSource::flights,

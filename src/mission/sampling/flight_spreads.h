@@ -12,11 +12,10 @@ namespace flightwatt::mission {
 /// What says how the mean mechanical power of a phase differs between flights.
 enum class DeviationSource {
     none,
-    stated,      ///< the mission's [uncertainty]
-    conditions,  ///< the flights about what the mission's [conditions] say
-    path,        ///< the flights about what their motion says
-    flights,     ///< the model's flights about their average
-    fit_error    ///< the standard error of the fit alone, which is not how flights differ
+    stated,    ///< the mission's [uncertainty]
+    motion,    ///< the flights about what their motion says
+    flights,   ///< the model's flights about their average
+    fit_error  ///< the standard error of the fit alone, which is not how flights differ
 };
 
 /// Standard deviation of a phase's mean mechanical power about the model's, of a flight to come.

@@ -29,7 +29,7 @@ double normal_from_student(double student, double degrees_of_freedom);
 
 /// The standard normal numbers as numbers of the multivariate Student t with covariance structure 1: each is Student t,
 /// so is any weighted sum of them (in the root of the squares' sum), and they are far out together, since all are in
-/// units of one deviation that is estimated. One after the other, each given those before (docs/methods.md, Eq. 34).
+/// units of one deviation that is estimated. One after the other, each given those before (docs/methods.md, Eq. 31).
 std::vector<double> student_vector(std::span<const double> normals, double degrees_of_freedom);
 
 /// What differs between the phases of flights: levels [W] and durations [s], numbered level and duration of take-off,

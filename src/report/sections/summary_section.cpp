@@ -132,9 +132,8 @@ std::string prediction_line(std::span<const mechanical::ValidatedFlight> flights
     auto line = fmt::format("The energy of a flight that is not in the fit is off by");
     for (std::size_t i = 0; i < errors.size(); ++i) {
         const auto& [error_percent, model] = errors[i];
-        const bool knows_motion = model == "physical" || model == "airspeed_cubed";
         line += fmt::format("{} {:.1f} % ({}{})", i == 0 ? "" : ",", error_percent, model,
-                            knows_motion ? ", airspeed known" : "");
+                            model == "physical" ? ", airspeed known" : "");
     }
     return line + fmt::format(", on average over {} left out in turn", plural(number, "flight"));
 }

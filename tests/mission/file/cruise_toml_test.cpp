@@ -5,8 +5,7 @@
 #include "mission/mission_file.h"
 #include "mission/simulation.h"
 
-#include <cmath>
-
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace flightwatt::mission {
@@ -22,14 +21,12 @@ std::filesystem::path folder_with_opterra() {
     return folder;
 }
 
-/// A folder with a model whose cruise follows the height: 27 W at 100 m, 2 W more 10 m higher.
-std::filesystem::path folder_with_law() {
-    auto folder = folder_with_opterra();
-    auto model = mechanical::read_mechanical_model(folder / "opterra.toml");
-    model.phases[flight::Phase::cruise].level_law =
-        mechanical::CovariateRegression{mechanical::Covariate::height, 4, 100.0, 10.0, 90.0, 110.0, 27.0, 2.0, 1.5};
-    write_text(folder / "law.toml", mechanical::to_toml(model));
-    return folder;
+void write_wing(mechanical::MechanicalModel model, const std::filesystem::path& file) {
+    model.physical = test::made_up_wing();
+    model.physical->bins = 100;
+    model.physical->bin_s = 30.0;
+    model.physical->correlation_s = 60.0;
+    write_text(file, mechanical::to_toml(model));
 }
 
 /// A mission on a model, with more lines from its third on.
@@ -44,142 +41,86 @@ Mission scheduled(const std::string& text, const std::filesystem::path& path) {
     return std::get<Mission>(parse_mission(text, path));
 }
 
-TEST(ConditionsToml, SetsTheCruiseLevelByTheStatedConditions) {
-    const auto folder = folder_with_law();
-    const auto mission = scheduled(on_model("law.toml", "conditions = { height_m = 105 }"), folder / "m.toml");
+double cruise_w(const Mission& mission) {
     const auto& cruise = mission.setup.mechanical->phases[flight::Phase::cruise];
-    EXPECT_NEAR(energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s, 28.0, 1e-9);
-    ASSERT_TRUE(mission.setup.cruise_level);
-    EXPECT_NEAR(mission.setup.cruise_level->mean_w, 28.0, 1e-12);
-    EXPECT_NEAR(mission.setup.cruise_level->sd_w.value(), 1.5 * std::sqrt(1.25 + 0.25 / 4.0), 1e-12);
-    // Without conditions: the average of the flights, as before.
-    const auto plain = scheduled(on_model("law.toml", ""), folder / "m.toml");
-    EXPECT_FALSE(plain.setup.cruise_level);
-    EXPECT_EQ(plain.setup.mechanical->phases[flight::Phase::cruise].fourier.a0_w,
-              mechanical::read_mechanical_model(folder / "opterra.toml").phases[flight::Phase::cruise].fourier.a0_w);
+    return energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s;
 }
 
-/// Any model whose flights measured airspeed: 27 W at 13 m/s, from 12 to 14 m/s.
-TEST(ConditionsToml, SetsTheCruiseLevelByTheAirspeed) {
+/// A wing that flew 11 to 16 m/s and takes 0.01 W s^3/m^3.
+TEST(AirspeedToml, SetsTheLevelOfTheCruise) {
     const auto folder = folder_with_opterra();
-    auto model = mechanical::read_mechanical_model(folder / "opterra.toml");
-    auto& cruise_model = model.phases[flight::Phase::cruise];
-    cruise_model.airspeed_law = mechanical::CovariateRegression{
-        mechanical::Covariate::airspeed_cubed, 3, 2197.0, 400.0, 1728.0, 2744.0, 27.0, 27.0 * 400.0 / 2197.0, 1.5};
-    write_text(folder / "law.toml", mechanical::to_toml(model));
-    cruise_model.level_law =
-        mechanical::CovariateRegression{mechanical::Covariate::airspeed, 4, 13.0, 1.0, 12.0, 14.0, 26.0, 5.0, 1.5};
-    cruise_model.airspeed_law.reset();
-    write_text(folder / "line.toml", mechanical::to_toml(model));
-    const auto at = [&](const std::string& law, const std::string& airspeed) {
-        return scheduled(on_model(law, "airspeed_m_per_s = " + airspeed), folder / "m.toml");
+    write_wing(mechanical::read_mechanical_model(folder / "opterra.toml"), folder / "wing.toml");
+    const auto at = [&](const std::string& model, const std::string& airspeed) {
+        return scheduled(on_model(model, "airspeed_m_per_s = " + airspeed), folder / "m.toml");
     };
-    const auto mean_w = [](const Mission& mission) {
-        const auto& cruise = mission.setup.mechanical->phases[flight::Phase::cruise];
-        return energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s;
-    };
-    const auto mission = at("law.toml", "13.5");
-    const double cubed = 13.5 * 13.5 * 13.5 / 2197.0;
-    EXPECT_NEAR(mean_w(mission), 27.0 * cubed, 1e-9);
-    EXPECT_NEAR(mission.setup.cruise_level->sd_w.value(), 1.5 * cubed * std::sqrt(4.0 / 3.0), 1e-9);
-    EXPECT_NEAR(mission.setup.cruise_level->degrees_of_freedom, 2.0, 1e-12);
+    const auto mission = at("wing.toml", "12");
+    EXPECT_NEAR(cruise_w(mission), 0.01 * 1728.0, 1e-9);
+    EXPECT_NEAR(mission.setup.cruise_level->sd_w.value(), 0.04 * 17.28, 1e-9);
     EXPECT_TRUE(mission.setup.notes.empty());
-    EXPECT_NEAR(mean_w(at("line.toml", "13.5")), 28.5, 1e-9);
-    // Beyond what was flown drag's law is used and said, a line is not.
     EXPECT_EQ(
-        at("law.toml", "15").setup.notes.front(),
-        "airspeed_m_per_s = 15 is beyond what the model's flights flew: the 3 flights of its law flew 12 to 14 m/s, "
-        "and drag's law reaches further");
-    const auto refusal = [&](const std::string& law, const std::string& airspeed) {
-        return rejected([&] { at(law, airspeed); }, folder);
+        at("wing.toml", "18").setup.notes.front(),
+        "airspeed_m_per_s = 18 is beyond what the model's flights flew (11 to 16 m/s): its power is extrapolated");
+    const auto refusal = [&](const std::string& model, const std::string& airspeed) {
+        return rejected([&] { at(model, airspeed); }, folder);
     };
+    EXPECT_EQ(refusal("wing.toml", "21"),
+              "m.toml:3:1: airspeed_m_per_s = 21 is beyond what the model's flights flew; they flew 11 to 16 m/s; give "
+              "an airspeed near these, or fit a model to flights that were flown so");
     EXPECT_EQ(
-        refusal("law.toml", "18"),
-        "m.toml:3:1: airspeed_m_per_s = 18 is beyond what the model's flights flew; the 3 flights of its law flew "
-        "12 to 14 m/s; give an airspeed near these, or fit a model to flights that were flown so");
-    EXPECT_NE(refusal("line.toml", "15").find("beyond what the model's flights flew"), std::string::npos);
-    model = mechanical::read_mechanical_model(folder / "opterra.toml");
-    model.physical = test::made_up_wing();
-    model.physical->bins = 100;
-    model.physical->bin_s = 30.0;
-    write_text(folder / "wing.toml", mechanical::to_toml(model));
-    EXPECT_NEAR(mean_w(at("wing.toml", "12")), 0.01 * 1728.0, 1e-9);
-    EXPECT_NEAR(at("wing.toml", "12").setup.cruise_level->sd_w.value(), 0.04 * 17.28, 1e-9);
-    EXPECT_NE(refusal("opterra.toml", "13").find("does not know airspeed"), std::string::npos);
+        refusal("opterra.toml", "13"),
+        "m.toml:3:1: the mechanical model 'opterra-table1' does not know what motion takes: it has no [physical]; "
+        "fit one: flightwatt fit --model physical FLIGHT... -o MODEL.toml, of flights that measured their airspeed");
     EXPECT_NE(refusal("none", "13").find("no meaning"), std::string::npos);
-    EXPECT_NE(refusal("law.toml", "13\nconditions = { height_m = 100 }").find("give one"), std::string::npos);
+    const auto plain = scheduled(on_model("wing.toml", ""), folder / "m.toml");
+    EXPECT_FALSE(plain.setup.cruise_level);
+    EXPECT_EQ(cruise_w(plain), cruise_w(scheduled(on_model("opterra.toml", ""), folder / "m.toml")));
+}
+
+TEST(AirspeedToml, TakesThePlaceOfTheConditionsOfEarlierVersions) {
+    const auto folder = folder_with_opterra();
+    const auto refusal = [&](const std::string& conditions) {
+        return rejected([&] { parse_mission(on_model("opterra.toml", conditions), folder / "m.toml"); }, folder);
+    };
+    EXPECT_THAT(refusal("conditions = { wind_m_per_s = 3 }"),
+                testing::StartsWith("m.toml:3:1: conditions are no longer read"));
+    EXPECT_THAT(refusal("[conditions]\nairspeed_m_per_s = 13\n[plan]"), testing::HasSubstr("state airspeed_m_per_s"));
 }
 
 /// Of a model file that knows how its models predict: which one says the power.
-TEST(ConditionsToml, NamesTheModelThatSaysThePowerAndItsError) {
+TEST(AirspeedToml, NamesTheModelThatSaysThePowerAndItsError) {
     const auto folder = folder_with_opterra();
     auto model = mechanical::read_mechanical_model(folder / "opterra.toml");
-    auto& cruise = model.phases[flight::Phase::cruise];
-    cruise.airspeed_law = mechanical::CovariateRegression{
-        mechanical::Covariate::airspeed_cubed, 3, 2197.0, 400.0, 1728.0, 2744.0, 27.0, 27.0 * 400.0 / 2197.0, 1.5};
     model.flights = {{"a", {}}, {"b", {}}};
     for (auto& flight : model.flights)
         flight.phases[flight::Phase::cruise] = mechanical::PhaseContribution{0.5, 600.0, 0.1, 500, 25.0};
     model.validation = {false, {{"constant_mean", 4, 18.6}, {"fourier", 4, 15.0}, {"physical", 3, 2.7}}};
     const auto read = [&](const std::string& lines) {
-        write_text(folder / "model.toml", mechanical::to_toml(model));
+        write_wing(model, folder / "model.toml");
         return scheduled(on_model("model.toml", lines), folder / "m.toml");
-    };
-    const auto cruise_w = [](const Mission& mission) {
-        const auto& of = mission.setup.mechanical->phases[flight::Phase::cruise];
-        return energy_j(of.fourier, of.duration_s) / of.duration_s;
     };
     EXPECT_EQ(read("").setup.power_model.value().model, "constant_mean");
     EXPECT_DOUBLE_EQ(cruise_w(read("")), 25.0);
     model.validation->prefers_curve = true;
     EXPECT_EQ(read("").setup.power_model.value().mean_absolute_error_percent, 15.0);
     EXPECT_NE(cruise_w(read("")), 25.0);
-    // The law of airspeed has no error there: its use is a warning.
-    EXPECT_FALSE(read("airspeed_m_per_s = 13").setup.power_model);
-    EXPECT_NE(read("airspeed_m_per_s = 13").setup.notes.front().find("is unproven"), std::string::npos);
-    model.physical = test::made_up_wing();
-    model.physical->bins = 100;
-    model.physical->bin_s = 30.0;
     const auto physical = read("airspeed_m_per_s = 12");
     EXPECT_EQ(physical.setup.power_model.value().model, "physical");
-    EXPECT_NEAR(cruise_w(physical), 0.01 * 1728.0, 1e-9) << "the law of airspeed says another power";
+    EXPECT_NEAR(cruise_w(physical), 0.01 * 1728.0, 1e-9);
     EXPECT_TRUE(physical.setup.notes.empty());
+    model.validation->scores.pop_back();
+    EXPECT_NE(read("airspeed_m_per_s = 12").setup.notes.front().find("is unproven"), std::string::npos);
     model.validation.reset();
     EXPECT_FALSE(read("airspeed_m_per_s = 12").setup.power_model) << "nothing is known of its error";
     EXPECT_TRUE(read("airspeed_m_per_s = 12").setup.notes.empty());
 }
 
-TEST(ConditionsToml, RefusesConditionsThatNothingSupports) {
-    const auto folder = folder_with_law();
-    const auto refusal = [&](const std::string& model, const std::string& conditions) {
-        return rejected([&] { parse_mission(on_model(model, "conditions = " + conditions), folder / "m.toml"); });
-    };
-    EXPECT_NE(refusal("law.toml", "{ height_m = 150 }").find("beyond what the model's flights showed"),
-              std::string::npos);
-    EXPECT_NE(refusal("law.toml", "{ airspeed_m_per_s = 14 }").find("it follows height_m, from 90 to 110"),
-              std::string::npos);
-    EXPECT_NE(refusal("opterra.toml", "{ height_m = 100 }").find("follows no condition"), std::string::npos);
-    EXPECT_NE(refusal("none", "{ height_m = 100 }").find("no meaning"), std::string::npos);
-}
-
-using test::rejected;
-using test::scratch_dir;
-using test::write_text;
-
-/// A folder with a model that knows motion, one that knows airspeed cubed from 10^3 to 14^3, and one that knows
-/// neither.
+/// A folder with a model that knows motion, and one that does not.
 std::filesystem::path path_folder() {
     auto folder = scratch_dir();
-    auto model = mechanical::read_mechanical_model(test::source_dir() / "fits" / "mechanical" / "opterra-table1.toml");
+    const auto model =
+        mechanical::read_mechanical_model(test::source_dir() / "fits" / "mechanical" / "opterra-table1.toml");
     write_text(folder / "plain.toml", mechanical::to_toml(model));
-    model.phases[flight::Phase::cruise].airspeed_law = mechanical::CovariateRegression{
-        mechanical::Covariate::airspeed_cubed, 4, 1800.0, 700.0, 1000.0, 2744.0, 18.0, 7.0, 0.9};
-    write_text(folder / "airspeed.toml", mechanical::to_toml(model));
-    model.physical = test::made_up_wing();
-    model.physical->bins = 100;
-    model.physical->bin_s = 30.0;
-    model.physical->correlation_s = 60.0;
-    write_text(folder / "wing.toml", mechanical::to_toml(model));
+    write_wing(model, folder / "wing.toml");
     return folder;
 }
 
@@ -227,16 +168,10 @@ TEST(PathToml, DurationAndPowerFollowFromThePath) {
                 takeoff_and_landing_wh + energy_j(*mission.setup.cruise_path) / 3600.0, 1e-9);
 }
 
-TEST(PathToml, FliesByTheLawOfAirspeedWhereThePathIsLevel) {
+TEST(PathToml, NeedsAModelThatKnowsMotion) {
     const auto folder = path_folder();
-    const std::string level = "[path]\nairspeed_m_per_s = 12\nleg = [{ length_m = 1200, course_deg = 0 }]\n";
-    const auto mission = read(folder, "airspeed.toml", level);
-    EXPECT_NEAR(mean_power_w(*mission.setup.cruise_path), 0.01 * 1728.0, 1e-9);
-    EXPECT_NEAR(mission.setup.duration_s[Phase::cruise], 100.0, 1e-9);
-    EXPECT_NE(rejected([&] { read(folder, "airspeed.toml", out_and_back); }).find("knows airspeed and not climb"),
-              std::string::npos);
     EXPECT_EQ(
-        rejected([&] { read(folder, "plain.toml", level); }, folder),
+        rejected([&] { read(folder, "plain.toml", out_and_back); }, folder),
         "m.toml:3:1: the mechanical model 'opterra-table1' does not know what motion takes: it has no [physical]; "
         "fit one: flightwatt fit --model physical FLIGHT... -o MODEL.toml, of flights that measured their airspeed");
 }
