@@ -128,7 +128,7 @@ TEST_F(Profiler, CtrlCLeavesNothingAndIsResumed) {
     // Each start leaves a line in `starts`; the third configuration hangs until it is interrupted.
     write("p.toml", std::string(meter) + "[components.a]\ncommand = ['sh', '-c', 'echo {n} >> starts; sleep " + marker +
                         " & [ -e free ] || [ $(wc -l < starts) -lt 3 ] || sleep " + marker +
-                        "; sleep 0.05']\nqos = { n = [1, 2, 3, 4] }\n");
+                        "; sleep 0.5']\nqos = { n = [1, 2, 3, 4] }\n");
     auto spec = text("p.toml");
     spec.replace(spec.find("duration_s = 1\n"), 15, "timeout_s = 120\n");
     write("p.toml", spec);

@@ -26,8 +26,8 @@ inline constexpr double min_running_rpm = 500.0;
 /// the motor's speed in percent of its full one (the 98th percentile of the log).
 struct MotorRecord {
     MotorIndicator sign = MotorIndicator::unknown;
-    Track percent;                      ///< empty if unknown
-    std::string evidence;               ///< "ENERGY.throttle", "power: idle 0.2 W, running 92 W", "ESC.rpm: full 9000 rpm"
+    Track percent;         ///< empty if unknown
+    std::string evidence;  ///< "ENERGY.throttle", "power: idle 0.2 W, running 92 W", "ESC.rpm: full 9000 rpm"
     std::vector<std::string> warnings;  ///< what was left out, and what is used instead of a throttle
 };
 
