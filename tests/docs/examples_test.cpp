@@ -84,8 +84,11 @@ TEST(Examples, AreReadByTheirPrograms) {
             if (example.kind == "model") std::ofstream(folder / "wind-model.toml") << example.text;
             const auto reading = reading_of(example, folder);
             ASSERT_FALSE(reading.program.empty()) << page << ":" << example.line << ": '" << example.kind << "'";
-            EXPECT_EQ(run_program(reading.program, reading.arguments, folder), 0)
-                << page << ":" << example.line << ": " << read_file(folder / "stderr");
+            auto code = run_program(reading.program, reading.arguments, folder);
+            // A busy machine may leave a run of 0.3 s without a sample: the same command runs it again.
+            if (code == 4 && example.kind == "specification")
+                code = run_program(reading.program, reading.arguments, folder);
+            EXPECT_EQ(code, 0) << page << ":" << example.line << ": " << read_file(folder / "stderr");
             ++run;
         }
     }

@@ -64,6 +64,7 @@ std::vector<DensityNode> refine_density_nodes(const LogDensity& log_density, con
     constexpr int max_rounds = 40;
     constexpr std::size_t max_nodes = 600;
     std::vector<DensityNode> nodes;
+    nodes.reserve(starts.size());
     for (const double place : starts) nodes.push_back({place, log_density(place)});
     for (int round = 0; round < max_rounds && nodes.size() < max_nodes; ++round) {
         const double top = std::ranges::max_element(nodes, {}, &DensityNode::log_density)->log_density;

@@ -131,6 +131,7 @@ std::vector<double> frequencies_to_try(std::span<const ScaledSamples> flights, c
 /// Weights from their logarithms. The lightest nodes are left out; those of the others sum to 1.
 void normalise(std::vector<PosteriorNode>& nodes) {
     std::vector<double> logs;
+    logs.reserve(nodes.size());
     for (const auto& node : nodes) logs.push_back(node.weight);
     const double total = log_sum_exp(logs);
     std::ranges::sort(logs);
