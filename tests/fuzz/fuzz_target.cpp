@@ -37,7 +37,7 @@ struct Folder {
 
 std::filesystem::path as_file(std::string_view bytes, const char* name) {
     static const Folder folder;
-    const auto path = folder.path / name;
+    auto path = folder.path / name;
     std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     return path;
 }

@@ -60,7 +60,9 @@ TEST(PhysicalBounds, LeaveOutWhatLiesBeyondThem) {
                                   {"air_temperature_c", -80.0, 100.0}};
     for (const auto& [name, low, high] : all) {
         SCOPED_TRACE(name);
-        const auto kept = [&](double value) { return within_bounds(track_with(name, low, {{7, value}})).value.size(); };
+        const auto kept = [name = name, low = low](double value) {
+            return within_bounds(track_with(name, low, {{7, value}})).value.size();
+        };
         EXPECT_EQ(kept(low - 0.1), 99U);
         EXPECT_EQ(kept(low + 0.1), 100U);
         EXPECT_EQ(kept(high - 0.1), 100U);
