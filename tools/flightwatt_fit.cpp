@@ -126,7 +126,6 @@ frequency for all flights, averaged over the flights with weights. The model goe
 as TOML; with -o it goes to the file and Table I is shown.)" +
             std::string(cli::several_flights_text)};
     stage.shows_table = true;
-    stage.removed_options = {{"--level-covariate", "fit by airspeed and climb instead: --model physical"}};
     add_fit_options(stage.options, cli::AutoOrder::accepted);
     cli::add_model_option(stage.options, cli::ModelKind::fourier);
     auto add = stage.options.add_options();

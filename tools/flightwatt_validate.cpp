@@ -102,7 +102,6 @@ whose power is near zero. Bias is predicted less measured. physical is rejected,
 where the mean power predicts better.)" +
             std::string(cli::several_flights_text)};
     stage.shows_table = true;
-    stage.removed_options = {{"--covariate", "'physical' predicts by airspeed and climb, where they were measured"}};
     cli::add_fit_options(stage.options);
     auto add = stage.options.add_options();
     add("until", cli::value<double>("S"), "validate the prediction in flight, S seconds after lift-off");

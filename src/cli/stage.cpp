@@ -16,6 +16,7 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
+#include <map>
 #include <new>
 
 #include <fcntl.h>
@@ -97,10 +98,26 @@ void close_standard_output() {
     if (std::fclose(stdout) != 0) cannot_print();
 }
 
-[[noreturn]] void refuse_option(const po::unknown_option& error, const StageDefinition& definition,
-                                const po::options_description& known) {
-    if (const auto removed = definition.removed_options.find(error.get_option_name());
-        removed != definition.removed_options.end())
+/// Options of earlier versions, with what there is instead.
+const std::map<std::string, std::string>& removed_options() {
+    static const std::map<std::string, std::string> removed{
+        {"--covariate", "'physical' predicts by airspeed and climb, where they were measured"},
+        {"--curve", "the curve is that of least squares, and a note says where its frequency is open"},
+        {"--know-durations", "schedules are made for the durations that are known before the flight"},
+        {"--level-covariate", "fit by airspeed and climb instead: --model physical"},
+        {"--link-version", "frames are of version 2 of pprzlink"},
+        {"--max-battery-flights", "up to 12 flights are taken"},
+        {"--max-periods", "a phase has 0.5 to 120 periods"},
+        {"--max-validation-flights", "up to 30 flights are taken"},
+        {"--min-periods", "a phase has 0.5 to 120 periods"},
+        {"--sysfs", "state sysfs under [sampler] of the specification"},
+        {"--trials", "every configuration is run"},
+        {"--weight", "leave flights out with --exclude, or choose another --weights"}};
+    return removed;
+}
+
+[[noreturn]] void refuse_option(const po::unknown_option& error, const po::options_description& known) {
+    if (const auto removed = removed_options().find(error.get_option_name()); removed != removed_options().end())
         throw UsageError(fmt::format("{} was removed: {}", removed->first, removed->second));
     std::vector<std::string> names;
     for (const auto& option : known.options()) names.push_back("--" + option->long_name());
@@ -153,7 +170,7 @@ StageCall parse(int argc, char** argv, const StageDefinition& definition, const 
         auto parser = po::command_line_parser(argc, argv).options(all).positional(positional).style(style);
         po::store(parser.run(), call.options);
     } catch (const po::unknown_option& error) {
-        refuse_option(error, definition, visible);
+        refuse_option(error, visible);
     }
     po::notify(call.options);
     call.json = call.has("json");

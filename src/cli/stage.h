@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -62,7 +61,6 @@ struct StageDefinition {
     std::size_t max_inputs = 1000000;
     bool shows_table = false;  ///< on a terminal: then --wide is an option
     std::string output_help = "write the result to FILE instead of the standard output";
-    std::map<std::string, std::string> removed_options = {};  ///< of earlier versions, with what there is instead
 };
 
 /// An input of several that cannot be used.
