@@ -51,7 +51,7 @@ flight::PerPhase<mechanical::OrderSelection> choose_orders(const cli::StageCall&
                                                            const mechanical::ModelFitOptions& options) {
     flight::PerPhase<mechanical::OrderSelection> choices;
     for (const auto phase : flight::all_phases) {
-        choices[phase] = select_order(phase, samples_of_phase(flights, phase), options.phases, options.weights);
+        choices[phase] = select_order(phase, samples_of_phase(flights, phase), options.phases, options.weighting);
         note_order(call, phase, choices[phase]);
     }
     return choices;
@@ -80,8 +80,9 @@ int fit(const cli::StageCall& call) {
     }
 
     auto fitted = fit_model(flights, options);
-    std::optional<flight::PerPhase<mechanical::PhaseErrorReport>> reports;
-    if (call.has("errors") || call.has("intervals") || curves_file) reports = mechanical::add_errors(fitted);
+    flight::PerPhase<mechanical::ErrorAnalysis> analyses;
+    const bool with_errors = call.has("errors") || call.has("intervals") || curves_file;
+    if (with_errors) analyses = mechanical::analyse_model(fitted);
     const bool robust = options.phases.loss != mechanical::Loss::none;
     if (robust) note_down_weighted(call, fitted);
 
@@ -94,13 +95,12 @@ int fit(const cli::StageCall& call) {
     if (table_file) write_file_atomically(*table_file, cli::table_text(table, *table_file));
     if (constants_file)
         write_file_atomically(*constants_file, cli::table_text(cli::constants_table(physical->model), *constants_file));
-    if (curves_file) write_file_atomically(*curves_file, curves_csv(fitted, *reports));
+    if (curves_file) write_file_atomically(*curves_file, curves_csv(fitted, analyses));
     cli::write_result(call, to_toml(fitted.model));
     warn_of_model(call, fitted.model);
-    warn_of_given_frequencies(call, fitted.model);
     if (call.json) {
         auto json = cli::to_json(fitted.model);
-        if (reports) cli::add_errors_json(json, fitted.model, *reports);
+        cli::add_errors_json(json, fitted.model);
         if (robust) cli::add_loss_json(json, fitted);
         if (physical) json["physical"] = cli::physical_json(*physical);
         for (const auto phase : flight::all_phases)
@@ -135,8 +135,8 @@ as TOML; with -o it goes to the file and Table I is shown.)" +
     add("constants", cli::output_file("FILE"),
         "write the constants of the physical model with their 95 % intervals as .txt, .csv, .md or .tex");
     add("errors",
-        "analyse the fit: standard errors, R2, condition, autocorrelation, frequency profile, spread "
-        "between flights, into the model and the JSON");
+        "analyse the fit: standard errors, R2, condition, autocorrelation, spread between flights, into the "
+        "model and the JSON");
     add("intervals", "Table I with 95 % intervals; implies --errors");
     add("curves", cli::output_file("FILE.csv"),
         "write the curves with their band and the flights' envelope; implies --errors");

@@ -107,7 +107,7 @@ compute::ProfilerOptions options_of(const cli::StageCall& call, const SignalWatc
 
 int conclude(const cli::StageCall& call, const compute::ProfileOutcome& outcome,
              const compute::ProfileSpecification& specification) {
-    write_profiles(outcome, specification, *call.output, call.has("powprofiler"));
+    write_profiles(outcome, specification, *call.output);
     if (call.json) {
         cli::print(cli::json_text(cli::to_json(outcome, specification.above_idle)));
     } else {
@@ -168,7 +168,6 @@ Samplers: auto, ina238, ina3221 (either of ina3221-iio, ina3221-hwmon), rapl, po
     auto add = stage.options.add_options();
     add("sampler", cli::value("KIND"), "sample with this instead of what SPEC says");
     add("above-idle", "profiles hold the power above that of the idle computer");
-    add("powprofiler", "write powprofiler's formats too, to DIR/powprofiler");
     add("check-interpolation", "of profiles: find each node from the others, and print the errors");
     add("parameters", cli::value("A,B"), "the parameters' names, of a profile that has flags (--check-interpolation)");
     add("columns", cli::value("A,B,power_w"),

@@ -37,18 +37,18 @@ mechanical::CurveBand band_from(const Json& json) {
 }
 
 Json options_json(const mechanical::ModelFitOptions& options) {
-    return {{"order", options.phases.order}, {"weights", to_string(options.weights.weighting)}};
+    return {{"order", options.phases.order}, {"weights", to_string(options.weighting)}};
 }
 
 mechanical::ModelFitOptions options_from(const Json& json) {
     mechanical::ModelFitOptions options;
     options.phases.order = json.at("order");
-    options.weights.weighting = mechanical::weighting_from(json.at("weights").get<std::string>()).value();
+    options.weighting = mechanical::weighting_from(json.at("weights").get<std::string>()).value();
     return options;
 }
 
 /// To be raised with every change of the fit that changes a model: others are then made anew.
-constexpr auto fit_number = "fit 2";
+constexpr auto fit_number = "fit 3";
 
 constexpr auto copies_key = "copies";
 constexpr auto copies_without_power_key = "copies_without_power";

@@ -74,7 +74,6 @@ void visit_fields(Of<mechanical::FlightBin> auto& bin, const auto& visit) {
     visit("samples", bin.samples);
     visit("terms", bin.values.values);
     visit("airspeed_m_per_s", bin.airspeed_m_per_s);
-    visit("throttle_cubed", bin.throttle_cubed);
 }
 
 void visit_fields(Of<mechanical::BinnedFlight> auto& motion, const auto& visit) {

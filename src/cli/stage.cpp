@@ -110,6 +110,7 @@ const std::map<std::string, std::string>& removed_options() {
         {"--max-periods", "a phase has 0.5 to 120 periods"},
         {"--max-validation-flights", "up to 30 flights are taken"},
         {"--min-periods", "a phase has 0.5 to 120 periods"},
+        {"--powprofiler", "DIR/NAME.csv holds the same powers, with names in place of flags"},
         {"--sysfs", "state sysfs under [sampler] of the specification"},
         {"--trials", "every configuration is run"},
         {"--weight", "leave flights out with --exclude, or choose another --weights"}};

@@ -51,35 +51,6 @@ std::string idle_csv(const PowerEstimate& idle) {
         idle.power_w, number_or(idle.standard_error_w, 6, ""), idle.duration_s, idle.energy_j, idle.samples);
 }
 
-/// powprofiler's layer 2, header of flags: 200, 201, ... the parameters, 100 total power, 130 energy, power times
-/// duration.
-std::string powprofiler_layer2_csv(const ComponentEstimate& component) {
-    std::string text;
-    for (std::size_t i = 0; i < component.parameters.size(); ++i) {
-        text += fmt::format("{},", 200 + i);
-    }
-    text += "100,130\n";
-    for (const auto& node : component.nodes) {
-        for (const double value : node.qos) text += fmt::format("{},", value);
-        text += fmt::format("{:.7g},{:.7g}\n", node.total.power_w, node.total.energy_j);
-    }
-    return text;
-}
-
-void write_powprofiler(const ProfileOutcome& outcome, const std::filesystem::path& folder) {
-    for (const auto& component : outcome.components) {
-        if (component.nodes.empty()) continue;
-        make_directories(folder);
-        write_file_atomically(folder / (component.name + ".csv"), powprofiler_layer2_csv(component));
-    }
-    for (const auto& run : outcome.runs) {
-        if (run.status != RunStatus::ok) continue;
-        const auto path = folder / run.layer1;
-        make_directories(path.parent_path());
-        write_file_atomically(path, powprofiler_layer1_csv(run.trace));
-    }
-}
-
 }  // namespace
 
 std::string number_or(double value, int decimals, const std::string& unknown) {
@@ -102,14 +73,8 @@ std::string layer2_csv(const ComponentEstimate& component, const ProfileOutcome&
     return text;
 }
 
-std::string powprofiler_layer1_csv(const PowerTrace& trace) {
-    std::string text = "100\n";
-    for (const double power_w : trace.power_w) text += fmt::format("{:.6g}\n", power_w);
-    return text;
-}
-
 void write_profiles(const ProfileOutcome& outcome, const ProfileSpecification& specification,
-                    const std::filesystem::path& folder, bool powprofiler) {
+                    const std::filesystem::path& folder) {
     if (outcome.idle) write_file_atomically(folder / "idle.csv", idle_csv(*outcome.idle));
     for (const auto& component : outcome.components) {
         const auto path = folder / (component.name + ".csv");
@@ -121,7 +86,6 @@ void write_profiles(const ProfileOutcome& outcome, const ProfileSpecification& s
         }
         write_file_atomically(path, layer2_csv(component, outcome, specification));
     }
-    if (powprofiler) write_powprofiler(outcome, folder / "powprofiler");
 }
 
 }  // namespace flightwatt::compute

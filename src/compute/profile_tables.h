@@ -26,12 +26,9 @@ std::string number_or(double value, int decimals, const std::string& unknown);
 std::string layer2_csv(const ComponentEstimate& component, const ProfileOutcome& outcome,
                        const ProfileSpecification& specification);
 
-/// powprofiler's layer 1: 100, total power, no time. It takes the samples for equally spaced.
-std::string powprofiler_layer1_csv(const PowerTrace& trace);
-
-/// Writes NAME.csv of each component and idle.csv into the folder; with `powprofiler`, its formats into
-/// powprofiler/ below it. A component of which nothing could be measured leaves no file.
+/// Writes NAME.csv of each component and idle.csv into the folder. A component of which nothing could be measured leaves
+/// no file.
 void write_profiles(const ProfileOutcome& outcome, const ProfileSpecification& specification,
-                    const std::filesystem::path& folder, bool powprofiler);
+                    const std::filesystem::path& folder);
 
 }  // namespace flightwatt::compute

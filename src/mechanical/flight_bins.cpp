@@ -49,7 +49,6 @@ struct MotionTracks {
     const flight::Track& airspeed;
     const flight::Track& altitude;
     const flight::Track& roll;
-    const flight::Track& throttle;
     double min_m_per_s = 0.0;  ///< at which the wing carries
 };
 
@@ -82,10 +81,6 @@ FlightBin motion_bin(const MotionTracks& tracks, const flight::PhaseSegment& spa
     bin.values[PowerTerm::climb] = climb;
     bin.values[PowerTerm::descent] = std::min(climb, 0.0);
     bin.values[PowerTerm::constant] = 1.0;
-    if (is_measured(tracks.throttle, span.start_s, span.end_s)) {
-        bin.throttle_cubed = mean_of(values_between(tracks.throttle, span.start_s, span.end_s),
-                                     [](double percent) { return std::pow(percent / units::percent_per_whole, 3); });
-    }
     return bin;
 }
 
@@ -113,8 +108,7 @@ BinnedFlight bin_flight(const flight::SelectedTracks& tracks, const std::vector<
                         double bin_s) {
     BinnedFlight motion{tracks.series().flight, {}, false, why_without_motion(tracks)};
     if (!motion.no_bins_reason.empty()) return motion;
-    MotionTracks of{tracks["power_w"], tracks["airspeed_m_per_s"], tracks["altitude_m"], tracks["roll_deg"],
-                    tracks["throttle_percent"]};
+    MotionTracks of{tracks["power_w"], tracks["airspeed_m_per_s"], tracks["altitude_m"], tracks["roll_deg"]};
     std::vector<double> speeds;
     for (const auto& span : spans) {
         const auto values = values_between(of.airspeed, span.start_s, span.end_s);

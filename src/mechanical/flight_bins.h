@@ -4,7 +4,6 @@
 #include "mechanical/physical_model.h"
 
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,7 +22,6 @@ struct FlightBin {
     std::size_t samples = 0;  ///< of power
     TermValues values;        ///< means of the terms; the climb is that of the energy height
     double airspeed_m_per_s = 0.0;
-    std::optional<double> throttle_cubed;  ///< mean cube of the throttle, 1 is full
 
     double middle_s() const { return start_s + 0.5 * duration_s; }
 };

@@ -98,12 +98,16 @@ Interval student_t_interval(double value, double standard_error, double degrees_
 
 CoefficientIntervals coefficient_intervals(const PhaseModel& phase) {
     const auto& errors = phase.errors.value();
-    if (errors.intervals) return *errors.intervals;
     const auto about = [&](double value, double error) {
         return student_t_interval(value, error, errors.degrees_of_freedom);
     };
     CoefficientIntervals intervals{
         about(phase.fourier.omega_rad_per_s, errors.omega_rad_per_s), about(phase.fourier.a0_w, errors.a0_w), {}, {}};
+    if (phase.range) {
+        auto& [low, high] = intervals.omega_rad_per_s;
+        low = std::max(low, std::min(phase.range->low_rad / phase.duration_s, phase.fourier.omega_rad_per_s));
+        high = std::min(high, std::max(phase.range->high_rad / phase.duration_s, phase.fourier.omega_rad_per_s));
+    }
     for (std::size_t n = 0; n < phase.fourier.cos_w.size(); ++n) {
         intervals.cos_w.push_back(about(phase.fourier.cos_w[n], errors.cos_w[n]));
         intervals.sin_w.push_back(about(phase.fourier.sin_w[n], errors.sin_w[n]));
@@ -141,11 +145,6 @@ std::vector<std::string> model_warnings(const MechanicalModel& model) {
     for (const auto phase : flight::all_phases) {
         const auto& fitted = model.phases[phase];
         warn_of_negative_power(to_string(phase), fitted, warnings);
-        if (!fitted.errors || !fitted.errors->noise_lasts) continue;
-        warnings.push_back(
-            fmt::format("{}: the noise of neighbouring samples is as alike as can be told from the curve "
-                        "(autocorrelation {:.2f}): the errors are no more than a bound",
-                        to_string(phase), fitted.errors->autocorrelation));
     }
     return warnings;
 }

@@ -38,13 +38,10 @@ struct FrequencyRange {
     FrequencyBound at_bound = FrequencyBound::none;
 };
 
-/// What the noise's autocorrelation is at most, in the longest phases (autocorrelation_limit).
-inline constexpr double max_autocorrelation = 0.99;
-
 /// Of a value with this standard error, by Student's t.
 Interval student_t_interval(double value, double standard_error, double degrees_of_freedom);
 
-/// 95 % intervals of a phase's coefficients; not symmetric about them.
+/// 95 % intervals of a phase's coefficients.
 struct CoefficientIntervals {
     Interval omega_rad_per_s;
     Interval a0_w;
@@ -52,24 +49,22 @@ struct CoefficientIntervals {
     std::vector<Interval> sin_w;
 };
 
-/// How well the noise of the samples lets a phase's averaged coefficients be known: standard deviations of the
-/// weighted mean of these very flights, weights and durations taken as given, frequency and autocorrelation
-/// integrated over. How flights differ is another question: see FlightEnvelope.
+/// How well the noise of the samples lets a phase's averaged coefficients be known, about: standard errors of the weighted
+/// mean of these very flights, weights and durations taken as given, at all frequencies that fit (analyse_errors). How
+/// flights differ is another question: see FlightEnvelope.
 struct PhaseErrors {
     double omega_rad_per_s = 0.0;
     double a0_w = 0.0;
     std::vector<double> cos_w;
     std::vector<double> sin_w;
     double curve_w = 0.0;             ///< root mean square over the phase of the curve's own standard error
-    double degrees_of_freedom = 0.0;  ///< of the Student's t at each frequency
+    double degrees_of_freedom = 0.0;  ///< of their Student's t
     /// The errors hold for the frequency as given: the curve is a constant, or (of files of 0.2) it stands at a bound.
     bool frequency_is_fixed = false;
     double r2 = 0.0;                 ///< of all samples about their own flights' curves and means
     double condition = 0.0;          ///< of the basis on the samples, columns of length 1; the worst flight's
-    double autocorrelation = 0.0;    ///< of the noise of samples one median gap apart; the mean over all that may be
+    double autocorrelation = 0.0;    ///< of neighbouring residuals
     double effective_samples = 0.0;  ///< independent samples that would tell the mean as well
-    bool noise_lasts = false;  ///< most likely as long as noise was allowed to: the errors are no more than a bound
-    std::optional<CoefficientIntervals> intervals = {};  ///< absent in files of 0.2
 };
 
 /// How the flights' own curves differ over the phase, at evenly spread parts of it from begin to end.
@@ -97,8 +92,7 @@ struct ConstantPower {
 
 struct PhaseModel;
 
-/// The coefficients' intervals: those of its errors, or of files of 0.2 symmetric ones by Student's t. The phase must
-/// have errors.
+/// The coefficients' intervals by Student's t, that of the frequency within its range. The phase must have errors.
 CoefficientIntervals coefficient_intervals(const PhaseModel& phase);
 
 /// One phase of the model: the flights' weighted average (Eqs. 5-7) and what it rests on.
@@ -190,8 +184,7 @@ std::vector<double> curve_w(const FourierModel& model, double duration_s, std::s
 double rms_difference_w(const PhaseModel& a, const PhaseModel& b);
 
 /// What a user should know of a model before it is used, a line each: a phase whose curve falls below 0 W, where a
-/// drone takes no energy back; a phase whose errors are no more than a bound, because the noise of its samples is alike
-/// for as long as the phase lasts (autocorrelation at max_autocorrelation).
+/// drone takes no energy back.
 std::vector<std::string> model_warnings(const MechanicalModel& model);
 
 /// How the fit came to its curves where that is not least squares of all samples, a line each: samples that were left

@@ -26,47 +26,9 @@ void list_sizes(TomlFields& fields, std::string_view key, std::vector<double>& v
             throw InputError(fields.source()->where(key), fmt::format("{} holds {}, which is negative", key, value));
 }
 
-/// Two lists, low and high, as intervals.
-void list_intervals(TomlFields& fields, std::string_view name, std::vector<Interval>& intervals, std::size_t count) {
-    const auto low_key = fmt::format("{}_low_w", name);
-    const auto high_key = fmt::format("{}_high_w", name);
-    std::vector<double> low;
-    std::vector<double> high;
-    for (const auto& interval : intervals) {
-        low.push_back(interval.low);
-        high.push_back(interval.high);
-    }
-    fields.reals(low_key, low);
-    fields.reals(high_key, high);
-    const auto* table = fields.source();
-    if (table == nullptr) return;
-    for (const auto& [key, values] : {std::pair(low_key, low), std::pair(high_key, high)}) {
-        if (values.size() == count) continue;
-        throw InputError(table->where(key),
-                         fmt::format("{} has {} numbers, expected {}: one for each coefficient of the phase", key,
-                                     values.size(), count));
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-        if (low[i] > high[i])
-            throw InputError(table->where(high_key), fmt::format("number {} of {}, {}, is below that of {}, {}", i + 1,
-                                                                 high_key, high[i], low_key, low[i]));
-        intervals.push_back({low[i], high[i]});
-    }
-}
-
-void list_interval(TomlFields& fields, std::string_view key, Interval& interval) {
-    std::vector<double> ends{interval.low, interval.high};
-    fields.reals(key, ends);
-    if (fields.source() == nullptr) return;
-    if (ends.size() != 2 || ends[0] > ends[1])
-        throw InputError(fields.source()->where(key), fmt::format("{} is no interval, expected [low, high]", key));
-    interval = {ends[0], ends[1]};
-}
-
 void list_errors(TomlFields& fields, PhaseErrors& errors, std::size_t order) {
     constexpr std::string_view as_coefficients = "one for each coefficient of the phase";
-    fields.line(
-        "# standard errors and intervals of the weighted mean of these flights, from the noise of their samples");
+    fields.line("# standard errors of the weighted mean of these flights, from the noise of their samples");
     fields.real("omega_rad_per_s", errors.omega_rad_per_s, at_least(0.0));
     fields.flag("frequency_is_given", errors.frequency_is_fixed);
     fields.real("a0_w", errors.a0_w, at_least(0.0));
@@ -78,16 +40,8 @@ void list_errors(TomlFields& fields, PhaseErrors& errors, std::size_t order) {
     fields.real("condition", errors.condition, at_least(1.0));
     fields.real("autocorrelation", errors.autocorrelation, between(0.0, 1.0));
     fields.real("effective_samples", errors.effective_samples, at_least(0.0));
-    // Of files of 0.2: it says how the errors were found, not what they are.
-    if (fields.source() != nullptr) fields.source()->optional_boolean("from_flights");
-    if (fields.has("noise_lasts", errors.noise_lasts)) fields.flag("noise_lasts", errors.noise_lasts);
-    const auto list_coefficients = [order](TomlFields& of, CoefficientIntervals& intervals) {
-        list_interval(of, "omega_rad_per_s", intervals.omega_rad_per_s);
-        list_interval(of, "a0_w", intervals.a0_w);
-        list_intervals(of, "cos", intervals.cos_w, order);
-        list_intervals(of, "sin", intervals.sin_w, order);
-    };
-    fields.optional_table("interval_95", errors.intervals, list_coefficients, TomlLayout::dotted_keys);
+    if (const auto* table = fields.source())  // of earlier versions
+        for (const auto* key : {"from_flights", "noise_lasts", "interval_95"}) table->has(key);
 }
 
 void list_envelope(TomlFields& fields, FlightEnvelope& spread) {

@@ -83,7 +83,7 @@ std::optional<ModelValidation> validation_of(std::vector<ValidatedFlight> flight
 
 void add_best_power(MechanicalModel& model, std::span<const MeasuredFlight> flights, const ModelFitOptions& options,
                     const std::function<void(std::size_t, std::size_t)>& progress) {
-    if (flights.size() < 2 || options.weights.weighting == Weighting::manual) return;
+    if (flights.size() < 2) return;
     try {
         model.validation = validation_of(leave_one_out(validated_flights(flights), options, progress));
         const auto is_physical = [](const auto& score) { return score.model == physical; };

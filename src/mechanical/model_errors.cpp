@@ -25,22 +25,21 @@ void add_curve(CsvWriter& csv, const ModelFit& fit, flight::Phase phase, const E
     const auto points = curve_point_count(model.fourier, model.duration_s) / 5 + 1;
     const auto spread = compute_envelope(fit.fits[phase], fit.weights[phase], points);
     const auto taus = even_parts(points);
-    const auto intervals = curve_intervals_w(analysis, taus);
+    const double half_width = student_t_half_width(analysis.errors.degrees_of_freedom);
     const double population_wide = spread ? student_t_half_width(spread->effective_flights - 1.0) : 0.0;
     for (std::size_t i = 0; i < points; ++i) {
         const double tau = taus[i];
         const double time_s = tau * model.duration_s;
         const double power = power_w(model.fourier, time_s);
         const double error = curve_standard_error_w(analysis, tau);
-        const auto& [low, high] = intervals[i];
         std::array<std::optional<double>, 5> of_flights;
         if (spread) {
             const double reach = population_wide * population_standard_error_w(*spread, i);
             of_flights = {spread->low_w[i], spread->high_w[i], spread->standard_deviation_w[i], power - reach,
                           power + reach};
         }
-        csv.add(to_string(phase), tau, time_s, power, error, low, high, of_flights[0], of_flights[1], of_flights[2],
-                of_flights[3], of_flights[4]);
+        csv.add(to_string(phase), tau, time_s, power, error, power - half_width * error, power + half_width * error,
+                of_flights[0], of_flights[1], of_flights[2], of_flights[3], of_flights[4]);
     }
 }
 
@@ -49,22 +48,15 @@ void add_curve(CsvWriter& csv, const ModelFit& fit, flight::Phase phase, const E
 std::optional<FlightEnvelope> compute_envelope(const PhaseFit& fit, std::span<const double> weights,
                                                std::size_t points) {
     const double squares = std::inner_product(weights.begin(), weights.end(), weights.begin(), 0.0);
-    if (std::ranges::count_if(weights, [](double weight) { return weight > 0.0; }) < 2) return std::nullopt;
+    if (weights.size() < 2) return std::nullopt;
     FlightEnvelope spread;
     spread.effective_flights = 1.0 / squares;
     for (const double tau : even_parts(points)) {
         std::vector<double> powers;
-        std::vector<double> counts;
-        double mean = 0.0;
-        for (std::size_t k = 0; k < weights.size(); ++k) {
-            if (weights[k] <= 0.0) continue;
-            const auto& flight = fit.flights[k];
-            powers.push_back(power_w(flight.fourier, tau * flight.duration_s));
-            counts.push_back(weights[k]);
-            mean += weights[k] * powers.back();
-        }
+        for (const auto& flight : fit.flights) powers.push_back(power_w(flight.fourier, tau * flight.duration_s));
+        const double mean = std::inner_product(weights.begin(), weights.end(), powers.begin(), 0.0);
         double square_sum = 0.0;
-        for (std::size_t k = 0; k < powers.size(); ++k) square_sum += counts[k] * std::pow(powers[k] - mean, 2);
+        for (std::size_t k = 0; k < powers.size(); ++k) square_sum += weights[k] * std::pow(powers[k] - mean, 2);
         const auto [low, high] = std::ranges::minmax(powers);
         spread.low_w.push_back(low);
         spread.high_w.push_back(high);
@@ -87,16 +79,6 @@ flight::PerPhase<ErrorAnalysis> analyse_model(ModelFit& fit) {
     return analyses;
 }
 
-flight::PerPhase<PhaseErrorReport> add_errors(ModelFit& fit) {
-    auto analyses = analyse_model(fit);
-    flight::PerPhase<PhaseErrorReport> reports;
-    for (const auto phase : flight::all_phases) {
-        reports[phase].profile = frequency_profile(fit.samples[phase], fit.fits[phase], analyses[phase]);
-        reports[phase].analysis = std::move(analyses[phase]);
-    }
-    return reports;
-}
-
 flight::PerPhase<CurveBand> curve_bands(const ModelFit& fit, const flight::PerPhase<ErrorAnalysis>& analyses) {
     constexpr std::size_t points = 101;
     flight::PerPhase<CurveBand> bands;
@@ -106,7 +88,10 @@ flight::PerPhase<CurveBand> curve_bands(const ModelFit& fit, const flight::PerPh
         auto& band = bands[phase];
         const auto taus = even_parts(points);
         for (const double tau : taus) band.time_s.push_back(fitted.duration_s * tau);
-        for (const auto& [low, high] : curve_intervals_w(analysis, taus)) {
+        for (const double tau : taus) {
+            const auto [low, high] =
+                student_t_interval(power_w(fitted.fourier, tau * fitted.duration_s),
+                                   curve_standard_error_w(analysis, tau), analysis.errors.degrees_of_freedom);
             band.low_95_w.push_back(low);
             band.high_95_w.push_back(high);
         }
@@ -118,12 +103,12 @@ flight::PerPhase<CurveBand> curve_bands(const ModelFit& fit, const flight::PerPh
     return bands;
 }
 
-std::string curves_csv(const ModelFit& fit, const flight::PerPhase<PhaseErrorReport>& reports) {
+std::string curves_csv(const ModelFit& fit, const flight::PerPhase<ErrorAnalysis>& analyses) {
     constexpr int digits = 6;
     CsvWriter csv({"phase", "tau", "time_s", "power_w", "standard_error_w", "low_95_w", "high_95_w", "flights_low_w",
                    "flights_high_w", "flights_sd_w", "population_low_95_w", "population_high_95_w"},
                   digits);
-    for (const auto phase : flight::all_phases) add_curve(csv, fit, phase, reports[phase].analysis);
+    for (const auto phase : flight::all_phases) add_curve(csv, fit, phase, analyses[phase]);
     return csv.text();
 }
 

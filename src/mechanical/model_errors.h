@@ -25,17 +25,8 @@ std::optional<FlightEnvelope> compute_envelope(const PhaseFit& fit, std::span<co
 /// spread: sd / sqrt(effective_flights). Its Student's t has effective_flights - 1 degrees of freedom.
 double population_standard_error_w(const FlightEnvelope& spread, std::size_t i);
 
-/// What is known of a phase's errors beyond what the model keeps.
-struct PhaseErrorReport {
-    ErrorAnalysis analysis;
-    FrequencyProfile profile;
-};
-
 /// Analyses every phase of a fit and puts errors and spread into its model; nothing else of it changes.
 flight::PerPhase<ErrorAnalysis> analyse_model(ModelFit& fit);
-
-/// The same with the profile of each phase's frequency, which costs a fit for each of its points.
-flight::PerPhase<PhaseErrorReport> add_errors(ModelFit& fit);
 
 /// What is known of a model's curve over one phase, at evenly spread times.
 struct CurveBand {
@@ -53,6 +44,6 @@ flight::PerPhase<CurveBand> curve_bands(const ModelFit& fit, const flight::PerPh
 /// time_s, power_w; standard_error_w, low_95_w, high_95_w: the weighted mean of these flights, given their noise;
 /// flights_low_w, flights_high_w, flights_sd_w: the flights' own curves (the paper's grey band); population_low_95_w,
 /// population_high_95_w: the mean of all flights like these. The last five are empty where a single flight counts.
-std::string curves_csv(const ModelFit& fit, const flight::PerPhase<PhaseErrorReport>& reports);
+std::string curves_csv(const ModelFit& fit, const flight::PerPhase<ErrorAnalysis>& analyses);
 
 }  // namespace flightwatt::mechanical

@@ -42,7 +42,7 @@ std::string described(const ModelFitOptions& options, std::size_t flights) {
     return fmt::format("fitted to {} flight{}: Fourier series {}, {}weights: {}; flightwatt {}", flights,
                        flights == 1 ? "" : "s", orders_of(options),
                        loss == Loss::none ? "" : fmt::format("loss: {}, ", to_string(loss)),
-                       to_string(options.weights.weighting), FLIGHTWATT_VERSION);
+                       to_string(options.weighting), FLIGHTWATT_VERSION);
 }
 
 /// Power beyond any aircraft's overflows on the way; a model of that is none.
@@ -50,14 +50,6 @@ void refuse_what_is_no_number(flight::Phase phase, const FourierModel& model) {
     if (coefficients_of(model).allFinite()) return;
     throw NoResultError(fmt::format("{}: the fit's coefficients are no numbers; is the power of all samples possible?",
                                     to_string(phase)));
-}
-
-/// Without the flights that weights by hand exclude.
-std::vector<PhaseSamples> counted(std::span<const PhaseSamples> flights, std::span<const double> weights) {
-    std::vector<PhaseSamples> samples;
-    for (std::size_t i = 0; i < flights.size(); ++i)
-        if (weights[i] > 0.0) samples.push_back(flights[i]);
-    return samples;
 }
 
 }  // namespace
@@ -105,22 +97,21 @@ FittedPhase fit_phase_model(flight::Phase phase, std::span<const PhaseSamples> f
     phase_options.order = options.order(phase);
     FittedPhase fitted;
     fitted.fit = fit_phase(phase, flights, phase_options);
-    fitted.weights = flight_weights(fitted.fit, phase, options.weights);
+    fitted.weights = flight_weights(fitted.fit, options.weighting);
     fitted.model = average_phase(fitted.fit, fitted.weights);
     for (const auto& samples : flights) fitted.model.edge_samples += samples.edge_samples;
     refuse_what_is_no_number(phase, fitted.model.fourier);
-    fitted.model.level_spread = estimate_variance_components(fitted.model, counted(flights, fitted.weights));
+    fitted.model.level_spread = estimate_variance_components(fitted.model, flights);
     return fitted;
 }
 
 ModelFit fit_model(std::span<const FlightSamples> flights, const ModelFitOptions& options) {
     const auto names = names_of(flights);
-    validate_weights(options.weights, names);
     ModelFit parts;
     auto& model = parts.model;
     model.name = options.name;
     model.description = described(options, flights.size());
-    model.weighting = to_string(options.weights.weighting);
+    model.weighting = to_string(options.weighting);
     for (const auto& name : names) model.flights.push_back({name, {}});
 
     for (const auto phase : flight::all_phases) {

@@ -14,7 +14,7 @@ namespace flightwatt::mechanical {
 struct ModelFitOptions {
     std::string name = "fitted";  ///< of the model
     PhaseFitOptions phases = {};
-    WeightOptions weights = {};
+    Weighting weighting = Weighting::agreement;
     flight::PerPhase<std::optional<int>> orders = {};  ///< where a phase's is to be another than phases.order
 
     int order(flight::Phase phase) const { return orders[phase].value_or(phases.order); }
@@ -27,7 +27,7 @@ struct FittedPhase {
     std::vector<double> weights;  ///< of fit.flights
 };
 
-/// Fits and averages one phase (Eqs. 1, 5-7), with its spread. Throws what fit_phase and flight_weights throw.
+/// Fits and averages one phase (Eqs. 1, 5-7), with its spread. Throws what fit_phase throws.
 FittedPhase fit_phase_model(flight::Phase phase, std::span<const PhaseSamples> flights,
                             const ModelFitOptions& options = {});
 
@@ -50,7 +50,7 @@ void cache_scans(std::span<FlightSamples> flights, const ModelFitOptions& option
 /// that have it and averaged with their weights. A phase's rms_w is that of the samples about their own
 /// flights' curves. Throws NoResultError naming a phase that no flight has, or a flight with too few samples
 /// in a phase (min_samples tells beforehand; such a phase may be excluded), UsageError for a flight given
-/// twice and for weights that do not fit the flights, and what fit_phase throws.
+/// twice, and what fit_phase throws.
 ModelFit fit_model(std::span<const FlightSamples> flights, const ModelFitOptions& options = {});
 
 /// The series of the model's order and frequency which is nearest (least squares) to `power_w` at the parts `tau`

@@ -53,9 +53,9 @@ std::vector<OrderFold> folds_of_time(const PhaseSamples& flight) {
 }
 
 double mean_square_error_w2(flight::Phase phase, const OrderFold& fold, const PhaseFitOptions& options,
-                            const WeightOptions& weights) {
+                            Weighting weighting) {
     const auto fit = fit_phase(phase, fold.seen, options);
-    const auto average = average_phase(fit, flight_weights(fit, phase, weights));
+    const auto average = average_phase(fit, flight_weights(fit, weighting));
     double sum = 0.0;
     for (std::size_t j = 0; j < fold.held_back.tau.size(); ++j) {
         const double predicted_w = power_w(average.fourier, fold.held_back.tau[j] * average.duration_s);
@@ -65,12 +65,12 @@ double mean_square_error_w2(flight::Phase phase, const OrderFold& fold, const Ph
 }
 
 OrderError error_of(flight::Phase phase, const std::vector<OrderFold>& folds, const PhaseFitOptions& options,
-                    const WeightOptions& weights) {
+                    Weighting weighting) {
     OrderError error;
     error.order = options.order;
     try {
         for (const auto& fold : folds) {
-            error.mean_square_w2.push_back(mean_square_error_w2(phase, fold, options, weights));
+            error.mean_square_w2.push_back(mean_square_error_w2(phase, fold, options, weighting));
         }
         error.rms_w = std::sqrt(mean(error.mean_square_w2));
     } catch (const NoResultError& no_answer) {
@@ -94,15 +94,13 @@ std::string_view to_string(HoldOutScheme held_back) {
 }
 
 OrderSelection select_order(flight::Phase phase, std::span<const PhaseSamples> flights, const PhaseFitOptions& options,
-                            const WeightOptions& weights) {
+                            Weighting weighting) {
     if (flights.empty()) throw NoResultError(fmt::format("no flight has a {} to fit", to_string(phase)));
     OrderSelection choice;
     choice.held_back = flights.size() > 1 ? HoldOutScheme::one_flight : HoldOutScheme::blocks_of_time;
     const auto folds =
         choice.held_back == HoldOutScheme::one_flight ? folds_of_flights(flights) : folds_of_time(flights.front());
     choice.folds = folds.size();
-    const bool by_hand = weights.weighting == Weighting::manual;
-    const WeightOptions weighting{by_hand ? Weighting::uniform : weights.weighting, {}};
     auto tried = options;
     for (int order = 0; order <= max_tested_order; ++order) {
         tried.order = order;

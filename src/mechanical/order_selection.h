@@ -42,8 +42,8 @@ struct OrderSelection {
 /// predicted by the weighted mean curve of the others. One flight: the phase is cut in up to 20 blocks of consecutive
 /// samples, since neighbours in time know each other's noise, and every fifth block is held back in turn. Chosen is the
 /// lowest order whose mean square error is within one standard error (of the difference, fold by fold) of the least.
-/// options.order is not read; weights by hand count as uniform. Throws NoResultError if no order can be fitted.
+/// options.order is not read. Throws NoResultError if no order can be fitted.
 OrderSelection select_order(flight::Phase phase, std::span<const PhaseSamples> flights, const PhaseFitOptions& options,
-                            const WeightOptions& weights);
+                            Weighting weighting);
 
 }  // namespace flightwatt::mechanical

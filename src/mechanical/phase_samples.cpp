@@ -170,12 +170,6 @@ ScaledSamples sort_by_time(const ScaledSamples& samples) {
     return sorted;
 }
 
-std::size_t sample_count(std::span<const ScaledSamples> flights) {
-    std::size_t count = 0;
-    for (const auto& flight : flights) count += flight.tau.size();
-    return count;
-}
-
 EdgeSamples count_neighbour_samples(const flight::Track& power, const flight::PhaseSpan& span) {
     const auto begin = power.time_s.begin();
     const auto first = std::ranges::lower_bound(power.time_s, span.start.time_s) - begin;

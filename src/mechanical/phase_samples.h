@@ -55,9 +55,6 @@ struct ScaledSamples {
 /// The same samples in the order of time.
 ScaledSamples sort_by_time(const ScaledSamples& samples);
 
-/// Of all flights together.
-std::size_t sample_count(std::span<const ScaledSamples> flights);
-
 /// Samples at the ends of a phase whose power is the neighbouring phase's.
 struct EdgeSamples {
     std::size_t at_start = 0;

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/statistics.h"
-#include "mechanical/fit/student_t.h"
+#include "mechanical/physical/student_t.h"
 #include "mechanical/physical/term_choice.h"
 
 #include <algorithm>

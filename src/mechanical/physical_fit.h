@@ -18,7 +18,7 @@ struct SkippedFlight {
 
 struct PhysicalFit {
     PhysicalModel model;
-    std::vector<TermTrial> trials;  ///< in the order of all_power_terms, the throttle last
+    std::vector<TermTrial> trials;  ///< in the order of all_power_terms
     std::vector<SkippedFlight> skipped;
     bool folds_are_flights = true;  ///< false: a single flight, and blocks of its time were held back
     bool phases_decided = true;     ///< false: trials have the error of bins, not of whole phases

@@ -124,7 +124,7 @@ bool is_within_flown_range(const PhysicalModel& model, const FlightState& motion
 
 /// A term that the fit tried, and what became of it.
 struct TermTrial {
-    std::string term;  ///< as to_string(PowerTerm), or "throttle"
+    PowerTerm term = PowerTerm::drag;
     bool kept = false;
     std::optional<double> rms_before_w;  ///< error of what was held back, without the term; absent if it was not tried
     std::optional<double> rms_after_w;   ///< and with it

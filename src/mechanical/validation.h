@@ -84,8 +84,8 @@ inline constexpr double least_gain_of_curve = 0.05;
 std::optional<ModelValidation> validation_of(std::vector<ValidatedFlight> flights);
 
 /// Adds to a fitted model its validation, and the physical model if that is not rejected. Of more than
-/// max_validation_folds flights so many are validated, evenly from all. Adds nothing where weights were given by hand,
-/// which are the curves', nor for fewer than 2 flights or folds that cannot be fitted.
+/// max_validation_folds flights so many are validated, evenly from all. Adds nothing for fewer than 2 flights or
+/// folds that cannot be fitted.
 void add_best_power(MechanicalModel& model, std::span<const MeasuredFlight> flights, const ModelFitOptions& options,
                     const std::function<void(std::size_t, std::size_t)>& progress = {});
 

@@ -21,7 +21,7 @@ BatchFit some_fit() {
     mechanical::ModelFitOptions options;
     options.name = "three";
     options.phases.order = 2;
-    options.weights.weighting = mechanical::Weighting::uniform;
+    options.weighting = mechanical::Weighting::uniform;
     auto fit = fit_flights(samples, options);
     fit.excluded = {"other"};
     fit.keep = {"doubtful"};
@@ -37,7 +37,7 @@ TEST(BatchFit, IsReadBackAsItWasWritten) {
     EXPECT_EQ(to_toml(read.model), to_toml(fit.model));
     EXPECT_TRUE(read.model.phases[flight::Phase::cruise].errors);
     EXPECT_EQ(read.options.phases.order, 2);
-    EXPECT_EQ(read.options.weights.weighting, mechanical::Weighting::uniform);
+    EXPECT_EQ(read.options.weighting, mechanical::Weighting::uniform);
     EXPECT_EQ(read.excluded, fit.excluded);
     EXPECT_EQ(read.keep, fit.keep);
     for (const auto phase : flight::all_phases) {

@@ -44,7 +44,6 @@ FlightRecord full_record() {
     measured.samples.flight = record.flight;
     measured.motion = test::made_up_motions(1, 3, {}, 1).front();
     measured.motion.flight = record.flight;
-    measured.motion.bins[1].throttle_cubed.reset();
     record.measured.sorties = {0};
     record.warnings = {"a \"quoted\" one", "another"};
     return record;
@@ -80,8 +79,6 @@ TEST(FlightRecord, SurvivesJson) {
     EXPECT_EQ(motion.bins[2].values.values, bins[2].values.values);
     EXPECT_EQ(motion.bins[2].power_w, bins[2].power_w);
     EXPECT_EQ(motion.bins[2].samples, 27U);
-    EXPECT_EQ(motion.bins[2].throttle_cubed, bins[2].throttle_cubed);
-    EXPECT_FALSE(motion.bins[1].throttle_cubed);
 }
 
 /// As a record would be written that says this: with a seal that is right.

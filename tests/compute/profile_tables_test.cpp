@@ -67,24 +67,19 @@ TEST(LayerTwo, SaysOfWhatItsPowerConsists) {
 TEST(LayerTwo, IsReadByMissions) {
     const auto folder = test::scratch_dir();
     const auto made = outcome();
-    write_profiles(made, specification(true), folder, true);
+    write_profiles(made, specification(true), folder);
     EXPECT_DOUBLE_EQ(power_w(read_power_profile(folder / "load.csv"), {1.25}), 3.5);
     EXPECT_DOUBLE_EQ(power_w(read_power_profile(folder / "idle.csv"), {}), 2.0);
-    EXPECT_EQ(read_file(folder / "powprofiler" / "load.csv"), "200,100,130\n1,5,20\n2,7,28\n");
 }
 
 TEST(WriteProfiles, LeavesNoFileOfAComponentWithoutPower) {
     const auto folder = test::scratch_dir();
     auto made = outcome();
-    write_profiles(made, specification(false), folder, false);
+    write_profiles(made, specification(false), folder);
     EXPECT_TRUE(std::filesystem::exists(folder / "load.csv"));
     made.components[0].nodes.clear();
-    write_profiles(made, specification(false), folder, false);
+    write_profiles(made, specification(false), folder);
     EXPECT_FALSE(std::filesystem::exists(folder / "load.csv")) << "of an earlier call";
-}
-
-TEST(LayerOne, OfPowprofilerHasNoTime) {
-    EXPECT_EQ(powprofiler_layer1_csv({{0.0, 0.1}, {4.0, 5.25}}), "100\n4\n5.25\n");
 }
 
 }  // namespace

@@ -50,7 +50,6 @@ inline MadeUpMotion made_up_motion(const std::string& name, std::size_t bins, co
                                truth.climb * bin.values[mechanical::PowerTerm::climb] +
                                truth.descent * bin.values[mechanical::PowerTerm::descent];
         bin.power_w = (1.0 + made.level) * model_w + drift;
-        bin.throttle_cubed = 0.01 * bin.power_w;
         made.motion.bins.push_back(bin);
         drift = kept * drift + std::sqrt(1.0 - kept * kept) * truth.drift_sd_w * normal(random);
         gust = 0.8 * gust + 0.6 * normal(random);

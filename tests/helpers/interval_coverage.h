@@ -80,20 +80,22 @@ inline Coverage coverage_of(flight::Phase phase, const CoverageCase& made, unsig
             ++coverage.without_answer;
             continue;
         }
-        const auto weights = flight_weights(fit, phase, {mechanical::Weighting::uniform, {}});
+        const auto weights = flight_weights(fit, mechanical::Weighting::uniform);
         const auto analysis = analyse_errors(flights, fit, weights);
         const auto mean = average_phase(fit, weights);
-        const auto intervals = curve_intervals_w(analysis, taus);
+        const double freedom = analysis.errors.degrees_of_freedom;
         double width_w = 0.0;
         double square_w2 = 0.0;
         for (std::size_t i = 0; i < taus.size(); ++i) {
             const double true_w = power_w(truth.fourier, taus[i] * truth.duration_s);
-            const auto& [low_w, high_w] = intervals[i];
+            const double found_w = power_w(mean.fourier, taus[i] * mean.duration_s);
+            const auto [low_w, high_w] =
+                mechanical::student_t_interval(found_w, curve_standard_error_w(analysis, taus[i]), freedom);
             coverage.covered += low_w <= true_w && true_w <= high_w ? 1.0 : 0.0;
             width_w += (high_w - low_w) / points;
-            square_w2 += std::pow(power_w(mean.fourier, taus[i] * mean.duration_s) - true_w, 2) / points;
+            square_w2 += std::pow(found_w - true_w, 2) / points;
         }
-        const auto& a0 = analysis.errors.intervals->a0_w;
+        const auto a0 = mechanical::student_t_interval(mean.fourier.a0_w, analysis.errors.a0_w, freedom);
         coverage.a0_covered += a0.low <= truth.fourier.a0_w && truth.fourier.a0_w <= a0.high ? 1.0 : 0.0;
         half_widths_w.push_back(width_w / 2.0);
         a0_half_widths_w.push_back((a0.high - a0.low) / 2.0);

@@ -152,7 +152,7 @@ class UnknownAircraft {
                 fit.flights.push_back({"", flight.duration_s[phase], curve_of(phase, flight), 0.1, 100});
                 levels_w.push_back(flight.level_w[phase]);
             }
-            const auto weights = flight_weights(fit, phase, {});
+            const auto weights = flight_weights(fit, mechanical::Weighting::agreement);
             model.phases[phase] = average_phase(fit, weights);
             model.phases[phase].level_spread = mechanical::VarianceComponents{flights, sample_sd(levels_w), 0.1, 20.0};
             for (std::size_t i = 0; i < flights; ++i)

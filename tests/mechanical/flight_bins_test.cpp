@@ -30,7 +30,6 @@ flight::FlightSeries some_series() {
     series.flight = "test";
     series.tracks = {
         track("altitude_m", 0.5, [](double t) { return 100.0 + std::clamp(t - 300.0, 0.0, 30.0); }),
-        track("throttle_percent", 1.0, [](double t) { return 50.0 + 0.001 * t; }),
         track("power_w", 1.0, [](double t) { return 20.0 + 0.01 * t; }),
         track("airspeed_m_per_s", 1.0, [](double t) { return t < 480.0 ? 12.0 + 0.001 * t : 14.0 + 0.001 * t; }),
         track("roll_deg", 0.2, [](double t) { return t < 60.0 ? 30.0 : 0.0; }),
@@ -57,7 +56,6 @@ TEST(FlightBins, AverageThePowerAndTheTerms) {
     EXPECT_NEAR(bin.values[PowerTerm::turn], 1.0 / 3.0 / 12.045, 1e-6);  // tan^2 of 30 degrees
     EXPECT_NEAR(found.bins[5].values[PowerTerm::turn], 0.0, 1e-12);
     EXPECT_EQ(bin.values[PowerTerm::constant], 1.0);
-    EXPECT_NEAR(bin.throttle_cubed.value(), std::pow(0.50045, 3), 1e-6);
 }
 
 TEST(FlightBins, CountSpeedAsHeight) {

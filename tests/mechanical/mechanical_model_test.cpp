@@ -155,14 +155,6 @@ TEST(ModelCheck, TellsWhereACurveFallsBelowZero) {
     EXPECT_THAT(model_warnings(model), ElementsAre(HasSubstr("below 0 for 40.0 of 40.0 s")));
 }
 
-TEST(ModelCheck, TellsWhereErrorsAreNoMoreThanABound) {
-    auto model = published();
-    auto& errors = model.phases[flight::Phase::takeoff].errors.emplace();
-    EXPECT_THAT(model_warnings(model), IsEmpty());
-    errors.noise_lasts = true;
-    EXPECT_THAT(model_warnings(model), ElementsAre(HasSubstr("takeoff: the noise of neighbouring samples")));
-}
-
 TEST(ModelCheck, TellsWhatWasDoneToTheCurve) {
     auto model = published();
     auto& landing = model.phases[flight::Phase::landing];

@@ -123,13 +123,9 @@ TEST(AddBestPower, ValidatesAtMostFortyFlights) {
     }
 }
 
-TEST(AddBestPower, AddsNothingToOneFlightOrToWeightsByHand) {
+TEST(AddBestPower, AddsNothingToOneFlight) {
     MechanicalModel model;
     add_best_power(model, steady_flights(1), of_order(0));
-    EXPECT_FALSE(model.validation);
-    auto options = of_order(0);
-    options.weights.weighting = Weighting::manual;
-    add_best_power(model, steady_flights(3), options);
     EXPECT_FALSE(model.validation);
 }
 

@@ -138,21 +138,6 @@ TEST(ModelFit, TheOrderOfTheFlightsDoesNotMatter) {
     }
 }
 
-TEST(ModelFit, WeightsByHandReachTheAverage) {
-    const auto flights = made_up_flights(2, 0.2, 6);
-    ModelFitOptions options;
-    options.weights = {Weighting::manual,
-                       {{"flight1", {}, 1.0}, {"flight2", {}, 0.0}, {"flight2", flight::Phase::cruise, 3.0}}};
-    const auto model = fit_model(flights, options).model;
-    EXPECT_EQ(model.weighting, "by hand");
-    EXPECT_EQ(model.phases[flight::Phase::takeoff].duration_s, flights[0].phases[flight::Phase::takeoff]->duration_s);
-    EXPECT_EQ(model.flights[1].phases[flight::Phase::cruise]->weight, 0.75);
-    EXPECT_FALSE(model.phases[flight::Phase::takeoff].level_spread) << "one flight counts";
-    EXPECT_EQ(model.phases[flight::Phase::cruise].level_spread->flights, 2U);
-    options.weights.by_hand.push_back({"flight3", {}, 1.0});
-    EXPECT_THAT(message_of<UsageError>(flights, options), HasSubstr("'flight3'"));
-}
-
 TEST(ModelFit, KeepsWhatItsSpreadIsOf) {
     const auto flights = made_up_flights(3, 0.2, 8);
     const auto model = fit_model(flights).model;

@@ -63,12 +63,12 @@ TEST(OrderSelection, PassesOverOrdersThatTheSamplesAreTooFewFor) {
             flight.power_w.push_back(20.0 + i % 3);
         }
     }
-    const auto choice = select_order(flight::Phase::landing, flights, {.min_theta_rad = std::numbers::pi / 2.0}, {});
+    const auto choice = select_order(flight::Phase::landing, flights, {}, Weighting::agreement);
     EXPECT_TRUE(choice.errors[0].rms_w);
     EXPECT_FALSE(choice.errors[6].rms_w);
     EXPECT_NE(choice.errors[6].reason.find("9 samples"), std::string::npos) << choice.errors[6].reason;
     EXPECT_LE(choice.order, 3);
-    EXPECT_THROW(select_order(flight::Phase::cruise, {}, {}, {}), NoResultError);
+    EXPECT_THROW(select_order(flight::Phase::cruise, {}, {}, Weighting::agreement), NoResultError);
 }
 
 }  // namespace

@@ -20,8 +20,8 @@ using test::made_up_motions;
 using test::MotionTruth;
 using testing::ElementsAre;
 
-const TermTrial& trial_of(const PhysicalFit& fit, const std::string& term) {
-    return *std::ranges::find(fit.trials, term, &TermTrial::term);
+const TermTrial& trial_of(const PhysicalFit& fit, std::string_view term) {
+    return *std::ranges::find(fit.trials, power_term_from(term).value(), &TermTrial::term);
 }
 
 TEST(PhysicalFit, FindsTheTermsThatTheFlightsObey) {
@@ -35,7 +35,7 @@ TEST(PhysicalFit, FindsTheTermsThatTheFlightsObey) {
     EXPECT_EQ(fit.folds, 6u);
     EXPECT_TRUE(fit.folds_are_flights);
     EXPECT_TRUE(fit.phases_decided);
-    EXPECT_EQ(fit.trials.size(), power_term_count + 1);
+    EXPECT_EQ(fit.trials.size(), power_term_count);
 }
 
 TEST(PhysicalFit, KnowsTheAirspeedWhoseDragIsTheMean) {
@@ -53,13 +53,11 @@ TEST(PhysicalFit, KnowsTheAirspeedWhoseDragIsTheMean) {
 TEST(PhysicalFit, SaysWhatBecameOfEveryTerm) {
     const auto fit = fit_physical_model(made_up_motions(6, 50, {}, 1));
     for (const auto* kept : {"drag", "climb", "descent"}) EXPECT_TRUE(trial_of(fit, kept).kept) << kept;
-    for (const auto* dropped : {"induced", "turn", "constant", "throttle"}) {
+    for (const auto* dropped : {"induced", "turn", "constant"}) {
         EXPECT_FALSE(trial_of(fit, dropped).kept) << dropped;
         EXPECT_FALSE(trial_of(fit, dropped).reason.empty()) << dropped;
     }
     EXPECT_LT(*trial_of(fit, "climb").rms_after_w, 0.8 * *trial_of(fit, "climb").rms_before_w);
-    // A throttle that tells the power is told of, and not kept.
-    EXPECT_LT(*trial_of(fit, "throttle").rms_after_w, 0.5 * *trial_of(fit, "throttle").rms_before_w);
 }
 
 int wrong_terms(const PhysicalModel& model) {

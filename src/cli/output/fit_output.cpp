@@ -40,18 +40,7 @@ Json to_json(const mechanical::PhaseModel& phase, const mechanical::PhaseErrors&
             {"r2", errors.r2},
             {"condition", errors.condition},
             {"autocorrelation", errors.autocorrelation},
-            {"effective_samples", errors.effective_samples},
-            {"noise_lasts", errors.noise_lasts}};
-}
-
-Json to_json(const mechanical::FrequencyProfile& profile) {
-    return {{"omega_duration_rad", profile.theta_rad},
-            {"rms_w", profile.rms_w},
-            {"interval_95",
-             {{"low_rad", profile.low_rad},
-              {"high_rad", profile.high_rad},
-              {"low_is_open", profile.low_is_open},
-              {"high_is_open", profile.high_is_open}}}};
+            {"effective_samples", errors.effective_samples}};
 }
 
 Json to_json(const mechanical::FlightEnvelope& spread) {
@@ -110,10 +99,9 @@ mechanical::ModelFitOptions read_fit_options(const StageCall& call, AutoOrder au
     options.phases.order = read_order(call, automatic).value_or(options.phases.order);
     const auto name = call.get<std::string>("weights");
     const auto weighting = mechanical::weighting_from(name);
-    if (!weighting || *weighting == mechanical::Weighting::manual) {
+    if (!weighting)
         throw UsageError(fmt::format("--weights {}: expected uniform, inverse-variance or agreement", name));
-    }
-    options.weights.weighting = *weighting;
+    options.weighting = *weighting;
     return options;
 }
 
@@ -206,13 +194,11 @@ void warn_of_model(const StageCall& call, const mechanical::MechanicalModel& mod
     if (model.validation) note(call, describe(*model.validation, model.physical.has_value()));
 }
 
-void add_errors_json(Json& json, const mechanical::MechanicalModel& model,
-                     const flight::PerPhase<mechanical::PhaseErrorReport>& reports) {
+void add_errors_json(Json& json, const mechanical::MechanicalModel& model) {
     for (const auto phase : flight::all_phases) {
         auto& entry = json["phases"][std::string(to_string(phase))];
         const auto& fitted = model.phases[phase];
-        entry["errors"] = to_json(fitted, reports[phase].analysis.errors);
-        entry["frequency_profile"] = to_json(reports[phase].profile);
+        if (fitted.errors) entry["errors"] = to_json(fitted, *fitted.errors);
         if (fitted.spread) entry["spread"] = to_json(*fitted.spread);
     }
 }
@@ -257,17 +243,6 @@ void note_order(const StageCall& call, flight::Phase phase, const mechanical::Or
                            choice.order, choice.best, to_string(choice.held_back), choice.folds, curve));
     for (const auto& error : choice.errors) {
         if (!error.rms_w) note(call, fmt::format("order {}: {}", error.order, error.reason));
-    }
-}
-
-void warn_of_given_frequencies(const StageCall& call, const mechanical::MechanicalModel& model) {
-    for (const auto phase : flight::all_phases) {
-        const auto& fitted = model.phases[phase];
-        const bool constant = fitted.fourier.cos_w.empty();
-        if (constant || !fitted.errors || !fitted.errors->frequency_is_fixed) continue;
-        warn(call, fmt::format("{}: the errors are those at the frequency as given; the coefficients "
-                               "alone may be further off, the curve is not",
-                               to_string(phase)));
     }
 }
 

@@ -50,9 +50,8 @@ Json to_json(const mechanical::MechanicalModel& model);
 /// Warns of a frequency at the edge of what it could be, and of what model_warnings says.
 void warn_of_model(const StageCall& call, const mechanical::MechanicalModel& model);
 
-/// Adds errors, frequency_profile and spread to each phase of the stage's JSON.
-void add_errors_json(Json& json, const mechanical::MechanicalModel& model,
-                     const flight::PerPhase<mechanical::PhaseErrorReport>& reports);
+/// Adds the errors and the spread of each phase, where the model has them.
+void add_errors_json(Json& json, const mechanical::MechanicalModel& model);
 
 /// Adds each phase's loss and the samples that it gives less than half weight.
 void add_loss_json(Json& json, const mechanical::ModelFit& fit);
@@ -62,9 +61,6 @@ void add_order_json(Json& json, flight::Phase phase, const mechanical::OrderSele
 
 /// Notes the chosen order and the prediction error of every order.
 void note_order(const StageCall& call, flight::Phase phase, const mechanical::OrderSelection& choice);
-
-/// Warns of intervals that are conditional on a given frequency.
-void warn_of_given_frequencies(const StageCall& call, const mechanical::MechanicalModel& model);
 
 /// Notes how many samples have less than half weight, and the three of least weight.
 void note_down_weighted(const StageCall& call, const mechanical::ModelFit& fit);

@@ -46,7 +46,7 @@ Json terms_json(const mechanical::PhysicalModel& model) {
 }
 
 Json trial_json(const mechanical::TermTrial& trial) {
-    return {{"term", trial.term},
+    return {{"term", to_string(trial.term)},
             {"kept", trial.kept},
             {"rms_without_w", optional_json(trial.rms_before_w)},
             {"rms_with_w", optional_json(trial.rms_after_w)},

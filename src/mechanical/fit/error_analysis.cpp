@@ -1,25 +1,40 @@
 #include "mechanical/fit/error_analysis.h"
 
-#include "base/error.h"
+#include "base/parallel.h"
 #include "base/statistics.h"
-#include "base/units.h"
 #include "mechanical/fit/fourier_basis.h"
+#include "mechanical/fit/least_squares.h"
 #include "mechanical/fit/phase_fit.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numbers>
+#include <optional>
 #include <utility>
+#include <vector>
+
+#include <Eigen/Core>
 
 namespace flightwatt::mechanical {
-namespace {
 
-/// So much weight keeps frequencies below one period, and below three quarters of one, in the intervals of
-/// coefficients. Chosen with simulations of Table I in view.
-constexpr double weight_of_low_frequencies = 0.005;
-constexpr std::array low_frequencies_rad{1.5 * std::numbers::pi, units::rad_per_turn};
+/// The weighted mean curve at one frequency.
+struct CurveAtFrequency {
+    double theta_rad = 0.0;
+    Eigen::VectorXd coefficients_w;  ///< a0, a1, b1, ...
+    Eigen::MatrixXd covariance_w2;
+    double square_sum_w2 = 0.0;
+    double reach = 0.0;  ///< how far it may be off, in its standard errors
+};
+
+/// The mean curve that was found, and the curves at all frequencies that the samples allow.
+struct MeanCurve {
+    double theta_rad = 0.0;
+    Eigen::VectorXd coefficients_w;
+    std::vector<CurveAtFrequency> allowed;
+    double half_width = 0.0;  ///< of a 95 % interval, in standard errors
+};
+
+namespace {
 
 double square_sum_about_mean(const PhaseSamples& samples) {
     const auto power_w = as_vector(samples.power_w);
@@ -40,135 +55,88 @@ void describe_fit(PhaseErrors& errors, std::span<const PhaseSamples> flights, co
     errors.frequency_is_fixed = fit.flights.front().fourier.cos_w.empty() || is_constant(flights);
 }
 
-/// What the nodes say of a linear function of the coefficients which depends on theta: row(theta) c.
+/// What the frequencies are tried on.
+struct NoisySamples {
+    std::vector<ScaledSamples> flights;
+    std::vector<double> weights;
+    double inflation = 1.0;  ///< of variances, because neighbouring samples are alike
+};
+
+/// std::nullopt where the samples do not determine the series.
+std::optional<CurveAtFrequency> curve_at(const NoisySamples& samples, Eigen::Index size, double theta_rad) {
+    CurveAtFrequency curve{theta_rad, Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size)};
+    for (std::size_t i = 0; i < samples.flights.size(); ++i) {
+        const auto& flight = samples.flights[i];
+        const auto basis = fourier_basis(flight.tau, static_cast<int>(size - 1) / 2, theta_rad);
+        const auto fit = solve_least_squares(basis, as_vector(flight.value));
+        if (!fit) return std::nullopt;
+        const double variance_w2 =
+            samples.inflation * fit->residual_square_sum / static_cast<double>(basis.rows() - size);
+        curve.coefficients_w += samples.weights[i] * fit->coefficients;
+        curve.covariance_w2 += samples.weights[i] * samples.weights[i] * variance_w2 * fit->covariance;
+        curve.square_sum_w2 += fit->residual_square_sum;
+    }
+    return curve;
+}
+
+/// The one found first, then others within its interval as if all were linear, the range's low end, where coefficients
+/// are known least, and the rivals.
+std::vector<double> frequencies_to_try(const PhaseFit& fit, double standard_error_rad, double half_width) {
+    constexpr int to_each_side = 6;
+    std::vector<double> tried{fit.theta_rad, fit.range.low_rad};
+    for (int i = -to_each_side; i <= to_each_side; ++i) {
+        const double theta_rad = fit.theta_rad + half_width * standard_error_rad * i / to_each_side;
+        if (i != 0 && theta_rad > fit.range.low_rad && theta_rad < fit.range.high_rad) tried.push_back(theta_rad);
+    }
+    tried.insert(tried.end(), fit.rivals_rad.begin(), fit.rivals_rad.end());
+    return tried;
+}
+
+/// All that are not worse than the best by as much as an F test allows.
+std::vector<CurveAtFrequency> allowed_curves(const NoisySamples& samples, Eigen::Index size, const PhaseFit& fit,
+                                             const std::vector<double>& tried, double half_width) {
+    std::vector<std::optional<CurveAtFrequency>> curves(tried.size());
+    for_each_in_parallel(tried.size(), [&](std::size_t i) { curves[i] = curve_at(samples, size, tried[i]); });
+    std::vector<CurveAtFrequency> allowed;
+    for (auto& curve : curves) {
+        if (!curve) continue;
+        const double least_w2 = allowed.empty() ? curve->square_sum_w2 : allowed.front().square_sum_w2;
+        const double ratio = least_w2 > 0.0 ? curve->square_sum_w2 / least_w2 : 1.0;
+        const double left = half_width * half_width - fit.degrees_of_freedom * (ratio - 1.0);
+        if (left < 0.0) continue;
+        curve->reach = std::sqrt(left);
+        allowed.push_back(*std::move(curve));
+    }
+    return allowed;
+}
+
+/// The standard error of a linear function of the coefficients, row(theta) c: that of the widest interval.
 template <typename Row>
-StudentMixture mixture_of(std::span<const PosteriorNode> nodes, const Row& row) {
-    StudentMixture mixture;
-    for (const auto& node : nodes) {
-        const Eigen::VectorXd at = row(node.theta_rad);
-        mixture.weight.push_back(node.weight);
-        mixture.location.push_back(at.dot(node.coefficients));
-        mixture.scale.push_back(std::sqrt(std::max(0.0, at.dot(node.scale * at))));
+double standard_error(const MeanCurve& curve, const Row& row) {
+    const double found = row(curve.theta_rad).dot(curve.coefficients_w);
+    double furthest = 0.0;
+    for (const auto& at : curve.allowed) {
+        const Eigen::VectorXd factors = row(at.theta_rad);
+        const double half = at.reach * std::sqrt(std::max(0.0, factors.dot(at.covariance_w2 * factors)));
+        furthest = std::max(furthest, std::abs(factors.dot(at.coefficients_w) - found) + half);
     }
-    return mixture;
+    return furthest / curve.half_width;
 }
 
-/// The row of the mean curve at tau for a frequency.
-Eigen::VectorXd curve_row(Eigen::Index coefficients, double theta_rad, double tau) {
-    const std::array at{tau};
-    return fourier_basis(at, static_cast<int>(coefficients - 1) / 2, theta_rad).row(0).transpose();
+double frequency_standard_error_rad(const MeanCurve& curve, double linear_rad) {
+    double furthest_rad = linear_rad * curve.half_width;
+    for (const auto& at : curve.allowed)
+        furthest_rad = std::max(furthest_rad, std::abs(at.theta_rad - curve.theta_rad));
+    return furthest_rad / curve.half_width;
 }
 
-StudentMixture curve_mixture(const ErrorAnalysis& analysis, double tau) {
-    return mixture_of(analysis.curve->posterior.nodes, [&](double theta_rad) {
-        return curve_row(analysis.curve->coefficients_w.size(), theta_rad, tau);
-    });
-}
-
-Interval around(Interval interval, double value) {
-    return {std::min(interval.low, value), std::max(interval.high, value)};
-}
-
-/// Of the nodes below a frequency alone; without weights if they hold too little.
-StudentMixture below(const StudentMixture& mixture, std::span<const PosteriorNode> nodes, double theta_rad) {
-    StudentMixture part;
-    double sum = 0.0;
-    for (std::size_t i = 0; i < mixture.weight.size(); ++i) {
-        if (nodes[i].theta_rad > theta_rad) break;
-        sum += mixture.weight[i];
-        part.weight.push_back(mixture.weight[i]);
-        part.location.push_back(mixture.location[i]);
-        part.scale.push_back(mixture.scale[i]);
-    }
-    if (sum < weight_of_low_frequencies) return {};
-    for (double& weight : part.weight) weight /= sum;
-    return part;
-}
-
-/// A coefficient's interval: of the mixture, and of the frequencies at which harmonics are alike by themselves as long
-/// as these are not ruled out. There coefficients range widest, in little of the weight.
-Interval coefficient_interval(const ErrorAnalysis& analysis, const StudentMixture& mixture, const StudentCdf& cdf,
-                              double value) {
-    auto interval = around(mixture_interval(mixture, cdf), value);
-    for (const double theta_rad : low_frequencies_rad) {
-        const auto part = below(mixture, analysis.curve->posterior.nodes, theta_rad);
-        if (part.weight.empty()) continue;
-        const auto [low, high] = mixture_interval(part, cdf);
-        interval = around(around(interval, low), high);
-    }
-    return interval;
-}
-
-double sd_of_frequency(std::span<const PosteriorNode> nodes) {
-    double mean = 0.0;
-    for (const auto& node : nodes) mean += node.weight * node.theta_rad;
-    double sum = 0.0;
-    for (const auto& node : nodes) sum += node.weight * std::pow(node.theta_rad - mean, 2);
-    return std::sqrt(sum);
-}
-
-/// Power without a frequency: what is known of a constant, as that of a series whose harmonics are 0.
-void add_harmonics(std::vector<PosteriorNode>& nodes, Eigen::Index size) {
-    for (auto& node : nodes) {
-        node.coefficients.conservativeResizeLike(Eigen::VectorXd::Zero(size));
-        node.scale.conservativeResizeLike(Eigen::MatrixXd::Zero(size, size));
-    }
-}
-
-void fill_coefficients(ErrorAnalysis& analysis, double duration_s) {
-    auto& errors = analysis.errors;
-    auto& intervals = errors.intervals.emplace();
-    const StudentCdf cdf(errors.degrees_of_freedom);
-    const auto size = analysis.curve->coefficients_w.size();
+void fill_coefficients(PhaseErrors& errors, const MeanCurve& curve) {
+    const auto size = curve.coefficients_w.size();
     for (Eigen::Index k = 0; k < size; ++k) {
-        Eigen::VectorXd unit = Eigen::VectorXd::Unit(size, k);
-        const auto mixture = mixture_of(analysis.curve->posterior.nodes, [&](double) { return unit; });
-        const double sd = mixture_sd(mixture, errors.degrees_of_freedom);
-        const auto [low, high] = coefficient_interval(analysis, mixture, cdf, analysis.curve->coefficients_w(k));
-        (k == 0 ? errors.a0_w : k % 2 == 1 ? errors.cos_w.emplace_back() : errors.sin_w.emplace_back()) = sd;
-        (k == 0       ? intervals.a0_w
-         : k % 2 == 1 ? intervals.cos_w.emplace_back()
-                      : intervals.sin_w.emplace_back()) = {low, high};
+        const double error_w =
+            standard_error(curve, [&](double) { return Eigen::VectorXd(Eigen::VectorXd::Unit(size, k)); });
+        (k == 0 ? errors.a0_w : k % 2 == 1 ? errors.cos_w.emplace_back() : errors.sin_w.emplace_back()) = error_w;
     }
-    if (errors.frequency_is_fixed) {
-        intervals.omega_rad_per_s = {analysis.theta_rad / duration_s, analysis.theta_rad / duration_s};
-        return;
-    }
-    const auto [low, high] = around(frequency_interval(analysis.curve->posterior), analysis.theta_rad);
-    intervals.omega_rad_per_s = {low / duration_s, high / duration_s};
-    errors.omega_rad_per_s = sd_of_frequency(analysis.curve->posterior.nodes) / duration_s;
-}
-
-void fill_noise(PhaseErrors& errors, const FrequencyPosterior& posterior, std::span<const PhaseSamples> flights) {
-    for (const auto& node : posterior.nodes) errors.autocorrelation += node.weight * node.autocorrelation;
-    errors.autocorrelation = std::clamp(errors.autocorrelation, 0.0, 1.0);
-    errors.noise_lasts = is_autocorrelation_at_limit(posterior);
-    for (const auto& flight : flights) {
-        const auto sorted = sort_by_time({flight.tau, flight.power_w});
-        errors.effective_samples +=
-            effective_samples(sample_correlation(sorted.tau, median_gap(sorted.tau), errors.autocorrelation));
-    }
-}
-
-FrequencyPosterior posterior_of_fit(std::span<const PhaseSamples> flights, const PhaseFit& fit,
-                                    std::span<const double> weights, int order) {
-    std::vector<ScaledSamples> values;
-    for (std::size_t i = 0; i < flights.size(); ++i)
-        values.push_back(pseudo_observations(flights[i], fit.flights[i], fit));
-    return frequency_posterior(values, weights, {order, fit.range, fit.theta_rad});
-}
-
-constexpr int points_a_side = 20;
-
-/// The flights' least common sum of squares at one frequency [W^2].
-double square_sum_w2(std::span<const PhaseSamples> flights, int order, double theta_rad) {
-    double sum = 0.0;
-    for (const auto& flight : flights) {
-        const auto fit = solve_least_squares(fourier_basis(flight.tau, order, theta_rad), as_vector(flight.power_w));
-        if (!fit) return std::numeric_limits<double>::infinity();
-        sum += fit->residual_square_sum;
-    }
-    return sum;
 }
 
 }  // namespace
@@ -176,91 +144,50 @@ double square_sum_w2(std::span<const PhaseSamples> flights, int order, double th
 ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseFit& fit,
                              std::span<const double> weights) {
     ErrorAnalysis analysis;
-    MeanCurve curve;
     auto& errors = analysis.errors;
+    describe_fit(errors, flights, fit);
+    errors.autocorrelation = fit.autocorrelation;
+    errors.degrees_of_freedom = fit.degrees_of_freedom;
+    NoisySamples samples{{}, {weights.begin(), weights.end()}};
+    samples.inflation = (1.0 + fit.autocorrelation) / (1.0 - fit.autocorrelation);
+    errors.effective_samples = static_cast<double>(fit.samples) / samples.inflation;
+    const auto size = coefficients_of(fit.flights.front().fourier).size();
+    MeanCurve curve{fit.theta_rad, Eigen::VectorXd::Zero(size), {}, student_t_half_width(errors.degrees_of_freedom)};
     double duration_s = 0.0;
     for (std::size_t i = 0; i < flights.size(); ++i) {
-        const Eigen::VectorXd own = coefficients_of(fit.flights[i].fourier);
-        if (i == 0) curve.coefficients_w = Eigen::VectorXd::Zero(own.size());
-        curve.coefficients_w += weights[i] * own;
+        samples.flights.push_back(pseudo_observations(flights[i], fit.flights[i], fit));
+        curve.coefficients_w += weights[i] * coefficients_of(fit.flights[i].fourier);
         duration_s += weights[i] * flights[i].duration_s;
     }
-    analysis.theta_rad = fit.theta_rad;
-    describe_fit(errors, flights, fit);
-    const int order = errors.frequency_is_fixed ? 0 : static_cast<int>(fit.flights.front().fourier.cos_w.size());
-    curve.posterior = posterior_of_fit(flights, fit, weights, order);
-    add_harmonics(curve.posterior.nodes, curve.coefficients_w.size());
-    for (const auto& node : curve.posterior.nodes) errors.degrees_of_freedom += node.weight * node.degrees_of_freedom;
-    fill_noise(errors, curve.posterior, flights);
-    analysis.curve = std::make_shared<const MeanCurve>(std::move(curve));
-    fill_coefficients(analysis, duration_s);
-    constexpr int points = 41;
-    double variance = 0.0;
-    for (int i = 0; i < points; ++i) {
-        variance += std::pow(curve_standard_error_w(analysis, (i + 0.5) / points), 2) / points;
+    std::vector<double> tried{fit.theta_rad};
+    double linear_rad = 0.0;
+    if (!errors.frequency_is_fixed) {
+        const auto found = fit_at_frequency(samples.flights, static_cast<int>(size - 1) / 2, fit.theta_rad);
+        double square_sum_w2 = 0.0;
+        for (const double part : found.square_sum) square_sum_w2 += part;
+        const double information = frequency_slope(samples.flights, found).information;
+        if (information > 0.0) linear_rad = std::sqrt(square_sum_w2 / fit.degrees_of_freedom / information);
+        tried = frequencies_to_try(fit, linear_rad, curve.half_width);
     }
-    errors.curve_w = std::sqrt(variance);
+    curve.allowed = allowed_curves(samples, size, fit, tried, curve.half_width);
+    fill_coefficients(errors, curve);
+    if (!errors.frequency_is_fixed)
+        errors.omega_rad_per_s = frequency_standard_error_rad(curve, linear_rad) / duration_s;
+    analysis.curve = std::make_shared<const MeanCurve>(std::move(curve));
+    constexpr int points = 41;
+    double variance_w2 = 0.0;
+    for (int i = 0; i < points; ++i)
+        variance_w2 += std::pow(curve_standard_error_w(analysis, (i + 0.5) / points), 2) / points;
+    errors.curve_w = std::sqrt(variance_w2);
     return analysis;
 }
 
 double curve_standard_error_w(const ErrorAnalysis& analysis, double tau) {
-    return mixture_sd(curve_mixture(analysis, tau), analysis.errors.degrees_of_freedom);
-}
-
-std::vector<Interval> curve_intervals_w(const ErrorAnalysis& analysis, std::span<const double> tau) {
-    const StudentCdf cdf(analysis.errors.degrees_of_freedom);
-    std::vector<Interval> intervals;
-    for (const double at : tau) {
-        const double fitted = curve_row(analysis.curve->coefficients_w.size(), analysis.theta_rad, at)
-                                  .dot(analysis.curve->coefficients_w);
-        intervals.push_back(around(mixture_interval(curve_mixture(analysis, at), cdf), fitted));
-    }
-    return intervals;
-}
-
-FrequencyProfile frequency_profile(std::span<const PhaseSamples> flights, const PhaseFit& fit,
-                                   const ErrorAnalysis& analysis) {
-    const auto order = static_cast<int>(fit.flights.front().fourier.cos_w.size());
-    FrequencyProfile profile{{}, {}, fit.range.low_rad, fit.range.high_rad, true, true};
-    if (order == 0 || analysis.errors.frequency_is_fixed) return profile;
-
-    const auto [low, high] = frequency_interval(analysis.curve->posterior);
-    profile.low_rad = std::min(low, fit.theta_rad);
-    profile.high_rad = std::max(high, fit.theta_rad);
-    profile.low_is_open = analysis.curve->posterior.is_open_below;
-    profile.high_is_open = analysis.curve->posterior.is_open_above;
-    const auto square_sum = [&](double theta_rad) { return square_sum_w2(flights, order, theta_rad); };
-
-    const double first = std::max(fit.range.low_rad, 2.0 * profile.low_rad - fit.theta_rad);
-    const double last = std::min(fit.range.high_rad, 2.0 * profile.high_rad - fit.theta_rad);
-    for (int i = -points_a_side; i <= points_a_side; ++i) {
-        const double part = static_cast<double>(i) / points_a_side;
-        const double reach = i < 0 ? fit.theta_rad - first : last - fit.theta_rad;
-        if (reach <= 0.0 && i != 0) continue;
-        const double theta_rad = fit.theta_rad + part * reach;
-        profile.theta_rad.push_back(theta_rad);
-        profile.rms_w.push_back(std::sqrt(square_sum(theta_rad) / static_cast<double>(fit.samples)));
-    }
-    return profile;
-}
-
-std::vector<double> sample_correlation(std::span<const double> tau, double step, double autocorrelation) {
-    std::vector<double> correlation(tau.size(), 0.0);
-    for (std::size_t j = 1; j < tau.size(); ++j) {
-        correlation[j] = std::pow(autocorrelation, (tau[j] - tau[j - 1]) / step);
-    }
-    return correlation;
-}
-
-double effective_samples(std::span<const double> correlation) {
-    const auto count = static_cast<double>(correlation.size());
-    double earlier = 0.0;  // the correlations of sample j with all before it
-    double sum = count;
-    for (const double decay : correlation) {
-        earlier = decay * (1.0 + earlier);
-        sum += 2.0 * earlier;
-    }
-    return count * count / sum;
+    const auto order = static_cast<int>(analysis.curve->coefficients_w.size() - 1) / 2;
+    const std::array at{tau};
+    return standard_error(*analysis.curve, [&](double theta_rad) -> Eigen::VectorXd {
+        return fourier_basis(at, order, theta_rad).row(0).transpose();
+    });
 }
 
 }  // namespace flightwatt::mechanical

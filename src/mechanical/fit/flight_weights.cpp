@@ -1,16 +1,11 @@
 #include "mechanical/fit/flight_weights.h"
 
-#include "base/error.h"
 #include "base/statistics.h"
-#include "base/toml_reader.h"
-#include "mechanical/fit/phase_fit.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
-
-#include <fmt/format.h>
 
 namespace flightwatt::mechanical {
 namespace {
@@ -75,68 +70,11 @@ std::vector<double> by_agreement(const PhaseFit& fit) {
     return normalised(std::move(weights));
 }
 
-double weight_by_hand(const std::string& flight, flight::Phase phase, const std::vector<ManualWeight>& by_hand) {
-    const ManualWeight* found = nullptr;
-    for (const auto& weight : by_hand) {
-        if (weight.flight != flight) continue;
-        if (weight.phase == phase) return weight.weight;
-        if (!weight.phase) found = &weight;
-    }
-    if (found == nullptr) {
-        throw UsageError(fmt::format("flight '{}' has no weight by hand in {}; give it one, 0 to exclude it", flight,
-                                     to_string(phase)));
-    }
-    return found->weight;
-}
-
-std::vector<double> by_hand(const PhaseFit& fit, flight::Phase phase, const std::vector<ManualWeight>& given) {
-    std::vector<double> weights;
-    for (const auto& flight : fit.flights) weights.push_back(weight_by_hand(flight.flight, phase, given));
-    if (std::ranges::none_of(weights, [](double weight) { return weight > 0.0; })) {
-        throw UsageError(
-            fmt::format("every flight's weight by hand is 0 in {}; at least one must be positive", to_string(phase)));
-    }
-    return normalised(std::move(weights));
-}
-
 }  // namespace
 
-void validate_weights(const WeightOptions& options, std::span<const std::string> flights) {
-    if (options.weighting != Weighting::manual && !options.by_hand.empty()) {
-        throw UsageError(
-            fmt::format("weights by hand and weights by {} exclude each other", to_string(options.weighting)));
-    }
-    for (auto weight = options.by_hand.begin(); weight != options.by_hand.end(); ++weight) {
-        if (std::ranges::find(flights, weight->flight) == flights.end()) {
-            const auto near = nearest_word(weight->flight, {flights.begin(), flights.end()});
-            throw UsageError(fmt::format("a weight is given for '{}', which is none of the flights{}", weight->flight,
-                                         near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
-        }
-        if (!(weight->weight >= 0.0) || !std::isfinite(weight->weight)) {
-            throw UsageError(
-                fmt::format("the weight of flight '{}' is {}, expected 0 or more", weight->flight, weight->weight));
-        }
-        const auto same = [&](const ManualWeight& other) {
-            return other.flight == weight->flight && other.phase == weight->phase;
-        };
-        if (std::any_of(options.by_hand.begin(), weight, same)) {
-            throw UsageError(fmt::format("flight '{}' has two weights{}", weight->flight,
-                                         weight->phase ? fmt::format(" in {}", to_string(*weight->phase)) : ""));
-        }
-    }
-}
-
-std::vector<double> flight_weights(const PhaseFit& fit, flight::Phase phase, const WeightOptions& options) {
-    switch (options.weighting) {
-        case Weighting::uniform:
-            break;
-        case Weighting::inverse_variance:
-            return by_variance(fit);
-        case Weighting::agreement:
-            return by_agreement(fit);
-        case Weighting::manual:
-            return by_hand(fit, phase, options.by_hand);
-    }
+std::vector<double> flight_weights(const PhaseFit& fit, Weighting weighting) {
+    if (weighting == Weighting::inverse_variance) return by_variance(fit);
+    if (weighting == Weighting::agreement) return by_agreement(fit);
     return normalised(std::vector<double>(fit.flights.size(), 1.0));
 }
 
@@ -146,7 +84,7 @@ PhaseModel average_phase(const PhaseFit& fit, std::span<const double> weights) {
     model.range = fit.range;
     model.samples = fit.samples;
     model.flights = fit.flights.size();
-    model.open_frequency = fit.is_frequency_open;
+    model.open_frequency = !fit.rivals_rad.empty();
     model.not_negative = fit.is_clamped;
     model.fourier.cos_w.resize(fit.flights.front().fourier.cos_w.size());
     model.fourier.sin_w.resize(model.fourier.cos_w.size());

@@ -4,21 +4,15 @@
 #include "mechanical/mechanical_model.h"
 
 #include <span>
-#include <string>
 #include <vector>
 
 namespace flightwatt::mechanical {
-
-/// Throws UsageError for weights by hand that name no flight of `flights` (with the nearest name) or name one
-/// twice for the same phase, are negative or not finite, or are given though the weighting is another.
-void validate_weights(const WeightOptions& options, std::span<const std::string> flights);
 
 /// The weights of the flights of one phase, in [0, 1], in their order; their sum is 1 (docs/methods.md, Eq. 9).
 ///   inverse-variance: an rms below a thousandth of the largest counts as that; all 0: by samples alone.
 ///   agreement: a stray flight counts little and none counts for all;
 ///     one flight has 1, two have 1/2 each, curves that are equal to rounding count the same.
-///   by hand: normalised. Throws UsageError if a flight of the phase has none, or none is positive.
-std::vector<double> flight_weights(const PhaseFit& fit, flight::Phase phase, const WeightOptions& options);
+std::vector<double> flight_weights(const PhaseFit& fit, Weighting weighting);
 
 /// The weighted average of the flights' curves and durations (docs/methods.md, Eq. 8). The flights share
 /// theta, so averaging curves at equal parts of the phase is averaging coefficients.

@@ -151,8 +151,8 @@ std::optional<LinearFit> solve_least_squares(const Eigen::MatrixXd& matrix, cons
         qr.matrixR().topRows(columns).template triangularView<Eigen::Upper>().solve(
             Eigen::MatrixXd::Identity(columns, columns));
     LinearFit fit;
-    fit.from_orthonormal = lengths.cwiseInverse().asDiagonal() * (qr.colsPermutation() * inverse_triangle);
-    fit.orthonormal = (qr.householderQ().adjoint() * values).head(columns);
+    const Eigen::MatrixXd root = lengths.cwiseInverse().asDiagonal() * (qr.colsPermutation() * inverse_triangle);
+    fit.covariance = root * root.transpose();
     fit.coefficients = qr.solve(values).cwiseQuotient(lengths);
     fit.residual_square_sum = (matrix * fit.coefficients - values).squaredNorm();
     return fit;

@@ -42,10 +42,7 @@ FourierResidual fourier_residual(const ScaledSamples& samples, double theta_rad,
 struct LinearFit {
     Eigen::VectorXd coefficients;
     double residual_square_sum = 0.0;
-    /// The same solution in a basis that is orthonormal on the rows of `matrix`:
-    /// coefficients = from_orthonormal * orthonormal.
-    Eigen::VectorXd orthonormal;
-    Eigen::MatrixXd from_orthonormal;
+    Eigen::MatrixXd covariance;  ///< of the coefficients, for values of variance 1
 };
 
 /// Minimises |matrix * c - values| by QR with column pivoting (columns scaled to length 1), which loses half

@@ -78,16 +78,27 @@ struct JointFit {
     double noise_scale = 0.0;  ///< 1.4826 times the median of the absolute residuals, for a robust loss
 };
 
-/// Levenberg-Marquardt (Ceres) over theta and all coefficients at once, from `start_rad`, within the range:
-/// the least common sum of squares near where the search began. Throws NoResultError if it does not converge,
-/// or if a flight's samples do not determine its coefficients.
+/// Each flight's least squares at one frequency. Throws NoResultError if a flight's samples do not determine its
+/// coefficients.
+JointFit fit_at_frequency(std::span<const ScaledSamples> flights, int order, double theta_rad);
+
+/// Half the slope of the common sum of squares over theta, and the sum of squares of the residuals' own slopes, all
+/// coefficients following to first order (variable projection; Golub and Pereyra 1973, Kaufman 1975).
+struct FrequencySlope {
+    double gradient = 0.0;
+    double information = 0.0;
+};
+FrequencySlope frequency_slope(std::span<const ScaledSamples> flights, const JointFit& fit);
+
+/// Gauss and Newton's method over theta with variable projection, from `start_rad`, within the range: the least common
+/// sum of squares near where the search began. Throws what fit_at_frequency throws.
 JointFit refine_jointly(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
                         double start_rad);
 
 /// Moves a least-squares fit to the least Huber loss of all flights' residuals (an M-estimate), theta and all
-/// coefficients together, sample by sample. The scale of the noise is taken from the residuals anew until it
-/// stays. If more than half of the residuals are 0 there is nothing to weigh and the fit stays. Throws
-/// NoResultError if it does not converge.
+/// coefficients together: least squares of samples that are clipped at the curve found, again and again (Huber and
+/// Dutter 1974). The scale of the noise is taken from the residuals anew until it stays. If more than half of the
+/// residuals are 0 there is nothing to weigh and the fit stays.
 JointFit refine_robustly(std::span<const ScaledSamples> flights, const FrequencyRange& range, JointFit fit);
 
 }  // namespace flightwatt::mechanical

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -15,7 +16,13 @@
 namespace flightwatt::mechanical {
 namespace {
 
-constexpr double bound_tolerance = 1e-6;  ///< nearer to an end than this part of it is standing at it
+/// The fewer periods a phase has, the more alike its harmonics are, and noise in the coefficients grows: at order 3 the
+/// basis's condition is 1 at 2 pi, 38 at the paper's landing (3.63), 108 at pi, but 2500 at 2 rad and 230000 at 1 rad.
+constexpr double min_theta_rad = std::numbers::pi;
+/// 120 in ten minutes are 5 s each: nothing that an aircraft does over and over in cruise is faster.
+constexpr double max_periods = 120.0;
+constexpr double max_autocorrelation = 0.99;  ///< such noise lasts for 200 samples
+constexpr double bound_tolerance = 1e-6;      ///< nearer to an end than this part of it is standing at it
 /// The likeness of a harmonic's columns up to which their worse direction is told with at least half the information.
 constexpr double max_alike = 0.5;
 constexpr double constant_level = 1e-12;  ///< power that varies less than this part of its size is constant
@@ -24,14 +31,6 @@ void check_options(const PhaseFitOptions& options) {
     if (options.order < 0 || options.order > max_order) {
         throw UsageError(
             fmt::format("the order of the Fourier series is {}, expected 0 to {}", options.order, max_order));
-    }
-    if (!(options.min_theta_rad > 0.0) || !std::isfinite(options.min_theta_rad)) {
-        throw UsageError(
-            fmt::format("the lowest omega * duration is {} rad, expected more than 0", options.min_theta_rad));
-    }
-    if (!(units::rad_from_turns(options.max_periods) > options.min_theta_rad) || !std::isfinite(options.max_periods)) {
-        throw UsageError(fmt::format("at most {} periods a phase are less than the lowest omega * duration, {} rad",
-                                     options.max_periods, options.min_theta_rad));
     }
 }
 
@@ -102,39 +101,48 @@ FrequencyBound bound_reached(const FrequencyRange& range, double theta_rad) {
 JointFit least_squares(const Scaling& scaling, int order, const FrequencyRange& range, const FrequencyScan* scan) {
     if (scan)
         return refine_jointly(scaling.flights, order, range, find_frequency(scaling.flights, order, range, *scan));
-    // The values less their means are 0 but for noise, whatever the frequency.
-    JointFit joint;
-    joint.theta_rad = std::clamp(units::rad_per_turn, range.low_rad, range.high_rad);
-    for (const auto& flight : scaling.flights) {
-        const auto& value = flight.value;
-        joint.coefficients.emplace_back(Eigen::VectorXd::Zero(1));
-        joint.square_sum.push_back(std::inner_product(value.begin(), value.end(), value.begin(), 0.0));
-    }
-    return joint;
+    return fit_at_frequency(scaling.flights, order, std::clamp(units::rad_per_turn, range.low_rad, range.high_rad));
 }
 
-/// Whether the samples allow frequencies at which the highest harmonic turns by more than the scan's step otherwise: a
-/// likelihood ratio (95 %) in which samples count as independent ones do.
-bool is_open(const Scaling& scaling, const JointFit& joint, const FrequencyScan& scan, int order) {
-    constexpr double max_log_ratio = 1.92;  // half of chi^2's quantile with one degree of freedom
+/// The correlation of neighbouring residuals, and so how many are as good as independent. White noise would show a
+/// correlation of - coefficients / samples, because the curves follow it. One standard error is added: few samples
+/// hardly show whether noise lasts.
+void describe_noise(PhaseFit& fit, const Scaling& scaling, const JointFit& joint) {
     double squares = 0.0;
     double products = 0.0;  // of neighbours
-    double freedom = 0.0;
+    double samples = 0.0;
+    double coefficients = 0.0;
     for (std::size_t i = 0; i < scaling.flights.size(); ++i) {
-        const auto samples = sort_by_time(scaling.flights[i]);
-        const auto residual = fourier_residual(samples, joint.theta_rad, joint.coefficients[i]).residual;
+        const auto sorted = sort_by_time(scaling.flights[i]);
+        const auto residual = fourier_residual(sorted, joint.theta_rad, joint.coefficients[i]).residual;
         squares += residual.squaredNorm();
         products += residual.head(residual.size() - 1).dot(residual.tail(residual.size() - 1));
-        freedom += static_cast<double>(residual.size() - coefficient_count(order));
+        samples += static_cast<double>(residual.size());
+        coefficients += static_cast<double>(joint.coefficients[i].size());
     }
-    const double r = squares > 0.0 ? std::max(0.0, products / squares) : 0.0;
-    const double independent = freedom * (1.0 - r) / (1.0 + r);
-    const double max_square_sum = squares * std::exp(2.0 * max_log_ratio / independent);
-    for (std::size_t i = 0; i < scan.theta_rad.size(); ++i) {
-        const double apart_rad = std::abs(scan.theta_rad[i] - joint.theta_rad);
-        if (apart_rad > scan.step_rad && scan.square_sum[i] < max_square_sum) return true;
-    }
-    return false;
+    const double freedom = samples - coefficients;
+    const double r =
+        squares > 0.0 ? (freedom * products / squares + coefficients) / samples + 1.0 / std::sqrt(samples) : 0.0;
+    fit.autocorrelation = std::clamp(r, 0.0, max_autocorrelation);
+    fit.degrees_of_freedom = std::max(1.0, freedom * (1.0 - fit.autocorrelation) / (1.0 + fit.autocorrelation));
+}
+
+/// Frequencies at which the highest harmonic turns by more than the scan's step otherwise and which the samples allow by
+/// an F test (95 %), the best first.
+std::vector<double> rival_frequencies(const PhaseFit& fit, const JointFit& joint, const FrequencyScan& scan) {
+    constexpr std::size_t most = 100;
+    const double least = std::accumulate(joint.square_sum.begin(), joint.square_sum.end(), 0.0);
+    const double max_square_sum =
+        least * (1.0 + std::pow(student_t_half_width(fit.degrees_of_freedom), 2) / fit.degrees_of_freedom);
+    std::vector<std::pair<double, double>> found;  // sum of squares, frequency
+    for (std::size_t i = 0; i < scan.theta_rad.size(); ++i)
+        if (std::abs(scan.theta_rad[i] - joint.theta_rad) > scan.step_rad && scan.square_sum[i] < max_square_sum)
+            found.emplace_back(scan.square_sum[i], scan.theta_rad[i]);
+    std::ranges::sort(found);
+    found.resize(std::min(found.size(), most));
+    std::vector<double> rivals;
+    for (const auto& rival : found) rivals.push_back(rival.second);
+    return rivals;
 }
 
 PhaseFit result_of(std::span<const PhaseSamples> flights, const Scaling& scaling, const JointFit& joint,
@@ -182,7 +190,7 @@ double told_frequency(const std::vector<double>& tau, int order, double low_rad,
 
 FrequencyRange admissible_frequencies(std::span<const PhaseSamples> flights, const PhaseFitOptions& options) {
     check_options(options);
-    FrequencyRange range{options.min_theta_rad, units::rad_from_turns(options.max_periods)};
+    FrequencyRange range{min_theta_rad, units::rad_from_turns(max_periods)};
     for (const auto& flight : flights) {
         const double gap = median_gap(flight.tau);
         // A constant needs no frequency: it is content with what a first order needs.
@@ -240,7 +248,8 @@ PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights, c
         if (options.loss != Loss::none) joint = refine_robustly(scaling.flights, range, std::move(joint));
         auto fit = result_of(flights, scaling, joint, range);
         fit.loss = options.loss;
-        fit.is_frequency_open = scan && is_open(scaling, joint, *scan, options.order);
+        describe_noise(fit, scaling, joint);
+        if (scan) fit.rivals_rad = rival_frequencies(fit, joint, *scan);
         hold_above_floor(flights, fit);
         return fit;
     } catch (const NoResultError& error) {

@@ -172,14 +172,13 @@ PosteriorPower posterior_power(const PhysicalModel& model, const Learned& learne
 
 ColumnVector column_scale() {
     ColumnVector scale(column_count);
-    scale << 1000.0, 0.1, 0.1, 1.0, 1.0, 1.0, 1.0;
+    scale << 1000.0, 0.1, 0.1, 1.0, 1.0, 1.0;
     return scale;
 }
 
 ColumnVector column_values(const FlightBin& bin, const ColumnVector& scale) {
     ColumnVector values(column_count);
     for (const auto term : all_power_terms) values[static_cast<int>(term)] = bin.values[term];
-    values[throttle_column] = bin.throttle_cubed.value_or(0.0);
     return values.cwiseQuotient(scale);
 }
 

@@ -11,10 +11,8 @@
 
 namespace flightwatt::mechanical {
 
-/// The columns of a regression: PowerTerm's, and one more for the cube of the throttle, which is tried and told but
-/// is no term of a model.
-inline constexpr int throttle_column = static_cast<int>(power_term_count);
-inline constexpr int column_count = throttle_column + 1;
+/// The columns of a regression: PowerTerm's.
+inline constexpr int column_count = static_cast<int>(power_term_count);
 
 using ColumnMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, column_count, column_count>;
 using ColumnVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, column_count, 1>;

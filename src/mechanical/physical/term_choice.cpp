@@ -35,7 +35,6 @@ struct Folds {
     std::vector<TermFold> folds;
     double level_sd = working_level_sd;
     bool bank_measured = true;
-    bool throttle_measured = true;
     bool phases_decide = false;
     std::size_t flights = 0;
     const PowerRegression* regression = nullptr;  ///< of all flights
@@ -100,12 +99,7 @@ Folds folds_of_several(std::span<const BinnedFlight> flights) {
 Folds folds_of(std::span<const BinnedFlight> flights) {
     auto made = flights.size() == 1 ? folds_of_single(flights.front()) : folds_of_several(flights);
     made.flights = flights.size();
-    for (const auto& flight : flights) {
-        made.bank_measured = made.bank_measured && flight.bank_measured;
-        made.throttle_measured = made.throttle_measured && std::ranges::all_of(flight.bins, [](const auto& bin) {
-                                     return bin.throttle_cubed.has_value();
-                                 });
-    }
+    made.bank_measured = std::ranges::all_of(flights, &BinnedFlight::bank_measured);
     return made;
 }
 
@@ -249,7 +243,7 @@ std::string why_dropped(const Folds& of, const HeldBackError& now, const HeldBac
 /// Tries a term beside those that were chosen, and says in the trial what came of it.
 std::optional<Candidate> tried(const Folds& of, const std::vector<PowerTerm>& terms, const HeldBackError& before,
                                TermTrial& trial) {
-    const auto term = *power_term_from(trial.term);
+    const auto term = trial.term;
     trial.rms_before_w.reset();
     trial.rms_after_w.reset();
     trial.reason = why_untried(of, terms, term);
@@ -269,19 +263,6 @@ std::optional<Candidate> tried(const Folds& of, const std::vector<PowerTerm>& te
         return std::nullopt;
     }
     return Candidate{term, *error};
-}
-
-void try_throttle(const Folds& of, const std::vector<PowerTerm>& terms, const HeldBackError& before, TermTrial& trial) {
-    trial.reason = "not tried: the throttle was not measured throughout";
-    if (!of.throttle_measured) return;
-    auto columns = columns_of(terms);
-    columns.push_back(throttle_column);
-    const auto error = held_back_error(of, columns);
-    trial.reason = "not tried: these flights do not determine it";
-    if (!error) return;
-    trial.rms_before_w = before.rms_w();
-    trial.rms_after_w = error->rms_w();
-    trial.reason = "told, never kept: it is what the flight's control answers, not known before a flight";
 }
 
 /// The drag, or a constant where these flights' power does not follow it. Bins decide: whole phases differ by their
@@ -314,8 +295,7 @@ TermSelection select_terms(std::span<const BinnedFlight> flights, const PowerReg
     TermSelection choice;
     choice.folds = of.folds.size();
     choice.phases_decided = of.phases_decide;
-    for (const auto term : all_power_terms) choice.trials.push_back({std::string(to_string(term)), false, {}, {}, ""});
-    choice.trials.push_back({"throttle", false, {}, {}, ""});
+    for (const auto term : all_power_terms) choice.trials.push_back({term, false, {}, {}, ""});
     const auto first = first_term(of);
     if (!first) return choice;
     choice.terms = {first->term};
@@ -340,7 +320,6 @@ TermSelection select_terms(std::span<const BinnedFlight> flights, const PowerReg
         choice.terms = with(choice.terms, best->term);
         error = best->error;
     }
-    try_throttle(of, choice.terms, error, choice.trials.back());
     return choice;
 }
 

@@ -1,4 +1,4 @@
-#include "mechanical/fit/student_t.h"
+#include "mechanical/physical/student_t.h"
 
 #include "base/statistics.h"
 
