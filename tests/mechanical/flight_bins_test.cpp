@@ -66,7 +66,7 @@ TEST(FlightBins, CountSpeedAsHeight) {
     EXPECT_EQ(found.bins[10].values[PowerTerm::descent], 0.0);
     // Slowing down at a constant height is a descent in energy.
     auto slowing = some_series();
-    slowing.tracks[3] = track("airspeed_m_per_s", 1.0, [](double t) { return 16.0 - 0.01 * t; });
+    slowing.tracks[2] = track("airspeed_m_per_s", 1.0, [](double t) { return 16.0 - 0.01 * t; });
     const auto slowed = motion(slowing);
     const auto& bin = slowed.bins[1];
     EXPECT_LT(bin.values[PowerTerm::descent], -0.01);
@@ -106,17 +106,17 @@ TEST(FlightBins, AreThereOnlyWhereAllWasMeasured) {
 
 TEST(FlightBins, SayWhyThereAreNone) {
     auto glider = some_series();
-    glider.tracks.erase(glider.tracks.begin() + 3);
+    glider.tracks.erase(glider.tracks.begin() + 2);
     EXPECT_THAT(motion(glider).no_bins_reason, testing::HasSubstr("airspeed was not measured"));
     auto stuck = some_series();
-    stuck.tracks[3] = track("airspeed_m_per_s", 1.0, [](double) { return 0.0; });
+    stuck.tracks[2] = track("airspeed_m_per_s", 1.0, [](double) { return 0.0; });
     EXPECT_THAT(motion(stuck).no_bins_reason, testing::HasSubstr("airspeed was not measured"));
     auto hovering = some_series();
     hovering.firmware = "rotorcraft";
     EXPECT_THAT(motion(hovering).no_bins_reason, testing::HasSubstr("a rotorcraft"));
     auto apart = some_series();
-    apart.tracks[3].time_s.resize(50);
-    apart.tracks[3].value.resize(50);
+    apart.tracks[2].time_s.resize(50);
+    apart.tracks[2].value.resize(50);
     EXPECT_THAT(motion(apart, 300.0, 600.0).no_bins_reason, testing::HasSubstr("never measured at the same time"));
     auto level = some_series();
     level.tracks.pop_back();

@@ -122,7 +122,7 @@ TEST(PhysicalFit, KeepsNoTermThatStretchesSpeakAgainst) {
         for (const auto& trial : fit.trials) {
             if (trial.reason != "predicts whole phases better, but stretches of them worse") continue;
             ++dropped;
-            EXPECT_LT(*trial.rms_after_w, *trial.rms_before_w) << trial.term;
+            EXPECT_LT(*trial.rms_after_w, *trial.rms_before_w) << to_string(trial.term);
         }
     }
     EXPECT_GT(dropped, 0);
