@@ -42,12 +42,10 @@ mission::MissionSummary simulated_summary(const cli::StageCall& call, const miss
 
 enum class Form { text, markdown, csv };
 
-/// By --markdown, --csv or else the ending of the result's file.
+/// By the ending of the result's file.
 Form form_of(const cli::StageCall& call) {
-    if (call.has("markdown") && call.has("csv")) throw UsageError("--markdown and --csv are two forms: give one");
     const auto ending = std::filesystem::path(call.output.value_or("")).extension();
-    if (call.has("markdown") || (!call.has("csv") && ending == ".md")) return Form::markdown;
-    return call.has("csv") || ending == ".csv" ? Form::csv : Form::text;
+    return ending == ".md" ? Form::markdown : ending == ".csv" ? Form::csv : Form::text;
 }
 
 std::string ranking_text(const cli::StageCall& call, const std::vector<mission::MissionSummary>& ranking, Form form) {
@@ -59,8 +57,7 @@ std::string ranking_text(const cli::StageCall& call, const std::vector<mission::
     return screen_text(table, screen,
                        {fmt::format("{} mission{}, the one with most charge left first", count, count == 1 ? "" : "s"),
                         {"rank", "mission", "final_soc_percent", "probability_below_reserve", "utility", "energy_wh",
-                         "duration_s", "depleted_at_s", "cut_off_at_s"},
-                        0});
+                         "duration_s", "depleted_at_s", "cut_off_at_s"}});
 }
 
 /// What the table does not say.
@@ -117,11 +114,10 @@ int flightwatt::stages::compare_stage(int argc, char** argv) {
         "compare", "MISSION.toml...",
         R"(Runs several missions and ranks them by final state of charge; of those that run empty, the one that
 lasts longer comes first. A mission without a schedule is planned first, one with an adaptive policy in
-flight. --json lists the summaries in that order.)"};
+flight. --json lists the summaries in that order. -o FILE.md writes the table as Markdown, -o FILE.csv as CSV
+with all digits.)"};
     stage.shows_table = true;
     auto add = stage.options.add_options();
-    add("markdown", "write the table as Markdown, as -o FILE.md does");
-    add("csv", "write the table as CSV with all digits, as -o FILE.csv does");
     add("disturb", cli::input_file("FILE"), "let the disturbances of FILE happen to all (missions/disturbances/)");
     add_sampling_options(stage);
     return cli::run_stage(argc, argv, stage, compare_missions);

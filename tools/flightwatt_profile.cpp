@@ -54,30 +54,6 @@ int check_interpolation(const cli::StageCall& call) {
     return cli::ok;
 }
 
-/// What the command line says otherwise than the specification.
-void apply_options(const cli::StageCall& call, compute::ProfileSpecification& specification) {
-    auto& sampler = specification.sampler;
-    if (const auto name = call.get_optional<std::string>("sampler")) {
-        using enum compute::SamplerKind;
-        const auto kind = compute::sampler_kind_from(*name);
-        const bool needs_more = kind == command || kind == recorded;
-        if (!kind || (needs_more && sampler.kind != *kind)) {
-            throw UsageError(fmt::format("--sampler {}: {}", *name,
-                                         kind ? "its settings belong into the specification's [sampler]"
-                                              : "there is no such sampler; --help lists them"));
-        }
-        if (sampler.kind == recorded && *kind != recorded) {
-            throw UsageError("--sampler: the specification is of recordings");
-        }
-        sampler.kind = *kind;
-    }
-    if (call.has("above-idle")) specification.above_idle = true;
-    if (specification.above_idle && specification.idle_s == 0.0) {
-        throw InputError({specification.file}, "power above idle is asked for, and idle power is not measured",
-                         "set idle_s, or idle_file of recordings");
-    }
-}
-
 /// How far the runs have come.
 struct RunsDone {
     std::size_t done = 0;
@@ -128,8 +104,7 @@ int profile_components(const cli::StageCall& call) {
     }
     if (call.inputs.size() != 1) throw UsageError("expected one SPEC");
     if (!call.output) throw UsageError("no folder given: expected -o DIR");
-    auto specification = compute::read_profile_specification(call.inputs.front());
-    apply_options(call, specification);
+    const auto specification = compute::read_profile_specification(call.inputs.front());
     const SignalWatch signals;
     auto options = options_of(call, signals);
     RunsDone runs;
@@ -166,8 +141,6 @@ Samplers: auto, ina238, ina3221 (either of ina3221-iio, ina3221-hwmon), rapl, po
     stage.output_help = "the folder of the results";
     stage.shows_table = true;
     auto add = stage.options.add_options();
-    add("sampler", cli::value("KIND"), "sample with this instead of what SPEC says");
-    add("above-idle", "profiles hold the power above that of the idle computer");
     add("check-interpolation", "of profiles: find each node from the others, and print the errors");
     add("parameters", cli::value("A,B"), "the parameters' names, of a profile that has flags (--check-interpolation)");
     add("columns", cli::value("A,B,power_w"),

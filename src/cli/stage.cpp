@@ -101,16 +101,21 @@ void close_standard_output() {
 /// Options of earlier versions, with what there is instead.
 const std::map<std::string, std::string>& removed_options() {
     static const std::map<std::string, std::string> removed{
+        {"--above-idle", "state above_idle = true in the specification"},
         {"--covariate", "'physical' predicts by airspeed and climb, where they were measured"},
+        {"--csv", "-o FILE.csv writes the table as CSV with all digits"},
         {"--curve", "the curve is that of least squares, and a note says where its frequency is open"},
         {"--know-durations", "schedules are made for the durations that are known before the flight"},
+        {"--level", "the model's curve is expected; its mean where the flight is not known from its take-off on"},
         {"--level-covariate", "fit by airspeed and climb instead: --model physical"},
         {"--link-version", "frames are of version 2 of pprzlink"},
+        {"--markdown", "-o FILE.md writes the table as Markdown"},
         {"--max-battery-flights", "up to 12 flights are taken"},
         {"--max-periods", "a phase has 0.5 to 120 periods"},
         {"--max-validation-flights", "up to 30 flights are taken"},
         {"--min-periods", "a phase has 0.5 to 120 periods"},
         {"--powprofiler", "DIR/NAME.csv holds the same powers, with names in place of flags"},
+        {"--sampler", "state its kind under [sampler] of the specification"},
         {"--sysfs", "state sysfs under [sampler] of the specification"},
         {"--trials", "every configuration is run"},
         {"--weight", "leave flights out with --exclude, or choose another --weights"}};
@@ -140,10 +145,9 @@ po::options_description visible_options(const StageDefinition& definition) {
 std::string_view kind_of(const po::option_description& option) {
     const auto* semantic = option.semantic().get();
     if (semantic->max_tokens() == 0) return "flag";
-    if (dynamic_cast<const InputFilesValue*>(semantic) != nullptr) return "input";
-    const auto* file = dynamic_cast<const FileValue*>(semantic);
+    const auto* file = dynamic_cast<const FileOption*>(semantic);
     if (file == nullptr) return "value";
-    return file->role() == FileRole::input ? "input" : "output";
+    return file->role == FileRole::input ? "input" : "output";
 }
 
 /// For completion and man pages: a line an option with name, short name, kind, value and description, between tabs.
@@ -185,27 +189,27 @@ std::string usage_line(const StageDefinition& definition) {
     return fmt::format("usage: flightwatt {} {} [options]", definition.name, definition.arguments);
 }
 
-/// Tells which files the user named are read and written: a result that replaces what it was made from would lose a
-/// log for good.
+std::vector<std::string> files_of(const po::variable_value& value) {
+    if (const auto* files = boost::any_cast<std::vector<std::string>>(&value.value())) return *files;
+    return {value.as<std::string>()};
+}
+
+/// Registers which files the user named are read and written: a result that replaces what it was made from would lose
+/// a log for good.
 void declare_files(const StageCall& call, const po::options_description& options) {
     enable_overwrite_guard();
     for (const auto& input : call.inputs) register_input(input);
-    const auto visit = [&](FileRole role, const auto& use) {
+    for (const auto role : {FileRole::input, FileRole::output}) {
         for (const auto& option : options.options()) {
-            const auto* file = dynamic_cast<const FileValue*>(option->semantic().get());
-            const auto name = option->long_name();
-            if (file != nullptr && file->role() == role && call.has(name)) use(call.get<std::string>(name), name);
+            const auto* names_file = dynamic_cast<const FileOption*>(option->semantic().get());
+            const auto& name = option->long_name();
+            if (names_file == nullptr || names_file->role != role || !call.has(name)) continue;
+            for (const auto& file : files_of(call.options[name])) {
+                if (role == FileRole::input) register_input(file);
+                if (role == FileRole::output && file != "-") register_output(file, "--" + name);
+            }
         }
-    };
-    visit(FileRole::input, [](const std::string& file, const std::string&) { register_input(file); });
-    for (const auto& option : options.options()) {
-        const bool names_files = dynamic_cast<const InputFilesValue*>(option->semantic().get()) != nullptr;
-        if (!names_files || !call.has(option->long_name())) continue;
-        for (const auto& file : call.get<std::vector<std::string>>(option->long_name())) register_input(file);
     }
-    visit(FileRole::output, [](const std::string& file, const std::string& name) {
-        if (file != "-") register_output(file, "--" + name);
-    });
 }
 
 int run(int argc, char** argv, const StageDefinition& definition, const StageBody& body) {

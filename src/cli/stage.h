@@ -30,26 +30,21 @@ auto* value(const char* name) {
 /// What the file (or folder) that an option names is to the stage.
 enum class FileRole { input, output };
 
-/// An option that names a file, as --help names it. Files to write are refused before the work where they are files to
-/// read, or two of them are one.
-class FileValue : public boost::program_options::typed_value<std::string> {
-  public:
-    FileValue(const char* name, FileRole role) : typed_value(nullptr), role_(role) { value_name(name); }
-    FileRole role() const { return role_; }
-
-  private:
-    FileRole role_;
+/// An option that names a file, or as T several, as --help names it. Files to write are refused before the work where
+/// they are files to read, or two of them are one.
+struct FileOption {
+    FileRole role;
+};
+template <typename T>
+struct FileValue : boost::program_options::typed_value<T>, FileOption {
+    FileValue(const char* name, FileRole of) : boost::program_options::typed_value<T>(nullptr), FileOption{of} {
+        this->value_name(name);
+    }
 };
 
-/// An option that names a file to read and may be given several times.
-class InputFilesValue : public boost::program_options::typed_value<std::vector<std::string>> {
-  public:
-    explicit InputFilesValue(const char* name) : typed_value(nullptr) { value_name(name); }
-};
-
-inline InputFilesValue* input_files(const char* name) { return new InputFilesValue(name); }
-inline FileValue* input_file(const char* name) { return new FileValue(name, FileRole::input); }
-inline FileValue* output_file(const char* name) { return new FileValue(name, FileRole::output); }
+inline auto* input_files(const char* name) { return new FileValue<std::vector<std::string>>(name, FileRole::input); }
+inline auto* input_file(const char* name) { return new FileValue<std::string>(name, FileRole::input); }
+inline auto* output_file(const char* name) { return new FileValue<std::string>(name, FileRole::output); }
 
 /// What a stage program is called and accepts beyond --help, --version, --json and --output.
 struct StageDefinition {

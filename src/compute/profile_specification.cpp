@@ -225,6 +225,10 @@ ProfileSpecification parse_profile_specification(std::string_view text, const st
         require_recorded_file(root.table("sampler"), specification.components);
         if (specification.sampler.idle_file.empty()) specification.idle_s = 0.0;
     }
+    if (specification.above_idle && specification.idle_s == 0.0) {
+        throw InputError({specification.file}, "power above idle is asked for, and idle power is not measured",
+                         "set idle_s, or idle_file of recordings");
+    }
     return specification;
 }
 

@@ -64,8 +64,8 @@ TEST_F(Profiler, WritesLayersThatMissionsRead) {
     // TOML's tables end with the next: `repeats` belongs above them.
     auto spec = text("p.toml");
     spec.erase(spec.find("repeats = 2\n"), 12);
-    write("p.toml", "repeats = 2\n" + spec);
-    ASSERT_EQ(profile("p.toml", {"--above-idle"}), 0) << text("stderr");
+    write("p.toml", "repeats = 2\nabove_idle = true\n" + spec);
+    ASSERT_EQ(profile("p.toml"), 0) << text("stderr");
     const auto layer2 = table("out/load.csv");
     ASSERT_EQ(layer2.rows.size(), 2U);
     for (std::size_t i = 0; i < 2; ++i) {

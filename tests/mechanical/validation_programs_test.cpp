@@ -255,7 +255,6 @@ TEST(Predict, NeedsAPhysicalModelForAnAirspeed) {
     EXPECT_THAT(result.err, HasSubstr("it has no [physical]"));
     EXPECT_EQ(run(folder, predict + std::string("--airspeed 0") + sample("01")).code, 2);
     EXPECT_EQ(run(folder, predict + std::string("--climb 1") + sample("01")).code, 2);
-    EXPECT_EQ(run(folder, predict + std::string("--airspeed 13 --level curve") + sample("01")).code, 2);
 }
 
 TEST(Predict, ForeseesASampleFlight) {
@@ -286,9 +285,6 @@ TEST(Predict, RefusesWhatCannotBePredicted) {
     EXPECT_EQ(predict("--until nan --remaining 1"), 2);
     EXPECT_EQ(predict("--until 10 --remaining 100"), 4);   // climbing
     EXPECT_EQ(predict("--until 700 --remaining 100"), 4);  // landed
-    EXPECT_EQ(predict("--until 300 --remaining 100 --level airspeed"), 2);
-    EXPECT_EQ(predict("--until 300 --remaining 100 --level constant"), 0);
-    EXPECT_EQ(predict("--until 300 --remaining 100 --level flat"), 2);
     EXPECT_EQ(predict("--until 300 --remaining 100 --sortie 2"), 4);
 }
 

@@ -140,8 +140,8 @@ TEST(Compare, RanksMissions) {
               "   3  smaller               0.00     25.000                 0.000             25.000      "
               "3600.0         1440.0\n");
     EXPECT_EQ(run(folder, "compare", "small.toml smaller.toml lasting.toml").out, result.out);
-    EXPECT_THAT(run(folder, "compare", "small.toml --markdown").out,
-                StartsWith("| rank | mission | final_soc_percent |"));
+    run(folder, "compare", "small.toml -o table.md");
+    EXPECT_THAT(read_file(folder / "table.md"), StartsWith("| rank | mission | final_soc_percent |"));
 }
 
 TEST(Compare, ListsSummariesAsJson) {

@@ -38,19 +38,6 @@ mechanical::MechanicalModel read_model(const StageCall& call) {
     return model;
 }
 
-/// None: as the model and the flight allow.
-std::optional<mechanical::CruisePrior> level_option(const StageCall& call) {
-    const auto name = call.get<std::string>("level");
-    static const std::map<std::string, mechanical::CruisePrior> sources{
-        {"curve", mechanical::CruisePrior::curve}, {"constant", mechanical::CruisePrior::constant}};
-    if (name == "auto") return std::nullopt;
-    if (const auto found = sources.find(name); found != sources.end()) return found->second;
-    const bool was_removed = name == "airspeed" || name == "covariate";
-    throw UsageError(
-        fmt::format("--level {}: expected auto, curve or constant{}", name,
-                    was_removed ? "; or --airspeed M_PER_S with a model of 'flightwatt fit --model physical'" : ""));
-}
-
 /// How the rest of the cruise is to be flown, where --airspeed says it.
 std::optional<mechanical::FlightState> motion_ahead(const StageCall& call) {
     constexpr double max_m_per_s = 200.0;
@@ -59,8 +46,6 @@ std::optional<mechanical::FlightState> motion_ahead(const StageCall& call) {
         if (call.has("climb")) throw UsageError("--climb goes with --airspeed");
         return std::nullopt;
     }
-    if (!call.options["level"].defaulted())
-        throw UsageError("--airspeed and --level exclude each other: give one of them");
     mechanical::FlightState motion{.airspeed_m_per_s = *airspeed};
     if (call.has("climb")) motion.climb_m_per_s = number_option(call, "climb", -max_m_per_s, max_m_per_s);
     return motion;
@@ -74,8 +59,8 @@ std::optional<double> remaining_option(const StageCall& call) {
 
 PredictionInput read_mission_basis(const StageCall& call, PathNeed need, std::optional<mission::MissionVariant>* kept) {
     if (call.has("model")) throw UsageError("--mission names its model: leave --model out");
-    if (call.has("airspeed") || call.has("climb") || !call.options["level"].defaulted())
-        throw UsageError("--mission says how the rest is flown: leave --airspeed, --climb and --level out");
+    if (call.has("airspeed") || call.has("climb"))
+        throw UsageError("--mission says how the rest is flown: leave --airspeed and --climb out");
     const auto remaining_s = remaining_option(call);
     const auto file = call.get<std::string>("mission");
     mission::MissionReadOptions reading;
@@ -103,7 +88,6 @@ PredictionInput read_model_basis(const StageCall& call) {
     const auto motion = motion_ahead(call);
     auto basis = live::input_from_model(read_model(call), call.get<std::string>("model"), remaining_s.value());
     basis.motion = motion;
-    basis.level = level_option(call);
     if (basis.motion) live::require_physical(basis.model, call.get<std::string>("model"), "--airspeed");
     return basis;
 }
@@ -156,9 +140,6 @@ void add_basis_options(boost::program_options::options_description& options, Pat
     add("remaining", value<double>("S"),
         "seconds from the moment until landing begins; with --mission only where the flight is not as far along the "
         "path as its positions say, or, without any, the time since its cruise began");
-    add("level", value("HOW")->default_value("auto"),
-        "what is expected of the cruise before its own power is looked at: the model's curve, or the curve's mean "
-        "(constant); auto is curve, and constant where the flight is not known from its take-off on");
     add("airspeed", value<double>("M_PER_S"),
         "how fast the rest of the cruise is flown: predicts it by the model's [physical] at this flight's own level");
     add("climb", value<double>("M_PER_S"), "and how fast it climbs (0; below 0 it descends)");

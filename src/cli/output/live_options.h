@@ -22,7 +22,7 @@ namespace flightwatt::cli {
 /// Whether a mission has to say where it flies.
 enum class PathNeed { required, optional };
 
-/// --remaining, --level, --airspeed, --climb, --mission, --battery, --initial-soc; --model is the stage's own.
+/// --remaining, --airspeed, --climb, --mission, --battery, --initial-soc; --model is the stage's own.
 void add_basis_options(boost::program_options::options_description& options, PathNeed need);
 
 /// What the options say, with warnings of the model or the mission. Without a path a mission's cruise takes as long as

@@ -62,8 +62,7 @@ TEST(BasisOptions, RefuseWhatDoesNotFitTogether) {
     const std::vector<std::vector<std::string>> refused{{},
                                                         {"--model", model},
                                                         {"--model", model, "--remaining", "10", "--climb", "1"},
-                                                        {"--model", model, "--remaining", "10", "--initial-soc", "50"},
-                                                        {"--model", model, "--remaining", "10", "--level", "odd"}};
+                                                        {"--model", model, "--remaining", "10", "--initial-soc", "50"}};
     for (const auto& words : refused)
         EXPECT_THROW(read_basis(call_of(words, PathNeed::optional), PathNeed::optional), UsageError);
 }
