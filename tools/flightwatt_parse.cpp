@@ -43,7 +43,6 @@ int parse(const cli::StageCall& call) {
                      {fmt::format("{}: aircraft {}", series.flight,
                                   flight::describe_aircraft(series.aircraft_id, series.aircraft_name)),
                       {"time_s", "power_w", "voltage_v", "current_a", "altitude_m", "throttle_percent"},
-                      std::nullopt,
                       rows});
     const auto power = power_track(series);
     if (call.json) {

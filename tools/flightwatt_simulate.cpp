@@ -54,7 +54,7 @@ int simulate_mission(const cli::StageCall& call) {
     write_schedule(call, text, prepared, flight);
     constexpr std::size_t rows = 24;
     write_csv_result(call, to_csv(flight.simulation.curve),
-                     {summary.mission, {"time_s", "phase", "soc_percent", "power_w"}, std::nullopt, rows});
+                     {summary.mission, {"time_s", "phase", "soc_percent", "power_w"}, rows});
     if (call.json) {
         cli::print(cli::json_text(cli::to_json(summary)));
     } else {

@@ -6,11 +6,12 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <iterator>
+#include <map>
 #include <string_view>
 #include <utility>
 
 #include <boost/algorithm/string/replace.hpp>
+#include <boost/algorithm/string/split.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -41,42 +42,24 @@ TextTable without_controls(TextTable table) {
 /// How LaTeX spells an ASCII character that it would read otherwise; empty for those that stand for themselves. '[' and
 /// '*' behind the end of a row would be that command's.
 std::string_view latex_of(char c) {
-    switch (c) {
-        case '\\':
-            return "\\textbackslash{}";
-        case '~':
-            return "\\textasciitilde{}";
-        case '^':
-            return "\\textasciicircum{}";
-        case '<':
-            return "\\textless{}";
-        case '>':
-            return "\\textgreater{}";
-        case '|':
-            return "\\textbar{}";
-        case '"':
-            return "{\\char34}";
-        case '[':
-            return "{[}";
-        case '*':
-            return "{*}";
-        case '&':
-            return "\\&";
-        case '%':
-            return "\\%";
-        case '$':
-            return "\\$";
-        case '#':
-            return "\\#";
-        case '_':
-            return "\\_";
-        case '{':
-            return "\\{";
-        case '}':
-            return "\\}";
-        default:
-            return "";
-    }
+    static const std::map<char, std::string_view> spelt{{'\\', "\\textbackslash{}"},
+                                                        {'~', "\\textasciitilde{}"},
+                                                        {'^', "\\textasciicircum{}"},
+                                                        {'<', "\\textless{}"},
+                                                        {'>', "\\textgreater{}"},
+                                                        {'|', "\\textbar{}"},
+                                                        {'"', "{\\char34}"},
+                                                        {'[', "{[}"},
+                                                        {'*', "{*}"},
+                                                        {'&', "\\&"},
+                                                        {'%', "\\%"},
+                                                        {'$', "\\$"},
+                                                        {'#', "\\#"},
+                                                        {'_', "\\_"},
+                                                        {'{', "\\{"},
+                                                        {'}', "\\}"}};
+    const auto found = spelt.find(c);
+    return found == spelt.end() ? std::string_view() : found->second;
 }
 
 std::string latex_cell(std::string_view cell) {
@@ -84,9 +67,9 @@ std::string latex_cell(std::string_view cell) {
     return parse_number(cell) ? fmt::format("${}$", latex_number(cell)) : latex_escaped(cell);
 }
 
-std::string padded(const std::string& cell, std::size_t width, bool right) {
-    const std::string blanks(width - std::min(width, character_count(cell)), ' ');
-    return right ? blanks + cell : cell + blanks;
+std::vector<std::string> lines_of(const std::string& cell) {
+    std::vector<std::string> lines;
+    return boost::split(lines, cell, [](char c) { return c == '\n'; });
 }
 
 }  // namespace
@@ -95,29 +78,40 @@ std::string fixed(const std::optional<double>& number, int decimals) {
     return number ? fmt::format("{:.{}f}", *number, decimals) : "-";
 }
 
-std::string to_text(TextTable raw) {
-    const auto table = without_controls(std::move(raw));
-    std::vector<std::size_t> widths;
-    std::vector<bool> right;
-    for (std::size_t column = 0; column < table.header.size(); ++column) {
-        std::size_t width = character_count(table.header[column]);
-        for (const auto& row : table.rows) width = std::max(width, character_count(row[column]));
-        widths.push_back(width);
-        right.push_back(is_numeric_column(table, column));
+std::string aligned_text(const std::vector<std::vector<std::string>>& rows, const std::vector<bool>& right) {
+    std::vector<std::vector<std::vector<std::string>>> lines;  // of each cell
+    std::vector<std::size_t> widths(right.size(), 0);
+    for (const auto& row : rows) {
+        auto& cells = lines.emplace_back();
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            cells.push_back(lines_of(row[i]));
+            for (const auto& line : cells.back()) widths[i] = std::max(widths[i], character_count(line));
+        }
     }
     std::string text;
-    const auto add_row = [&](const std::vector<std::string>& row) {
-        std::string line;
-        for (std::size_t column = 0; column < row.size(); ++column) {
-            if (column > 0) line += "  ";
-            line += padded(row[column], widths[column], right[column]);
+    for (const auto& cells : lines) {
+        std::size_t height = 1;
+        for (const auto& cell : cells) height = std::max(height, cell.size());
+        for (std::size_t k = 0; k < height; ++k) {
+            std::string line;
+            for (std::size_t i = 0; i < cells.size(); ++i) {
+                const auto part = k < cells[i].size() ? cells[i][k] : "";
+                const std::string blanks(widths[i] - character_count(part), ' ');
+                line += (i > 0 ? "  " : "") + (right[i] ? blanks + part : part + blanks);
+            }
+            text += line.erase(line.find_last_not_of(' ') + 1) + '\n';
         }
-        line.erase(line.find_last_not_of(' ') + 1);
-        text += line + '\n';
-    };
-    add_row(table.header);
-    for (const auto& row : table.rows) add_row(row);
+    }
     return text;
+}
+
+std::string to_text(TextTable raw) {
+    auto table = without_controls(std::move(raw));
+    std::vector<bool> right;
+    for (std::size_t column = 0; column < table.header.size(); ++column)
+        right.push_back(is_numeric_column(table, column));
+    table.rows.insert(table.rows.begin(), table.header);
+    return aligned_text(table.rows, right);
 }
 
 std::string to_markdown(TextTable raw) {

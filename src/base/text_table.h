@@ -23,8 +23,11 @@ struct CaptionedTable {
 /// A number with so many decimals, for a cell; '-' for what is not known.
 std::string fixed(const std::optional<double>& number, int decimals);
 
-/// Columns padded to their widest cell (counted in code points) and two blanks apart; a column whose cells
-/// are all numbers, or '-', stands to the right.
+/// Rows of cells, each of which may have several lines, in columns padded to their widest line (counted in code points)
+/// and two blanks apart; those of `right` stand to the right.
+std::string aligned_text(const std::vector<std::vector<std::string>>& rows, const std::vector<bool>& right);
+
+/// The table as aligned_text, without controls; a column whose cells are all numbers, or '-', stands to the right.
 std::string to_text(TextTable table);
 std::string to_markdown(TextTable table);
 std::string to_csv(const TextTable& table);

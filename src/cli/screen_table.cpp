@@ -48,7 +48,7 @@ const UnitOfSuffix* unit_of(std::string_view column) {
     return found == units_of_suffixes.end() ? nullptr : found;
 }
 
-/// Columns of durations are told in minutes, in a table for people; so are moments since a mission began.
+/// Columns of durations are in minutes, in a table for people; so are moments since a mission began.
 bool is_duration(std::string_view column) {
     constexpr std::array<std::string_view, 7> others{"depleted_at_s", "cut_off_at_s", "planned s", "flown s",
                                                      "take-off s",    "cruise s",     "landing s"};
@@ -184,108 +184,41 @@ std::vector<ShownColumn> columns_that_fit(const TextTable& table, const Screen& 
     return columns;
 }
 
-/// Of the 256 colours those of the pictures, for phases; and what is good or wrong.
-int color_of(std::string_view cell) {
-    constexpr int none = -1;
-    if (cell == "takeoff" || cell == "take-off") return 33;
-    if (cell == "cruise") return 36;
-    if (cell == "landing") return 166;
-    if (cell.starts_with("rejected")) return 160;
-    return none;
-}
-
-constexpr int color_of_the_best = 34;
-
-std::string in_color(const std::string& text, int color) {
-    return color < 0 ? text : fmt::format("\x1b[38;5;{}m{}\x1b[0m", color, text);
-}
-
-std::string strong(const std::string& text, bool colors) {
-    return colors ? fmt::format("\x1b[1m{}\x1b[0m", text) : text;
-}
-
-std::string without_controls_of(std::string text) {
-    std::ranges::replace_if(
-        text, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
-    return text;
-}
-
-/// One line of a row: the parts of its cells.
-std::string line_of(const std::vector<ShownColumn>& columns, const std::vector<std::string>& parts,
-                    const std::vector<int>& colors) {
-    std::string line;
-    std::size_t pending = 0;  // blanks: none at the end of a line
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-        const auto blanks = columns[i].width - std::min(columns[i].width, character_count(parts[i]));
-        if (i > 0) pending += gap;
-        if (!columns[i].is_text) pending += blanks;
-        if (!parts[i].empty()) {
-            line += std::string(pending, ' ') + in_color(parts[i], colors[i]);
-            pending = 0;
-        }
-        if (columns[i].is_text) pending += blanks;
-    }
-    return line + "\n";
-}
-
-/// A row in as many lines as its longest cell takes.
-std::string row_lines(const std::vector<ShownColumn>& columns, const std::vector<std::vector<std::string>>& cells,
-                      const std::vector<int>& colors) {
-    std::size_t height = 1;
-    for (const auto& cell : cells) height = std::max(height, cell.size());
-    std::string text;
-    for (std::size_t line = 0; line < height; ++line) {
-        std::vector<std::string> parts;
-        parts.reserve(cells.size());
-        for (const auto& cell : cells) parts.push_back(line < cell.size() ? cell[line] : "");
-        text += line_of(columns, parts, colors);
-    }
-    return text;
+/// The cells of a row, each in lines of its column's width.
+std::vector<std::string> wrapped_cells(const std::vector<std::string>& row, const std::vector<ShownColumn>& columns) {
+    std::vector<std::string> cells;
+    cells.reserve(columns.size());
+    for (const auto& column : columns)
+        cells.push_back(boost::algorithm::join(wrapped(one_line(row[column.index]), column.width), "\n"));
+    return cells;
 }
 
 /// The words of each head at its bottom, the units below.
-std::string head_lines(const std::vector<ShownColumn>& columns, bool colors) {
-    std::vector<std::vector<std::string>> cells;
-    std::size_t height = 1;
-    bool has_units = false;
+std::vector<std::string> head_cells(const std::vector<ShownColumn>& columns) {
+    std::vector<std::string> cells;
+    std::ptrdiff_t height = 0;
     cells.reserve(columns.size());
     for (const auto& column : columns) {
-        cells.push_back(wrapped(column.name, column.width));
-        height = std::max(height, cells.back().size());
-        has_units = has_units || !column.unit.empty();
+        cells.push_back(boost::algorithm::join(wrapped(column.name, column.width), "\n"));
+        height = std::max(height, std::ranges::count(cells.back(), '\n'));
     }
+    const bool has_units = std::ranges::any_of(columns, [](const auto& column) { return !column.unit.empty(); });
     for (std::size_t i = 0; i < columns.size(); ++i) {
-        cells[i].insert(cells[i].begin(), height - cells[i].size(), "");
-        if (has_units) cells[i].push_back(columns[i].unit);
+        const auto missing = static_cast<std::size_t>(height - std::ranges::count(cells[i], '\n'));
+        cells[i] = std::string(missing, '\n') + cells[i] + (has_units ? "\n" + columns[i].unit : "");
     }
-    constexpr int grey = 244;
-    return row_lines(columns, cells, std::vector<int>(columns.size(), colors ? grey : -1));
+    return cells;
 }
 
-std::string rows_text(const TextTable& table, const std::vector<ShownColumn>& columns, const Screen& screen,
-                      const ScreenTable& options) {
-    const auto rows = table.rows.size();
-    const bool cuts = options.most_rows > 0 && rows > options.most_rows;
-    const auto before = cuts ? options.most_rows - options.most_rows / 3 : rows;
-    const auto after = cuts ? options.most_rows / 3 : 0;
-    std::string text;
-    for (std::size_t r = 0; r < rows; ++r) {
-        if (cuts && r == before) {
-            text += fmt::format("... {} rows more: -o FILE or a pipe gives all\n", rows - before - after);
-            r = rows - after;
-        }
-        std::vector<std::vector<std::string>> cells;
-        std::vector<int> colors;
-        cells.reserve(columns.size());
-        colors.reserve(columns.size());
-        for (const auto& column : columns) {
-            const auto& cell = table.rows[r][column.index];
-            cells.push_back(wrapped(without_controls_of(cell), column.width));
-            colors.push_back(!screen.colors ? -1 : options.best_row == r ? color_of_the_best : color_of(cell));
-        }
-        text += row_lines(columns, cells, colors);
-    }
-    return text;
+/// How many rows stand before and behind those in the middle that are left out.
+struct ShownRows {
+    std::size_t before = 0;
+    std::size_t after = 0;
+};
+
+ShownRows shown_rows(std::size_t rows, const ScreenTable& options) {
+    if (options.most_rows == 0 || rows <= options.most_rows) return {rows, 0};
+    return {options.most_rows - options.most_rows / 3, options.most_rows / 3};
 }
 
 /// The names of the columns that are not shown.
@@ -311,7 +244,7 @@ std::string left_out_text(const TextTable& table, const std::vector<ShownColumn>
 std::string readable_cell(const std::string& cell, std::string_view column) {
     const auto number = parse_number(cell);
     if (!number || !std::isfinite(*number)) return cell;
-    if (is_duration(column)) return cell;  // told in minutes when it is shown
+    if (is_duration(column)) return cell;  // in minutes when it is shown
     const bool is_place = column.starts_with("latitude") || column.starts_with("longitude");
     constexpr int decimals_of_places = 5;  // a metre
     if (is_place) return fmt::format("{:.{}f}", *number, decimals_of_places);
@@ -333,20 +266,26 @@ TextTable with_minutes(TextTable table) {
 
 Screen screen_of(const StageCall& call) {
     const auto ability = standard_output_ability();
-    return {ability.is_terminal, ability.colors, call.has("wide"), ability.columns};
+    return {ability.is_terminal, call.has("wide"), ability.columns};
 }
 
 std::string screen_text(TextTable whole, const Screen& screen, const ScreenTable& options) {
     if (!screen.is_terminal) return to_text(std::move(whole));
     const auto table = with_minutes(std::move(whole));
     const auto columns = columns_that_fit(table, screen, options);
+    std::vector<std::vector<std::string>> rows{head_cells(columns)};
+    std::vector<bool> right;
+    for (const auto& column : columns) right.push_back(!column.is_text);
+    const auto [before, after] = shown_rows(table.rows.size(), options);
+    for (std::size_t r = 0; r < before; ++r) rows.push_back(wrapped_cells(table.rows[r], columns));
+    const auto left_out = table.rows.size() - before - after;
+    if (left_out > 0) rows.emplace_back(columns.size(), "...");
+    for (auto r = before + left_out; r < table.rows.size(); ++r) rows.push_back(wrapped_cells(table.rows[r], columns));
     std::string text;
-    if (!options.title.empty()) {
-        for (const auto& line : wrapped(without_controls_of(options.title), screen.columns))
-            text += strong(line, screen.colors) + "\n";
-    }
-    text += head_lines(columns, screen.colors);
-    text += rows_text(table, columns, screen, options);
+    if (!options.title.empty())
+        text = boost::algorithm::join(wrapped(one_line(options.title), screen.columns), "\n") + "\n";
+    text += aligned_text(rows, right);
+    if (left_out > 0) text += fmt::format("...: {} rows more, which -o FILE or a pipe gives\n", left_out);
     return text + left_out_text(table, columns, screen);
 }
 

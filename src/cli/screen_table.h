@@ -6,7 +6,6 @@
 #include "cli/terminal.h"
 
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,7 +16,6 @@ namespace flightwatt::cli {
 /// Where a table is shown.
 struct Screen {
     bool is_terminal = false;
-    bool colors = false;
     bool wide = false;  ///< every column, however wide the terminal
     std::size_t columns = 80;
 };
@@ -29,13 +27,12 @@ Screen screen_of(const StageCall& call);
 struct ScreenTable {
     std::string title;               ///< what was read; not shown elsewhere than on a terminal
     std::vector<std::string> first;  ///< columns that are kept before all others, the most important first
-    std::optional<std::size_t> best_row = {};
-    std::size_t most_rows = 0;  ///< rows in the middle of longer tables are left out; 0: none
+    std::size_t most_rows = 0;       ///< rows in the middle of longer tables are left out; 0: none
 };
 
 /// The table in the width of the screen: heads of several lines with the unit of a column (from the suffix of its
-/// name) below, long texts on several lines, and below it the names of columns for which there was no room. Phases and
-/// the best row are coloured where the screen has colours. Elsewhere than on a terminal: to_text(table).
+/// name) below, long texts on several lines, and below it the names of columns for which there was no room. Elsewhere
+/// than on a terminal: to_text(table).
 std::string screen_text(TextTable table, const Screen& screen, const ScreenTable& options = {});
 
 /// A CSV text with the decimals that people read, by the units of its columns: 28.3 of 28.261000000000003 s. Columns

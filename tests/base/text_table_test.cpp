@@ -11,6 +11,11 @@ TEST(TextTable, AlignsNumbersToTheRightAndCountsCodePoints) {
     EXPECT_EQ(to_text(table), "flight  power_w\na, b        1.5\nÜnal          -\n");
 }
 
+TEST(TextTable, HasCellsOfSeveralLines) {
+    EXPECT_EQ(aligned_text({{"mean\npower\nW", "\n\nname"}, {"12", "two\nwords"}}, {true, false}),
+              " mean\npower\n    W  name\n   12  two\n       words\n");
+}
+
 TEST(TextTable, IsMarkdownAndCsvToo) {
     EXPECT_EQ(to_markdown(table), "| flight | power_w |\n|---|---:|\n| a, b | 1.5 |\n| Ünal | - |\n");
     EXPECT_EQ(to_csv(table), "flight,power_w\n\"a, b\",1.5\nÜnal,-\n");

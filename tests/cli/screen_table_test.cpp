@@ -21,7 +21,7 @@ using testing::HasSubstr;
 using testing::Le;
 using testing::Not;
 
-const Screen narrow{true, false, false, 40};
+const Screen narrow{true, false, 40};
 
 TextTable energies() {
     return {{"flight", "duration_s", "energy_wh", "remark", "start_altitude_m"},
@@ -59,7 +59,7 @@ TEST(ScreenTable, HasUnitsBelowItsHeadsAndNamesWhatIsLeftOut) {
 }
 
 TEST(ScreenTable, WrapsTextsAndCutsNone) {
-    const Screen screen{true, false, false, 50};
+    const Screen screen{true, false, 50};
     const auto text = screen_text(energies(), screen, {"", {"flight", "remark", "energy_wh"}});
     EXPECT_THAT(widths_of(text), Each(Le(screen.columns)));
     std::string words;
@@ -70,7 +70,7 @@ TEST(ScreenTable, WrapsTextsAndCutsNone) {
 }
 
 TEST(ScreenTable, IsWholeWhereItIsWide) {
-    const auto text = screen_text(energies(), {true, false, true, 20}, {"two flights", {}});
+    const auto text = screen_text(energies(), {true, true, 20}, {"two flights", {}});
     EXPECT_THAT(text, Not(HasSubstr("left out")));
     EXPECT_THAT(text, HasSubstr("was cut short by rain, landed early"));
     EXPECT_THAT(text, HasSubstr("17.1"));
@@ -83,19 +83,12 @@ TEST(ScreenTable, IsTheAlignedTableElsewhere) {
 TEST(ScreenTable, LeavesOutTheMiddleOfALongOneAndSaysHowMuch) {
     TextTable table{{"n"}, {}};
     for (int i = 0; i < 100; ++i) table.rows.push_back({std::to_string(i)});
-    const auto lines = lines_of(screen_text(table, narrow, {"", {}, std::nullopt, 9}));
-    ASSERT_EQ(lines.size(), 11U);
-    EXPECT_EQ(lines[6], " 5");
-    EXPECT_EQ(lines[7], "... 91 rows more: -o FILE or a pipe gives all");
-    EXPECT_EQ(lines[8], "97");
-}
-
-TEST(ScreenTable, ColoursPhasesAndTheBestRowWhereItMay) {
-    const TextTable table{{"phase", "power_w"}, {{"cruise", "27.3"}, {"landing", "9.1"}}};
-    EXPECT_THAT(screen_text(table, narrow, {"", {}, 0}), Not(HasSubstr("\x1b")));
-    const auto colored = screen_text(table, {true, true, false, 40}, {"", {}, 0});
-    EXPECT_THAT(colored, HasSubstr("\x1b[38;5;34mcruise\x1b[0m"));
-    EXPECT_THAT(colored, HasSubstr("\x1b[38;5;166mlanding\x1b[0m"));
+    const auto lines = lines_of(screen_text(table, narrow, {"", {}, 9}));
+    ASSERT_EQ(lines.size(), 12U);
+    EXPECT_EQ(lines[6], "  5");
+    EXPECT_EQ(lines[7], "...");
+    EXPECT_EQ(lines[8], " 97");
+    EXPECT_EQ(lines[11], "...: 91 rows more, which -o FILE or a pipe gives");
 }
 
 TEST(ScreenTable, ShowsNoControlsOfNames) {
@@ -186,14 +179,11 @@ TEST_F(TablesOfPrograms, ShowAllWithWide) {
                 HasSubstr("throttle"));
 }
 
-TEST_F(TablesOfPrograms, AreColouredWhereThatIsWanted) {
-    const std::string segment = "flightwatt segment logs/opterra_synthetic_01.data";
-    constexpr auto cruise = "\x1b[38;5;36mcruise\x1b[0m";
-    EXPECT_THAT(on_terminal(80, segment, "LC_ALL=C TERM=xterm"), HasSubstr(cruise));
-    EXPECT_THAT(on_terminal(80, segment, plain), Not(HasSubstr("\x1b")));
-    EXPECT_THAT(on_terminal(80, segment, "LC_ALL=C.UTF-8 TERM=dumb"), Not(HasSubstr("\x1b")));
-    EXPECT_THAT(on_terminal(80, "flightwatt simulate none.toml || true", "LC_ALL=C TERM=xterm"),
-                HasSubstr("\x1b[1;38;5;160merror:\x1b[0m"));
+TEST_F(TablesOfPrograms, HaveErrorsInColourWhereThatIsWanted) {
+    const std::string failing = "flightwatt simulate none.toml || true";
+    EXPECT_THAT(on_terminal(80, failing, "LC_ALL=C TERM=xterm"), HasSubstr("\x1b[1;38;5;160merror:\x1b[0m"));
+    EXPECT_THAT(on_terminal(80, failing, plain), Not(HasSubstr("\x1b")));
+    EXPECT_THAT(on_terminal(80, failing, "LC_ALL=C.UTF-8 TERM=dumb"), Not(HasSubstr("\x1b")));
 }
 
 TEST_F(TablesOfPrograms, SayMinutesAsMinutes) {
