@@ -37,13 +37,10 @@ std::uint64_t fingerprint_of(const FileId& id) {
     return seed;
 }
 
-constexpr std::size_t max_named_inputs = 1000;
-
 struct FileUse {
-    std::mutex mutex;                                 ///< guards what follows
-    std::map<FileId, std::string> inputs;             ///< the first ones, which an error names
-    std::unordered_set<std::uint64_t> more_inputs{};  ///< fingerprints of the others: of an archive, names take room
-    std::map<FileId, std::string> declared;           ///< files that exist, with their option
+    std::mutex mutex;                            ///< guards what follows
+    std::unordered_set<std::uint64_t> inputs{};  ///< their fingerprints: of an archive, names would take room
+    std::map<FileId, std::string> declared;      ///< files that exist, with their option
     std::map<FileId, std::string> written;
     std::map<std::string, std::string> declared_paths;
 };
@@ -60,18 +57,12 @@ std::string named(const std::filesystem::path& path, const std::string& option) 
     return option.empty() ? path.string() : option + " " + path.string();
 }
 
-[[noreturn]] void refuse_input(const std::string& output, const std::string& input) {
-    throw UsageError(fmt::format("{} is the input {}, which would be lost; name another file", output, input));
-}
-
 [[noreturn]] void refuse_second(const std::string& one, const std::string& other) {
     throw UsageError(fmt::format("{} and {} are one file; name another one for one of them", one, other));
 }
 
 void refuse_if_read(const FileUse& use, const std::optional<FileId>& id, const std::string& output) {
-    if (!id) return;
-    if (const auto input = use.inputs.find(*id); input != use.inputs.end()) refuse_input(output, input->second);
-    if (use.more_inputs.contains(fingerprint_of(*id)))
+    if (id && use.inputs.contains(fingerprint_of(*id)))
         throw UsageError(output + " is an input, which would be lost; name another file");
 }
 
@@ -86,13 +77,10 @@ void register_input(const std::filesystem::path& path) {
     auto& use = file_use();
     const std::lock_guard lock(use.mutex);
     if (const auto output = use.declared.find(*id); output != use.declared.end()) {
-        refuse_input(output->second, path.string());
+        throw UsageError(
+            fmt::format("{} is the input {}, which would be lost; name another file", output->second, path.string()));
     }
-    if (use.inputs.size() < max_named_inputs) {
-        use.inputs.emplace(*id, path.string());
-    } else if (!use.inputs.contains(*id)) {
-        use.more_inputs.insert(fingerprint_of(*id));
-    }
+    use.inputs.insert(fingerprint_of(*id));
 }
 
 void register_output(const std::filesystem::path& path, const std::string& option) {

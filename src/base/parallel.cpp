@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <condition_variable>
 #include <exception>
 #include <mutex>
 #include <optional>
@@ -74,44 +73,6 @@ void for_each_in_parallel(std::size_t count, const std::function<void(std::size_
         work_on(is_shared);
     }
     if (failure) std::rethrow_exception(failure);
-}
-
-void for_each_in_order(std::size_t count, const std::function<void(std::size_t, std::size_t)>& make,
-                       const std::function<void(std::size_t, std::size_t)>& take, std::size_t max_threads) {
-    const auto threads = threads_for(count, max_threads);
-    std::atomic<std::size_t> next = 0;
-    std::mutex mutex;  // guards what follows, and is held by the one that takes
-    std::condition_variable taken;
-    std::size_t turn = 0;
-    bool has_failed = false;
-    const auto work_at = [&](std::size_t place) {
-        for (std::size_t i = next++; i < count; i = next++) {
-            std::exception_ptr failure;
-            try {
-                make(i, place);
-            } catch (...) {
-                failure = std::current_exception();  // it counts when its turn comes: the lowest one does
-            }
-            std::unique_lock lock(mutex);
-            taken.wait(lock, [&] { return turn == i || has_failed; });
-            if (has_failed) return;
-            has_failed = true;
-            if (failure) {
-                taken.notify_all();
-                std::rethrow_exception(failure);
-            }
-            try {
-                take(i, place);
-            } catch (...) {
-                taken.notify_all();
-                throw;
-            }
-            has_failed = false;
-            ++turn;
-            taken.notify_all();
-        }
-    };
-    for_each_in_parallel(threads, work_at, threads);
 }
 
 std::size_t threads_for(std::size_t count, std::size_t max_threads) {

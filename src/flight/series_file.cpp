@@ -244,11 +244,16 @@ void write_rows(const std::vector<Track>& tracks, const TextSink& sink, std::siz
     }
     borders_s.push_back(infinite_s);
     const auto parts = borders_s.size() - 1;
-    std::vector<std::string> texts(threads_for(parts, max_threads));
-    for_each_in_order(
-        parts,
-        [&](std::size_t i, std::size_t place) { texts[place] = rows_between(tracks, borders_s[i], borders_s[i + 1]); },
-        [&](std::size_t, std::size_t place) { sink(texts[place]); }, max_threads);
+    constexpr std::size_t parts_a_thread = 16;  // more than are made at a time need not lie in memory
+    std::vector<std::string> texts(std::min(parts, parts_a_thread * threads_for(parts, max_threads)));
+    for (std::size_t first = 0; first < parts; first += texts.size()) {
+        const auto count = std::min(texts.size(), parts - first);
+        const auto make = [&](std::size_t k) {
+            texts[k] = rows_between(tracks, borders_s[first + k], borders_s[first + k + 1]);
+        };
+        for_each_in_parallel(count, make, max_threads);
+        for (std::size_t k = 0; k < count; ++k) sink(texts[k]);
+    }
 }
 
 /// Reads the table behind the front matter row by row.

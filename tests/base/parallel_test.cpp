@@ -65,43 +65,5 @@ TEST(ForEachInParallel, HasOneThreadWithinALoopThatSeveralShare) {
         2);
 }
 
-TEST(ForEachInOrder, TakesWhatIsMadeInOrderFromThePlaceWhereItLies) {
-    for (const std::size_t threads : {1U, 2U, 7U}) {
-        std::vector<std::size_t> places(threads_for(500, threads));
-        std::vector<std::size_t> taken;
-        for_each_in_order(
-            500, [&](std::size_t i, std::size_t place) { places.at(place) = i; },
-            [&](std::size_t i, std::size_t place) {
-                EXPECT_EQ(places.at(place), i);
-                taken.push_back(i);
-            },
-            threads);
-        ASSERT_EQ(taken.size(), 500U);
-        EXPECT_TRUE(std::ranges::is_sorted(taken));
-    }
-    for_each_in_order(
-        0, [](std::size_t, std::size_t) { FAIL() << "there is nothing to do"; }, [](std::size_t, std::size_t) {});
-}
-
-TEST(ForEachInOrder, TakesNothingBehindTheLowestNumberThatThrows) {
-    for (int trial = 0; trial < 200; ++trial) {
-        std::vector<std::size_t> taken;
-        const auto make = [](std::size_t i, std::size_t) {
-            if (i == 20 || i == 23) throw std::runtime_error("made " + std::to_string(i));
-        };
-        const auto take = [&](std::size_t i, std::size_t) {
-            if (trial % 2 == 0 && i == 7) throw std::runtime_error("taken 7");
-            taken.push_back(i);
-        };
-        try {
-            for_each_in_order(50, make, take, 3);
-            FAIL() << "nothing was thrown";
-        } catch (const std::runtime_error& error) {
-            EXPECT_STREQ(error.what(), trial % 2 == 0 ? "taken 7" : "made 20");
-        }
-        EXPECT_EQ(taken.size(), trial % 2 == 0 ? 7U : 20U);
-    }
-}
-
 }  // namespace
 }  // namespace flightwatt
