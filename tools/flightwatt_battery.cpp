@@ -55,17 +55,6 @@ std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call) {
     return records;
 }
 
-void warn_if_never_full(const cli::StageCall& call, const battery::BatteryIdentification& identified) {
-    if (identified.curve_start_depletion_ah <= 0.0) return;
-    cli::warn(call,
-              fmt::format(
-                  "no flight begins full: the fullest rests at {:.3f} V; by the usual chart of {} {} cells "
-                  "{:.0f} % are left{}",
-                  highest_resting_v(identified), identified.cells, to_string(identified.chemistry),
-                  identified.observed_max_soc_percent,
-                  identified.flights.size() == 1 ? ". One flight does not tell both capacity and initial charge" : ""));
-}
-
 /// How the capacity that was given agrees with the one that the flights indicate.
 void compare_capacity(const cli::StageCall& call, const battery::Battery& pack) {
     if (const auto warning = capacity_warning(pack); !warning.empty())
@@ -76,7 +65,7 @@ void compare_capacity(const cli::StageCall& call, const battery::Battery& pack) 
 
 void note_what_it_rests_on(const cli::StageCall& call, const battery::BatteryIdentification& identified) {
     if (const auto warning = cli::cells_warning(identified); !warning.empty()) cli::warn(call, warning);
-    warn_if_never_full(call, identified);
+    for (const auto& limit : cli::curve_limits(identified)) cli::note(call, limit);
     for (const auto& flight : identified.flights) {
         if (flight.link)
             cli::note(call, cli::describe_link(flight) + "; --no-chain takes no flight for another's pack");
@@ -92,12 +81,6 @@ void note_what_it_rests_on(const cli::StageCall& call, const battery::BatteryIde
         cli::warn(call, fmt::format("the flights do not tell the capacity, as none runs empty: {}; give what "
                                     "the pack says with --capacity",
                                     cli::describe(identified.capacity)));
-    }
-    if (identified.observed_min_soc_percent > 0.0) {
-        cli::note(call, fmt::format("below {:.0f} % ({:.3f} Ah drawn) no flight shows the open-circuit voltage: "
-                                    "it goes on in parallel to the usual chart of {} {} cells",
-                                    identified.observed_min_soc_percent, identified.fit.knots_ah.back(),
-                                    identified.cells, to_string(identified.chemistry)));
     }
     if (identified.fit.rc_resistance_ohm == 0.0) {
         cli::warn(call, "no RC pair explains anything: the battery has none");
@@ -134,7 +117,7 @@ int identify(const cli::StageCall& call) {
         const cli::ScreenTable flights{
             fmt::format("{} flights", records.size()),
             {"flight", "own ohm", "drawn Ah", "missing Ah", "leave-one-out mV", "at rest V"}};
-        cli::print(screen_text(cli::parameters_table(identified), screen, {identified.battery.name, {}}) + "\n" +
+        cli::print(screen_text(cli::pack_table(identified.battery), screen, {identified.battery.name, {}}) + "\n" +
                    screen_text(cli::flights_table(identified, left_out), screen, flights));
     }
     return cli::ok;

@@ -53,22 +53,39 @@ struct Format {
     std::string name;
     std::string ending;  ///< of -o that means it; may be empty
     std::set<ExportKind> kinds;
+    std::set<std::string> options;  ///< that it uses, of those that not all use
 };
 
 const std::vector<Format>& formats() {
     using enum ExportKind;
-    static const std::vector<Format> all{{"geojson", ".geojson", {flight}},
-                                         {"kml", ".kml", {flight}},
-                                         {"gpx", ".gpx", {flight}},
-                                         {"csv", ".csv", {flight}},
-                                         {"json", ".json", {model, battery}},
-                                         {"c", ".h", {model}},
-                                         {"px4", ".params", {model, battery, mission}},
-                                         {"inav", "", {model, battery, mission}},
-                                         {"paparazzi", "", {model, battery, mission}},
-                                         {"paparazzi-map", "", {battery, mission}},
-                                         {"latex", ".tex", {model, battery, mission, batch}}};
+    static const std::set<ExportKind> of_aircraft{model, battery, mission};
+    static const std::set<std::string> of_tracks{
+        "colour", "aircraft", "sortie", "exclude", "keep", "correct-idle-offset", "messages"};
+    static const std::vector<Format> all{
+        {"geojson", ".geojson", {flight}, of_tracks},
+        {"kml", ".kml", {flight}, of_tracks},
+        {"gpx", ".gpx", {flight}, of_tracks},
+        {"csv",
+         ".csv",
+         {flight},
+         {"message", "aircraft", "sortie", "exclude", "keep", "correct-idle-offset", "messages"}},
+        {"json", ".json", {model, battery}, {}},
+        {"c", ".h", {model}, {}},
+        {"px4", ".params", of_aircraft, {"cells"}},
+        {"inav", "", of_aircraft, {"cells", "idle-power"}},
+        {"paparazzi", "", of_aircraft, {"cells", "parallel"}},
+        {"paparazzi-map", "", {battery, mission}, {"cells", "parallel"}},
+        {"latex", ".tex", {model, battery, mission, batch}, {"replay", "capacity"}}};
     return all;
+}
+
+/// The names of those for which that holds.
+template <typename Holds>
+std::string names_of_formats(const Holds& holds) {
+    std::vector<std::string> names;
+    for (const auto& format : formats())
+        if (holds(format)) names.push_back(format.name);
+    return fmt::format("{}", fmt::join(names, ", "));
 }
 
 ExportKind kind_of(const std::string& file) {
@@ -82,9 +99,7 @@ ExportKind kind_of(const std::string& file) {
 }
 
 std::string format_names() {
-    std::vector<std::string> names;
-    for (const auto& format : formats()) names.push_back(format.name);
-    return fmt::format("{}", fmt::join(names, ", "));
+    return names_of_formats([](const Format&) { return true; });
 }
 
 const Format& format_of(const cli::StageCall& call) {
@@ -99,17 +114,10 @@ const Format& format_of(const cli::StageCall& call) {
                     format_names()));
 }
 
-/// What a kind of input can become.
-std::string forms_of(ExportKind kind) {
-    std::vector<std::string> names;
-    for (const auto& format : formats())
-        if (format.kinds.contains(kind)) names.push_back(format.name);
-    return fmt::format("{}", fmt::join(names, ", "));
-}
-
 void require_fitting(const ExportInput& input, const Format& format) {
     if (format.kinds.contains(input.kind)) return;
-    auto hint = fmt::format("a {} becomes {}", name_of(input.kind), forms_of(input.kind));
+    auto hint = fmt::format("a {} becomes {}", name_of(input.kind),
+                            names_of_formats([&](const Format& other) { return other.kinds.contains(input.kind); }));
     if (input.kind == ExportKind::mission && format.name == "csv")
         hint = fmt::format("its state of charge over time is: flightwatt simulate {} -o FILE.csv", input.file);
     if (input.kind == ExportKind::batch)
@@ -120,42 +128,32 @@ void require_fitting(const ExportInput& input, const Format& format) {
 
 /// Refuses options that the format does not use.
 void refuse_idle_options(const cli::StageCall& call, const Format& format) {
-    const std::set<std::string> tracks{"geojson", "kml", "gpx"};
-    const std::set<std::string> parameters{"px4", "inav", "paparazzi", "paparazzi-map"};
-    std::map<std::string, std::set<std::string>> users{
-        {"colour", tracks},       {"message", {"csv"}},
-        {"cells", parameters},    {"parallel", {"paparazzi", "paparazzi-map"}},
-        {"idle-power", {"inav"}}, {"replay", {"latex"}},
-        {"capacity", {"latex"}}};
-    for (const auto* option : {"aircraft", "sortie", "exclude", "keep", "correct-idle-offset", "messages"})
-        users[option] = {"geojson", "kml", "gpx", "csv"};
-    for (const auto& [option, names] : users) {
-        if (!call.has(option) || names.contains(format.name)) continue;
-        throw UsageError(
-            fmt::format("--{} is of no use to {}: it is for {}", option, format.name, fmt::join(names, ", ")));
+    for (const auto& other : formats()) {
+        for (const auto& option : other.options) {
+            if (!call.has(option) || format.options.contains(option)) continue;
+            const auto uses = [&](const Format& user) { return user.options.contains(option); };
+            throw UsageError(
+                fmt::format("--{} is of no use to {}: it is for {}", option, format.name, names_of_formats(uses)));
+        }
     }
 }
 
 /// One input, but for tables of several missions with or without a batch, and parameters from a model and a battery.
 void require_few(const std::vector<ExportInput>& inputs, const Format& format) {
-    if (inputs.size() == 1) return;
-    const auto all = [&](ExportKind kind) {
-        return std::ranges::all_of(inputs, [&](const auto& in) { return in.kind == kind; });
-    };
+    using enum ExportKind;
     const auto of_kind = [&](ExportKind kind) {
         return static_cast<std::size_t>(std::ranges::count(inputs, kind, &ExportInput::kind));
     };
-    const bool tables = format.name == "latex" && of_kind(ExportKind::batch) <= 1 &&
-                        of_kind(ExportKind::batch) + of_kind(ExportKind::mission) == inputs.size();
-    const std::set<std::string> of_both{"px4", "inav", "paparazzi"};
-    const bool pair = inputs.size() == 2 && of_both.contains(format.name) && inputs[0].kind != inputs[1].kind &&
-                      !all(ExportKind::mission) && inputs[0].kind != ExportKind::mission &&
-                      inputs[1].kind != ExportKind::mission;
-    if (tables || pair) return;
+    const bool is_latex = format.name == "latex";
+    const bool is_of_both =
+        format.kinds.contains(model) && format.kinds.contains(battery) && format.kinds.contains(mission) && !is_latex;
+    const bool are_tables = is_latex && of_kind(batch) <= 1 && of_kind(batch) + of_kind(mission) == inputs.size();
+    const bool are_both = is_of_both && inputs.size() == 2 && of_kind(model) == 1 && of_kind(battery) == 1;
+    if (inputs.size() == 1 || are_tables || are_both) return;
     throw UsageError(fmt::format("{} is made of one input{}", format.name,
-                                 format.name == "latex"          ? ", or of missions and one folder of flightwatt batch"
-                                 : of_both.contains(format.name) ? ": a mission, or a model and a battery"
-                                                                 : ""));
+                                 is_latex     ? ", or of missions and one folder of flightwatt batch"
+                                 : is_of_both ? ": a mission, or a model and a battery"
+                                              : ""));
 }
 
 /// The format by --format or the ending of --output's file, and the inputs. Throws UsageError for no such format, for

@@ -7,7 +7,6 @@
 #include "cli/output/physical_output.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
-#include "mechanical/measured_flight.h"
 #include "mechanical/physical_fit.h"
 #include "stages.h"
 
@@ -34,17 +33,6 @@ mechanical::ModelFitOptions read_options(const cli::StageCall& call) {
     return options;
 }
 
-std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call, int order) {
-    const auto needed = mechanical::min_samples(order);
-    const auto options = cli::read_flight_options(call);
-    const auto chosen = cli::with_chosen_flights(call, options);
-    return cli::from_flights<mechanical::MeasuredFlight>(chosen, options, [&](const auto&, const auto& loaded) {
-        auto measured = mechanical::extract_flights(loaded, needed);
-        for (const auto& exclusion : measured.exclusions) cli::warn(call, to_string(exclusion));
-        return std::move(measured.flights);
-    });
-}
-
 /// Chooses each phase's order and says why.
 flight::PerPhase<mechanical::OrderSelection> choose_orders(const cli::StageCall& call,
                                                            std::span<const mechanical::FlightSamples> flights,
@@ -69,7 +57,10 @@ int fit(const cli::StageCall& call) {
     if (constants_file) cli::table_text({{""}, {}}, *constants_file);
     const auto curves_file = call.get_optional<std::string>("curves");
     const auto published = cli::read_published(call);
-    const auto measured = read_flights(call, auto_order ? mechanical::max_tested_order : options.phases.order);
+    const auto order = auto_order ? mechanical::max_tested_order : options.phases.order;
+    const auto reading = cli::read_flight_options(call);
+    const auto measured =
+        cli::measured_flights(cli::with_chosen_flights(call, reading), reading, mechanical::min_samples(order));
     std::vector<mechanical::FlightSamples> flights;
     flights.reserve(measured.size());
     for (const auto& flight : measured) flights.push_back(flight.samples);

@@ -7,7 +7,6 @@
 #include "cli/output/replay_output.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
-#include "mechanical/measured_flight.h"
 #include "mission/mission_file.h"
 #include "mission/replay.h"
 #include "stages.h"
@@ -34,22 +33,14 @@ std::vector<mission::MissionVariant> read_missions(const cli::StageCall& call) {
     return missions;
 }
 
-std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call, std::size_t needed_samples) {
-    const auto options = cli::read_flight_options(call);
-    return cli::from_flights<mechanical::MeasuredFlight>(call, options, [&](const auto&, const auto& loaded) {
-        auto measured = mechanical::extract_flights(loaded, needed_samples);
-        for (const auto& exclusion : measured.exclusions) cli::warn(call, to_string(exclusion));
-        return std::move(measured.flights);
-    });
-}
-
 int replay(const cli::StageCall& call) {
     mission::ReplayOptions options;
     options.fit = cli::read_fit_options(call);
     const auto missions = read_missions(call);
     if (const auto file = call.get_optional<std::string>("model"))
         options.model = mechanical::read_mechanical_model(*file);
-    const auto flights = read_flights(call, mechanical::min_samples(options.fit.phases.order));
+    const auto flights =
+        cli::measured_flights(call, cli::read_flight_options(call), mechanical::min_samples(options.fit.phases.order));
     auto replays = replay_flights(missions, flights, options);
     for (const auto& left : replays.not_replayed)
         cli::warn(call, fmt::format("{}: {} is not flown on it: {}", left.flight, left.mission, left.reason));

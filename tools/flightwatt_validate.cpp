@@ -8,10 +8,10 @@
 #include "cli/stage.h"
 #include "cli/terminal.h"
 #include "flight/selected_track.h"
-#include "mechanical/measured_flight.h"
 #include "stages.h"
 
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -23,6 +23,7 @@ using namespace flightwatt;
 std::vector<mechanical::MeasuredFlight> in_cruise(const cli::StageCall& call, const flight::LoadedFlight& loaded,
                                                   mechanical::MeasuredFlights measured, double until_s,
                                                   const flight::SegmentationOptions& options) {
+    for (const auto& exclusion : measured.exclusions) cli::warn(call, to_string(exclusion));
     std::vector<mechanical::MeasuredFlight> flights;
     const flight::SelectedTracks tracks(loaded.series);
     for (std::size_t i = 0; i < measured.flights.size(); ++i) {
@@ -44,14 +45,13 @@ std::vector<mechanical::MeasuredFlight> in_cruise(const cli::StageCall& call, co
 }
 
 /// The flights of all inputs. In flight, those that are not in cruise at the moment are excluded.
-std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call, std::size_t needed_samples) {
-    const auto until_s = call.get_optional<double>("until");
+std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call, std::size_t needed_samples,
+                                                     const std::optional<double>& until_s) {
     const auto options = cli::read_flight_options(call);
+    if (!until_s) return cli::measured_flights(call, options, needed_samples);
     return cli::from_flights<mechanical::MeasuredFlight>(call, options, [&](const auto&, const auto& loaded) {
-        auto measured = mechanical::extract_flights(loaded, needed_samples);
-        for (const auto& exclusion : measured.exclusions) cli::warn(call, to_string(exclusion));
-        return until_s ? in_cruise(call, loaded, std::move(measured), *until_s, options.segmentation)
-                       : std::move(measured.flights);
+        return in_cruise(call, loaded, mechanical::extract_flights(loaded, needed_samples), *until_s,
+                         options.segmentation);
     });
 }
 
@@ -65,7 +65,7 @@ int validate_flights(const cli::StageCall& call) {
     const auto options = read_fit_options(call);
     const auto until_s = cli::positive_option(call, "until", "s since lift-off");
     const auto folds = cli::count_option(call, "folds", 2);
-    const auto flights = read_flights(call, mechanical::min_samples(options.phases.order));
+    const auto flights = read_flights(call, mechanical::min_samples(options.phases.order), until_s);
     cli::note_folds(call, flights.size(), folds);
     auto validated = validate(flights, options, folds);
     if (const auto rejected = remove_rejected(validated); !rejected.empty()) cli::note(call, rejected);

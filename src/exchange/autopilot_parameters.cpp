@@ -62,6 +62,26 @@ double mean_power_w(const EstimatorInput& input, flight::Phase phase) {
     return energy_j(curve.fourier, curve.duration_s) / curve.duration_s + input.compute_w;
 }
 
+/// A polynomial of least squares through points of a curve.
+struct CurveFit {
+    Eigen::VectorXd coefficients;  ///< of 1, x, x^2 ...
+    double worst = 0.0;            ///< how far it is off the points at most
+};
+
+template <typename Curve>
+CurveFit fitted_polynomial(const mechanical::FlownRange& range, int points, int order, const Curve& curve) {
+    Eigen::MatrixXd powers(points, order + 1);
+    Eigen::VectorXd values(points);
+    for (int i = 0; i < points; ++i) {
+        const double x = std::lerp(range.low, range.high, i / (points - 1.0));
+        for (int k = 0; k <= order; ++k) powers(i, k) = std::pow(x, k);
+        values[i] = curve(x);
+    }
+    CurveFit fit{powers.colPivHouseholderQr().solve(values)};
+    fit.worst = (values - powers * fit.coefficients).cwiseAbs().maxCoeff();
+    return fit;
+}
+
 constexpr auto inav = "INAV";
 constexpr int max_inav_cells = 12;
 constexpr double cw_per_w = 100.0;     // INAV's powers are in 0.01 W,
@@ -124,28 +144,6 @@ constexpr int highest_cv = 420;  // hundredths of a volt
 constexpr int lowest_cv = 250;
 constexpr double cv_per_v = 100.0;
 
-/// Power in level flight as the monitor's polynomial of the airspeed.
-struct AirspeedPolynomial {
-    Eigen::Vector3d coefficients;  ///< of V^2, V and 1
-    double worst_w = 0.0;          ///< how far it is off the model at most, where the model was flown
-};
-
-AirspeedPolynomial airspeed_polynomial(const mechanical::PhysicalModel& physical, double compute_w) {
-    constexpr int points = 101;
-    const auto& [low, high] = physical.airspeed_m_per_s;
-    Eigen::MatrixXd basis(points, 3);
-    Eigen::VectorXd power_w(points);
-    for (int i = 0; i < points; ++i) {
-        const double airspeed = std::lerp(low, high, i / (points - 1.0));
-        basis.row(i) << airspeed * airspeed, airspeed, 1.0;
-        power_w[i] = mechanical::power_w(physical, {airspeed, 0.0, 1.0}) + compute_w;
-    }
-    AirspeedPolynomial polynomial;
-    polynomial.coefficients = basis.colPivHouseholderQr().solve(power_w);
-    polynomial.worst_w = (power_w - basis * polynomial.coefficients).cwiseAbs().maxCoeff();
-    return polynomial;
-}
-
 double phase_energy_wh(const EstimatorInput& input, flight::Phase phase) {
     return units::wh_from_joule(mean_power_w(input, phase) * input.model->phases[phase].duration_s);
 }
@@ -167,7 +165,10 @@ ParameterText to_paparazzi(const EstimatorInput& input) {
             {}, fmt::format("the model {} knows no airspeed, over which {} takes power", model.name, energy_monitor),
             "fit one with flightwatt fit --model physical");
     }
-    const auto power = airspeed_polynomial(*model.physical, input.compute_w);
+    constexpr int airspeeds = 101;
+    const auto power = fitted_polynomial(model.physical->airspeed_m_per_s, airspeeds, 2, [&](double airspeed) {
+        return mechanical::power_w(*model.physical, {airspeed, 0.0, 1.0}) + input.compute_w;
+    });
     const double land_wh = phase_energy_wh(input, flight::Phase::landing);
     const double mean_v = pack.energy_wh / pack.battery.capacity_ah;
     ParameterText result;
@@ -183,14 +184,14 @@ ParameterText to_paparazzi(const EstimatorInput& input) {
                     "power_hover = {:.4g}  # W, assumed up to 15 m/s: the cruise's\n"
                     "expected_landing_time = {:.0f}  # s\n",
                     pack.capacity_mah / input.cells_in_parallel, pack.cells, input.cells_in_parallel,
-                    power.coefficients[0], power.coefficients[1], power.coefficients[2], land_wh,
+                    power.coefficients[2], power.coefficients[1], power.coefficients[0], land_wh,
                     phase_energy_wh(input, flight::Phase::takeoff), land_wh / mean_v / units::milli,
                     mean_power_w(input, flight::Phase::cruise), model.phases[flight::Phase::landing].duration_s);
     const auto& [low, high] = model.physical->airspeed_m_per_s;
     result.notes.push_back(
         fmt::format("the polynomial is off the model by up to {:.2f} W from {:.1f} to {:.1f} m/s; "
                     "beyond, it is extrapolated",
-                    power.worst_w, low, high));
+                    power.worst, low, high));
     return result;
 }
 
@@ -224,30 +225,6 @@ constexpr double max_capacity_mah = 100'000.0;
 constexpr double max_current_a = 500.0;
 constexpr double half_charged_percent = 50.0;
 
-/// PX4's state of charge by voltage is linear from V_EMPTY to V_CHARGED.
-struct VoltageLine {
-    double empty_v = 0.0;  ///< of a cell, at rest
-    double charged_v = 0.0;
-    double worst_percent = 0.0;  ///< how far the state of charge by it is off at most, where the line was fitted
-};
-
-/// The line of least squares through the open-circuit voltage of a cell from 10 to 100 % of charge: PX4 asks for a
-/// voltage before the steep drop.
-VoltageLine voltage_line(const PackSummary& pack) {
-    constexpr int points = 91;
-    Eigen::MatrixXd basis(points, 2);
-    Eigen::VectorXd volts(points);
-    for (int i = 0; i < points; ++i) {
-        const double soc_percent = 10.0 + i;
-        basis.row(i) << 1.0, soc_percent / 100.0;
-        volts[i] = open_circuit_voltage_v(pack.battery, soc_percent) / pack.cells;
-    }
-    const Eigen::Vector2d line = basis.colPivHouseholderQr().solve(volts);
-    VoltageLine result{line[0], line[0] + line[1]};
-    result.worst_percent = ((volts - basis * line) / line[1] * 100.0).cwiseAbs().maxCoeff();
-    return result;
-}
-
 void require_up_to(double value, double most, const char* name, const char* unit) {
     if (value <= most) return;
     throw InputError({}, fmt::format("{} would be {:.4g} {}: PX4 takes up to {:g}", name, value, unit, most),
@@ -278,17 +255,23 @@ ParameterText to_px4(const EstimatorInput& input) {
     result.text += px4_line("BAT1_CAPACITY", pack.capacity_mah, ParameterType::real32);
     result.text += px4_line("BAT1_R_INTERNAL", cell_ohm, ParameterType::real32);
     if (pack.battery.thevenin) {
-        const auto voltages = voltage_line(pack);
-        if (!(voltages.charged_v > voltages.empty_v)) {
+        // A straight line of a cell's voltage at rest; from 10 %, as PX4 asks for a voltage before the steep drop.
+        constexpr int charges = 91;
+        const auto line = fitted_polynomial({10.0, full_soc_percent}, charges, 1, [&](double soc_percent) {
+            return open_circuit_voltage_v(pack.battery, soc_percent) / pack.cells;
+        });
+        const double empty_v = line.coefficients[0];
+        const double v_per_percent = line.coefficients[1];
+        if (!(v_per_percent > 0.0)) {
             throw InputError({}, "has one voltage at all states of charge, by which PX4 cannot tell the charge",
                              "identify the open-circuit voltage with flightwatt battery");
         }
-        result.text += px4_line("BAT1_V_EMPTY", voltages.empty_v, ParameterType::real32);
-        result.text += px4_line("BAT1_V_CHARGED", voltages.charged_v, ParameterType::real32);
+        result.text += px4_line("BAT1_V_EMPTY", empty_v, ParameterType::real32);
+        result.text += px4_line("BAT1_V_CHARGED", empty_v + v_per_percent * full_soc_percent, ParameterType::real32);
         result.notes.push_back(
             fmt::format("PX4's state of charge by voltage is a straight line: from 10 to 100 % it is "
                         "off by up to {:.0f} points",
-                        voltages.worst_percent));
+                        line.worst / v_per_percent));
     } else {
         result.notes.emplace_back("the battery has a constant voltage: BAT1_V_EMPTY and BAT1_V_CHARGED are left out");
     }

@@ -66,23 +66,6 @@ TextTable pack_table(const battery::Battery& pack) {
     return table;
 }
 
-TextTable parameters_table(const battery::BatteryIdentification& identified) {
-    TextTable table;
-    table.header = {"parameter", "value", "low 95 %", "high 95 %"};
-    const auto add = [&](const std::string& name, double value, const Interval& interval) {
-        table.rows.push_back({name, fmt::format("{:.4g}", value), fmt::format("{:.4g}", interval.low),
-                              fmt::format("{:.4g}", interval.high)});
-    };
-    add("resistance_ohm", identified.fit.resistance_ohm, identified.errors.resistance_ohm);
-    if (const auto& scatter = identified.battery.intervals.resistance_scatter)
-        table.rows.push_back({"resistance_sd_ohm", fmt::format("{:.4g}", scatter->sd_ohm), "-", "-"});
-    if (identified.fit.rc_resistance_ohm > 0.0) {
-        add("rc_resistance_ohm", identified.fit.rc_resistance_ohm, identified.errors.rc_resistance_ohm);
-        add("rc_time_constant_s", identified.fit.rc_time_constant_s, identified.errors.rc_time_constant_s);
-    }
-    return table;
-}
-
 TextTable flights_table(const battery::BatteryIdentification& identified,
                         const std::vector<battery::LeaveOneOutCheck>& left_out) {
     const auto json = to_json(identified, left_out);
@@ -99,23 +82,30 @@ TextTable flights_table(const battery::BatteryIdentification& identified,
          "check/beyond_others_percent? .0f: beyond the others %"});
 }
 
+std::vector<std::string> curve_limits(const battery::BatteryIdentification& identified) {
+    std::vector<std::string> limits;
+    if (identified.observed_min_soc_percent > 0.0)
+        limits.push_back(fmt::format(
+            "below {:.1f} % ({:.3f} Ah drawn) no flight shows the open-circuit voltage: it goes on in parallel to the "
+            "usual chart of {} {} cells, {:.0f} mV a cell unsure",
+            identified.observed_min_soc_percent, identified.fit.knots_ah.back(), identified.cells,
+            to_string(identified.chemistry), units::mv_from_v(battery::chart_sd_v)));
+    if (identified.curve_start_depletion_ah > 0.0)
+        limits.push_back(fmt::format(
+            "no flight begins full: the fullest rests at {:.3f} V, {:.1f} % by the usual chart of {} {} cells{}",
+            highest_resting_v(identified), identified.observed_max_soc_percent, identified.cells,
+            to_string(identified.chemistry),
+            identified.flights.size() == 1 ? "; one flight does not tell both capacity and initial charge" : ""));
+    return limits;
+}
+
 std::string provenance(const battery::BatteryIdentification& identified) {
     std::string text = "# Identified by flightwatt battery from";
     for (const auto& flight : identified.flights) text += " " + flight.flight;
     text += fmt::format(".\n# {}; {} cells.\n", describe(identified.capacity), identified.cells);
     for (const auto& warning : {capacity_warning(identified.battery), cells_warning(identified)})
         if (!warning.empty()) text += fmt::format("# Warning: {}.\n", warning);
-    text += fmt::format("# Flights follow the open-circuit voltage down to {:.1f} % ({:.3f} Ah drawn)",
-                        identified.observed_min_soc_percent, identified.fit.knots_ah.back());
-    text += identified.observed_min_soc_percent > 0.0
-                ? fmt::format(
-                      "; below, it goes on in\n# parallel to the usual chart of {} cells, {:.0f} mV a cell unsure.\n",
-                      to_string(identified.chemistry), units::mv_from_v(battery::chart_sd_v))
-                : ".\n";
-    if (identified.curve_start_depletion_ah > 0.0) {
-        text += fmt::format("# No flight begins full: above {:.1f} % it is parallel to that chart, too.\n",
-                            identified.observed_max_soc_percent);
-    }
+    for (const auto& limit : curve_limits(identified)) text += fmt::format("# {}.\n", limit);
     for (const auto& flight : identified.flights)
         if (flight.link) text += fmt::format("# {}.\n", describe_link(flight));
     text += fmt::format("# Voltages are met within {:.1f} mV RMS; intervals rest on {} blocks of {:.0f} s.\n",

@@ -30,12 +30,12 @@ std::string describe(const battery::ResistanceTrend& trend);
 /// Capacity, voltage and resistances of a battery file with their 95 % intervals.
 TextTable pack_table(const battery::Battery& pack);
 
-/// One row a resistance or time constant, with its 95 % interval.
-TextTable parameters_table(const battery::BatteryIdentification& identified);
-
 /// One row a flight; `left_out` is empty or as long as the identified flights.
 TextTable flights_table(const battery::BatteryIdentification& identified,
                         const std::vector<battery::LeaveOneOutCheck>& left_out);
+
+/// How far flights show the open-circuit voltage, a sentence each for below and above.
+std::vector<std::string> curve_limits(const battery::BatteryIdentification& identified);
 
 /// The comment at the head of a battery file: flights, capacity and fit that the numbers rest on.
 std::string provenance(const battery::BatteryIdentification& identified);

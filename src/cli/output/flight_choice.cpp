@@ -24,37 +24,20 @@
 namespace flightwatt::cli {
 namespace {
 
-/// A day as a number that orders days: 20200705.
-using Day = int;
-
-std::optional<Day> day_of(int year, int month, int day) {
-    constexpr int per_year = 10000;
-    constexpr int per_month = 100;
-    if (month < 1 || month > 12 || day < 1 || day > 31) return std::nullopt;
-    return year * per_year + month * per_month + day;
-}
-
-int number_of(const std::ssub_match& digits) { return std::stoi(digits.str()); }
-
-/// Of a log that the ground station named after its start.
-std::optional<Day> day_of_flight(const std::string& flight) {
-    const auto start = flight::start_in_name(flight);
-    if (!start) return std::nullopt;
-    const std::chrono::year_month_day date{std::chrono::floor<std::chrono::days>(*start)};
-    return day_of(static_cast<int>(date.year()), static_cast<int>(static_cast<unsigned>(date.month())),
-                  static_cast<int>(static_cast<unsigned>(date.day())));
-}
+using Day = std::chrono::sys_days;
 
 std::optional<Day> day_option(const StageCall& call, const std::string& option) {
     const auto text = call.get_optional<std::string>(option);
     if (!text) return std::nullopt;
     static const std::regex date("([0-9]{4})-([0-9]{2})-([0-9]{2})");
     std::smatch match;
-    std::optional<Day> day;
-    if (std::regex_match(*text, match, date))
-        day = day_of(number_of(match[1]), number_of(match[2]), number_of(match[3]));
-    if (!day) throw UsageError(fmt::format("--{} {}: expected a date as 2020-07-05", option, *text));
-    return day;
+    if (std::regex_match(*text, match, date)) {
+        const auto number = [&](std::size_t part) { return static_cast<unsigned>(std::stoul(match[part].str())); };
+        const std::chrono::year_month_day day{std::chrono::year(static_cast<int>(number(1))),
+                                              std::chrono::month(number(2)), std::chrono::day(number(3))};
+        if (day.ok()) return day;
+    }
+    throw UsageError(fmt::format("--{} {}: expected a date as 2020-07-05", option, *text));
 }
 
 bool matches(const std::string& pattern, const std::string& name) {
@@ -86,10 +69,11 @@ std::string why_left_out(const FlightChoice& choice, const std::string& flight) 
     const auto fits = [&](const auto& pattern) { return matches(pattern, flight); };
     if (!choice.patterns.empty() && std::ranges::none_of(choice.patterns, fits)) return "its name is not of --glob";
     if (!choice.since && !choice.until) return "";
-    const auto day = day_of_flight(flight);
-    if (!day) return "its name holds no date (YY_MM_DD__hh_mm_ss)";
-    if (choice.since && *day < *choice.since) return "it is before --since";
-    if (choice.until && *day > *choice.until) return "it is after --until";
+    const auto start = flight::start_in_name(flight);  // of a log that the ground station named after its start
+    if (!start) return "its name holds no date (YY_MM_DD__hh_mm_ss)";
+    const auto day = std::chrono::floor<std::chrono::days>(*start);
+    if (choice.since && day < *choice.since) return "it is before --since";
+    if (choice.until && day > *choice.until) return "it is after --until";
     return "";
 }
 

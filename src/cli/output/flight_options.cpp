@@ -221,6 +221,15 @@ std::vector<std::size_t> for_each_flight(const StageCall& call, const flight::Lo
     return used.counting();
 }
 
+std::vector<mechanical::MeasuredFlight> measured_flights(const StageCall& call, const flight::LoadOptions& options,
+                                                         std::size_t needed_samples) {
+    return from_flights<mechanical::MeasuredFlight>(call, options, [&](const auto&, const auto& loaded) {
+        auto measured = mechanical::extract_flights(loaded, needed_samples);
+        for (const auto& exclusion : measured.exclusions) warn(call, to_string(exclusion));
+        return std::move(measured.flights);
+    });
+}
+
 void refuse_unknown_flights(const flight::LoadOptions& options, const std::vector<std::string>& flights) {
     refuse_unknown(options.excluded, "exclude", flights);
     refuse_unknown(options.keep, "keep", flights);

@@ -2,6 +2,7 @@
 
 #include "cli/stage.h"
 #include "flight/load_flight.h"
+#include "mechanical/measured_flight.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -54,6 +55,10 @@ std::vector<T> from_flights(const StageCall& call, const flight::LoadOptions& op
     for (const auto number : counting) std::ranges::move(of_each[number], std::back_inserter(all));
     return all;
 }
+
+/// The sorties that were measured with so many samples a phase, of all flights that count; says which are excluded.
+std::vector<mechanical::MeasuredFlight> measured_flights(const StageCall& call, const flight::LoadOptions& options,
+                                                         std::size_t needed_samples);
 
 /// --since, --until and --glob, of stages that take many flights.
 void add_choice_options(boost::program_options::options_description& options);

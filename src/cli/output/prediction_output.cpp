@@ -2,6 +2,7 @@
 
 #include "base/duration_text.h"
 #include "base/units.h"
+#include "cli/output/records.h"
 
 #include <array>
 #include <optional>
@@ -70,6 +71,28 @@ constexpr std::array<std::optional<flight::Phase>, 4> validated_parts{flight::Ph
                                                                       flight::Phase::landing, std::nullopt};
 
 std::string name_of(const std::optional<flight::Phase>& part) { return part ? std::string(to_string(*part)) : "total"; }
+
+/// Of each part and model.
+Json score_records(const std::vector<mechanical::ValidatedFlight>& flights) {
+    auto records = Json::array();
+    for (const auto& part : validated_parts) {
+        for (const auto& model : model_names(flights)) {
+            const auto score = score_of(flights, model, part);
+            if (!score) continue;
+            const auto& coverage = score->coverage_95;
+            records.push_back(
+                {{"phase", name_of(part)},
+                 {"model", model},
+                 {"mean_absolute_error_wh", score->mean_absolute_error_wh},
+                 {"mean_absolute_error_percent", optional_json(score->mean_absolute_error_percent)},
+                 {"bias_wh", score->bias_wh},
+                 {"coverage_95", optional_json(coverage)},
+                 {"flights", score->flights},
+                 {"coverage", coverage ? Json(fmt::format("{:.0f} %", units::percentage(*coverage, 1.0))) : Json()}});
+        }
+    }
+    return records;
+}
 
 std::string comparison(const std::string& part, const std::string& challenger, const mechanical::ModelScore& ours,
                        const std::string& baseline, const mechanical::ModelScore& theirs) {
@@ -158,19 +181,9 @@ TextTable flights_table(const std::vector<mechanical::ValidatedFlight>& flights)
 }
 
 TextTable scores_table(const std::vector<mechanical::ValidatedFlight>& flights) {
-    TextTable table{
-        {"phase", "model", "flights", "mean |error| Wh", "mean |error| %", "bias Wh", "95 % interval covers"}, {}};
-    for (const auto& part : validated_parts) {
-        for (const auto& model : model_names(flights)) {
-            const auto score = score_of(flights, model, part);
-            if (!score) continue;
-            table.rows.push_back(
-                {name_of(part), model, fmt::format("{}", score->flights), fixed(score->mean_absolute_error_wh, 3),
-                 fixed(score->mean_absolute_error_percent, 1), fmt::format("{:+.3f}", score->bias_wh),
-                 score->coverage_95 ? fmt::format("{:.0f} %", units::percentage(*score->coverage_95, 1.0)) : "-"});
-        }
-    }
-    return table;
+    return table_of(score_records(flights), {"phase", "model", "flights", "mean_absolute_error_wh .3f: mean |error| Wh",
+                                             "mean_absolute_error_percent .1f: mean |error| %", "bias_wh +.3f: bias Wh",
+                                             "coverage: 95 % interval covers"});
 }
 
 std::string verdict(const std::vector<mechanical::ValidatedFlight>& flights, const std::string& challenger,
@@ -204,18 +217,11 @@ std::string validation_text(const std::vector<mechanical::ValidatedFlight>& flig
 
 Json scores_json(const std::vector<mechanical::ValidatedFlight>& flights) {
     Json json{{"flights", flights.size()}};
-    for (const auto& part : validated_parts) {
-        json[name_of(part)] = Json::object();
-        for (const auto& model : model_names(flights)) {
-            const auto score = score_of(flights, model, part);
-            if (!score) continue;
-            json[name_of(part)][model] = {
-                {"mean_absolute_error_wh", score->mean_absolute_error_wh},
-                {"mean_absolute_error_percent", optional_json(score->mean_absolute_error_percent)},
-                {"bias_wh", score->bias_wh},
-                {"coverage_95", optional_json(score->coverage_95)},
-                {"flights", score->flights}};
-        }
+    for (const auto& part : validated_parts) json[name_of(part)] = Json::object();
+    for (auto record : score_records(flights)) {
+        auto& entry = json[record["phase"].get<std::string>()][record["model"].get<std::string>()];
+        for (const auto* not_of_json : {"phase", "model", "coverage"}) record.erase(not_of_json);
+        entry = std::move(record);
     }
     return json;
 }

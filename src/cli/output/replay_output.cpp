@@ -74,27 +74,6 @@ std::string baseline_words(ScheduleMethod baseline) {
     return baseline == ScheduleMethod::planned ? "planning beforehand" : "planning beforehand with the policy's margin";
 }
 
-/// "F (kept, +0.12 utility, -1.30 points)".
-std::string case_text(const mission::Comparison& comparison) {
-    std::string reserve = "both keep the reserve";
-    if (comparison.replanned_keeps_reserve != comparison.baseline_keeps_reserve)
-        reserve = comparison.replanned_keeps_reserve ? "only replanning keeps the reserve"
-                                                     : "only the plan keeps the reserve";
-    else if (!comparison.replanned_keeps_reserve)
-        reserve = "neither keeps the reserve";
-    return fmt::format("{} ({}, utility {:+.4g}, final charge {})", comparison.flight, reserve, comparison.more_utility,
-                       comparison.more_soc_percent ? fmt::format("{:+.2f} points", *comparison.more_soc_percent) : "-");
-}
-
-std::string cases_text(const std::vector<mission::Comparison>& comparisons, ComparisonOutcome verdict) {
-    std::vector<std::string> cases;
-    for (const auto& comparison : comparisons)
-        if (comparison.verdict == verdict) cases.push_back(case_text(comparison));
-    const auto what = verdict == ComparisonOutcome::tie ? std::string("a tie") : std::string(to_string(verdict));
-    if (cases.empty()) return fmt::format("{} on none", what);
-    return fmt::format("{} on {}: {}", what, cases.size(), fmt::join(cases, ", "));
-}
-
 std::string sentence(const std::string& mission, ScheduleMethod baseline,
                      const std::vector<mission::Comparison>& comparisons) {
     const auto flights = comparisons.size();
@@ -110,13 +89,16 @@ std::string sentence(const std::string& mission, ScheduleMethod baseline,
         soc_percent += *comparison.more_soc_percent;
         ++charged;
     }
+    const auto verdicts = [&](ComparisonOutcome verdict) {
+        return std::ranges::count(comparisons, verdict, &mission::Comparison::verdict);
+    };
     auto text = fmt::format(
-        "{}: replanning in flight against {}, on {} flight{}: {}; {}; {}. It keeps the reserve on {} of {}, the plan "
-        "on {}; on average it has {:+.4g} of utility",
-        mission, baseline_words(baseline), flights, flights == 1 ? "" : "s",
-        cases_text(comparisons, ComparisonOutcome::better), cases_text(comparisons, ComparisonOutcome::tie),
-        cases_text(comparisons, ComparisonOutcome::worse), count(&mission::Comparison::replanned_keeps_reserve),
-        flights, count(&mission::Comparison::baseline_keeps_reserve), utility / static_cast<double>(flights));
+        "{}: replanning in flight against {}, on {} flight{}: better on {}, a tie on {}, worse on {}. It keeps the reserve "
+        "on {} of {}, the plan on {}; on average it has {:+.4g} of utility",
+        mission, baseline_words(baseline), flights, flights == 1 ? "" : "s", verdicts(ComparisonOutcome::better),
+        verdicts(ComparisonOutcome::tie), verdicts(ComparisonOutcome::worse),
+        count(&mission::Comparison::replanned_keeps_reserve), flights,
+        count(&mission::Comparison::baseline_keeps_reserve), utility / static_cast<double>(flights));
     if (charged > 0)
         text += fmt::format(" and leaves {:+.2f} points of charge", soc_percent / static_cast<double>(charged));
     return text + ".";
@@ -194,6 +176,18 @@ Json comparison_json(const std::string& mission, ScheduleMethod baseline,
     return json;
 }
 
+/// Of every mission with every way of planning beforehand that its flights have.
+Json comparisons_json(Replays replays) {
+    auto json = Json::array();
+    for (const auto& name : missions_of(replays)) {
+        for (const auto baseline : baselines) {
+            const auto comparisons = compare_replanned(replays, name, baseline);
+            if (!comparisons.empty()) json.push_back(comparison_json(name, baseline, comparisons));
+        }
+    }
+    return json;
+}
+
 }  // namespace
 
 TextTable replay_basis_table(Replays replays) {
@@ -219,12 +213,7 @@ TextTable replay_table(Replays replays) {
 
 std::vector<std::string> replay_sentences(Replays replays) {
     std::vector<std::string> sentences;
-    for (const auto& name : missions_of(replays)) {
-        for (const auto baseline : baselines) {
-            const auto comparisons = compare_replanned(replays, name, baseline);
-            if (!comparisons.empty()) sentences.push_back(sentence(name, baseline, comparisons));
-        }
-    }
+    for (const auto& comparison : comparisons_json(replays)) sentences.push_back(comparison["sentence"]);
     return sentences;
 }
 
@@ -252,13 +241,7 @@ std::string replay_csv(Replays replays) {
 }
 
 Json to_json(const mission::Replays& replays) {
-    Json json{{"replays", list_json(replays.replays, replay_json)}, {"comparisons", Json::array()}};
-    for (const auto& name : missions_of(replays.replays)) {
-        for (const auto baseline : baselines) {
-            const auto comparisons = compare_replanned(replays.replays, name, baseline);
-            if (!comparisons.empty()) json["comparisons"].push_back(comparison_json(name, baseline, comparisons));
-        }
-    }
+    Json json{{"replays", list_json(replays.replays, replay_json)}, {"comparisons", comparisons_json(replays.replays)}};
     json["not_replayed"] = list_json(replays.not_replayed, [](const auto& left) -> Json {
         return {{"flight", left.flight}, {"mission", left.mission}, {"reason", left.reason}};
     });

@@ -39,25 +39,18 @@ std::vector<std::string> screen_of(const live::LiveState& state, const compute::
 live::DecisionCommand::Environment decision_environment(const live::LiveState& state,
                                                         const compute::ComputeModel& compute);
 
-/// Warnings of something that goes on, each said when it first holds, and again when its numbers have changed so much
-/// that somebody wants to know: one has doubled or halved, or come from or gone to 0, and half a minute has passed.
+/// Warnings of something that goes on: each is said when it first holds, whatever its numbers become.
 class WarningThrottle {
   public:
     static constexpr std::size_t max_kinds = 200;
-    static constexpr double again_after_s = 30.0;
 
-    /// Those that hold `now` and are to be said at that time.
-    std::vector<std::string> due(const std::vector<std::string>& now, double time_s);
+    /// Those that hold now and were not said yet.
+    std::vector<std::string> due(const std::vector<std::string>& now);
     /// At the end: those whose numbers are others than those last said.
     std::vector<std::string> final_updates(const std::vector<std::string>& now);
 
   private:
-    struct Said {
-        std::string text;
-        std::vector<double> numbers;
-        double time_s = 0.0;
-    };
-    std::map<std::string, Said> said_;  ///< by their texts without numbers
+    std::map<std::string, std::string> said_;  ///< by their texts without numbers
 };
 
 /// The standard output of watch: a screen on a terminal, else a line or with --json an object a state. What it is made

@@ -50,15 +50,10 @@ std::vector<battery::DischargeRecord> spread_evenly(std::vector<battery::Dischar
 
 /// The circuit's parameters, and the capacity.
 TextTable parameters_table(const battery::BatteryIdentification& identified) {
-    auto table = cli::parameters_table(identified);
-    const auto& capacity = identified.capacity;
-    const auto& range = capacity.interval_ah;
-    table.rows.push_back({"capacity_ah", fmt::format("{:.4g}", capacity.value_ah),
-                          range ? fmt::format("{:.4g}", range->low) : "-",
-                          range ? fmt::format("{:.4g}", range->high) : "-"});
+    auto table = cli::pack_table(identified.battery);
     table.header.emplace_back("known from");
     for (auto& row : table.rows) row.emplace_back("voltage under load");
-    table.rows.back().back() = to_string(capacity.origin);
+    table.rows.front().back() = to_string(identified.capacity.origin);
     return table;
 }
 

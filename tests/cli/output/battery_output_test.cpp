@@ -29,11 +29,11 @@ class BatteryOutput : public testing::Test {
 };
 
 TEST_F(BatteryOutput, HasARowAParameterAndAFlight) {
-    const auto parameters = parameters_table(identified_);
-    ASSERT_EQ(parameters.rows.size(), 4U);
-    EXPECT_EQ(parameters.rows[0][0], "resistance_ohm");
-    EXPECT_EQ(parameters.rows[1][0], "resistance_sd_ohm");
-    EXPECT_LT(std::stod(parameters.rows[0][2]), std::stod(parameters.rows[0][3])) << "low and high";
+    const auto parameters = pack_table(identified_.battery);
+    ASSERT_EQ(parameters.rows.size(), 5U);
+    EXPECT_EQ(parameters.rows[0][0], "capacity [Ah]");
+    EXPECT_EQ(parameters.rows[1][0], "resistance [ohm]");
+    EXPECT_EQ(parameters.rows[2][0], "resistance between flights, sd [ohm]");
     const auto flights = flights_table(identified_, checks_);
     ASSERT_EQ(flights.rows.size(), 2U);
     EXPECT_EQ(flights.rows[0].size(), flights.header.size());
@@ -71,7 +71,8 @@ TEST_F(BatteryOutput, SaysWhetherTheResistanceGoesOn) {
 
 TEST_F(BatteryOutput, HasNoRowOfAnAbsentRcPair) {
     identified_.fit.rc_resistance_ohm = 0.0;
-    EXPECT_EQ(parameters_table(identified_).rows.size(), 2U) << "the resistance and how flights differ";
+    identified_.battery.thevenin->rc_resistance_ohm = 0.0;
+    EXPECT_EQ(pack_table(identified_.battery).rows.size(), 3U) << "the capacity, the resistance and how flights differ";
     EXPECT_TRUE(to_json(identified_, checks_)["rc_time_constant_s"]["value"].is_null());
 }
 

@@ -52,23 +52,17 @@ std::vector<mission::Replay> all_cases() {
             replay_of("hopeless", emptied(planned, 500.0), emptied(replanned, 550.0))};
 }
 
-TEST(ReplaySentences, NameTheCasesInWhichItWasAndWasNot) {
+TEST(ReplaySentences, CountTheFlightsOnWhichItWasBetter) {
     const auto sentences = replay_sentences(all_cases());
     ASSERT_EQ(sentences.size(), 1U) << "there is no plan with a margin";
-    EXPECT_THAT(
-        sentences[0],
-        AllOf(HasSubstr("survey: replanning in flight against planning beforehand, on 6 flights: better on 3: saved"),
-              HasSubstr("saved (only replanning keeps the reserve, utility -3, final charge +8.50 points)"),
-              HasSubstr("hopeless (neither keeps the reserve"), HasSubstr("a tie on 1: tied (both keep the reserve"),
-              HasSubstr("worse on 2: hoarded (both keep the reserve, utility -1"),
-              HasSubstr("lost (only the plan keeps the reserve"),
-              HasSubstr("keeps the reserve on 4 of 6, the plan on 4")));
+    EXPECT_THAT(sentences[0], AllOf(HasSubstr("survey: replanning in flight against planning beforehand, on 6 flights: "
+                                              "better on 3, a tie on 1, worse on 2."),
+                                    HasSubstr("keeps the reserve on 4 of 6, the plan on 4")));
 }
 
-TEST(ReplaySentences, SayOfNoneThatThereIsNone) {
+TEST(ReplaySentences, CountOneFlight) {
     const std::vector replays{all_cases()[1]};
-    EXPECT_THAT(replay_sentences(replays),
-                ElementsAre(AllOf(HasSubstr("on 1 flight: better on 1"), HasSubstr("a tie on none; worse on none"))));
+    EXPECT_THAT(replay_sentences(replays), ElementsAre(HasSubstr("on 1 flight: better on 1, a tie on 0, worse on 0")));
 }
 
 TEST(ReplayCsv, LeavesEmptyWhatIsNot) {

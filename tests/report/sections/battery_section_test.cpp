@@ -45,7 +45,7 @@ TEST(BatterySection, ShowsVoltagesParametersAndTheCurve) {
     const auto knots = section.figures[1].spec["data"]["values"].get<std::string>();
     EXPECT_EQ(static_cast<std::size_t>(std::count(knots.begin(), knots.end(), '\n')),
               battery.identified->battery.thevenin->open_circuit.soc_percent.size());
-    EXPECT_THAT(section.html, HasSubstr("resistance_ohm"));
+    EXPECT_THAT(section.html, HasSubstr("resistance [ohm]"));
     EXPECT_THAT(section.html, HasSubstr("identified from voltage, current and charge of 2 flights"));
     EXPECT_THAT(section.html, testing::Not(HasSubstr("Not used for the battery")));
     ASSERT_EQ(section.tables.size(), 2U) << "none is excluded";
