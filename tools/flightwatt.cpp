@@ -102,7 +102,7 @@ int show_help(const Stage& stage) {
 void show_topic(const std::string& topic) {
     auto known = stage_names();
     for (const auto& page : cli::help_pages(documentation())) {
-        if (page.topic == topic) return cli::show_page(read_file(page.file));
+        if (page.topic == topic) return cli::print(read_file(page.file));
         known.push_back(page.topic);
     }
     throw UsageError(fmt::format("there is no help on '{}'; {}", topic,

@@ -258,10 +258,7 @@ int finish(const cli::StageCall& call, batch::BatchFlights flights, const batch:
         cli::print(call.json ? cli::json_text(with_logs(std::move(json), flights))
                              : shown + "\n" + screen_text(table, screen, {"Table I", {}}) +
                                    (physical ? "\n" + cli::physical_text(*physical, screen) : ""));
-    } catch (const InputError&) {
-        if (!call.json) cli::print(shown);
-        throw;
-    } catch (const NoResultError&) {
+    } catch (...) {
         if (!call.json) cli::print(shown);
         throw;
     }

@@ -21,7 +21,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 namespace flightwatt::cli {
@@ -37,17 +36,6 @@ bool reader_has_left = false;
 
 /// Diagnostics that nobody can read (closed, full disk) change nothing.
 void tell(const std::string& line) { std::fwrite(line.data(), 1, line.size(), stderr); }
-
-/// Whether a pager ran. One that was left early has shown what was wanted.
-bool page_through(std::string_view text) {
-    constexpr int no_such_command = 127;
-    ::setenv("LESS", "FRX", 0);  // as git does: a short page is printed and less ends
-    std::FILE* pager = ::popen("${PAGER:-less}", "w");
-    if (pager == nullptr) return false;
-    std::fwrite(text.data(), 1, text.size(), pager);
-    const int status = ::pclose(pager);
-    return !(WIFEXITED(status) && WEXITSTATUS(status) == no_such_command);
-}
 
 /// What a line begins with, in colour where the standard error has colours.
 std::string alert(const char* word, int color) {
@@ -291,10 +279,6 @@ void print(std::string_view text) {
     if (reader_has_left || std::fwrite(text.data(), 1, text.size(), stdout) == text.size()) return;
     if (errno != EPIPE) cannot_print();
     reader_has_left = true;
-}
-
-void show_page(std::string_view text) {
-    if (::isatty(STDOUT_FILENO) == 0 || !page_through(text)) print(text);
 }
 
 bool print_flushed(std::string_view text) {

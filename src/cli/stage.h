@@ -108,10 +108,6 @@ void write_result(const StageCall& call, std::string_view content);
 /// run_guarded.
 void print(std::string_view text);
 
-/// The same; where that is a terminal, through $PAGER or else less, if there is one. Throws
-/// OutputError as print().
-void show_page(std::string_view text);
-
 /// As print(), seen at once, for programs that go on; false if nobody reads any more.
 bool print_flushed(std::string_view text);
 

@@ -6,7 +6,6 @@
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
 
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 
@@ -41,29 +40,10 @@ TEST(HelpPages, AreTheFoldersMarkdownFilesByTopic) {
 
 TEST(HelpPages, AreNoneWithoutTheFolder) { EXPECT_TRUE(help_pages(test::scratch_dir() / "absent").empty()); }
 
-/// What `flightwatt help missions` prints, on a terminal of script(1)'s or into a file.
-std::string shown(const std::string& environment, bool on_terminal) {
+TEST(HelpPages, AreShownAsTheyStand) {
     const auto folder = folder_with_pages();
-    const auto out = folder / "shown";
-    const auto help = (test::programs_dir() / "flightwatt").string() + " help missions";
-    const auto run = on_terminal ? "script -qec '" + help + "' /dev/null" : help;
-    const auto line = "FLIGHTWATT_DOCS=" + folder.string() + " TERM=xterm " + environment + " " + run + " > " +
-                      out.string() + " 2>&1 < /dev/null";
-    return std::system(line.c_str()) == 0 ? read_file(out) : "";
-}
-
-TEST(ShowPage, IsPlainWhereThereIsNoTerminal) {
-    EXPECT_EQ(shown("PAGER='sed s/^/paged:/'", false), "Above.\n\n# Mission files\n\nKeys.\n## More\n");
-}
-
-TEST(ShowPage, GoesThroughThePagerOnATerminal) {
-    if (std::system("script -qec true /dev/null > /dev/null 2>&1 < /dev/null") != 0) {
-        GTEST_SKIP() << "no pseudo-terminal here, or no script(1)";
-    }
-    EXPECT_THAT(shown("PAGER='sed s/^/paged:/'", true), HasSubstr("paged:# Mission files"));
-    const auto without = shown("PAGER=no-such-pager-here", true);
-    EXPECT_THAT(without, HasSubstr("# Mission files"));
-    EXPECT_THAT(without, HasSubstr("## More"));
+    const auto shown = test::run_shell("flightwatt help missions", folder, "FLIGHTWATT_DOCS=" + folder.string());
+    EXPECT_EQ(shown.out, "Above.\n\n# Mission files\n\nKeys.\n## More\n");
 }
 
 TEST(VersionText, IsTheVersionAloneWhereNoCommitIsKnown) { EXPECT_EQ(version_text(), FLIGHTWATT_VERSION); }

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/toml_reader.h"
 #include "base/units.h"
+#include "batch/batch_run.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
 #include "flight/flight_identity.h"
@@ -35,65 +36,45 @@ void refuse_unknown(const std::set<std::string>& names, const std::string& optio
     }
 }
 
-/// The flights of one result, each once.
-class UsedFlights {
-  public:
-    explicit UsedFlights(const StageCall& call) : call_(call) {}
-
-    /// Whether it is to be read: false for a copy of one that is as good.
-    bool take(const flight::LoadedFlight& loaded) {
-        const auto& series = loaded.series;
-        const auto content = content_of(series);
-        const auto known = known_.find(content.fingerprint);
-        if (known != known_.end() && (known->second.has_definitions || !content.has_definitions)) {
-            exclude(series.flight, flown_[known->second.place].flight);
-            return false;
-        }
-        const auto place = flown_.size();
-        flown_.push_back({series.flight, series.aircraft_id, series.aircraft_name});
-        is_used_.push_back(true);
-        is_sound_.push_back(loaded.exclusion.empty());
-        if (!loaded.exclusion.empty() || content.fingerprint == 0) return true;
-        if (known != known_.end()) {
-            is_used_[known->second.place] = false;
-            exclude(flown_[known->second.place].flight, series.flight);
-        }
-        known_[content.fingerprint] = {content.has_definitions, place};
-        return true;
-    }
-
-    /// The numbers of those that count, among those to be read.
-    std::vector<std::size_t> counting() const {
-        std::vector<std::size_t> numbers;
-        for (std::size_t i = 0; i < flown_.size(); ++i)
-            if (is_used_[i]) numbers.push_back(i);
-        return numbers;
-    }
-
-    /// Those whose power is sound.
-    std::vector<flight::FlightAircraft> flown() const {
-        std::vector<flight::FlightAircraft> flown;
-        for (const auto i : counting())
-            if (is_sound_[i]) flown.push_back(flown_[i]);
-        return flown;
-    }
-
-  private:
-    void exclude(const std::string& flight, const std::string& other) const {
-        warn(call_, fmt::format("{} is excluded: it is the same flight as {}, which is used", flight, other));
-    }
-
-    const StageCall& call_;
-    struct Known {
-        bool has_definitions = false;
-        std::size_t place = 0;  ///< in what follows
-    };
-
-    std::unordered_map<std::uint64_t, Known> known_;  ///< by fingerprint
-    std::vector<flight::FlightAircraft> flown_;
-    std::vector<bool> is_used_;
-    std::vector<bool> is_sound_;
+/// A flight that was read.
+struct ReadFlight {
+    flight::FlightAircraft flown;
+    flight::FlightContent content;
+    bool is_sound = false;
 };
+
+/// The numbers of those that count: each flight once, as its first recording with definitions, or else its first.
+std::vector<std::size_t> without_copies(const StageCall& call, const std::vector<ReadFlight>& flights) {
+    std::unordered_map<std::uint64_t, std::size_t> used;  // by fingerprint
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        const auto& [flown, content, is_sound] = flights[i];
+        if (!is_sound || content.fingerprint == 0) continue;
+        auto& best = used.emplace(content.fingerprint, i).first->second;
+        if (content.has_definitions && !flights[best].content.has_definitions) best = i;
+    }
+    std::vector<std::size_t> numbers;
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        const auto original = used.find(flights[i].content.fingerprint);
+        if (original == used.end() || original->second == i) {
+            numbers.push_back(i);
+        } else {
+            warn(call, fmt::format("{} is excluded: {}", flights[i].flown.flight,
+                                   batch::duplicate_reason(flights[original->second].flown.flight)));
+        }
+    }
+    return numbers;
+}
+
+/// Throws InputError for those of several aircraft, unless --mix-aircraft is given.
+void refuse_mix(const StageCall& call, const std::vector<ReadFlight>& flights, const std::vector<std::size_t>& used) {
+    std::vector<flight::FlightAircraft> flown;
+    for (const auto i : used)
+        if (flights[i].is_sound) flown.push_back(flights[i].flown);
+    const auto mix = call.has("mix-aircraft") ? "" : describe_mixed_aircraft(flown);
+    if (mix.empty()) return;
+    throw InputError({}, fmt::format("the flights are of several aircraft: {}", mix),
+                     "use one aircraft's alone, or let all in with --mix-aircraft");
+}
 
 }  // namespace
 
@@ -177,7 +158,7 @@ std::vector<std::size_t> for_each_flight(const StageCall& call, const flight::Lo
     for (const auto& file : inputs) flights.push_back(flight_of_file(file));
     options.excluded = expand_patterns(given.excluded, "exclude", flights);
     flights.clear();
-    UsedFlights used(call);
+    std::vector<ReadFlight> known;
     std::optional<flight::OtherAircraftError> other;
     std::optional<InputError> unusable;
     ProgressBar reading("logs");
@@ -208,17 +189,17 @@ std::vector<std::size_t> for_each_flight(const StageCall& call, const flight::Lo
         }
         flights.push_back(name);
         warn_of(call, file, loaded);
-        if (used.take(loaded)) read(file, loaded);
+        known.push_back({{name, loaded.series.aircraft_id, loaded.series.aircraft_name},
+                         content_of(loaded.series),
+                         loaded.exclusion.empty()});
+        read(file, loaded);
     }
     refuse_unknown_flights(options, flights);
-    if (other && used.counting().empty()) throw *other;
-    if (unusable && used.counting().empty()) throw InputError({}, "no flight is left", "see the reasons above");
-    if (call.has("mix-aircraft")) return used.counting();
-    if (const auto mix = describe_mixed_aircraft(used.flown()); !mix.empty()) {
-        throw InputError({}, fmt::format("the flights are of several aircraft: {}", mix),
-                         "use one aircraft's alone, or let all in with --mix-aircraft");
-    }
-    return used.counting();
+    if (other && known.empty()) throw *other;
+    if (unusable && known.empty()) throw InputError({}, "no flight is left", "see the reasons above");
+    auto used = without_copies(call, known);
+    refuse_mix(call, known, used);
+    return used;
 }
 
 std::vector<mechanical::MeasuredFlight> measured_flights(const StageCall& call, const flight::LoadOptions& options,

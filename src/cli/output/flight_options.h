@@ -37,7 +37,7 @@ void add_mix_option(boost::program_options::options_description& options);
 
 /// Loads the flights of all inputs, one at a time, to make one result of them; returns which of the calls of `read`
 /// count. A flight that is there under two names counts once, with a warning: it would be counted twice, and predict
-/// itself. The one with its .log counts, then the one with more samples, then the first. Throws UsageError for two of
+/// itself. The first with its .log counts, or else the first. Throws UsageError for two of
 /// one name, and for --exclude and --keep of a flight that is not there; InputError, when all are loaded, for those of
 /// several aircraft, or synthetic ones beside real ones, unless --mix-aircraft is given. One of several that cannot be
 /// used is skipped (skip_input); where none is left, InputError is thrown.
