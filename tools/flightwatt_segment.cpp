@@ -1,21 +1,16 @@
 // flightwatt segment: take-off, cruise and landing of every sortie in a log, or in several.
 
-#include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/error.h"
-#include "base/overwrite_guard.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/segment_output.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
-#include "exchange/log_slices.h"
 #include "flight/phases_file.h"
 #include "stages.h"
-#include "telemetry/log_configuration.h"
 
 #include <algorithm>
 #include <filesystem>
-#include <optional>
 #include <sstream>
 #include <string>
 #include <system_error>
@@ -27,57 +22,6 @@
 namespace {
 
 using namespace flightwatt;
-
-/// The pieces of a log as files: .data and .log of each.
-struct CutFiles {
-    std::vector<std::pair<std::filesystem::path, std::string>> files;
-    std::vector<std::string> told;
-};
-
-std::vector<exchange::LogSlice> chosen_pieces(const cli::StageCall& call, const flight::LoadedFlight& loaded,
-                                              const flight::LoadOptions& options) {
-    if (call.has("cut-phases")) return exchange::phase_slices(loaded.phases);
-    // Of all sorties, as the ground of one ends where another begins, even if --sortie leaves that out.
-    auto pieces = exchange::sortie_slices(loaded.series, flight::segment(loaded.series, options.segmentation));
-    if (options.sortie) pieces = {pieces.at(*options.sortie - 1)};
-    return pieces;
-}
-
-/// Throws UsageError where a file is there already that holds something else.
-CutFiles cut_log(const cli::StageCall& call, const flight::FlightFile& file, const flight::LoadedFlight& loaded,
-                 const flight::LoadOptions& options) {
-    const auto text = exchange::text_of_log(file);
-    const auto own_log = telemetry::find_log_file(file.path());
-    const std::filesystem::path folder = call.get<std::string>("cut");
-    CutFiles cut;
-    for (const auto& piece : chosen_pieces(call, loaded, options)) {
-        const auto name = telemetry::flight_name(file.path()) + "_" + piece.name;
-        auto lines = exchange::lines_in_slice(text, piece);
-        const auto count = std::ranges::count(lines, '\n');
-        cut.told.push_back(fmt::format("{}: {} lines", (folder / (name + ".data")).string(), count));
-        // The .log first: no text stands without its definitions.
-        if (own_log && *own_log == file.log_file()) cut.files.emplace_back(folder / (name + ".log"), *file.log_text());
-        cut.files.emplace_back(folder / (name + ".data"), std::move(lines));
-    }
-    file.require_unchanged();
-    std::error_code error;
-    for (const auto& [path, content] : cut.files) {
-        register_output(path, "--cut");
-        if (std::filesystem::exists(path, error) && !file_holds(path, content)) {
-            throw UsageError(
-                fmt::format("{} is there already and holds something else: move it away, or name another "
-                            "folder",
-                            path.string()));
-        }
-    }
-    return cut;
-}
-
-void write(const cli::StageCall& call, const CutFiles& cut) {
-    make_directories(call.get<std::string>("cut"));
-    for (const auto& [path, content] : cut.files) write_file_atomically(path, content);
-    for (const auto& told : cut.told) cli::note(call, told);
-}
 
 /// What the stage says of its flights.
 struct SegmentedFlights {
@@ -98,7 +42,7 @@ void append_rows(const std::string& rows, const std::string& flight, std::string
 }
 
 void add_flight(const cli::StageCall& call, const std::string& file, const flight::LoadedFlight& loaded,
-                const flight::LoadOptions& options, SegmentedFlights& segmented) {
+                SegmentedFlights& segmented) {
     const auto& series = loaded.series;
     const auto& phases = loaded.phases;
     const auto& power = loaded.power;
@@ -108,9 +52,6 @@ void add_flight(const cli::StageCall& call, const std::string& file, const fligh
     }
     for (const auto& fault : power.power_faults) {
         cli::warn(call, fmt::format("{}: power fault: {}", file, fault));
-    }
-    if (call.has("cut")) {
-        write(call, cut_log(call, flight::FlightFile(file, options.max_log_bytes, options.messages), loaded, options));
     }
     segmented.title = cli::describe_flight(series, phases);
     if (segmented.are_several)
@@ -139,7 +80,7 @@ SegmentedFlights segment_several(const cli::StageCall& call, flight::LoadOptions
         try {
             const auto loaded = flight::load_flight(std::filesystem::path(files[i]), options);
             cli::warn_of(call, files[i], loaded);
-            add_flight(call, files[i], loaded, options, segmented);
+            add_flight(call, files[i], loaded, segmented);
             ++used;
         } catch (const flight::OtherAircraftError& error) {
             cli::note(call, fmt::format("{} is left out: {}; {}", names[i], error.what(), error.hint()));
@@ -155,14 +96,13 @@ SegmentedFlights segment_several(const cli::StageCall& call, flight::LoadOptions
 int segment_flights(const cli::StageCall& call) {
     auto options = cli::read_flight_options(call);
     options.power_required = false;
-    if (call.has("cut-phases") && !call.has("cut")) throw UsageError("--cut-phases says how --cut DIR cuts: give that");
     const auto& file = call.inputs.front();
     std::error_code none;
     SegmentedFlights segmented;
     if (call.inputs.size() > 1 || std::filesystem::is_directory(file, none)) {
         segmented = segment_several(call, options);
     } else {
-        add_flight(call, file, cli::load_flight(call, file, options), options, segmented);
+        add_flight(call, file, cli::load_flight(call, file, options), segmented);
     }
     const bool explain = call.has("explain");
     if (!explain || call.output) {
@@ -191,9 +131,7 @@ A log without measured power is segmented too; its columns of power are then emp
 a FOLDER of logs or of flightwatt batch, each row begins with its flight, and --json is a list. A log that
 cannot be used is named and skipped, and the exit code is then 3.)"};
     stage.shows_table = true;
-    stage.options.add_options()("explain", "show the reasons for each edge, and how good the power record is")(
-        "cut", cli::output_file("DIR"), "write each sortie, with the ground beside it, as a log of its own into DIR")(
-        "cut-phases", "with --cut: each phase instead");
+    stage.options.add_options()("explain", "show the reasons for each edge, and how good the power record is");
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, segment_flights);
 }

@@ -92,6 +92,7 @@ const std::map<std::string, std::string>& removed_options() {
         {"--above-idle", "state above_idle = true in the specification"},
         {"--covariate", "'physical' predicts by airspeed and climb, where they were measured"},
         {"--csv", "-o FILE.csv writes the table as CSV with all digits"},
+        {"--cut", "--sortie N reads one sortie of a log, in every stage"},
         {"--curve", "the curve is that of least squares, and a note says where its frequency is open"},
         {"--know-durations", "schedules are made for the durations that are known before the flight"},
         {"--level", "the model's curve is expected; its mean where the flight is not known from its take-off on"},

@@ -62,7 +62,6 @@ std::vector<Command> commands() {
         {"parse", "a.data", {"a.data", "a.log"}, "--output"},
         {"parse", "s.series.csv", {"s.series.csv"}, "--output"},
         {"segment", "a.data", {"a.data", "a.log"}, "--output"},
-        {"segment", "a.data", {"a.data", "a.log"}, "--cut", {"a_sortie1.data", "a_sortie1.log"}},
         {"play", "a.data --to udp:127.0.0.1:4 --speed 100000 --messages a.log", {"a.data", "a.log"}, "--output"},
         {"convert", "card.LOG", {"card.LOG", "card.log"}, "--output"},
         {"convert", "bare.tlm --messages a.log", {"bare.tlm", "a.log"}, "--output"},
