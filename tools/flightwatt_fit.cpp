@@ -23,7 +23,7 @@ namespace {
 using namespace flightwatt;
 
 mechanical::ModelFitOptions read_options(const cli::StageCall& call) {
-    auto options = read_fit_options(call, cli::AutoOrder::accepted);
+    auto options = read_fit_options(call);
     options.name = call.get_optional<std::string>("name").value_or(
         call.output ? std::filesystem::path(*call.output).stem().string() : "fitted");
     const auto name = call.get<std::string>("loss");
@@ -33,23 +33,10 @@ mechanical::ModelFitOptions read_options(const cli::StageCall& call) {
     return options;
 }
 
-/// Chooses each phase's order and says why.
-flight::PerPhase<mechanical::OrderSelection> choose_orders(const cli::StageCall& call,
-                                                           std::span<const mechanical::FlightSamples> flights,
-                                                           const mechanical::ModelFitOptions& options) {
-    flight::PerPhase<mechanical::OrderSelection> choices;
-    for (const auto phase : flight::all_phases) {
-        choices[phase] = select_order(phase, samples_of_phase(flights, phase), options.phases, options.weighting);
-        note_order(call, phase, choices[phase]);
-    }
-    return choices;
-}
-
 int fit(const cli::StageCall& call) {
     const auto kind = cli::model_kind(call);
     const bool with_motion = kind == cli::ModelKind::physical;
-    const bool auto_order = !read_order(call, cli::AutoOrder::accepted);
-    auto options = read_options(call);
+    const auto options = read_options(call);
     const auto table_file = call.get_optional<std::string>("table");
     if (table_file) cli::table_text({{""}, {}}, *table_file);  // refuses a bad ending before the work
     const auto constants_file = call.get_optional<std::string>("constants");
@@ -57,19 +44,12 @@ int fit(const cli::StageCall& call) {
     if (constants_file) cli::table_text({{""}, {}}, *constants_file);
     const auto curves_file = call.get_optional<std::string>("curves");
     const auto published = cli::read_published(call);
-    const auto order = auto_order ? mechanical::max_tested_order : options.phases.order;
     const auto reading = cli::read_flight_options(call);
-    const auto measured =
-        cli::measured_flights(cli::with_chosen_flights(call, reading), reading, mechanical::min_samples(order));
+    const auto measured = cli::measured_flights(cli::with_chosen_flights(call, reading), reading,
+                                                mechanical::min_samples(options.phases.order));
     std::vector<mechanical::FlightSamples> flights;
     flights.reserve(measured.size());
     for (const auto& flight : measured) flights.push_back(flight.samples);
-    std::optional<flight::PerPhase<mechanical::OrderSelection>> choices;
-    if (auto_order) {
-        choices = choose_orders(call, flights, options);
-        for (const auto phase : flight::all_phases) options.orders[phase] = (*choices)[phase].order;
-    }
-
     auto fitted = fit_model(flights, options);
     flight::PerPhase<mechanical::ErrorAnalysis> analyses;
     const bool with_errors = call.has("errors") || call.has("intervals") || curves_file;
@@ -94,8 +74,6 @@ int fit(const cli::StageCall& call) {
         cli::add_errors_json(json, fitted.model);
         if (robust) cli::add_loss_json(json, fitted);
         if (physical) json["physical"] = cli::physical_json(*physical);
-        for (const auto phase : flight::all_phases)
-            if (choices) cli::add_order_json(json, phase, (*choices)[phase]);
         cli::print(cli::json_text(json));
     } else if (call.output) {
         const auto screen = screen_of(call);
@@ -117,7 +95,7 @@ frequency for all flights, averaged over the flights with weights. The model goe
 as TOML; with -o it goes to the file and Table I is shown.)" +
             std::string(cli::several_flights_text)};
     stage.shows_table = true;
-    add_fit_options(stage.options, cli::AutoOrder::accepted);
+    cli::add_fit_options(stage.options);
     cli::add_model_option(stage.options, cli::ModelKind::fourier);
     auto add = stage.options.add_options();
     add("name", cli::value("NAME"), "the model's name");

@@ -29,18 +29,10 @@ std::vector<std::string> names_of(std::span<const FlightSamples> flights) {
     return names;
 }
 
-std::string orders_of(const ModelFitOptions& options) {
-    const int takeoff = options.order(flight::Phase::takeoff);
-    const int cruise = options.order(flight::Phase::cruise);
-    const int landing = options.order(flight::Phase::landing);
-    if (takeoff == cruise && cruise == landing) return fmt::format("of order {} a phase", takeoff);
-    return fmt::format("of orders {} (take-off), {} (cruise), {} (landing)", takeoff, cruise, landing);
-}
-
 std::string described(const ModelFitOptions& options, std::size_t flights) {
     const auto loss = options.phases.loss;
-    return fmt::format("fitted to {} flight{}: Fourier series {}, {}weights: {}; flightwatt {}", flights,
-                       flights == 1 ? "" : "s", orders_of(options),
+    return fmt::format("fitted to {} flight{}: Fourier series of order {} a phase, {}weights: {}; flightwatt {}",
+                       flights, flights == 1 ? "" : "s", options.phases.order,
                        loss == Loss::none ? "" : fmt::format("loss: {}, ", to_string(loss)),
                        to_string(options.weighting), FLIGHTWATT_VERSION);
 }
@@ -65,18 +57,16 @@ std::vector<PhaseSamples> samples_of_phase(std::span<const FlightSamples> flight
 }
 
 void cache_scans(std::span<FlightSamples> flights, const ModelFitOptions& options) {
+    if (options.phases.order <= 0) return;
     for (const auto phase : flight::all_phases) {
-        auto phase_options = options.phases;
-        phase_options.order = options.order(phase);
-        if (phase_options.order <= 0) continue;
         const auto samples = samples_of_phase(flights, phase);
         const auto lacks_samples = [&](const auto& own) {
-            return own.tau.size() < min_samples(phase_options.order) || own.tau.size() != own.power_w.size();
+            return own.tau.size() < min_samples(options.phases.order) || own.tau.size() != own.power_w.size();
         };
         if (samples.empty() || std::ranges::any_of(samples, lacks_samples)) continue;
         std::optional<FrequencyRange> range;
         try {
-            range = admissible_frequencies(samples, phase_options);
+            range = admissible_frequencies(samples, options.phases);
         } catch (const NoResultError&) {
             continue;  // as the fits will say
         }
@@ -86,17 +76,15 @@ void cache_scans(std::span<FlightSamples> flights, const ModelFitOptions& option
             ScaledSamples values{own->tau, own->power_w};
             const double mean_w = mean(values.value);
             for (double& value : values.value) value -= mean_w;
-            own->scan = std::make_shared<const FlightScan>(scan_flight(values, phase_options.order, *range));
+            own->scan = std::make_shared<const FlightScan>(scan_flight(values, options.phases.order, *range));
         });
     }
 }
 
 FittedPhase fit_phase_model(flight::Phase phase, std::span<const PhaseSamples> flights,
                             const ModelFitOptions& options) {
-    auto phase_options = options.phases;
-    phase_options.order = options.order(phase);
     FittedPhase fitted;
-    fitted.fit = fit_phase(phase, flights, phase_options);
+    fitted.fit = fit_phase(phase, flights, options.phases);
     fitted.weights = flight_weights(fitted.fit, options.weighting);
     fitted.model = average_phase(fitted.fit, fitted.weights);
     for (const auto& samples : flights) fitted.model.edge_samples += samples.edge_samples;

@@ -15,9 +15,6 @@ struct ModelFitOptions {
     std::string name = "fitted";  ///< of the model
     PhaseFitOptions phases = {};
     Weighting weighting = Weighting::agreement;
-    flight::PerPhase<std::optional<int>> orders = {};  ///< where a phase's is to be another than phases.order
-
-    int order(flight::Phase phase) const { return orders[phase].value_or(phases.order); }
 };
 
 /// One phase as it was fitted and averaged.

@@ -1,7 +1,6 @@
 #include "cli/output/fit_output.h"
 
 #include "base/error.h"
-#include "base/number.h"
 #include "base/statistics.h"
 #include "cli/output/records.h"
 #include "mechanical/fit_records.h"
@@ -10,7 +9,6 @@
 #include "mechanical/prediction.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <vector>
 
 #include <fmt/format.h>
@@ -71,32 +69,17 @@ std::string describe(const mechanical::ModelValidation& validation, bool has_phy
 
 }  // namespace
 
-void add_fit_options(boost::program_options::options_description& options, AutoOrder automatic) {
+void add_fit_options(boost::program_options::options_description& options) {
     auto add = options.add_options();
-    add("order", value("N")->default_value("3"),
-        automatic == AutoOrder::accepted
-            ? "order of the Fourier series, 0 to 8, or auto: chosen for each phase by how well it predicts "
-              "a flight that was not fitted (blocks of time of a single flight)"
-            : "order of the Fourier series, 0 to 8");
+    add("order", value("N")->default_value("3"), "order of the Fourier series, 0 to 8");
     add("weights", value("HOW")->default_value("agreement"), "uniform, inverse-variance or agreement");
 }
 
-std::optional<int> read_order(const StageCall& call, AutoOrder automatic) {
-    const auto text = call.get<std::string>("order");
-    if (text == "auto" && automatic == AutoOrder::accepted) return std::nullopt;
-    const auto number = parse_unsigned(text);
-    if (!number || *number > static_cast<std::uint64_t>(mechanical::max_order)) {
-        throw UsageError(fmt::format("--order {}: expected 0 to {}{}", text, mechanical::max_order,
-                                     automatic == AutoOrder::accepted ? " or auto"
-                                     : text == "auto"                 ? "; 'flightwatt fit' can choose it"
-                                                                      : ""));
-    }
-    return static_cast<int>(*number);
-}
-
-mechanical::ModelFitOptions read_fit_options(const StageCall& call, AutoOrder automatic) {
+mechanical::ModelFitOptions read_fit_options(const StageCall& call) {
     mechanical::ModelFitOptions options;
-    options.phases.order = read_order(call, automatic).value_or(options.phases.order);
+    if (call.get<std::string>("order") == "auto")
+        throw UsageError("--order auto was removed: compare orders with 'flightwatt validate --order N'");
+    options.phases.order = static_cast<int>(count_option(call, "order", 0, mechanical::max_order));
     const auto name = call.get<std::string>("weights");
     const auto weighting = mechanical::weighting_from(name);
     if (!weighting)
@@ -215,34 +198,6 @@ void add_loss_json(Json& json, const mechanical::ModelFit& fit) {
         json["phases"][std::string(to_string(phase))]["loss"] = {{"name", to_string(fit.fits[phase].loss)},
                                                                  {"noise_w", fit.fits[phase].loss_scale_w},
                                                                  {"down_weighted", samples}};
-    }
-}
-
-void add_order_json(Json& json, flight::Phase phase, const mechanical::OrderSelection& choice) {
-    const auto error_json = [](const auto& error) -> Json {
-        return {{"order", error.order},
-                {"rms_w", optional_json(error.rms_w)},
-                {"behind_best_w2", optional_json(error.excess_mse_w2)},
-                {"standard_error_w2", optional_json(error.standard_error_w2)},
-                {"reason", error.reason}};
-    };
-    json["phases"][std::string(to_string(phase))]["order_choice"] = {{"order", choice.order},
-                                                                     {"best", choice.best},
-                                                                     {"how", to_string(choice.held_back)},
-                                                                     {"folds", choice.folds},
-                                                                     {"errors", list_json(choice.errors, error_json)}};
-}
-
-void note_order(const StageCall& call, flight::Phase phase, const mechanical::OrderSelection& choice) {
-    std::string curve;
-    for (const auto& error : choice.errors) {
-        const auto shown = error.rms_w ? fmt::format("{:.4g}", *error.rms_w) : "-";
-        curve += fmt::format("{}{}: {}", curve.empty() ? "" : ", ", error.order, shown);
-    }
-    note(call, fmt::format("{}: order {} (least error: {}); RMS error [W] by order, {}, {} folds: {}", to_string(phase),
-                           choice.order, choice.best, to_string(choice.held_back), choice.folds, curve));
-    for (const auto& error : choice.errors) {
-        if (!error.rms_w) note(call, fmt::format("order {}: {}", error.order, error.reason));
     }
 }
 

@@ -4,7 +4,6 @@
 #include "cli/stage.h"
 #include "mechanical/model_errors.h"
 #include "mechanical/model_fit.h"
-#include "mechanical/order_selection.h"
 #include "mechanical/table_one.h"
 
 #include <filesystem>
@@ -14,18 +13,11 @@
 /// Options of a fit, and its output: Table I, and as JSON the model with its errors, its outliers and its order.
 namespace flightwatt::cli {
 
-/// Whether a stage can choose the order by itself ("--order auto").
-enum class AutoOrder { refused, accepted };
-
 /// The options of a fit, which several stages share.
-void add_fit_options(boost::program_options::options_description& options, AutoOrder automatic = AutoOrder::refused);
+void add_fit_options(boost::program_options::options_description& options);
 
-/// --order as a number; std::nullopt for "auto" where that is accepted. Throws UsageError for another text.
-std::optional<int> read_order(const StageCall& call, AutoOrder automatic);
-
-/// What the user gave of them. Where the order is to be chosen it is left at the default. Throws UsageError
-/// for options that make no sense or exclude each other.
-mechanical::ModelFitOptions read_fit_options(const StageCall& call, AutoOrder automatic = AutoOrder::refused);
+/// What the user gave of them. Throws UsageError for options that make no sense or exclude each other.
+mechanical::ModelFitOptions read_fit_options(const StageCall& call);
 
 /// The model that --published names.
 std::optional<mechanical::MechanicalModel> read_published(const StageCall& call);
@@ -56,11 +48,6 @@ void add_errors_json(Json& json, const mechanical::MechanicalModel& model);
 /// Adds each phase's loss and the samples that it gives less than half weight.
 void add_loss_json(Json& json, const mechanical::ModelFit& fit);
 
-/// Adds the chosen order of a phase with the error of every order that was tried.
-void add_order_json(Json& json, flight::Phase phase, const mechanical::OrderSelection& choice);
-
-/// Notes the chosen order and the prediction error of every order.
-void note_order(const StageCall& call, flight::Phase phase, const mechanical::OrderSelection& choice);
 
 /// Notes how many samples have less than half weight, and the three of least weight.
 void note_down_weighted(const StageCall& call, const mechanical::ModelFit& fit);

@@ -19,16 +19,16 @@ using testing::HasSubstr;
 StageCall call_with(const std::vector<std::string>& arguments) {
     namespace po = boost::program_options;
     po::options_description options;
-    add_fit_options(options, AutoOrder::accepted);
+    add_fit_options(options);
     StageCall call;
     call.program = "flightwatt-fit";
     po::store(po::command_line_parser(arguments).options(options).run(), call.options);
     return call;
 }
 
-std::string refusal(const std::vector<std::string>& arguments, AutoOrder automatic = AutoOrder::refused) {
+std::string refusal(const std::vector<std::string>& arguments) {
     try {
-        read_fit_options(call_with(arguments), automatic);
+        read_fit_options(call_with(arguments));
     } catch (const UsageError& error) {
         return error.what();
     }
@@ -43,11 +43,10 @@ TEST(FitOptions, AreTheLibrarysUnlessGiven) {
     EXPECT_EQ(read_fit_options(call_with({"--order", "5"})).phases.order, 5);
 }
 
-TEST(FitOptions, ChooseTheOrderOnlyWhereTheStageCan) {
-    EXPECT_EQ(read_order(call_with({"--order", "auto"}), AutoOrder::accepted), std::nullopt);
-    EXPECT_THAT(refusal({"--order", "auto"}), HasSubstr("'flightwatt fit' can choose it"));
-    EXPECT_THAT(refusal({"--order", "9"}), HasSubstr("--order 9: expected 0 to 8"));
-    EXPECT_THAT(refusal({"--order=-1"}), HasSubstr("expected 0 to 8"));
+TEST(FitOptions, RefuseWhatIsNoOrder) {
+    EXPECT_THAT(refusal({"--order", "auto"}), HasSubstr("was removed: compare orders with 'flightwatt validate"));
+    EXPECT_THAT(refusal({"--order", "9"}), HasSubstr("--order 9: expected a whole number from 0 to 8"));
+    EXPECT_THAT(refusal({"--order=-1"}), HasSubstr("from 0 to 8"));
 }
 
 TEST(FitOptions, RefuseUnknownWeights) {
@@ -126,39 +125,6 @@ TEST(AddLossJson, ListsTheOutliersThatCountLess) {
     ASSERT_FALSE(loss["down_weighted"].empty());
     EXPECT_EQ(loss["down_weighted"][0]["flight"], "flight1");
     EXPECT_NEAR(loss["down_weighted"][0]["residual_w"].get<double>(), 100.0, 5.0);
-}
-
-TEST(AddOrderJson, HasNullForAnOrderThatWasNotFitted) {
-    mechanical::OrderSelection choice;
-    choice.order = 2;
-    choice.errors.resize(2);
-    choice.errors[0].rms_w = 1.5;
-    choice.errors[1].reason = "too few samples";
-    auto json = json_of_phases();
-    add_order_json(json, flight::Phase::landing, choice);
-    const auto& entry = json["phases"]["landing"]["order_choice"];
-    EXPECT_EQ(entry["order"], 2);
-    EXPECT_EQ(entry["errors"][0]["rms_w"], 1.5);
-    EXPECT_TRUE(entry["errors"][1]["rms_w"].is_null());
-    EXPECT_EQ(entry["errors"][1]["reason"], "too few samples");
-}
-
-TEST(NoteOrder, ShowsTheErrorOfEveryOrder) {
-    mechanical::OrderSelection choice;
-    choice.order = 1;
-    choice.errors.resize(2);
-    choice.errors[0].order = 1;
-    choice.errors[0].rms_w = 1.5;
-    choice.errors[1].order = 2;
-    choice.errors[1].reason = "too few samples";
-    StageCall call;
-    call.program = "flightwatt-fit";
-    testing::internal::CaptureStderr();
-    note_order(call, flight::Phase::cruise, choice);
-    const auto said = testing::internal::GetCapturedStderr();
-    EXPECT_THAT(said, HasSubstr("flightwatt-fit: cruise: order 1"));
-    EXPECT_THAT(said, HasSubstr("1: 1.5, 2: -"));
-    EXPECT_THAT(said, HasSubstr("order 2: too few samples"));
 }
 
 TEST(ModelJson, HoldsThePhasesAndFlightsOfTheModel) {
