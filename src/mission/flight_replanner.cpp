@@ -106,7 +106,7 @@ double FlightReplanner::mechanical_factor() const {
 }
 
 double FlightReplanner::mechanical_percent(const PhaseSegment& time) const {
-    return soc_depletion_percent(adaptive_.planner->mechanical_depletion, {time, 0});
+    return depletion_percent(*known_load_, {time, {}});
 }
 
 double FlightReplanner::rest_mechanical_percent(const PhaseTime& moment) const {
@@ -124,8 +124,7 @@ FlightReplanner::PredictedDepletion FlightReplanner::predict(const PhaseSegment&
                                                              const battery::BatteryState& state) const {
     if (!state_counts()) {
         PredictedDepletion predicted{0.0, mechanical_percent(interval)};
-        const auto& table = adaptive_.planner->depletions;
-        for (const auto& segment : to_indexed(run, table)) predicted.percent += soc_depletion_percent(table, segment);
+        for (const auto& segment : run) predicted.percent += depletion_percent(*known_load_, segment);
         return predicted;
     }
     constexpr double more = 0.01;
@@ -134,7 +133,7 @@ FlightReplanner::PredictedDepletion FlightReplanner::predict(const PhaseSegment&
         wind.mechanical_factor = mechanical_factor;
         battery::Discharge now{state};
         for (const auto& scheduled : run)
-            for (const auto& segment : disturbed({load_segment(*known_load_, scheduled)}, {wind}))
+            for (const auto& segment : disturbed(load_segments(*known_load_, scheduled), {wind}))
                 now = advance_segment(nominal_.setup.battery, 0.0, segment, now);
         return state.soc_percent - now.soc_percent;
     };

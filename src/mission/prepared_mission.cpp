@@ -61,7 +61,7 @@ class Flight {
     void fly(const ScheduleSegment& planned) {
         append_merged(flight_.schedule, planned);
         const auto flown = rescale_to_flown_durations({planned}, known_.setup.duration_s, actual_.duration_s);
-        for (const auto& segment : disturbed(split_at_jumps(load_segment(load_, flown.front())), disturbances_))
+        for (const auto& segment : disturbed(load_segments(load_, flown.front()), disturbances_))
             charge_ = advance_segment(battery_, actual_.cutoff_voltage_v, segment, charge_);
     }
 

@@ -107,7 +107,7 @@ ReplayedSchedule invariant(const LeaveOneOutMission& folded, const PlanningProbl
     const auto schedule_with = [&](std::size_t choice) {
         Schedule schedule;
         for (const auto& slot : slots)
-            append_merged(schedule, {slot, slot.fixed.value_or(planner.depletions.configurations[choice])});
+            append_merged(schedule, {slot, slot.fixed.value_or(planner.configurations[choice])});
         return schedule;
     };
     // By rising power, all the way: where one does not keep the reserve, none behind it does.

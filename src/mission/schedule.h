@@ -39,7 +39,7 @@ struct ScheduleSegment : PhaseSegment {
 /// In the order of time.
 using Schedule = std::vector<ScheduleSegment>;
 
-/// A schedule for the rest of a mission: by depletion tables, or where the battery's state counts, by search.
+/// A schedule for the rest of a mission: by the depletion of each slot, or where the battery's state counts, by search.
 struct Plan {
     bool feasible = false;
     bool deliverable = false;  ///< the battery can deliver the power of some schedule

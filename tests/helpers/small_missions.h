@@ -168,7 +168,7 @@ class EverySchedule {
   public:
     EverySchedule(const mission::PlanningProblem& problem, const mission::PlanningTables& planner)
         : problem_(problem), slots_(mission::make_slots(problem)), load_(mission::make_mission_load(problem.setup)) {
-        const auto& runs = planner.depletions.configurations;
+        const auto& runs = planner.configurations;
         for (std::size_t c = 0; c < runs.size(); ++c) choices_.push_back({runs[c], planner.utility_per_s[c]});
         free_choices_ = planner.free_choices;
         fly_least();
@@ -282,7 +282,7 @@ class EverySchedule {
     }
 
     void carry(const std::vector<State>& states, std::size_t i, std::size_t choice, std::vector<State>& to) const {
-        const auto segment = mission::load_segment(load_, {slots_[i], choices_[choice].run});
+        const auto segment = mission::load_segments(load_, {slots_[i], choices_[choice].run}).front();
         const auto power_w = [&](double time_s) { return mission::power_w(segment, time_s); };
         for (const auto& state : states) {
             const auto end =

@@ -3,6 +3,7 @@
 #include "helpers/paper_missions.h"
 #include "mission/planning/planner.h"
 #include "mission/sampling/flight_spreads.h"
+#include "mission/simulation/load_segments.h"
 
 #include <cmath>
 #include <optional>
@@ -27,12 +28,12 @@ TEST(FlightReplanner, LearnsThePowerThatIsFlown) {
     EXPECT_EQ(run.back().end_s, 60.0);
     // As planned, nothing is learned; twice as much power moves the factor half of the way after learning_time_s.
     FlightReplanner calm = decider;
-    const auto& table = adaptive.planner->depletions;
+    const auto load = make_mission_load(adaptive.nominal.setup);
     double planned_percent = 0.0;
-    for (const auto& segment : to_indexed(run, table)) planned_percent += soc_depletion_percent(table, segment);
+    for (const auto& segment : run) planned_percent += depletion_percent(load, segment);
     calm.update(interval, run, {90.0, 0.0}, 90.0 - planned_percent);
     EXPECT_NEAR(calm.mechanical_factor(), 1.0, 1e-9);
-    const double mechanical_percent = soc_depletion_percent(adaptive.planner->mechanical_depletion, {interval, 0});
+    const double mechanical_percent = depletion_percent(load, {interval, {}});
     decider.update(interval, run, {90.0, 0.0}, 90.0 - planned_percent - 0.2 * mechanical_percent);
     const double learning_s = adaptive.nominal.adaptive->learning_time_s;
     EXPECT_NEAR(decider.mechanical_factor(), 1.0 + 0.2 * 60.0 / (60.0 + learning_s), 1e-9);

@@ -34,7 +34,7 @@ double best_simulated(const PlanningProblem& mission) {
     for (;;) {
         std::vector<ScheduleSegment> schedule;
         for (std::size_t i = 0; i < slots.size(); ++i) {
-            schedule.push_back({slots[i], slots[i].fixed.value_or(planner.depletions.configurations[choices[i]])});
+            schedule.push_back({slots[i], slots[i].fixed.value_or(planner.configurations[choices[i]])});
         }
         const auto summary = simulate(mission.setup, schedule, {1e3, 1.0}).summary;
         if (summary.feasible && *summary.final_soc_percent >= mission.setup.reserve_soc_percent) {

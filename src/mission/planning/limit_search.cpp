@@ -2,10 +2,10 @@
 
 #include "base/units.h"
 #include "mission/plan.h"
-#include "mission/planning/depletion_table.h"
 #include "mission/planning/planner.h"
 #include "mission/sampling/landing_distribution.h"
 #include "mission/simulation.h"
+#include "mission/simulation/load_segments.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,10 +15,12 @@
 namespace flightwatt::mission {
 
 double surplus_percent(const Mission& mission) {
-    if (!mission.setup.battery.thevenin) {
-        const auto table = make_depletion_table(mission.setup, configurations_of(mission.schedule));
-        if (const auto soc = soc_after_schedule(table, to_indexed(mission.schedule, table)))
-            return *soc - mission.setup.reserve_soc_percent;
+    const auto& setup = mission.setup;
+    if (!setup.battery.thevenin && std::ranges::none_of(load_segments(setup, mission.schedule), charges_battery)) {
+        const auto load = make_mission_load(setup);
+        double soc_percent = setup.initial_soc_percent;
+        for (const auto& segment : mission.schedule) soc_percent -= depletion_percent(load, segment);
+        if (std::isfinite(soc_percent)) return soc_percent - setup.reserve_soc_percent;
     }
     const auto summary = simulate(mission).summary;
     if (summary.feasible) return *summary.final_soc_percent - mission.setup.reserve_soc_percent;

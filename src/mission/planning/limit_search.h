@@ -11,7 +11,7 @@
 
 namespace flightwatt::mission {
 
-/// State of charge at the end less the reserve [points]: by tables where they hold, else simulated. Negative
+/// State of charge at the end less the reserve [points]: an integral where the source is constant, else simulated. Negative
 /// if the reserve is not kept, and the more so the earlier the battery ends.
 double surplus_percent(const Mission& mission);
 

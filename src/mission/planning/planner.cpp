@@ -1,6 +1,7 @@
 #include "mission/planning/planner.h"
 
 #include "mission/planning/schedule_search.h"
+#include "mission/simulation/load_segments.h"
 
 #include <algorithm>
 #include <cmath>
@@ -114,6 +115,13 @@ void require_few_slots(const PlanningProblem& problem, double duration_s) {
         "make slot_s in [plan] longer");
 }
 
+/// None if it is none of the choices.
+std::optional<std::size_t> index_of(const PlanningTables& planner, const compute::Configuration& run) {
+    const auto found = std::ranges::find(planner.configurations, run);
+    if (found == planner.configurations.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - planner.configurations.begin());
+}
+
 /// All but the costs.
 MultipleChoiceKnapsack choices_of(const PlanningProblem& problem, const PlanningTables& planner, const PlanStart& start,
                                   const std::vector<MissionSlot>& slots) {
@@ -122,26 +130,32 @@ MultipleChoiceKnapsack choices_of(const PlanningProblem& problem, const Planning
     knapsack.free_choices = planner.free_choices;
     knapsack.dwell_s = problem.plan.dwell_s;
     if (start.running) {
-        if (const auto choice = index_of(planner.depletions, *start.running))
-            knapsack.running = {*choice, start.running_for_s};
+        if (const auto choice = index_of(planner, *start.running)) knapsack.running = {*choice, start.running_for_s};
     }
     for (const auto& slot : slots) {
         knapsack.slots.push_back({slot.duration_s(), std::nullopt, {}});
-        if (slot.fixed) knapsack.slots.back().fixed = index_of(planner.depletions, *slot.fixed).value();
+        if (slot.fixed) knapsack.slots.back().fixed = index_of(planner, *slot.fixed).value();
     }
     return knapsack;
 }
 
-void set_costs(const PlanningTables& planner, double mechanical_factor, const std::vector<MissionSlot>& slots,
-               MultipleChoiceKnapsack& knapsack) {
+SlotDepletion depletion_of(const MissionLoad& load, const PlanningTables& planner, const MissionSlot& slot) {
+    SlotDepletion depletion{depletion_percent(load, {slot, {}}), {}};
+    for (const auto& run : planner.configurations) depletion.percent.push_back(depletion_percent(load, {slot, run}));
+    return depletion;
+}
+
+/// The depletions of the whole mission's slots are known; the first of the rest of a mission may be a part of one.
+void set_costs(const PlanningProblem& problem, const PlanningTables& planner, double mechanical_factor,
+               const std::vector<MissionSlot>& slots, MultipleChoiceKnapsack& knapsack) {
+    const auto load = make_mission_load(problem.setup);
+    const auto flown = planner.slots.size() - slots.size();
     for (std::size_t i = 0; i < slots.size(); ++i) {
-        double more_percent = 0.0;
-        if (mechanical_factor != 1.0) {
-            more_percent =
-                (mechanical_factor - 1.0) * soc_depletion_percent(planner.mechanical_depletion, {slots[i], 0});
-        }
-        for (std::size_t c = 0; c < planner.utility_per_s.size(); ++c)
-            knapsack.slots[i].cost.push_back(soc_depletion_percent(planner.depletions, {slots[i], c}) + more_percent);
+        const PhaseSegment& known = planner.slots[flown + i];
+        const auto depletion =
+            known == slots[i] ? planner.depletions[flown + i] : depletion_of(load, planner, slots[i]);
+        for (const double percent : depletion.percent)
+            knapsack.slots[i].cost.push_back(percent + (mechanical_factor - 1.0) * depletion.mechanical_percent);
     }
 }
 
@@ -149,7 +163,7 @@ std::vector<PhaseSegment> parts_of(const std::vector<MissionSlot>& slots) { retu
 
 std::vector<double> compute_w_of(const PlanningProblem& problem, const PlanningTables& planner) {
     std::vector<double> compute_w;
-    for (const auto& run : planner.depletions.configurations) compute_w.push_back(power_w(problem.setup.compute, run));
+    for (const auto& run : planner.configurations) compute_w.push_back(power_w(problem.setup.compute, run));
     return compute_w;
 }
 
@@ -179,7 +193,7 @@ Schedule schedule_of(const PlanningTables& planner, const std::vector<MissionSlo
                      const std::vector<std::size_t>& choices) {
     Schedule schedule;
     for (std::size_t i = 0; i < slots.size(); ++i)
-        append_merged(schedule, {slots[i], planner.depletions.configurations[choices[i]]});
+        append_merged(schedule, {slots[i], planner.configurations[choices[i]]});
     return schedule;
 }
 
@@ -200,26 +214,27 @@ PlanningTables make_planning_tables(const PlanningProblem& problem) {
     const auto fixed = configurations_of(problem.fixed);
     const auto kept = problem.plan.dwell_s > 0.0 ? fixed : std::vector<compute::Configuration>();
     PlanningTables planner;
-    auto& configurations = planner.depletions.configurations;
+    auto& configurations = planner.configurations;
     for (auto& choice : undominated(every_choice(problem), kept)) {
         configurations.push_back(std::move(choice.run));
         planner.utility_per_s.push_back(choice.utility_per_s);
     }
     planner.free_choices = configurations.size();
     for (const auto& run : fixed) {
-        if (index_of(planner.depletions, run)) continue;
+        if (index_of(planner, run)) continue;
         configurations.push_back(run);
         planner.utility_per_s.push_back(utility_per_s(problem.setup.utilities, run));
     }
+    planner.slots = make_slots(problem);
     if (problem.setup.battery.thevenin || problem.setup.cutoff_voltage_v > 0.0) {
-        const auto slots = parts_of(make_slots(problem));
+        const auto slots = parts_of(planner.slots);
         planner.step_s = choose_step_s(problem.setup, slots, compute_w_of(problem, planner));
         planner.quick_step_s =
             choose_coarse_step_s(problem.setup, slots, compute_w_of(problem, planner), *planner.step_s);
         return planner;
     }
-    planner.depletions = make_depletion_table(problem.setup, std::move(configurations));
-    planner.mechanical_depletion = make_depletion_table(problem.setup, {{}});
+    const auto load = make_mission_load(problem.setup);
+    for (const auto& slot : planner.slots) planner.depletions.push_back(depletion_of(load, planner, slot));
     return planner;
 }
 
@@ -283,7 +298,7 @@ Plan plan_remaining(const PlanningProblem& problem, const PlanningTables& planne
                                   reserve_soc_percent - rounding_percent},
                                  coarser);
     } else {
-        set_costs(planner, start.mechanical_factor, slots, knapsack);
+        set_costs(problem, planner, start.mechanical_factor, slots, knapsack);
         knapsack.budget = start.soc_percent - reserve_soc_percent;
         chosen = solve_knapsack(knapsack, effort);
     }

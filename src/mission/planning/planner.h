@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mission/planning/depletion_table.h"
+#include "mission/mission.h"
 #include "mission/planning/knapsack.h"
 
 #include <cstddef>
@@ -9,14 +9,26 @@
 
 namespace flightwatt::mission {
 
+/// A part of a phase in which one configuration runs throughout.
+struct MissionSlot : PhaseSegment {
+    std::optional<compute::Configuration> fixed;
+};
+
+/// What a slot takes of the battery [points].
+struct SlotDepletion {
+    double mechanical_percent = 0.0;  ///< while nothing runs
+    std::vector<double> percent;      ///< with each of the choices; infinite if the battery cannot deliver that
+};
+
 /// What all plans of a problem have in common: configurations with their utility, and how they deplete the battery.
 struct PlanningTables {
-    DepletionTable depletions;            ///< its configurations are the choices
-    std::vector<double> utility_per_s;    ///< of each of them
-    std::size_t free_choices = 0;         ///< the first so many may be chosen; the others are only fixed
-    DepletionTable mechanical_depletion;  ///< of one configuration, in which nothing runs
+    std::vector<compute::Configuration> configurations;  ///< the choices
+    std::vector<double> utility_per_s;                   ///< of each of them
+    std::size_t free_choices = 0;                        ///< the first so many may be chosen; the others are only fixed
+    std::vector<MissionSlot> slots;                      ///< of the whole mission
+    std::vector<SlotDepletion> depletions;               ///< of each slot
     /// The step of schedule_search.h, for batteries whose depletion by a slot depends on what ran before: their source
-    /// follows their charge, or they may be cut off. Such a planner's tables hold configurations alone.
+    /// follows their charge, or they may be cut off. There are no depletions then.
     std::optional<double> step_s = std::nullopt;
     double quick_step_s = 0.0;  ///< of choose_coarse_step_s
 };
@@ -35,11 +47,6 @@ Mission with_minimum_energy_schedule(const MissionVariant& mission);
 
 /// The configuration that [plan] allows and that draws least.
 compute::Configuration min_power_configuration(const PlanningProblem& problem);
-
-/// A part of a phase in which one configuration runs throughout.
-struct MissionSlot : PhaseSegment {
-    std::optional<compute::Configuration> fixed;
-};
 
 /// The mission from `time_s` on: fixed segments, and between them slots that end at multiples of slot_s since their
 /// phase began, or where a fixed segment or the phase does. Throws InputError for more than 20000 slots.

@@ -31,9 +31,9 @@ std::optional<double> knot_between(const SlotDynamics& dynamics, double from_per
     return above != knots.end() && *above < high ? std::optional(*above) : std::nullopt;
 }
 
-SlotDynamics::Part part_of(const SlotDynamics& dynamics, const LoadSegment& segment, double longest_step_s,
-                           double mechanical_factor) {
-    const double duration_s = segment.end_s - segment.start_s;
+SlotDynamics::Part dynamics_part_of(const SlotDynamics& dynamics, const LoadSegment& segment, double longest_step_s,
+                                    double mechanical_factor) {
+    const double duration_s = segment.duration_s();
     const auto steps = static_cast<std::size_t>(std::max(1.0, std::ceil(duration_s / longest_step_s * (1.0 - 1e-12))));
     const double step_s = duration_s / static_cast<double>(steps);
     SlotDynamics::Part part{step_s, {dynamics.circuit, step_s}, {}};
@@ -45,19 +45,19 @@ SlotDynamics::Part part_of(const SlotDynamics& dynamics, const LoadSegment& segm
     return part;
 }
 
-SlotDynamics::Slot slot_of(const SlotDynamics& dynamics, const LoadSegment& segment, double step_s,
+SlotDynamics::Slot slot_of(const SlotDynamics& dynamics, const std::vector<LoadSegment>& segments, double step_s,
                            double mechanical_factor) {
     SlotDynamics::Slot slot;
-    slot.duration_s = segment.end_s - segment.start_s;
     slot.min_mechanical_w = std::numeric_limits<double>::infinity();
     slot.max_mechanical_w = -slot.min_mechanical_w;
-    for (const auto& smooth : split_at_jumps(segment)) {
-        slot.parts.push_back(part_of(dynamics, smooth, step_s, mechanical_factor));
+    for (const auto& segment : segments) {
+        slot.duration_s += segment.duration_s();
+        slot.mechanical_energy_j += mechanical_factor * mechanical_energy_j(segment, segment.end_s);
+        slot.parts.push_back(dynamics_part_of(dynamics, segment, step_s, mechanical_factor));
         const auto [least, greatest] = std::ranges::minmax_element(slot.parts.back().mechanical_w);
         slot.min_mechanical_w = std::min(slot.min_mechanical_w, *least);
         slot.max_mechanical_w = std::max(slot.max_mechanical_w, *greatest);
     }
-    slot.mechanical_energy_j = mechanical_factor * mechanical_energy_j(segment, segment.end_s);
     return slot;
 }
 
@@ -174,7 +174,7 @@ SlotDynamics make_slot_dynamics(const MissionSetup& mission, const std::vector<P
     const auto load = make_mission_load(mission);
     dynamics.slots.reserve(slots.size());
     for (const auto& slot : slots)
-        dynamics.slots.push_back(slot_of(dynamics, load_segment(load, {slot, {}}), step_s, mechanical_factor));
+        dynamics.slots.push_back(slot_of(dynamics, load_segments(load, {slot, {}}), step_s, mechanical_factor));
     return dynamics;
 }
 

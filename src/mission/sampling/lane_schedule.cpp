@@ -131,9 +131,10 @@ LaneSchedule lane_schedule(const MissionSetup& setup, const FlightUncertainty& s
     const auto load = make_mission_load(setup);
     for (auto& stretch : lanes.stretches) {
         const double planned_s = setup.duration_s[stretch.phase];
-        const auto segment = load_segment(
-            load,
-            {{stretch.phase, stretch.from_part * planned_s, stretch.to_part * planned_s}, runs[stretch.configuration]});
+        const auto segment =
+            load_segments(load, {{stretch.phase, stretch.from_part * planned_s, stretch.to_part * planned_s},
+                                 runs[stretch.configuration]})
+                .front();
         const double length_s = segment.end_s - segment.start_s;
         const bool is_stretched = setup.phase_clock == mechanical::PhaseTimeScaling::stretched;
         stretch.max_s = std::numeric_limits<double>::infinity();
@@ -141,7 +142,7 @@ LaneSchedule lane_schedule(const MissionSetup& setup, const FlightUncertainty& s
             set_quadrature(turns_of(segment), stretch);
             if (!is_stretched) stretch.max_s = fine_enough * planned_s;
         } else {
-            const auto circuit = max_circuit(setup.battery, spreads.battery, bounds_of(segment).high_w);
+            const auto circuit = max_circuit(setup.battery, spreads.battery, bounds_of(segment).high);
             const double max_s = battery::max_fast_step_s(circuit, quick_step_s(segment));
             set_steps(max_s, length_s, stretch);
             stretch.max_s = fine_enough * planned_s * static_cast<double>(stretch.steps) * max_s / length_s;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/tools/minima.hpp>
@@ -33,25 +34,35 @@ std::vector<double> cuts_of(const LoadSegment& segment, const Disturbances& dist
     return cuts;
 }
 
+/// The curve times a factor.
+void scale(mechanical::FourierModel& curve, double factor) {
+    curve.a0_w *= factor;
+    for (auto* terms_w : {&curve.cos_w, &curve.sin_w})
+        for (auto& term_w : *terms_w) term_w *= factor;
+}
+
 void disturb_power(const Disturbance& disturbance, LoadSegment& segment) {
     segment.compute_w = segment.compute_w * disturbance.compute_factor + disturbance.compute_w;
     if (!segment.mechanical && disturbance.mechanical_w == 0.0) return;
     if (!segment.mechanical) segment.mechanical = mechanical::FourierModel{};  // computing alone
-    auto& curve = *segment.mechanical;
-    curve.a0_w = curve.a0_w * disturbance.mechanical_factor + disturbance.mechanical_w;
-    for (auto* terms_w : {&curve.cos_w, &curve.sin_w})
-        for (auto& term_w : *terms_w) term_w *= disturbance.mechanical_factor;
+    scale(*segment.mechanical, disturbance.mechanical_factor);
+    segment.mechanical->a0_w += disturbance.mechanical_w;
+}
+
+/// Of a constant source.
+bool is_deliverable(const battery::Battery& battery, double cutoff_voltage_v, double demand_w) {
+    return demand_w <= power_limit_w(battery) &&
+           terminal_voltage_v(battery, {}, internal_current_a(battery, demand_w)) >= cutoff_voltage_v;
 }
 
 /// Whether the source is constant, and nothing but an empty battery can end the segment.
 bool depends_on_power_alone(const battery::Battery& battery, double cutoff_voltage_v, const LoadSegment& segment) {
     if (battery.thevenin) return false;
-    const auto [low_w, high_w] = bounds_of(segment);
-    return low_w >= 0.0 && high_w < power_limit_w(battery) &&
-           terminal_voltage_v(battery, {}, internal_current_a(battery, high_w)) >= cutoff_voltage_v;
+    const auto bounds = bounds_of(segment);
+    return bounds.low >= 0.0 && is_deliverable(battery, cutoff_voltage_v, bounds.high);
 }
 
-/// What such a segment takes: without resistance the closed integral of Eq. 1, with it Gauss quadrature.
+/// What a segment takes of a constant source that delivers it.
 double depleted_percent(const battery::Battery& battery, const LoadSegment& segment) {
     constexpr double pieces_a_turn = 4.0;  // of the highest harmonic: exact to rounding
     const double capacity_as = units::coulomb_from_ah(battery.capacity_ah);
@@ -78,25 +89,42 @@ double depleted_percent(const battery::Battery& battery, const LoadSegment& segm
 
 constexpr double points_a_turn = 16.0;        // of the highest harmonic: one valley lies between two neighbours
 constexpr double rounding_of_power_w = 1e-6;  // fits that touch 0 do not charge
+constexpr double never_enough_w = std::numeric_limits<double>::infinity();
 
-/// No harmonic can be more negative than its amplitude.
-double bound_below_w(const mechanical::FourierModel& curve) {
-    double bound_w = curve.a0_w;
-    for (std::size_t n = 0; n < curve.cos_w.size(); ++n) bound_w -= std::hypot(curve.cos_w[n], curve.sin_w[n]);
-    return bound_w;
+/// No harmonics together are greater than their amplitudes.
+double amplitude_w(const mechanical::FourierModel& curve) {
+    double sum_w = 0.0;
+    for (std::size_t n = 0; n < curve.cos_w.size(); ++n) sum_w += std::hypot(curve.cos_w[n], curve.sin_w[n]);
+    return sum_w;
+}
+
+/// The least mechanical power of a segment or, times -1, the greatest, in the phase's own time; as min_power_w.
+PowerAt extreme_w(const LoadSegment& segment, double sign, double enough_w) {
+    const double start_s = segment.start_s - segment.phase_start_s;
+    if (!segment.mechanical) return {start_s, 0.0};
+    auto curve = *segment.mechanical;
+    scale(curve, sign);
+    return min_power_w(curve, {start_s, segment.end_s - segment.phase_start_s}, enough_w);
+}
+
+/// A piece of constant power, from the end of the part before it, or the segment's start, to the end of the piece, or
+/// the segment's.
+LoadSegment part_of(const LoadSegment& segment, double start_s, const path::PowerSegment& piece, bool is_last) {
+    auto part = segment;
+    part.mechanical = mechanical::FourierModel{0.0, piece.power_w, {}, {}};
+    part.start_s = start_s;
+    part.end_s = segment.phase_start_s + piece.end_s;
+    if (is_last || part.end_s >= segment.end_s - edge_tolerance_s) part.end_s = segment.end_s;
+    return part;
 }
 
 }  // namespace
 
-PowerBounds bounds_of(const LoadSegment& segment) {
-    PowerBounds bounds{segment.compute_w, segment.compute_w};
-    if (!segment.mechanical) return bounds;
-    const auto& curve = *segment.mechanical;
-    double amplitude_w = 0.0;
-    for (std::size_t n = 0; n < curve.cos_w.size(); ++n) amplitude_w += std::hypot(curve.cos_w[n], curve.sin_w[n]);
-    bounds.low_w += curve.a0_w - amplitude_w;
-    bounds.high_w += curve.a0_w + amplitude_w;
-    return bounds;
+Interval bounds_of(const LoadSegment& segment) {
+    if (!segment.mechanical) return {segment.compute_w, segment.compute_w};
+    const double mean_w = segment.mechanical->a0_w + segment.compute_w;
+    const double reach_w = amplitude_w(*segment.mechanical);
+    return {mean_w - reach_w, mean_w + reach_w};
 }
 
 double quick_step_s(const LoadSegment& segment) {
@@ -121,50 +149,31 @@ MissionLoad make_mission_load(const MissionSetup& mission) {
     return load;
 }
 
-LoadSegment load_segment(const MissionLoad& load, const ScheduleSegment& scheduled) {
+std::vector<LoadSegment> load_segments(const MissionLoad& load, const ScheduleSegment& scheduled) {
     LoadSegment segment;
     segment.phase = scheduled.phase;
     segment.phase_start_s = load.timeline.start_s[scheduled.phase];
     segment.start_s = segment.phase_start_s + scheduled.start_s;
     segment.end_s = segment.phase_start_s + scheduled.end_s;
     segment.mechanical = load.mechanical[scheduled.phase];
-    segment.pieces = load.pieces[scheduled.phase];
     segment.compute_w = power_w(load.mission.compute, scheduled.run);
-    return segment;
+    const auto& pieces = load.pieces[scheduled.phase];
+    if (!pieces) return {std::move(segment)};
+    std::vector<LoadSegment> parts;
+    const auto* const last = &pieces->back();
+    for (const auto* piece = &segment_at(*pieces, scheduled.start_s + edge_tolerance_s);; ++piece) {
+        parts.push_back(part_of(segment, parts.empty() ? segment.start_s : parts.back().end_s, *piece, piece == last));
+        if (parts.back().end_s == segment.end_s) return parts;
+    }
 }
 
 std::vector<LoadSegment> load_segments(const MissionSetup& mission, const Schedule& schedule) {
     const auto load = make_mission_load(mission);
     std::vector<LoadSegment> segments;
     segments.reserve(schedule.size());
-    for (const auto& scheduled : schedule) {
-        auto segment = load_segment(load, scheduled);
-        if (!segment.pieces)
-            segments.push_back(std::move(segment));
-        else
-            std::ranges::move(split_at_jumps(segment), std::back_inserter(segments));
-    }
+    for (const auto& scheduled : schedule)
+        std::ranges::move(load_segments(load, scheduled), std::back_inserter(segments));
     return segments;
-}
-
-std::vector<LoadSegment> split_at_jumps(const LoadSegment& segment) {
-    if (!segment.pieces) return {segment};
-    std::vector<LoadSegment> parts;
-    const auto last = segment.pieces->size() - 1;
-    const auto* first_piece = &segment_at(*segment.pieces, segment.start_s - segment.phase_start_s + edge_tolerance_s);
-    for (auto i = static_cast<std::size_t>(first_piece - segment.pieces->data()); i <= last; ++i) {
-        const auto& piece = (*segment.pieces)[i];
-        auto& part = parts.emplace_back(segment);
-        part.pieces.reset();
-        part.mechanical = mechanical::FourierModel{0.0, piece.power_w, {}, {}};
-        part.start_s = parts.size() == 1 ? segment.start_s : parts[parts.size() - 2].end_s;
-        if (parts.size() > 1) part.soc_drop_percent = 0.0;
-        part.end_s = segment.phase_start_s + piece.end_s;
-        if (i < last && part.end_s < segment.end_s - edge_tolerance_s) continue;
-        part.end_s = segment.end_s;
-        break;
-    }
-    return parts;
 }
 
 std::vector<LoadSegment> disturbed(const std::vector<LoadSegment>& segments, const Disturbances& disturbances) {
@@ -196,17 +205,12 @@ std::vector<LoadSegment> disturbed(const std::vector<LoadSegment>& segments, con
 }
 
 double mechanical_w(const LoadSegment& segment, double time_s) {
-    if (segment.pieces) return segment_at(*segment.pieces, time_s - segment.phase_start_s).power_w;
     return segment.mechanical ? power_w(*segment.mechanical, time_s - segment.phase_start_s) : 0.0;
 }
 
 double power_w(const LoadSegment& segment, double time_s) { return mechanical_w(segment, time_s) + segment.compute_w; }
 
 double mechanical_energy_j(const LoadSegment& segment, double time_s) {
-    if (segment.pieces) {
-        return energy_until_j(*segment.pieces, time_s - segment.phase_start_s) -
-               energy_until_j(*segment.pieces, segment.start_s - segment.phase_start_s);
-    }
     if (!segment.mechanical) return 0.0;
     return energy_j(*segment.mechanical, time_s - segment.phase_start_s) -
            energy_j(*segment.mechanical, segment.start_s - segment.phase_start_s);
@@ -214,6 +218,20 @@ double mechanical_energy_j(const LoadSegment& segment, double time_s) {
 
 double compute_energy_j(const LoadSegment& segment, double time_s) {
     return segment.compute_w * (time_s - segment.start_s);
+}
+
+double depletion_percent(const MissionLoad& load, const ScheduleSegment& scheduled) {
+    const auto& battery = load.mission.battery;
+    const double cutoff_voltage_v = load.mission.cutoff_voltage_v;
+    double sum_percent = 0.0;
+    for (const auto& segment : load_segments(load, scheduled)) {
+        if (!is_deliverable(battery, cutoff_voltage_v, bounds_of(segment).high) &&
+            !is_deliverable(battery, cutoff_voltage_v,
+                            segment.compute_w - extreme_w(segment, -1.0, never_enough_w).power_w))
+            return std::numeric_limits<double>::infinity();
+        sum_percent += depleted_percent(battery, segment);
+    }
+    return sum_percent;
 }
 
 battery::Discharge apply_charge_drop(battery::Discharge state, const LoadSegment& segment) {
@@ -238,13 +256,13 @@ battery::Discharge advance_segment(const battery::Battery& battery, double cutof
         }
     }
     const battery::Load load{[&](double time_s) { return power_w(segment, time_s); }, segment.start_s, segment.end_s};
-    if (battery.thevenin && bounds_of(segment).low_w >= 0.0)
+    if (battery.thevenin && bounds_of(segment).low >= 0.0)
         return fast_discharge(battery, load, state, {quick_step_s(segment), cutoff_voltage_v});
     return discharge(battery, load, state, {coarse_step_s, cutoff_voltage_v});
 }
 
 PowerAt min_power_w(const mechanical::FourierModel& curve, const TimeInterval& within, double enough_w) {
-    const double bound_w = bound_below_w(curve);
+    const double bound_w = curve.a0_w - amplitude_w(curve);
     if (bound_w >= enough_w || curve.cos_w.empty()) return {within.start_s, bound_w};
     const double length_s = within.end_s - within.start_s;
     const double turns =
@@ -263,14 +281,15 @@ PowerAt min_power_w(const mechanical::FourierModel& curve, const TimeInterval& w
     return valley_w < least.power_w ? PowerAt{time_s, valley_w} : least;
 }
 
+bool charges_battery(const LoadSegment& segment) {
+    return extreme_w(segment, 1.0, -segment.compute_w).power_w + segment.compute_w < -rounding_of_power_w;
+}
+
 void refuse_charging(const MissionSetup& mission, const std::vector<LoadSegment>& segments) {
     if (mission.may_charge) return;
     for (const auto& segment : segments) {
-        PowerAt least{segment.start_s - segment.phase_start_s, 0.0};
-        if (segment.mechanical)
-            least = min_power_w(*segment.mechanical, {least.time_s, segment.end_s - segment.phase_start_s},
-                                -segment.compute_w);
-        if (least.power_w + segment.compute_w >= -rounding_of_power_w) continue;
+        if (!charges_battery(segment)) continue;
+        const auto least = extreme_w(segment, 1.0, -segment.compute_w);
         throw InputError(
             {mission.file},
             fmt::format("{}: {:.1f} s into the {} it draws {:.4g} W ({:.4g} W mechanical, {:.4g} W computing), which "

@@ -54,7 +54,7 @@ double best_of_all(const PlanningProblem& mission, const PlanningTables& planner
         for (std::size_t i = 0; i < slots.size(); ++i) {
             const auto bit = std::size_t{1} << i;
             may_land = may_land && ((code & bit) == 0 || lands[code & ~bit]);
-            schedule.push_back({slots[i], planner.depletions.configurations[(code >> i) & 1]});
+            schedule.push_back({slots[i], planner.configurations[(code >> i) & 1]});
         }
         if (!may_land) continue;
         const auto summary = simulate(mission.setup, schedule, {1e3, 4.0}).summary;

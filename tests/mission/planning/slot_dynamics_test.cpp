@@ -20,7 +20,7 @@ struct Prepared {
 
 Prepared prepared(unsigned seed, double mechanical_factor = 1.0) {
     Prepared made{test::small_mission(seed).problem, {}, {}, {}};
-    made.runs = make_planning_tables(made.problem).depletions.configurations;
+    made.runs = make_planning_tables(made.problem).configurations;
     for (const auto& slot : make_slots(made.problem)) made.slots.push_back(slot);
     std::vector<double> compute_w;
     for (const auto& run : made.runs) compute_w.push_back(power_w(made.problem.setup.compute, run));
@@ -32,7 +32,7 @@ Prepared prepared(unsigned seed, double mechanical_factor = 1.0) {
 battery::Discharge discharged(const Prepared& made, std::size_t slot, std::size_t choice,
                               const battery::BatteryState& state) {
     const auto load = make_mission_load(made.problem.setup);
-    const auto segment = load_segment(load, {made.slots[slot], made.runs[choice]});
+    const auto segment = load_segments(load, {made.slots[slot], made.runs[choice]}).front();
     const auto power = [&](double time_s) { return power_w(segment, time_s); };
     return discharge(made.problem.setup.battery, {power, segment.start_s, segment.end_s}, state,
                      {0.1, made.problem.setup.cutoff_voltage_v});

@@ -8,6 +8,7 @@
 #include "mission/simulation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -92,6 +93,65 @@ TEST(SegmentDischarge, AgreesWithTheSimulation) {
             charge = advance_segment(mission.setup.battery, mission.setup.cutoff_voltage_v, segment, charge);
         EXPECT_NEAR(charge.soc_percent, *simulate(mission).summary.final_soc_percent, 1e-6);
     }
+}
+
+/// State of charge after the mission's own schedule, by integrals; infinitely low where it cannot be delivered.
+double integrated_soc(const Mission& mission) {
+    const auto load = make_mission_load(mission.setup);
+    double soc_percent = mission.setup.initial_soc_percent;
+    for (const auto& segment : mission.schedule) soc_percent -= depletion_percent(load, segment);
+    return soc_percent;
+}
+
+/// A schedule of segments that begin and end anywhere.
+std::vector<ScheduleSegment> random_schedule(const Mission& mission, std::mt19937& random) {
+    const auto known = configurations_of(mission.schedule);
+    std::uniform_int_distribution<std::size_t> any(0, known.size() - 1);
+    std::vector<ScheduleSegment> schedule;
+    for (const auto phase : flight::all_phases) {
+        const double duration_s = mission.setup.duration_s[phase];
+        std::uniform_real_distribution<double> length_s(0.01, 90.0);
+        for (double start_s = 0.0; start_s < duration_s;) {
+            const double end_s = std::min(duration_s, start_s + length_s(random));
+            schedule.push_back({phase, start_s, end_s, known[any(random)]});
+            start_s = end_s;
+        }
+    }
+    return schedule;
+}
+
+TEST(Depletion, AgreesWithRungeKuttaOnThePapersSchedules) {
+    for (const auto* name : {"computing-only", "mechanical-only", "invariant-5.8fps-32bit", "invariant-10fps-240bit",
+                             "phased", "adaptive"}) {
+        const auto mission = test::paper_mission(name);
+        EXPECT_NEAR(integrated_soc(mission), *simulate(mission).summary.final_soc_percent, 1e-8) << name;
+    }
+    EXPECT_LT(integrated_soc(test::paper_mission("invariant-32fps-448bit")), 0.0) << "empty before the end";
+}
+
+TEST(Depletion, AgreesWithRungeKuttaOnRandomSchedules) {
+    std::mt19937 random(3);
+    for (const double resistance_ohm : {0.0, 0.002, 0.02, 0.04}) {
+        auto mission = test::paper_mission("phased");
+        mission.setup.battery = {"", 3.6, resistance_ohm, 6.0};
+        for (int i = 0; i < 10; ++i) {
+            mission.schedule = random_schedule(mission, random);
+            const double soc_percent = integrated_soc(mission);
+            EXPECT_GT(soc_percent, 10.0) << "would not be empty";
+            EXPECT_NEAR(soc_percent, simulate(mission, {10.0, 0.05}).summary.final_soc_percent.value(), 1e-6)
+                << resistance_ohm;
+        }
+    }
+}
+
+TEST(Depletion, KnowsWhereTheBatteryCannotDeliver) {
+    auto mission = test::paper_mission("phased");
+    mission.setup.battery = {"", 11.1, 0.5, 3.2};  // at most 61.6 W; the middle of the cruise needs 68
+    EXPECT_TRUE(simulate(mission).summary.undeliverable);
+    EXPECT_TRUE(std::isinf(integrated_soc(mission)));
+    mission.schedule = test::paper_mission("invariant-5.8fps-32bit").schedule;
+    EXPECT_FALSE(simulate(mission).summary.undeliverable);
+    EXPECT_NEAR(integrated_soc(mission), *simulate(mission).summary.final_soc_percent, 1e-6);
 }
 
 TEST(LeastPower, IsThatOfAFineGrid) {
