@@ -3,7 +3,6 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/overwrite_guard.h"
-#include "base/signal_watch.h"
 #include "batch/batch_fit.h"
 #include "batch/batch_run.h"
 #include "batch/manifest.h"
@@ -18,13 +17,9 @@
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <filesystem>
-#include <functional>
 #include <iostream>
 #include <iterator>
-#include <mutex>
 #include <optional>
 
 #include <fmt/format.h>
@@ -34,37 +29,16 @@ namespace {
 
 using namespace flightwatt;
 
-/// What is known of the run at any moment, by all threads.
-struct BatchProgressState {
-    cli::ProgressBar bar{"logs"};
-    std::atomic<std::size_t> done = 0;
-    std::size_t all = 0;
-    std::timed_mutex speaking;  ///< whoever tells of the run holds it; what says that it was stopped, for ever
-};
-
 /// Moves the bar on, or says what became of the log.
-batch::BatchProgress progress_of(const cli::StageCall& call, BatchProgressState& state) {
+batch::BatchProgress progress_of(const cli::StageCall& call, cli::ProgressBar& bar) {
     return [&](std::size_t done, std::size_t all, const batch::BatchFlight& flight) {
-        const std::lock_guard lock(state.speaking);
-        state.done = done;
-        if (cli::standard_error_terminal() != nullptr) return state.bar.show(done, all);
+        if (cli::standard_error_terminal() != nullptr) return bar.show(done, all);
         const auto* what = flight.record.is_of_other_aircraft ? "left out"
                            : !flight.record.accepted          ? "rejected"
                            : flight.log_is_missing            ? "kept, its log is gone"
                            : flight.was_up_to_date            ? "up to date"
                                                               : "done";
         cli::note(call, fmt::format("[{}/{}] {}: {}", done, all, flight.record.flight, what));
-    };
-}
-
-std::function<void(int)> on_signal(const cli::StageCall& call, BatchProgressState& state) {
-    return [&](int signal) {
-        constexpr std::chrono::milliseconds patience(100);  // with a standard error that nobody reads
-        [[maybe_unused]] const bool others_are_silent = state.speaking.try_lock_for(patience);
-        const batch::RemoveIfEmpty unfinished{std::filesystem::path(*call.output) / batch::temporary_folder};
-        state.bar.clear();
-        cli::note(call, fmt::format("stopped by {} after {} of {} logs; the same command goes on from there",
-                                    signal_name(signal), state.done.load(), state.all));
     };
 }
 
@@ -190,7 +164,6 @@ batch::BatchOptions read_batch_options(const cli::StageCall& call, const mechani
 
 /// Writes the model and its Table I as files.
 void write_model(const batch::BatchFit& fit, const TextTable& table, const batch::BatchOptions& options) {
-    const batch::WriteGate::WriterGuard pass(*options.gate);
     for (const auto* name : batch::table_names) {
         write_file_atomically(options.out / name, cli::table_text(table, name), options.out / batch::temporary_folder);
     }
@@ -216,11 +189,8 @@ int finish(const cli::StageCall& call, batch::BatchFlights flights, const batch:
     auto copies = find_duplicates(flights);
     exclude_duplicates(flights, copies);
     report_notes(call, flights);
-    {
-        const batch::WriteGate::WriterGuard pass(*options.gate);
-        write_file_atomically(options.out / batch::catalogue_name, catalogue_csv(flights),
-                              options.out / batch::temporary_folder);
-    }
+    write_file_atomically(options.out / batch::catalogue_name, catalogue_csv(flights),
+                          options.out / batch::temporary_folder);
     const auto shown = flights_text(call, flights, options);
     const auto totals = totals_of(flights);
     release_details(flights);
@@ -339,14 +309,11 @@ int run_over_logs(const cli::StageCall& call) {
     plan.earlier = plan.manifest = {};
     ::malloc_trim(0);  // of a hundred thousand logs, the plan took more than the work is going to
     const batch::RemoveIfEmpty unfinished{options.out / batch::temporary_folder};
-    batch::WriteGate gate;
-    options.gate = &gate;
-    BatchProgressState state;
-    state.all = plan.logs.size();
-    const batch::TerminationHandler interruption(gate, on_signal(call, state));
-    auto flights = run_batch(plan.logs, options, progress_of(call, state));
+    batch::end_at_signals(call.program);
+    cli::ProgressBar bar("logs");
+    auto flights = run_batch(plan.logs, options, progress_of(call, bar));
     plan = {};
-    state.bar.clear();
+    bar.clear();
     return finish(call, std::move(flights), options, published);
 }
 

@@ -103,15 +103,11 @@ int merge(const cli::StageCall& call) {
     const batch::RemoveIfEmpty unfinished{out / batch::temporary_folder};
     batch::prepare_folder(plan.folder, out);
     remove_model(call, out);
-    batch::WriteGate gate;
-    batch::MergeOptions options{out, mechanical::min_samples(mechanical::ModelFitOptions{}.phases.order), gate};
     cli::ProgressBar progress("flights");
-    const batch::TerminationHandler interruption(gate, [&](int) {
-        const batch::RemoveIfEmpty unfinished_folder{out / batch::temporary_folder};
-        cli::note(call, "stopped; the same command goes on from there");
-    });
+    batch::end_at_signals(call.program);
+    const auto needed = mechanical::min_samples(mechanical::ModelFitOptions{}.phases.order);
     auto flights = batch::merge_flights(
-        plan, options, [&](std::size_t done, std::size_t all, const auto&) { progress.show(done, all); });
+        plan, out, needed, [&](std::size_t done, std::size_t all, const auto&) { progress.show(done, all); });
     progress.hide();
     const auto copies = batch::find_duplicates(flights);
     exclude_duplicates(flights, copies);

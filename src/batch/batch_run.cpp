@@ -7,7 +7,6 @@
 #include "base/parallel.h"
 #include "batch/batch_files.h"
 #include "batch/manifest.h"
-#include "batch/write_guard.h"
 #include "flight/load_flight.h"
 #include "flight/phases_file.h"
 #include "flight/series_file.h"
@@ -28,8 +27,6 @@ namespace {
 
 void write_result(const BatchOptions& options, const std::string& flight, const char* ending,
                   const std::string& content) {
-    std::optional<WriteGate::WriterGuard> pass;
-    if (options.gate != nullptr) pass.emplace(*options.gate);
     const OverwriteExemption own;  // its name is no other's: what a batch writes is not kept in mind file by file
     write_file_atomically(result_path(options.out, flight, ending), content, options.out / temporary_folder);
 }

@@ -14,8 +14,6 @@
 
 namespace flightwatt::batch {
 
-class WriteGate;
-
 /// A sortie that a fit takes, and which of its phases.
 struct SelectedSortie {
     std::string flight;  ///< see sortie_name
@@ -46,7 +44,6 @@ struct BatchOptions {
     flight::LoadOptions load;
     unsigned jobs = 0;  ///< logs at a time; 0: one a core
     std::size_t min_samples = 8;
-    WriteGate* gate = nullptr;  ///< passed to write a file, if there is one
 };
 
 /// Called as logs finish, from one thread at a time: how many are done, of how many, and which it was.

@@ -2,6 +2,8 @@
 #include "batch/batch_run.h"
 
 #include <algorithm>
+#include <set>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -69,26 +71,44 @@ std::vector<std::string> cells_of(const BatchFlight& flight, const SortieRow& ro
     return cells;
 }
 
-constexpr std::size_t piece_bytes = 65'536;
-
-void add_rows(const BatchFlight& flight, CsvWriter& csv) {
+/// The columns of flights.csv: `visit` is called with the name of each, and with what it holds of a phase.
+void visit_columns(const BatchFlight& flight, const RecordedPhase& phase, const auto& visit) {
     const auto& record = flight.record;
-    const std::string none;
-    if (!record.accepted) {
-        csv.add(record.flight, none, none, none, none, none, none, none, none, none, false, none, none, none, none,
-                none, none, none, none, record.error);
-        return;
-    }
+    const auto& statistics = phase.statistics;
     const bool has_power = record.no_power_reason.empty();
     const auto known = [&](auto value) { return has_power ? std::optional(value) : std::nullopt; };
-    const auto faults = has_power ? fmt::format("{}", fmt::join(record.power_faults, "; ")) : record.no_power_reason;
-    for (const auto& phase : record.phases) {
-        const auto& statistics = phase.statistics;
-        csv.add(record.flight, phase.sortie, to_string(phase.phase), phase.start_s, phase.end_s,
-                phase.end_s - phase.start_s, known(statistics.samples), known(statistics.mean_power_w),
-                known(statistics.energy_wh), statistics.counter_energy_wh, is_used(flight, phase),
-                known(statistics.gaps), known(statistics.max_gap_s), phase.complete, record.aircraft_id,
-                record.aircraft_name, flight::is_synthetic(record.aircraft_name), record.power_source, faults, none);
+    visit("flight", record.flight);
+    visit("sortie", phase.sortie);
+    visit("phase", to_string(phase.phase));
+    visit("start_s", phase.start_s);
+    visit("end_s", phase.end_s);
+    visit("duration_s", phase.end_s - phase.start_s);
+    visit("samples", known(statistics.samples));
+    visit("mean_power_w", known(statistics.mean_power_w));
+    visit("energy_wh", known(statistics.energy_wh));
+    visit("counter_energy_wh", statistics.counter_energy_wh);
+    visit("used", is_used(flight, phase));
+    visit("gaps", known(statistics.gaps));
+    visit("longest_gap_s", known(statistics.max_gap_s));
+    visit("complete", phase.complete);
+    visit("aircraft_id", record.aircraft_id);
+    visit("aircraft_name", record.aircraft_name);
+    visit("synthetic", flight::is_synthetic(record.aircraft_name));
+    visit("power_source", record.power_source);
+    visit("power_faults", has_power ? fmt::format("{}", fmt::join(record.power_faults, "; ")) : record.no_power_reason);
+    visit("error", record.error);
+}
+
+/// Of a rejected log there is its name and its error alone.
+void add_rows(const BatchFlight& flight, CsvWriter& csv) {
+    const std::set<std::string_view> of_rejected{"flight", "used", "error"};
+    const auto& record = flight.record;
+    for (const auto& phase : record.accepted ? record.phases : std::vector(1, RecordedPhase{})) {
+        std::vector<std::string> cells;
+        visit_columns(flight, phase, [&](const char* name, const auto& value) {
+            cells.push_back(record.accepted || of_rejected.contains(name) ? csv.cell(value) : std::string());
+        });
+        csv.add_row(cells);
     }
 }
 
@@ -129,10 +149,10 @@ TextTable flights_table(const BatchFlights& flights, std::size_t max_logs) {
 
 TextWriter catalogue_csv(const BatchFlights& flights) {
     return [&flights](const TextSink& sink) {
-        CsvWriter csv({"flight",        "sortie",    "phase",         "start_s",      "end_s",
-                       "duration_s",    "samples",   "mean_power_w",  "energy_wh",    "counter_energy_wh",
-                       "used",          "gaps",      "longest_gap_s", "complete",     "aircraft_id",
-                       "aircraft_name", "synthetic", "power_source",  "power_faults", "error"});
+        constexpr std::size_t piece_bytes = 65'536;
+        std::vector<std::string_view> columns;
+        visit_columns({}, {}, [&](const char* name, const auto& /*value*/) { columns.emplace_back(name); });
+        CsvWriter csv(columns);
         for (const auto& flight : flights) {
             add_rows(flight, csv);
             if (csv.text().size() > piece_bytes) sink(csv.take_text());

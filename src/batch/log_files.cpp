@@ -77,9 +77,8 @@ std::vector<LogFile> each_once(std::vector<LogFile> logs) {
             log.path.find("..") == std::string::npos || canonical_path(normal) == canonical_path(log.path);
         if (is_same) log.path = std::move(normal);
     }
-    std::ranges::sort(logs, [](const LogFile& a, const LogFile& b) {
-        return a.path == b.path ? a.why_not_fitted < b.why_not_fitted : path_less(a.path, b.path);
-    });
+    std::ranges::sort(
+        logs, {}, [](const LogFile& log) { return std::pair(std::filesystem::path(log.path), log.why_not_fitted); });
     for (auto& log : logs) log.place = canonical_path(log.path);
     {
         std::unordered_set<std::string_view> seen;
@@ -103,15 +102,6 @@ std::string file_name_of(std::string name) {
 }
 
 }  // namespace
-
-bool path_less(std::string_view one, std::string_view other) {
-    const bool is_one_whole = one.starts_with('/');
-    const bool is_other_whole = other.starts_with('/');
-    if (is_one_whole != is_other_whole) return is_other_whole;
-    // The end of a part comes before whatever could go on there.
-    const auto rank = [](char c) { return c == '/' ? 0 : 1 + static_cast<unsigned char>(c); };
-    return std::ranges::lexicographical_compare(one, other, {}, rank, rank);
-}
 
 std::string canonical_path(const std::string& log) {
     const std::filesystem::path path(log);

@@ -21,9 +21,6 @@ struct LogFile {
     std::string place = {};           ///< the path from the root (canonical_path)
 };
 
-/// Whether a path is the earlier one of two, part by part as std::filesystem::path orders them.
-bool path_less(std::string_view one, std::string_view other);
-
 /// The path of a log from the root, its folder without links: one log, one place, however it is written.
 std::string canonical_path(const std::string& log);
 

@@ -228,7 +228,7 @@ BatchPlan plan_batch(std::vector<LogFile> logs, const std::filesystem::path& out
     const auto known = name_logs(logs, earlier, prune);
     for (const auto& flight : earlier)
         if (!known.contains(flight.flight)) add_earlier(flight, out, prune, plan, logs);
-    std::ranges::stable_sort(logs, path_less, &LogFile::path);
+    std::ranges::stable_sort(logs, {}, [](const LogFile& log) { return std::filesystem::path(log.path); });
     plan.manifest.files = {model_names.begin(), model_names.end()};
     plan.manifest.files.insert(catalogue_name);
     // A log with a problem leaves no file.

@@ -12,7 +12,6 @@
 #include <map>
 #include <mutex>
 #include <set>
-#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -66,9 +65,8 @@ void require_same(const ListedFlight& one, const ListedFlight& other) {
 
 /// By the paths of their logs, each log once. Returns how many were left out.
 std::size_t keep_each_once(std::vector<ListedFlight>& flights) {
-    std::ranges::stable_sort(flights, [](const ListedFlight& one, const ListedFlight& other) {
-        const auto& [log, place] = std::tie(one.listed.path, one.listed.place);
-        return log == other.listed.path ? path_less(place, other.listed.place) : path_less(log, other.listed.path);
+    std::ranges::stable_sort(flights, {}, [](const ListedFlight& flight) {
+        return std::pair(std::filesystem::path(flight.listed.path), std::filesystem::path(flight.listed.place));
     });
     std::map<std::string, std::size_t> seen;
     std::vector<ListedFlight> kept;
@@ -111,10 +109,6 @@ FlightRecord renamed(FlightRecord record, const std::string& name) {
     return record;
 }
 
-void write(const MergeOptions& options, const std::string& name, const char* ending, const std::string& text) {
-    write_file_atomically(result_path(options.out, name, ending), text, options.out / temporary_folder);
-}
-
 /// Whether the flight is there already, with this record.
 bool is_there(const std::filesystem::path& out, const std::string& name, const std::string& record) {
     try {
@@ -129,17 +123,16 @@ bool is_there(const std::filesystem::path& out, const std::string& name, const s
 }
 
 /// The record last, as a batch does.
-void take_over(const MergeOptions& options, const MergedFlight& source, bool is_accepted) {
-    const WriteGate::WriterGuard inside(options.gate);
-    remove_results(options.out, source.flight);
+void take_over(const std::filesystem::path& out, const MergedFlight& source, bool is_accepted) {
+    remove_results(out, source.flight);
     for (const auto* ending : {series_suffix, phases_suffix, record_suffix}) {
         if (!is_accepted && ending != std::string_view(record_suffix)) continue;
-        link_or_copy_file(result_path(source.from, source.flight, ending),
-                          result_path(options.out, source.flight, ending), options.out / temporary_folder);
+        link_or_copy_file(result_path(source.from, source.flight, ending), result_path(out, source.flight, ending),
+                          out / temporary_folder);
     }
 }
 
-void take_over_as(const MergeOptions& options, const MergedFlight& source, const std::string& name,
+void take_over_as(const std::filesystem::path& out, const MergedFlight& source, const std::string& name,
                   FlightRecord& record) {
     std::string series_text;
     std::string phases_text;
@@ -152,27 +145,30 @@ void take_over_as(const MergeOptions& options, const MergedFlight& source, const
     }
     record = renamed(std::move(record), name);
     if (record.accepted) record.results = results_fingerprint(series_text, phases_text);
-    const WriteGate::WriterGuard inside(options.gate);
-    remove_results(options.out, name);
+    const auto write = [&](const char* ending, const std::string& text) {
+        write_file_atomically(result_path(out, name, ending), text, out / temporary_folder);
+    };
+    remove_results(out, name);
     if (record.accepted) {
-        write(options, name, series_suffix, series_text);
-        write(options, name, phases_suffix, phases_text);
+        write(series_suffix, series_text);
+        write(phases_suffix, phases_text);
     }
-    write(options, name, record_suffix, to_json_text(record));
+    write(record_suffix, to_json_text(record));
 }
 
 /// Takes a flight over under that name.
-BatchFlight merge_flight(const MergeOptions& options, const MergedFlight& source, const std::string& name) {
+BatchFlight merge_flight(const std::filesystem::path& out, const MergedFlight& source, const std::string& name,
+                         std::size_t needed_samples) {
     const OverwriteExemption own;  // its batches' results, which are no inputs that a result could replace
     const auto text = read_file(result_path(source.from, source.flight, record_suffix));
     auto record = read_verified_record(source.from, source.flight);
-    const bool is_up_to_date = name == source.flight && is_there(options.out, name, text);
+    const bool is_up_to_date = name == source.flight && is_there(out, name, text);
     if (name != source.flight) {
-        take_over_as(options, source, name, record);
+        take_over_as(out, source, name, record);
     } else if (!is_up_to_date) {
-        take_over(options, source, record.accepted);
+        take_over(out, source, record.accepted);
     }
-    auto merged = without_samples(std::move(record), options.needed_samples, {});
+    auto merged = without_samples(std::move(record), needed_samples, {});
     merged.was_up_to_date = is_up_to_date;
     return merged;
 }
@@ -210,13 +206,14 @@ MergePlan plan_merge(const std::vector<std::filesystem::path>& batches, const st
     return plan;
 }
 
-BatchFlights merge_flights(const MergePlan& plan, const MergeOptions& options, const BatchProgress& progress) {
-    make_directories(options.out / temporary_folder);
+BatchFlights merge_flights(const MergePlan& plan, const std::filesystem::path& out, std::size_t needed_samples,
+                           const BatchProgress& progress) {
+    make_directories(out / temporary_folder);
     BatchFlights flights(plan.sources.size());
     std::mutex mutex;  // guards what follows
     std::size_t done = 0;
     for_each_in_parallel(flights.size(), [&](std::size_t i) {
-        flights[i] = merge_flight(options, plan.sources[i], plan.folder.logs[i].flight);
+        flights[i] = merge_flight(out, plan.sources[i], plan.folder.logs[i].flight, needed_samples);
         const std::lock_guard lock(mutex);
         progress(++done, flights.size(), flights[i]);
     });

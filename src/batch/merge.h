@@ -2,7 +2,6 @@
 
 #include "batch/batch_run.h"
 #include "batch/manifest.h"
-#include "batch/write_guard.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -32,16 +31,11 @@ struct MergePlan {
 /// finished, and a log that two batches read differently.
 MergePlan plan_merge(const std::vector<std::filesystem::path>& batches, const std::filesystem::path& out, bool prune);
 
-struct MergeOptions {
-    std::filesystem::path out;
-    std::size_t needed_samples = 8;
-    WriteGate& gate;  ///< passed to write a flight's files
-};
-
 /// Takes every flight over into OUT/flights, checked against the fingerprints of its record: as a hard link where its
 /// name stays and the file system can, else as a copy; one that is there already stays. Several flights at a time.
 /// Returned in the order of the plan, without the samples. Throws InputError for a flight that is not as its batch
 /// wrote it, OutputError where OUT cannot be written. The folder is to be prepared before (manifest.h).
-BatchFlights merge_flights(const MergePlan& plan, const MergeOptions& options, const BatchProgress& progress);
+BatchFlights merge_flights(const MergePlan& plan, const std::filesystem::path& out, std::size_t needed_samples,
+                           const BatchProgress& progress);
 
 }  // namespace flightwatt::batch

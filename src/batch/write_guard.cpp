@@ -6,29 +6,25 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <utility>
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/file.h>
 #include <unistd.h>
 
 namespace flightwatt::batch {
 namespace {
 
-/// Of the second within which an interrupted program has to end.
-constexpr std::chrono::milliseconds patience_with_writers(700);
+std::string note_at_end;  ///< set before any signal is handled
 
-sigset_t set_of(const std::vector<int>& signals) {
-    sigset_t set;
-    sigemptyset(&set);
-    for (const int signal : signals) sigaddset(&set, signal);
-    return set;
-}
-
-void change_mask(int how, const std::vector<int>& signals) {
-    const auto set = set_of(signals);
-    ::pthread_sigmask(how, &set, nullptr);
+/// All files are whole, and the kernel releases the rest: not exit(), which would destroy what other threads are using.
+void end_by_signal(int signal) {
+    ::pollfd standard_error{STDERR_FILENO, POLLOUT, 0};  // one that nobody reads does not keep the program
+    if (::poll(&standard_error, 1, 0) > 0) [[maybe_unused]]
+        const auto written = ::write(STDERR_FILENO, note_at_end.data(), note_at_end.size());
+    constexpr int killed_by_signal = 128;
+    ::_exit(killed_by_signal + signal);
 }
 
 }  // namespace
@@ -51,49 +47,10 @@ RemoveIfEmpty::~RemoveIfEmpty() {
 
 FolderLock::~FolderLock() { ::close(folder_); }
 
-WriteGate::WriterGuard::WriterGuard(WriteGate& gate) : gate_(gate) {
-    std::unique_lock lock(gate_.mutex_);
-    gate_.changed_.wait(lock, [this] { return !gate_.closed_; });
-    ++gate_.active_writers_;
-}
-
-WriteGate::WriterGuard::~WriterGuard() {
-    const std::lock_guard lock(gate_.mutex_);
-    --gate_.active_writers_;
-    gate_.changed_.notify_all();
-}
-
-bool WriteGate::close(std::chrono::milliseconds timeout) {
-    std::unique_lock lock(mutex_);
-    closed_ = true;
-    return changed_.wait_for(lock, timeout, [this] { return active_writers_ == 0; });
-}
-
-TerminationHandler::TerminationHandler(WriteGate& gate, std::function<void(int signal)> on_signal)
-    : signals_(termination_signals()) {
-    if (signals_.empty()) return;
-    change_mask(SIG_BLOCK, signals_);
-    const auto wait = [this, &gate, on_signal = std::move(on_signal), over = over_.get_token()] {
-        const auto set = set_of(signals_);
-        int signal = 0;
-        if (::sigwait(&set, &signal) != 0 || over.stop_requested()) return;
-        change_mask(SIG_UNBLOCK, signals_);  // here, so that a second one ends the program if we are stuck
-        gate.close(patience_with_writers);
-        on_signal(signal);
-        // Not exit(): it would destroy what the other threads are using. All files are whole, and the
-        // kernel releases the rest.
-        constexpr int killed_by_signal = 128;
-        ::_exit(killed_by_signal + signal);
-    };
-    thread_.emplace(wait);
-}
-
-TerminationHandler::~TerminationHandler() {
-    if (!thread_) return;
-    over_.request_stop();
-    ::pthread_kill(thread_->native_handle(), signals_.front());  // wakes it
-    thread_->join();
-    change_mask(SIG_UNBLOCK, signals_);
+void end_at_signals(const std::string& program) {
+    const auto* behind_a_progress_bar = ::isatty(STDERR_FILENO) != 0 ? "\n" : "";
+    note_at_end = fmt::format("{}{}: stopped; the same command goes on from there\n", behind_a_progress_bar, program);
+    for (const int signal : termination_signals()) std::signal(signal, end_by_signal);
 }
 
 }  // namespace flightwatt::batch

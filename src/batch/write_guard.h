@@ -1,14 +1,7 @@
 #pragma once
 
-#include <chrono>
-#include <condition_variable>
-#include <cstddef>
 #include <filesystem>
-#include <functional>
-#include <mutex>
-#include <optional>
-#include <thread>
-#include <vector>
+#include <string>
 
 /// What keeps a folder of results whole: from other runs, and from the program's own end.
 namespace flightwatt::batch {
@@ -33,48 +26,9 @@ struct RemoveIfEmpty {
     ~RemoveIfEmpty();
 };
 
-/// Lets files be written whole before the program ends: those who write are inside, whoever ends the program
-/// closes it first.
-class WriteGate {
-  public:
-    /// Being inside, as long as it lives.
-    class WriterGuard {
-      public:
-        explicit WriterGuard(WriteGate& gate);
-        ~WriterGuard();
-        WriterGuard(const WriterGuard&) = delete;
-        WriterGuard& operator=(const WriterGuard&) = delete;
-
-      private:
-        WriteGate& gate_;
-    };
-
-    /// Lets nobody in any more (who comes waits for the end of the program) and waits until all have left,
-    /// but no longer than `timeout`; false if some are still inside then.
-    bool close(std::chrono::milliseconds timeout);
-
-  private:
-    std::mutex mutex_;  ///< guards what follows
-    std::condition_variable changed_;
-    std::size_t active_writers_ = 0;
-    bool closed_ = false;
-};
-
-/// While it lives, SIGINT, SIGTERM and SIGHUP end the program within a second, whatever its threads are computing: the
-/// gate is closed, `on_signal` is called with the signal, in a thread of its own, and the exit code is 128 + the
-/// signal, as shells expect. A second signal ends it at once. Signals that the program was started to ignore (nohup)
-/// stay ignored. To be made before other threads are, which inherit that the signals are blocked.
-class TerminationHandler {
-  public:
-    TerminationHandler(WriteGate& gate, std::function<void(int signal)> on_signal);
-    ~TerminationHandler();
-    TerminationHandler(const TerminationHandler&) = delete;
-    TerminationHandler& operator=(const TerminationHandler&) = delete;
-
-  private:
-    std::vector<int> signals_;
-    std::stop_source over_;
-    std::optional<std::jthread> thread_;
-};
+/// From now on SIGINT, SIGTERM and SIGHUP end `program` at once, whatever its threads are computing: with a note on the
+/// standard error, and the exit code 128 + the signal, as shells expect. For programs whose files are whole at any
+/// moment. Signals that the program was started to ignore (nohup) stay ignored.
+void end_at_signals(const std::string& program);
 
 }  // namespace flightwatt::batch

@@ -3,8 +3,6 @@
 #include "base/error.h"
 #include "helpers/test_paths.h"
 
-#include <atomic>
-#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <functional>
@@ -14,35 +12,13 @@
 #include <thread>
 #include <vector>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 namespace flightwatt::batch {
 namespace {
-
-using namespace std::chrono_literals;
-
-TEST(WriteGate, WaitsForThoseInside) {
-    WriteGate gate;
-    std::atomic<bool> left = false;
-    std::atomic<bool> inside = false;
-    std::jthread writer([&] {
-        const WriteGate::WriterGuard pass(gate);
-        inside = true;
-        std::this_thread::sleep_for(50ms);
-        left = true;
-    });
-    while (!inside) std::this_thread::yield();
-    EXPECT_TRUE(gate.close(60s));
-    EXPECT_TRUE(left);
-}
-
-TEST(WriteGate, DoesNotWaitForever) {
-    WriteGate gate;
-    const WriteGate::WriterGuard pass(gate);
-    EXPECT_FALSE(gate.close(10ms));
-}
 
 /// Runs `body` in a process of its own. Once that has called its argument, it is sent the first of `signals`, and each
 /// other once it has called its argument again. Returns the status of waitpid(): SIGALRM where the process did not end
@@ -79,11 +55,10 @@ void compute(const std::function<void()>& ready) {
     for (;;) sum = sum + 1.0;
 }
 
-TEST(Interruption, EndsAProgramThatComputes) {
+TEST(EndAtSignals, EndsAProgramThatComputes) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         const int status = end_by({signal}, [](const auto& ready) {
-            WriteGate gate;
-            const TerminationHandler interruption(gate, [](int) {});
+            end_at_signals("a test");
             const std::jthread other([] { compute([] {}); });
             compute(ready);
         });
@@ -92,73 +67,30 @@ TEST(Interruption, EndsAProgramThatComputes) {
     }
 }
 
-TEST(Interruption, LetsAFileBeWrittenFirstAndNoOther) {
+TEST(EndAtSignals, EndsThoughNobodyReadsItsStandardError) {
     const int status = end_by({SIGINT}, [](const auto& ready) {
-        WriteGate gate;
-        std::atomic<bool> whole = false;
-        const TerminationHandler interruption(gate, [&](int) {
-            if (!whole) ::_exit(98);
-        });
-        {
-            const WriteGate::WriterGuard pass(gate);
-            ready();
-            std::this_thread::sleep_for(50ms);  // much less than what a writer is given
-            whole = true;
-        }
-        const WriteGate::WriterGuard pass(gate);
-        ::_exit(97);
-    });
-    ASSERT_TRUE(WIFEXITED(status));
-    EXPECT_EQ(WEXITSTATUS(status), 130);
-}
-
-TEST(Interruption, EndsThoughAFileTakesForEver) {
-    const int status = end_by({SIGINT}, [](const auto& ready) {
-        WriteGate gate;
-        const TerminationHandler interruption(gate, [](int) {});
-        const WriteGate::WriterGuard pass(gate);
+        int full[2] = {};
+        if (::pipe(full) != 0 || ::fcntl(full[1], F_SETFL, O_NONBLOCK) != 0) ::_exit(97);
+        while (::write(full[1], "x", 1) == 1) continue;
+        ::fcntl(full[1], F_SETFL, 0);
+        ::dup2(full[1], STDERR_FILENO);
+        end_at_signals("a test");
         compute(ready);
     });
     ASSERT_TRUE(WIFEXITED(status));
     EXPECT_EQ(WEXITSTATUS(status), 130);
 }
 
-TEST(Interruption, EndsAtOnceAtTheSecondSignal) {
-    const int status = end_by({SIGINT, SIGINT}, [](const auto& ready) {
-        WriteGate gate;
-        const TerminationHandler interruption(gate, [&](int) {
-            ready();
-            std::this_thread::sleep_for(50s);
-        });
-        compute(ready);
-    });
-    ASSERT_TRUE(WIFSIGNALED(status));
-    EXPECT_EQ(WTERMSIG(status), SIGINT);
-}
-
-TEST(Interruption, LeavesIgnoredSignalsIgnored) {
+TEST(EndAtSignals, LeavesIgnoredSignalsIgnored) {
     const int status = end_by({SIGHUP, SIGINT, SIGTERM}, [](const auto& ready) {
         std::signal(SIGHUP, SIG_IGN);
         std::signal(SIGINT, SIG_IGN);
-        WriteGate gate;
-        const TerminationHandler interruption(gate, [](int) {});
+        end_at_signals("a test");
         for (int signals = 0; signals < 2; ++signals) ready();
         compute(ready);
     });
     ASSERT_TRUE(WIFEXITED(status));
     EXPECT_EQ(WEXITSTATUS(status), 128 + SIGTERM);
-}
-
-TEST(Interruption, IsOverWithItsScope) {
-    const int status = end_by({SIGTERM}, [](const auto& ready) {
-        WriteGate gate;
-        {
-            const TerminationHandler interruption(gate, [](int) { ::_exit(98); });
-        }
-        compute(ready);
-    });
-    ASSERT_TRUE(WIFSIGNALED(status));
-    EXPECT_EQ(WTERMSIG(status), SIGTERM);
 }
 
 TEST(FolderLock, KeepsASecondRunOut) {
