@@ -2,9 +2,9 @@
 
 #include "base/units.h"
 
-#include <array>
 #include <cmath>
 
+#include <GeographicLib/LocalCartesian.hpp>
 #include <fmt/format.h>
 
 namespace flightwatt::path {
@@ -12,21 +12,6 @@ namespace {
 
 constexpr double max_m = 300e3;  // of a place from the start: beyond, coordinates were mistaken
 constexpr double same_place_m = 1e-6;
-
-using Vector3 = std::array<double, 3>;
-
-/// On the surface of the ellipsoid, earth-centred.
-Vector3 earth_centred_m(const GeodeticPosition& place) {
-    constexpr double equatorial_radius_m = 6378137.0;
-    constexpr double flattening = 1.0 / 298.257223563;
-    constexpr double eccentricity_squared = flattening * (2.0 - flattening);
-    const double latitude = place.latitude_deg / units::degree_per_rad;
-    const double longitude = place.longitude_deg / units::degree_per_rad;
-    const double sine = std::sin(latitude);
-    const double normal_m = equatorial_radius_m / std::sqrt(1.0 - eccentricity_squared * sine * sine);
-    return {normal_m * std::cos(latitude) * std::cos(longitude), normal_m * std::cos(latitude) * std::sin(longitude),
-            normal_m * (1.0 - eccentricity_squared) * sine};
-}
 
 /// Follows the aircraft from entry to entry.
 class PathBuilder {
@@ -232,15 +217,11 @@ std::optional<GeodeticPosition> origin_of(const std::vector<PathEntry>& entries,
 }  // namespace
 
 LocalPosition to_local(const GeodeticPosition& place, const GeodeticPosition& origin) {
-    const auto from = earth_centred_m(origin);
-    const auto to = earth_centred_m(place);
-    const double x = to[0] - from[0];
-    const double y = to[1] - from[1];
-    const double z = to[2] - from[2];
-    const double latitude = origin.latitude_deg / units::degree_per_rad;
-    const double longitude = origin.longitude_deg / units::degree_per_rad;
-    const double outward = std::cos(longitude) * x + std::sin(longitude) * y;
-    return {-std::sin(longitude) * x + std::cos(longitude) * y, -std::sin(latitude) * outward + std::cos(latitude) * z};
+    const GeographicLib::LocalCartesian plane(origin.latitude_deg, origin.longitude_deg);
+    LocalPosition local;
+    double above_m = 0.0;
+    plane.Forward(place.latitude_deg, place.longitude_deg, 0.0, local.east_m, local.north_m, above_m);
+    return local;
 }
 
 FlightPath path_of(const std::vector<PathEntry>& entries, const PathDefaults& defaults) {

@@ -12,6 +12,7 @@
 #include <optional>
 #include <utility>
 
+#include <GeographicLib/TransverseMercator.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -43,38 +44,16 @@ struct Position {
 };
 
 /// The position on WGS 84 of UTM coordinates as Paparazzi logs them: the north has no false origin, so it is negative
-/// in the south. NaN where one of them is NaN or the zone is none of 1 to 60. Krueger's series to the third order
-/// (Karney, Transverse Mercator with an accuracy of a few nanometers, J. Geodesy 85, 2011): better than a millimetre.
+/// in the south. NaN where one of them is NaN or the zone is none of 1 to 60.
 Position position_of_utm(double east_m, double north_m, double zone) {
-    if (!(zone >= 1.0 && zone <= 60.0) || !std::isfinite(east_m) || !std::isfinite(north_m)) {
-        return {unknown, unknown};
-    }
-    constexpr double equator_m = 6378137.0;
-    constexpr double flattening = 1.0 / 298.257223563;
-    constexpr double scale = 0.9996;
+    if (!(zone >= 1.0 && zone <= 60.0) || !std::isfinite(east_m) || !std::isfinite(north_m)) return {unknown, unknown};
     constexpr double false_east_m = 500e3;
-    constexpr double n = flattening / (2.0 - flattening);
-    constexpr double meridian_m = equator_m / (1.0 + n) * (1.0 + n * n / 4.0 + n * n * n * n / 64.0);
-    constexpr double beta[] = {n / 2.0 - 2.0 / 3.0 * n * n + 37.0 / 96.0 * n * n * n, n * n / 48.0 + n * n * n / 15.0,
-                               17.0 / 480.0 * n * n * n};
-    constexpr double delta[] = {2.0 * n - 2.0 / 3.0 * n * n - 2.0 * n * n * n,
-                                7.0 / 3.0 * n * n - 8.0 / 5.0 * n * n * n, 56.0 / 15.0 * n * n * n};
-    const double xi = north_m / (scale * meridian_m);
-    const double eta = (east_m - false_east_m) / (scale * meridian_m);
-    double xi_0 = xi;
-    double eta_0 = eta;
-    for (int j = 1; j <= 3; ++j) {
-        xi_0 -= beta[j - 1] * std::sin(2 * j * xi) * std::cosh(2 * j * eta);
-        eta_0 -= beta[j - 1] * std::cos(2 * j * xi) * std::sinh(2 * j * eta);
-    }
-    const double conformal = std::asin(std::sin(xi_0) / std::cosh(eta_0));
-    double latitude = conformal;
-    for (int j = 1; j <= 3; ++j) latitude += delta[j - 1] * std::sin(2 * j * conformal);
-    const double from_meridian = std::atan2(std::sinh(eta_0), std::cos(xi_0));
     constexpr double degree_per_zone = 6.0;
     constexpr double first_meridian_deg = -183.0;
-    return {latitude * units::degree_per_rad,
-            first_meridian_deg + degree_per_zone * zone + from_meridian * units::degree_per_rad};
+    Position position;
+    GeographicLib::TransverseMercator::UTM().Reverse(first_meridian_deg + degree_per_zone * zone, east_m - false_east_m,
+                                                     north_m, position.latitude_deg, position.longitude_deg);
+    return position;
 }
 
 /// 0 east and 0 north says that the aircraft does not know the wind yet.
