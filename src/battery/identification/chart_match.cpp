@@ -104,6 +104,25 @@ std::vector<MissingPart> missing_parts() {
     return parts;
 }
 
+struct ChartPoint {
+    double soc_percent = 0.0;
+    double slope_v_per_percent = 0.0;
+};
+
+ChartPoint chart_point(Chemistry chemistry, double soc_percent) {
+    const double low = std::clamp(soc_percent - chart_soc_sd_percent, 0.0, units::percent_per_whole - 1.0);
+    const double high = std::clamp(soc_percent + chart_soc_sd_percent, 1.0, units::percent_per_whole);
+    return {soc_percent, (chart_voltage_v(chemistry, high) - chart_voltage_v(chemistry, low)) / (high - low)};
+}
+
+/// Of how a cell differs from its chart at two points.
+double chart_covariance_v2(const ChartPoint& a, const ChartPoint& b) {
+    const double apart = (a.soc_percent - b.soc_percent) / chart_correlation_percent;
+    const double variance_v2 = chart_sd_v * chart_sd_v + a.slope_v_per_percent * b.slope_v_per_percent *
+                                                             chart_soc_sd_percent * chart_soc_sd_percent;
+    return variance_v2 * std::exp(-apart * apart / 2.0);
+}
+
 /// The logarithm of the likelihood of a scale; -infinity where more was drawn than there is by so many percent.
 double log_likelihood(const Compared& shown, Chemistry chemistry, double capacity_ah, double missing_ah,
                       double beyond_percent) {
@@ -111,22 +130,16 @@ double log_likelihood(const Compared& shown, Chemistry chemistry, double capacit
     if (soc.minCoeff() < -beyond_percent) return -std::numeric_limits<double>::infinity();
     const auto n = soc.size();
     Eigen::VectorXd difference(n);
-    Eigen::VectorXd slope(n);
+    std::vector<ChartPoint> points;
     for (Eigen::Index i = 0; i < n; ++i) {
         difference[i] = shown.cell_v[i] - chart_voltage_v(chemistry, soc[i]);
-        const double low = std::clamp(soc[i] - chart_soc_sd_percent, 0.0, units::percent_per_whole - 1.0);
-        const double high = std::clamp(soc[i] + chart_soc_sd_percent, 1.0, units::percent_per_whole);
-        slope[i] = (chart_voltage_v(chemistry, high) - chart_voltage_v(chemistry, low)) / (high - low);
+        points.push_back(chart_point(chemistry, soc[i]));
     }
     Eigen::MatrixXd covariance = shown.covariance_v2;
-    for (Eigen::Index i = 0; i < n; ++i) {
-        for (Eigen::Index j = 0; j < n; ++j) {
-            const double apart = (soc[i] - soc[j]) / chart_correlation_percent;
-            const double variance =
-                chart_sd_v * chart_sd_v + slope[i] * slope[j] * chart_soc_sd_percent * chart_soc_sd_percent;
-            covariance(i, j) += variance * std::exp(-apart * apart / 2.0);
-        }
-    }
+    for (Eigen::Index i = 0; i < n; ++i)
+        for (Eigen::Index j = 0; j < n; ++j)
+            covariance(i, j) +=
+                chart_covariance_v2(points[static_cast<std::size_t>(i)], points[static_cast<std::size_t>(j)]);
     const Eigen::LLT<Eigen::MatrixXd> root(covariance);
     const Eigen::VectorXd whitened = root.matrixL().solve(difference);
     return -0.5 * whitened.squaredNorm() - root.matrixLLT().diagonal().array().log().sum();
@@ -166,6 +179,14 @@ double part_below(double limit) {
 
 double chart_voltage_v(Chemistry chemistry, double soc_percent) {
     return interpolate_clamped(chart_soc_percent, charts.at(static_cast<std::size_t>(chemistry)).cell_v, soc_percent);
+}
+
+double extrapolation_sd_v(Chemistry chemistry, double soc_percent, double known_percent) {
+    const auto there = chart_point(chemistry, soc_percent);
+    const auto known = chart_point(chemistry, known_percent);
+    const double variance_v2 =
+        chart_covariance_v2(there, there) + chart_covariance_v2(known, known) - 2.0 * chart_covariance_v2(there, known);
+    return std::sqrt(std::max(0.0, variance_v2) + chart_local_sd_v * chart_local_sd_v);
 }
 
 std::vector<CapacityHypothesis> capacity_posterior(const ObservedOcv& shown, std::optional<double> given_ah) {

@@ -38,6 +38,10 @@ inline constexpr double chart_correlation_percent = 40.0;
 inline constexpr double chart_local_sd_v = 0.01;
 inline constexpr double chart_soc_sd_percent = 4.0;  ///< an error of its charge, which counts where it is steep
 
+/// Standard deviation [V] of a cell's voltage at a state of charge where it is continued in parallel to the chart from
+/// another: near to it packs differ from the chart alike, far from it they do not.
+double extrapolation_sd_v(Chemistry chemistry, double soc_percent, double known_percent);
+
 /// How probable a capacity is, with a charge missing where the curve begins.
 struct CapacityHypothesis {
     double capacity_ah = 0.0;

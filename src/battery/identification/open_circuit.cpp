@@ -99,7 +99,8 @@ ExtendedCurve extrapolate_curve(const CircuitFit& fit, const std::vector<double>
         const double above_v = cells * (chart_voltage_v(chemistry, percent) - chart_voltage_v(chemistry, from_percent));
         soc.push_back(percent);
         extended.curve.voltage_v.push_back(std::max(from_v + above_v, from_v / 2.0));
-        extended.standard_error_v.push_back(std::hypot(error_v, cells * chart_sd_v));
+        extended.standard_error_v.push_back(
+            std::hypot(error_v, cells * extrapolation_sd_v(chemistry, percent, from_percent)));
     };
     double percent = 0.0;
     for (; percent < extended.known_down_to_percent - 0.5; percent += added_step_percent)

@@ -29,7 +29,7 @@ Capacity estimate_capacity(double drawn_ah, std::span<const CapacityHypothesis> 
 /// The fitted curve over state of charge; beyond its ends it goes on in parallel to the chart of that many cells.
 struct ExtendedCurve {
     OpenCircuitVoltage curve;
-    std::vector<double> standard_error_v;  ///< 80 mV a cell more where the chart stands in
+    std::vector<double> standard_error_v;  ///< more where the chart stands in: extrapolation_sd_v
     double known_down_to_percent = 0.0;
     double known_up_to_percent = 0.0;
 };

@@ -171,10 +171,12 @@ void move_battery(const battery::BatteryIntervals& intervals, Normals& normal, b
     circuit.rc_time_constant_s =
         moved_logarithm(circuit.rc_time_constant_s, intervals.rc_time_constant_s, time_constant_z);
     auto& voltage_v = circuit.open_circuit.voltage_v;
-    double below_v = min_part * voltage_v.front();  // the curve never falls
-    for (std::size_t k = 0; k < intervals.open_circuit_standard_error_v.size(); ++k) {
-        voltage_v[k] = std::max(below_v, voltage_v[k] + voltage_z * intervals.open_circuit_standard_error_v[k]);
-        below_v = voltage_v[k];
+    const double min_v = min_part * voltage_v.front();
+    // Knots near an empty pack are least certain: the curve never falls, so the ones above limit them.
+    double above_v = std::numeric_limits<double>::infinity();
+    for (std::size_t k = intervals.open_circuit_standard_error_v.size(); k-- > 0;) {
+        const double moved_v = voltage_v[k] + voltage_z * intervals.open_circuit_standard_error_v[k];
+        above_v = voltage_v[k] = std::clamp(moved_v, min_v, std::max(min_v, above_v));
     }
 }
 

@@ -5,6 +5,8 @@
 #include "base/error.h"
 #include "battery/identification/open_circuit.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace flightwatt::battery {
@@ -100,6 +102,15 @@ TEST(ChartMatch, AddsTheErrorOfAFlightsPlace) {
     EXPECT_NEAR(interval.low, 0.5 - 1.96 * 0.1, 1e-3);
     EXPECT_NEAR(interval.high, 0.5 + 1.96 * 0.1, 1e-3);
     EXPECT_EQ(depletion_interval_ah(full, 0.0, 0.1).low, 0.0) << "nothing is fuller than full";
+}
+
+TEST(ChartMatch, IsLessSureOfAVoltageTheFurtherItIsFromWhatWasFlown) {
+    const auto sd_v = [](double soc_percent) { return extrapolation_sd_v(Chemistry::lipo, soc_percent, 50.0); };
+    EXPECT_DOUBLE_EQ(sd_v(50.0), chart_local_sd_v);
+    EXPECT_NEAR(sd_v(30.0), chart_sd_v * std::sqrt(2.0 * (1.0 - std::exp(-0.125))), 0.005);
+    for (double soc_percent = 0.0; soc_percent < 50.0; soc_percent += 5.0)
+        EXPECT_GT(sd_v(soc_percent), sd_v(soc_percent + 5.0)) << soc_percent;
+    EXPECT_GT(sd_v(0.0), 3.0 * sd_v(15.0)) << "where the chart is steep";
 }
 
 TEST(ChartMatch, RefusesACapacityBelowWhatWasDrawn) {

@@ -110,7 +110,8 @@ TEST(OpenCircuit, GoesOnInParallelToTheChart) {
     EXPECT_NEAR(curve.voltage_v.front(), 3.0 * 3.27, 1e-9);
     EXPECT_TRUE(std::is_sorted(curve.voltage_v.begin(), curve.voltage_v.end()));
     EXPECT_EQ(curve.soc_percent.size(), 13U);  // 0 to 45 in steps of 5, and the three knots
-    EXPECT_NEAR(extended.standard_error_v.front(), std::hypot(0.03, 3.0 * chart_sd_v), 1e-9);
+    const double far_v = extrapolation_sd_v(Chemistry::lipo, 0.0, 50.0);
+    EXPECT_NEAR(extended.standard_error_v.front(), std::hypot(0.03, 3.0 * far_v), 1e-9);
     EXPECT_EQ(extended.standard_error_v.back(), 0.01);
 }
 

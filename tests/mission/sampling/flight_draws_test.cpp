@@ -191,6 +191,27 @@ TEST(FlightDraws, HoldTheResistancesOfFlightsToCome) {
     EXPECT_LE(share_of_flights_to_come(12, 0.15), 0.98);
 }
 
+TEST(FlightDraws, DrawCurvesThatRiseThoughTheirLowEndIsUncertain) {
+    auto mission = test::paper_mission("phased");
+    constexpr std::size_t of_voltage = 7;
+    battery::TheveninCircuit circuit;
+    circuit.open_circuit = {{0.0, 5.0, 50.0, 100.0}, {9.8, 10.8, 11.5, 12.6}};
+    mission.setup.battery.thevenin = circuit;
+    mission.setup.battery.intervals.open_circuit_standard_error_v = {0.9, 0.5, 0.02, 0.01};
+    const auto drawn_v = [&](double z) {
+        std::vector<double> normals(count_normals(mission.setup), 0.0);
+        normals[of_voltage] = z;
+        return apply_draw(mission.setup, collect_uncertainty(mission.setup), normals)
+            .battery.thevenin->open_circuit.voltage_v;
+    };
+    EXPECT_EQ(drawn_v(2.0), (std::vector<double>{11.54, 11.54, 11.54, 12.62})) << "no knot above one that is certain";
+    EXPECT_EQ(drawn_v(0.0), circuit.open_circuit.voltage_v);
+    const auto low_v = drawn_v(-2.0);
+    EXPECT_NEAR(low_v[0], 8.0, 1e-12);
+    EXPECT_NEAR(low_v[2], 11.46, 1e-12);
+    EXPECT_GT(drawn_v(-20.0).front(), 0.0);
+}
+
 TEST(FlightDraws, DrawTheResistanceOfFilesOfBeforeByItsInterval) {
     auto mission = test::paper_mission("phased");
     constexpr std::size_t of_resistance = 8;
