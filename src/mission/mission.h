@@ -42,6 +42,7 @@ struct Uncertainty {
     PerPhase<std::optional<double>> duration_sd_s;
     std::vector<std::optional<double>> compute_sd_percent;  ///< of each component's power
     std::optional<double> capacity_sd_percent;              ///< of the battery's capacity
+    double initial_soc_sd_percent = 0.0;                    ///< of the charge at the start [points]
 };
 
 /// A flight, the software that can run in it, and the battery that feeds both: all but the schedule.

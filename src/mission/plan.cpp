@@ -202,7 +202,7 @@ void require_uncertainty(const MissionSetup& mission) {
                      "nor the battery say how they differ",
                      "fit the model to two flights or more (flightwatt fit), or state it: [uncertainty] with "
                      "level_sd_percent = { cruise = 5 }, duration_sd_s = { cruise = 20 }, "
-                     "compute_sd_percent or capacity_sd_percent");
+                     "compute_sd_percent, capacity_sd_percent or initial_soc_sd_percent");
 }
 
 void require_known_spread(const MissionSetup& mission) {

@@ -197,6 +197,8 @@ void name_sources(const MissionSetup& a, const MissionSetup& b, const CommonSour
     for (std::size_t i = 0; i < common.components.size(); ++i)
         add(common.components[i].has_value(), b.compute.components[i].name);
     if (a.cruise_path && b.cruise_path) add(true, "wind");
+    if (a.uncertainty.initial_soc_sd_percent > 0.0 && b.uncertainty.initial_soc_sd_percent > 0.0)
+        add(true, "initial charge");
 }
 
 }  // namespace

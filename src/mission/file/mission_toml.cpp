@@ -141,7 +141,8 @@ Uncertainty read_uncertainty(const TomlTable& mission, const compute::ComputeMod
     read.compute_sd_percent.resize(compute.components.size());
     const auto table = mission.optional_table("uncertainty");
     if (!table) return read;
-    table->refuse_keys_except({"level_sd_percent", "duration_sd_s", "compute_sd_percent", "capacity_sd_percent"});
+    table->refuse_keys_except(
+        {"level_sd_percent", "duration_sd_s", "compute_sd_percent", "capacity_sd_percent", "initial_soc_sd_percent"});
     if (table->has("level_sd_percent") && !has_mechanical) {
         throw InputError(table->where("level_sd_percent"), "level_sd_percent has no meaning with mechanical = \"none\"",
                          "leave it out");
@@ -149,6 +150,7 @@ Uncertainty read_uncertainty(const TomlTable& mission, const compute::ComputeMod
     read.level_sd_percent = read_phases(*table, "level_sd_percent", largest_sd_percent);
     read.duration_sd_s = read_phases(*table, "duration_sd_s", max_phase_s);
     read.capacity_sd_percent = optional_sd_percent(*table, "capacity_sd_percent");
+    read.initial_soc_sd_percent = number_in_or(between(0.0, 100.0), *table, "initial_soc_sd_percent", 0.0);
     if (const auto components = table->optional_table("compute_sd_percent")) {
         for (std::size_t i = 0; i < compute.components.size(); ++i)
             read.compute_sd_percent[i] = optional_sd_percent(*components, compute.components[i].name);

@@ -192,6 +192,7 @@ void move_component(const ComponentSpread& spread, Normals& normal, std::vector<
 
 constexpr std::size_t of_battery = 5;
 constexpr std::size_t of_wind = 2;
+constexpr double min_initial_soc_percent = 0.1;
 
 /// Numbers of the phases, the battery and the components before this one.
 std::size_t normals_before_component(const MissionSetup& mission, std::size_t component) {
@@ -200,10 +201,17 @@ std::size_t normals_before_component(const MissionSetup& mission, std::size_t co
     return count;
 }
 
+std::size_t normals_before_wind(const MissionSetup& mission) {
+    return normals_before_component(mission, mission.compute.components.size());
+}
+
+bool initial_charge_varies(const MissionSetup& mission) { return mission.uncertainty.initial_soc_sd_percent > 0.0; }
+
 }  // namespace
 
 std::size_t count_normals(const MissionSetup& mission) {
-    return normals_before_component(mission, mission.compute.components.size()) + (mission.cruise_path ? of_wind : 0);
+    return normals_before_wind(mission) + (mission.cruise_path ? of_wind : 0) +
+           (initial_charge_varies(mission) ? 1 : 0);
 }
 
 CommonSources common_sources(const MissionSetup& a, const MissionSetup& b) {
@@ -233,7 +241,8 @@ std::vector<double> correlated_normals(const MissionSetup& a, const MissionSetup
             take(normals_before_component(a, *same), normals_before_component(b, i),
                  normals_before_component(b, i + 1) - normals_before_component(b, i));
     }
-    if (a.cruise_path && b.cruise_path) take(of_a.size() - of_wind, own.size() - of_wind, of_wind);
+    if (a.cruise_path && b.cruise_path) take(normals_before_wind(a), normals_before_wind(b), of_wind);
+    if (initial_charge_varies(a) && initial_charge_varies(b)) own.back() = of_a.back();
     return own;
 }
 
@@ -264,11 +273,17 @@ void apply_draw_to(const MissionSetup& mission, const FlightUncertainty& spreads
         power_w = mission.compute.components[i].profile.power_w;
         move_component(spreads.components[i], normal, power_w);
     }
-    if (!mission.cruise_path) return;
-    const double wind_speed_z = normal();
-    const double wind_direction_z = normal();
-    const double moved_w = std::min(deviations.of.at(level_index(Phase::cruise)), spreads.max_rise_w[Phase::cruise]);
-    fly_drawn_path(moved_w, wind_speed_z, wind_direction_z, mission, flight);
+    if (mission.cruise_path) {
+        const double wind_speed_z = normal();
+        const double wind_direction_z = normal();
+        const double moved_w =
+            std::min(deviations.of.at(level_index(Phase::cruise)), spreads.max_rise_w[Phase::cruise]);
+        fly_drawn_path(moved_w, wind_speed_z, wind_direction_z, mission, flight);
+    }
+    if (initial_charge_varies(mission))
+        flight.initial_soc_percent =
+            std::clamp(mission.initial_soc_percent + normal() * mission.uncertainty.initial_soc_sd_percent,
+                       min_initial_soc_percent, units::percent_per_whole);
 }
 
 MissionSetup draw_flight(const MissionSetup& mission, const FlightUncertainty& spreads, std::uint64_t seed,

@@ -81,7 +81,7 @@ class Block {
         }
         battery::StateLanes state;
         state.is_active = flown;
-        state.soc_percent.setConstant(setup_.initial_soc_percent);
+        state.soc_percent = initial_soc_percent_;
         for (const auto& stretch : schedule_.stretches) {
             for (std::size_t note = 0; note < stretch.outputs_at_start; ++note) note_charges(state, flown, landings);
             setup_.battery.thevenin ? fly_thevenin(stretch, state) : fly_constant(stretch, state);
@@ -115,6 +115,7 @@ class Block {
             compute_w_[k](lane) = sum_w;
         }
         if (batteries_) battery::set_lane(*batteries_, lane, flight_.battery);
+        initial_soc_percent_(lane) = flight_.initial_soc_percent;
         voltage_v_(lane) = flight_.battery.voltage_v;
         resistance_ohm_(lane) = flight_.battery.resistance_ohm;
         capacity_as_(lane) = units::coulomb_from_ah(flight_.battery.capacity_ah);
@@ -284,6 +285,7 @@ class Block {
     PerPhase<PhaseLanes> phases_;
     std::vector<Lanes> compute_w_;  ///< of each configuration
     std::optional<battery::BatteryLanes> batteries_;
+    Lanes initial_soc_percent_;
     Lanes voltage_v_;
     Lanes resistance_ohm_;
     Lanes capacity_as_;

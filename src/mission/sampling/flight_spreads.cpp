@@ -271,6 +271,8 @@ FlightUncertainty collect_uncertainty(const MissionSetup& mission) {
     find_wind(mission, spreads);
     find_compute(mission, spreads);
     find_battery(mission, spreads);
+    if (const double sd_percent = mission.uncertainty.initial_soc_sd_percent; sd_percent > 0.0)
+        note_source(spreads, true, "initial charge", fmt::format("sd {:.4g} points, stated", sd_percent));
     return spreads;
 }
 

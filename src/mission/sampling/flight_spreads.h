@@ -52,8 +52,8 @@ struct ComponentSpread {
 };
 
 /// What differs between the flights of a mission: the one definition of it, for plans that keep a reserve with a
-/// chance and for flights that are drawn. What is not in it is the same in every flight: initial charge, schedule,
-/// cut-off voltage, and the course of the power within a flight beside its phases' levels.
+/// chance and for flights that are drawn. What is not in it is the same in every flight: schedule, cut-off voltage,
+/// and the course of the power within a flight beside its phases' levels.
 struct FlightUncertainty {
     PerPhase<double> level_sd_w;  ///< of a phase's mean mechanical power
     PerPhase<double> duration_sd_s;

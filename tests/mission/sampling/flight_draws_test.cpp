@@ -212,6 +212,24 @@ TEST(FlightDraws, DrawCurvesThatRiseThoughTheirLowEndIsUncertain) {
     EXPECT_GT(drawn_v(-20.0).front(), 0.0);
 }
 
+TEST(FlightDraws, DrawTheInitialChargeThatIsStated) {
+    auto mission = test::paper_mission("phased");
+    mission.setup.initial_soc_percent = 90.0;
+    const auto certain = count_normals(mission.setup);
+    mission.setup.uncertainty.initial_soc_sd_percent = 4.0;
+    ASSERT_EQ(count_normals(mission.setup), certain + 1);
+    const auto drawn_percent = [&](double z) {
+        std::vector<double> normals(count_normals(mission.setup), 0.0);
+        normals.back() = z;
+        return apply_draw(mission.setup, collect_uncertainty(mission.setup), normals).initial_soc_percent;
+    };
+    EXPECT_DOUBLE_EQ(drawn_percent(-1.5), 84.0);
+    EXPECT_EQ(drawn_percent(3.0), 100.0) << "no battery is more than full";
+    EXPECT_GT(drawn_percent(-50.0), 0.0);
+    EXPECT_NE(describe(collect_uncertainty(mission.setup).sources).find("initial charge (sd 4 points, stated)"),
+              std::string::npos);
+}
+
 TEST(FlightDraws, DrawTheResistanceOfFilesOfBeforeByItsInterval) {
     auto mission = test::paper_mission("phased");
     constexpr std::size_t of_resistance = 8;

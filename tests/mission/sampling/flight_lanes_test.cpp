@@ -22,6 +22,7 @@ std::vector<std::vector<double>> drawn_numbers(const MissionSetup& setup, std::s
 Mission flown_mission(unsigned seed, double charge_part) {
     auto problem = test::generated_mission(seed, false).problem;
     problem.setup.battery.capacity_ah *= charge_part;
+    if (seed % 4 < 2) problem.setup.uncertainty.initial_soc_sd_percent = 3.0;
     Mission mission{problem.setup, {}};
     for (const auto phase : all_phases) {
         const double planned_s = mission.setup.duration_s[phase];
