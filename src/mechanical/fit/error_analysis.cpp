@@ -165,7 +165,7 @@ ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseF
         const auto found = fit_at_frequency(samples.flights, static_cast<int>(size - 1) / 2, fit.theta_rad);
         double square_sum_w2 = 0.0;
         for (const double part : found.square_sum) square_sum_w2 += part;
-        const double information = frequency_slope(samples.flights, found).information;
+        const double information = frequency_information(samples.flights, found);
         if (information > 0.0) linear_rad = std::sqrt(square_sum_w2 / fit.degrees_of_freedom / information);
         tried = frequencies_to_try(fit, linear_rad, curve.half_width);
     }

@@ -13,6 +13,7 @@
 
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/tools/minima.hpp>
+#include <ceres/tiny_solver.h>
 #include <fmt/format.h>
 
 namespace flightwatt::mechanical {
@@ -85,9 +86,46 @@ constexpr double smallest_scale = 1e-10;
 constexpr int max_scalings = 200;
 constexpr double same_scale = 1e-8;
 
-double total_square_sum(const JointFit& fit) {
-    return std::accumulate(fit.square_sum.begin(), fit.square_sum.end(), 0.0);
+/// The derivative of a flight's residuals over theta, its coefficients following to first order (variable projection;
+/// Golub and Pereyra 1973, Kaufman 1975). 0 where its samples do not determine them.
+Eigen::VectorXd projected_slope(const FourierResidual& at) {
+    const auto followed = solve_least_squares(at.by_coefficients, at.by_theta);
+    if (!followed) return Eigen::VectorXd::Zero(at.by_theta.size());
+    return at.by_theta - at.by_coefficients * followed->coefficients;
 }
+
+/// All flights' residuals over theta, in the form that Ceres's TinySolver asks for.
+struct ProjectedResiduals {
+    using Scalar = double;
+    enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = 1 };
+
+    std::span<const ScaledSamples> flights;
+    int order = 0;
+    FrequencyRange range;
+
+    int NumResiduals() const {
+        std::size_t count = 0;
+        for (const auto& flight : flights) count += flight.tau.size();
+        return static_cast<int>(count);
+    }
+
+    JointFit fit_at(double theta_rad) const {
+        return fit_at_frequency(flights, order, std::clamp(theta_rad, range.low_rad, range.high_rad));
+    }
+
+    bool operator()(const double* theta_rad, double* residual, double* by_theta) const {
+        const auto fit = fit_at(*theta_rad);
+        Eigen::Index row = 0;
+        for (std::size_t i = 0; i < flights.size(); ++i) {
+            const auto at = fourier_residual(flights[i], fit.theta_rad, fit.coefficients[i]);
+            const auto count = at.residual.size();
+            Eigen::Map<Eigen::VectorXd>(residual + row, count) = at.residual;
+            if (by_theta != nullptr) Eigen::Map<Eigen::VectorXd>(by_theta + row, count) = projected_slope(at);
+            row += count;
+        }
+        return true;
+    }
+};
 
 double scale_of(std::span<const ScaledSamples> flights, const JointFit& fit) {
     std::vector<double> sizes;
@@ -214,36 +252,23 @@ JointFit fit_at_frequency(std::span<const ScaledSamples> flights, int order, dou
     return result;
 }
 
-FrequencySlope frequency_slope(std::span<const ScaledSamples> flights, const JointFit& fit) {
-    FrequencySlope slope;
-    for (std::size_t i = 0; i < flights.size(); ++i) {
-        const auto at = fourier_residual(flights[i], fit.theta_rad, fit.coefficients[i]);
-        const auto followed = solve_least_squares(at.by_coefficients, at.by_theta);
-        if (!followed) continue;  // such a flight was refused
-        slope.gradient += at.residual.dot(at.by_theta - at.by_coefficients * followed->coefficients);
-        slope.information += followed->residual_square_sum;
-    }
-    return slope;
+double frequency_information(std::span<const ScaledSamples> flights, const JointFit& fit) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < flights.size(); ++i)
+        sum += projected_slope(fourier_residual(flights[i], fit.theta_rad, fit.coefficients[i])).squaredNorm();
+    return sum;
 }
 
 JointFit refine_jointly(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
                         double start_rad) {
-    constexpr int max_steps = 100;
-    constexpr double same_place = 1e-10;  // relative; far below the frequency's error
-    auto fit = fit_at_frequency(flights, order, start_rad);
-    for (int i = 0; i < max_steps; ++i) {
-        const auto slope = frequency_slope(flights, fit);
-        if (!(slope.information > 0.0)) return fit;
-        auto next = fit;
-        for (double step_rad = -slope.gradient / slope.information;; step_rad /= 2.0) {
-            const double theta_rad = std::clamp(fit.theta_rad + step_rad, range.low_rad, range.high_rad);
-            if (std::abs(theta_rad - fit.theta_rad) <= same_place * fit.theta_rad) return fit;
-            next = fit_at_frequency(flights, order, theta_rad);
-            if (total_square_sum(next) < total_square_sum(fit)) break;
-        }
-        fit = std::move(next);
-    }
-    return fit;
+    const ProjectedResiduals residuals{flights, order, range};
+    ceres::TinySolver<ProjectedResiduals> solver;
+    solver.options.max_num_iterations = 100;
+    solver.options.parameter_tolerance = 1e-11;  // relative; far below the frequency's error
+    solver.options.gradient_tolerance = solver.options.function_tolerance = solver.options.cost_threshold = 0.0;
+    Eigen::Matrix<double, 1, 1> theta_rad(start_rad);
+    solver.Solve(residuals, &theta_rad);
+    return residuals.fit_at(theta_rad[0]);
 }
 
 JointFit refine_robustly(std::span<const ScaledSamples> flights, const FrequencyRange& range, JointFit fit) {

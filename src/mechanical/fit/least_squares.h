@@ -82,16 +82,11 @@ struct JointFit {
 /// coefficients.
 JointFit fit_at_frequency(std::span<const ScaledSamples> flights, int order, double theta_rad);
 
-/// Half the slope of the common sum of squares over theta, and the sum of squares of the residuals' own slopes, all
-/// coefficients following to first order (variable projection; Golub and Pereyra 1973, Kaufman 1975).
-struct FrequencySlope {
-    double gradient = 0.0;
-    double information = 0.0;
-};
-FrequencySlope frequency_slope(std::span<const ScaledSamples> flights, const JointFit& fit);
+/// The sum of squares of the residuals' slopes over theta, all coefficients following (variable projection).
+double frequency_information(std::span<const ScaledSamples> flights, const JointFit& fit);
 
-/// Gauss and Newton's method over theta with variable projection, from `start_rad`, within the range: the least common
-/// sum of squares near where the search began. Throws what fit_at_frequency throws.
+/// Levenberg and Marquardt's method over theta with variable projection, from `start_rad`, within the range: the least
+/// common sum of squares near where the search began. Throws what fit_at_frequency throws.
 JointFit refine_jointly(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
                         double start_rad);
 
