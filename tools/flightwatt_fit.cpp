@@ -26,10 +26,6 @@ mechanical::ModelFitOptions read_options(const cli::StageCall& call) {
     auto options = read_fit_options(call);
     options.name = call.get_optional<std::string>("name").value_or(
         call.output ? std::filesystem::path(*call.output).stem().string() : "fitted");
-    const auto name = call.get<std::string>("loss");
-    const auto loss = mechanical::loss_from(name);
-    if (!loss) throw UsageError(fmt::format("--loss {}: expected none or huber", name));
-    options.phases.loss = *loss;
     return options;
 }
 
@@ -54,8 +50,6 @@ int fit(const cli::StageCall& call) {
     flight::PerPhase<mechanical::ErrorAnalysis> analyses;
     const bool with_errors = call.has("errors") || call.has("intervals") || curves_file;
     if (with_errors) analyses = mechanical::analyse_model(fitted);
-    const bool robust = options.phases.loss != mechanical::Loss::none;
-    if (robust) note_down_weighted(call, fitted);
 
     const auto table =
         cli::table_of(fitted.model, published,
@@ -72,7 +66,6 @@ int fit(const cli::StageCall& call) {
     if (call.json) {
         auto json = cli::to_json(fitted.model);
         cli::add_errors_json(json, fitted.model);
-        if (robust) cli::add_loss_json(json, fitted);
         if (physical) json["physical"] = cli::physical_json(*physical);
         cli::print(cli::json_text(json));
     } else if (call.output) {
@@ -109,7 +102,6 @@ as TOML; with -o it goes to the file and Table I is shown.)" +
     add("intervals", "Table I with 95 % intervals; implies --errors");
     add("curves", cli::output_file("FILE.csv"),
         "write the curves with their band and the flights' envelope; implies --errors");
-    add("loss", cli::value("HOW")->default_value("none"), "none or huber: how outliers count in the last refinement");
     cli::add_choice_options(stage.options);
     cli::add_mix_option(stage.options);
     cli::add_flight_options(stage.options);

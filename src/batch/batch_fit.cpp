@@ -122,7 +122,6 @@ std::string seal_of(const std::filesystem::path& out, const Json& json) {
 std::string text_of(const mechanical::ModelFitOptions& options) {
     auto json = options_json(options);
     json["name"] = options.name;
-    json["loss"] = to_string(options.phases.loss);
     for (const auto phase : flight::all_phases) json[std::string(to_string(phase))] = options.phases.order;
     return json.dump();
 }

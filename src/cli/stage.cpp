@@ -98,6 +98,7 @@ const std::map<std::string, std::string>& removed_options() {
         {"--level", "the model's curve is expected; its mean where the flight is not known from its take-off on"},
         {"--level-covariate", "fit by airspeed and climb instead: --model physical"},
         {"--link-version", "frames are of version 2 of pprzlink"},
+        {"--loss", "fits are of least squares; leave flights out with --exclude"},
         {"--markdown", "-o FILE.md writes the table as Markdown"},
         {"--max-battery-flights", "up to 12 flights are taken"},
         {"--max-periods", "a phase has 0.5 to 120 periods"},

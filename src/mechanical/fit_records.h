@@ -23,23 +23,8 @@ inline constexpr int max_order = 8;
 
 constexpr int coefficient_count(int order) { return 2 * order + 1; }
 
-/// How a residual far from the curve counts.
-enum class Loss {
-    none,  ///< squared
-    huber  ///< squared to 1.345 scales, beyond that as its size
-};
-
-constexpr std::string_view to_string(Loss loss) { return loss == Loss::huber ? "huber" : "none"; }
-
-constexpr std::optional<Loss> loss_from(std::string_view name) {
-    for (const auto loss : {Loss::none, Loss::huber})
-        if (name == to_string(loss)) return loss;
-    return std::nullopt;
-}
-
 struct PhaseFitOptions {
-    int order = 3;           ///< of the Fourier series, 0 (a constant) to max_order
-    Loss loss = Loss::none;  ///< huber: outliers count less in the last refinement
+    int order = 3;  ///< of the Fourier series, 0 (a constant) to max_order
 };
 
 /// One flight's own curve in one phase, in that flight's own seconds.
@@ -58,8 +43,6 @@ struct PhaseFit {
     std::vector<FlightCurve> flights;  ///< in the order of the samples
     double rms_w = 0.0;                ///< of all flights' residuals together
     std::size_t samples = 0;
-    Loss loss = Loss::none;
-    double loss_scale_w = 0.0;        ///< of the noise as the loss saw it; 0 without a loss
     double autocorrelation = 0.0;     ///< of neighbouring residuals, 0 to max_autocorrelation
     double degrees_of_freedom = 1.0;  ///< of the residuals, as if so many were independent; 1 or more
     /// Frequencies (theta) further off than a step of the scan that fit almost as well (95 %), at most 100: where there

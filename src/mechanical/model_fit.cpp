@@ -30,11 +30,8 @@ std::vector<std::string> names_of(std::span<const FlightSamples> flights) {
 }
 
 std::string described(const ModelFitOptions& options, std::size_t flights) {
-    const auto loss = options.phases.loss;
-    return fmt::format("fitted to {} flight{}: Fourier series of order {} a phase, {}weights: {}; flightwatt {}",
-                       flights, flights == 1 ? "" : "s", options.phases.order,
-                       loss == Loss::none ? "" : fmt::format("loss: {}, ", to_string(loss)),
-                       to_string(options.weighting), FLIGHTWATT_VERSION);
+    return fmt::format("fitted to {} flight{}: Fourier series of order {} a phase, weights: {}; flightwatt {}", flights,
+                       flights == 1 ? "" : "s", options.phases.order, to_string(options.weighting), FLIGHTWATT_VERSION);
 }
 
 /// Power beyond any aircraft's overflows on the way; a model of that is none.
@@ -127,24 +124,6 @@ std::optional<FourierModel> fit_series(const PhaseModel& model, std::span<const 
     const auto fit = solve_least_squares(fourier_basis(tau, order, theta_rad), as_vector(power_w));
     if (!fit) return std::nullopt;
     return series_of(fit->coefficients, model.fourier.omega_rad_per_s);
-}
-
-std::vector<DownWeightedSample> down_weighted_samples(std::span<const PhaseSamples> flights, const PhaseFit& fit) {
-    std::vector<DownWeightedSample> found;
-    if (fit.loss == Loss::none || fit.loss_scale_w <= 0.0) return found;
-    for (std::size_t i = 0; i < flights.size(); ++i) {
-        const auto& samples = flights[i];
-        for (std::size_t j = 0; j < samples.tau.size(); ++j) {
-            const double time_s = samples.tau[j] * samples.duration_s;
-            const double residual_w = samples.power_w[j] - power_w(fit.flights[i].fourier, time_s);
-            const double weight = sample_weight(fit.loss, residual_w / fit.loss_scale_w);
-            if (weight < 0.5) {
-                found.push_back({samples.flight, samples.start_s + time_s, residual_w, weight});
-            }
-        }
-    }
-    std::ranges::sort(found, {}, &DownWeightedSample::weight);
-    return found;
 }
 
 }  // namespace flightwatt::mechanical

@@ -184,7 +184,7 @@ TEST(WrittenKeys, OfProfilesAreDocumented) {
 TEST(WrittenKeys, OfModelsAreDocumented) {
     const auto folder = scratch_dir();
     expect_summary("fit", {log_file, "--order", "auto", "-o", "chosen.toml"}, folder);
-    expect_summary("fit", logs() + Words{"--errors", "--loss", "huber", "-o", "model.toml"}, folder);
+    expect_summary("fit", logs() + Words{"--errors", "-o", "model.toml"}, folder);
     expect_summary("predict", {log_file, "--model", "model.toml", "--until", "300", "--remaining", "300"}, folder);
 }
 

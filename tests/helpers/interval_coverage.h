@@ -35,8 +35,6 @@ struct CoverageCase {
     double autocorrelation = 0.0;
     std::size_t flights = 200;
     std::size_t together = 1;  ///< flights to a fit
-    mechanical::Loss loss = mechanical::Loss::none;
-    double outliers = 0.0;  ///< part of the samples that are 20 times the noise off
 };
 
 struct Coverage {
@@ -69,13 +67,10 @@ inline Coverage coverage_of(flight::Phase phase, const CoverageCase& made, unsig
             const double duration_s = truth.duration_s * (0.92 + 0.16 * uniform(random));
             flights.push_back(record(truth, {duration_s, 1.1, 0.0, 0.15}, random, "flight" + std::to_string(i + 1)));
             add_noise(flights.back(), made.noise_w, made.autocorrelation, random);
-            for (double& power : flights.back().power_w) {
-                if (uniform(random) < made.outliers) power += 20.0 * made.noise_w;
-            }
         }
         mechanical::PhaseFit fit;
         try {
-            fit = fit_phase(phase, flights, {.loss = made.loss});
+            fit = fit_phase(phase, flights);
         } catch (const NoResultError&) {
             ++coverage.without_answer;
             continue;

@@ -186,34 +186,4 @@ void add_errors_json(Json& json, const mechanical::MechanicalModel& model) {
     }
 }
 
-void add_loss_json(Json& json, const mechanical::ModelFit& fit) {
-    for (const auto phase : flight::all_phases) {
-        const auto samples =
-            list_json(down_weighted_samples(fit.samples[phase], fit.fits[phase]), [](const auto& sample) -> Json {
-                return {{"flight", sample.flight},
-                        {"log_time_s", sample.log_time_s},
-                        {"residual_w", sample.residual_w},
-                        {"weight", sample.weight}};
-            });
-        json["phases"][std::string(to_string(phase))]["loss"] = {{"name", to_string(fit.fits[phase].loss)},
-                                                                 {"noise_w", fit.fits[phase].loss_scale_w},
-                                                                 {"down_weighted", samples}};
-    }
-}
-
-void note_down_weighted(const StageCall& call, const mechanical::ModelFit& fit) {
-    constexpr std::size_t shown = 3;
-    for (const auto phase : flight::all_phases) {
-        const auto samples = down_weighted_samples(fit.samples[phase], fit.fits[phase]);
-        std::string list;
-        for (std::size_t i = 0; i < std::min(shown, samples.size()); ++i) {
-            list += fmt::format("{}{} at {:.1f} s ({:+.3g} W, weight {:.2g})", i == 0 ? ": " : ", ", samples[i].flight,
-                                samples[i].log_time_s, samples[i].residual_w, samples[i].weight);
-        }
-        note(call, fmt::format("{}: {} of {} samples count less than half (loss {}, noise {:.3g} W){}",
-                               to_string(phase), samples.size(), fit.fits[phase].samples,
-                               to_string(fit.fits[phase].loss), fit.fits[phase].loss_scale_w, list));
-    }
-}
-
 }  // namespace flightwatt::cli

@@ -45,11 +45,4 @@ void warn_of_model(const StageCall& call, const mechanical::MechanicalModel& mod
 /// Adds the errors and the spread of each phase, where the model has them.
 void add_errors_json(Json& json, const mechanical::MechanicalModel& model);
 
-/// Adds each phase's loss and the samples that it gives less than half weight.
-void add_loss_json(Json& json, const mechanical::ModelFit& fit);
-
-
-/// Notes how many samples have less than half weight, and the three of least weight.
-void note_down_weighted(const StageCall& call, const mechanical::ModelFit& fit);
-
 }  // namespace flightwatt::cli

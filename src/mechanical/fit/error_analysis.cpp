@@ -155,7 +155,7 @@ ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseF
     MeanCurve curve{fit.theta_rad, Eigen::VectorXd::Zero(size), {}, student_t_half_width(errors.degrees_of_freedom)};
     double duration_s = 0.0;
     for (std::size_t i = 0; i < flights.size(); ++i) {
-        samples.flights.push_back(pseudo_observations(flights[i], fit.flights[i], fit));
+        samples.flights.push_back({flights[i].tau, flights[i].power_w, flights[i].flight, flights[i].scan});
         curve.coefficients_w += weights[i] * coefficients_of(fit.flights[i].fourier);
         duration_s += weights[i] * flights[i].duration_s;
     }

@@ -9,8 +9,7 @@ namespace flightwatt::mechanical {
 
 /// How well the noise of the samples lets the mean of these flights be known (docs/methods.md, Errors of the fit): least
 /// squares at the frequency found, at frequencies about it and at its rivals; each counts as far as the samples allow it.
-/// After a robust fit the samples are the curve with Huber's pseudo-residuals, psi / mean psi'. `flights`, `fit` and
-/// `weights` are in the same order; their samples are those that were fitted.
+/// `flights`, `fit` and `weights` are in the same order; their samples are those that were fitted.
 ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseFit& fit,
                              std::span<const double> weights);
 

@@ -77,15 +77,6 @@ std::vector<Candidate> minima(const FrequencyScan& scan) {
     return found;
 }
 
-/// From the median of absolute values to the standard deviation, for normal noise.
-constexpr double deviations_per_median = 1.4826;
-
-/// Residuals below this, in standard deviations of the power, are rounding.
-constexpr double smallest_scale = 1e-10;
-
-constexpr int max_scalings = 200;
-constexpr double same_scale = 1e-8;
-
 /// The derivative of a flight's residuals over theta, its coefficients following to first order (variable projection;
 /// Golub and Pereyra 1973, Kaufman 1975). 0 where its samples do not determine them.
 Eigen::VectorXd projected_slope(const FourierResidual& at) {
@@ -126,29 +117,6 @@ struct ProjectedResiduals {
         return true;
     }
 };
-
-double scale_of(std::span<const ScaledSamples> flights, const JointFit& fit) {
-    std::vector<double> sizes;
-    for (std::size_t i = 0; i < flights.size(); ++i) {
-        const auto at = fourier_residual(flights[i], fit.theta_rad, fit.coefficients[i]);
-        for (const double residual : at.residual) sizes.push_back(std::abs(residual));
-    }
-    return deviations_per_median * median(std::move(sizes));
-}
-
-/// The samples, each no further from the curves than where Huber's loss turns linear.
-std::vector<ScaledSamples> clipped_samples(std::span<const ScaledSamples> flights, const JointFit& fit) {
-    std::vector<ScaledSamples> clipped(flights.begin(), flights.end());
-    const double most = huber_threshold * fit.noise_scale;
-    for (std::size_t i = 0; i < flights.size(); ++i) {
-        const auto at = fourier_residual(flights[i], fit.theta_rad, fit.coefficients[i]);
-        for (std::size_t j = 0; j < flights[i].tau.size(); ++j) {
-            const double residual = at.residual(static_cast<Eigen::Index>(j));
-            clipped[i].value[j] += residual - std::clamp(residual, -most, most);
-        }
-    }
-    return clipped;
-}
 
 }  // namespace
 
@@ -269,22 +237,6 @@ JointFit refine_jointly(std::span<const ScaledSamples> flights, int order, const
     Eigen::Matrix<double, 1, 1> theta_rad(start_rad);
     solver.Solve(residuals, &theta_rad);
     return residuals.fit_at(theta_rad[0]);
-}
-
-JointFit refine_robustly(std::span<const ScaledSamples> flights, const FrequencyRange& range, JointFit fit) {
-    const auto order = static_cast<int>(fit.coefficients.front().size() - 1) / 2;
-    fit.noise_scale = scale_of(flights, fit);
-    for (int i = 0; i < max_scalings && fit.noise_scale > smallest_scale; ++i) {
-        auto next = refine_jointly(clipped_samples(flights, fit), order, range, fit.theta_rad);
-        next.noise_scale = scale_of(flights, next);
-        const bool stays = std::abs(next.noise_scale - fit.noise_scale) <= same_scale * fit.noise_scale &&
-                           std::abs(next.theta_rad - fit.theta_rad) <= same_scale * fit.theta_rad;
-        fit = std::move(next);
-        if (stays) break;
-    }
-    for (std::size_t i = 0; i < flights.size(); ++i)
-        fit.square_sum[i] = fourier_residual(flights[i], fit.theta_rad, fit.coefficients[i]).residual.squaredNorm();
-    return fit;
 }
 
 }  // namespace flightwatt::mechanical

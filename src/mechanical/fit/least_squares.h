@@ -55,27 +55,11 @@ double find_frequency(std::span<const ScaledSamples> flights, int order, const F
 double resolve_subharmonic(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
                            double theta_rad);
 
-/// Where Huber's loss turns from squared to linear, in standard deviations of the noise: 95 % as efficient as
-/// least squares if the noise is normal after all.
-inline constexpr double huber_threshold = 1.345;
-
-/// What a sample counts, in (0, 1], at `residual` in scales of the noise: half the loss's slope over it.
-inline double sample_weight(Loss loss, double residual) {
-    const double size = std::abs(residual);
-    return loss == Loss::none || size <= huber_threshold ? 1.0 : huber_threshold / size;
-}
-
-/// The derivative of residual * sample_weight: how far the fit follows a sample that moves.
-inline double sample_influence(Loss loss, double residual) {
-    return loss == Loss::none || std::abs(residual) <= huber_threshold ? 1.0 : 0.0;
-}
-
 /// The frequency all flights share and each flight's own coefficients.
 struct JointFit {
     double theta_rad = 0.0;
     std::vector<Eigen::VectorXd> coefficients;  ///< a0, a1, b1, ... a flight, in scaled values
     std::vector<double> square_sum;             ///< a flight, of the plain residuals
-    double noise_scale = 0.0;  ///< 1.4826 times the median of the absolute residuals, for a robust loss
 };
 
 /// Each flight's least squares at one frequency. Throws NoResultError if a flight's samples do not determine its
@@ -89,11 +73,5 @@ double frequency_information(std::span<const ScaledSamples> flights, const Joint
 /// common sum of squares near where the search began. Throws what fit_at_frequency throws.
 JointFit refine_jointly(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
                         double start_rad);
-
-/// Moves a least-squares fit to the least Huber loss of all flights' residuals (an M-estimate), theta and all
-/// coefficients together: least squares of samples that are clipped at the curve found, again and again (Huber and
-/// Dutter 1974). The scale of the noise is taken from the residuals anew until it stays. If more than half of the
-/// residuals are 0 there is nothing to weigh and the fit stays.
-JointFit refine_robustly(std::span<const ScaledSamples> flights, const FrequencyRange& range, JointFit fit);
 
 }  // namespace flightwatt::mechanical

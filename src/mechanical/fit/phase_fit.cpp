@@ -165,7 +165,6 @@ PhaseFit result_of(std::span<const PhaseSamples> flights, const Scaling& scaling
         fit.samples += curve.samples;
         fit.flights.push_back(std::move(curve));
     }
-    fit.loss_scale_w = joint.noise_scale * scaling.unit_w;
     fit.rms_w = scaling.unit_w * std::sqrt(square_sum / static_cast<double>(fit.samples));
     return fit;
 }
@@ -209,24 +208,6 @@ FrequencyRange admissible_frequencies(std::span<const PhaseSamples> flights, con
     return range;
 }
 
-ScaledSamples pseudo_observations(const PhaseSamples& samples, const FlightCurve& curve, const PhaseFit& fit) {
-    ScaledSamples values{samples.tau, samples.power_w, samples.flight, samples.scan};
-    if (fit.loss == Loss::none || fit.loss_scale_w <= 0.0) return values;
-    values.scan = nullptr;
-    double slope = 0.0;
-    std::vector<double> residuals;
-    for (std::size_t j = 0; j < values.tau.size(); ++j) {
-        const double fitted = power_w(curve.fourier, values.tau[j] * curve.duration_s);
-        const double scales = (values.value[j] - fitted) / fit.loss_scale_w;
-        slope += sample_influence(fit.loss, scales) / static_cast<double>(values.tau.size());
-        residuals.push_back((values.value[j] - fitted) * sample_weight(fit.loss, scales));
-        values.value[j] = fitted;
-    }
-    if (slope <= 0.0) throw NoResultError("too many samples are down-weighted to know the fit's errors");
-    for (std::size_t j = 0; j < residuals.size(); ++j) values.value[j] += residuals[j] / slope;
-    return values;
-}
-
 PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights, const PhaseFitOptions& options) {
     check_options(options);
     if (flights.empty()) throw NoResultError(fmt::format("no flight has a {} to fit", to_string(phase)));
@@ -244,10 +225,8 @@ PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights, c
         const auto range = admissible_frequencies(flights, options);
         std::optional<FrequencyScan> scan;
         if (options.order > 0) scan = scan_frequencies(scaling.flights, options.order, range);
-        auto joint = least_squares(scaling, options.order, range, scan ? &*scan : nullptr);
-        if (options.loss != Loss::none) joint = refine_robustly(scaling.flights, range, std::move(joint));
+        const auto joint = least_squares(scaling, options.order, range, scan ? &*scan : nullptr);
         auto fit = result_of(flights, scaling, joint, range);
-        fit.loss = options.loss;
         describe_noise(fit, scaling, joint);
         if (scan) fit.rivals_rad = rival_frequencies(fit, joint, *scan);
         hold_above_floor(flights, fit);

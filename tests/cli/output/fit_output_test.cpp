@@ -111,31 +111,5 @@ TEST(AddErrorsJson, PutsIntervalsAboutTheEstimates) {
     EXPECT_FALSE(entry["frequency_profile"]["rms_w"].empty());
 }
 
-TEST(AddLossJson, ListsTheOutliersThatCountLess) {
-    auto flights = recorded_flights();
-    auto& power_w = flights.front().phases[flight::Phase::cruise]->power_w;
-    power_w[power_w.size() / 2] += 100.0;
-    mechanical::ModelFitOptions options;
-    options.phases.loss = mechanical::Loss::huber;
-    const auto fit = fit_model(flights, options);
-    auto json = json_of_phases();
-    add_loss_json(json, fit);
-    const auto& loss = json["phases"]["cruise"]["loss"];
-    EXPECT_EQ(loss["name"], "huber");
-    ASSERT_FALSE(loss["down_weighted"].empty());
-    EXPECT_EQ(loss["down_weighted"][0]["flight"], "flight1");
-    EXPECT_NEAR(loss["down_weighted"][0]["residual_w"].get<double>(), 100.0, 5.0);
-}
-
-TEST(ModelJson, HoldsThePhasesAndFlightsOfTheModel) {
-    const auto model = test::published_model();
-    const auto json = to_json(model);
-    EXPECT_EQ(json["name"], model.name);
-    const auto& cruise = model.phases[flight::Phase::cruise];
-    EXPECT_EQ(json["phases"]["cruise"]["a0_w"], cruise.fourier.a0_w);
-    EXPECT_EQ(json["phases"]["cruise"]["cos_w"].size(), cruise.fourier.cos_w.size());
-    EXPECT_EQ(json["flights"].size(), model.flights.size());
-}
-
 }  // namespace
 }  // namespace flightwatt::cli
