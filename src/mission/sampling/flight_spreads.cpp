@@ -235,7 +235,7 @@ MeanPowerDeviation level_deviation(const MissionSetup& mission, Phase phase) {
         return {spread->between_flight_sd_w * std::sqrt(1.0 + weight_square_sum), DeviationSource::flights,
                 spread->flights, static_cast<double>(spread->flights - 1)};
     }
-    if (model.errors) return {model.errors->a0_w, DeviationSource::fit_error, 0, model.errors->degrees_of_freedom};
+    if (model.errors) return {model.errors->curve_w, DeviationSource::fit_error, 0, model.errors->degrees_of_freedom};
     return {};
 }
 
