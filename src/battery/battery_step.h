@@ -178,6 +178,8 @@ class CircuitRun {
           has_rc_(is_any_positive(circuit.rc_resistance_ohm)),
           open_circuit_(std::move(open_circuit)) {}
 
+    OpenCircuit& open_circuit() { return open_circuit_; }
+
     /// The rest of a moment whose charge, RC voltage and power are known (Eq. 10).
     void complete(Moment& now) {
         using std::sqrt;

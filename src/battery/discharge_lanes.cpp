@@ -1,44 +1,10 @@
 #include "battery/discharge_lanes.h"
 
-#include <stdexcept>
+#include <limits>
 #include <utility>
 
 namespace flightwatt::battery {
 namespace {
-
-/// The open-circuit voltages of charges that mostly fall: each lane remembers the line that it is on.
-class FallingVoltages {
-  public:
-    FallingVoltages(const BatteryLanes& batteries, const Lanes& soc_percent) : batteries_(batteries) {
-        for (int lane = 0; lane < lane_count; ++lane) find_line(lane, soc_percent(lane));
-    }
-
-    Lanes operator()(const Lanes& soc_percent) {
-        if (((soc_percent < low_percent_) || (soc_percent >= high_percent_)).any()) {
-            for (int lane = 0; lane < lane_count; ++lane) {
-                const double soc = soc_percent(lane);
-                if (soc < low_percent_(lane) || soc >= high_percent_(lane)) find_line(lane, soc);
-            }
-        }
-        return offset_v_ + slope_v_ * soc_percent.max(0.0);
-    }
-
-  private:
-    void find_line(int lane, double soc_percent) {
-        const auto knot_v = [&](std::size_t knot) { return batteries_.knots_v[knot](lane); };
-        const auto segment = find_voltage_segment(batteries_.knots_percent, knot_v, soc_percent);
-        low_percent_(lane) = segment.low_percent;
-        high_percent_(lane) = segment.high_percent;
-        offset_v_(lane) = segment.offset_v;
-        slope_v_(lane) = segment.slope_v;
-    }
-
-    const BatteryLanes& batteries_;
-    Lanes low_percent_;
-    Lanes high_percent_;
-    Lanes offset_v_;
-    Lanes slope_v_;
-};
 
 using Moments = CircuitMoment<Lanes>;
 
@@ -57,57 +23,88 @@ LaneMask find_danger(const Moments& start, const Moments& middle, const Moments&
     return mask;
 }
 
+void set_lane(RcStep<Lanes>& lanes, int lane, const RcStep<double>& own) {
+    lanes.decay(lane) = own.decay;
+    lanes.of_first_ohm(lane) = own.of_first_ohm;
+    lanes.of_middle_ohm(lane) = own.of_middle_ohm;
+    lanes.of_last_ohm(lane) = own.of_last_ohm;
+}
+
+/// Of circuits of which some may have an RC pair.
+Circuit<Lanes> room_for_circuits() {
+    Circuit<Lanes> circuit;
+    circuit.rc_resistance_ohm = Lanes::Ones();
+    return circuit;
+}
+
 }  // namespace
 
-BatteryLanes make_lanes(const Battery& battery) {
-    if (!battery.thevenin) throw std::invalid_argument("make_lanes: needs a Thevenin circuit");
-    BatteryLanes lanes;
-    lanes.knots_percent = battery.thevenin->open_circuit.soc_percent;
-    lanes.knots_v.resize(lanes.knots_percent.size());
-    for (int lane = 0; lane < lane_count; ++lane) set_lane(lanes, lane, battery);
-    return lanes;
+LaneVoltages::LaneVoltages(const OpenCircuitVoltage& curve)
+    : knots_percent_(curve.soc_percent), knots_v_(curve.soc_percent.size()) {
+    for (int lane = 0; lane < lane_count; ++lane) set_lane(lane, curve);
 }
 
-void set_lane(BatteryLanes& lanes, int lane, const Battery& battery) {
-    const auto own = circuit_of(battery);
-    lanes.circuit.resistance_ohm(lane) = own.resistance_ohm;
-    lanes.circuit.percent_per_as(lane) = own.percent_per_as;
-    lanes.circuit.rc_resistance_ohm(lane) = own.rc_resistance_ohm;
-    lanes.circuit.rc_time_constant_s(lane) = own.rc_time_constant_s;
-    for (std::size_t k = 0; k < lanes.knots_v.size(); ++k)
-        lanes.knots_v[k](lane) = battery.thevenin->open_circuit.voltage_v[k];
+void LaneVoltages::set_lane(int lane, const OpenCircuitVoltage& curve) {
+    for (std::size_t k = 0; k < knots_v_.size(); ++k) knots_v_[k](lane) = curve.voltage_v[k];
+    low_percent_(lane) = std::numeric_limits<double>::infinity();  // no charge is on a known line
 }
 
-void discharge_lanes(const BatteryLanes& batteries, const LoadLanes& load, double cutoff_voltage_v,
-                     const StepResolver& resolve_step, StateLanes& state) {
-    CircuitRun<Lanes, FallingVoltages> run(batteries.circuit, FallingVoltages(batteries, state.soc_percent));
-    const StepLength<Lanes> length(batteries.circuit, Lanes(load.length_s / static_cast<double>(load.steps)));
-    Moments start;
-    start.soc_percent = state.soc_percent;
-    start.rc_voltage_v = state.rc_voltage_v;
-    Moments middle = start;
-    Moments end = start;
-    load.power_w(0, start.power_w);
-    run.complete(start);
-    for (std::size_t k = 0; k < load.steps && state.is_active.any(); ++k) {
-        load.power_w(2 * k + 1, middle.power_w);
-        load.power_w(2 * k + 2, end.power_w);
-        run.step(length, start, middle, end);
-        if (const auto danger = find_danger(start, middle, end, cutoff_voltage_v) & state.is_active; danger.any()) {
-            for (std::size_t i = 0; i < lane_count; ++i) {
-                if (!danger[i]) continue;
-                const int lane = static_cast<int>(i);
-                BatteryState now{start.soc_percent(lane), start.rc_voltage_v(lane)};
-                state.is_active[i] = resolve_step(lane, k, now);
-                end.soc_percent(lane) = now.soc_percent;
-                end.rc_voltage_v(lane) = now.rc_voltage_v;
-            }
-            run.complete(end);
+Lanes LaneVoltages::operator()(const Lanes& soc_percent) {
+    if (((soc_percent < low_percent_) || (soc_percent >= high_percent_)).any()) {
+        for (int lane = 0; lane < lane_count; ++lane) {
+            const double soc = soc_percent(lane);
+            if (soc < low_percent_(lane) || soc >= high_percent_(lane)) find_line(lane, soc);
         }
-        std::swap(start, end);
     }
-    state.soc_percent = start.soc_percent;
-    state.rc_voltage_v = start.rc_voltage_v;
+    return offset_v_ + slope_v_ * soc_percent.max(0.0);
+}
+
+void LaneVoltages::find_line(int lane, double soc_percent) {
+    const auto knot_v = [&](std::size_t knot) { return knots_v_[knot](lane); };
+    const auto segment = find_voltage_segment(knots_percent_, knot_v, soc_percent);
+    low_percent_(lane) = segment.low_percent;
+    high_percent_(lane) = segment.high_percent;
+    offset_v_(lane) = segment.offset_v;
+    slope_v_(lane) = segment.slope_v;
+}
+
+DischargeLanes::DischargeLanes(const Battery& battery)
+    : circuit_(room_for_circuits()),
+      run_(circuit_, LaneVoltages(open_circuit_of(battery))),
+      length_(circuit_, Lanes::Ones()) {}
+
+void DischargeLanes::set_battery(int lane, const Battery& battery) {
+    const auto own = circuit_of(battery);
+    circuit_.resistance_ohm(lane) = own.resistance_ohm;
+    circuit_.percent_per_as(lane) = own.percent_per_as;
+    circuit_.rc_resistance_ohm(lane) = own.rc_resistance_ohm;
+    circuit_.rc_time_constant_s(lane) = own.rc_time_constant_s;
+    run_.open_circuit().set_lane(lane, battery.thevenin.value().open_circuit);
+}
+
+void DischargeLanes::set_state(int lane, const BatteryState& state) {
+    now_.soc_percent(lane) = state.soc_percent;
+    now_.rc_voltage_v(lane) = state.rc_voltage_v;
+}
+
+void DischargeLanes::set_step(int lane, double length_s) {
+    const Circuit<double> circuit{circuit_.resistance_ohm(lane), circuit_.percent_per_as(lane),
+                                  circuit_.rc_resistance_ohm(lane), circuit_.rc_time_constant_s(lane)};
+    const StepLength<double> own(circuit, length_s);
+    length_.percent_per_a(lane) = own.percent_per_a;
+    battery::set_lane(length_.half, lane, own.half);
+    battery::set_lane(length_.whole, lane, own.whole);
+}
+
+LaneMask DischargeLanes::step(const Lanes& start_w, const Lanes& middle_w, const Lanes& end_w,
+                              double cutoff_voltage_v) {
+    std::swap(now_, before_);
+    before_.power_w = start_w;
+    middle_.power_w = middle_w;
+    now_.power_w = end_w;
+    run_.complete(before_);
+    run_.step(length_, before_, middle_, now_);
+    return find_danger(before_, middle_, now_, cutoff_voltage_v);
 }
 
 }  // namespace flightwatt::battery

@@ -1,48 +1,63 @@
 #pragma once
 
 #include "battery/battery_step.h"
+#include "battery/discharge.h"
 
 #include <bitset>
-#include <cstddef>
-#include <functional>
 #include <vector>
 
 namespace flightwatt::battery {
 
 using LaneMask = std::bitset<lane_count>;
 
-/// Thévenin circuits side by side; their curves have the same knots.
-struct BatteryLanes {
-    Circuit<Lanes> circuit;
-    std::vector<double> knots_percent;
-    std::vector<Lanes> knots_v;  ///< one a knot
+/// The open-circuit voltages of lanes, whose charges mostly fall: each remembers the line that it is on. All have the
+/// same knots.
+class LaneVoltages {
+  public:
+    explicit LaneVoltages(const OpenCircuitVoltage& curve);
+    void set_lane(int lane, const OpenCircuitVoltage& curve);
+    Lanes operator()(const Lanes& soc_percent);
+
+  private:
+    void find_line(int lane, double soc_percent);
+
+    std::vector<double> knots_percent_;
+    std::vector<Lanes> knots_v_;  ///< one a knot
+    Lanes low_percent_;
+    Lanes high_percent_;
+    Lanes offset_v_;
+    Lanes slope_v_;
 };
 
-/// No circuits yet, but room for those of `battery`. Throws std::invalid_argument if that is none of Thévenin's.
-BatteryLanes make_lanes(const Battery& battery);
-void set_lane(BatteryLanes& lanes, int lane, const Battery& battery);
+/// Batteries side by side, each from a state of its own, in steps of its own length, as fast_discharge() takes them.
+class DischargeLanes {
+  public:
+    /// Room for batteries whose open-circuit voltages have the knots of this one.
+    explicit DischargeLanes(const Battery& battery);
+    DischargeLanes(const DischargeLanes&) = delete;
+    DischargeLanes& operator=(const DischargeLanes&) = delete;
 
-struct StateLanes {
-    Lanes soc_percent = Lanes::Constant(100.0);
-    Lanes rc_voltage_v = Lanes::Zero();
-    LaneMask is_active;  ///< the others have ended, or are empty lanes
+    /// A Thévenin circuit's.
+    void set_battery(int lane, const Battery& battery);
+    void set_state(int lane, const BatteryState& state);
+    /// How long the lane's steps are from now on.
+    void set_step(int lane, double length_s);
+
+    /// One step of all, of powers that are never below 0. Returns the lanes whose battery may end within it: empty,
+    /// below the cut-off voltage (0: never), or beyond the power limit.
+    LaneMask step(const Lanes& start_w, const Lanes& middle_w, const Lanes& end_w, double cutoff_voltage_v);
+
+    BatteryState state(int lane) const { return {now_.soc_percent(lane), now_.rc_voltage_v(lane)}; }
+    /// As the last step began.
+    BatteryState state_before(int lane) const { return {before_.soc_percent(lane), before_.rc_voltage_v(lane)}; }
+
+  private:
+    Circuit<Lanes> circuit_;
+    CircuitRun<Lanes, LaneVoltages> run_;
+    StepLength<Lanes> length_;
+    CircuitMoment<Lanes> now_;
+    CircuitMoment<Lanes> before_;
+    CircuitMoment<Lanes> middle_;
 };
-
-/// What the batteries feed: loads that never charge, each in as many steps as the others.
-struct LoadLanes {
-    Lanes length_s = Lanes::Zero();
-    std::size_t steps = 1;
-    /// At half step 0, 1, ... to twice the steps; called once each, in order.
-    std::function<void(std::size_t half_step, Lanes& power_w)> power_w;
-};
-
-/// Looks closer at a step that may end a lane's battery: from the state at its start to that at its end, or false if it
-/// ended.
-using StepResolver = std::function<bool(int lane, std::size_t step, BatteryState& state)>;
-
-/// As fast_discharge() with these steps, of all lanes at once. Lanes that may reach what ends a battery are passed to
-/// `resolve_step`: empty, below the cut-off voltage (0: never), beyond the power limit.
-void discharge_lanes(const BatteryLanes& batteries, const LoadLanes& load, double cutoff_voltage_v,
-                     const StepResolver& resolve_step, StateLanes& state);
 
 }  // namespace flightwatt::battery

@@ -90,10 +90,10 @@ class FastRun {
 }  // namespace
 
 // Over longer steps the RC pair's transient is no parabola; what is faster than some seconds hardly counts.
-double max_fast_step_s(const TheveninCircuit& circuit, double max_s) {
+std::uint64_t fast_steps(const TheveninCircuit& circuit, double length_s, double max_s) {
     constexpr double short_s = 2.0;
-    if (circuit.rc_resistance_ohm == 0.0) return max_s;
-    return std::min(max_s, std::max(short_s, circuit.rc_time_constant_s));
+    if (circuit.rc_resistance_ohm > 0.0) max_s = std::min(max_s, std::max(short_s, circuit.rc_time_constant_s));
+    return static_cast<std::uint64_t>(std::max(1.0, std::ceil(length_s / max_s * (1.0 - 1e-12))));
 }
 
 Discharge fast_discharge(const Battery& battery, const Load& load, const BatteryState& state,
@@ -107,8 +107,7 @@ Discharge fast_discharge(const Battery& battery, const Load& load, const Battery
     if (state.soc_percent <= 0.0) return {{0.0, state.rc_voltage_v}, load.start_s};
     const double length_s = load.end_s - load.start_s;
     if (length_s == 0.0) return {state};
-    const double max_s = max_fast_step_s(*battery.thevenin, steps.max_s);
-    const auto count = static_cast<std::uint64_t>(std::max(1.0, std::ceil(length_s / max_s * (1.0 - 1e-12))));
+    const auto count = fast_steps(*battery.thevenin, length_s, steps.max_s);
     const double step_s = length_s / static_cast<double>(count);
     FastRun run(battery, load, steps.cutoff_voltage_v, state.soc_percent);
     const StepLength<double> length(run.circuit(), step_s);

@@ -2,6 +2,8 @@
 
 #include "battery/discharge.h"
 
+#include <cstdint>
+
 namespace flightwatt::battery {
 
 /// How long the steps of fast_discharge may be, and where the battery ends.
@@ -18,7 +20,8 @@ struct FastDischargeOptions {
 Discharge fast_discharge(const Battery& battery, const Load& load, const BatteryState& state,
                          const FastDischargeOptions& steps);
 
-/// [s] How long its steps are at most, where the load allows `max_s`: no longer than the RC pair's time constant.
-double max_fast_step_s(const TheveninCircuit& circuit, double max_s);
+/// In how many steps it takes a load of such a length that allows steps of `max_s`: none is longer than the RC pair's
+/// time constant.
+std::uint64_t fast_steps(const TheveninCircuit& circuit, double length_s, double max_s);
 
 }  // namespace flightwatt::battery

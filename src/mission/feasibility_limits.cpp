@@ -51,7 +51,7 @@ double last_good(const LimitSearch& search, double good, double bad) {
     const auto [low, high] = boost::math::tools::toms748_solve(
         [&](double value) { return search.surplus(value); }, std::min(good, bad), std::max(good, bad),
         good < bad ? surplus_good : surplus_bad, good < bad ? surplus_bad : surplus_good,
-        boost::math::tools::eps_tolerance<double>(48), iterations);
+        boost::math::tools::eps_tolerance<double>(search.accurate_bits()), iterations);
     return search.surplus(high) >= 0.0 ? high : search.surplus(low) >= 0.0 ? low : good;
 }
 
@@ -71,8 +71,8 @@ double short_enough_s(LimitSearch& search, double too_long_s) {
     }
     throw NoResultError(
         fmt::format("even with a cruise of {:.6g} s, the shortest that fits the schedule, the "
-                    "mission does not land with its reserve",
-                    fits_s));
+                    "mission does not land with its reserve{}",
+                    fits_s, search.share_text()));
 }
 
 double find_cruise_s(LimitSearch& search) {
@@ -99,8 +99,8 @@ double find_payload_w(const LimitSearch& search) {
     if (const double surplus = search.surplus(0.0); surplus < 0.0) {
         if (const auto summary = simulate(search.mission(0.0)).summary; !summary.feasible)
             throw NoResultError("without any payload already: " + describe(summary));
-        throw NoResultError(
-            fmt::format("without any payload the mission misses its reserve by {:.4g} points already", -surplus));
+        throw NoResultError(fmt::format("without any payload the mission misses its reserve by {:.4g} points already{}",
+                                        -surplus, search.share_text()));
     }
     const auto bracket = bracket_of(search, {0.0, 1.0}, 2.0, largest_payload_w);
     if (!bracket.bad)
@@ -148,12 +148,11 @@ std::optional<double> longest_that_fits(LimitSearch& search, double most, double
 }
 
 /// Halves what lies between an extent that is too short or good and one that is too long, until they are `apart`.
-std::optional<double> bisected(LimitSearch& search, double low, double high, double apart,
-                               LimitSearch::Accuracy accuracy = LimitSearch::Accuracy::exact) {
+std::optional<double> bisected(LimitSearch& search, double low, double high, double apart) {
     std::optional<double> good;
     while (high - low > apart) {
         const double middle = apart == 1.0 ? std::floor(std::midpoint(low, high)) : std::midpoint(low, high);
-        const auto surplus = search.drawn_surplus(middle, accuracy);
+        const auto surplus = search.surplus_if_it_fits(middle);
         if (surplus && *surplus < 0.0) {
             high = middle;
         } else {
@@ -173,7 +172,7 @@ std::optional<double> bisected(LimitSearch& search, double low, double high, dou
 
 FeasibilityLimit longest_cruise(const MissionVariation& with_cruise_s, const std::optional<double>& probability) {
     LimitSearch search(with_cruise_s, probability);
-    const double cruise_s = search.find_with_margin([&] { return find_cruise_s(search); });
+    const double cruise_s = find_cruise_s(search);
     return search.limit(cruise_s, std::nextafter(cruise_s, longest_cruise_s) * (1.0 + 1e-9));
 }
 
@@ -191,7 +190,7 @@ Mission with_payload(const Mission& mission, double payload_w) {
 FeasibilityLimit largest_payload(const MissionVariant& mission, const std::optional<double>& probability) {
     const auto bare = with_minimum_energy_schedule(mission);
     LimitSearch search([&](double payload_w) { return with_payload(bare, payload_w); }, probability);
-    const double payload_w = search.find_with_margin([&] { return find_payload_w(search); });
+    const double payload_w = find_payload_w(search);
     auto most = search.limit(payload_w, payload_w * (1.0 + 1e-9) + 1e-9);
     if (probability) most.sources = collect_uncertainty(bare.setup).sources;
     return most;
@@ -201,7 +200,7 @@ std::optional<double> min_capacity_ah(const MissionVariant& mission, const std::
     const auto bare = with_minimum_energy_schedule(mission);
     LimitSearch search([&](double capacity_ah) { return with_capacity(bare, capacity_ah); }, probability);
     try {
-        return search.find_with_margin([&] { return find_capacity_ah(search, bare.setup.battery.capacity_ah); });
+        return find_capacity_ah(search, bare.setup.battery.capacity_ah);
     } catch (const NoResultError&) {
         return std::nullopt;
     }
@@ -209,12 +208,11 @@ std::optional<double> min_capacity_ah(const MissionVariant& mission, const std::
 
 FeasibilityLimit max_circles(const MissionVariation& with_circles, const std::optional<double>& probability) {
     LimitSearch search(with_circles, probability);
-    constexpr auto rough = LimitSearch::Accuracy::rough;
     double low = 0.0;
     std::optional<double> good;
     double high = 1.0;
     while (high <= max_circles_tried) {
-        const auto surplus = search.drawn_surplus(high, rough);
+        const auto surplus = search.surplus_if_it_fits(high);
         if (surplus && *surplus < 0.0) break;
         low = high;
         if (surplus) good = high;
@@ -224,17 +222,8 @@ FeasibilityLimit max_circles(const MissionVariation& with_circles, const std::op
         if (good) throw NoResultError(fmt::format("{:.0f} circles still land with the reserve", *good));
         refuse(search, "the mission does not land with its reserve");
     }
-    if (const auto better = bisected(search, low, high, 1.0, rough)) good = better;
-    if (!good) good = high;  // near enough to be worth an exact look
-    const double roughly = *good;
-    const auto is_good = [&](double circles) {
-        const auto surplus = search.drawn_surplus(circles);
-        return surplus && *surplus >= 0.0;
-    };
-    while (*good > 0.0 && !is_good(*good)) *good -= 1.0;
-    if (*good == 0.0) throw NoResultError("the fewest circles that fit do not land with the reserve");
-    if (*good == roughly)
-        while (is_good(*good + 1.0)) *good += 1.0;
+    if (const auto better = bisected(search, low, high, 1.0)) good = better;
+    if (!good) throw NoResultError("the fewest circles that fit do not land with the reserve");
     return search.limit(*good, *good + 1.0);
 }
 
@@ -248,7 +237,7 @@ FeasibilityLimit farthest_return(const MissionVariation& with_return_after_m, do
     const double apart_m = length_m * (probability ? accuracy_of_chance : accuracy);
     const auto max_m = longest_that_fits(search, length_m, apart_m);
     if (!max_m) refuse(search, "the path cannot be flown there and back");
-    const auto surplus = search.drawn_surplus(*max_m);
+    const auto surplus = search.surplus_if_it_fits(*max_m);
     if (surplus && *surplus >= 0.0) return search.limit(*max_m, *max_m);
     const auto good = bisected(search, 0.0, *max_m, apart_m);
     if (!good) throw NoResultError("from nowhere along the path does the mission return with its reserve");

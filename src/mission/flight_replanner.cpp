@@ -63,16 +63,6 @@ double expected_reach(const PlanningProblem& mission) {
 
 constexpr double jump_factor = 2.0;  ///< of the depletion predicted: beyond, charge was lost otherwise
 
-/// What of a schedule comes at a moment or later.
-Schedule rest_of(Schedule schedule, const PhaseTime& moment) {
-    std::erase_if(schedule, [&](const ScheduleSegment& s) {
-        return s.phase < moment.phase || (s.phase == moment.phase && s.end_s <= moment.time_s);
-    });
-    if (!schedule.empty() && schedule.front().phase == moment.phase)
-        schedule.front().start_s = std::max(schedule.front().start_s, moment.time_s);
-    return schedule;
-}
-
 }  // namespace
 
 AdaptivePlanner make_adaptive_planner(const PlanningProblem& problem) {
@@ -162,7 +152,7 @@ Plan FlightReplanner::replan(const PhaseTime& moment, const battery::BatteryStat
         plan_remaining(nominal_, *adaptive_.planner, start, reserve_percent,
                        effort_for(*adaptive_.planner, (planned_.duration_s - start.time_s) / nominal_.plan.slot_s));
     // Nothing that the battery can deliver is known: fly on with what demands least energy.
-    if (plan.schedule.empty()) plan.schedule = rest_of(minimum_energy_schedule(nominal_), moment);
+    if (plan.schedule.empty()) plan.schedule = minimum_energy_schedule(nominal_, start.time_s);
     return plan;
 }
 

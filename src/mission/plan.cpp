@@ -12,8 +12,7 @@
 namespace flightwatt::mission {
 namespace {
 
-constexpr int max_reserve_rounds = 20;
-constexpr int max_search_rounds = 5;
+constexpr int max_rounds_to_land = 10;
 constexpr int max_margin_rounds = 8;
 constexpr int max_rounds_to_any = 24;    ///< until a plan is better than the one of least energy demand
 constexpr double slack_fraction = 2e-3;  // of the flights' deviation: 0.0002 of a chance of 0.05
@@ -46,23 +45,23 @@ Trial fly(const PlanningProblem& problem, Schedule schedule) {
 
 PlanStart start_of(const PlanningProblem& problem) { return {0.0, problem.setup.initial_soc_percent}; }
 
-/// What the search is asked anew where the simulation says that a schedule does not land, by a rounding error: for a
-/// little more than that.
-void make_stricter(const Trial& trial, double part, PlanningProblem& problem) {
-    constexpr double search_slack_percent = 3e-6;
+/// What is asked anew where the simulation says that a schedule does not land, by a rounding error or because a full
+/// battery refused charge: for a little more than that.
+void make_stricter(const Trial& trial, double part, double slack_percent, PlanningProblem& problem) {
     if (trial.summary.undeliverable)
         problem.setup.battery.resistance_ohm *= 1.0 + part;
     else if (trial.summary.cut_off_at_s)
         problem.setup.cutoff_voltage_v *= 1.0 + part;
     else
-        problem.setup.reserve_soc_percent += std::max(trial.deficit_percent, 0.0) + search_slack_percent;
+        problem.setup.reserve_soc_percent += std::max(trial.deficit_percent, 0.0) + slack_percent;
 }
 
-/// The best schedule found by the search that lands, and into `plan` the bound of the problem as stated.
+/// The best schedule found that lands, and into `plan` the bound of the problem as stated.
 Trial searched(const PlanningProblem& problem, const PlanningTables& planner, const Trial& least, Plan& plan) {
+    const double slack_percent = planner.step_s ? 3e-6 : 1e-12;  // what a search is off by, and sums of slots
     auto stricter = problem;
     double part = 1e-8;
-    for (int round = 0; round < max_search_rounds; ++round) {
+    for (int round = 0; round < max_rounds_to_land; ++round) {
         const auto found = plan_remaining(stricter, planner, start_of(problem), stricter.setup.reserve_soc_percent);
         if (round == 0) {
             plan.utility_bound = found.utility_bound;
@@ -71,15 +70,14 @@ Trial searched(const PlanningProblem& problem, const PlanningTables& planner, co
         if (!found.feasible) break;
         auto trial = fly(problem, found.schedule);
         if (trial.lands()) return trial;
-        make_stricter(trial, part *= 10.0, stricter);
+        make_stricter(trial, part *= 10.0, slack_percent, stricter);
     }
     return least;
 }
 
-/// For a battery whose source follows its charge, or that may be cut off: the depletion by a slot then depends on what
-/// ran before it. If the schedule of least energy demand does not land, none does, as it keeps the most charge and the
-/// highest voltage at any time.
-MissionPlan plan_by_search(const PlanningProblem& problem) {
+/// The plan of a mission whose flights do not differ. If the schedule of least energy demand does not land, none does:
+/// it keeps the most charge and the highest voltage at any time.
+MissionPlan plan_certain(const PlanningProblem& problem) {
     const auto planner = make_planning_tables(problem);
     MissionPlan result;
     auto& plan = result.plan;
@@ -96,38 +94,6 @@ MissionPlan plan_by_search(const PlanningProblem& problem) {
     result.summary = std::move(found.summary);
     result.mission = {problem.setup, plan.schedule};
     return result;
-}
-
-/// Plans by tables, anew with more to spare where the simulation ends below the reserve.
-MissionPlan plan_by_tables(const PlanningProblem& problem) {
-    MissionPlan result;
-    const auto planner = make_planning_tables(problem);
-    const auto start = start_of(problem);
-    double planned_percent = problem.setup.reserve_soc_percent;
-    std::optional<double> bound;
-    Schedule schedule;
-    bool lands = false;
-    for (int round = 0; round < max_reserve_rounds && !lands; ++round) {
-        result.plan = plan_remaining(problem, planner, start, planned_percent);
-        if (!bound) bound = result.plan.utility_bound;
-        result.plan.utility_bound = result.plan.feasible ? *bound : 0.0;
-        schedule = result.plan.deliverable ? result.plan.schedule : minimum_energy_schedule(problem);
-        result.summary = simulate(problem.setup, schedule).summary;
-        if (!result.plan.feasible) break;
-        const double deficit_percent =
-            reserve_deficit_percent(problem.setup, result.summary, problem.setup.reserve_soc_percent);
-        lands = result.summary.feasible && deficit_percent <= 0.0;
-        planned_percent += std::max(deficit_percent, 0.0) + 1e-12;
-    }
-    result.plan.feasible = lands;  // where it is not: none was found, which is not to say that there is none
-    result.mission = {problem.setup, std::move(schedule)};
-    return result;
-}
-
-/// The plan of a mission whose flights do not differ.
-MissionPlan plan_certain(const PlanningProblem& problem) {
-    const bool state_counts = problem.setup.battery.thevenin || problem.setup.cutoff_voltage_v > 0.0;
-    return state_counts ? plan_by_search(problem) : plan_by_tables(problem);
 }
 
 /// The schedule of least energy demand as a plan.

@@ -1,81 +1,13 @@
 #include "mission/prepared_mission.h"
 
 #include "mission/plan.h"
+#include "mission/planning/planner.h"
 #include "mission/simulation/load_segments.h"
 
-#include <cmath>
 #include <utility>
 #include <vector>
 
 namespace flightwatt::mission {
-namespace {
-
-/// The times from one decision to the next, as planned.
-std::vector<PhaseSegment> intervals_of(const PlanningProblem& known) {
-    std::vector<PhaseSegment> intervals;
-    for (const auto phase : all_phases) {
-        const double duration_s = known.setup.duration_s[phase];
-        const double every_s = known.adaptive->decide_every_s;
-        const auto count =
-            static_cast<std::size_t>(std::ceil((duration_s - same_time_tolerance_s(duration_s)) / every_s));
-        for (std::size_t k = 0; k < count; ++k) {
-            const double start_s = static_cast<double>(k) * every_s;
-            intervals.push_back({phase, start_s, k + 1 == count ? duration_s : start_s + every_s});
-        }
-    }
-    return intervals;
-}
-
-/// One flight in the air.
-class Flight {
-  public:
-    Flight(const AdaptivePlanner& planner, const MissionSetup& actual, const Disturbances& disturbances)
-        : known_(planner.nominal),
-          actual_(actual),
-          disturbances_(disturbances),
-          battery_(apply_disturbances(actual.battery, disturbances)),
-          load_(make_mission_load(actual)),
-          decider_(planner) {
-        charge_.soc_percent = actual.initial_soc_percent;
-    }
-
-    void fly(const PhaseSegment& interval) {
-        const auto plan = decider_.replan({interval.phase, interval.start_s}, charge_);
-        const auto before = charge_;
-        const auto run = clip_to_interval(plan.schedule, interval);
-        for (const auto& segment : run) fly(segment);
-        decider_.update(interval, run, before, charge_.soc_percent);
-        ++flight_.decisions.made;
-        if (!plan.feasible) ++flight_.decisions.without_plan;
-    }
-
-    AdaptiveResult landed() {
-        flight_.schedule =
-            rescale_to_flown_durations(std::move(flight_.schedule), known_.setup.duration_s, actual_.duration_s);
-        flight_.decisions.mechanical_factor = decider_.mechanical_factor();
-        return std::move(flight_);
-    }
-
-  private:
-    /// Runs a segment of the plan in the flight as it is.
-    void fly(const ScheduleSegment& planned) {
-        append_merged(flight_.schedule, planned);
-        const auto flown = rescale_to_flown_durations({planned}, known_.setup.duration_s, actual_.duration_s);
-        for (const auto& segment : disturbed(load_segments(load_, flown.front()), disturbances_))
-            charge_ = advance_segment(battery_, actual_.cutoff_voltage_v, segment, charge_);
-    }
-
-    const PlanningProblem& known_;
-    const MissionSetup& actual_;
-    const Disturbances& disturbances_;
-    battery::Battery battery_;  ///< as it really is
-    MissionLoad load_;          ///< of the mission as it really is
-    FlightReplanner decider_;
-    AdaptiveResult flight_;
-    battery::Discharge charge_;
-};
-
-}  // namespace
 
 PreparedMission prepare_mission(const MissionVariant& mission) {
     PreparedMission prepared{setup_of(mission), {}, std::nullopt, ScheduleOrigin::given};
@@ -117,9 +49,30 @@ SimulatedFlight simulate_prepared(const PreparedMission& prepared, const Simulat
 
 AdaptiveResult simulate_adaptive(const AdaptivePlanner& planner, const MissionSetup& actual,
                                  const Disturbances& disturbances) {
-    Flight flight(planner, actual, disturbances);
-    for (const auto& interval : intervals_of(planner.nominal)) flight.fly(interval);
-    return flight.landed();
+    const auto& known = planner.nominal;
+    auto decisions = known;  // whose slots go from one decision to the next
+    decisions.fixed.clear();
+    decisions.plan.slot_s = known.adaptive->decide_every_s;
+    const auto battery = apply_disturbances(actual.battery, disturbances);
+    const auto load = make_mission_load(actual);
+    FlightReplanner decider(planner);
+    battery::Discharge charge{{actual.initial_soc_percent}};
+    AdaptiveResult flight;
+    for (const auto& interval : make_slots(decisions)) {
+        const auto plan = decider.replan({interval.phase, interval.start_s}, charge);
+        const auto before = charge;
+        const auto run = clip_to_interval(plan.schedule, interval);
+        for (const auto& planned : run) append_merged(flight.schedule, planned);
+        for (const auto& flown : rescale_to_flown_durations(run, known.setup.duration_s, actual.duration_s))
+            for (const auto& segment : disturbed(load_segments(load, flown), disturbances))
+                charge = advance_segment(battery, actual.cutoff_voltage_v, segment, charge);
+        decider.update(interval, run, before, charge.soc_percent);
+        ++flight.decisions.made;
+        if (!plan.feasible) ++flight.decisions.without_plan;
+    }
+    flight.schedule = rescale_to_flown_durations(std::move(flight.schedule), known.setup.duration_s, actual.duration_s);
+    flight.decisions.mechanical_factor = decider.mechanical_factor();
+    return flight;
 }
 
 }  // namespace flightwatt::mission

@@ -1,7 +1,6 @@
 #include "mission/sampled_flights.h"
 
 #include "base/csv.h"
-#include "base/parallel.h"
 #include "base/statistics.h"
 #include "base/units.h"
 #include "mission/plan.h"
@@ -10,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -19,70 +19,29 @@ namespace {
 
 constexpr double max_samples = 1e7;
 
-/// A drawn flight with its schedule, under disturbances that are given for the flight as planned.
-SampledFlight scheduled(const PreparedMission& prepared, const MissionSetup& drawn, const Disturbances& as_planned) {
+/// Gives a drawn flight its schedule, under disturbances and with times that are of the flight as planned.
+void schedule_flight(const PreparedMission& prepared, const Disturbances& as_planned,
+                     const std::vector<double>& times_s, DrawnFlight& flight) {
     const auto& planned_s = prepared.setup.duration_s;
-    const auto disturbances = rescale_to_flown_durations(as_planned, planned_s, drawn.duration_s);
+    auto& setup = flight.setup;
+    const auto disturbances = rescale_to_flown_durations(as_planned, planned_s, setup.duration_s);
     const auto schedule = prepared.adaptive
-                              ? simulate_adaptive(*prepared.adaptive, drawn, disturbances).schedule
-                              : rescale_to_flown_durations(prepared.schedule, planned_s, drawn.duration_s);
-    return {drawn, apply_disturbances(drawn.battery, disturbances),
-            disturbed(load_segments(drawn, schedule), disturbances)};
+                              ? simulate_adaptive(*prepared.adaptive, setup, disturbances).schedule
+                              : rescale_to_flown_durations(prepared.schedule, planned_s, setup.duration_s);
+    flight.times_s = times_s;
+    for (auto& time_s : flight.times_s) time_s = rescale_to_flown_durations_s(time_s, planned_s, setup.duration_s);
+    flight.segments = disturbed(load_segments(setup, schedule), disturbances, flight.times_s);
+    setup.battery = apply_disturbances(std::move(setup.battery), disturbances);
 }
 
-/// Draws and flies flights, and hands each to the place of its number.
-class Sampler {
-  public:
-    Sampler(const PreparedMission& prepared, const Disturbances& disturbances, const FlightUncertainty& spreads,
-            const SamplingOptions& options)
-        : prepared_(prepared), disturbances_(disturbances), spreads_(spreads), options_(options) {
-        const double duration_s = timeline_of(prepared.setup.duration_s).duration_s;
-        for (std::size_t i = 0; i < options.band_points; ++i) {
-            times_s_.push_back(duration_s * static_cast<double>(i) / static_cast<double>(options.band_points - 1));
-        }
-    }
-
-    const std::vector<double>& times_s() const { return times_s_; }
-
-    std::vector<FlightOutcome> fly_all() const {
-        std::vector<FlightOutcome> landings(options_.samples);
-        if (prepared_.adaptive || !disturbances_.empty())
-            for_each_in_parallel(landings.size(), [&](std::size_t i) { landings[i] = fly_one(i); });
-        else
-            fly_side_by_side(landings);
-        return landings;
-    }
-
-  private:
-    void fly_side_by_side(std::vector<FlightOutcome>& landings) const {
-        constexpr std::size_t at_once = 256;
-        const SimdFlightSimulator lanes(prepared_.setup, spreads_, prepared_.schedule, times_s_);
-        const auto normal_count = count_normals(prepared_.setup);
-        for_each_in_parallel((landings.size() + at_once - 1) / at_once, [&](std::size_t block) {
-            const auto own = std::span(landings)
-                                 .subspan(block * at_once)
-                                 .first(std::min(at_once, landings.size() - block * at_once));
-            std::vector<std::vector<double>> normals;
-            for (std::size_t i = 0; i < own.size(); ++i)
-                normals.push_back(draw_normals(normal_count, options_.seed, block * at_once + i));
-            lanes.simulate(normals, own);
-        });
-    }
-
-    FlightOutcome fly_one(std::size_t index) const {
-        const auto& planned_s = prepared_.setup.duration_s;
-        const auto setup = draw_flight(prepared_.setup, spreads_, options_.seed, index);
-        auto times_s = times_s_;
-        for (auto& time_s : times_s) time_s = rescale_to_flown_durations_s(time_s, planned_s, setup.duration_s);
-        return simulate_flight(scheduled(prepared_, setup, disturbances_), times_s);
-    }
-
-    const PreparedMission& prepared_;
-    const Disturbances& disturbances_;
-    const FlightUncertainty& spreads_;
-    const SamplingOptions& options_;
-    std::vector<double> times_s_;
-};
+/// Evenly over the mission.
+std::vector<double> band_times_s(const MissionSetup& mission, std::size_t points) {
+    const double duration_s = timeline_of(mission.duration_s).duration_s;
+    std::vector<double> times_s;
+    for (std::size_t i = 0; i < points; ++i)
+        times_s.push_back(duration_s * static_cast<double>(i) / static_cast<double>(points - 1));
+    return times_s;
+}
 
 /// Wilson's interval of a share `p` of n.
 Interval wilson_interval(double p, double n) {
@@ -154,17 +113,24 @@ struct FlownQuantities {
     double final_soc_percent = 0.0;
 };
 
-FlownQuantities flown_quantities(const PreparedMission& prepared, const MissionSetup& drawn) {
-    const auto flight = scheduled(prepared, drawn, {});
-    FlownQuantities flown;
-    for (const auto& segment : flight.segments) {
-        flown.mechanical_energy_wh += units::wh_from_joule(mechanical_energy_j(segment, segment.end_s));
-        flown.compute_energy_wh += units::wh_from_joule(compute_energy_j(segment, segment.end_s));
-    }
-    flown.duration_s = timeline_of(drawn.duration_s).duration_s;
-    flown.energy_wh = flown.mechanical_energy_wh + flown.compute_energy_wh;
-    const auto landing = simulate_flight(flight);
-    flown.final_soc_percent = landing.battery_failure ? 0.0 : landing.final_soc_percent;
+/// Of flights of one of them, each by the numbers that `normals_of` gives it.
+std::vector<FlownQuantities> fly_compared(const PreparedMission& prepared, const FlightUncertainty& spreads,
+                                          std::size_t count,
+                                          const std::function<std::vector<double>(std::size_t)>& normals_of) {
+    std::vector<FlownQuantities> flown(count);
+    const FlightDraw draw = [&](std::size_t i, DrawnFlight& flight) {
+        apply_draw_to(prepared.setup, spreads, normals_of(i), flight.setup);
+        schedule_flight(prepared, {}, {}, flight);
+        for (const auto& segment : flight.segments) {
+            flown[i].mechanical_energy_wh += units::wh_from_joule(mechanical_energy_j(segment, segment.end_s));
+            flown[i].compute_energy_wh += units::wh_from_joule(compute_energy_j(segment, segment.end_s));
+        }
+        flown[i].duration_s = timeline_of(flight.setup.duration_s).duration_s;
+        flown[i].energy_wh = flown[i].mechanical_energy_wh + flown[i].compute_energy_wh;
+    };
+    const auto landings = fly_drawn(prepared.setup, draw, 0, count);
+    for (std::size_t i = 0; i < count; ++i)
+        flown[i].final_soc_percent = landings[i].battery_failure ? 0.0 : landings[i].final_soc_percent;
     return flown;
 }
 
@@ -208,8 +174,13 @@ MonteCarloResult sample_flights(const PreparedMission& prepared, const Disturban
     require_samples(options);
     require_uncertainty(prepared.setup);
     const auto spreads = collect_uncertainty(prepared.setup);
-    const Sampler sampler(prepared, disturbances, spreads, options);
-    const auto landings = sampler.fly_all();
+    const auto times_s = band_times_s(prepared.setup, options.band_points);
+    const auto normal_count = count_normals(prepared.setup);
+    const FlightDraw draw = [&](std::size_t i, DrawnFlight& flight) {
+        apply_draw_to(prepared.setup, spreads, draw_normals(normal_count, options.seed, i), flight.setup);
+        schedule_flight(prepared, disturbances, times_s, flight);
+    };
+    const auto landings = fly_drawn(prepared.setup, draw, 0, options.samples);
     MonteCarloResult flights;
     flights.mission = prepared.setup.name;
     flights.reserve_soc_percent = prepared.setup.reserve_soc_percent;
@@ -231,7 +202,7 @@ MonteCarloResult sample_flights(const PreparedMission& prepared, const Disturban
     flights.probability_below_reserve_outside_measured =
         static_cast<double>(count_misses_outside_measured(landings, prepared.setup, spreads, flights)) /
         static_cast<double>(landings.size());
-    flights.bands = bands_of(landings, sampler.times_s());
+    flights.bands = bands_of(landings, times_s);
     return flights;
 }
 
@@ -243,14 +214,11 @@ std::optional<SampledDifference> sample_difference(const PreparedMission& a, con
     if (spreads_a.sources.varied.empty() || spreads_b.sources.varied.empty()) return std::nullopt;
     const auto common = common_sources(a.setup, b.setup);
     const auto other_seed = ~options.seed;  // of what is not in common
-    std::vector<FlownQuantities> of_a(options.samples);
-    std::vector<FlownQuantities> of_b(options.samples);
-    for_each_in_parallel(options.samples, [&](std::size_t i) {
-        const auto normals_a = draw_normals(count_normals(a.setup), options.seed, i);
-        const auto normals_b = correlated_normals(a.setup, b.setup, common, normals_a,
-                                                  draw_normals(count_normals(b.setup), other_seed, i));
-        of_a[i] = flown_quantities(a, apply_draw(a.setup, spreads_a, normals_a));
-        of_b[i] = flown_quantities(b, apply_draw(b.setup, spreads_b, normals_b));
+    const auto normals_of_a = [&](std::size_t i) { return draw_normals(count_normals(a.setup), options.seed, i); };
+    const auto of_a = fly_compared(a, spreads_a, options.samples, normals_of_a);
+    const auto of_b = fly_compared(b, spreads_b, options.samples, [&](std::size_t i) {
+        return correlated_normals(a.setup, b.setup, common, normals_of_a(i),
+                                  draw_normals(count_normals(b.setup), other_seed, i));
     });
     SampledDifference difference;
     difference.samples = options.samples;

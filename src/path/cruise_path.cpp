@@ -45,7 +45,7 @@ CruisePath compute_cruise(std::shared_ptr<const PlannedPath> plan, const Wind& w
     const auto flown = compute_trajectory(plan->path, wind, forbidden);
     CruisePath cruise;
     cruise.pieces = std::make_shared<const PiecewisePower>(power_pieces(plan->power, flown, factor));
-    cruise.is_infeasible = flown.infeasible_element.has_value();
+    cruise.is_infeasible = !flown.infeasible_elements.empty();
     cruise.plan = std::move(plan);
     return cruise;
 }

@@ -38,69 +38,26 @@ std::vector<Wind> likely_winds(const Wind& wind) {
     return winds;
 }
 
-void add(mechanical::TermValues& sums, const mechanical::TermValues& terms, double factor) {
-    for (const auto term : mechanical::all_power_terms) sums[term] += terms[term] * factor;
-}
-
 }  // namespace
 
 PathForecast::PathForecast(PlannedPath plan) : plan_(std::move(plan)) {
-    for (const auto& wind : likely_winds(plan_.wind)) {
-        PathInWind path;
-        for (const auto& element : plan_.path.elements) path.push_back(fly_element(element, wind));
-        in_likely_winds_.push_back(std::move(path));
-    }
+    for (const auto& wind : likely_winds(plan_.wind))
+        in_likely_winds_.push_back(compute_trajectory(plan_.path, wind, InfeasibleLegPolicy::crawl));
     flown_ = compute_trajectory(plan_.path, plan_.wind, InfeasibleLegPolicy::crawl);
 }
 
 const PathTrajectory& PathForecast::flown() const {
-    if (flown_.infeasible_element) compute_trajectory(plan_.path, plan_.wind);  // says what is wrong
+    if (!flown_.infeasible_elements.empty()) compute_trajectory(plan_.path, plan_.wind);  // says what is wrong
     return flown_;
-}
-
-PathForecast::FlownElementInWind PathForecast::fly_element(const PathElement& element, const Wind& wind) const {
-    const auto flown = compute_trajectory({{element}}, wind, InfeasibleLegPolicy::crawl);
-    FlownElementInWind result;
-    result.is_forbidden = flown.infeasible_element.has_value();
-    for (const auto& piece : flown.pieces) {
-        SummedPiece summed{result.duration_s, piece.time_s, {}, result.sums};
-        if (const auto terms = mechanical::term_values(piece.motion); !(sum_of_terms_w(plan_.power, terms) < 0.0))
-            summed.terms = terms;
-        result.duration_s += piece.time_s;
-        add(result.sums, summed.terms, piece.time_s);
-        result.pieces.push_back(summed);
-    }
-    return result;
-}
-
-PathForecast::Rest PathForecast::rest_of(const PathInWind& path, const PathPosition& place) {
-    Rest rest;
-    mechanical::TermValues sums;
-    for (std::size_t i = place.element; i < path.size(); ++i) {
-        const auto& element = path[i];
-        rest.duration_s += element.duration_s;
-        add(sums, element.sums, 1.0);
-        rest.is_forbidden = rest.is_forbidden || element.is_forbidden;
-        if (i > place.element || !(place.part > 0.0)) continue;
-        const double behind_s = place.part * element.duration_s;
-        rest.duration_s -= behind_s;
-        auto piece = std::ranges::upper_bound(element.pieces, behind_s, {}, &SummedPiece::start_s);
-        if (piece == element.pieces.begin()) continue;
-        --piece;
-        add(sums, piece->before, -1.0);
-        add(sums, piece->terms, piece->start_s - behind_s);
-    }
-    if (rest.duration_s > 0.0) add(rest.mean_terms, sums, 1.0 / rest.duration_s);
-    return rest;
 }
 
 RemainingPath PathForecast::predict(const mechanical::FlightProgress& flown, const PathPosition& place) const {
     RemainingPath rest;
     std::vector<mechanical::MotionAhead> in_winds;
-    for (const auto& path : in_likely_winds_) {
-        const auto ahead = rest_of(path, place);
-        if (ahead.is_forbidden) continue;
-        in_winds.push_back({ahead.mean_terms, ahead.duration_s});
+    for (const auto& in_wind : in_likely_winds_) {
+        const auto ahead = remaining_trajectory(in_wind, place);
+        if (!ahead.infeasible_elements.empty()) continue;
+        in_winds.push_back({mean_terms(plan_.power, ahead), ahead.duration_s});
         rest.duration_s += ahead.duration_s;
     }
     std::vector<double> energies_wh;

@@ -33,32 +33,9 @@ class PathForecast {
     RemainingPath predict(const mechanical::FlightProgress& flown, const PathPosition& place) const;
 
   private:
-    /// A piece of an element, and the sums over it and those before it.
-    struct SummedPiece {
-        double start_s = 0.0;
-        double time_s = 0.0;
-        mechanical::TermValues terms;  ///< zeros where the motor stands
-        mechanical::TermValues before;
-    };
-    struct FlownElementInWind {
-        std::vector<SummedPiece> pieces;
-        double duration_s = 0.0;
-        mechanical::TermValues sums;
-        bool is_forbidden = false;
-    };
-    using PathInWind = std::vector<FlownElementInWind>;
-    struct Rest {
-        double duration_s = 0.0;
-        mechanical::TermValues mean_terms;
-        bool is_forbidden = false;
-    };
-
-    FlownElementInWind fly_element(const PathElement& element, const Wind& wind) const;
-    static Rest rest_of(const PathInWind& path, const PathPosition& place);
-
     PlannedPath plan_;
-    std::vector<PathInWind> in_likely_winds_;
-    PathTrajectory flown_;  ///< in the plan's wind, crawling where that forbids it
+    std::vector<PathTrajectory> in_likely_winds_;  ///< crawling where one forbids it
+    PathTrajectory flown_;                         ///< in the plan's wind, crawling where that forbids it
 };
 
 }  // namespace flightwatt::path

@@ -96,7 +96,7 @@ class PathFlight {
         const bool is_forbidden = airspeed() <= least * (1.0 + 1e-12);
         if (is_forbidden && !crawls_) refuse_wind(shape);
         if (crawls_ && (is_forbidden || track.time_s(0.0, track.length_m(), airspeed()) > crawl_s)) {
-            if (!flown_.infeasible_element) flown_.infeasible_element = index_;
+            flown_.infeasible_elements.push_back(index_);
             add(crawl_s, 0.0);
             return;
         }
@@ -231,16 +231,16 @@ PathPosition position_at(const PathTrajectory& flown, double time_s) {
 PathTrajectory remaining_trajectory(const PathTrajectory& flown, const PathPosition& place) {
     PathTrajectory rest;
     rest.element_s = flown.element_s;
-    rest.infeasible_element = flown.infeasible_element;
-    double skipped_s = 0.0;
-    for (std::size_t i = 0; i < flown.element_s.size(); ++i) {
-        const double part = i < place.element ? 1.0 : i == place.element ? place.part : 0.0;
-        skipped_s += part * flown.element_s[i];
-        rest.element_s[i] *= 1.0 - part;
-    }
+    for (const auto element : flown.infeasible_elements)
+        if (element >= place.element) rest.infeasible_elements.push_back(element);
+    rest.pieces.reserve(flown.pieces.size());
+    for (std::size_t i = 0; i < rest.element_s.size() && i <= place.element; ++i)
+        rest.element_s[i] *= i < place.element ? 0.0 : 1.0 - place.part;
+    double behind_s = place.element < flown.element_s.size() ? place.part * flown.element_s[place.element] : 0.0;
     for (auto piece : flown.pieces) {
-        const double here_s = std::min(skipped_s, piece.time_s);
-        skipped_s -= here_s;
+        if (piece.element < place.element) continue;
+        const double here_s = std::min(behind_s, piece.time_s);
+        behind_s -= here_s;
         piece.time_s -= here_s;
         if (!(piece.time_s > 0.0)) continue;
         rest.duration_s += piece.time_s;

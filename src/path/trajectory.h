@@ -19,16 +19,16 @@ struct TrajectorySegment {
 
 /// A path as it is flown in a wind.
 struct PathTrajectory {
-    std::vector<TrajectorySegment> pieces;          ///< in order, none shorter than 0 s
-    std::vector<double> element_s;                  ///< how long each element takes
-    double duration_s = 0.0;                        ///< of all
-    std::optional<std::size_t> infeasible_element;  ///< the first element that the wind forbids, if that was asked for
+    std::vector<TrajectorySegment> pieces;         ///< in order, none shorter than 0 s
+    std::vector<double> element_s;                 ///< how long each element takes
+    double duration_s = 0.0;                       ///< of all
+    std::vector<std::size_t> infeasible_elements;  ///< that the wind forbids, if that was asked for
 };
 
 /// What to do where the wind forbids an element.
 enum class InfeasibleLegPolicy {
     refuse,  ///< throw InputError
-    crawl  ///< note it in `infeasible_element`, and fly the element with 2 % of the airspeed over ground, which is as good as none
+    crawl  ///< note it in `infeasible_elements`, and fly the element with 2 % of the airspeed over ground, which is as good as none
 };
 
 /// Flies a path in a steady wind: airspeed is held, the course over ground kept by a drift angle (docs/methods.md,

@@ -3,6 +3,7 @@
 
 #include "log_passes.h"
 #include "mission/mission_file.h"
+#include "mission/sampling/flight_draws.h"
 #include "mission/sampling/flight_lanes.h"
 #include "mission/simulation.h"
 
@@ -22,23 +23,27 @@ using namespace flightwatt::mission;
 struct Sampled {
     explicit Sampled(const char* path)
         : mission(std::get<Mission>(read_mission(std::filesystem::path(FLIGHTWATT_SOURCE_DIR) / path))),
-          spreads(collect_uncertainty(mission.setup)),
-          lanes(mission.setup, spreads, mission.schedule) {}
+          spreads(collect_uncertainty(mission.setup)) {}
+
+    void draw(std::size_t number, DrawnFlight& flight) const {
+        apply_draw_to(mission.setup, spreads, draw_normals(count_normals(mission.setup), 1, number), flight.setup);
+        flight.segments = load_segments(
+            flight.setup,
+            rescale_to_flown_durations(mission.schedule, mission.setup.duration_s, flight.setup.duration_s));
+    }
 
     Mission mission;
     FlightUncertainty spreads;
-    SimdFlightSimulator lanes;
 };
 
 void side_by_side(benchmark::State& state, const char* path) {
-    constexpr std::size_t at_once = 256;
     const Sampled sampled(path);
-    std::vector<std::vector<double>> normals(at_once);
-    std::vector<FlightOutcome> landings(at_once);
+    const FlightDraw draw = [&](std::size_t number, DrawnFlight& flight) { sampled.draw(number, flight); };
+    std::vector<FlightOutcome> landings(256);
     std::size_t flights = 0;
     for (auto _ : state) {
-        for (auto& numbers : normals) numbers = draw_normals(count_normals(sampled.mission.setup), 1, flights++);
-        sampled.lanes.simulate(normals, landings);
+        fly_side_by_side(sampled.mission.setup, draw, flights, landings);
+        flights += landings.size();
         benchmark::DoNotOptimize(landings.data());
     }
     state.SetItemsProcessed(static_cast<std::int64_t>(flights));
@@ -46,26 +51,29 @@ void side_by_side(benchmark::State& state, const char* path) {
 
 void one_at_a_time(benchmark::State& state, const char* path) {
     const Sampled sampled(path);
+    DrawnFlight flight{sampled.mission.setup, {}};
     std::size_t flights = 0;
-    for (auto _ : state)
-        benchmark::DoNotOptimize(
-            sampled.lanes.simulate_scalar(draw_normals(count_normals(sampled.mission.setup), 1, flights++))
-                .remaining_percent);
+    for (auto _ : state) {
+        sampled.draw(flights++, flight);
+        battery::Discharge charge{{flight.setup.initial_soc_percent}};
+        for (const auto& segment : flight.segments)
+            charge = advance_segment(flight.setup.battery, flight.setup.cutoff_voltage_v, segment, charge);
+        benchmark::DoNotOptimize(charge.soc_percent);
+    }
     state.SetItemsProcessed(static_cast<std::int64_t>(flights));
 }
 
 /// Over flights that are not empty before they land: the reference stops there.
 void off_runge_kutta(benchmark::State& state, const char* path) {
     const Sampled sampled(path);
-    std::vector<std::vector<double>> normals;
-    for (std::size_t i = 0; i < 100; ++i) normals.push_back(draw_normals(count_normals(sampled.mission.setup), 1, i));
-    std::vector<FlightOutcome> landings(normals.size());
-    for (auto _ : state) sampled.lanes.simulate(normals, landings);
+    const FlightDraw draw = [&](std::size_t number, DrawnFlight& flight) { sampled.draw(number, flight); };
+    std::vector<FlightOutcome> landings(100);
+    for (auto _ : state) fly_side_by_side(sampled.mission.setup, draw, 0, landings);
     double worst_percent = 0.0;
     std::size_t compared = 0;
-    for (std::size_t i = 0; i < normals.size(); ++i) {
+    for (std::size_t i = 0; i < landings.size(); ++i) {
         if (landings[i].battery_failure) continue;
-        const auto flight = apply_draw(sampled.mission.setup, sampled.spreads, normals[i]);
+        const auto flight = draw_flight(sampled.mission.setup, sampled.spreads, 1, i);
         const auto schedule =
             rescale_to_flown_durations(sampled.mission.schedule, sampled.mission.setup.duration_s, flight.duration_s);
         const auto reference = simulate(flight, schedule, {60.0, 0.25}).summary.final_soc_percent;

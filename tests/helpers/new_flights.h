@@ -242,7 +242,7 @@ class UnknownAircraft {
         }
         const auto schedule =
             rescale_to_flown_durations(promised.schedule, promised.setup.duration_s, flown.duration_s);
-        return mission::simulate_flight({flight, flight.battery, load_segments(flight, schedule)});
+        return mission::simulate_flight({flight, load_segments(flight, schedule)});
     }
 
     std::mt19937 random_;

@@ -198,12 +198,12 @@ TEST(Trajectory, RefusesWhatCannotBeFlown) {
 TEST(Trajectory, CrawlsAgainstAWindThatWasDrawn) {
     const FlightPath path{{element_of(Leg{100.0, 180.0}), element_of(Leg{100.0, 0.0})}};
     const auto flown = compute_trajectory(path, {14.0, 0.0}, InfeasibleLegPolicy::crawl);
-    EXPECT_EQ(flown.infeasible_element, std::optional<std::size_t>(1));
+    EXPECT_EQ(flown.infeasible_elements, std::vector<std::size_t>{1});
     EXPECT_NEAR(flown.element_s[1], 100.0 / (0.02 * 13.0), 1e-9);
     // A leg that a tailwind makes too short for its climb is climbed on the spot.
     const auto climbed = compute_trajectory({{climbing(element_of(Leg{300.0, 0.0}), 40.0, 2.0)}}, {10.0, 180.0},
                                             InfeasibleLegPolicy::crawl);
-    EXPECT_FALSE(climbed.infeasible_element);
+    EXPECT_TRUE(climbed.infeasible_elements.empty());
     EXPECT_NEAR(climbed.duration_s, 20.0, 1e-9);
 }
 

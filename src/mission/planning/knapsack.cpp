@@ -7,15 +7,8 @@
 namespace flightwatt::mission {
 namespace {
 
-/// A run of a path; `before` is where the run before stands in the trail.
-struct TrailStep {
-    std::size_t before = 0;
-    std::size_t choice = 0;
-    std::size_t to = 0;
-};
-
 /// A path through the first slots, by its last run and its sums.
-struct Label : TrailStep {
+struct Label : RunStep {
     CostAndUtility sum;
 };
 
@@ -58,7 +51,8 @@ class LabelPass {
         const auto finished = merged(graph.slots, at[graph.slots]);
         const auto best = std::ranges::max_element(
             finished, [](const auto& a, const auto& b) { return a.sum.utility < b.sum.utility; });
-        if (best != finished.end() && best->sum.utility > result.best.sum.utility) result.best = path_of(*best);
+        if (best != finished.end() && best->sum.utility > result.best.sum.utility)
+            result.best = {choices_until(*best, trail_, graph), best->sum};
         const double lost = as_good_ * static_cast<double>(2 * graph.slots + 2);
         result.bound = std::min(result.bound, std::max(result.best.sum.utility, dropped_bound_) + lost);
         result.bound = std::max(result.bound, result.best.sum.utility);
@@ -74,23 +68,15 @@ class LabelPass {
         return all;
     }
 
-    /// Puts the labels' last runs into the trail: only those that survived, for it grows with every slot.
-    void leave_trail(std::vector<Label>& labels) {
-        for (auto& label : labels) {
-            trail_.push_back(label);
-            label.before = trail_.size() - 1;
-        }
-    }
-
     void expand(std::size_t i, std::vector<Layer>& at) {
         const auto& graph = search_.graph;
         auto free = merged(i, at[i]);
-        leave_trail(free);
+        leave_trail(free, trail_);
         for (const auto& run : graph.runs[i]) carry(free, run, at[run.to][run.choice]);
         for (const auto& run : graph.one_more[i]) {
             auto& own = at[i][run.choice];
             prune(own, search_.by_slope.with[i][run.choice], search_.by_cost.with[i][run.choice]);
-            leave_trail(own);
+            leave_trail(own, trail_);
             carry(own, run, at[run.to][run.choice]);
         }
     }
@@ -140,26 +126,12 @@ class LabelPass {
         return true;
     }
 
-    KnapsackPath path_of(const Label& label) const {
-        KnapsackPath path{std::vector<std::size_t>(search_.graph.slots), label.sum};
-        TrailStep step = label;
-        for (;;) {
-            const auto& before = trail_[step.before];
-            std::fill(path.choices.begin() + static_cast<std::ptrdiff_t>(before.to),
-                      path.choices.begin() + static_cast<std::ptrdiff_t>(step.to), step.choice);
-            if (step.before == 0) break;
-            step = before;
-        }
-        std::fill_n(path.choices.begin(), trail_[0].to, trail_[0].choice);
-        return path;
-    }
-
     const Search& search_;
     std::size_t max_labels_;
     double utility_gap_;
     double as_good_ = 0.0;
     double dropped_bound_ = 0.0;
-    std::vector<TrailStep> trail_;
+    std::vector<RunStep> trail_;
 };
 
 KnapsackPath path_by(const KnapsackGraph& graph, double utility_weight, double cost_weight) {
@@ -354,6 +326,17 @@ CostToGo cost_to_go(const KnapsackGraph& graph, double utility_weight, double co
         }
     }
     return best;
+}
+
+std::vector<std::size_t> choices_until(RunStep last, const std::vector<RunStep>& trail, const KnapsackGraph& graph) {
+    std::vector<std::size_t> choices(graph.slots, graph.begin_choice);
+    while (last.to > graph.begin) {
+        const auto& before = trail[last.before];
+        std::fill(choices.begin() + static_cast<std::ptrdiff_t>(before.to),
+                  choices.begin() + static_cast<std::ptrdiff_t>(last.to), last.choice);
+        last = before;
+    }
+    return choices;
 }
 
 KnapsackPath best_path(const KnapsackGraph& graph, const CostToGo& to_go, double utility_weight, double cost_weight) {

@@ -90,6 +90,25 @@ struct CostToGo {
 
 CostToGo cost_to_go(const KnapsackGraph& graph, double utility_weight, double cost_weight);
 
+/// A part of a schedule that ends with a run; `before` is where the run before stands in the trail.
+struct RunStep {
+    std::size_t before = 0;
+    std::size_t choice = 0;
+    std::size_t to = 0;
+};
+
+/// Puts the labels' last runs into the trail: only those that survived, for it grows with every slot.
+template <typename Label>
+void leave_trail(std::vector<Label>& labels, std::vector<RunStep>& trail) {
+    for (auto& label : labels) {
+        trail.push_back(label);
+        label.before = trail.size() - 1;
+    }
+}
+
+/// The choices that lead to the end of a run.
+std::vector<std::size_t> choices_until(RunStep last, const std::vector<RunStep>& trail, const KnapsackGraph& graph);
+
 /// A way through all slots.
 struct KnapsackPath {
     std::vector<std::size_t> choices;

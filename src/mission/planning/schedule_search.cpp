@@ -18,16 +18,6 @@ struct FoundSchedule {
     double end_percent = -infinite;
 };
 
-/// Carries the label's battery through the slots of its last run, from `from` on; false if it does not last.
-bool follow(const SlotDynamics& dynamics, std::size_t from, StateLabel& label) {
-    for (std::size_t i = from; i < label.to; ++i) {
-        const auto after = advance_slot(dynamics, i, label.choice, label.state);
-        if (!after) return false;
-        label.state = *after;
-    }
-    return true;
-}
-
 /// Where a schedule ends; minus infinity if it does not.
 double end_percent(const SlotDynamics& dynamics, const std::vector<std::size_t>& choices, battery::BatteryState state) {
     for (std::size_t i = 0; i < choices.size(); ++i) {
@@ -90,7 +80,9 @@ class StatePass {
         std::ranges::sort(finished, std::ranges::greater(), &StateLabel::utility);
         if (!finished.empty()) {
             dropped_bound_ = std::max(dropped_bound_, finished.front().utility);
-            bound_is_flown_ = lands_quickly(choices_of(finished.front()));
+            const auto choices = choices_until(finished.front(), trail_, graph_);
+            bound_is_flown_ = end_percent(question_.coarse, choices, question_.start) >=
+                              question_.reserve_soc_percent - question_.coarse.error_percent;
         }
         constexpr std::size_t max_tried = 500;
         if (finished.size() > max_tried) finished.resize(max_tried);
@@ -107,23 +99,13 @@ class StatePass {
 
     void try_schedule(const StateLabel& label, FoundSchedule& best) const {
         if (label.utility <= best.utility) return;
-        FoundSchedule found{choices_of(label), 0.0, -infinite};
+        FoundSchedule found{choices_until(label, trail_, graph_), 0.0, -infinite};
         for (std::size_t i = 0; i < found.choices.size(); ++i) {
             found.utility += question_.choices.utility_per_s[found.choices[i]] * question_.choices.slots[i].duration_s;
         }
         if (found.utility <= best.utility) return;
         found.end_percent = end_percent(question_.exact, found.choices, question_.start);
         if (found.end_percent >= question_.reserve_soc_percent) best = std::move(found);
-    }
-
-    bool lands_quickly(const std::vector<std::size_t>& choices) const {
-        auto state = question_.start;
-        for (std::size_t i = 0; i < choices.size(); ++i) {
-            const auto after = advance_slot(question_.coarse, i, choices[i], state);
-            if (!after) return false;
-            state = *after;
-        }
-        return state.soc_percent >= question_.reserve_soc_percent - question_.coarse.error_percent;
     }
 
     bool is_wanted(double bound) {
@@ -136,7 +118,7 @@ class StatePass {
         std::vector<StateLabel> free;
         for (const auto& labels : at[i]) free.insert(free.end(), labels.begin(), labels.end());
         merge(i, free);
-        leave_trail(free);
+        leave_trail(free, trail_);
         for (std::size_t r = 0; r < graph_.runs[i].size(); ++r) {
             const auto& run = graph_.runs[i][r];
             carry(i, free, run, value_.runs[i][r], at[run.to][run.choice]);
@@ -145,16 +127,8 @@ class StatePass {
             const auto& run = graph_.one_more[i][r];
             auto& own = at[i][run.choice];
             merge(i, own);
-            leave_trail(own);
+            leave_trail(own, trail_);
             carry(i, own, run, value_.one_more[i][r], at[run.to][run.choice]);
-        }
-    }
-
-    /// Puts the labels' last runs into the trail: only those that survived, for it grows with every slot.
-    void leave_trail(std::vector<StateLabel>& labels) {
-        for (auto& label : labels) {
-            trail_.push_back(label);
-            label.before = trail_.size() - 1;
         }
     }
 
@@ -169,43 +143,37 @@ class StatePass {
             // What is known of the run beforehand saves most integrations.
             const auto end = apply_transition(value_, i, reach, label.charge);
             if (!is_wanted(next.utility + utility_to_go(value_, run.to, run.choice, end))) continue;
-            if (!follow(question_.coarse, i, next)) continue;
+            const auto after = advance_run(question_.coarse, i, run.to, run.choice, next.state);
+            if (!after) continue;
+            next.state = *after;
             set_bound(value_, next);
             if (is_wanted(next.bound)) to.push_back(next);
         }
     }
 
-    /// Of as many equal ranges of charge as half of the labels that there is room for. The labels are in the order of
-    /// their charge.
-    void move_best_of_each_charge_first(std::vector<StateLabel>& labels) const {
-        const auto half_of_room = limits_.max_labels / 2;
-        const auto ranges = static_cast<double>(half_of_room);
+    /// Of as many equal ranges of charge as half of the labels that there is room for, the most promising come before
+    /// all others: so many. The labels are in the order of their charge.
+    std::size_t raise_best_of_each_charge(std::vector<StateLabel>& labels) const {
+        const auto ranges = static_cast<double>(limits_.max_labels / 2);
         const double max_percent = labels.front().adjusted_percent;
         const double all_percent = std::max(1e-9, max_percent - labels.back().adjusted_percent);
         const auto range_of = [&](const StateLabel& label) {
             return std::min(ranges - 1.0, std::floor((max_percent - label.adjusted_percent) / all_percent * ranges));
         };
-        std::vector<StateLabel> best;
-        std::vector<StateLabel> others;
-        for (auto& label : labels) {
-            if (best.empty() || range_of(label) != range_of(best.back())) {
-                best.push_back(label);
-                continue;
-            }
-            if (label.bound > best.back().bound) std::swap(label, best.back());
-            others.push_back(label);
+        std::size_t raised = 0;
+        for (auto first = labels.begin(); first != labels.end(); ++raised) {
+            const auto last = std::find_if(first, labels.end(),
+                                           [&](const auto& label) { return range_of(label) != range_of(*first); });
+            std::ranges::max_element(first, last, {}, &StateLabel::bound)->priority = infinite;
+            first = last;
         }
-        best.resize(limits_.max_labels / 2, best.back());
-        best.insert(best.end(), others.begin(), others.end());
-        labels = std::move(best);
+        return raised;
     }
 
-    /// But for the first `kept`.
     void drop_least_promising(std::vector<StateLabel>& labels, std::size_t kept) {
-        const auto last = labels.begin() + static_cast<std::ptrdiff_t>(limits_.max_labels);
-        if (last >= labels.end()) return;
-        std::ranges::nth_element(labels.begin() + static_cast<std::ptrdiff_t>(kept), last, labels.end(),
-                                 std::ranges::greater(), &StateLabel::priority);
+        if (labels.size() <= kept) return;
+        const auto last = labels.begin() + static_cast<std::ptrdiff_t>(kept);
+        std::ranges::nth_element(labels, last, std::ranges::greater(), &StateLabel::priority);
         for (auto label = last; label != labels.end(); ++label) dropped_bound_ = std::max(dropped_bound_, label->bound);
         labels.erase(last, labels.end());
     }
@@ -227,23 +195,14 @@ class StatePass {
         auto kept = merge_labels(labels, weights, tolerance_);
         for (auto& label : kept) label.priority = promise_of(i, label);
         if (kept.size() > limits_.max_labels && limits_.crowd != LabelPruning::join) {
-            if (limits_.crowd == LabelPruning::drop_by_charge) move_best_of_each_charge_first(kept);
-            drop_least_promising(kept, limits_.crowd == LabelPruning::drop_by_charge ? limits_.max_labels / 2 : 0);
+            const bool by_charge = limits_.crowd == LabelPruning::drop_by_charge;
+            const auto half = limits_.max_labels / 2;
+            drop_least_promising(
+                kept, by_charge ? raise_best_of_each_charge(kept) + limits_.max_labels - half : limits_.max_labels);
         }
         while (kept.size() > limits_.max_labels) kept = merge_labels(labels, weights, tolerance_ *= times_more);
         labels = std::move(kept);
         for (auto& label : labels) set_bound(value_, label);
-    }
-
-    std::vector<std::size_t> choices_of(const StateLabel& label) const {
-        std::vector<std::size_t> choices(graph_.slots, graph_.begin_choice);
-        for (RunStep step = label; step.to > graph_.begin;) {
-            const auto& before = trail_[step.before];
-            std::fill(choices.begin() + static_cast<std::ptrdiff_t>(before.to),
-                      choices.begin() + static_cast<std::ptrdiff_t>(step.to), step.choice);
-            step = before;
-        }
-        return choices;
     }
 
     const ScheduleProblem& question_;
@@ -316,10 +275,12 @@ void improve(const ScheduleProblem& question, const KnapsackGraph& graph, const 
     // Behind the slots that are committed already.
     StateLabel first{{0, graph.begin_choice, 0}, question.start, graph.before_begin.utility};
     first.to = graph.begin;
-    if (!value.possible || !follow(question.coarse, 0, first)) {
+    const auto begun = advance_run(question.coarse, 0, graph.begin, graph.begin_choice, question.start);
+    if (!value.possible || !begun) {
         search.bound = search.best.utility;
         return;
     }
+    first.state = *begun;
     set_bound(value, first);
     search.bound = std::min(search.bound, first.bound);
     const auto pass = [&](std::size_t labels, LabelPruning crowd, const HeuristicValue* caution = nullptr) {

@@ -195,16 +195,6 @@ double cell_percent(const UtilityBound& value) {
     return std::max(value.spare_percent, 1e-9) / static_cast<double>(value.cells);
 }
 
-std::optional<battery::BatteryState> after_run(const SlotDynamics& dynamics, std::size_t from, const ChoiceRun& run,
-                                               battery::BatteryState state) {
-    for (std::size_t i = from; i < run.to; ++i) {
-        const auto after = advance_slot(dynamics, i, run.choice, state);
-        if (!after) return std::nullopt;
-        state = *after;
-    }
-    return state;
-}
-
 double energy_j(const SlotDynamics& dynamics, std::size_t from, const ChoiceRun& run) {
     double sum_j = 0.0;
     for (std::size_t i = from; i < run.to; ++i)
@@ -280,7 +270,8 @@ RunTransition reach_of(const SlotDynamics& dynamics, const UtilityBound& value, 
         std::optional<double> lower_end;
         for (std::size_t j = 0; j < charges; ++j) {
             const double start_percent = min_percent(value, from) + cell_percent(value) * static_cast<double>(j);
-            const auto end = after_run(dynamics, from, run, {start_percent, level_rc_v(value, from, level)});
+            const auto end =
+                advance_run(dynamics, from, run.to, run.choice, {start_percent, level_rc_v(value, from, level)});
             if (!end || !may_land(value, run.to, *end)) continue;
             reach.end[level * charges + j] = effective_charge(value, run.to, *end);
             if (lower_end) {

@@ -130,22 +130,6 @@ std::optional<battery::BatteryState> after_part(const SlotDynamics& dynamics, co
     return battery::BatteryState{now.soc_percent, now.rc_voltage_v};
 }
 
-/// The end of a mission that runs one choice throughout; none if it is not reached.
-std::optional<double> end_percent(const SlotDynamics& dynamics, std::size_t choice, double soc_percent) {
-    battery::BatteryState state{soc_percent};
-    for (std::size_t i = 0; i < dynamics.slots.size(); ++i) {
-        const auto after = advance_slot(dynamics, i, choice, state);
-        if (!after || after->soc_percent < 0.0) return std::nullopt;
-        state = *after;
-    }
-    return state.soc_percent;
-}
-
-MissionSetup without_cut_off(MissionSetup mission) {
-    mission.cutoff_voltage_v = 0.0;
-    return mission;
-}
-
 /// Over longer steps the RC pair's transient is no parabola.
 double max_transient_s(const battery::Battery& battery) {
     const bool has_pair = battery.thevenin && battery.thevenin->rc_resistance_ohm > 0.0;
@@ -155,11 +139,21 @@ double max_transient_s(const battery::Battery& battery) {
 /// Whether missions that run one choice throughout end alike, where they do.
 bool agree(const SlotDynamics& a, const SlotDynamics& b, double soc_percent, double within_percent) {
     for (std::size_t choice = 0; choice < a.compute_w.size(); ++choice) {
-        const auto end = end_percent(a, choice, soc_percent);
-        const auto other = end_percent(b, choice, soc_percent);
-        if (end && other && std::abs(*end - *other) > within_percent) return false;
+        const auto end = advance_run(a, 0, a.slots.size(), choice, {soc_percent});
+        const auto other = advance_run(b, 0, b.slots.size(), choice, {soc_percent});
+        if (!end || !other || end->soc_percent < 0.0 || other->soc_percent < 0.0) continue;
+        if (std::abs(end->soc_percent - other->soc_percent) > within_percent) return false;
     }
     return true;
+}
+
+/// Of the choices of least and most power, which nothing cuts off.
+SlotDynamics extreme_dynamics(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
+                              const std::vector<double>& compute_w, double step_s) {
+    const auto [least, most] = std::ranges::minmax_element(compute_w);
+    auto dynamics = make_slot_dynamics(mission, slots, {*least, *most}, step_s);
+    dynamics.cutoff_voltage_v = 0.0;
+    return dynamics;
 }
 
 }  // namespace
@@ -180,13 +174,10 @@ SlotDynamics make_slot_dynamics(const MissionSetup& mission, const std::vector<P
 
 double choose_step_s(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
                      const std::vector<double>& compute_w) {
-    const auto uncut = without_cut_off(mission);
     double step_s = std::min(max_step_s, max_transient_s(mission.battery) / 2.0);
-    const auto [least, most] = std::ranges::minmax_element(compute_w);
-    const std::vector<double> extremes{*least, *most};
-    auto dynamics = make_slot_dynamics(uncut, slots, extremes, step_s);
+    auto dynamics = extreme_dynamics(mission, slots, compute_w, step_s);
     while (step_s > shortest_step_s) {
-        auto halved = make_slot_dynamics(uncut, slots, extremes, step_s / 2.0);
+        auto halved = extreme_dynamics(mission, slots, compute_w, step_s / 2.0);
         if (agree(dynamics, halved, mission.initial_soc_percent, wanted_agreement_percent)) break;
         step_s /= 2.0;
         dynamics = std::move(halved);
@@ -196,13 +187,10 @@ double choose_step_s(const MissionSetup& mission, const std::vector<PhaseSegment
 
 double choose_coarse_step_s(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
                             const std::vector<double>& compute_w, double step_s) {
-    const auto uncut = without_cut_off(mission);
-    const auto [least, most] = std::ranges::minmax_element(compute_w);
-    const std::vector<double> extremes{*least, *most};
-    const auto exact = make_slot_dynamics(uncut, slots, extremes, step_s);
+    const auto exact = extreme_dynamics(mission, slots, compute_w, step_s);
     double quick_s = step_s;
     const double max_s = std::min(longest_quick_step_s, max_transient_s(mission.battery));
-    while (quick_s * 2.0 <= max_s && agree(exact, make_slot_dynamics(uncut, slots, extremes, quick_s * 2.0),
+    while (quick_s * 2.0 <= max_s && agree(exact, extreme_dynamics(mission, slots, compute_w, quick_s * 2.0),
                                            mission.initial_soc_percent, quick_agreement_percent))
         quick_s *= 2.0;
     return quick_s;
@@ -214,6 +202,13 @@ std::optional<battery::BatteryState> advance_slot(const SlotDynamics& dynamics, 
     std::optional<battery::BatteryState> after = state;
     for (const auto& part : dynamics.slots[slot].parts)
         if (after) after = after_part(dynamics, part, dynamics.compute_w[choice], run, *after);
+    return after;
+}
+
+std::optional<battery::BatteryState> advance_run(const SlotDynamics& dynamics, std::size_t from, std::size_t to,
+                                                 std::size_t choice, const battery::BatteryState& state) {
+    std::optional<battery::BatteryState> after = state;
+    for (std::size_t i = from; i < to && after; ++i) after = advance_slot(dynamics, i, choice, *after);
     return after;
 }
 

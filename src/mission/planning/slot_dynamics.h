@@ -62,6 +62,10 @@ double choose_coarse_step_s(const MissionSetup& mission, const std::vector<Phase
 std::optional<battery::BatteryState> advance_slot(const SlotDynamics& dynamics, std::size_t slot, std::size_t choice,
                                                   const battery::BatteryState& state);
 
+/// The same over the slots from `from` to before `to`, in all of which one choice runs.
+std::optional<battery::BatteryState> advance_run(const SlotDynamics& dynamics, std::size_t from, std::size_t to,
+                                                 std::size_t choice, const battery::BatteryState& state);
+
 /// [V] at rest.
 double open_circuit_voltage_v(const SlotDynamics& dynamics, double soc_percent);
 

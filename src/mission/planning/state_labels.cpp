@@ -62,13 +62,9 @@ double after_run(const ScheduleProblem& question, const UtilityBound& bounds, co
     const double min_w = *std::ranges::min_element(dynamics.compute_w);
     const double more_v = steady_rc_v(dynamics, from, dynamics.compute_w[run.choice], soc_percent) -
                           steady_rc_v(dynamics, from, min_w, soc_percent);
-    battery::BatteryState state{soc_percent, bounds.min_power_trajectory[from].rc_voltage_v + more_v};
-    for (std::size_t i = from; i < run.to; ++i) {
-        const auto after = advance_slot(dynamics, i, run.choice, state);
-        if (!after) return unreachable;
-        state = *after;
-    }
-    return run.sum.utility + utility_to_go(value, run.to, state.soc_percent);
+    const auto after = advance_run(dynamics, from, run.to, run.choice,
+                                   {soc_percent, bounds.min_power_trajectory[from].rc_voltage_v + more_v});
+    return after ? run.sum.utility + utility_to_go(value, run.to, after->soc_percent) : unreachable;
 }
 
 }  // namespace

@@ -7,13 +7,6 @@
 
 namespace flightwatt::mission {
 
-/// A part of a schedule that ends with a run; `before` is where the run before stands in the trail.
-struct RunStep {
-    std::size_t before = 0;
-    std::size_t choice = 0;
-    std::size_t to = 0;
-};
-
 /// Schedules of the first slots that leave nearly the same: one of them by its last run, and a state and a utility that
 /// none of them is better than.
 struct StateLabel : RunStep {

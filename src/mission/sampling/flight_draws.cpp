@@ -144,49 +144,31 @@ void move_phases(const MissionSetup& mission, const PhaseDeviations& deviations,
     }
 }
 
-/// The numbers that make a flight, in their order.
-class Normals {
-  public:
-    explicit Normals(std::span<const double> numbers) : numbers_(numbers) {}
-    double operator()() { return numbers_[next_++]; }
-
-  private:
-    std::span<const double> numbers_;
-    std::size_t next_ = 0;
-};
-
-/// Every number is taken, needed or not: missions that differ in one source have the others in common.
-void move_battery(const battery::BatteryIntervals& intervals, Normals& normal, battery::Battery& battery) {
-    const double capacity_z = normal();
-    const double voltage_z = normal();
-    const double resistance_z = normal();
-    const double rc_resistance_z = normal();
-    const double time_constant_z = normal();
-    battery.capacity_ah = moved(battery.capacity_ah, intervals.capacity_ah, capacity_z, min_part * battery.capacity_ah);
-    battery.voltage_v = moved(battery.voltage_v, intervals.voltage_v, voltage_z, min_part * battery.voltage_v);
-    battery.resistance_ohm = moved_resistance_ohm(battery.resistance_ohm, intervals, resistance_z);
+/// Each number has its place, needed or not: missions that differ in one source have the others in common.
+void move_battery(const battery::BatteryIntervals& intervals, std::span<const double> z, battery::Battery& battery) {
+    battery.capacity_ah = moved(battery.capacity_ah, intervals.capacity_ah, z[0], min_part * battery.capacity_ah);
+    battery.voltage_v = moved(battery.voltage_v, intervals.voltage_v, z[1], min_part * battery.voltage_v);
+    battery.resistance_ohm = moved_resistance_ohm(battery.resistance_ohm, intervals, z[2]);
     if (!battery.thevenin) return;
     auto& circuit = *battery.thevenin;
-    circuit.rc_resistance_ohm = moved(circuit.rc_resistance_ohm, intervals.rc_resistance_ohm, rc_resistance_z, 0.0);
-    circuit.rc_time_constant_s =
-        moved_logarithm(circuit.rc_time_constant_s, intervals.rc_time_constant_s, time_constant_z);
+    circuit.rc_resistance_ohm = moved(circuit.rc_resistance_ohm, intervals.rc_resistance_ohm, z[3], 0.0);
+    circuit.rc_time_constant_s = moved_logarithm(circuit.rc_time_constant_s, intervals.rc_time_constant_s, z[4]);
     auto& voltage_v = circuit.open_circuit.voltage_v;
     const double min_v = min_part * voltage_v.front();
     // Knots near an empty pack are least certain: the curve never falls, so the ones above limit them.
     double above_v = std::numeric_limits<double>::infinity();
     for (std::size_t k = intervals.open_circuit_standard_error_v.size(); k-- > 0;) {
-        const double moved_v = voltage_v[k] + voltage_z * intervals.open_circuit_standard_error_v[k];
+        const double moved_v = voltage_v[k] + z[1] * intervals.open_circuit_standard_error_v[k];
         above_v = voltage_v[k] = std::clamp(moved_v, min_v, std::max(min_v, above_v));
     }
 }
 
-void move_component(const ComponentSpread& spread, Normals& normal, std::vector<double>& power_w) {
-    const double factor = std::max(0.0, 1.0 + units::amount_from_percent(normal(), spread.common_sd_percent));
+void move_component(const ComponentSpread& spread, std::span<const double> z, std::vector<double>& power_w) {
+    const double factor = std::max(0.0, 1.0 + units::amount_from_percent(z[0], spread.common_sd_percent));
     for (std::size_t k = 0; k < power_w.size(); ++k) {
-        const double node_z = normal();
         const double min_w = std::min(0.0, power_w[k]);
         power_w[k] *= factor;
-        if (!spread.node_sd_w.empty()) power_w[k] = std::max(min_w, power_w[k] + node_z * spread.node_sd_w[k]);
+        if (!spread.node_sd_w.empty()) power_w[k] = std::max(min_w, power_w[k] + z[k + 1] * spread.node_sd_w[k]);
     }
 }
 
@@ -265,24 +247,23 @@ void apply_draw_to(const MissionSetup& mission, const FlightUncertainty& spreads
                    MissionSetup& flight) {
     const auto deviations = phase_deviations(spreads, normals);
     move_phases(mission, deviations, spreads.max_rise_w, flight);
-    Normals normal(normals.subspan(phase_quantities));
     flight.battery = mission.battery;
-    move_battery(spreads.battery, normal, flight.battery);
+    move_battery(spreads.battery, normals.subspan(phase_quantities), flight.battery);
+    auto left = normals.subspan(phase_quantities + of_battery);
     for (std::size_t i = 0; i < spreads.components.size(); ++i) {
         auto& power_w = flight.compute.components[i].profile.power_w;
         power_w = mission.compute.components[i].profile.power_w;
-        move_component(spreads.components[i], normal, power_w);
+        move_component(spreads.components[i], left, power_w);
+        left = left.subspan(1 + power_w.size());
     }
     if (mission.cruise_path) {
-        const double wind_speed_z = normal();
-        const double wind_direction_z = normal();
         const double moved_w =
             std::min(deviations.of.at(level_index(Phase::cruise)), spreads.max_rise_w[Phase::cruise]);
-        fly_drawn_path(moved_w, wind_speed_z, wind_direction_z, mission, flight);
+        fly_drawn_path(moved_w, left[0], left[1], mission, flight);
     }
     if (initial_charge_varies(mission))
         flight.initial_soc_percent =
-            std::clamp(mission.initial_soc_percent + normal() * mission.uncertainty.initial_soc_sd_percent,
+            std::clamp(mission.initial_soc_percent + normals.back() * mission.uncertainty.initial_soc_sd_percent,
                        min_initial_soc_percent, units::percent_per_whole);
 }
 

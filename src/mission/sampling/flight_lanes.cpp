@@ -1,20 +1,24 @@
 #include "mission/sampling/flight_lanes.h"
 
+#include "base/parallel.h"
 #include "base/units.h"
 #include "battery/discharge_lanes.h"
 #include "battery/fast_discharge.h"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <memory>
+#include <complex>
 #include <optional>
+#include <utility>
 
 namespace flightwatt::mission {
 namespace {
 
+using battery::lane_count;
+using battery::Lanes;
+
 /// Energy demanded after the battery failed, as a part of what a full one holds [points].
-double unserved_demand_percent(const SampledFlight& flight, double failed_at_s) {
+double unserved_demand_percent(const DrawnFlight& flight, double failed_at_s) {
     double missed_j = 0.0;
     for (const auto& segment : flight.segments) {
         const double from_s = std::max(segment.start_s, failed_at_s);
@@ -22,303 +26,17 @@ double unserved_demand_percent(const SampledFlight& flight, double failed_at_s) 
         missed_j += mechanical_energy_j(segment, segment.end_s) + compute_energy_j(segment, segment.end_s) -
                     mechanical_energy_j(segment, from_s) - compute_energy_j(segment, from_s);
     }
-    return units::percentage(units::wh_from_joule(missed_j), full_energy_wh(flight.battery));
+    return units::percentage(units::wh_from_joule(missed_j), full_energy_wh(flight.setup.battery));
 }
 
-using battery::lane_count;
-using battery::Lanes;
-
-/// A phase of flights side by side.
-struct PhaseLanes {
-    Lanes duration_s = Lanes::Ones();
-    Lanes start_s = Lanes::Zero();
-    Lanes a0_w = Lanes::Zero();
-    std::vector<Lanes> cos_w;
-    std::vector<Lanes> sin_w;
-};
-
-/// How the battery of a flight failed.
-struct Failure {
-    double time_s = 0.0;
-    double soc_percent = 0.0;  ///< then, and from then on
-    bool is_empty = false;
-};
-
-bool have_lanes(const MissionSetup& setup) {
-    return !setup.cruise_path &&
-           std::ranges::none_of(setup.measured_power.values, [](const auto& m) { return m != nullptr; });
-}
-
-/// Flies up to lane_count flights at once.
-class Block {
-  public:
-    Block(const MissionSetup& setup, const FlightUncertainty& spreads, const LaneSchedule& schedule)
-        : setup_(setup),
-          spreads_(spreads),
-          schedule_(schedule),
-          flight_(setup),
-          compute_w_(schedule.configurations.size()) {
-        for (const auto phase : all_phases) {
-            if (!setup.mechanical) continue;
-            phases_[phase].cos_w.resize(setup.mechanical->phases[phase].fourier.cos_w.size());
-            phases_[phase].sin_w.resize(phases_[phase].cos_w.size());
-        }
-        if (setup.battery.thevenin) batteries_ = battery::make_lanes(setup.battery);
-    }
-
-    /// Which of the flights landed here; the others have to fly alone.
-    battery::LaneMask fly(std::span<const std::vector<double>> normals, std::size_t times,
-                          std::span<FlightOutcome> landings) {
-        normals_ = normals;
-        failures_ = {};
-        for (auto& flight : alone_) flight.reset();
-        battery::LaneMask flown;
-        for (std::size_t i = 0; i < lane_count; ++i) {
-            // Empty lanes fly as the first does; nobody looks at them.
-            apply_draw_to(setup_, spreads_, normals[i < normals.size() ? i : 0], flight_);
-            set_lane(static_cast<int>(i));
-            flown[i] = i < normals.size() && is_ordinary();
-        }
-        battery::StateLanes state;
-        state.is_active = flown;
-        state.soc_percent = initial_soc_percent_;
-        for (const auto& stretch : schedule_.stretches) {
-            for (std::size_t note = 0; note < stretch.outputs_at_start; ++note) note_charges(state, flown, landings);
-            setup_.battery.thevenin ? fly_thevenin(stretch, state) : fly_constant(stretch, state);
-        }
-        if (!setup_.battery.thevenin) flown &= above_zero(state);
-        for (std::size_t i = 0; i < normals.size(); ++i)
-            if (flown[i]) land_lane(i, state, times, landings[i]);
-        return flown;
-    }
-
-  private:
-    void set_lane(int lane) {
-        double start_s = 0.0;
-        for (const auto phase : all_phases) {
-            auto& lanes = phases_[phase];
-            lanes.duration_s(lane) = flight_.duration_s[phase];
-            lanes.start_s(lane) = start_s;
-            start_s += flight_.duration_s[phase];
-            if (!flight_.mechanical) continue;
-            const auto& curve = flight_.mechanical->phases[phase].fourier;
-            lanes.a0_w(lane) = curve.a0_w;
-            for (std::size_t n = 0; n < curve.cos_w.size(); ++n) {
-                lanes.cos_w[n](lane) = curve.cos_w[n];
-                lanes.sin_w[n](lane) = curve.sin_w[n];
-            }
-        }
-        for (std::size_t k = 0; k < compute_w_.size(); ++k) {
-            double sum_w = 0.0;
-            for (const auto& [component, node, weight] : schedule_.configurations[k])
-                sum_w += weight * flight_.compute.components[component].profile.power_w[node];
-            compute_w_[k](lane) = sum_w;
-        }
-        if (batteries_) battery::set_lane(*batteries_, lane, flight_.battery);
-        initial_soc_percent_(lane) = flight_.initial_soc_percent;
-        voltage_v_(lane) = flight_.battery.voltage_v;
-        resistance_ohm_(lane) = flight_.battery.resistance_ohm;
-        capacity_as_(lane) = units::coulomb_from_ah(flight_.battery.capacity_ah);
-        last_lane_ = lane;
-    }
-
-    /// Whether the flight that was drawn last needs nothing that lanes cannot: it never charges, it is not so long that
-    /// steps would be too long, and a constant source delivers all that it demands.
-    bool is_ordinary() const {
-        PerPhase<double> amplitude_w;
-        if (flight_.mechanical) {
-            for (const auto phase : all_phases) {
-                const auto& curve = flight_.mechanical->phases[phase].fourier;
-                for (std::size_t n = 0; n < curve.cos_w.size(); ++n)
-                    amplitude_w[phase] += std::hypot(curve.cos_w[n], curve.sin_w[n]);
-            }
-        }
-        double max_w = 0.0;
-        for (const auto& stretch : schedule_.stretches) {
-            const auto phase = stretch.phase;
-            const double level_w = phases_[phase].a0_w(last_lane_) + compute_w_[stretch.configuration](last_lane_);
-            if (flight_.duration_s[phase] > stretch.max_s || level_w < amplitude_w[phase]) return false;
-            max_w = std::max(max_w, level_w + amplitude_w[phase]);
-        }
-        const auto& battery = flight_.battery;
-        return battery.thevenin ||
-               (max_w < power_limit_w(battery) &&
-                terminal_voltage_v(battery, {}, internal_current_a(battery, max_w)) >= setup_.cutoff_voltage_v);
-    }
-
-    Lanes start_of(const LaneSegment& stretch) const {
-        const auto& phase = phases_[stretch.phase];
-        return phase.start_s + stretch.from_part * phase.duration_s;
-    }
-    Lanes length_of(const LaneSegment& stretch) const {
-        return (stretch.to_part - stretch.from_part) * phases_[stretch.phase].duration_s;
-    }
-
-    void power_at(const LaneSegment& stretch, std::size_t node, Lanes& power_w) const {
-        const auto& phase = phases_[stretch.phase];
-        power_w = phase.a0_w + compute_w_[stretch.configuration];
-        if (!stretch.harmonics.empty()) {
-            const auto& turned = stretch.harmonics[node];
-            for (std::size_t n = 0; n < phase.cos_w.size(); ++n)
-                power_w += turned[2 * n] * phase.cos_w[n] + turned[2 * n + 1] * phase.sin_w[n];
-        } else if (setup_.mechanical) {
-            const double omega = setup_.mechanical->phases[stretch.phase].fourier.omega_rad_per_s;
-            const Lanes angle_rad =
-                omega * std::lerp(stretch.from_part, stretch.to_part, stretch.nodes[node]) * phase.duration_s;
-            for (std::size_t n = 0; n < phase.cos_w.size(); ++n) {
-                const Lanes turned_rad = static_cast<double>(n + 1) * angle_rad;
-                power_w += turned_rad.cos() * phase.cos_w[n] + turned_rad.sin() * phase.sin_w[n];
-            }
-        }
-    }
-
-    /// The charge that a source of constant voltage gives away.
-    void fly_constant(const LaneSegment& stretch, battery::StateLanes& state) const {
-        Lanes mean_a = Lanes::Zero();
-        Lanes power_w;
-        for (std::size_t node = 0; node < stretch.nodes.size(); ++node) {
-            power_at(stretch, node, power_w);
-            const Lanes spare_v2 = voltage_v_ * voltage_v_ - 4.0 * resistance_ohm_ * power_w;
-            mean_a += stretch.weights[node] * 2.0 * power_w / (voltage_v_ + spare_v2.max(0.0).sqrt());
-        }
-        state.soc_percent -= units::percent_per_whole * mean_a * length_of(stretch) / capacity_as_;
-    }
-
-    void fly_thevenin(const LaneSegment& stretch, battery::StateLanes& state) {
-        const battery::LoadLanes load{length_of(stretch), stretch.steps, [&](std::size_t half_step, Lanes& power_w) {
-                                          power_at(stretch, half_step, power_w);
-                                      }};
-        const auto look_closer = [&](int lane, std::size_t step, battery::BatteryState& now) {
-            return goes_on(stretch, step, static_cast<std::size_t>(lane), now);
-        };
-        discharge_lanes(*batteries_, load, setup_.cutoff_voltage_v, look_closer, state);
-    }
-
-    /// One step of one flight by itself.
-    bool goes_on(const LaneSegment& stretch, std::size_t step, std::size_t i, battery::BatteryState& now) {
-        const int lane = static_cast<int>(i);
-        const auto& flight = alone(i);
-        const double step_s = length_of(stretch)(lane) / static_cast<double>(stretch.steps);
-        const double start_s = start_of(stretch)(lane) + static_cast<double>(step) * step_s;
-        std::optional<mechanical::FourierModel> curve;
-        if (flight.mechanical)
-            curve = time_scaled_model(flight.mechanical->phases[stretch.phase], flight.duration_s[stretch.phase],
-                                      setup_.phase_clock);
-        const double compute_w = compute_w_[stretch.configuration](lane);
-        const double phase_start_s = phases_[stretch.phase].start_s(lane);
-        const auto power_w = [&](double time_s) {
-            return compute_w + (curve ? mechanical::power_w(*curve, time_s - phase_start_s) : 0.0);
-        };
-        const auto after = battery::fast_discharge(flight.battery, {power_w, start_s, start_s + step_s}, now,
-                                                   {step_s, setup_.cutoff_voltage_v});
-        now = after;
-        if (after.undeliverable) failures_.at(i) = {after.undeliverable->time_s, now.soc_percent, false};
-        if (const auto ended_at_s = after.ended_at_s())
-            failures_.at(i) = {*ended_at_s, now.soc_percent, after.empty_at_s.has_value()};
-        return !failures_.at(i);
-    }
-
-    const MissionSetup& alone(std::size_t i) {
-        auto& flight = alone_.at(i);
-        if (!flight) flight = std::make_unique<MissionSetup>(apply_draw(setup_, spreads_, normals_[i]));
-        return *flight;
-    }
-
-    double soc_percent(std::size_t i, const battery::StateLanes& state) const {
-        return failures_.at(i) ? failures_.at(i)->soc_percent : state.soc_percent(static_cast<int>(i));
-    }
-
-    void note_charges(const battery::StateLanes& state, const battery::LaneMask& flown,
-                      std::span<FlightOutcome> landings) const {
-        for (std::size_t i = 0; i < landings.size(); ++i)
-            if (flown[i]) landings[i].soc_percent.push_back(soc_percent(i, state));
-    }
-
-    static battery::LaneMask above_zero(const battery::StateLanes& state) {
-        battery::LaneMask mask;
-        for (std::size_t i = 0; i < lane_count; ++i) mask[i] = state.soc_percent(static_cast<int>(i)) > 0.0;
-        return mask;
-    }
-
-    /// As land() does.
-    void land_lane(std::size_t i, const battery::StateLanes& state, std::size_t times, FlightOutcome& landing) {
-        const int lane = static_cast<int>(i);
-        landing.final_soc_percent = landing.remaining_percent = soc_percent(i, state);
-        landing.soc_percent.resize(times, landing.final_soc_percent);
-        if (!failures_.at(i)) return;
-        const auto& failure = *failures_.at(i);
-        const auto& last = phases_[all_phases.back()];
-        const double lasted_s = last.start_s(lane) + last.duration_s(lane) - end_tolerance_s;
-        const bool is_early = failure.time_s < lasted_s;
-        landing.depleted = failure.is_empty && is_early;
-        landing.battery_failure = is_early;
-        if (is_early) landing.remaining_percent = std::min(-1e-9, -missed_percent(i, failure.time_s));
-    }
-
-    /// Energy demanded after the battery failed, as a part of what a full one holds [points].
-    double missed_percent(std::size_t i, double failed_at_s) {
-        const int lane = static_cast<int>(i);
-        const auto& flight = alone(i);
-        double missed_j = 0.0;
-        for (const auto phase : all_phases) {
-            const double flown_s = flight.duration_s[phase];
-            const double from_s = std::max(0.0, failed_at_s - phases_[phase].start_s(lane));
-            if (!flight.mechanical || from_s >= flown_s) continue;
-            const auto curve = time_scaled_model(flight.mechanical->phases[phase], flown_s, setup_.phase_clock);
-            missed_j += energy_j(curve, flown_s) - energy_j(curve, from_s);
-        }
-        for (const auto& stretch : schedule_.stretches) {
-            const double flown_s = flight.duration_s[stretch.phase];
-            const double failed_in_phase_s = failed_at_s - phases_[stretch.phase].start_s(lane);
-            const double from_s = std::max(stretch.from_part * flown_s, failed_in_phase_s);
-            missed_j += compute_w_[stretch.configuration](lane) * std::max(0.0, stretch.to_part * flown_s - from_s);
-        }
-        return units::percentage(units::wh_from_joule(missed_j), full_energy_wh(flight.battery));
-    }
-
-    const MissionSetup& setup_;
-    const FlightUncertainty& spreads_;
-    const LaneSchedule& schedule_;
-    MissionSetup flight_;  ///< that was drawn last
-    int last_lane_ = 0;
-    std::span<const std::vector<double>> normals_;
-    PerPhase<PhaseLanes> phases_;
-    std::vector<Lanes> compute_w_;  ///< of each configuration
-    std::optional<battery::BatteryLanes> batteries_;
-    Lanes initial_soc_percent_;
-    Lanes voltage_v_;
-    Lanes resistance_ohm_;
-    Lanes capacity_as_;
-    std::array<std::optional<Failure>, lane_count> failures_;
-    std::array<std::unique_ptr<MissionSetup>, lane_count> alone_;  ///< of lanes that were looked at closer
-};
-
-}  // namespace
-
-FlightOutcome simulate_flight(const SampledFlight& flight, const std::vector<double>& times_s) {
+FlightOutcome land(const DrawnFlight& flight, const battery::Discharge& charge, std::vector<double> noted_percent) {
     FlightOutcome landing;
-    battery::Discharge charge{{flight.setup.initial_soc_percent}};
-    auto& noted_percent = landing.soc_percent;
-    for (auto part : flight.segments) {
-        const double segment_end_s = part.end_s;
-        const auto follow_until = [&](double time_s) {
-            part.end_s = time_s;
-            charge = advance_segment(flight.battery, flight.setup.cutoff_voltage_v, part, charge);
-            part.start_s = time_s;
-            part.soc_drop_percent = 0.0;
-        };
-        while (noted_percent.size() < times_s.size() && times_s[noted_percent.size()] < segment_end_s) {
-            follow_until(std::max(part.start_s, times_s[noted_percent.size()]));
-            noted_percent.push_back(charge.soc_percent);
-        }
-        follow_until(segment_end_s);
-    }
-    noted_percent.resize(times_s.size(), charge.soc_percent);
-    landing.final_soc_percent = charge.soc_percent;
+    landing.soc_percent = std::move(noted_percent);
+    landing.soc_percent.resize(flight.times_s.size(), charge.soc_percent);
+    landing.final_soc_percent = landing.remaining_percent = charge.soc_percent;
     const double lasted_s = flight.segments.back().end_s - end_tolerance_s;
     landing.depleted = charge.empty_at_s && *charge.empty_at_s < lasted_s;
     landing.battery_failure = charge.undeliverable || (charge.ended_at_s() && *charge.ended_at_s() < lasted_s);
-    landing.remaining_percent = charge.soc_percent;
     if (const auto& path = flight.setup.cruise_path; path && path->is_infeasible) {
         landing.battery_failure = true;  // it never gets there
         landing.remaining_percent = std::min(-1e-9, landing.remaining_percent - units::percent_per_whole);
@@ -329,39 +47,193 @@ FlightOutcome simulate_flight(const SampledFlight& flight, const std::vector<dou
     return landing;
 }
 
-SimdFlightSimulator::SimdFlightSimulator(const MissionSetup& setup, const FlightUncertainty& spreads,
-                                         const Schedule& schedule, std::vector<double> times_s)
-    : setup_(setup),
-      spreads_(spreads),
-      schedule_(schedule),
-      times_s_(std::move(times_s)),
-      have_lanes_(have_lanes(setup)) {
-    if (have_lanes_) lanes_ = lane_schedule(setup, spreads, schedule, times_s_);
-}
-
-void SimdFlightSimulator::simulate(std::span<const std::vector<double>> normals,
-                                   std::span<FlightOutcome> landings) const {
-    std::optional<Block> block;
-    for (std::size_t from = 0; from < normals.size(); from += lane_count) {
-        const auto count = std::min<std::size_t>(lane_count, normals.size() - from);
-        const auto own = normals.subspan(from, count);
-        battery::LaneMask flown;
-        if (have_lanes_) {
-            if (!block) block.emplace(setup_, spreads_, lanes_);
-            flown = block->fly(own, times_s_.size(), landings.subspan(from, count));
+/// The powers of segments side by side, every half of a step. Each harmonic goes on by x'' = 2 cos(turn) x' - x.
+class PowerLanes {
+  public:
+    void begin(int lane, const LoadSegment& segment, double step_s) {
+        static const mechanical::FourierModel none;
+        const auto& curve = segment.mechanical ? *segment.mechanical : none;
+        const auto start = std::polar(1.0, curve.omega_rad_per_s * (segment.start_s - segment.phase_start_s));
+        const auto turn = std::polar(1.0, 0.5 * curve.omega_rad_per_s * step_s);
+        mean_w_(lane) = curve.a0_w + segment.compute_w;
+        const auto most = std::max(now_w_.size(), curve.cos_w.size());
+        for (auto* lanes : {&now_w_, &before_w_, &factor_}) lanes->resize(most, Lanes::Zero());
+        std::complex<double> of_now = 1.0;
+        std::complex<double> of_turn = 1.0;
+        for (std::size_t n = 0; n < most; ++n) {
+            const bool is_there = n < curve.cos_w.size();
+            const std::complex<double> term_w(is_there ? curve.cos_w[n] : 0.0, is_there ? -curve.sin_w[n] : 0.0);
+            of_now *= start;
+            of_turn *= turn;
+            now_w_[n](lane) = (term_w * of_now).real();
+            before_w_[n](lane) = (term_w * of_now * std::conj(of_turn)).real();
+            factor_[n](lane) = 2.0 * of_turn.real();
         }
-        for (std::size_t i = 0; i < count; ++i)
-            if (!flown[i]) landings[from + i] = simulate_scalar(own[i]);
     }
+
+    /// Half a step later.
+    void advance(Lanes& power_w) {
+        power_w = mean_w_;
+        for (std::size_t n = 0; n < now_w_.size(); ++n) {
+            before_w_[n] = factor_[n] * now_w_[n] - before_w_[n];
+            power_w += before_w_[n];
+        }
+        std::swap(now_w_, before_w_);
+    }
+
+  private:
+    Lanes mean_w_ = Lanes::Zero();
+    std::vector<Lanes> now_w_;  ///< of each harmonic
+    std::vector<Lanes> before_w_;
+    std::vector<Lanes> factor_;
+};
+
+/// A stream of flights: one that has landed makes room in its lane for the next.
+class FlightLanes {
+  public:
+    FlightLanes(const MissionSetup& mission, const FlightDraw& draw, std::size_t first,
+                std::span<FlightOutcome> outcomes)
+        : mission_(mission), draw_(draw), first_(first), outcomes_(outcomes), batteries_(mission.battery) {}
+
+    void fly() {
+        for (int lane = 0; lane < lane_count; ++lane) begin_flight(lane);
+        while (is_active_.any()) step();
+    }
+
+  private:
+    /// A flight in its lane.
+    struct Flying {
+        std::optional<DrawnFlight> flight;
+        std::size_t number = 0;
+        std::size_t segment = 0;
+        battery::Discharge charge;
+        std::vector<double> noted_percent;
+        std::size_t step = 0;  ///< of those of the segment
+        std::size_t steps = 0;
+        double step_s = 0.0;
+    };
+
+    Flying& flying(int lane) { return flying_.at(static_cast<std::size_t>(lane)); }
+
+    /// The next flight that is not over at once takes the lane.
+    void begin_flight(int lane) {
+        auto& own = flying(lane);
+        bool goes_on = false;
+        while (!goes_on && next_ < outcomes_.size()) {
+            own.number = next_++;
+            if (!own.flight) own.flight = DrawnFlight{mission_, {}};
+            draw_(first_ + own.number, *own.flight);
+            own.segment = 0;
+            own.charge = {{own.flight->setup.initial_soc_percent}};
+            own.noted_percent.clear();
+            if (mission_.battery.thevenin) batteries_.set_battery(lane, own.flight->setup.battery);
+            goes_on = go_on(lane);
+        }
+        is_active_[static_cast<std::size_t>(lane)] = goes_on;
+    }
+
+    /// Goes on with the flight's next segment; false if it has landed. Segments without steps side by side are flown at
+    /// once.
+    bool go_on(int lane) {
+        auto& own = flying(lane);
+        auto& [setup, segments, times_s] = *own.flight;
+        const auto has_ended = [&] { return own.charge.ended_at_s() || own.charge.undeliverable; };
+        for (; own.segment < segments.size() && !has_ended(); ++own.segment) {
+            auto& segment = segments[own.segment];
+            if (segment.soc_drop_percent > 0.0) own.charge = apply_charge_drop(own.charge, segment);
+            segment.soc_drop_percent = 0.0;
+            auto& noted = own.noted_percent;
+            while (noted.size() < times_s.size() && times_s[noted.size()] <= segment.start_s + end_tolerance_s)
+                noted.push_back(own.charge.soc_percent);
+            if (!has_ended() && setup.battery.thevenin && bounds_of(segment).low >= 0.0 && segment.duration_s() > 0.0) {
+                begin_segment(lane, segment);
+                return true;
+            }
+            own.charge = advance_segment(setup.battery, setup.cutoff_voltage_v, segment, own.charge);
+        }
+        outcomes_[own.number] = land(*own.flight, own.charge, std::move(own.noted_percent));
+        return false;
+    }
+
+    void begin_segment(int lane, const LoadSegment& segment) {
+        auto& own = flying(lane);
+        own.step = 0;
+        own.steps = fast_steps(*own.flight->setup.battery.thevenin, segment.duration_s(), quick_step_s(segment));
+        own.step_s = segment.duration_s() / static_cast<double>(own.steps);
+        batteries_.set_state(lane, own.charge);
+        batteries_.set_step(lane, own.step_s);
+        powers_.begin(lane, segment, own.step_s);
+        start_w_(lane) = power_w(segment, segment.start_s);
+    }
+
+    void step() {
+        powers_.advance(middle_w_);
+        powers_.advance(end_w_);
+        const auto may_end = batteries_.step(start_w_, middle_w_, end_w_, mission_.cutoff_voltage_v);
+        start_w_ = end_w_;
+        for (int lane = 0; lane < lane_count; ++lane) {
+            const auto i = static_cast<std::size_t>(lane);
+            if (is_active_[i] && !end_step(lane, may_end[i])) begin_flight(lane);
+        }
+    }
+
+    /// False if the flight has landed.
+    bool end_step(int lane, bool may_end) {
+        auto& own = flying(lane);
+        if (may_end) {
+            const auto& segment = own.flight->segments[own.segment];
+            const double start_s = segment.start_s + static_cast<double>(own.step) * own.step_s;
+            const auto power = [&](double time_s) { return power_w(segment, time_s); };
+            own.charge =
+                battery::fast_discharge(own.flight->setup.battery, {power, start_s, start_s + own.step_s},
+                                        batteries_.state_before(lane), {own.step_s, mission_.cutoff_voltage_v});
+            if (own.charge.ended_at_s() || own.charge.undeliverable) return go_on(lane);
+            batteries_.set_state(lane, own.charge);
+        }
+        if (++own.step < own.steps) return true;
+        own.charge = {batteries_.state(lane)};
+        ++own.segment;
+        return go_on(lane);
+    }
+
+    const MissionSetup& mission_;
+    const FlightDraw& draw_;
+    std::size_t first_;
+    std::span<FlightOutcome> outcomes_;
+    std::size_t next_ = 0;
+    std::array<Flying, lane_count> flying_;
+    battery::LaneMask is_active_;
+    battery::DischargeLanes batteries_;
+    PowerLanes powers_;
+    Lanes start_w_ = Lanes::Zero();
+    Lanes middle_w_ = Lanes::Zero();
+    Lanes end_w_ = Lanes::Zero();
+};
+
+}  // namespace
+
+void fly_side_by_side(const MissionSetup& mission, const FlightDraw& draw, std::size_t first,
+                      std::span<FlightOutcome> outcomes) {
+    FlightLanes(mission, draw, first, outcomes).fly();
 }
 
-FlightOutcome SimdFlightSimulator::simulate_scalar(std::span<const double> normals) const {
-    const auto& planned_s = setup_.duration_s;
-    const auto flight = apply_draw(setup_, spreads_, normals);
-    const auto schedule = rescale_to_flown_durations(schedule_, planned_s, flight.duration_s);
-    auto times_s = times_s_;
-    for (auto& time_s : times_s) time_s = rescale_to_flown_durations_s(time_s, planned_s, flight.duration_s);
-    return simulate_flight({flight, flight.battery, load_segments(flight, schedule)}, times_s);
+std::vector<FlightOutcome> fly_drawn(const MissionSetup& mission, const FlightDraw& draw, std::size_t first,
+                                     std::size_t count) {
+    constexpr std::size_t most_at_once = 256;
+    const auto at_once = std::clamp<std::size_t>(count / (4 * threads_for(count)), lane_count, most_at_once);
+    std::vector<FlightOutcome> outcomes(count);
+    for_each_in_parallel((count + at_once - 1) / at_once, [&](std::size_t block) {
+        const auto start = block * at_once;
+        fly_side_by_side(mission, draw, first + start,
+                         std::span(outcomes).subspan(start, std::min(at_once, count - start)));
+    });
+    return outcomes;
+}
+
+FlightOutcome simulate_flight(const DrawnFlight& flight) {
+    FlightOutcome outcome;
+    fly_side_by_side(flight.setup, [&](std::size_t, DrawnFlight& drawn) { drawn = flight; }, 0, {&outcome, 1});
+    return outcome;
 }
 
 }  // namespace flightwatt::mission

@@ -1,19 +1,20 @@
 #pragma once
 
-#include "mission/sampling/flight_draws.h"
-#include "mission/sampling/lane_schedule.h"
+#include "mission/mission.h"
 #include "mission/simulation/load_segments.h"
 
+#include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
 namespace flightwatt::mission {
 
-/// A flight that was drawn.
-struct SampledFlight {
-    const MissionSetup& setup;
-    battery::Battery battery;  ///< disturbed
+/// A flight as it is to be flown.
+struct DrawnFlight {
+    MissionSetup setup;
     std::vector<LoadSegment> segments;
+    std::vector<double> times_s = {};  ///< at which its charge is noted: rising, and segments start there
 };
 
 /// How one flight ended.
@@ -26,36 +27,24 @@ struct FlightOutcome {
     std::vector<double> soc_percent;  ///< at the times that were asked for
 };
 
-/// Follows the charge through the segments and notes it at `times_s`.
-FlightOutcome simulate_flight(const SampledFlight& flight, const std::vector<double>& times_s = {});
-
 /// A flight lands below the reserve too where its battery failed, with whatever charge.
 inline bool misses_reserve(const FlightOutcome& landing, double reserve_soc_percent) {
     return landing.battery_failure || landing.final_soc_percent < reserve_soc_percent;
 }
 
-/// Flies flights of one schedule side by side. How one lands depends on its own numbers alone, whatever flies beside
-/// it: as land() of it within 5e-3 points, and 2e-2 of what is left of flights that failed.
-class SimdFlightSimulator {
-  public:
-    /// Charges are noted at `times_s` of the mission as planned, at the same part of each flight. All but the times has
-    /// to outlive it.
-    SimdFlightSimulator(const MissionSetup& setup, const FlightUncertainty& spreads, const Schedule& schedule,
-                        std::vector<double> times_s = {});
+/// Draws flight number `number` onto `flight`, which is the mission or another flight of it: copying less is faster.
+using FlightDraw = std::function<void(std::size_t number, DrawnFlight& flight)>;
 
-    /// Each of the flights of these normals. For all threads.
-    void simulate(std::span<const std::vector<double>> normals, std::span<FlightOutcome> landings) const;
+/// Flies flights of a mission side by side, from number `first` on: each through its own segments, as advance_segment()
+/// does, to 1e-9 points. How one lands depends on its own numbers alone, whatever flies beside it.
+void fly_side_by_side(const MissionSetup& mission, const FlightDraw& draw, std::size_t first,
+                      std::span<FlightOutcome> outcomes);
 
-    /// One by itself, and by land(): on paths, in phases as they were measured, or where its numbers are far out.
-    FlightOutcome simulate_scalar(std::span<const double> normals) const;
+/// The same of so many flights on all threads.
+std::vector<FlightOutcome> fly_drawn(const MissionSetup& mission, const FlightDraw& draw, std::size_t first,
+                                     std::size_t count);
 
-  private:
-    const MissionSetup& setup_;
-    const FlightUncertainty& spreads_;
-    const Schedule& schedule_;
-    std::vector<double> times_s_;
-    bool have_lanes_;
-    LaneSchedule lanes_;
-};
+/// One flight.
+FlightOutcome simulate_flight(const DrawnFlight& flight);
 
 }  // namespace flightwatt::mission

@@ -1,6 +1,5 @@
 #include "mission/sampling/landing_distribution.h"
 
-#include "base/parallel.h"
 #include "base/statistics.h"
 #include "mission/sampling/flight_lanes.h"
 
@@ -21,11 +20,10 @@ constexpr double far_in_standard_errors = 4.0;
 class LandingSampler {
   public:
     LandingSampler(const Mission& mission, const FlightUncertainty& uncertainty)
-        : uncertainty_(uncertainty),
-          normal_count_(count_normals(mission.setup)),
-          simulator_(mission.setup, uncertainty_, mission.schedule) {
-        const std::vector<double> as_stated(normal_count_);
-        result_.nominal_percent = simulator_.simulate_scalar(as_stated).remaining_percent;
+        : mission_(mission), uncertainty_(uncertainty), normal_count_(count_normals(mission.setup)) {
+        DrawnFlight as_stated{mission.setup, {}};
+        draw(std::vector<double>(normal_count_), as_stated);
+        result_.nominal_percent = simulate_flight(as_stated).remaining_percent;
         result_.reserve_percent = mission.setup.reserve_soc_percent;
         if (uncertainty.sources.varied.empty()) result_.left_percent = {result_.nominal_percent};
     }
@@ -34,35 +32,28 @@ class LandingSampler {
     const LandingDistribution& draw_until(std::size_t flights) {
         if (uncertainty_.sources.varied.empty()) return result_;
         auto& left_percent = result_.left_percent;
-        const auto from = drawn_;
-        left_percent.resize(flights);
-        simulate(from, std::span(left_percent).subspan(from));
-        drawn_ = flights;
+        const FlightDraw draw_number = [&](std::size_t i, DrawnFlight& flight) {
+            draw(draw_normals(normal_count_, seed_of_flights, i), flight);
+        };
+        for (const auto& landing :
+             fly_drawn(mission_.setup, draw_number, left_percent.size(), flights - left_percent.size()))
+            left_percent.push_back(landing.remaining_percent);
         std::ranges::sort(left_percent);
         result_.sd_percent = sample_sd(left_percent);
         return result_;
     }
 
   private:
-    void simulate(std::size_t from, std::span<double> left_percent) const {
-        constexpr std::size_t at_once = 256;
-        for_each_in_parallel((left_percent.size() + at_once - 1) / at_once, [&](std::size_t block) {
-            const auto start = block * at_once;
-            const auto own = left_percent.subspan(start, std::min(at_once, left_percent.size() - start));
-            std::vector<std::vector<double>> normals;
-            normals.reserve(own.size());
-            for (std::size_t i = 0; i < own.size(); ++i)
-                normals.push_back(draw_normals(normal_count_, seed_of_flights, from + start + i));
-            std::vector<FlightOutcome> landings(own.size());
-            simulator_.simulate(normals, landings);
-            std::ranges::transform(landings, own.begin(), &FlightOutcome::remaining_percent);
-        });
+    void draw(std::span<const double> normals, DrawnFlight& flight) const {
+        const auto& planned_s = mission_.setup.duration_s;
+        apply_draw_to(mission_.setup, uncertainty_, normals, flight.setup);
+        flight.segments = load_segments(
+            flight.setup, rescale_to_flown_durations(mission_.schedule, planned_s, flight.setup.duration_s));
     }
 
-    FlightUncertainty uncertainty_;
+    const Mission& mission_;
+    const FlightUncertainty& uncertainty_;
     std::size_t normal_count_;
-    SimdFlightSimulator simulator_;
-    std::size_t drawn_ = 0;
     LandingDistribution result_;
 };
 

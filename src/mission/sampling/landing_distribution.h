@@ -21,8 +21,6 @@ struct LandingDistribution {
     double below() const;
     /// Of `below`, as so many flights are drawn; 0 where nothing differs.
     double standard_error() const;
-    /// How finely `below` is known: one flight of those drawn.
-    double resolution() const { return 1.0 / static_cast<double>(left_percent.size()); }
     /// The state of charge that `probability` of the flights land with or above.
     double quantile_percent(double probability) const;
     /// That above the reserve: not negative just where as many keep the reserve.
@@ -57,9 +55,6 @@ class MarginSearch {
         last_ = {margin_percent_, slack_percent};
         move_to(margin_percent_ + step * (wanted_percent - slack_percent));
     }
-
-    /// The answer keeps so much, though it need not: it is that of every margin up to this one.
-    void raise_lower_bound(double kept_percent) { margin_percent_ = std::max(margin_percent_, kept_percent); }
 
     /// There is no answer with so much.
     void mark_infeasible() {

@@ -20,18 +20,22 @@ constexpr double edge_tolerance_s = 1e-9;
 constexpr double coarse_step_s = 1.0;
 constexpr double longest_quick_step_s = 20.0;
 
-/// Times at which something changes, in order, between the segment's start and its end.
-std::vector<double> cuts_of(const LoadSegment& segment, const Disturbances& disturbances) {
-    std::vector<double> cuts;
-    for (const auto& disturbance : disturbances) {
-        for (const double time_s : {disturbance.start_s, disturbance.end_s})
-            if (time_s > segment.start_s + edge_tolerance_s && time_s < segment.end_s - edge_tolerance_s)
-                cuts.push_back(time_s);
+/// The segments, cut at the times that lie within them.
+std::vector<LoadSegment> cut_at(std::vector<double> times_s, const std::vector<LoadSegment>& segments) {
+    std::ranges::sort(times_s);
+    std::vector<LoadSegment> parts;
+    parts.reserve(segments.size() + times_s.size());
+    auto time_s = times_s.begin();
+    for (const auto& segment : segments) {
+        parts.push_back(segment);
+        for (; time_s != times_s.end() && *time_s < segment.end_s - edge_tolerance_s; ++time_s) {
+            if (*time_s <= parts.back().start_s + edge_tolerance_s) continue;
+            parts.back().end_s = *time_s;
+            parts.push_back(segment);
+            parts.back().start_s = *time_s;
+        }
     }
-    std::ranges::sort(cuts);
-    cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
-    cuts.push_back(segment.end_s);
-    return cuts;
+    return parts;
 }
 
 /// The curve times a factor.
@@ -176,32 +180,28 @@ std::vector<LoadSegment> load_segments(const MissionSetup& mission, const Schedu
     return segments;
 }
 
-std::vector<LoadSegment> disturbed(const std::vector<LoadSegment>& segments, const Disturbances& disturbances) {
-    std::vector<LoadSegment> result;
-    result.reserve(segments.size() + 2 * disturbances.size());
-    for (const auto& segment : segments) {
-        double start_s = segment.start_s;
-        for (const double end_s : cuts_of(segment, disturbances)) {
-            result.push_back(segment);
-            auto& part = result.back();
-            part.start_s = start_s;
-            part.end_s = end_s;
-            Disturbance together;  // all factors, then all powers: in any order
-            for (const auto& disturbance : disturbances) {
-                if (disturbance.start_s >= end_s - edge_tolerance_s || disturbance.end_s <= start_s + edge_tolerance_s)
-                    continue;
-                together.mechanical_factor *= disturbance.mechanical_factor;
-                together.mechanical_w += disturbance.mechanical_w;
-                together.compute_factor *= disturbance.compute_factor;
-                together.compute_w += disturbance.compute_w;
-                if (disturbance.start_s >= start_s - edge_tolerance_s)
-                    part.soc_drop_percent += disturbance.soc_drop_percent;
-            }
-            disturb_power(together, part);
-            start_s = end_s;
+std::vector<LoadSegment> disturbed(std::vector<LoadSegment> segments, const Disturbances& disturbances,
+                                   const std::vector<double>& times_s) {
+    if (disturbances.empty() && times_s.empty()) return segments;
+    auto cuts_s = times_s;
+    for (const auto& disturbance : disturbances) cuts_s.insert(cuts_s.end(), {disturbance.start_s, disturbance.end_s});
+    auto parts = cut_at(std::move(cuts_s), segments);
+    for (auto& part : parts) {
+        Disturbance together;  // all factors, then all powers: in any order
+        for (const auto& disturbance : disturbances) {
+            if (disturbance.start_s >= part.end_s - edge_tolerance_s ||
+                disturbance.end_s <= part.start_s + edge_tolerance_s)
+                continue;
+            together.mechanical_factor *= disturbance.mechanical_factor;
+            together.mechanical_w += disturbance.mechanical_w;
+            together.compute_factor *= disturbance.compute_factor;
+            together.compute_w += disturbance.compute_w;
+            if (disturbance.start_s >= part.start_s - edge_tolerance_s)
+                part.soc_drop_percent += disturbance.soc_drop_percent;
         }
+        disturb_power(together, part);
     }
-    return result;
+    return parts;
 }
 
 double mechanical_w(const LoadSegment& segment, double time_s) {

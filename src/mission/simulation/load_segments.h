@@ -41,8 +41,9 @@ std::vector<LoadSegment> load_segments(const MissionLoad& load, const ScheduleSe
 /// The same of a whole schedule.
 std::vector<LoadSegment> load_segments(const MissionSetup& mission, const Schedule& schedule);
 
-/// The segments, cut where a disturbance starts or ends and changed in between.
-std::vector<LoadSegment> disturbed(const std::vector<LoadSegment>& segments, const Disturbances& disturbances);
+/// The segments, cut where a disturbance starts or ends and changed in between; and cut at `times_s`.
+std::vector<LoadSegment> disturbed(std::vector<LoadSegment> segments, const Disturbances& disturbances,
+                                   const std::vector<double>& times_s = {});
 
 double mechanical_w(const LoadSegment& segment, double time_s);
 double power_w(const LoadSegment& segment, double time_s);

@@ -1,11 +1,12 @@
 #include "mission/sampling/flight_lanes.h"
 
 #include "helpers/generated_missions.h"
-#include "helpers/paper_missions.h"
+#include "mission/sampling/flight_draws.h"
 #include "mission/simulation.h"
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include <gtest/gtest.h>
 
@@ -16,6 +17,27 @@ std::vector<std::vector<double>> drawn_numbers(const MissionSetup& setup, std::s
     std::vector<std::vector<double>> normals;
     for (std::size_t i = 0; i < count; ++i) normals.push_back(draw_normals(count_normals(setup), 5, i));
     return normals;
+}
+
+/// The flight of these numbers with the mission's schedule, its charge noted at times of the mission as planned.
+DrawnFlight drawn_flight(const Mission& mission, const FlightUncertainty& spreads, const std::vector<double>& normals,
+                         const std::vector<double>& times_s = {}) {
+    const auto& planned_s = mission.setup.duration_s;
+    DrawnFlight flight{apply_draw(mission.setup, spreads, normals), {}, times_s};
+    for (auto& time_s : flight.times_s)
+        time_s = rescale_to_flown_durations_s(time_s, planned_s, flight.setup.duration_s);
+    const auto schedule = rescale_to_flown_durations(mission.schedule, planned_s, flight.setup.duration_s);
+    flight.segments = disturbed(load_segments(flight.setup, schedule), {}, flight.times_s);
+    return flight;
+}
+
+std::vector<FlightOutcome> fly(const Mission& mission, const std::vector<std::vector<double>>& normals,
+                               const std::vector<double>& times_s = {}) {
+    const auto spreads = collect_uncertainty(mission.setup);
+    const FlightDraw draw = [&](std::size_t i, DrawnFlight& flight) {
+        flight = drawn_flight(mission, spreads, normals[i], times_s);
+    };
+    return fly_drawn(mission.setup, draw, 0, normals.size());
 }
 
 /// A made-up mission, flown with most and least computing by turns; of less charge, so that some flights fail.
@@ -42,8 +64,7 @@ TEST(FlightLanes, LandAsRungeKuttaDoes) {
         const auto mission = flown_mission(seed, seed % 3 == 0 ? 0.8 : 1.0);
         const auto spreads = collect_uncertainty(mission.setup);
         const auto normals = drawn_numbers(mission.setup, 3);
-        std::vector<FlightOutcome> landings(normals.size());
-        SimdFlightSimulator(mission.setup, spreads, mission.schedule).simulate(normals, landings);
+        const auto landings = fly(mission, normals);
         for (std::size_t i = 0; i < normals.size(); ++i) {
             auto flight = apply_draw(mission.setup, spreads, normals[i]);
             flight.may_charge = true;
@@ -70,47 +91,55 @@ TEST(FlightLanes, LandAsFlightsAlone) {
         const auto mission = flown_mission(seed, seed % 3 == 0 ? 0.8 : 1.0);
         const auto spreads = collect_uncertainty(mission.setup);
         const auto normals = drawn_numbers(mission.setup, 70);
-        std::vector<FlightOutcome> landings(normals.size());
         const std::vector<double> times_s{0.0, 31.0, 250.0, 400.0, 2000.0};
-        const SimdFlightSimulator lanes(mission.setup, spreads, mission.schedule, times_s);
-        lanes.simulate(normals, landings);
+        const auto landings = fly(mission, normals, times_s);
         for (std::size_t i = 0; i < normals.size(); ++i) {
-            const auto alone = lanes.simulate_scalar(normals[i]);
-            ASSERT_EQ(landings[i].battery_failure, alone.battery_failure) << seed << ", flight " << i;
-            EXPECT_EQ(landings[i].depleted, alone.depleted) << seed << ", flight " << i;
-            EXPECT_NEAR(landings[i].final_soc_percent, alone.final_soc_percent, 5e-3) << seed << ", flight " << i;
-            // A moment of failure that differs by some hundredths of a second misses as much.
-            EXPECT_NEAR(landings[i].remaining_percent, alone.remaining_percent, 2e-2) << seed << ", flight " << i;
+            const auto flight = drawn_flight(mission, spreads, normals[i], times_s);
+            battery::Discharge alone{{flight.setup.initial_soc_percent}};
+            std::vector<double> noted_percent;
+            for (const auto& segment : flight.segments) {
+                while (noted_percent.size() < times_s.size() &&
+                       flight.times_s[noted_percent.size()] <= segment.start_s + 1e-9)
+                    noted_percent.push_back(alone.soc_percent);
+                alone = advance_segment(flight.setup.battery, flight.setup.cutoff_voltage_v, segment, alone);
+            }
+            noted_percent.resize(times_s.size(), alone.soc_percent);
+            EXPECT_EQ(landings[i].battery_failure, alone.ended_at_s() || alone.undeliverable)
+                << seed << ", flight " << i;
+            EXPECT_NEAR(landings[i].final_soc_percent, alone.soc_percent, 1e-8) << seed << ", flight " << i;
             ASSERT_EQ(landings[i].soc_percent.size(), times_s.size());
             for (std::size_t k = 0; k < times_s.size(); ++k)
-                EXPECT_NEAR(landings[i].soc_percent[k], alone.soc_percent[k], 5e-3) << seed << ", flight " << i;
+                EXPECT_NEAR(landings[i].soc_percent[k], noted_percent[k], 1e-8) << seed << ", flight " << i;
         }
     }
 }
 
 TEST(FlightLanes, DependOnNothingBeside) {
     const auto mission = flown_mission(2, 0.9);
-    const auto spreads = collect_uncertainty(mission.setup);
     auto normals = drawn_numbers(mission.setup, 45);
-    const SimdFlightSimulator lanes(mission.setup, spreads, mission.schedule);
-    std::vector<FlightOutcome> landings(normals.size());
-    lanes.simulate(normals, landings);
+    const auto landings = fly(mission, normals);
     std::ranges::reverse(normals);
-    std::vector<FlightOutcome> reversed(normals.size());
-    lanes.simulate(normals, reversed);
+    const auto reversed = fly(mission, normals);
     for (std::size_t i = 0; i < normals.size(); ++i)
         EXPECT_EQ(landings[i].remaining_percent, reversed[normals.size() - 1 - i].remaining_percent) << i;
 }
 
-TEST(FlightLanes, FlyAloneWhatIsFarOut) {
-    auto mission = test::paper_mission("phased");
-    const auto spreads = collect_uncertainty(mission.setup);
-    std::vector<std::vector<double>> normals(1, std::vector<double>(count_normals(mission.setup)));
-    normals[0][level_index(Phase::cruise)] = -40.0;
-    const SimdFlightSimulator lanes(mission.setup, spreads, mission.schedule);
-    std::vector<FlightOutcome> landings(1);
-    lanes.simulate(normals, landings);
-    EXPECT_EQ(landings[0].final_soc_percent, lanes.simulate_scalar(normals[0]).final_soc_percent);
+/// Under disturbances, each of another kind, and along pieces of power as a path has them.
+TEST(FlightLanes, FlyDisturbancesAndPieces) {
+    auto mission = flown_mission(2, 1.0);
+    const double cruise_s = mission.setup.duration_s[Phase::cruise];
+    mission.setup.measured_power[Phase::cruise] = std::make_shared<const path::PiecewisePower>(
+        path::PiecewisePower{{{0.0, 0.3 * cruise_s}, 20.0, 0.0}, {{0.3 * cruise_s, cruise_s}, 30.0, 6.0 * cruise_s}});
+    Disturbance gust{20.0, 90.0, 1.3};
+    Disturbance drop{100.0, 200.0};
+    drop.soc_drop_percent = 3.0;
+    auto segments = disturbed(load_segments(mission.setup, mission.schedule), {gust, drop});
+    battery::Discharge alone{{100.0}};
+    for (const auto& segment : segments)
+        alone = advance_segment(mission.setup.battery, mission.setup.cutoff_voltage_v, segment, alone);
+    EXPECT_NEAR(simulate_flight({mission.setup, segments}).final_soc_percent, alone.soc_percent, 1e-8);
+    const auto exact = simulate(mission.setup, mission.schedule, {60.0, 0.25}, {gust, drop}).summary;
+    EXPECT_NEAR(alone.soc_percent, exact.final_soc_percent.value(), 1e-3);
 }
 
 }  // namespace

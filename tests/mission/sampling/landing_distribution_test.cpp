@@ -97,7 +97,7 @@ TEST(LandingDistribution, HasTheProbabilityOfItsQuantile) {
         mission.setup.reserve_soc_percent = quantile_of(mission, probability);
         const auto landings = draw_landings_until_known(mission, collect_uncertainty(mission.setup), probability);
         EXPECT_EQ(landings.left_percent.size(), landing_flights) << "none fewer show it";
-        EXPECT_NEAR(landings.below(), 1.0 - probability, landings.resolution());
+        EXPECT_NEAR(landings.below(), 1.0 - probability, 1.0 / static_cast<double>(landing_flights));
         EXPECT_EQ(landings.spare_percent(probability), 0.0);
         EXPECT_LT(landings.spare_percent(std::min(0.999, probability + 0.05)), 0.0);
         mission.setup.reserve_soc_percent -= 2.0 * landings.sd_percent;
