@@ -120,8 +120,7 @@ std::string aircraft_of(const BatchContent& batch) {
 /// What the fit was told, but for which flights it was to use.
 std::vector<std::pair<std::string, std::string>> told_options(const batch::BatchFit& fit) {
     const auto& options = fit.options;
-    return {{"order", fmt::format("{}", options.phases.order)},
-            {"weights", std::string(to_string(options.weighting))}};
+    return {{"order", fmt::format("{}", options.phases.order)}, {"weights", std::string(to_string(options.weighting))}};
 }
 
 /// "order 3 (a), 2 (b)" for each option in which the fits differ.
