@@ -39,8 +39,6 @@ std::optional<double> figure_width_pt(const cli::StageCall& call) {
 
 report::ReportInput read_inputs(const cli::StageCall& call) {
     report::ReportInput inputs;
-    inputs.max_validation_flights = report::usual_validation_flights;
-    inputs.max_battery_flights = report::usual_battery_flights;
     inputs.capacity_ah = cli::capacity_option(call);
     figure_width_pt(call);  // a bad one is refused before any work
     inputs.published_file = call.get_optional<std::string>("published");

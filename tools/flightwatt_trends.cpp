@@ -90,9 +90,9 @@ Json trends_json(const std::vector<report::FlightTrendData>& flights,
         item["per_day"] = knows_unit ? Json(trend->per_day) : Json(nullptr);
         item["per_day_interval"] = knows_unit ? Json::array({trend->low_per_day, trend->high_per_day}) : Json(nullptr);
         const auto relative = trend ? relative_trend(*trend) : std::nullopt;
-        item["percent_per_day"] = relative ? Json(relative->percent_per_day) : Json(nullptr);
+        item["percent_per_day"] = relative ? Json(relative->per_day) : Json(nullptr);
         item["percent_per_day_interval"] =
-            relative ? Json::array({relative->low_percent_per_day, relative->high_percent_per_day}) : Json(nullptr);
+            relative ? Json::array({relative->low_per_day, relative->high_per_day}) : Json(nullptr);
         item["level_is_guess"] = row.level_is_guess;
         item["significant"] = trend ? Json(is_significant(*trend)) : Json(nullptr);
         item["why_not"] = row.answer.no_trend_reason;

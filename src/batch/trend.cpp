@@ -52,10 +52,11 @@ std::size_t outside(std::span<const DatedValue> values, std::size_t pairs) {
 
 }  // namespace
 
-std::optional<RelativeTrend> relative_trend(const Trend& trend) {
+std::optional<Trend> relative_trend(const Trend& trend) {
     if (!(trend.median > 0.0)) return std::nullopt;
-    const auto percent = [&](double per_day) { return units::percentage(per_day, trend.median); };
-    return RelativeTrend{percent(trend.per_day), percent(trend.low_per_day), percent(trend.high_per_day)};
+    const auto percent = [&](double value) { return units::percentage(value, trend.median); };
+    return Trend{trend.flights, units::percent_per_whole, percent(trend.per_day), percent(trend.low_per_day),
+                 percent(trend.high_per_day)};
 }
 
 TrendResult estimate_trend(std::span<const DatedValue> values) {

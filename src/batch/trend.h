@@ -25,15 +25,9 @@ struct Trend {
 /// Whether the interval excludes no change at all.
 inline bool is_significant(const Trend& trend) { return trend.low_per_day > 0.0 || trend.high_per_day < 0.0; }
 
-/// A trend in percent of the values' median a day: what is left of it where all values may be wrong by one factor.
-struct RelativeTrend {
-    double percent_per_day = 0.0;
-    double low_percent_per_day = 0.0;
-    double high_percent_per_day = 0.0;
-};
-
+/// The same in percent of the values' median: what is left of it where all values may be wrong by one factor.
 /// std::nullopt where the median is not above 0.
-std::optional<RelativeTrend> relative_trend(const Trend& trend);
+std::optional<Trend> relative_trend(const Trend& trend);
 
 /// A trend, or why there is none.
 struct TrendResult {

@@ -117,26 +117,24 @@ std::string aircraft_of(const BatchContent& batch) {
     return fmt::format("{}", fmt::join(aircraft, " and "));
 }
 
-/// What the fit was told, but for which flights it was to use.
-std::vector<std::pair<std::string, std::string>> told_options(const batch::BatchFit& fit) {
-    const auto& options = fit.options;
-    return {{"order", fmt::format("{}", options.phases.order)}, {"weights", std::string(to_string(options.weighting))}};
+std::string options_of(const BatchContent& batch) {
+    if (!batch.fit) return "";
+    const auto& options = batch.fit->options;
+    return fmt::format("order {}, weights: {}", options.phases.order, to_string(options.weighting));
 }
 
-/// "order 3 (a), 2 (b)" for each option in which the fits differ.
-Names differing_options(const std::vector<BatchContent>& batches) {
-    std::vector<std::pair<std::string, std::vector<std::pair<std::string, std::string>>>> told;
-    for (const auto& batch : batches)
-        if (batch.fit) told.emplace_back(batch.folder, told_options(*batch.fit));
-    Names differing;
-    for (std::size_t i = 0; told.size() > 1 && i < told.front().second.size(); ++i) {
-        const auto differs = [&](const auto& one) { return one.second[i] != told.front().second[i]; };
-        if (std::ranges::none_of(told, differs)) continue;
-        Names values;
-        for (const auto& [folder, options] : told) values.push_back(fmt::format("{} ({})", options[i].second, folder));
-        differing.push_back(fmt::format("{} {}", told.front().second[i].first, fmt::join(values, ", ")));
+/// What `of` says of each folder, "order 3, weights: agreement (FOLDER)", where it differs between them. Empty texts do not
+/// count.
+Names differing(const std::vector<BatchContent>& batches, std::string (*of)(const BatchContent&)) {
+    std::set<std::string> all;
+    Names named;
+    for (const auto& batch : batches) {
+        const auto text = of(batch);
+        if (text.empty()) continue;
+        all.insert(text);
+        named.push_back(fmt::format("{} ({})", text, batch.folder));
     }
-    return differing;
+    return all.size() > 1 ? named : Names();
 }
 
 std::optional<double> start_clock_s(const ReportFlight& flight) {
@@ -177,12 +175,6 @@ std::optional<double> max_m(const flight::Track& altitude, double start_s, doubl
     }
     return max_m - value_at(altitude, start_s);
 }
-
-/// All that were flown in one log.
-struct Cruises {
-    double energy_wh = 0.0;
-    double duration_s = 0.0;
-};
 
 /// The sum where both are known.
 void add(std::optional<double>& sum, const std::optional<double>& more) {
@@ -271,17 +263,10 @@ BatchContents read_batch_contents(std::span<const std::filesystem::path> outs) {
             fmt::format("Flights of one name in several folders, which are not the same flight, have their "
                         "folder behind their name: {}.",
                         fmt::join(namesakes, ", ")));
-    std::set<std::string> aircraft;
-    Names flown;
-    for (const auto& batch : batches) {
-        const auto& name = *aircraft.insert(aircraft_of(batch)).first;
-        if (!name.empty()) flown.push_back(fmt::format("{} ({})", name, batch.folder));
-    }
-    aircraft.erase("");
-    if (aircraft.size() > 1)
-        notes.push_back(
-            fmt::format("The folders are of different aircraft, each with its own model: {}.", fmt::join(flown, ", ")));
-    if (const auto options = differing_options(batches); !options.empty())
+    if (const auto aircraft = differing(batches, aircraft_of); !aircraft.empty())
+        notes.push_back(fmt::format("The folders are of different aircraft, each with its own model: {}.",
+                                    fmt::join(aircraft, ", ")));
+    if (const auto options = differing(batches, options_of); !options.empty())
         notes.push_back(
             fmt::format("The folders' models were fitted with different options: {}.", fmt::join(options, "; ")));
     return contents;
@@ -309,7 +294,8 @@ FlightSummary summarize_flight(const ReportFlight& flight, std::optional<std::si
     facts.distance_m = 0.0;
     if (!airspeed.empty()) facts.air_distance_m = 0.0;
     if (power.has_power()) facts.energy_wh = 0.0;
-    Cruises cruises;
+    double cruise_wh = 0.0;
+    double cruise_s = 0.0;
     for (std::size_t s = 0; s < flight.phases.sorties.size(); ++s) {
         if (sortie && s != *sortie) continue;
         const double start_s = flight.phases.sorties[s].phases.front().start.time_s;
@@ -323,12 +309,11 @@ FlightSummary summarize_flight(const ReportFlight& flight, std::optional<std::si
         if (facts.energy_wh) *facts.energy_wh += power.between(start_s, end_s).energy_wh;
         for (const auto& span : flight.phases.sorties[s].phases) {
             if (span.phase != flight::Phase::cruise) continue;
-            cruises.energy_wh += power.between(span.start.time_s, span.end.time_s).energy_wh;
-            cruises.duration_s += span.duration_s();
+            cruise_wh += power.between(span.start.time_s, span.end.time_s).energy_wh;
+            cruise_s += span.duration_s();
         }
     }
-    if (power.has_power() && cruises.duration_s > 0.0)
-        facts.cruise_power_w = units::joule_from_wh(cruises.energy_wh) / cruises.duration_s;
+    if (power.has_power() && cruise_s > 0.0) facts.cruise_power_w = units::joule_from_wh(cruise_wh) / cruise_s;
     return facts;
 }
 

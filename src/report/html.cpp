@@ -18,22 +18,13 @@ bool is_number_or_dash(std::string_view cell) {
     return cell == "-" || parse_number(cell).has_value();
 }
 
-std::vector<bool> text_columns(const TextTable& table) {
-    std::vector<bool> is_text(table.header.size(), false);
-    for (const auto& row : table.rows) {
-        for (std::size_t c = 0; c < row.size(); ++c) is_text[c] = is_text[c] || !is_number_or_dash(row[c]);
-    }
-    return is_text;
-}
-
 /// The class attribute of each column's cells.
 std::vector<std::string> column_classes(const TextTable& table) {
     constexpr std::size_t short_text = 18;
     constexpr std::size_t long_text = 28;
-    const auto is_text = text_columns(table);
     std::vector<std::string> classes(table.header.size());
     for (std::size_t c = 0; c < classes.size(); ++c) {
-        if (!is_text[c]) continue;
+        if (std::ranges::all_of(table.rows, [c](const auto& row) { return is_number_or_dash(row[c]); })) continue;
         std::size_t longest = 0;
         for (const auto& row : table.rows) longest = std::max(longest, row[c].size());
         classes[c] = longest <= short_text ? " class=\"text short\""

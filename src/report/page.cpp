@@ -7,17 +7,17 @@
 #include "base/overwrite_guard.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
+#include <cstdio>
 #include <map>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include <boost/algorithm/string/replace.hpp>
+#include <boost/process/args.hpp>
+#include <boost/process/io.hpp>
+#include <boost/process/system.hpp>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace flightwatt::report {
 namespace {
@@ -68,32 +68,16 @@ WebFiles read_drawing_files(const std::filesystem::path& folder) {
 
 /// Runs a program of the PATH with its output on our standard error; false if it is not there. Throws OutputError where
 /// it fails.
-bool ran(const std::vector<std::string>& command) {
-    std::vector<char*> arguments;
-    arguments.reserve(command.size() + 1);
-    for (const auto& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
-    arguments.push_back(nullptr);
-    posix_spawn_file_actions_t actions;
-    ::posix_spawn_file_actions_init(&actions);
-    ::posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
-    pid_t process = 0;
-    const int failure = ::posix_spawnp(&process, arguments.front(), &actions, nullptr, arguments.data(), environ);
-    ::posix_spawn_file_actions_destroy(&actions);
-    if (failure == ENOENT) return false;
-    if (failure != 0) {
-        throw OutputError(fmt::format("cannot run {}: {}", command.front(), std::strerror(failure)));
-    }
-    int status = 0;
-    while (::waitpid(process, &status, 0) < 0) {
-        if (errno != EINTR) {
-            throw OutputError(fmt::format("lost sight of {}: {}", command.front(), std::strerror(errno)));
-        }
-    }
-    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    constexpr int not_there = 127;  // of a shell's
-    if (code == not_there) return false;
-    if (code != 0) throw OutputError(fmt::format("{} failed with exit code {}", command.front(), code));
-    return true;
+bool ran(std::vector<std::string> command) {
+    namespace bp = boost::process;
+    constexpr int not_there = 127;
+    const auto program = command.front();
+    command.insert(command.begin(), {"-c", R"(command -v "$0" > /dev/null || exit 127; exec "$0" "$@")"});
+    std::error_code error;
+    const int code = bp::system("/bin/sh", bp::args(command), bp::std_out > stderr, error);
+    if (error) throw OutputError(fmt::format("cannot run {}: {}", program, error.message()));
+    if (code != 0 && code != not_there) throw OutputError(fmt::format("{} failed with exit code {}", program, code));
+    return code == 0;
 }
 
 /// In CSS pixels of 1/96 inch, which are Vega's.
@@ -101,16 +85,12 @@ constexpr double px_per_pt = 96.0 / 72.0;
 constexpr double default_width_px = 720.0;
 
 /// The theme with all type at 8 points: figures of a column are not scaled any more.
-VegaJson in_type_of_papers(VegaJson theme) {
+VegaJson in_type_of_papers(const VegaJson& theme) {
     constexpr double type_pt = 8.0;
-    const auto set = [](VegaJson& part, const auto& self) -> void {
-        for (auto& [key, value] : part.items()) {
-            if (value.is_structured()) self(value, self);
-            if (value.is_number() && (key.ends_with("FontSize") || key == "fontSize")) value = type_pt * px_per_pt;
-        }
-    };
-    set(theme, set);
-    return theme;
+    auto values = theme.flatten();
+    for (auto& [path, value] : values.items())
+        if (path.ends_with("FontSize") || path.ends_with("/fontSize")) value = type_pt * px_per_pt;
+    return values.unflatten();
 }
 
 /// The specification with the light theme in it: a file that any Vega-Lite draws.
@@ -183,36 +163,28 @@ std::string live_page_html(const WebFiles& web) {
 
 FigureFiles write_figures(const std::vector<Section>& sections, const WebFiles& web,
                           const std::filesystem::path& folder, const std::optional<double>& width_pt) {
-    for (const auto& section : sections) {
-        for (const auto& figure : section.figures) {
-            for (const auto* ending : {".vl.json", ".svg", ".pdf"}) register_output(folder / (figure.id + ending));
-        }
-    }
+    std::vector<const Figure*> figures;
+    for (const auto& section : sections)
+        for (const auto& figure : section.figures) figures.push_back(&figure);
+    for (const auto* figure : figures)
+        for (const auto* ending : {".vl.json", ".svg", ".pdf"}) register_output(folder / (figure->id + ending));
     make_directories(folder);
     auto theme = VegaJson::parse(web.theme).at("light");
-    if (width_pt) theme = in_type_of_papers(std::move(theme));
-    FigureFiles files;
-    for (const auto& section : sections) {
-        for (const auto& figure : section.figures) {
-            write_file_atomically(folder / (figure.id + ".vl.json"), standalone(figure, theme));
-            ++files.figures;
-        }
-    }
-    // These alone: the folder may hold others' figures.
+    if (width_pt) theme = in_type_of_papers(theme);
+    FigureFiles files{figures.size()};
     const double width_px = width_pt ? *width_pt * px_per_pt : default_width_px;
     std::vector<std::string> render{"node", (web.folder / "render.mjs").string(), folder.string(),
                                     fmt::format("{}", width_px)};
-    for (const auto& section : sections)
-        for (const auto& figure : section.figures) render.push_back(figure.id);
+    for (const auto* figure : figures) {
+        write_file_atomically(folder / (figure->id + ".vl.json"), standalone(*figure, theme));
+        render.push_back(figure->id);  // these alone: the folder may hold others' figures
+    }
     files.has_svg = ran(render);
-    if (!files.has_svg) return files;
-    for (const auto& section : sections) {
-        for (const auto& figure : section.figures) {
-            const auto svg = (folder / (figure.id + ".svg")).string();
-            const auto pdf = (folder / (figure.id + ".pdf")).string();
-            files.has_pdf = ran({"rsvg-convert", "--format", "pdf", "--output", pdf, svg});
-            if (!files.has_pdf) return files;
-        }
+    files.has_pdf = files.has_svg;
+    for (const auto* figure : figures) {
+        if (!files.has_pdf) break;
+        const auto file = (folder / figure->id).string();
+        files.has_pdf = ran({"rsvg-convert", "--format", "pdf", "--output", file + ".pdf", file + ".svg"});
     }
     return files;
 }

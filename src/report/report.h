@@ -37,8 +37,8 @@ struct ReportInput {
     std::optional<std::string> published_file = {};  ///< of a model, for Table I
     PublishedFigures figures = {};
     std::optional<double> capacity_ah = {};  ///< of the flights' battery
-    std::size_t max_validation_flights = 0;
-    std::size_t max_battery_flights = 0;
+    std::size_t max_validation_flights = usual_validation_flights;
+    std::size_t max_battery_flights = usual_battery_flights;
     bool with_replay = false;  ///< of the missions on the flights
 };
 

@@ -204,10 +204,9 @@ std::string trend_direction(const AircraftTrend& trend) {
 ShownSlope shown_slope(const AircraftTrend& trend) {
     const auto& told = trend.answer.trend.value();
     const auto relative = trend.level_is_guess ? relative_trend(told) : std::nullopt;
-    if (relative)
-        return {trend_days * relative->percent_per_day, trend_days * relative->low_percent_per_day,
-                trend_days * relative->high_percent_per_day, " %"};
-    return {trend_days * told.per_day, trend_days * told.low_per_day, trend_days * told.high_per_day, ""};
+    const auto shown = relative.value_or(told);
+    return {trend_days * shown.per_day, trend_days * shown.low_per_day, trend_days * shown.high_per_day,
+            relative ? " %" : ""};
 }
 
 TextTable trend_table(std::span<const AircraftTrend> trends) {

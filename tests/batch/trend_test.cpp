@@ -46,10 +46,10 @@ TEST(Trend, InPercentIsThatOfItsLevel) {
         for (auto& value : scaled) value.value *= factor;
         return relative_trend(*estimate_trend(scaled).trend);
     };
-    EXPECT_DOUBLE_EQ(of(1.0)->percent_per_day, -100.0 * 0.5 / 9.0);
-    EXPECT_DOUBLE_EQ(of(1.0)->low_percent_per_day, -100.0 * 0.5 / 9.0);
+    EXPECT_DOUBLE_EQ(of(1.0)->per_day, -100.0 * 0.5 / 9.0);
+    EXPECT_DOUBLE_EQ(of(1.0)->low_per_day, -100.0 * 0.5 / 9.0);
     // A factor on all values, which nothing measured, leaves it as it is.
-    EXPECT_NEAR(of(0.8)->percent_per_day, of(1.0)->percent_per_day, 1e-12);
+    EXPECT_NEAR(of(0.8)->per_day, of(1.0)->per_day, 1e-12);
     EXPECT_FALSE(of(0.0));
     EXPECT_FALSE(of(-1.0));
 }

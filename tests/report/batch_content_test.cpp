@@ -105,7 +105,9 @@ TEST(BatchContents, TellNamesakesApart) {
     EXPECT_EQ(batches[1].measured.front().samples.flight, "opterra_synthetic_01 (namesake)");
     ASSERT_EQ(notes.size(), 2U);
     EXPECT_NE(notes[0].find("have their folder behind their name: opterra_synthetic_01."), std::string::npos);
-    EXPECT_EQ(notes[1], "The folders' models were fitted with different options: order 3 (a), 2 (namesake).");
+    EXPECT_EQ(notes[1],
+              "The folders' models were fitted with different options: order 3, weights: agreement (a); order 2, "
+              "weights: agreement (namesake).");
 }
 
 flight::Track track(const std::string& name, std::vector<double> time_s, std::vector<double> value) {

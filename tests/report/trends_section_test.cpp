@@ -66,12 +66,7 @@ TEST(TrendsStudy, HoldTheAgeingThatIsThere) {
         for (const auto& [quantity, per_day] : truth) {
             ASSERT_TRUE(trends.contains(quantity)) << quantity << " of seed " << seed;
             auto trend = trends.at(quantity);
-            if (quantity == "capacity_ah") {
-                const auto relative = batch::relative_trend(trend).value();
-                trend.per_day = relative.percent_per_day;
-                trend.low_per_day = relative.low_percent_per_day;
-                trend.high_per_day = relative.high_percent_per_day;
-            }
+            if (quantity == "capacity_ah") trend = batch::relative_trend(trend).value();
             held[quantity] += trend.low_per_day <= per_day && per_day <= trend.high_per_day ? 1 : 0;
             found[quantity] += is_significant(trend) && trend.per_day * per_day > 0.0 ? 1 : 0;
         }

@@ -315,24 +315,6 @@ FigureData track_rows(const ReportFlight& flight, const GroundTrack& track, doub
     return data;
 }
 
-/// The length of 1, 2 or 5 times a power of ten that is nearest below a quarter of the square.
-double scale_bar_m(const Square& square) {
-    const double max_m = square.half_m / 2.0;
-    const double decade_m = std::pow(10.0, std::floor(std::log10(max_m)));
-    for (const double times : {5.0, 2.0}) {
-        if (times * decade_m <= max_m) return times * decade_m;
-    }
-    return decade_m;
-}
-
-/// In the lower left corner.
-VegaJson scale_bar(const Square& square, double length_m) {
-    constexpr double margin = 0.05;
-    const double start_m = square.east_m - square.half_m * (1.0 - 2.0 * margin);
-    const double north_m = square.north_m - square.half_m * (1.0 - 2.0 * margin);
-    return {{"values", {{{"east_m", start_m}, {"end_m", start_m + length_m}, {"north_m", north_m}}}}};
-}
-
 VegaJson around(double middle_m, double half_m) { return {middle_m - half_m, middle_m + half_m}; }
 
 }  // namespace
@@ -343,7 +325,6 @@ std::optional<Figure> track_figure(const ReportFlight& flight, const std::string
     const auto square = square_around(flight, track);
     const auto data = track_rows(flight, track, square.half_m / side);
     if (data.empty()) return std::nullopt;
-    const double length_m = scale_bar_m(square);
     return new_figure(
         "track", id,
         "Ground track from above, coloured by phase and by height over the place of lift-off; broken where samples are "
@@ -354,9 +335,7 @@ std::optional<Figure> track_figure(const ReportFlight& flight, const std::string
             flight.name, 2.0 * square.half_m),
         {{"track", data.json()},
          {"east", around(square.east_m, square.half_m)},
-         {"north", around(square.north_m, square.half_m)},
-         {"scale_bar", scale_bar(square, length_m)},
-         {"length", fmt::format("{:g} m", length_m)}});
+         {"north", around(square.north_m, square.half_m)}});
 }
 
 }  // namespace flightwatt::report

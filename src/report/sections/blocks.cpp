@@ -1,5 +1,4 @@
 #include "base/csv.h"
-#include "base/error.h"
 #include "base/number.h"
 #include "report/sections/sections.h"
 
@@ -16,7 +15,6 @@
 #include <boost/iostreams/device/back_inserter.hpp>
 #include <boost/iostreams/filter/zlib.hpp>
 #include <boost/iostreams/filtering_stream.hpp>
-#include <fmt/format.h>
 
 namespace flightwatt::report {
 namespace {
@@ -42,101 +40,50 @@ std::string base64(const std::string& bytes) {
     return text;
 }
 
-constexpr auto table_name = "a figure's table";
-constexpr std::size_t max_digits = 15;  ///< that a double keeps, and JavaScript with it
+/// Digits that a double keeps, and JavaScript with it.
+constexpr std::size_t max_digits = 15;
 
-/// A cell of a column of numbers.
-struct NumberCell {
-    bool is_empty = false;
-    double value = 0.0;
-    std::size_t whole = 0;  ///< how many digits stand before the point
+/// [name, decimals, steps], or [name, numbers] where a number has an exponent or the column more digits than a double.
+VegaJson packed_numbers(const std::string& name, const std::vector<std::string>& cells) {
+    std::size_t whole = 0;
     std::size_t decimals = 0;
-    bool is_decimal = true;  ///< of a sign, digits and a point alone, and no more digits than there may be
-};
-
-NumberCell number_cell(const CsvRowView::Cell& cell, std::size_t line) {
-    NumberCell number;
-    number.is_empty = cell.text.empty();
-    if (number.is_empty) return number;
-    const auto value = parse_number(cell.text);
-    if (!value)
-        throw InputError({table_name, line, cell.column}, fmt::format("'{}' is not a finite number", cell.text));
-    number.value = *value;
-    const auto text = cell.text.substr(cell.text.front() == '-' ? 1 : 0);
-    const auto point = text.find('.');
-    number.whole = std::min(point, text.size());
-    number.decimals = point == std::string_view::npos ? 0 : text.size() - point - 1;
-    number.is_decimal =
-        number.whole + number.decimals <= max_digits && text.find_first_not_of("0123456789.") == std::string_view::npos;
-    return number;
+    bool are_decimal = true;
+    for (const auto& cell : cells) {
+        const auto point = std::min(cell.find('.'), cell.size());
+        whole = std::max(whole, point - (cell.starts_with('-') ? 1 : 0));
+        if (point < cell.size()) decimals = std::max(decimals, cell.size() - point - 1);
+        are_decimal = are_decimal && cell.find('e') == std::string::npos;
+    }
+    are_decimal = are_decimal && whole + decimals <= max_digits;
+    const double scale = std::pow(10.0, static_cast<double>(decimals));
+    VegaJson::array_t packed;
+    std::int64_t last = 0;
+    for (const auto& cell : cells) {
+        if (cell.empty()) {
+            packed.emplace_back(nullptr);
+        } else if (const double number = parse_number(cell).value(); are_decimal) {
+            const auto digits = std::llround(number * scale);  // exact: a double keeps max_digits
+            packed.emplace_back(digits - last);
+            last = digits;
+        } else {
+            packed.emplace_back(number);
+        }
+    }
+    return are_decimal ? VegaJson::array_t{name, decimals, packed} : VegaJson::array_t{name, packed};
 }
 
-/// A column as its cells come in.
-class PackedColumn {
-  public:
-    PackedColumn(std::string_view name, bool are_numbers) : name_(name), are_numbers_(are_numbers) {}
-
-    void add(const CsvRowView::Cell& cell, std::size_t line) {
-        if (are_numbers_)
-            numbers_.push_back(number_cell(cell, line));
-        else
-            texts_.emplace_back(cell.text);
-    }
-
-    VegaJson json() const {
-        if (!are_numbers_) return VegaJson::array_t{name_, texts_};
-        std::size_t whole = 0;
-        std::size_t decimals = 0;
-        for (const auto& number : numbers_) {
-            whole = std::max(whole, number.whole);
-            decimals = std::max(decimals, number.decimals);
-            if (!number.is_decimal) return VegaJson::array_t{name_, values()};
-        }
-        if (whole + decimals > max_digits) return VegaJson::array_t{name_, values()};
-        return VegaJson::array_t{name_, decimals, steps(decimals)};
-    }
-
-  private:
-    VegaJson::array_t steps(std::size_t decimals) const {
-        VegaJson::array_t all;
-        all.reserve(numbers_.size());
-        const double scale = std::pow(10.0, static_cast<double>(decimals));
-        std::int64_t last = 0;
-        for (const auto& number : numbers_) {
-            if (number.is_empty) {
-                all.emplace_back(nullptr);
-                continue;
-            }
-            const auto digits = std::llround(number.value * scale);  // exact: a double keeps max_digits
-            all.emplace_back(digits - last);
-            last = digits;
-        }
-        return all;
-    }
-
-    VegaJson::array_t values() const {
-        VegaJson::array_t all;
-        for (const auto& number : numbers_) all.push_back(number.is_empty ? VegaJson() : VegaJson(number.value));
-        return all;
-    }
-
-    std::string name_;
-    bool are_numbers_;
-    std::vector<NumberCell> numbers_;
-    VegaJson::array_t texts_;
-};
-
 VegaJson packed_table(const std::string& csv, const VegaJson& parse) {
-    std::vector<PackedColumn> columns;
-    for_each_csv_row(csv, table_name, [&](const CsvRowView& row) {
-        if (columns.empty()) {
-            for (const auto& cell : row.cells) columns.emplace_back(cell.text, parse.contains(cell.text));
-            return;
-        }
-        for (std::size_t c = 0; c < columns.size(); ++c) columns[c].add(row.cells[c], row.line);
+    std::vector<std::string> names;
+    std::vector<std::vector<std::string>> columns;
+    for_each_csv_row(csv, "a figure's table", [&](const CsvRowView& row) {
+        columns.resize(row.cells.size());
+        for (std::size_t c = 0; c < columns.size(); ++c)
+            (names.size() < columns.size() ? names : columns[c]).emplace_back(row.cells[c].text);
     });
     auto packed = VegaJson::array();
-    for (const auto& column : columns) packed.push_back(column.json());
+    for (std::size_t c = 0; c < columns.size(); ++c)
+        packed.push_back(parse.contains(names[c]) ? packed_numbers(names[c], columns[c])
+                                                  : VegaJson(VegaJson::array_t{names[c], columns[c]}));
     return {{"packed", std::move(packed)}};
 }
 

@@ -20,44 +20,6 @@
 namespace flightwatt::report {
 namespace {
 
-/// What the phases of a sortie add up to.
-struct SortieSums {
-    flight::PerPhase<std::optional<double>> duration_s;
-    flight::PerPhase<std::optional<double>> mean_w;
-    std::optional<double> energy_wh = 0.0;
-    std::optional<double> counter_wh = 0.0;
-    std::optional<std::size_t> gaps = 0;
-};
-
-SortieSums sums_of(const flight::PowerStatistics& power, const flight::Sortie& sortie) {
-    SortieSums sums;
-    const bool has_power = power.has_power();
-    if (!has_power) {
-        sums.energy_wh.reset();
-        sums.gaps.reset();
-    }
-    for (const auto& span : sortie.phases) {
-        const auto statistics = power.between(span.start.time_s, span.end.time_s);
-        sums.duration_s[span.phase] = span.duration_s();
-        if (has_power) {
-            sums.mean_w[span.phase] = statistics.mean_power_w;
-            *sums.energy_wh += statistics.energy_wh;
-            *sums.gaps += statistics.gaps;
-        }
-        if (sums.counter_wh && statistics.counter_energy_wh) {
-            *sums.counter_wh += *statistics.counter_energy_wh;
-        } else {
-            sums.counter_wh.reset();
-        }
-    }
-    return sums;
-}
-
-std::string closure_percent(const SortieSums& sums) {
-    if (!sums.energy_wh || !sums.counter_wh || *sums.counter_wh <= 0.0) return "-";
-    return fmt::format("{:+.2f}", units::percentage(*sums.energy_wh - *sums.counter_wh, *sums.counter_wh));
-}
-
 std::string folders_of(const ReportFlight& flight) { return fmt::format("{}", fmt::join(flight.folders, ", ")); }
 
 bool are_of_folders(std::span<const ReportFlight> flights) {
@@ -65,20 +27,33 @@ bool are_of_folders(std::span<const ReportFlight> flights) {
 }
 
 std::vector<std::string> cells_of(const ReportFlight& flight, std::size_t sortie) {
-    const auto sums = sums_of(flight::PowerStatistics(flight.series), flight.phases.sorties[sortie]);
+    const auto& phases = flight.phases.sorties[sortie].phases;
+    const flight::PowerStatistics power(flight.series);
+    const auto whole = power.between(phases.front().start.time_s, phases.back().end.time_s);
+    flight::PerPhase<std::string> durations{"-", "-", "-"};
+    flight::PerPhase<std::string> means{"-", "-", "-"};
+    for (const auto& span : phases) {
+        durations[span.phase] = fixed(span.duration_s(), 0);
+        if (power.has_power())
+            means[span.phase] = fixed(power.between(span.start.time_s, span.end.time_s).mean_power_w, 1);
+    }
     const auto facts = summarize_flight(flight, sortie);
+    const auto& counter_wh = whole.counter_energy_wh;
+    const bool has_closure = facts.energy_wh && counter_wh && *counter_wh > 0.0;
     // Few flights have several sorties: no column for them.
-    const auto name =
-        flight.phases.sorties.size() > 1 ? fmt::format("{}, sortie {}", flight.name, sortie + 1) : flight.name;
     std::vector<std::string> cells{
-        name, flight::describe_aircraft(flight.series.aircraft_id, flight.series.aircraft_name),
+        flight.phases.sorties.size() > 1 ? fmt::format("{}, sortie {}", flight.name, sortie + 1) : flight.name,
+        flight::describe_aircraft(flight.series.aircraft_id, flight.series.aircraft_name),
         facts.date.empty() ? "-" : facts.date, facts.distance_m ? fixed(*facts.distance_m / 1000.0, 2) : "-",
         fixed(facts.height_m, 0)};
-    for (const auto phase : flight::all_phases) cells.push_back(fixed(sums.duration_s[phase], 0));
-    for (const auto phase : flight::all_phases) cells.push_back(fixed(sums.mean_w[phase], 1));
-    cells.insert(cells.end(), {fixed(sums.energy_wh, 3), fixed(sums.counter_wh, 3), closure_percent(sums),
-                               sums.gaps ? fmt::format("{}", *sums.gaps) : "-",
-                               fmt::format("{}", flight.warnings.size()), std::string(fitted_part(flight))});
+    cells.insert(cells.end(), durations.values.begin(), durations.values.end());
+    cells.insert(cells.end(), means.values.begin(), means.values.end());
+    cells.insert(
+        cells.end(),
+        {fixed(facts.energy_wh, 3), fixed(counter_wh, 3),
+         has_closure ? fmt::format("{:+.2f}", units::percentage(*facts.energy_wh - *counter_wh, *counter_wh)) : "-",
+         power.has_power() ? fmt::format("{}", whole.gaps) : "-", fmt::format("{}", flight.warnings.size()),
+         std::string(fitted_part(flight))});
     return cells;
 }
 
