@@ -228,7 +228,7 @@ int finish(const cli::StageCall& call, batch::BatchFlights flights, const batch:
         cli::print(call.json ? cli::json_text(with_logs(std::move(json), flights))
                              : shown + "\n" + screen_text(table, screen, {"Table I", {}}) +
                                    (physical ? "\n" + cli::physical_text(*physical, screen) : ""));
-    } catch (...) {
+    } catch (const std::exception&) {
         if (!call.json) cli::print(shown);
         throw;
     }
@@ -295,16 +295,11 @@ int run_over_logs(const cli::StageCall& call) {
     cli::model_kind(call);
     auto options = read_batch_options(call, fit_options);
     const auto published = cli::read_published(call);
-    std::optional<batch::FolderLock> lock;
-    std::error_code none;
-    if (std::filesystem::is_directory(options.out, none)) lock.emplace(options.out);
+    make_directories(options.out);
+    const batch::FolderLock lock(options.out);
+    const batch::RemoveIfEmpty folder{options.out};  // where nothing can be done
     auto plan = make_plan(call, options);
     tell_plan(call, plan);
-    make_directories(options.out);
-    if (!lock) {
-        lock.emplace(options.out);
-        batch::refuse_concurrent_batch(options.out);
-    }
     prepare_folder(plan, options.out);
     plan.earlier = plan.manifest = {};
     ::malloc_trim(0);  // of a hundred thousand logs, the plan took more than the work is going to

@@ -5,6 +5,7 @@
 #include "batch/batch_fit.h"
 #include "batch/merge.h"
 #include "batch/write_guard.h"
+#include "cli/output/records.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,32 +25,18 @@ namespace {
 using namespace flightwatt;
 using Json = nlohmann::ordered_json;
 
-/// What came of it, for people and programs.
-struct Summary {
-    std::size_t accepted = 0;
-    std::size_t rejected = 0;
-    std::size_t already_there = 0;
-    std::size_t renamed = 0;
-};
-
-Summary summary_of(const batch::MergePlan& plan, const batch::BatchFlights& flights) {
-    Summary summary;
-    for (std::size_t i = 0; i < flights.size(); ++i) {
-        const auto& flight = flights[i];
-        ++(flight.record.accepted ? summary.accepted : summary.rejected);
-        if (flight.was_up_to_date) ++summary.already_there;
-        if (plan.sources[i].flight != flight.record.flight) ++summary.renamed;
-    }
-    return summary;
-}
-
+/// What came of it.
 Json json_of(const cli::StageCall& call, const batch::MergePlan& plan, const batch::BatchFlights& flights,
              const std::vector<batch::DuplicateFlight>& copies) {
-    const auto summary = summary_of(plan, flights);
-    Json json{{"folder", *call.output},       {"batches", Json::array()},
-              {"flights", flights.size()},    {"accepted", summary.accepted},
-              {"rejected", summary.rejected}, {"already_there", summary.already_there},
-              {"renamed", Json::array()},     {"repeated_logs", plan.duplicate_logs},
+    const auto accepted = std::ranges::count_if(flights, [](const auto& flight) { return flight.record.accepted; });
+    Json json{{"folder", *call.output},
+              {"batches", Json::array()},
+              {"flights", flights.size()},
+              {"accepted", accepted},
+              {"rejected", static_cast<std::ptrdiff_t>(flights.size()) - accepted},
+              {"already_there", std::ranges::count(flights, true, &batch::BatchFlight::was_up_to_date)},
+              {"renamed", Json::array()},
+              {"repeated_logs", plan.duplicate_logs},
               {"copies", Json::array()}};
     for (std::size_t i = 0; i < plan.flights_per_batch.size(); ++i)
         json["batches"].push_back({{"folder", call.inputs[i]}, {"flights", plan.flights_per_batch[i]}});
@@ -64,17 +50,16 @@ Json json_of(const cli::StageCall& call, const batch::MergePlan& plan, const bat
     return json;
 }
 
-std::string text_of(const cli::StageCall& call, const batch::MergePlan& plan, const batch::BatchFlights& flights) {
-    const auto summary = summary_of(plan, flights);
-    TextTable table{{"batch", "flights"}, {}};
-    for (std::size_t i = 0; i < plan.flights_per_batch.size(); ++i)
-        table.rows.push_back({call.inputs[i], fmt::format("{}", plan.flights_per_batch[i])});
-    table.rows.push_back({*call.output, fmt::format("{}", flights.size())});
-    return screen_text(table, screen_of(call), {"merged", {}}) +
+/// The same for people.
+std::string text_of(const cli::StageCall& call, const Json& json) {
+    auto folders = json["batches"];
+    folders.push_back({{"folder", json["folder"]}, {"flights", json["flights"]}});
+    return screen_text(cli::table_of(folders, {"folder: batch", "flights"}), screen_of(call), {"merged", {}}) +
            fmt::format(
                "{} accepted, {} rejected; {} renamed, {} were there already, {} of logs that were in another "
                "batch too\n",
-               summary.accepted, summary.rejected, summary.renamed, summary.already_there, plan.duplicate_logs);
+               json["accepted"].dump(), json["rejected"].dump(), json["renamed"].size(), json["already_there"].dump(),
+               json["repeated_logs"].dump());
 }
 
 /// A model that stands in the folder was fitted to other flights.
@@ -88,18 +73,13 @@ int merge(const cli::StageCall& call) {
     if (!call.output) throw UsageError("no folder given: expected -o FOLDER");
     const std::filesystem::path out = *call.output;
     const std::vector<std::filesystem::path> batches(call.inputs.begin(), call.inputs.end());
-    std::optional<batch::FolderLock> lock;
-    std::error_code none;
-    if (std::filesystem::is_directory(out, none)) lock.emplace(out);
+    make_directories(out);
+    const batch::FolderLock lock(out);
+    const batch::RemoveIfEmpty folder{out};  // where nothing can be done
     const auto plan = batch::plan_merge(batches, out, call.has("prune"));
     batch::refuse_foreign_files(plan.folder, out);
     for (const auto& dropped : plan.folder.dropped)
         cli::note(call, fmt::format("dropped: {}, {}", dropped.flight, dropped.reason));
-    make_directories(out);
-    if (!lock) {
-        lock.emplace(out);
-        batch::refuse_concurrent_batch(out);
-    }
     const batch::RemoveIfEmpty unfinished{out / batch::temporary_folder};
     batch::prepare_folder(plan.folder, out);
     remove_model(call, out);
@@ -119,7 +99,8 @@ int merge(const cli::StageCall& call) {
                                     count, flight, other, count > 1 ? ", ..." : ""));
     }
     write_file_atomically(out / batch::catalogue_name, batch::catalogue_csv(flights), out / batch::temporary_folder);
-    cli::print(call.json ? cli::json_text(json_of(call, plan, flights, copies)) : text_of(call, plan, flights));
+    const auto json = json_of(call, plan, flights, copies);
+    cli::print(call.json ? cli::json_text(json) : text_of(call, json));
     cli::note(call, fmt::format("next: flightwatt fit {} -o MODEL.toml", cli::shell_quoted(out.string())));
     return cli::ok;
 }

@@ -80,12 +80,8 @@ std::vector<LogFile> each_once(std::vector<LogFile> logs) {
     std::ranges::sort(
         logs, {}, [](const LogFile& log) { return std::pair(std::filesystem::path(log.path), log.why_not_fitted); });
     for (auto& log : logs) log.place = canonical_path(log.path);
-    {
-        std::unordered_set<std::string_view> seen;
-        for (auto& log : logs)
-            if (!seen.insert(log.place).second) log.path.clear();
-    }
-    std::erase_if(logs, [](const LogFile& log) { return log.path.empty(); });
+    std::unordered_set<std::string> seen;
+    std::erase_if(logs, [&](const LogFile& log) { return !seen.insert(log.place).second; });
     return logs;
 }
 
@@ -142,30 +138,21 @@ std::vector<std::string> parse_path_list(std::string_view text, const std::strin
 
 std::vector<LogFile> find_logs(const std::vector<std::string>& inputs, const std::vector<std::string>& listed) {
     std::vector<LogFile> logs;
-    for (const auto& input : inputs) {
+    const auto add = [&](const std::string& path, bool has_to_exist) {
         std::error_code error;
-        const auto status = std::filesystem::status(input, error);
-        if (std::filesystem::is_directory(status)) {
-            add_folder(input, input, logs);
-            continue;
-        }
-        if (!std::filesystem::exists(status)) {
-            const auto cause = input.empty() || !error || error == std::errc::no_such_file_or_directory
+        const auto status = std::filesystem::status(path, error);
+        if (std::filesystem::is_directory(status)) return add_folder(path, path, logs);
+        if (has_to_exist && !std::filesystem::exists(status)) {
+            const auto cause = path.empty() || !error || error == std::errc::no_such_file_or_directory
                                    ? "does not exist"
                                    : error.message();
-            throw InputError({input.empty() ? "''" : input}, cause,
+            throw InputError({path.empty() ? "''" : path}, cause,
                              "expected a .data log, a .LOG or .tlm of an SD card, or a folder of them");
         }
-        logs.push_back({input});
-    }
-    for (const auto& path : listed) {
-        std::error_code error;
-        if (std::filesystem::is_directory(path, error)) {
-            add_folder(path, path, logs);
-        } else {
-            logs.push_back({path});
-        }
-    }
+        logs.push_back({path});
+    };
+    for (const auto& input : inputs) add(input, true);
+    for (const auto& path : listed) add(path, false);
     logs = each_once(std::move(logs));
     if (logs.empty()) {
         constexpr std::size_t max_named = 3;

@@ -123,16 +123,13 @@ void add_earlier(LogFile flight, const std::filesystem::path& out, bool prune, B
     }
 }
 
-bool is_in_the_way(const std::filesystem::path& file, bool is_listed) {
+void refuse_if_in_the_way(const std::filesystem::path& file, bool is_listed) {
     std::error_code none;
     const auto type = std::filesystem::symlink_status(file, none).type();
-    if (type == std::filesystem::file_type::symlink) return true;  // no batch makes links
-    return !is_listed && type != std::filesystem::file_type::not_found && type != std::filesystem::file_type::none &&
-           type != std::filesystem::file_type::directory;  // which is not lost: writing over it fails
-}
-
-void refuse_if_in_the_way(const std::filesystem::path& file, bool is_listed) {
-    if (!is_in_the_way(file, is_listed)) return;
+    using Type = std::filesystem::file_type;
+    // No batch makes links. A folder is not lost: writing over it fails.
+    const bool is_foreign = !is_listed && type != Type::not_found && type != Type::none && type != Type::directory;
+    if (type != Type::symlink && !is_foreign) return;
     throw UsageError(
         fmt::format("{} would be replaced, and no batch wrote it (see {}); move it away, or choose another folder "
                     "with -o",
@@ -256,11 +253,6 @@ void refuse_foreign_files(const BatchPlan& plan, const std::filesystem::path& ou
             refuse_if_in_the_way(file, earlier.contains(flight.flight));
         }
     }
-}
-
-void refuse_concurrent_batch(const std::filesystem::path& out) {
-    if (!is_there(out / manifest_name)) return;
-    throw OutputError(fmt::format("another run has made {} meanwhile; run the command again", out.string()));
 }
 
 void prepare_folder(const BatchPlan& plan, const std::filesystem::path& out) {

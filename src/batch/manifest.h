@@ -76,9 +76,6 @@ BatchPlan plan_batch(std::vector<LogFile> logs, const std::filesystem::path& out
 /// Throws UsageError, naming it, where a file that no batch wrote stands where this one is going to write.
 void refuse_foreign_files(const BatchPlan& plan, const std::filesystem::path& out);
 
-/// Throws OutputError where another run made a batch of the folder since it was not there when this one was planned.
-void refuse_concurrent_batch(const std::filesystem::path& out);
-
 /// Makes the folders, lists in batch.json what is going to be written, and removes what is dropped and what killed runs
 /// left unfinished. Killed at any moment, every file is listed.
 void prepare_folder(const BatchPlan& plan, const std::filesystem::path& out);

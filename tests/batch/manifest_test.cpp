@@ -154,13 +154,6 @@ TEST(BatchPlan, LeadsIntoNoOtherFolder) {
     EXPECT_EQ(refusal(plan(), folder / "out"), "");
 }
 
-TEST(BatchPlan, IsNotForAFolderThatAnotherRunMade) {
-    const auto folder = test::scratch_dir();
-    refuse_concurrent_batch(folder);
-    write_manifest({}, folder);
-    EXPECT_THROW(refuse_concurrent_batch(folder), OutputError);
-}
-
 TEST(BatchPlan, KnowsLogsAgainInAFolderThatMoved) {
     const auto folder = test::scratch_dir();
     for (const auto* name : {"here", "there"}) std::filesystem::create_directories(folder / name);
