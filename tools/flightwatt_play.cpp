@@ -54,8 +54,8 @@ std::optional<telemetry::MessageDictionary> log_definitions(const cli::StageCall
 /// Lines to the standard output, each at once.
 class OutputTarget : public live::PlaybackTarget {
   public:
-    std::string_view send(const live::PlayedMessage& message) override {
-        has_reader_ = cli::print_flushed(fmt::format("{} {}\n", message.time, message.text));
+    std::string_view send(const live::IncomingMessage& message) override {
+        has_reader_ = cli::print_flushed(live::data_line(message));
         return {};
     }
     bool has_reader() const { return has_reader_; }

@@ -80,7 +80,9 @@ class LivePage {
 
     void print_state(const live::LiveState& state) {
         if (!server_) return;
-        const auto ahead = basis_ ? live::soc_ahead(state, *basis_) : live::TimeCurve{};
+        live::TimeCurve ahead;
+        if (state.prediction && state.battery && state.battery->state)
+            ahead = soc_ahead(*basis_, *state.prediction, *state.battery->state, state.time_s);
         const auto event = cli::page_event(state, compute_, ahead);
         server_->publish(event.state, event.point);
     }

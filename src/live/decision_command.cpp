@@ -2,36 +2,23 @@
 
 #include "base/signal_watch.h"
 
-#include <array>
 #include <chrono>
 #include <csignal>
-#include <cstring>
+#include <cstdio>
+#include <system_error>
 #include <thread>
 #include <utility>
-#include <vector>
 
-#include <fcntl.h>
+#include <boost/process/args.hpp>
+#include <boost/process/child.hpp>
+#include <boost/process/env.hpp>
+#include <boost/process/environment.hpp>
+#include <boost/process/extend.hpp>
+#include <boost/process/io.hpp>
 #include <fmt/format.h>
-#include <spawn.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 namespace flightwatt::live {
-namespace {
-
-/// "NAME=value" of this program and `variables`, which count first.
-std::vector<std::string> environment_with(const DecisionCommand::Environment& variables) {
-    std::vector<std::string> entries;
-    for (char** entry = environ; entry != nullptr && *entry != nullptr; ++entry) {
-        const std::string text = *entry;
-        if (!variables.contains(text.substr(0, text.find('=')))) entries.push_back(text);
-    }
-    for (const auto& [name, value] : variables) entries.push_back(fmt::format("{}={}", name, value));
-    return entries;
-}
-
-}  // namespace
-
 void DecisionCommand::run(const Environment& variables) {
     if (child_ >= 0) {
         waiting_ = variables;
@@ -41,34 +28,23 @@ void DecisionCommand::run(const Environment& variables) {
 }
 
 void DecisionCommand::start(const Environment& variables) {
-    auto entries = environment_with(variables);
-    std::vector<char*> environment;
-    environment.reserve(entries.size() + 1);
-    for (auto& entry : entries) environment.push_back(entry.data());
-    environment.push_back(nullptr);
-    std::array<std::string, 3> words{"sh", "-c", command_};
-    std::array<char*, 4> arguments{words[0].data(), words[1].data(), words[2].data(), nullptr};
-    posix_spawn_file_actions_t files;
-    ::posix_spawn_file_actions_init(&files);
-    ::posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    ::posix_spawn_file_actions_adddup2(&files, STDERR_FILENO, STDOUT_FILENO);
-    posix_spawnattr_t attributes;
-    ::posix_spawnattr_init(&attributes);
-    sigset_t none;
-    sigset_t ignored;  // by this program (cli/stage.cpp)
-    ::sigemptyset(&none);
-    ::sigemptyset(&ignored);
-    ::sigaddset(&ignored, SIGPIPE);
-    ::sigaddset(&ignored, SIGXFSZ);
-    ::posix_spawnattr_setsigmask(&attributes, &none);
-    ::posix_spawnattr_setsigdefault(&attributes, &ignored);
-    ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-    const int error = ::posix_spawn(&child_, "/bin/sh", &files, &attributes, arguments.data(), environment.data());
-    ::posix_spawnattr_destroy(&attributes);
-    ::posix_spawn_file_actions_destroy(&files);
-    if (error == 0) return;
-    child_ = -1;
-    failure_ = fmt::format("cannot be run: {}", std::strerror(error));
+    namespace bp = boost::process;
+    bp::environment environment = boost::this_process::environment();
+    for (const auto& [name, value] : variables) environment[name] = value;
+    const auto reset_signals = [](auto& /*executor*/) {
+        sigset_t none;
+        ::sigemptyset(&none);
+        ::sigprocmask(SIG_SETMASK, &none, nullptr);
+        for (const int ignored : {SIGPIPE, SIGXFSZ}) std::signal(ignored, SIG_DFL);  // by this program (cli/stage.cpp)
+    };
+    std::error_code error;
+    bp::child process("/bin/sh", bp::args({"-c", command_}), environment, bp::std_in<bp::null, bp::std_out> stderr,
+                      bp::extend::on_exec_setup(reset_signals), error);
+    if (error)
+        failure_ = fmt::format("cannot be run: {}", error.message());
+    else
+        child_ = process.id();
+    process.detach();
 }
 
 std::optional<std::string> DecisionCommand::poll() {

@@ -5,7 +5,6 @@
 #include "live/sources/endpoints.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <deque>
 #include <list>
@@ -109,14 +108,6 @@ std::string event_of(std::string_view name, std::string_view data) {
     return fmt::format("event: {}\ndata: {}\n\n", name, data);
 }
 
-/// JSON has no line breaks but between its parts.
-std::string on_one_line(std::string_view json) {
-    std::string text(json);
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-    return text;
-}
-
 tcp::endpoint parse_listening_address(std::string_view at) {
     const auto where = parse_host_and_port(at, "127.0.0.1");
     if (where) return {asio::ip::make_address(where->host), where->port};
@@ -177,11 +168,7 @@ class PageServer::Server {
     const std::string& state() const { return state_; }
 
     void publish(std::string state, std::string point) {
-        constexpr std::size_t max_posted = 64;
-        if (posted_ >= max_posted) return;  // the machine has no time for pages
-        ++posted_;
         asio::post(context_, [this, state = std::move(state), point = std::move(point)]() mutable {
-            --posted_;
             tell(std::move(state), std::move(point));
         });
     }
@@ -285,7 +272,6 @@ class PageServer::Server {
     tcp::endpoint endpoint_;
     std::deque<std::string> points_;
     std::list<std::shared_ptr<Session>> sessions_;
-    std::atomic<std::size_t> posted_{0};
     const std::string run_ = new_run();
     std::thread thread_;
 };
@@ -357,8 +343,6 @@ std::string PageServer::address() const {
                                 : fmt::format("http://{}:{}/", host, at.port());
 }
 
-void PageServer::publish(std::string_view state, std::string_view point) {
-    server_->publish(on_one_line(state), on_one_line(point));
-}
+void PageServer::publish(std::string state, std::string point) { server_->publish(std::move(state), std::move(point)); }
 
 }  // namespace flightwatt::live

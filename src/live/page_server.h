@@ -28,8 +28,8 @@ class PageServer {
     /// "http://127.0.0.1:8080/"
     std::string address() const;
 
-    /// What is known now (JSON, on one line), and of it what a page that is opened later draws (JSON; empty: nothing).
-    void publish(std::string_view state, std::string_view point);
+    /// What is known now (JSON on one line), and of it what a page that is opened later draws (the same; empty: nothing).
+    void publish(std::string state, std::string point);
 
   private:
     class Server;

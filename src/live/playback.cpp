@@ -1,6 +1,7 @@
 #include "live/playback.h"
 
 #include "base/error.h"
+#include "base/number.h"
 #include "live/sources.h"
 #include "live/sources/message_readers.h"
 #include "telemetry/binary_log.h"
@@ -19,7 +20,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
-constexpr const char* no_time = "they are no messages with a time";
 constexpr std::chrono::milliseconds max_wait{50};  // until somebody asks whether to stop
 
 /// Waits in short steps; false: it was stopped.
@@ -39,17 +39,12 @@ class Player : public MessageSink {
         : speed_(speed), target_(target), stop_(stop) {}
 
     bool is_stopped() const { return report_.stopped; }
-    void push(IncomingMessage message) override {
-        if (!message.time_s) return count(no_time, 1);
-        play({*message.time_s, fmt::to_string(*message.time_s), message.text});
-    }
-    void count(std::string_view reason, std::size_t times) override {
-        if (times > 0 && !report_.stopped) report_.left_out[std::string(reason)] += times;
-    }
+
     /// Waits until the message is due, and sends it.
-    void play(const PlayedMessage& message) {
+    void push(IncomingMessage message) override {
+        if (!message.time_s) return count("they have no time", 1);
         if (report_.stopped) return;
-        const double step_s = last_s_ ? std::max(0.0, message.time_s - *last_s_) : 0.0;
+        const double step_s = last_s_ ? std::max(0.0, *message.time_s - *last_s_) : 0.0;
         if (step_s > max_played_gap_s) ++report_.shortened_gaps;
         report_.log_s += std::min(step_s, max_played_gap_s);
         last_s_ = message.time_s;
@@ -58,12 +53,13 @@ class Player : public MessageSink {
         if (report_.stopped) return;
         report_.max_delay_s = std::max(report_.max_delay_s, Seconds(Clock::now() - due).count());
         const auto why_not = target_.send(message);
-        if (why_not.empty()) {
-            ++report_.messages;
-        } else {
-            ++report_.left_out[std::string(why_not)];
-        }
+        ++(why_not.empty() ? report_.messages : report_.left_out[std::string(why_not)]);
     }
+
+    void count(std::string_view reason, std::size_t times) override {
+        if (times > 0 && !report_.stopped) report_.left_out[std::string(reason)] += times;
+    }
+
     PlaybackReport end() {
         report_.played_s = Seconds(Clock::now() - begin_).count();
         return std::move(report_);
@@ -78,29 +74,21 @@ class Player : public MessageSink {
     Clock::time_point begin_ = Clock::now();
 };
 
-void play_text(std::string_view text, Player& player) {
-    for (auto rest = text; !rest.empty() && !player.is_stopped();) {
-        auto line = rest.substr(0, rest.find('\n'));
-        rest.remove_prefix(std::min(line.size() + 1, rest.size()));
-        if (line.ends_with('\r')) line.remove_suffix(1);
-        if (const auto message = message_of_line(line)) {
-            player.play({*message->time_s, line.substr(0, line.find(' ')), message->text});
-        } else {
-            player.count(no_time, 1);
-        }
-    }
+/// Piece by piece, so that a player that is stopped is soon at its end.
+template <typename Reader>
+void play_bytes(std::string_view bytes, Reader& reader, const Player& player) {
+    constexpr std::size_t piece = 4096;
+    for (auto rest = bytes; !rest.empty() && !player.is_stopped(); rest.remove_prefix(std::min(piece, rest.size())))
+        reader.push(rest.substr(0, piece));
+    if (!player.is_stopped()) reader.flush();
 }
 
 /// Throws InputError where its messages have other lengths than they are defined with.
 void play_binary(const telemetry::BinaryLog& log, Player& player) {
     LinkReader reader(player, std::make_shared<const telemetry::MessageDictionary>(*log.messages), log.framing,
                       link_version(log));
-    constexpr std::size_t piece = 4096;
-    for (auto rest = log.bytes; !rest.empty() && !player.is_stopped(); rest.remove_prefix(std::min(piece, rest.size())))
-        reader.push(rest.substr(0, piece));
-    if (player.is_stopped()) return;
-    reader.flush();
-    require_fitting(reader.counts(), log);
+    play_bytes(log.bytes, reader, player);
+    if (!player.is_stopped()) require_fitting(reader.counts(), log);
 }
 
 /// What was sent gets out, if it is fetched.
@@ -111,6 +99,12 @@ void drain(PlaybackTarget& target, const std::function<bool()>& stop) {
 }
 
 }  // namespace
+
+std::string data_line(const IncomingMessage& message) {
+    const double time_s = message.time_s.value();
+    const auto in_ms = fmt::format("{:.3f}", time_s);
+    return fmt::format("{} {}\n", parse_number(in_ms) == time_s ? in_ms : fmt::to_string(time_s), message.text);
+}
 
 void PlaybackTarget::wait_until(Clock::time_point then) { std::this_thread::sleep_until(then); }
 
@@ -126,7 +120,8 @@ PlaybackReport play(const std::filesystem::path& log, double speed, PlaybackTarg
     if (framing) {
         play_binary({file.text(), *framing, log, log, &*definitions}, player);
     } else {
-        play_text(file.text(), player);
+        TextReader reader(player);
+        play_bytes(file.text(), reader, player);
     }
     file.require_unchanged();
     drain(target, stop);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "live/sources.h"
 #include "telemetry/link_decoder.h"
 #include "telemetry/message_dictionary.h"
 
@@ -15,11 +16,9 @@
 
 namespace flightwatt::live {
 
-struct PlayedMessage {
-    double time_s = 0.0;
-    std::string_view time;  ///< as the log writes it
-    std::string_view text;  ///< behind the time
-};
+/// A message with its time as a line of a .data file, with its end: times have milliseconds, as the ground station writes
+/// them, or as many digits as they need.
+std::string data_line(const IncomingMessage& message);
 
 /// Where a log is played to.
 class PlaybackTarget {
@@ -31,8 +30,9 @@ class PlaybackTarget {
 
     /// Whether there is somebody to play to; waits for that at most so long.
     virtual bool has_receiver(std::chrono::milliseconds) { return true; }
-    /// One message. Returns why it cannot be sent, and an empty text else. Throws OutputError where nothing can be.
-    virtual std::string_view send(const PlayedMessage& message) = 0;
+    /// One message with its time. Returns why it cannot be sent, and an empty text else. Throws OutputError where nothing
+    /// can be.
+    virtual std::string_view send(const IncomingMessage& message) = 0;
     /// Until then nothing is sent.
     virtual void wait_until(std::chrono::steady_clock::time_point then);
     /// Whether all that was sent is out.

@@ -137,12 +137,11 @@ std::optional<BatteryPrediction> predict_battery(const PredictionInput& basis, c
     const auto records = battery::discharge_records(series);
     remarks.notes.insert(remarks.notes.end(), records.notes.begin(), records.notes.end());
     const auto& record = records.records.back();
-    BatteryPrediction of;
-    of.limits = basis.limits;
+    const double initial_percent = initial_soc_percent(basis, record);
+    const auto state_of = [&](const auto& pack) { return state_after(pack, record, initial_percent); };
+    auto of = forecast_battery(battery, basis.limits, state_of, prediction);
     of.initial_is_measured = !basis.initial_soc_percent;
-    of.initial_soc_percent = initial_soc_percent(basis, record);
-    const auto state_of = [&](const auto& pack) { return state_after(pack, record, of.initial_soc_percent); };
-    forecast_battery(battery, state_of, prediction, of);
+    of.initial_soc_percent = initial_percent;
     return of;
 }
 
@@ -254,19 +253,22 @@ std::vector<battery::ConstantLoad> remaining_power(const Prediction& prediction,
     return ahead;
 }
 
-void forecast_battery(const battery::Battery& battery,
-                      const std::function<battery::BatteryState(const battery::Battery&)>& state_of,
-                      const Prediction& prediction, BatteryPrediction& result) {
+BatteryPrediction forecast_battery(const battery::Battery& battery, const battery::LandingLimits& limits,
+                                   const std::function<battery::BatteryState(const battery::Battery&)>& state_of,
+                                   const Prediction& prediction) {
     const auto forecast = [&](const battery::Battery& of, double part) {
         return battery::forecast_landing(of, state_of(of), remaining_power(prediction, part),
-                                         prediction.cruise.remaining_mean_w * part, result.limits);
+                                         prediction.cruise.remaining_mean_w * part, limits);
     };
     const double rest_wh = prediction.remaining_energy.energy_wh;
     auto least = battery;
+    BatteryPrediction result;
+    result.limits = limits;
     result.worst_uses_min_capacity = battery.intervals.capacity_ah.has_value();
     if (result.worst_uses_min_capacity) least.capacity_ah = battery.intervals.capacity_ah->low;
     result.expected = forecast(battery, 1.0);
     result.worst = forecast(least, rest_wh > 0.0 ? prediction.interval.high_wh / rest_wh : 1.0);
+    return result;
 }
 
 PredictionInput input_from_mission(const mission::MissionSetup& setup, const std::string& file) {

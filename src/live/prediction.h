@@ -100,9 +100,9 @@ std::optional<path::PathFix> find_path_fix(const PredictionInput& basis, const m
 std::vector<battery::ConstantLoad> remaining_power(const Prediction& prediction, double part = 1.0);
 
 /// Flies the battery through the rest of `prediction`. `state_of`: the state that a battery of that capacity is in now.
-void forecast_battery(const battery::Battery& battery,
-                      const std::function<battery::BatteryState(const battery::Battery&)>& state_of,
-                      const Prediction& prediction, BatteryPrediction& result);
+BatteryPrediction forecast_battery(const battery::Battery& battery, const battery::LandingLimits& limits,
+                                   const std::function<battery::BatteryState(const battery::Battery&)>& state_of,
+                                   const Prediction& prediction);
 
 /// What a mission lets predict: its model, its path or else the time of its cruise, its battery (its capacity as
 /// uncertain as in the mission's drawn flights) and limits. Where its model does not allow a prediction,

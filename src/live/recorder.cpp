@@ -12,18 +12,14 @@
 #include <unistd.h>
 
 namespace flightwatt::live {
-namespace {
 
-/// Makes an empty file; false where there is one already.
-bool make_new(const std::filesystem::path& path) {
+bool make_new_file(const std::filesystem::path& path) {
     const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file < 0 && errno == EEXIST) return false;
     if (file < 0) throw OutputError(fmt::format("cannot write {}: {}", path.string(), std::strerror(errno)));
     ::close(file);
     return true;
 }
-
-}  // namespace
 
 Recorder::Recorder(std::filesystem::path folder, std::string name, std::optional<std::string> log_text)
     : folder_(std::move(folder)), name_(std::move(name)), log_text_(std::move(log_text)) {
@@ -36,7 +32,7 @@ void Recorder::open_next() {
         const auto stem = number_ == 1 ? name_ : fmt::format("{}_{}", name_, number_);
         const auto data = folder_ / (stem + ".data");
         const auto log = folder_ / (stem + ".log");
-        if (std::filesystem::exists(log) || !make_new(data)) continue;
+        if (std::filesystem::exists(log) || !make_new_file(data)) continue;
         out_ = std::ofstream(data, std::ios::app | std::ios::binary);
         file_ = data;
         return;

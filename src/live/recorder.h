@@ -10,6 +10,9 @@
 
 namespace flightwatt::live {
 
+/// Makes an empty file; false where there is one already. Throws OutputError.
+bool make_new_file(const std::filesystem::path& path);
+
 /// Keeps telemetry as logs that a batch takes: NAME.data in a folder, with the .log of its definitions beside it. Where
 /// the clock begins anew a new log does, NAME_2 ...; no file that exists is written to. What is written can be read at
 /// once. A disk that is full ends the recording, not the watch.

@@ -39,15 +39,21 @@ bool lands_with_reserve(const ReturnFlightInput& budget, battery::BatteryState s
     return state.soc_percent >= budget.limits.reserve_soc_percent;
 }
 
+double duration_s(const std::vector<battery::ConstantLoad>& stretches) {
+    double sum_s = 0.0;
+    for (const auto& stretch : stretches) sum_s += stretch.duration_s;
+    return sum_s;
+}
+
 /// So much more of the stretches ahead; false where the battery fails on it.
-bool fly_on(const ReturnFlightInput& budget, std::vector<battery::ConstantLoad>& ahead, double time_s,
-            battery::BatteryState& state) {
+bool fly_on(const battery::Battery& battery, const battery::LandingLimits& limits,
+            std::vector<battery::ConstantLoad>& ahead, double time_s, battery::BatteryState& state) {
     while (time_s > 0.0 && !ahead.empty()) {
         auto& stretch = ahead.front();
         const double part_s = std::min(time_s, stretch.duration_s);
         if (part_s > 0.0) {
-            const auto end = discharge_constant_load(budget.battery, state, {stretch.power_w, part_s},
-                                                     budget.limits.cutoff_voltage_v);
+            const auto end =
+                discharge_constant_load(battery, state, {stretch.power_w, part_s}, limits.cutoff_voltage_v);
             if (has_failed(end)) return false;
             state = end;
         }
@@ -63,8 +69,7 @@ bool fly_on(const ReturnFlightInput& budget, std::vector<battery::ConstantLoad>&
 ReturnDeadline latest_return(const path::PathForecast& path, double on_path_s, const ReturnFlightInput& budget) {
     constexpr double finest_s = 10.0;
     constexpr double max_looks = 40.0;
-    double rest_s = 0.0;
-    for (const auto& stretch : budget.cruise_ahead) rest_s += stretch.duration_s;
+    const double rest_s = duration_s(budget.cruise_ahead);
     const double step_s = std::max(finest_s, rest_s / max_looks);
     auto ahead = budget.cruise_ahead;
     auto state = budget.now;
@@ -74,10 +79,28 @@ ReturnDeadline latest_return(const path::PathForecast& path, double on_path_s, c
         turn.latest_in_s = in_s;
         turn.path_can_be_flown = in_s >= rest_s;
         const double next_s = std::min(step_s, rest_s - in_s);
-        if (!(next_s > 0.0) || !fly_on(budget, ahead, next_s, state)) break;
+        if (!(next_s > 0.0) || !fly_on(budget.battery, budget.limits, ahead, next_s, state)) break;
         in_s = rest_s - in_s <= step_s ? rest_s : in_s + next_s;
     }
     return turn;
+}
+
+TimeCurve soc_ahead(const PredictionInput& basis, const Prediction& prediction, battery::BatteryState now,
+                    double now_s) {
+    constexpr double finest_s = 10.0;
+    constexpr double max_points = 100.0;
+    auto ahead = remaining_power(prediction);
+    const double rest_s = duration_s(ahead);
+    const double step_s = std::max(finest_s, rest_s / max_points);
+    TimeCurve curve{{now_s}, {now.soc_percent}};
+    for (double flown_s = 0.0; flown_s < rest_s;) {
+        const double part_s = std::min(step_s, rest_s - flown_s);
+        if (!fly_on(basis.battery.value(), basis.limits, ahead, part_s, now)) break;
+        flown_s += part_s;
+        curve.time_s.push_back(now_s + flown_s);
+        curve.value.push_back(now.soc_percent);
+    }
+    return curve;
 }
 
 }  // namespace flightwatt::live

@@ -72,7 +72,7 @@ TEST_F(PageServerTest, AnswersWithThePageAndTheState) {
     EXPECT_THAT(page, HasSubstr("Content-Security-Policy: default-src 'none'"));
     EXPECT_THAT(answer_to("HEAD /"), testing::EndsWith("\r\n\r\n"));
     EXPECT_THAT(answer_to("GET /state"), testing::EndsWith("\r\n\r\nnull\n"));
-    server.publish("{\"a\":\n1}", "");
+    server.publish("{\"a\": 1}", "");
     ASSERT_TRUE(test::wait_until([&] { return answer_to("GET /state").ends_with("{\"a\": 1}\n"); }));
 }
 

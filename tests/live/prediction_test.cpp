@@ -31,13 +31,12 @@ TEST(Prediction, FliesTheBatteryThroughTheRest) {
     flown.charge_ah = {0.0, 0.1};
     auto prediction = made_up();
     const auto state_of = [&](const auto& pack) { return state_after(pack, flown, 100.0); };
-    BatteryPrediction of;
-    forecast_battery(battery, state_of, prediction, of);
+    auto of = forecast_battery(battery, {}, state_of, prediction);
     EXPECT_NEAR(of.expected.soc_now_percent, 90.0, 1e-9);
     EXPECT_NEAR(of.expected.soc_percent, 65.0, 1e-6) << "2.5 Wh of 10 Wh";
     EXPECT_NEAR(of.worst.soc_percent, 60.0, 1e-6) << "3 Wh at the high end";
     prediction.landing_s = 0.0;  // a mission without one
-    forecast_battery(battery, state_of, prediction, of);
+    of = forecast_battery(battery, {}, state_of, prediction);
     EXPECT_NEAR(of.expected.soc_percent, 70.0, 1e-6);
 }
 

@@ -69,5 +69,22 @@ TEST(TurnHome, AWindThatForbidsTheWayHomeIsTooLate) {
     EXPECT_FALSE(trial.turn(100.0).latest_in_s);
 }
 
+TEST(SocAhead, EndsWithThePrediction) {
+    PredictionInput basis;
+    basis.battery = battery::Battery{};
+    basis.battery->voltage_v = 10.0;
+    basis.battery->capacity_ah = 1.0;
+    Prediction prediction;
+    prediction.cruise.remaining_mean_w = 10.0;
+    prediction.remaining_s = 1800.0;
+    prediction.landing.energy_wh = 0.5;
+    prediction.landing_s = 100.0;
+    const auto curve = soc_ahead(basis, prediction, {90.0, 0.0}, 50.0);
+    EXPECT_NEAR(curve.time_s.back(), 1950.0, 1e-6);
+    EXPECT_NEAR(curve.value.back(), 35.0, 1e-6) << "5.5 Wh of 10";
+    EXPECT_LT(curve.time_s.size(), 120U);
+    EXPECT_LT(soc_ahead(basis, prediction, {20.0, 0.0}, 50.0).time_s.back(), 50.0 + 721.0) << "2 Wh at 10 W";
+}
+
 }  // namespace
 }  // namespace flightwatt::live

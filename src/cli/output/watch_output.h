@@ -4,7 +4,6 @@
 #include "cli/terminal.h"
 #include "compute/compute_model.h"
 #include "live/decision_command.h"
-#include "live/live_curves.h"
 #include "live/live_flight.h"
 
 #include <chrono>

@@ -2,6 +2,7 @@
 #include "base/number.h"
 #include "base/overwrite_guard.h"
 #include "live/playback.h"
+#include "live/recorder.h"
 #include "live/sources/endpoints.h"
 #include "live/sources/ivy_agent.h"
 #include "telemetry/link_encoder.h"
@@ -9,12 +10,12 @@
 #include <cerrno>
 #include <cstring>
 #include <exception>
+#include <fstream>
 #include <utility>
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/udp.hpp>
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
@@ -24,87 +25,74 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Link frames, a datagram each. Datagrams that nobody listens for are lost, as over the air.
-class UdpTarget : public PlaybackTarget {
+/// Takes messages as link frames.
+class FrameTarget : public PlaybackTarget {
   public:
-    UdpTarget(std::string_view to, PlaybackTargetSetup setup)
-        : definitions_(std::move(setup.definitions.value())),
-          encoder_(definitions_, setup.version),
-          to_(parse_udp_address(to)),
-          socket_(context_, to_.protocol()) {
-        socket_.set_option(boost::asio::socket_base::broadcast(true));
-    }
+    explicit FrameTarget(PlaybackTargetSetup setup)
+        : definitions_(std::move(setup.definitions.value())), encoder_(definitions_, setup.version) {}
 
-    std::string_view send(const PlayedMessage& message) override {
+    std::string_view send(const IncomingMessage& message) override {
         frame_.clear();
         const auto why_not = encoder_.append_frame(message.text, frame_);
-        if (!why_not.empty()) return why_not;
-        boost::system::error_code error;
-        socket_.send_to(boost::asio::buffer(frame_), to_, 0, error);
-        return error && error != boost::asio::error::connection_refused ? "the network did not take them" : "";
+        return why_not.empty() ? send_frame(frame_) : why_not;
     }
+
+  protected:
+    /// Returns why it is not sent, and an empty text else.
+    virtual std::string_view send_frame(std::string_view frame) = 0;
 
   private:
     telemetry::MessageDictionary definitions_;
     telemetry::LinkEncoder encoder_;
-    boost::asio::ip::udp::endpoint to_;
-    boost::asio::io_context context_;
-    boost::asio::ip::udp::socket socket_;
     std::string frame_;
 };
 
-/// Link frames on a serial line, which asio opens without blocking. What it does not take at once waits, but no more
-/// than some minutes of a modem's.
-class SerialTarget : public PlaybackTarget {
+/// A datagram each. Datagrams that nobody listens for are lost, as over the air.
+class UdpTarget : public FrameTarget {
+  public:
+    UdpTarget(std::string_view to, PlaybackTargetSetup setup)
+        : FrameTarget(std::move(setup)), to_(parse_udp_address(to)), socket_(context_, to_.protocol()) {
+        socket_.set_option(boost::asio::socket_base::broadcast(true));
+    }
+
+  private:
+    std::string_view send_frame(std::string_view frame) override {
+        boost::system::error_code error;
+        socket_.send_to(boost::asio::buffer(frame), to_, 0, error);
+        return error && error != boost::asio::error::connection_refused ? "the network did not take them" : "";
+    }
+
+    boost::asio::ip::udp::endpoint to_;
+    boost::asio::io_context context_;
+    boost::asio::ip::udp::socket socket_;
+};
+
+/// On a serial line, which asio opens without blocking. What it does not take within a second is left out.
+class SerialTarget : public FrameTarget {
   public:
     SerialTarget(std::string_view to, PlaybackTargetSetup setup)
-        : definitions_(std::move(setup.definitions.value())),
-          encoder_(definitions_, setup.version),
-          line_(parse_serial_line(to)) {
+        : FrameTarget(std::move(setup)), line_(parse_serial_line(to)) {
         register_output(line_.device);
         if (const auto error = open_serial_line(line_, port_)) refuse_serial_line(line_, error);
     }
 
-    std::string_view send(const PlayedMessage& message) override {
-        frame_.clear();
-        const auto why_not = encoder_.append_frame(message.text, frame_);
-        if (!why_not.empty()) return why_not;
-        write();
-        constexpr std::size_t most_waiting_bytes = 1'000'000;
-        if (waiting_.size() > most_waiting_bytes) return "the serial line is slower than what is played";
-        waiting_ += frame_;
-        write();
+  private:
+    std::string_view send_frame(std::string_view frame) override {
+        constexpr int max_ms = 1000;
+        while (!frame.empty()) {
+            ::pollfd line{port_.native_handle(), POLLOUT, 0};
+            if (::poll(&line, 1, max_ms) == 0) return "the serial line is slower than what is played";
+            const auto written = ::write(port_.native_handle(), frame.data(), frame.size());
+            if (written > 0) frame.remove_prefix(static_cast<std::size_t>(written));
+            if (written < 0 && errno != EINTR && errno != EAGAIN)
+                throw OutputError(fmt::format("cannot write to {}: {}", line_.device, std::strerror(errno)));
+        }
         return {};
     }
-    void wait_until(Clock::time_point then) override {
-        for (auto now = Clock::now(); now < then && !waiting_.empty(); now = Clock::now()) {
-            ::pollfd line{port_.native_handle(), POLLOUT, 0};
-            const auto wait = std::chrono::ceil<std::chrono::milliseconds>(then - now);
-            if (::poll(&line, 1, static_cast<int>(wait.count())) < 0 && errno == EINTR) return;
-            write();
-        }
-        PlaybackTarget::wait_until(then);
-    }
-    bool is_drained() const override { return waiting_.empty(); }
 
-  private:
-    void write() {
-        while (!waiting_.empty()) {
-            const auto written = ::write(port_.native_handle(), waiting_.data(), waiting_.size());
-            if (written > 0) waiting_.erase(0, static_cast<std::size_t>(written));
-            if (written > 0 || (written < 0 && errno == EINTR)) continue;
-            if (written == 0 || errno == EAGAIN) return;
-            throw OutputError(fmt::format("cannot write to {}: {}", line_.device, std::strerror(errno)));
-        }
-    }
-
-    telemetry::MessageDictionary definitions_;
-    telemetry::LinkEncoder encoder_;
     SerialLine line_;
     boost::asio::io_context context_;
     boost::asio::serial_port port_{context_};
-    std::string frame_;
-    std::string waiting_;
 };
 
 class IvyTarget : public PlaybackTarget {
@@ -129,8 +117,8 @@ class IvyTarget : public PlaybackTarget {
         }
         return agent_.ready_peers() > 0;
     }
-    std::string_view send(const PlayedMessage& message) override {
-        const auto text = message.text;
+    std::string_view send(const IncomingMessage& message) override {
+        const std::string_view text = message.text;
         context_.poll();
         if (as_aircraft_) {
             agent_.send(text);
@@ -139,7 +127,7 @@ class IvyTarget : public PlaybackTarget {
         const auto sender = text.substr(0, text.find(' '));
         if (parse_unsigned(sender)) {
             agent_.send(fmt::format("replay{}", text));
-            agent_.send(fmt::format("time{} {:f}", sender, message.time_s));
+            agent_.send(fmt::format("time{} {:f}", sender, *message.time_s));
         } else {
             agent_.send(text);
         }
@@ -159,30 +147,19 @@ class LineTarget : public PlaybackTarget {
   public:
     explicit LineTarget(std::string name) : name_(std::move(name)) {
         register_output(name_);
-        file_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666);
-        if (file_ < 0) refuse();
+        if (!make_new_file(name_)) throw OutputError(fmt::format("cannot write {}: {}", name_, std::strerror(EEXIST)));
+        file_.open(name_, std::ios::app | std::ios::binary);
         mark_written(name_);
     }
-    ~LineTarget() override { ::close(file_); }
-
-    std::string_view send(const PlayedMessage& message) override {
-        line_ = fmt::format("{} {}\n", message.time, message.text);
-        for (std::string_view rest = line_; !rest.empty();) {
-            const auto written = ::write(file_, rest.data(), rest.size());
-            if (written < 0 && errno != EINTR) refuse();
-            if (written > 0) rest.remove_prefix(static_cast<std::size_t>(written));
-        }
+    std::string_view send(const IncomingMessage& message) override {
+        file_ << data_line(message) << std::flush;
+        if (!file_) throw OutputError(fmt::format("cannot write {}: {}", name_, std::strerror(errno)));
         return {};
     }
 
   private:
-    [[noreturn]] void refuse() const {
-        throw OutputError(fmt::format("cannot write {}: {}", name_, std::strerror(errno)));
-    }
-
-    int file_ = -1;
     std::string name_;
-    std::string line_;
+    std::ofstream file_;
 };
 
 }  // namespace

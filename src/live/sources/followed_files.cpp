@@ -2,6 +2,7 @@
 #include "base/overwrite_guard.h"
 #include "live/sources.h"
 #include "live/sources/message_readers.h"
+#include "live/sources/receiving_source.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -19,7 +20,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::size_t bytes_per_read = 65'536;  // a thousand messages
+constexpr std::size_t bytes_per_read = 16'384;  // fewer messages than a queue gives in a call
 
 /// The bytes of a file from its beginning, and those that are written to it from then on. Where the file gets shorter
 /// or another takes its name, that is read from its beginning; where it is missing for a while, it is waited for.
@@ -111,62 +112,9 @@ class FileTail {
     std::vector<char> bytes_;
 };
 
-/// Messages out of the lines of a .data file.
-class TextReader {
-  public:
-    explicit TextReader(MessageSink& sink) : sink_(sink) {}
-
-    void push(std::string_view bytes) {
-        std::vector<std::string> lines;
-        sink_.count("lines longer than any message", buffer_.push(bytes, lines));
-        for (const auto& line : lines) read(line);
-    }
-    /// The last line, if it lacks its break.
-    void flush() { read(buffer_.take_partial_line()); }
-    void restart() { sink_.count("lines cut off by a restart", buffer_.take_partial_line().empty() ? 0 : 1); }
-
-  private:
-    void read(const std::string& line) {
-        if (line.empty()) return;
-        if (auto message = message_of_line(line)) {
-            sink_.push(std::move(*message));
-        } else {
-            sink_.count("lines that are no message (TIME SENDER NAME ...)", 1);
-        }
-    }
-
-    MessageSink& sink_;
-    LineBuffer buffer_;
-};
-
-/// A source that reads in the thread of the one who asks.
-class DirectSource : public MessageSource, protected MessageSink {
-  public:
-    const SourceReport& report() const override { return report_; }
-
-  protected:
-    void push(IncomingMessage message) override {
-        message.is_after_restart = std::exchange(restarted_, false);
-        ++report_.messages;
-        messages_->push_back(std::move(message));
-    }
-    void count(std::string_view reason, std::size_t times) override { report_.count(reason, times); }
-    void count_restart() {
-        ++report_.restarts;
-        restarted_ = true;
-    }
-
-    std::vector<IncomingMessage>* messages_ = nullptr;  ///< of the call to receive()
-
-  private:
-    SourceReport report_;
-    bool restarted_ = false;
-};
-
-class StandardInput : public DirectSource {
+class StandardInput : public MessageSource {
   public:
     void receive(milliseconds timeout, std::vector<IncomingMessage>& messages) override {
-        messages_ = &messages;
         pollfd wanted{STDIN_FILENO, POLLIN, 0};
         if (at_end_ || ::poll(&wanted, 1, static_cast<int>(timeout.count())) <= 0) return;
         std::vector<char> bytes(bytes_per_read);
@@ -177,36 +125,43 @@ class StandardInput : public DirectSource {
             reader_.flush();
             at_end_ = true;
         }
+        queue_.take(milliseconds(0), messages, report_);
     }
     bool at_end() const override { return at_end_; }
     std::string description() const override { return "the standard input"; }
+    const SourceReport& report() const override { return report_; }
 
   private:
-    TextReader reader_{*this};
+    MessageQueue queue_{1.0};
+    SourceReport report_;
+    TextReader reader_{queue_};
     bool at_end_ = false;
 };
 
 template <typename Reader>
-class FollowedFile : public DirectSource {
+class FollowedFile : public MessageSource {
   public:
     template <typename... Arguments>
     FollowedFile(const std::filesystem::path& path, const char* expected, Arguments... arguments)
-        : tail_(path, expected), reader_(*this, std::move(arguments)...) {}
+        : tail_(path, expected), reader_(queue_, std::move(arguments)...) {}
 
     void receive(milliseconds timeout, std::vector<IncomingMessage>& messages) override {
-        messages_ = &messages;
         constexpr bool is_binary = std::is_same_v<Reader, LinkReader>;  // room is set aside in such files
         const auto piece = tail_.read(timeout, is_binary);
         if (piece.anew) {
             reader_.restart();
-            count_restart();
+            queue_.count_restart();
         }
         reader_.push(piece.bytes);
+        queue_.take(milliseconds(0), messages, report_);
     }
     std::string description() const override { return "following " + tail_.path().string(); }
+    const SourceReport& report() const override { return report_; }
 
   private:
     FileTail tail_;
+    MessageQueue queue_{1.0};
+    SourceReport report_;
     Reader reader_;
 };
 

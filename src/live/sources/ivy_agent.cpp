@@ -8,11 +8,13 @@
 #include <limits>
 #include <map>
 #include <random>
+#include <stdexcept>
 #include <utility>
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/ip/multicast.hpp>
 #include <boost/asio/write.hpp>
+#include <boost/regex.hpp>
 #include <fmt/format.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -110,10 +112,15 @@ class IvyAgent::Peer : public std::enable_shared_from_this<Peer> {
     void send(std::string_view message) {
         if (!ready_) return;
         for (const auto& [id, regexp] : subscriptions_) {
-            const auto groups = regexp.groups_in(message);
-            if (!groups) continue;
+            boost::cmatch match;
+            try {
+                if (!boost::regex_search(message.begin(), message.end(), match, regexp)) continue;
+            } catch (const std::runtime_error&) {
+                continue;  // trying would take too long
+            }
             std::string arguments;
-            for (const auto group : *groups) arguments.append(group).push_back('\003');
+            for (std::size_t group = 1; group < match.size(); ++group)
+                arguments.append(match[group].first, match[group].second).push_back('\003');
             write(to_ivy_line(IvyType::message, id, arguments));
         }
     }
@@ -218,10 +225,11 @@ class IvyAgent::Peer : public std::enable_shared_from_this<Peer> {
     void subscribe(const IvyLine& line) {
         constexpr std::size_t max_subscriptions = 4096;  // of one agent; Paparazzi's have some dozens
         if (!agent_.setup_.sends) return;
-        const auto regexp = PerlRegexp::compile(std::string(line.arguments));
-        if (!regexp) return write(to_ivy_line(IvyType::error, line.id, "no regular expression"));
+        const boost::regex regexp(line.arguments.begin(), line.arguments.end(),
+                                  boost::regex::perl | boost::regex::no_except);
+        if (regexp.status() != 0) return write(to_ivy_line(IvyType::error, line.id, "no regular expression"));
         if (subscriptions_.size() >= max_subscriptions && !subscriptions_.contains(line.id)) return;
-        subscriptions_.insert_or_assign(line.id, *regexp);
+        subscriptions_.insert_or_assign(line.id, regexp);
     }
 
     void write(std::string_view text) {
@@ -262,7 +270,7 @@ class IvyAgent::Peer : public std::enable_shared_from_this<Peer> {
     std::array<char, 16'384> received_{};
     LineBuffer buffer_;
     std::vector<std::string> lines_;
-    std::map<int, PerlRegexp> subscriptions_;
+    std::map<int, boost::regex> subscriptions_;  ///< Perl's, as Ivy's libraries take them
     std::string outgoing_, writing_;
 };
 

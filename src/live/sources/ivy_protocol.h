@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -63,21 +62,5 @@ std::string to_ivy_line(IvyType type, int id, std::string_view arguments = {});
 
 /// The groups of a message's arguments, each ended by \003.
 std::vector<std::string_view> groups_of(std::string_view arguments);
-
-/// A regular expression as Ivy's agents subscribe with: Perl's.
-class PerlRegexp {
-  public:
-    /// std::nullopt: it is none.
-    static std::optional<PerlRegexp> compile(const std::string& expression);
-
-    /// The groups of the first match in `text`, which they point into, empty for one that took no part. std::nullopt:
-    /// it does not match, or trying would take too long.
-    std::optional<std::vector<std::string_view>> groups_in(std::string_view text) const;
-
-  private:
-    explicit PerlRegexp(std::shared_ptr<void> code) : code_(std::move(code)) {}
-
-    std::shared_ptr<void> code_;
-};
 
 }  // namespace flightwatt::live

@@ -7,13 +7,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <string>
 #include <utility>
 
-#include <boost/asio/steady_timer.hpp>
 #include <fmt/format.h>
 
 namespace flightwatt::live {
@@ -41,57 +39,33 @@ std::string_view id_after(std::string_view prefix, std::string_view word) {
 constexpr const char* everything = "(.*)";
 
 /// Telemetry from an Ivy bus.
-class IvyReceiver : public Receiver {
+class IvyReceiver {
   public:
     IvyReceiver(boost::asio::io_context& context, MessageQueue& queue, IvyBus bus)
         : messages_(queue),
-          agent_(context, {.bus = std::move(bus),
-                           .name = "FlightWatt watch",
-                           .subscriptions = {everything},
-                           .on_message = [this](const auto& groups) { handle(groups.empty() ? "" : groups.front()); },
-                           .on_unusable = [&queue](std::string_view reason) { queue.count(reason); },
-                           .on_peer_lost = [&queue] { queue.count_restart(); }}),
-          timer_(context) {}
+          agent_(context,
+                 {.bus = std::move(bus),
+                  .name = "FlightWatt watch",
+                  .subscriptions = {everything},
+                  .on_message = [this](const auto& groups) { messages_.handle(groups.empty() ? "" : groups.front()); },
+                  .on_unusable = [&queue](std::string_view reason) { queue.count(reason); },
+                  .on_peer_lost = [&queue] { queue.count_restart(); }}) {}
 
-    std::string description() const override {
+    std::string description() const {
         const auto& bus = agent_.setup().bus;
         return fmt::format("the Ivy bus {}:{}", fmt::join(bus.networks, ","), bus.port);
     }
 
-    void start() override { agent_.start(); }
+    void start() { agent_.start(); }
 
-    void stop() override {
+    void stop() {
         agent_.stop();
-        boost::system::error_code ignored;
-        timer_.cancel(ignored);
         messages_.release();
     }
 
   private:
-    void handle(std::string_view text) {
-        messages_.handle(text);
-        if (messages_.has_pending()) release_soon();
-    }
-
-    void release_soon() {
-        constexpr std::chrono::milliseconds max_wait_for_time{100};  // a player sends the time at once
-        if (std::exchange(release_is_due_, true)) return;
-        timer_.expires_after(max_wait_for_time);
-        timer_.async_wait([this, times = messages_.times()](const boost::system::error_code& error) {
-            release_is_due_ = false;
-            if (error) return;
-            if (messages_.times() == times) {
-                messages_.release();
-            } else if (messages_.has_pending()) {
-                release_soon();  // what waits came later
-            }
-        });
-    }
-
     IvyMessages messages_;
     IvyAgent agent_;
-    boost::asio::steady_timer timer_;
-    bool release_is_due_ = false;
 };
 
 }  // namespace
@@ -119,7 +93,6 @@ void IvyMessages::handle(std::string_view text) {
 void IvyMessages::handle_time(std::string_view id, std::string_view text) {
     const auto time_s = parse_number(text.substr(std::min(text.find_first_not_of(' '), text.size())));
     if (!time_s || !std::isfinite(*time_s)) return count_malformed();
-    ++times_;
     const auto replay = replays_.find(id);
     if (has_aircraft_ || replay == replays_.end()) return;
     replay->second.time_s = time_s;
@@ -136,15 +109,8 @@ void IvyMessages::release() {
     for (auto& [id, replay] : replays_) forward(replay);
 }
 
-bool IvyMessages::has_pending() const {
-    return std::any_of(replays_.begin(), replays_.end(),
-                       [](const auto& replay) { return !replay.second.waiting.empty(); });
-}
-
 std::unique_ptr<MessageSource> open_ivy_bus(std::string_view bus, double clock_factor) {
-    return std::make_unique<ReceivingSource>(clock_factor, [&](auto& context, auto& queue) {
-        return std::make_unique<IvyReceiver>(context, queue, parse_ivy_bus(bus));
-    });
+    return std::make_unique<ReceivingSource<IvyReceiver>>(clock_factor, parse_ivy_bus(bus));
 }
 
 }  // namespace flightwatt::live

@@ -13,19 +13,14 @@ namespace flightwatt::live {
 
 /// Telemetry out of the texts on an Ivy bus. An aircraft's messages are forwarded at once; they have no time.
 /// Paparazzi's log player sends "replay20 ENERGY ..." and after it "time20 13.9": this becomes the message with its
-/// time, which is forwarded with that time or, where none follows, by release(). While an aircraft itself is on the bus
-/// replays are ignored: there is one clock.
+/// time. While an aircraft itself is on the bus replays are ignored: there is one clock.
 class IvyMessages {
   public:
     explicit IvyMessages(MessageSink& sink) : sink_(sink) {}
 
     void handle(std::string_view text);
-    /// Messages have waited long enough: no time follows.
+    /// Nothing more will come: forwards what waits for its time.
     void release();
-    bool has_pending() const;
-
-    /// How many times came.
-    std::size_t times() const { return times_; }
 
   private:
     struct Replay {
@@ -41,7 +36,6 @@ class IvyMessages {
     std::map<std::string, Replay, std::less<>> replays_;  ///< by aircraft
     std::optional<double> latest_time_s_;                 ///< of any replay
     bool has_aircraft_ = false;                           ///< itself is on the bus
-    std::size_t times_ = 0;
 };
 
 }  // namespace flightwatt::live

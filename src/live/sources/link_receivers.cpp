@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <list>
+#include <map>
 #include <utility>
 
 #include <boost/asio/buffer.hpp>
@@ -25,7 +25,7 @@ using boost::system::error_code;
 
 /// Link frames that come in over UDP. The bytes of each sender are read separately: damage in one's does not spoil
 /// another's.
-class UdpReceiver : public Receiver {
+class UdpReceiver {
   public:
     UdpReceiver(boost::asio::io_context& context, MessageQueue& queue, const udp::endpoint& at,
                 LinkReader::Definitions definitions)
@@ -43,13 +43,13 @@ class UdpReceiver : public Receiver {
         socket_.set_option(boost::asio::socket_base::receive_buffer_size(receive_buffer_bytes), ignored);
     }
 
-    std::string description() const override {
+    std::string description() const {
         const auto at = socket_.local_endpoint();
         if (at.address().is_unspecified()) return fmt::format("UDP port {}", at.port());
         return fmt::format("UDP {}:{}", at.address().to_string(), at.port());
     }
 
-    void start() override {
+    void start() {
         socket_.async_receive_from(boost::asio::buffer(datagram_), from_,
                                    [this](const error_code& error, std::size_t bytes) {
                                        if (!socket_.is_open()) return;
@@ -58,7 +58,7 @@ class UdpReceiver : public Receiver {
                                    });
     }
 
-    void stop() override {
+    void stop() {
         error_code ignored;
         socket_.close(ignored);
     }
@@ -66,13 +66,8 @@ class UdpReceiver : public Receiver {
   private:
     LinkReader& reader_of(const udp::endpoint& sender) {
         constexpr std::size_t max_senders = 16;
-        const auto known = std::ranges::find(readers_, sender, &std::pair<udp::endpoint, LinkReader>::first);
-        if (known != readers_.end()) {
-            readers_.splice(readers_.begin(), readers_, known);
-            return readers_.front().second;
-        }
-        if (readers_.size() == max_senders) readers_.pop_back();
-        return readers_.emplace_front(sender, LinkReader(queue_, definitions_, telemetry::Framing::link)).second;
+        if (readers_.size() == max_senders && !readers_.contains(sender)) readers_.clear();
+        return readers_.try_emplace(sender, queue_, definitions_, telemetry::Framing::link).first->second;
     }
 
     MessageQueue& queue_;
@@ -80,12 +75,12 @@ class UdpReceiver : public Receiver {
     udp::socket socket_;
     udp::endpoint from_;
     std::array<char, 65'536> datagram_{};
-    std::list<std::pair<udp::endpoint, LinkReader>> readers_;  ///< the latest sender is first
+    std::map<udp::endpoint, LinkReader> readers_;
 };
 
 /// Link frames, or an XBee's packets, that come in over a serial line. A device that is unplugged is opened again when
 /// it is back.
-class SerialReceiver : public Receiver {
+class SerialReceiver {
   public:
     /// Throws InputError where the device is not there, or does not know the speed.
     SerialReceiver(boost::asio::io_context& context, MessageQueue& queue, SerialLine line,
@@ -98,9 +93,9 @@ class SerialReceiver : public Receiver {
         if (const auto error = open_serial_line(line_, port_)) refuse_serial_line(line_, error);
     }
 
-    std::string description() const override { return fmt::format("{} at {} baud", line_.device, line_.baud); }
+    std::string description() const { return fmt::format("{} at {} baud", line_.device, line_.baud); }
 
-    void start() override {
+    void start() {
         port_.async_read_some(boost::asio::buffer(received_), [this](const error_code& error, std::size_t bytes) {
             if (stopped_) return;
             reader_.push({received_.data(), bytes});
@@ -112,7 +107,7 @@ class SerialReceiver : public Receiver {
         });
     }
 
-    void stop() override {
+    void stop() {
         stopped_ = true;
         error_code ignored;
         timer_.cancel(ignored);
@@ -147,16 +142,14 @@ LinkReader::Definitions share(telemetry::MessageDictionary definitions) {
 
 std::unique_ptr<MessageSource> open_udp(std::string_view at, telemetry::MessageDictionary definitions,
                                         double clock_factor) {
-    return std::make_unique<ReceivingSource>(clock_factor, [&](auto& context, auto& queue) {
-        return std::make_unique<UdpReceiver>(context, queue, parse_udp_address(at), share(std::move(definitions)));
-    });
+    return std::make_unique<ReceivingSource<UdpReceiver>>(clock_factor, parse_udp_address(at),
+                                                          share(std::move(definitions)));
 }
 
 std::unique_ptr<MessageSource> open_serial(std::string_view line, telemetry::MessageDictionary definitions,
                                            double clock_factor) {
-    return std::make_unique<ReceivingSource>(clock_factor, [&](auto& context, auto& queue) {
-        return std::make_unique<SerialReceiver>(context, queue, parse_serial_line(line), share(std::move(definitions)));
-    });
+    return std::make_unique<ReceivingSource<SerialReceiver>>(clock_factor, parse_serial_line(line),
+                                                             share(std::move(definitions)));
 }
 
 }  // namespace flightwatt::live

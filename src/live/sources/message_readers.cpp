@@ -44,6 +44,18 @@ std::string LineBuffer::take_partial_line() {
     return line;
 }
 
+void TextReader::push(std::string_view bytes) {
+    std::vector<std::string> lines;
+    sink_.count("lines longer than any message", buffer_.push(bytes, lines));
+    for (const auto& line : lines) read(line);
+}
+
+void TextReader::read(const std::string& line) {
+    if (line.empty()) return;
+    if (auto message = message_of_line(line)) return sink_.push(std::move(*message));
+    sink_.count("lines that are no message (TIME SENDER NAME ...)", 1);
+}
+
 LinkReader::LinkReader(MessageSink& sink, Definitions definitions, std::optional<telemetry::Framing> framing,
                        std::optional<telemetry::LinkVersion> version)
     : sink_(sink), definitions_(std::move(definitions)), framing_(framing), decoder_(*definitions_, framing, version) {}

@@ -40,6 +40,22 @@ class LineBuffer {
     bool dropping_ = false;
 };
 
+/// Messages out of the lines of a .data file.
+class TextReader {
+  public:
+    explicit TextReader(MessageSink& sink) : sink_(sink) {}
+    void push(std::string_view bytes);
+    /// The last line, if it lacks its break.
+    void flush() { read(buffer_.take_partial_line()); }
+    void restart() { sink_.count("lines cut off by a restart", buffer_.take_partial_line().empty() ? 0 : 1); }
+
+  private:
+    void read(const std::string& line);
+
+    MessageSink& sink_;
+    LineBuffer buffer_;
+};
+
 /// Messages out of the bytes of a link or a binary log.
 class LinkReader {
   public:

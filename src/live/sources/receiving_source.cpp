@@ -1,12 +1,8 @@
 #include "live/sources/receiving_source.h"
 
-#include "live/sources/endpoints.h"
-
 #include <algorithm>
 #include <iterator>
 #include <utility>
-
-#include <boost/asio/post.hpp>
 
 namespace flightwatt::live {
 
@@ -14,6 +10,7 @@ void MessageQueue::push(IncomingMessage message) {
     const std::chrono::duration<double> since = std::chrono::steady_clock::now() - opened_;
     if (!message.time_s) message.time_s = since.count() * clock_factor_;
     const std::lock_guard lock(mutex_);
+    message.is_after_restart = std::exchange(restarted_, false);
     waiting_.push_back(std::move(message));
     ++report_.messages;
     if (waiting_.size() > max_waiting) {
@@ -31,6 +28,7 @@ void MessageQueue::count(std::string_view reason, std::size_t times) {
 void MessageQueue::count_restart() {
     const std::lock_guard lock(mutex_);
     ++report_.restarts;
+    restarted_ = true;
 }
 
 void MessageQueue::take(std::chrono::milliseconds timeout, std::vector<IncomingMessage>& messages,
@@ -41,21 +39,6 @@ void MessageQueue::take(std::chrono::milliseconds timeout, std::vector<IncomingM
     std::move(waiting_.begin(), end, std::back_inserter(messages));
     waiting_.erase(waiting_.begin(), end);
     report = report_;
-}
-
-ReceivingSource::ReceivingSource(double clock_factor, const MakeReceiver& make)
-    : queue_(clock_factor), receiver_(make(context_, queue_)), description_(receiver_->description()) {
-    boost::asio::post(context_, [this] { receiver_->start(); });
-    thread_ = start_without_signals([this] { context_.run(); });
-}
-
-ReceivingSource::~ReceivingSource() {
-    boost::asio::post(context_, [this] { receiver_->stop(); });
-    thread_.join();
-}
-
-void ReceivingSource::receive(std::chrono::milliseconds timeout, std::vector<IncomingMessage>& messages) {
-    queue_.take(timeout, messages, report_);
 }
 
 }  // namespace flightwatt::live

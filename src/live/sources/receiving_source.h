@@ -1,26 +1,27 @@
 #pragma once
 
 #include "live/sources.h"
+#include "live/sources/endpoints.h"
 #include "live/sources/message_readers.h"
 
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
-#include <functional>
-#include <memory>
 #include <mutex>
 #include <string>
 #include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
 
 namespace flightwatt::live {
 
-/// From the thread that a source receives in to the one that asks for messages. What is not fetched is kept up to a
-/// bound; then the oldest are dropped, and counted.
+/// What a source has received, in whatever thread, and nobody has asked for yet. It is kept up to a bound; then the
+/// oldest are dropped, and counted.
 class MessageQueue : public MessageSink {
   public:
     static constexpr std::size_t max_waiting = 100'000;  ///< of a lively link an hour or more
@@ -31,7 +32,7 @@ class MessageQueue : public MessageSink {
 
     void push(IncomingMessage message) override;
     void count(std::string_view reason, std::size_t times = 1) override;
-    /// The link was opened again.
+    /// The link was opened again, or another file begins.
     void count_restart();
 
     /// Waits for messages, at most so long, and appends them; `report` becomes what was counted until now.
@@ -44,39 +45,37 @@ class MessageQueue : public MessageSink {
     std::condition_variable changed_;
     std::deque<IncomingMessage> waiting_;
     SourceReport report_;
+    bool restarted_ = false;  ///< before the next message
 };
 
-/// What receives from a socket or a device. All but the constructor runs in a thread of its own, and waits for nothing
-/// but the context.
-class Receiver {
-  public:
-    Receiver() = default;
-    virtual ~Receiver() = default;
-    Receiver(const Receiver&) = delete;
-    Receiver& operator=(const Receiver&) = delete;
-
-    virtual std::string description() const = 0;
-    virtual void start() = 0;
-    virtual void stop() = 0;
-};
-
-/// A source that receives in a thread of its own, so that nothing is lost while the program computes.
+/// A source that receives in a thread of its own, so that nothing is lost while the program computes. A Receiver opens
+/// in its constructor what is received from, and may throw; it has a description, is started and stopped in the thread,
+/// and waits for nothing but the context.
+template <typename Receiver>
 class ReceivingSource : public MessageSource {
   public:
-    using MakeReceiver = std::function<std::unique_ptr<Receiver>(boost::asio::io_context&, MessageQueue&)>;
-
-    /// `make` opens what is received from, and may throw.
-    ReceivingSource(double clock_factor, const MakeReceiver& make);
-    ~ReceivingSource() override;
-
-    void receive(std::chrono::milliseconds timeout, std::vector<IncomingMessage>& messages) override;
+    template <typename... Arguments>
+    explicit ReceivingSource(double clock_factor, Arguments&&... arguments)
+        : queue_(clock_factor),
+          receiver_(context_, queue_, std::forward<Arguments>(arguments)...),
+          description_(receiver_.description()) {
+        boost::asio::post(context_, [this] { receiver_.start(); });
+        thread_ = start_without_signals([this] { context_.run(); });
+    }
+    ~ReceivingSource() override {
+        boost::asio::post(context_, [this] { receiver_.stop(); });
+        thread_.join();
+    }
+    void receive(std::chrono::milliseconds timeout, std::vector<IncomingMessage>& messages) override {
+        queue_.take(timeout, messages, report_);
+    }
     std::string description() const override { return description_; }
     const SourceReport& report() const override { return report_; }
 
   private:
     boost::asio::io_context context_;
     MessageQueue queue_;
-    std::unique_ptr<Receiver> receiver_;
+    Receiver receiver_;
     std::string description_;
     SourceReport report_;
     std::thread thread_;

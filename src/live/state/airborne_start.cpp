@@ -1,10 +1,9 @@
-#include "live/state/airborne_start.h"
-
 #include "base/error.h"
 #include "base/units.h"
 #include "flight/phase_statistics.h"
 #include "flight/segmentation.h"
 #include "flight/selected_track.h"
+#include "live/state/moment.h"
 #include "mechanical/flight_bins.h"
 #include "mechanical/flight_progress.h"
 
@@ -96,12 +95,10 @@ Prediction predict_airborne_start(const PredictionInput& basis, const flight::Fl
     prediction.began_in_air = true;
     if (unknown_s > 0.0) add_unknown_time(unknown_s, prediction);
     if (battery != nullptr && battery->state) {
-        auto& of = prediction.battery.emplace();
-        of.limits = basis.limits;
-        of.initial_soc_percent = battery->state->soc_percent;
-        of.initial_soc_is_current = true;
         const auto state_of = [&](const auto&) { return *battery->state; };
-        forecast_battery(*basis.battery, state_of, prediction, of);
+        prediction.battery = forecast_battery(*basis.battery, basis.limits, state_of, prediction);
+        prediction.battery->initial_soc_percent = battery->state->soc_percent;
+        prediction.battery->initial_soc_is_current = true;
         remarks.warnings.emplace_back(
             battery->soc_percent ? "watched from the air on: the state of charge is what --initial-soc (or the "
                                    "mission) leaves by the autopilot's counter"

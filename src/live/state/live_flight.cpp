@@ -4,12 +4,9 @@
 #include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
 #include "flight/selected_track.h"
-#include "live/state/airborne_start.h"
 #include "live/state/aircraft_choice.h"
-#include "live/state/alarms.h"
-#include "live/state/flight_clock.h"
+#include "live/state/moment.h"
 #include "live/state/sender_clocks.h"
-#include "live/state/soc_estimation.h"
 #include "live/state/telemetry_store.h"
 #include "mechanical/prediction.h"
 #include "path/path_tracker.h"
@@ -264,14 +261,12 @@ void LiveFlight::Impl::predict(const flight::SelectedTracks& tracks,
         if (places_) sighting = places_->find(tracks, flown.cruise_start_s, flown.until_s);
         auto energy = predict_energy(*basis_, flown, sighting, remarks);
         if (record && state.battery && state.battery->soc_percent) {
-            energy.battery = BatteryPrediction{};
-            energy.battery->limits = basis_->limits;
-            energy.battery->initial_soc_percent = state.battery->initial_soc_percent;
-            energy.battery->initial_is_measured = state.battery->initial_is_from_voltage;
             const auto state_of = [&](const auto& pack) {
                 return state_after(pack, *record, state.battery->initial_soc_percent);
             };
-            forecast_battery(*basis_->battery, state_of, energy, *energy.battery);
+            energy.battery = forecast_battery(*basis_->battery, basis_->limits, state_of, energy);
+            energy.battery->initial_soc_percent = state.battery->initial_soc_percent;
+            energy.battery->initial_is_measured = state.battery->initial_is_from_voltage;
         }
         state.prediction = std::move(energy);
         state.expected_power_w = remaining_power(*state.prediction).front().power_w;

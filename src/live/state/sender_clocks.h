@@ -50,17 +50,15 @@ class ArrivalMonitor {
     double arrival_s_ = 0.0;
 };
 
-/// Accepts or holds the times that come in (docs/live.md). A time more than 10 s ahead of the latest, or a minute
-/// behind it, counts when four more agree: forwards as a gap, backwards as a restart. Ten lines in a row more than 2 s
-/// late mean that the clock went back, unless a line within a minute is ahead by as much, or fewer than five lines had
-/// come near the latest. A clock more than 10 s further ahead than the arrivals was set; it continues by the arrivals.
+/// Accepts or holds the times that come in (docs/live.md). A time more than 10 s off the latest counts when four more
+/// agree with it: forwards as a gap, a minute or more backwards as a restart, by less backwards as a clock that goes on
+/// from where it was. A clock more than 10 s further ahead than the arrivals was set; it goes on by the arrivals.
 class ClockFilter {
   public:
     static constexpr double max_step_s = 60.0;
-    static constexpr double max_ahead_s = 10.0;
+    static constexpr double max_off_s = 10.0;
     static constexpr std::size_t min_confirmations = 5;
     static constexpr double late_s = 2.0;
-    static constexpr std::size_t late_lines = 10;
 
     struct Line {
         double time_s = 0.0;                   ///< when accepted: on a clock that never goes back
@@ -90,22 +88,17 @@ class ClockFilter {
 
   private:
     bool hold(Line line, std::vector<Line>& accepted);
-    void handle_late_line(Line& line);
-    void handle_recovery(Line& line);
-    void undo_step();
+    void set_held_back(double by_s);
+    double set_ahead_of_arrivals_s() const;
     void accept_line(Line line, std::vector<Line>& accepted);
 
     bool started_ = false;
     bool is_guess_ = false;  ///< `latest_s_`, of no line
     double latest_s_ = 0.0;
     double offset_s_ = 0.0;
-    std::size_t late_ = 0;
-    std::size_t near_latest_ = 0;  ///< lines since it was reached that are not late
     std::vector<Line> held_;
     std::size_t unconfirmed_ = 0;
     std::size_t steps_back_ = 0;
-    double stepped_back_s_ = 0.0;  ///< by the last step, as long as it may have been none
-    double stepped_at_s_ = 0.0;
     ArrivalMonitor pace_;
     double set_ahead_s_ = 0.0;
 };

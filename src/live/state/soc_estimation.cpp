@@ -1,8 +1,7 @@
-#include "live/state/soc_estimation.h"
-
 #include "base/statistics.h"
 #include "base/units.h"
 #include "flight/selected_track.h"
+#include "live/state/moment.h"
 
 #include <algorithm>
 #include <cmath>

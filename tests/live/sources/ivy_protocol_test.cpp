@@ -12,7 +12,6 @@ namespace flightwatt::live {
 namespace {
 
 using testing::ElementsAre;
-using testing::Optional;
 
 TEST(IvyBus, IsReadAsIvysLibrariesDo) {
     const auto whole = parse_ivy_bus("127.255.255.255:2010");
@@ -63,20 +62,6 @@ TEST(IvyLine, IsReadAndWritten) {
     for (const auto* wrong : {"", "2 3", "2\002x", "a 3\002x", "2 b\002x", "\002", "2 99999999999\002"}) {
         EXPECT_FALSE(parse_ivy_line(wrong)) << wrong;
     }
-}
-
-TEST(PerlRegexp, FindsTheGroupsOfSubscriptions) {
-    EXPECT_THAT(PerlRegexp::compile("(.*)")->groups_in("20 ENERGY 57"), Optional(ElementsAre("20 ENERGY 57")));
-    EXPECT_THAT(PerlRegexp::compile("^([^ ]*) +(ENERGY( .*|$))")->groups_in("20 ENERGY 57"),
-                Optional(ElementsAre("20", "ENERGY 57", " 57")));
-    EXPECT_THAT(PerlRegexp::compile(R"(^(\d+) (?:BAT|(ALIVE))?)")->groups_in("20 PONG "),
-                Optional(ElementsAre("20", "")));
-    EXPECT_THAT(PerlRegexp::compile("ALIVE")->groups_in("20 ALIVE"), Optional(ElementsAre()));
-    EXPECT_FALSE(PerlRegexp::compile("^ALIVE")->groups_in("20 ALIVE"));
-    EXPECT_FALSE(PerlRegexp::compile("(20"));
-    std::string long_text(5000, 'a');
-    long_text.back() = 'b';
-    EXPECT_FALSE(PerlRegexp::compile("(a+)+$")->groups_in(long_text));  // gives up
 }
 
 }  // namespace

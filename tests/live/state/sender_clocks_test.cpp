@@ -94,12 +94,12 @@ TEST(ClockFilter, ShortGapsAndLateLinesCountAtOnce) {
     EXPECT_EQ(filter.latest_s(), 29.0);
 }
 
-TEST(ClockFilter, ADamagedTimeALittleAheadDoesNotMoveTheClock) {
+TEST(ClockFilter, ADamagedTimeALittleAheadLosesNoLine) {
     ClockFilter filter;
     std::vector<double> times{10.0, 19.0};
     for (int i = 1; i <= 30; ++i) times.push_back(10.0 + 0.1 * i);
     EXPECT_EQ(pushed(filter, times), times);
-    EXPECT_EQ(filter.latest_s(), 13.0);
+    EXPECT_EQ(filter.latest_s(), 19.0);
     EXPECT_EQ(filter.steps_back(), 0U);
     EXPECT_EQ(pushed(filter, {45.0, 13.1}), (std::vector<double>{13.1}));
 }
@@ -215,7 +215,7 @@ TEST(ClockFilter, ABlockOfEarlierLinesIsNoStep) {
     }
     pushed(filter, times);
     EXPECT_NEAR(filter.latest_s(), 299.9, 3.0);
-    EXPECT_LE(filter.steps_back(), 1U);
+    EXPECT_EQ(filter.steps_back(), 0U);
 }
 
 TEST(ClockFilter, AClockThatSteppedBackGoesOnFromWhereItWas) {
@@ -225,9 +225,8 @@ TEST(ClockFilter, AClockThatSteppedBackGoesOnFromWhereItWas) {
     for (int i = 0; i < 20; ++i) times.push_back(70.0 + i);
     const auto believed = pushed(filter, times);
     ASSERT_EQ(believed.size(), 20U);
-    EXPECT_EQ(believed[8], 78.0);
-    EXPECT_EQ(believed[9], 100.0) << "the tenth in a row";
-    EXPECT_EQ(believed[19], 110.0);
+    EXPECT_EQ(believed[0], 100.0) << "once five agree";
+    EXPECT_EQ(believed[19], 119.0);
     EXPECT_EQ(filter.steps_back(), 1U);
 }
 
