@@ -28,7 +28,7 @@ class PageServer {
     /// "http://127.0.0.1:8080/"
     std::string address() const;
 
-    /// What is known now (JSON on one line), and of it what a page that is opened later draws (the same; empty: nothing).
+    /// What is known now, and of it what a page that is opened later draws (empty: nothing): JSON on one line.
     void publish(std::string state, std::string point);
 
   private:

@@ -16,8 +16,8 @@
 
 namespace flightwatt::live {
 
-/// A message with its time as a line of a .data file, with its end: times have milliseconds, as the ground station writes
-/// them, or as many digits as they need.
+/// A message with its time as a line of a .data file, with its end: times have milliseconds, as the ground station
+/// writes them, or as many digits as they need.
 std::string data_line(const IncomingMessage& message);
 
 /// Where a log is played to.
@@ -30,8 +30,8 @@ class PlaybackTarget {
 
     /// Whether there is somebody to play to; waits for that at most so long.
     virtual bool has_receiver(std::chrono::milliseconds) { return true; }
-    /// One message with its time. Returns why it cannot be sent, and an empty text else. Throws OutputError where nothing
-    /// can be.
+    /// One message with its time. Returns why it cannot be sent, and an empty text else. Throws OutputError where
+    /// nothing can be.
     virtual std::string_view send(const IncomingMessage& message) = 0;
     /// Until then nothing is sent.
     virtual void wait_until(std::chrono::steady_clock::time_point then);

@@ -123,8 +123,7 @@ std::string options_of(const BatchContent& batch) {
     return fmt::format("order {}, weights: {}", options.phases.order, to_string(options.weighting));
 }
 
-/// What `of` says of each folder, "order 3, weights: agreement (FOLDER)", where it differs between them. Empty texts do not
-/// count.
+/// "order 3, weights: agreement (FOLDER)": the text `of` each folder, where these differ. Empty texts do not count.
 Names differing(const std::vector<BatchContent>& batches, std::string (*of)(const BatchContent&)) {
     std::set<std::string> all;
     Names named;

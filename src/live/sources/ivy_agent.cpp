@@ -57,12 +57,6 @@ void open_bus(udp::socket& socket, const IvyBus& bus) {
     }
 }
 
-/// Another one for each agent and start, without blanks.
-std::string new_id(std::uint16_t port) {
-    std::random_device random;
-    return fmt::format("flightwatt:{:08x}{:08x}:{}", random(), random(), port);
-}
-
 /// An agent whose machine is gone says nothing any more: the system finds out within a minute.
 void keep_alive(tcp::socket& socket) {
     error_code ignored;
@@ -292,7 +286,8 @@ IvyAgent::IvyAgent(asio::io_context& context, IvyAgentSetup setup)
     close_on_exec(acceptor_);
     close_on_exec(bus_socket_);
     port_ = acceptor_.local_endpoint().port();
-    id_ = new_id(port_);
+    std::random_device random;
+    id_ = fmt::format("flightwatt:{:08x}{:08x}:{}", random(), random(), port_);  // another at each start
 }
 
 IvyAgent::~IvyAgent() = default;
