@@ -1,6 +1,5 @@
 // Several mission files to a table, ranked by what they leave in the battery.
 
-#include "base/error.h"
 #include "cli/output/mission_output.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"

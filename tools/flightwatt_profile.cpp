@@ -3,7 +3,6 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/signal_watch.h"
-#include "base/toml_reader.h"
 #include "batch/write_guard.h"
 #include "cli/output/profile_output.h"
 #include "cli/screen_table.h"

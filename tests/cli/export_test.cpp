@@ -73,7 +73,7 @@ TEST(ExportLatex, HasTheReplayOfMissionsOnTheFlights) {
     const auto text = read_file(folder / "both.tex");
     for (const auto* label : {"flights", "missions", "replay", "replay-basis"})
         EXPECT_THAT(text, HasSubstr(std::string("\\label{tab:") + label + "}"));
-    EXPECT_THAT(text, HasSubstr("capacity\\_ah & $4$ & -- & -- & given"));
+    EXPECT_THAT(text, HasSubstr("capacity {[}Ah] & $4$ & -- & given"));
     EXPECT_EQ(exported("out --replay -o t.tex", folder).code, 2);
     EXPECT_EQ(exported(mission + " --replay -o t.tex", folder).code, 2);
     EXPECT_EQ(exported(mission + " --capacity 4 -o t.tex", folder).code, 2);

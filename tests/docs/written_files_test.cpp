@@ -100,7 +100,7 @@ TEST(WrittenColumns, AreDocumented) {
     expect_columns(folder / "replay.csv", "Replayed schedules");
     output_of("path", {survey_path, "-o", "legs.csv"}, folder);
     expect_columns(folder / "legs.csv", "Legs of a path");
-    output_of("compare", {phased, "--csv", "-o", "ranking.csv"}, folder);
+    output_of("compare", {phased, "-o", "ranking.csv"}, folder);
     expect_columns(folder / "ranking.csv", "Ranking");
     output_of("profile", {"specification.toml", "-o", "profiles"}, folder);
     expect_columns(folder / "profiles" / "runs.csv", "Runs");
@@ -183,7 +183,6 @@ TEST(WrittenKeys, OfProfilesAreDocumented) {
 
 TEST(WrittenKeys, OfModelsAreDocumented) {
     const auto folder = scratch_dir();
-    expect_summary("fit", {log_file, "--order", "auto", "-o", "chosen.toml"}, folder);
     expect_summary("fit", logs() + Words{"--errors", "-o", "model.toml"}, folder);
     expect_summary("predict", {log_file, "--model", "model.toml", "--until", "300", "--remaining", "300"}, folder);
 }

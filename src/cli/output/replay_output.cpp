@@ -9,7 +9,6 @@
 #include <numeric>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace flightwatt::cli {
 namespace {
@@ -93,8 +92,8 @@ std::string sentence(const std::string& mission, ScheduleMethod baseline,
         return std::ranges::count(comparisons, verdict, &mission::Comparison::verdict);
     };
     auto text = fmt::format(
-        "{}: replanning in flight against {}, on {} flight{}: better on {}, a tie on {}, worse on {}. It keeps the reserve "
-        "on {} of {}, the plan on {}; on average it has {:+.4g} of utility",
+        "{}: replanning in flight against {}, on {} flight{}: better on {}, a tie on {}, worse on {}. It keeps the "
+        "reserve on {} of {}, the plan on {}; on average it has {:+.4g} of utility",
         mission, baseline_words(baseline), flights, flights == 1 ? "" : "s", verdicts(ComparisonOutcome::better),
         verdicts(ComparisonOutcome::tie), verdicts(ComparisonOutcome::worse),
         count(&mission::Comparison::replanned_keeps_reserve), flights,

@@ -17,7 +17,7 @@ TextTable replay_basis_table(std::span<const mission::Replay> replays);
 /// What came of it: one row a flight, mission and schedule.
 TextTable replay_table(std::span<const mission::Replay> replays);
 
-/// What replanning in flight was worth against planning beforehand, a sentence a mission and way of planning.
+/// On how many flights replanning was better than planning beforehand, a sentence a mission and way of planning.
 std::vector<std::string> replay_sentences(std::span<const mission::Replay> replays);
 
 /// What the power holds and what it does not.

@@ -156,7 +156,7 @@ TEST(ReplaySection, ShowsTablesSentencesAndAFigureOfEachMissionToBePlanned) {
     EXPECT_EQ(section.figures[0].id, "replay-1");
     EXPECT_THAT(section.figures[0].description, HasSubstr("two, replanned: 25 at 21.00 %."));
     EXPECT_THAT(section.html, HasSubstr("better on 2"));
-    EXPECT_THAT(section.html, HasSubstr("only replanning keeps the reserve"));
+    EXPECT_THAT(section.html, HasSubstr("It keeps the reserve on"));
     EXPECT_THAT(section.html, HasSubstr("&lt;below&gt;"));
     EXPECT_THAT(section.html, HasSubstr("were not aboard"));
 }
