@@ -11,13 +11,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <mutex>
 #include <numeric>
 #include <utility>
-
-#include <boost/math/tools/minima.hpp>
 
 namespace flightwatt::battery {
 namespace {
@@ -46,6 +43,19 @@ double counted_error_ah(const PackLinks& links, std::size_t record) {
     return std::sqrt(squares_ah2);
 }
 
+/// From three flights on the resistance's interval is at least that of the mean of the flights' own.
+void widen_by_flights(std::span<const std::optional<FlightResistance>> resistances, double fitted_ohm,
+                      Interval& interval_ohm) {
+    std::vector<double> own_ohm;
+    for (const auto& own : resistances)
+        if (own) own_ohm.push_back(own->value_ohm);
+    if (own_ohm.size() < 3) return;
+    const auto flights = static_cast<double>(own_ohm.size());
+    const double half_ohm = student_t_half_width(flights - 1.0) * sample_sd(own_ohm) / std::sqrt(flights);
+    interval_ohm.low = std::min(interval_ohm.low, std::max(0.0, fitted_ohm - half_ohm));
+    interval_ohm.high = std::max(interval_ohm.high, fitted_ohm + half_ohm);
+}
+
 void add_errors(Chained& chained, bool with_capacities) {
     chained.resistances.clear();
     chained.capacities.clear();
@@ -54,6 +64,7 @@ void add_errors(Chained& chained, bool with_capacities) {
         chained.capacities.push_back(wear.capacity);
     }
     chained.errors = circuit_errors(chained.aligned);
+    widen_by_flights(chained.resistances, chained.aligned.fit.resistance_ohm, chained.errors.resistance_ohm);
     // A flight of another resistance than the common one lies elsewhere on the curve, and so does the reference.
     const double scatter_ohm = resistance_scatter_ohm(chained.resistances, chained.aligned.fit.resistance_ohm);
     const auto moved_ah = [&](std::size_t f) {
@@ -96,18 +107,6 @@ Chained chained_fit(std::span<const DischargeRecord> records, int cells, const I
     return chained;
 }
 
-std::vector<double> rms_of_each(const JointCircuitFit& aligned) {
-    std::vector<double> rms_v;
-    Eigen::Index row = 0;
-    for (const auto& [record, initial_ah] : aligned.records) {
-        const auto samples = used_sample_count(*record);
-        rms_v.push_back(
-            std::sqrt(aligned.fit.residual_v.segment(row, samples).squaredNorm() / static_cast<double>(samples)));
-        row += samples;
-    }
-    return rms_v;
-}
-
 /// The records' places in the order of their clocks, or as they are given where one has none.
 std::vector<std::size_t> order_in_time(std::span<const AlignedRecord> records) {
     std::vector<std::size_t> order(records.size());
@@ -118,21 +117,22 @@ std::vector<std::size_t> order_in_time(std::span<const AlignedRecord> records) {
 }
 
 ObservedOcv shown_curve(const Chained& chained) {
-    const auto& [records, links, fit, reference] = chained.aligned;
+    const auto& fit = chained.aligned.fit;
+    const auto& reference = chained.aligned.records[chained.aligned.reference];
     return {fit.knots_ah,
             fit.open_circuit_v,
             chained.errors.open_circuit_covariance_v2,
-            records[reference].initial_charge_ah,
-            records[reference].record->resting_voltage_v,
+            reference.initial_charge_ah,
+            reference.record->resting_voltage_v,
             fit.weights.cells};
 }
 
 std::vector<IdentifiedFlight> identified_flights(const Chained& chained, std::span<const CapacityHypothesis> posterior,
                                                  double missing_ah) {
-    const auto rms_v = rms_of_each(chained.aligned);
     std::vector<IdentifiedFlight> flights;
     for (std::size_t f = 0; f < chained.aligned.records.size(); ++f) {
-        const auto& [record, offset_ah] = chained.aligned.records[f];
+        const auto* record = chained.aligned.records[f].record;
+        const double offset_ah = chained.aligned.records[f].initial_charge_ah;
         IdentifiedFlight flight;
         flight.flight = record->flight;
         flight.resting_voltage_v = record->resting_voltage_v;
@@ -147,8 +147,9 @@ std::vector<IdentifiedFlight> identified_flights(const Chained& chained, std::sp
         flight.capacity = chained.capacities[f];
         flight.air_temperature_c = record->air_temperature_c;
         flight.samples = record->time_s.size();
-        flight.unused = flight.samples - static_cast<std::size_t>(used_sample_count(*record));
-        flight.voltage_rms_v = rms_v[f];
+        const auto residual_v = rows_of(chained.aligned, f, linear_only).residual_v;
+        flight.unused = flight.samples - static_cast<std::size_t>(residual_v.size());
+        flight.voltage_rms_v = residual_v.norm() / std::sqrt(static_cast<double>(residual_v.size()));
         flights.push_back(std::move(flight));
     }
     return flights;
@@ -211,7 +212,7 @@ std::shared_ptr<const FlightEstimate> flight_estimate(const IdentificationResult
     const auto& [fit, capacity] = std::tie(identification.fit, identification.capacity);
     auto estimate = std::make_shared<FlightEstimate>();
     estimate->flights.reserve(chained.aligned.records.size());
-    for (const auto& [record, offset_ah] : chained.aligned.records) estimate->flights.push_back(record->flight);
+    for (const auto& aligned : chained.aligned.records) estimate->flights.push_back(aligned.record->flight);
     if (capacity.interval_ah) {
         estimate->capacity_ah = capacity.value_ah;
         estimate->capacity_interval_ah = *capacity.interval_ah;
@@ -242,7 +243,7 @@ double charge_at_voltage_ah(const CircuitFit& fit, double voltage_v) {
 /// Where on the curve a record begins, by its resting voltage: as much below the reference as it rests lower.
 double resting_place_ah(const DischargeRecord& record, const JointCircuitFit& aligned) {
     const auto& fit = aligned.fit;
-    const auto& [reference, reference_ah] = aligned.records[aligned.reference];
+    const auto& [reference, reference_ah, rest_v, own_ohm, log_capacity] = aligned.records[aligned.reference];
     const double resistance_ohm = fit.resistance_ohm + fit.rc_resistance_ohm;
     const double below_v = reference->resting_voltage_v - record.resting_voltage_v +
                            resistance_ohm * (reference->resting_current_a - record.resting_current_a);
@@ -300,25 +301,12 @@ double beyond_percent(const BatteryIdentification& identified, const DischargeRe
 
 /// The initial charge with which the record's voltage under load is met best.
 void add_best_place(const Battery& battery, const DischargeRecord& record, LeaveOneOutCheck& check) {
-    constexpr int places = 50;
     const auto settled_a = rc_branch_current_a(record, battery.thevenin.value().rc_time_constant_s);
     const auto error_at = [&](double tried_ah) {
         return errors_of(predict_from_settled(battery, record, settled_a, tried_ah), record, 0.0).load_v2;
     };
-    double best_ah = 0.0;
-    double min_v2 = std::numeric_limits<double>::infinity();
-    const auto at = [&](int place) { return battery.capacity_ah * place / places; };
-    for (int place = 0; place < places; ++place) {
-        const double error_v2 = error_at(at(place));
-        if (error_v2 >= min_v2) continue;
-        min_v2 = error_v2;
-        best_ah = at(place);
-    }
-    constexpr int half_the_digits = std::numeric_limits<double>::digits / 2;
-    const auto [place_ah, error_v2] = boost::math::tools::brent_find_minima(error_at, std::max(0.0, best_ah - at(1)),
-                                                                            best_ah + at(1), half_the_digits);
-    check.best_offset_ah = error_v2 < min_v2 ? place_ah : best_ah;
-    check.best_offset_load_rms_v = std::sqrt(std::min(error_v2, min_v2));
+    check.best_offset_ah = grid_minimum(error_at, 0.0, battery.capacity_ah);
+    check.best_offset_load_rms_v = std::sqrt(error_at(check.best_offset_ah));
 }
 
 LeaveOneOutCheck checked(const IdentificationResult& told, const DischargeRecord& record, bool chain) {

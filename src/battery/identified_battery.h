@@ -41,11 +41,11 @@ struct Capacity {
     std::optional<Interval> interval_ah;  ///< 95 %; none of one that is given
 };
 
-/// How much what is believed of a pack beforehand (circuit_fit.h) counts beside the samples.
+/// How much the prior of a pack (circuit_problem.h) counts beside the samples.
 struct FitWeights {
     int cells = 3;
     double fullest_rest_v = 0.0;  ///< of all records
-    /// Of one sample, as if samples were independent; what is believed counts in proportion.
+    /// Of one sample, as if samples were independent; the prior counts in proportion.
     double sample_error_v = 0.05;
 };
 
@@ -54,14 +54,11 @@ struct CircuitFit {
     std::vector<double> knots_ah;        ///< rising, equally far apart
     std::vector<double> open_circuit_v;  ///< at the knots, straight lines between
     double resistance_ohm = 0.0;
-    double rc_resistance_ohm = 0.0;     ///< 0: no RC pair explains anything
-    double rc_time_constant_s = 0.0;    ///< 0 without an RC pair
-    std::vector<double> rest_offset_v;  ///< of each record before its first load: so much above the curve
+    double rc_resistance_ohm = 0.0;   ///< 0: no RC pair explains anything
+    double rc_time_constant_s = 0.0;  ///< 0 without an RC pair
     double common_rest_offset_v = 0.0;
     FitWeights weights;
-    Eigen::VectorXd residual_v;  ///< measured less fitted; the used samples of the records, in their order
     double rms_v = 0.0;
-    double objective = 0.0;  ///< sum of squares [V^2], with what was believed
 };
 
 /// 95 % intervals of a fitted circuit. A standard error is half the interval over 1.96: what a normal distribution of
@@ -74,7 +71,7 @@ struct CircuitErrors {
     Eigen::MatrixXd open_circuit_covariance_v2;   ///< of the knots
     std::vector<double> initial_charge_error_ah;  ///< of each record against the reference; standard error
     std::size_t blocks = 0;                       ///< of time, that the intervals rest on
-    double block_s = 0.0;
+    double block_s = 0.0;                         ///< their mean length
 };
 
 /// Why a record is taken to be flown on the pack of the one before it.

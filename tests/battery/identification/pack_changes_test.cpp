@@ -30,7 +30,7 @@ class Packs : public testing::Test {
         fit_.weights.fullest_rest_v = 12.4;
     }
     std::optional<PackLink> link() const {
-        const std::vector<AlignedRecord> known{{&earlier_, 0.0}, {&later_, 0.9}};
+        const std::vector<AlignedRecord> known{{&earlier_, 0.0, 0.0, 0.0, 0.0}, {&later_, 0.9, 0.0, 0.0, 0.0}};
         return find_pack_link(later_, known, fit_);
     }
     DischargeRecord earlier_;
@@ -102,7 +102,7 @@ TEST_F(Packs, AreThoseOfTheLatestFlightBefore) {
     between.time_s = {0.0, 600.0};
     between.resting_voltage_v = 12.4;
     between.charge_ah = {0.0, 0.7};
-    const std::vector<AlignedRecord> known{{&earlier_, 0.0}, {&between, 0.0}};
+    const std::vector<AlignedRecord> known{{&earlier_, 0.0, 0.0, 0.0, 0.0}, {&between, 0.0, 0.0, 0.0, 0.0}};
     const auto found = find_pack_link(later_, known, fit_);
     ASSERT_TRUE(found);
     EXPECT_EQ(found->earlier, 1U);
