@@ -285,7 +285,7 @@ NormalEquations least_squares(JointCircuitFit& joint, const FreeParameters& free
     auto problem = normal_equations(joint, free);
     for (int i = 0; i < max_steps; ++i) {
         auto step = step_of(problem);
-        constexpr double little = 1e-7;
+        constexpr double little = 1e-9;
         if (problem.pull.dot(step) < little * problem.objective) break;
         step = limited(std::move(step), joint, problem.places);
         bool helps = false;

@@ -95,7 +95,7 @@ std::optional<ResistanceTrend> resistance_trend(std::span<const std::optional<Fl
 }
 
 std::vector<FlightHealth> estimate_state_of_health(JointCircuitFit joint, bool with_capacity) {
-    const FreeParameters free{true, true, true, with_capacity && joint.records.size() > 1};
+    const FreeParameters free{true, false, true, with_capacity && joint.records.size() > 1};
     const auto problem = least_squares(joint, free);
     const auto errors = parameter_errors(problem, joint.fit.weights.sample_error_v).standard_error;
     std::vector<FlightHealth> health(joint.records.size());
