@@ -86,10 +86,10 @@ std::vector<std::string> curve_limits(const battery::BatteryIdentification& iden
     std::vector<std::string> limits;
     if (identified.observed_min_soc_percent > 0.0)
         limits.push_back(fmt::format(
-            "below {:.1f} % ({:.3f} Ah drawn) no flight shows the open-circuit voltage: it goes on in parallel to the "
-            "usual chart of {} {} cells, {:.0f} mV a cell unsure",
+            "below {:.1f} % ({:.3f} Ah drawn) no flight shows the open-circuit voltage: it continues in parallel to the "
+            "usual chart of {} {} cells, less certain the further down; a deeper flight would show it",
             identified.observed_min_soc_percent, identified.fit.knots_ah.back(), identified.cells,
-            to_string(identified.chemistry), units::mv_from_v(battery::chart_sd_v)));
+            to_string(identified.chemistry)));
     if (identified.curve_start_depletion_ah > 0.0)
         limits.push_back(fmt::format(
             "no flight begins full: the fullest rests at {:.3f} V, {:.1f} % by the usual chart of {} {} cells{}",

@@ -248,10 +248,9 @@ Figure open_circuit_figure(const battery::BatteryIdentification& identified, con
     std::string caption = "Open-circuit voltage with the 95 % intervals of its knots.";
     if (identified.observed_min_soc_percent > 0.0) {
         caption += fmt::format(
-            " Below {:.0f} % no flight shows it: there it goes on in parallel to the usual chart of {} {} "
-            "cells, {:.0f} mV a cell unsure.",
-            identified.observed_min_soc_percent, identified.cells, to_string(identified.chemistry),
-            units::mv_from_v(battery::chart_sd_v));
+            " Below {:.0f} % no flight shows it: there it continues in parallel to the usual chart of {} {} cells, "
+            "less certain the further down.",
+            identified.observed_min_soc_percent, identified.cells, to_string(identified.chemistry));
     }
     auto figure = new_figure(
         "open_circuit", id, caption,
