@@ -4,7 +4,6 @@
 #include "helpers/test_paths.h"
 #include "mission/mission_file.h"
 #include "mission/prepared_mission.h"
-#include "mission/simulation/load_segments.h"
 
 #include <algorithm>
 
@@ -44,18 +43,22 @@ TEST(LiveSchedule, DecidesAsTheAdaptivePolicyDoes) {
     const auto mission = read("paper/adaptive-replanned.toml");
     const auto simulated = simulate_prepared(mission::prepare_mission(mission), {.output_s = 1.0});
     const auto timeline = mission::timeline_of(setup_of(mission).duration_s);
-    const auto load = mission::make_mission_load(setup_of(mission));
+    const auto& setup = setup_of(mission);
     LiveSchedule schedule(mission, true);
-    battery::BatteryState state{setup_of(mission).initial_soc_percent};
+    battery::BatteryState state{setup.initial_soc_percent};
     double utility = 0.0;
     for (const auto phase : flight::all_phases) {
-        const double duration_s = setup_of(mission).duration_s[phase];
+        const double duration_s = setup.duration_s[phase];
+        const auto curve = time_scaled_model(setup.mechanical->phases[phase], duration_s, setup.phase_clock);
         for (double time_s = 0.0; time_s < duration_s; time_s += 1.0) {
             const auto decision = schedule.at({phase, time_s}, timeline.start_s[phase] + time_s, state);
             ASSERT_TRUE(decision) << to_string(phase) << " at " << time_s;
-            const mission::PhaseSegment second{phase, time_s, std::min(time_s + 1.0, duration_s)};
-            state.soc_percent -= depletion_percent(load, {second, decision->run});
-            utility += decision->utility_per_s * second.duration_s();
+            const double step_s = std::min(1.0, duration_s - time_s);
+            const double power_w =
+                mechanical::power_w(curve, time_s + step_s / 2.0) + compute::power_w(setup.compute, decision->run);
+            const double current_a = internal_current_a(setup.battery, power_w);
+            state.soc_percent -= 100.0 * current_a * step_s / (3600.0 * setup.battery.capacity_ah);
+            utility += decision->utility_per_s * step_s;
         }
     }
     const double expected = mean_utility(setup_of(mission), simulated.schedule, timeline.duration_s).value();
