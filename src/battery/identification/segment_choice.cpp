@@ -37,9 +37,10 @@ PartErrors prediction_errors_v2(JointCircuitFit joint, int segments) {
     const auto parts = left_out_parts(problem);
     std::vector<RecordRows> rows;
     for (std::size_t r = 0; r < joint.records.size(); ++r) rows.push_back(rows_of(joint, r, linear_only));
-    std::vector<double> deepest_ah;
-    for (const auto& part : parts)
-        deepest_ah.push_back(rows[part.record].charge_ah.segment(part.first, part.count).maxCoeff());
+    std::vector<double> deepest_ah(parts.size());
+    std::ranges::transform(parts, deepest_ah.begin(), [&](const auto& part) {
+        return rows[part.record].charge_ah.segment(part.first, part.count).maxCoeff();
+    });
     PartErrors all_v2;
     for (std::size_t p = 0; p < parts.size(); ++p) {
         const auto& part = parts[p];

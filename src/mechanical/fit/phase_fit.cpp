@@ -140,8 +140,8 @@ std::vector<double> rival_frequencies(const PhaseFit& fit, const JointFit& joint
             found.emplace_back(scan.square_sum[i], scan.theta_rad[i]);
     std::ranges::sort(found);
     found.resize(std::min(found.size(), most));
-    std::vector<double> rivals;
-    for (const auto& rival : found) rivals.push_back(rival.second);
+    std::vector<double> rivals(found.size());
+    std::ranges::transform(found, rivals.begin(), &std::pair<double, double>::second);
     return rivals;
 }
 
