@@ -274,8 +274,9 @@ std::string screen_text(TextTable whole, const Screen& screen, const ScreenTable
     const auto table = with_minutes(std::move(whole));
     const auto columns = columns_that_fit(table, screen, options);
     std::vector<std::vector<std::string>> rows{head_cells(columns)};
-    std::vector<bool> right(columns.size());
-    std::ranges::transform(columns, right.begin(), [](const auto& column) { return !column.is_text; });
+    std::vector<bool> right;
+    right.reserve(columns.size());
+    for (const auto& column : columns) right.push_back(!column.is_text);
     const auto [before, after] = shown_rows(table.rows.size(), options);
     for (std::size_t r = 0; r < before; ++r) rows.push_back(wrapped_cells(table.rows[r], columns));
     const auto left_out = table.rows.size() - before - after;

@@ -154,7 +154,8 @@ class StatePass {
     /// Of as many equal ranges of charge as half of the labels that there is room for, the most promising come before
     /// all others: so many. The labels are in the order of their charge.
     std::size_t raise_best_of_each_charge(std::vector<StateLabel>& labels) const {
-        const auto ranges = static_cast<double>(limits_.max_labels / 2);
+        const auto half_of_room = limits_.max_labels / 2;
+        const auto ranges = static_cast<double>(half_of_room);
         const double max_percent = labels.front().adjusted_percent;
         const double all_percent = std::max(1e-9, max_percent - labels.back().adjusted_percent);
         const auto range_of = [&](const StateLabel& label) {
