@@ -83,8 +83,9 @@ void DischargeLanes::set_battery(int lane, const Battery& battery) {
 }
 
 void DischargeLanes::set_state(int lane, const BatteryState& state) {
-    now_.soc_percent(lane) = state.soc_percent;
-    now_.rc_voltage_v(lane) = state.rc_voltage_v;
+    moments_[now_].soc_percent(lane) = state.soc_percent;
+    moments_[now_].rc_voltage_v(lane) = state.rc_voltage_v;
+    is_changed_ = true;
 }
 
 void DischargeLanes::set_step(int lane, double length_s) {
@@ -98,13 +99,17 @@ void DischargeLanes::set_step(int lane, double length_s) {
 
 LaneMask DischargeLanes::step(const Lanes& start_w, const Lanes& middle_w, const Lanes& end_w,
                               double cutoff_voltage_v) {
-    std::swap(now_, before_);
-    before_.power_w = start_w;
+    auto& start = moments_[now_];
+    now_ = 1 - now_;
+    auto& end = moments_[now_];
+    if (std::exchange(is_changed_, false)) {
+        start.power_w = start_w;
+        run_.complete(start);
+    }
     middle_.power_w = middle_w;
-    now_.power_w = end_w;
-    run_.complete(before_);
-    run_.step(length_, before_, middle_, now_);
-    return find_danger(before_, middle_, now_, cutoff_voltage_v);
+    end.power_w = end_w;
+    run_.step(length_, start, middle_, end);
+    return find_danger(start, middle_, end, cutoff_voltage_v);
 }
 
 }  // namespace flightwatt::battery

@@ -43,20 +43,26 @@ class DischargeLanes {
     /// How long the lane's steps are from now on.
     void set_step(int lane, double length_s);
 
-    /// One step of all, of powers that are never below 0. Returns the lanes whose battery may end within it: empty,
-    /// below the cut-off voltage (0: never), or beyond the power limit.
+    /// One step of all, of powers that are never below 0; each starts where the last one ended, or where set_state put it.
+    /// Returns the lanes whose battery may end within it: empty, below the cut-off voltage (0: never), or beyond the
+    /// power limit.
     LaneMask step(const Lanes& start_w, const Lanes& middle_w, const Lanes& end_w, double cutoff_voltage_v);
 
-    BatteryState state(int lane) const { return {now_.soc_percent(lane), now_.rc_voltage_v(lane)}; }
+    BatteryState state(int lane) const { return state_of(moments_[now_], lane); }
     /// As the last step began.
-    BatteryState state_before(int lane) const { return {before_.soc_percent(lane), before_.rc_voltage_v(lane)}; }
+    BatteryState state_before(int lane) const { return state_of(moments_[1 - now_], lane); }
 
   private:
+    static BatteryState state_of(const CircuitMoment<Lanes>& moment, int lane) {
+        return {moment.soc_percent(lane), moment.rc_voltage_v(lane)};
+    }
+
     Circuit<Lanes> circuit_;
     CircuitRun<Lanes, LaneVoltages> run_;
     StepLength<Lanes> length_;
-    CircuitMoment<Lanes> now_;
-    CircuitMoment<Lanes> before_;
+    CircuitMoment<Lanes> moments_[2];  ///< the start and the end of the last step, in turn
+    std::size_t now_ = 0;
+    bool is_changed_ = true;  ///< by set_state: the step's start is not the end of the one before
     CircuitMoment<Lanes> middle_;
 };
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <complex>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -97,6 +98,7 @@ class FlightLanes {
 
     void fly() {
         for (int lane = 0; lane < lane_count; ++lane) begin_flight(lane);
+        set_next_end();
         while (is_active_.any()) step();
     }
 
@@ -108,8 +110,8 @@ class FlightLanes {
         std::size_t segment = 0;
         battery::Discharge charge;
         std::vector<double> noted_percent;
-        std::size_t step = 0;  ///< of those of the segment
-        std::size_t steps = 0;
+        std::size_t first_step = 0;  ///< of the segment, counted by `steps_`
+        std::size_t end_step = 0;
         double step_s = 0.0;
     };
 
@@ -157,9 +159,10 @@ class FlightLanes {
 
     void begin_segment(int lane, const LoadSegment& segment) {
         auto& own = flying(lane);
-        own.step = 0;
-        own.steps = fast_steps(*own.flight->setup.battery.thevenin, segment.duration_s(), quick_step_s(segment));
-        own.step_s = segment.duration_s() / static_cast<double>(own.steps);
+        const auto steps = fast_steps(*own.flight->setup.battery.thevenin, segment.duration_s(), quick_step_s(segment));
+        own.first_step = steps_;
+        own.end_step = steps_ + steps;
+        own.step_s = segment.duration_s() / static_cast<double>(steps);
         batteries_.set_state(lane, own.charge);
         batteries_.set_step(lane, own.step_s);
         powers_.begin(lane, segment, own.step_s);
@@ -171,10 +174,19 @@ class FlightLanes {
         powers_.advance(end_w_);
         const auto may_end = batteries_.step(start_w_, middle_w_, end_w_, mission_.cutoff_voltage_v);
         start_w_ = end_w_;
+        ++steps_;
+        if (steps_ < next_end_ && (may_end & is_active_).none()) return;
         for (int lane = 0; lane < lane_count; ++lane) {
             const auto i = static_cast<std::size_t>(lane);
             if (is_active_[i] && !end_step(lane, may_end[i])) begin_flight(lane);
         }
+        set_next_end();
+    }
+
+    void set_next_end() {
+        next_end_ = std::numeric_limits<std::size_t>::max();
+        for (std::size_t i = 0; i < lane_count; ++i)
+            if (is_active_[i]) next_end_ = std::min(next_end_, flying_.at(i).end_step);
     }
 
     /// False if the flight has landed.
@@ -182,7 +194,7 @@ class FlightLanes {
         auto& own = flying(lane);
         if (may_end) {
             const auto& segment = own.flight->segments[own.segment];
-            const double start_s = segment.start_s + static_cast<double>(own.step) * own.step_s;
+            const double start_s = segment.start_s + static_cast<double>(steps_ - 1 - own.first_step) * own.step_s;
             const auto power = [&](double time_s) { return power_w(segment, time_s); };
             own.charge =
                 battery::fast_discharge(own.flight->setup.battery, {power, start_s, start_s + own.step_s},
@@ -190,7 +202,7 @@ class FlightLanes {
             if (own.charge.ended_at_s() || own.charge.undeliverable) return go_on(lane);
             batteries_.set_state(lane, own.charge);
         }
-        if (++own.step < own.steps) return true;
+        if (steps_ < own.end_step) return true;
         own.charge = {batteries_.state(lane)};
         ++own.segment;
         return go_on(lane);
@@ -201,6 +213,8 @@ class FlightLanes {
     std::size_t first_;
     std::span<FlightOutcome> outcomes_;
     std::size_t next_ = 0;
+    std::size_t steps_ = 0;     ///< that all have flown
+    std::size_t next_end_ = 0;  ///< the first step after which a segment ends
     std::array<Flying, lane_count> flying_;
     battery::LaneMask is_active_;
     battery::DischargeLanes batteries_;
@@ -219,7 +233,7 @@ void fly_side_by_side(const MissionSetup& mission, const FlightDraw& draw, std::
 
 std::vector<FlightOutcome> fly_drawn(const MissionSetup& mission, const FlightDraw& draw, std::size_t first,
                                      std::size_t count) {
-    constexpr std::size_t most_at_once = 256;
+    constexpr std::size_t most_at_once = 1024;
     const auto at_once = std::clamp<std::size_t>(count / (4 * threads_for(count)), lane_count, most_at_once);
     std::vector<FlightOutcome> outcomes(count);
     for_each_in_parallel((count + at_once - 1) / at_once, [&](std::size_t block) {
