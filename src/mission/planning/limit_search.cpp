@@ -47,6 +47,12 @@ std::optional<Mission> LimitSearch::mission_if_it_fits(double value) {
     }
 }
 
+double LimitSearch::surplus(double value) const {
+    const auto known = known_.find(value);
+    if (known != known_.end()) return known->second;
+    return known_[value] = surplus(mission(value));
+}
+
 double LimitSearch::surplus(const Mission& mission) const {
     return probability_ ? drawn(mission, *probability_).spare_percent(*probability_) : surplus_percent(mission);
 }

@@ -5,6 +5,7 @@
 #include "mission/mission_summary.h"
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -30,12 +31,12 @@ class LimitSearch {
 
     /// What the flight as stated has left above the reserve, or that part of the flights which the probability asks
     /// for.
-    double surplus(double value) const { return surplus(mission(value)); }
+    double surplus(double value) const;
     double surplus(const Mission& mission) const;
     std::optional<double> surplus_if_it_fits(double value);
 
-    /// To so many bits limits can be known: flights that are drawn show no more.
-    int accurate_bits() const { return probability_ ? 20 : 48; }
+    /// To so many bits limits can be known: flights that are drawn show less.
+    int accurate_bits() const { return probability_ ? 14 : 48; }
 
     /// " in 95 % of its flights", or nothing.
     std::string share_text() const;
@@ -47,6 +48,7 @@ class LimitSearch {
     MissionVariation variation_;
     std::optional<double> probability_;
     std::optional<InputError> misfit_;
+    mutable std::map<double, double> known_;  ///< surplus by value: drawn flights take long
 };
 
 }  // namespace flightwatt::mission

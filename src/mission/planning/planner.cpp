@@ -264,7 +264,8 @@ std::vector<MissionSlot> make_slots(const PlanningProblem& problem, double time_
 Schedule minimum_energy_schedule(const PlanningProblem& problem, double time_s) {
     const auto least_power = min_power_configuration(problem);
     Schedule schedule;
-    for (const auto& slot : make_slots(problem, time_s)) schedule.push_back({slot, slot.fixed.value_or(least_power)});
+    for (const auto& slot : make_slots(problem, time_s))
+        append_merged(schedule, {slot, slot.fixed.value_or(least_power)});
     return schedule;
 }
 
