@@ -55,7 +55,7 @@ def log_cases(source, shared):
                 f"flightwatt segment {log} --explain",
                 f"flightwatt segment {log} --json",
                 f"flightwatt path {log}",
-                f"flightwatt predict {log} --until 240 {known} --json",
+                f"flightwatt predict {log} --at 240 {known} --json",
             ]
             if file.endswith(".data"):
                 with_log = f"--log {definitions}" if has_definitions else ""
@@ -69,7 +69,7 @@ def batch_cases(source, shared):
         folders |= {"flights": "$SHARED/flights", "archives": "$SHARED/archives", "m100": "$SHARED/m100"}
     for name, folder in folders.items():
         yield f"batch/{name}", f"""
-            flightwatt batch "{folder}" -o out --model physical --published "$SOURCE/fits/mechanical/opterra-table1.toml" --json
+            flightwatt batch "{folder}" -o out --model-kind physical --published "$SOURCE/fits/mechanical/opterra-table1.toml" --json
             flights=$(ls out/flights/*.series.csv)
             flightwatt fit $flights --json -o fit.toml --table fit.csv --curves curves.csv
             flightwatt battery $flights --capacity 3.2 --json -o battery.toml

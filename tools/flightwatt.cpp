@@ -9,7 +9,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <iterator>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,50 +26,74 @@ struct Stage {
     int (*run)(int argc, char** argv);
 };
 
-constexpr Stage stage_table[] = {
-    {"init", "a folder for an aircraft, with the five commands from logs to a report", stages::init_stage},
-    {"parse", "a Paparazzi log to a table of its power samples (CSV)", stages::parse_stage},
-    {"convert", "a binary log of an SD card or a link to text", stages::convert_stage},
-    {"segment", "take-off, cruise and landing of every sortie in a log", stages::segment_stage},
-    {"fit", "several flights to a mechanical power model and Table I", stages::fit_stage},
-    {"validate", "leave-one-out: each flight's energy predicted by the others, beside simple baselines",
-     stages::validate_stage},
-    {"predict", "the energy to the end of a flight that is in the air", stages::predict_stage},
-    {"watch", "the same and more, once a second, from telemetry as it comes in", stages::watch_stage},
-    {"diff", "what differs between two models, batches or missions, and whether it is chance", stages::diff_stage},
-    {"trends", "how aircraft and pack age: energy, power and resistance over the dates of flights",
-     stages::trends_stage},
-    {"battery", "flights to the battery that they were flown on", stages::battery_stage},
-    {"batch", "parse, segment and fit every log of a folder, incrementally", stages::batch_stage},
-    {"merge", "join the folders of several batches into one", stages::merge_stage},
-    {"profile", "software to its power by quality of service, measured while it runs", stages::profile_stage},
-    {"new-mission", "a mission file to begin with, every key explained", stages::new_mission_stage},
-    {"simulate", "a mission file to its state of charge over time", stages::simulate_stage},
-    {"compare", "several missions, ranked by final state of charge", stages::compare_stage},
-    {"plan", "the schedule of highest utility that lands a mission with its reserve", stages::plan_stage},
-    {"replay", "schedules judged on flights that were flown: planned, replanned in flight, in hindsight",
-     stages::replay_stage},
-    {"path", "the path of a mission leg by leg; of a log as waypoints", stages::path_stage},
-    {"play", "a log once more as it came in, over the links that watch listens to", stages::play_stage},
-    {"report", "flights, model and missions as one page, and figures for papers", stages::report_stage},
-    {"export", "flights, models and missions for other programs: maps, plots, autopilots, LaTeX", stages::export_stage},
-    {"synthesize", "synthetic Paparazzi logs of flights after a model", stages::synthesize_stage},
+struct StageGroup {
+    std::string_view title;
+    std::vector<Stage> stages;
 };
 
+const std::vector<StageGroup>& stage_groups() {
+    static const std::vector<StageGroup> groups{
+        {"Process flights",
+         {{"init", "a folder for an aircraft, with the five commands from logs to a report", stages::init_stage},
+          {"batch", "parse, segment and fit every log of a folder, incrementally", stages::batch_stage},
+          {"parse", "a Paparazzi log to a table of its power samples (CSV)", stages::parse_stage},
+          {"segment", "take-off, cruise and landing of every sortie in a log", stages::segment_stage},
+          {"report", "flights, model and missions as one page, and figures for papers", stages::report_stage}}},
+        {"Models",
+         {{"fit", "several flights to a mechanical power model and Table I", stages::fit_stage},
+          {"validate", "leave-one-out: each flight's energy predicted by the others, next to simple baselines",
+           stages::validate_stage},
+          {"battery", "flights to the battery that they were flown on", stages::battery_stage},
+          {"profile", "software to its power by quality of service, measured while it runs", stages::profile_stage},
+          {"diff", "differences of two models, batches or missions, and their significance", stages::diff_stage}}},
+        {"Missions",
+         {{"new-mission", "a mission file to begin with, every key explained", stages::new_mission_stage},
+          {"simulate", "a mission file to its state of charge over time", stages::simulate_stage},
+          {"compare", "several missions, ranked by final state of charge", stages::compare_stage},
+          {"plan", "the schedule of maximum utility that lands a mission with its reserve", stages::plan_stage},
+          {"replay", "schedules on the power of measured flights: planned, replanned in flight, in hindsight",
+           stages::replay_stage},
+          {"path", "the path of a mission leg by leg; of a log as waypoints", stages::path_stage}}},
+        {"In the air",
+         {{"predict", "the energy to the end of a flight that is in the air", stages::predict_stage},
+          {"watch", "the same and more, once a second, from telemetry as it arrives", stages::watch_stage},
+          {"play", "a log as live telemetry, over the links that watch listens to", stages::play_stage}}},
+        {"Exchange",
+         {{"convert", "a binary log of an SD card or a link to text", stages::convert_stage},
+          {"export", "flights, models and missions for other programs: maps, plots, autopilots, LaTeX",
+           stages::export_stage},
+          {"synthesize", "synthetic Paparazzi logs of flights after a model", stages::synthesize_stage}}},
+        {"Archive",
+         {{"merge", "join the folders of several batches into one", stages::merge_stage},
+          {"trends", "ageing of aircraft and pack: energy, power and resistance over the dates of flights",
+           stages::trends_stage}}}};
+    return groups;
+}
+
+std::vector<Stage> all_stages() {
+    std::vector<Stage> all;
+    for (const auto& group : stage_groups()) all.insert(all.end(), group.stages.begin(), group.stages.end());
+    return all;
+}
+
 std::string stage_list() {
-    std::string text = "\nStages:\n";
-    for (const auto& [name, summary, run] : stage_table) text += fmt::format("  {:<11} {}\n", name, summary);
+    std::string text;
+    for (const auto& [title, members] : stage_groups()) {
+        text += fmt::format("\n{}:\n", title);
+        for (const auto& stage : members) text += fmt::format("  {:<11} {}\n", stage.name, stage.summary);
+    }
     return text;
 }
 
-const Stage* find_stage(std::string_view name) {
-    const auto* found = std::ranges::find(stage_table, name, &Stage::name);
-    return found == std::end(stage_table) ? nullptr : found;
+std::optional<Stage> find_stage(std::string_view name) {
+    for (const auto& stage : all_stages())
+        if (stage.name == name) return stage;
+    return std::nullopt;
 }
 
 std::vector<std::string> stage_names() {
     std::vector<std::string> names;
-    for (const auto& stage : stage_table) names.emplace_back(stage.name);
+    for (const auto& stage : all_stages()) names.emplace_back(stage.name);
     return names;
 }
 
@@ -109,16 +133,16 @@ void show_topic(const std::string& topic) {
                                  suggestion(topic, known, "flightwatt help lists what there is")));
 }
 
-/// What the program does where it is called for no stage.
+/// The program without a stage.
 int run_front(int argc, char** argv) {
     const std::string word = argc > 1 ? argv[1] : "--help";
     if (word == "--help" || word == "-h") {
         cli::print(
             "flightwatt: the energy of electric drone missions, flight and on-board computer together\n\n"
-            "usage: flightwatt STAGE [arguments]; flightwatt help tells more\n" +
+            "usage: flightwatt STAGE [arguments]; more: flightwatt help\n" +
             stage_list());
     } else if (word == "--list-stages") {  // for completion and man pages
-        for (const auto& [name, summary, run] : stage_table) cli::print(fmt::format("{}\t{}\n", name, summary));
+        for (const auto& stage : all_stages()) cli::print(fmt::format("{}\t{}\n", stage.name, stage.summary));
     } else if (word == "--version") {
         cli::print(fmt::format("flightwatt {}\n", cli::version_text()));
     } else if (word != "help") {
@@ -139,11 +163,11 @@ int run_front(int argc, char** argv) {
 int main(int argc, char** argv) {
     constexpr std::string_view prefix = "flightwatt-";
     const std::string called = argc > 0 ? std::filesystem::path(argv[0]).filename().string() : "";
-    const auto* linked = called.starts_with(prefix) ? find_stage(called.substr(prefix.size())) : nullptr;
-    if (linked) return linked->run(argc, argv);
+    if (const auto linked = called.starts_with(prefix) ? find_stage(called.substr(prefix.size())) : std::nullopt)
+        return linked->run(argc, argv);
     const std::string word = argc > 1 ? argv[1] : "";
-    if (const auto* stage = find_stage(word)) return stage->run(argc - 1, argv + 1);
+    if (const auto stage = find_stage(word)) return stage->run(argc - 1, argv + 1);
     if (word == "help" && argc == 3)
-        if (const auto* stage = find_stage(argv[2])) return show_help(*stage);
+        if (const auto stage = find_stage(argv[2])) return show_help(*stage);
     return cli::run_guarded("flightwatt", [&] { return run_front(argc, argv); });
 }

@@ -10,6 +10,7 @@
 #include "cli/output/fit_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/physical_output.h"
+#include "cli/output/stage_options.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
@@ -28,6 +29,14 @@
 namespace {
 
 using namespace flightwatt;
+
+struct BatchArguments : cli::FitArguments {
+    cli::FlightArguments flights;
+    cli::FlightFilter filter;
+    std::optional<std::string> files_from;
+    bool no_fit = false;
+    bool prune = false;
+};
 
 /// Moves the bar on, or says what became of the log.
 batch::BatchProgress progress_of(const cli::StageCall& call, cli::ProgressBar& bar) {
@@ -71,10 +80,10 @@ struct FittedBatch {
 };
 
 /// Fits what the batch accepted.
-FittedBatch fit_batch(const cli::StageCall& call, const batch::BatchFlights& flights,
+FittedBatch fit_batch(const cli::StageCall& call, const BatchArguments& arguments, const batch::BatchFlights& flights,
                       const batch::BatchOptions& batch) {
-    auto options = read_fit_options(call);
-    options.name = call.get<std::string>("name");
+    const auto& options = arguments.fit;
+    const auto kind = arguments.kind;
     auto measured = read_samples(flights, batch);
     std::vector<mechanical::FlightSamples> samples;
     samples.reserve(measured.size());
@@ -83,7 +92,6 @@ FittedBatch fit_batch(const cli::StageCall& call, const batch::BatchFlights& fli
     try {
         FittedBatch fitted{batch::fit_flights(samples, options), std::nullopt};
         auto& model = fitted.fit.model;
-        const auto kind = cli::model_kind(call);
         if (kind == cli::ModelKind::physical) fitted.physical = cli::fit_motion(call, measured, model);
         if (kind != cli::ModelKind::best) return fitted;
         for (std::size_t i = 0; i < measured.size(); ++i) measured[i].samples = std::move(samples[i]);
@@ -96,15 +104,14 @@ FittedBatch fit_batch(const cli::StageCall& call, const batch::BatchFlights& fli
 }
 
 /// Of all that the model and its tables are made from.
-std::string fingerprint_of(const cli::StageCall& call, const batch::BatchFlights& flights,
+std::string fingerprint_of(const BatchArguments& arguments, const batch::BatchFlights& flights,
                            const batch::BatchOptions& options,
                            const std::optional<mechanical::MechanicalModel>& published) {
-    auto fit_options = read_fit_options(call);
-    fit_options.name = call.get<std::string>("name");
-    auto more = call.get<std::string>("model") + "\n" + (published ? to_toml(*published) : std::string());
+    auto more =
+        fmt::format("{}\n", static_cast<int>(arguments.kind)) + (published ? to_toml(*published) : std::string());
     for (const auto* names : {&options.load.excluded, &options.load.keep})
         more += fmt::format("{}: {}\n", names->size(), fmt::join(*names, "\n"));
-    return batch::fit_fingerprint(flights, fit_options, more);
+    return batch::fit_fingerprint(flights, arguments.fit, more);
 }
 
 /// What an earlier run fitted.
@@ -115,7 +122,7 @@ FittedBatch known_fit(const std::filesystem::path& out) {
 
 /// One model of several aircraft is a model of none.
 void refuse_mix(const cli::StageCall& call, const batch::BatchFlights& flights, const std::filesystem::path& out) {
-    const auto mix = call.has("mix-aircraft") ? "" : mixed_aircraft_reason(flights);
+    const auto mix = mixed_aircraft_reason(flights);
     if (mix.empty()) return;
     remove_model(call, out);
     throw NoResultError(
@@ -152,13 +159,12 @@ std::string flights_text(const cli::StageCall& call, const batch::BatchFlights& 
     return text;
 }
 
-batch::BatchOptions read_batch_options(const cli::StageCall& call, const mechanical::ModelFitOptions& fit_options) {
+batch::BatchOptions batch_options(const cli::StageCall& call, const BatchArguments& arguments) {
     if (!call.output) throw UsageError("no folder given: expected -o FOLDER");
     batch::BatchOptions options;
     options.out = *call.output;
-    options.load = cli::read_flight_options(call);
-    options.jobs = static_cast<unsigned>(cli::count_option(call, "jobs", 0, 256));
-    options.min_samples = mechanical::min_samples(fit_options.phases.order);
+    options.load = arguments.flights.load;
+    options.min_samples = mechanical::min_samples(arguments.fit.phases.order);
     return options;
 }
 
@@ -180,11 +186,11 @@ int exit_code(const cli::StageCall& call, const batch::Totals& totals) {
 
 /// What follows the logs: the catalogue and the fit. Everything is written before anything is shown, so that a
 /// standard output that nobody reads loses nothing. Returns the exit code.
-int finish(const cli::StageCall& call, batch::BatchFlights flights, const batch::BatchOptions& options,
-           const std::optional<mechanical::MechanicalModel>& published) {
-    const auto made_from = fingerprint_of(call, flights, options, published);
-    const bool shows_physical = cli::model_kind(call) == cli::ModelKind::physical;  // how it came about is not kept
-    const bool is_known = !call.has("no-fit") && !shows_physical && batch::is_fit_current(options.out, made_from);
+int finish(const cli::StageCall& call, const BatchArguments& arguments, batch::BatchFlights flights,
+           const batch::BatchOptions& options, const std::optional<mechanical::MechanicalModel>& published) {
+    const auto made_from = fingerprint_of(arguments, flights, options, published);
+    const bool shows_physical = arguments.kind == cli::ModelKind::physical;  // how it came about is not kept
+    const bool is_known = !arguments.no_fit && !shows_physical && batch::is_fit_current(options.out, made_from);
     auto known = is_known ? std::optional(known_fit(options.out)) : std::nullopt;
     auto copies = find_duplicates(flights);
     exclude_duplicates(flights, copies);
@@ -200,7 +206,7 @@ int finish(const cli::StageCall& call, batch::BatchFlights flights, const batch:
             throw InputError(
                 {}, fmt::format("all {} logs were rejected or left out, so there is nothing to fit", flights.size()));
         }
-        if (totals.with_power == 0 || call.has("no-fit")) {
+        if (totals.with_power == 0 || arguments.no_fit) {
             remove_model(call, options.out);
             if (totals.with_power == 0) {
                 cli::warn(call, "no flight has measured power: nothing was fitted, and there is no model");
@@ -211,8 +217,8 @@ int finish(const cli::StageCall& call, batch::BatchFlights flights, const batch:
             cli::print(call.json ? cli::json_text(with_logs({}, flights)) : shown);
             return exit_code(call, totals);
         }
-        refuse_mix(call, flights, options.out);
-        auto [fit, physical] = known ? *std::move(known) : fit_batch(call, flights, options);
+        if (!arguments.flights.mix_aircraft) refuse_mix(call, flights, options.out);
+        auto [fit, physical] = known ? *std::move(known) : fit_batch(call, arguments, flights, options);
         ::malloc_trim(0);  // the samples
         fit.copies = std::move(copies);
         fit.excluded = options.load.excluded;
@@ -235,18 +241,18 @@ int finish(const cli::StageCall& call, batch::BatchFlights flights, const batch:
     return exit_code(call, totals);
 }
 
-std::vector<batch::LogFile> chosen_logs(const cli::StageCall& call, std::vector<batch::LogFile> logs) {
+std::vector<batch::LogFile> chosen_logs(const cli::StageCall& call, const cli::FlightFilter& filter,
+                                        std::vector<batch::LogFile> logs) {
     std::vector<std::string> names(logs.size());
     std::ranges::transform(logs, names.begin(), &batch::LogFile::flight);
-    const auto chosen = cli::filter_flights(call, names);
+    const auto chosen = cli::filter_flights(call, filter, names);
     std::size_t number = 0;
     std::erase_if(logs, [&](const batch::LogFile&) { return !chosen[number++]; });
     return logs;
 }
 
 /// The paths of --files-from. Throws UsageError where neither it nor the command names a log.
-std::vector<std::string> listed_logs(const cli::StageCall& call) {
-    const auto list = call.get_optional<std::string>("files-from");
+std::vector<std::string> listed_logs(const cli::StageCall& call, const std::optional<std::string>& list) {
     if (!list && call.inputs.empty()) throw UsageError("no log given: expected LOG, FOLDER or --files-from LIST");
     if (!list) return {};
     const auto file = *list == "-" ? std::string("the standard input") : *list;
@@ -259,13 +265,14 @@ std::vector<std::string> listed_logs(const cli::StageCall& call) {
 }
 
 /// What the run will do to the folder, before it does it. Patterns of --exclude become names in `options`.
-batch::BatchPlan make_plan(const cli::StageCall& call, batch::BatchOptions& options) {
-    auto logs = chosen_logs(call, batch::find_logs(call.inputs, listed_logs(call)));
+batch::BatchPlan make_plan(const cli::StageCall& call, const BatchArguments& arguments, batch::BatchOptions& options) {
+    auto logs =
+        chosen_logs(call, arguments.filter, batch::find_logs(call.inputs, listed_logs(call, arguments.files_from)));
     for (const auto& log : logs) {
         register_input(log.path);
         if (const auto file = telemetry::find_log_file(log.path)) register_input(*file);
     }
-    auto plan = batch::plan_batch(std::move(logs), options.out, call.has("prune"));
+    auto plan = batch::plan_batch(std::move(logs), options.out, arguments.prune);
     refuse_foreign_files(plan, options.out);
     std::vector<std::string> names;
     names.reserve(plan.logs.size());
@@ -290,15 +297,13 @@ void tell_plan(const cli::StageCall& call, const batch::BatchPlan& plan) {
                       fmt::format("{}: its log {} is gone; its results are kept as they are", log.flight, log.path));
 }
 
-int run_over_logs(const cli::StageCall& call) {
-    const auto fit_options = read_fit_options(call);  // refuses bad options before the work
-    cli::model_kind(call);
-    auto options = read_batch_options(call, fit_options);
-    const auto published = cli::read_published(call);
+int run_over_logs(const cli::StageCall& call, const BatchArguments& arguments) {
+    auto options = batch_options(call, arguments);
+    const auto published = read_published(arguments);
     make_directories(options.out);
     const batch::FolderLock lock(options.out);
     const batch::RemoveIfEmpty folder{options.out};  // where nothing can be done
-    auto plan = make_plan(call, options);
+    auto plan = make_plan(call, arguments, options);
     tell_plan(call, plan);
     prepare_folder(plan, options.out);
     plan.earlier = plan.manifest = {};
@@ -309,7 +314,7 @@ int run_over_logs(const cli::StageCall& call) {
     auto flights = run_batch(plan.logs, options, progress_of(call, bar));
     plan = {};
     bar.clear();
-    return finish(call, std::move(flights), options, published);
+    return finish(call, arguments, std::move(flights), options, published);
 }
 
 }  // namespace
@@ -327,21 +332,23 @@ listed and excluded from the fit; its first line says why.
 
 SIGINT (Ctrl-C), SIGTERM and SIGHUP end it within a second, with exit code 130, 143 and 129. However it
 ended, the same command goes on where it stopped and comes to the same results.)"};
+    stage.examples = {"flightwatt batch logs -o my",
+                      "flightwatt batch logs -o my --aircraft 5 --since 2020-07-01 --prune"};
     stage.min_inputs = 0;  // or --files-from
-    stage.shows_table = true;
+    stage.uses_threads = stage.shows_table = true;
     stage.output_help = "the folder of the results";
-    cli::add_fit_options(stage.options);
-    cli::add_model_option(stage.options, cli::ModelKind::best);
-    auto add = stage.options.add_options();
-    add("name", cli::value("NAME")->default_value("batch"), "the model's name");
-    add("published", cli::input_file("MODEL.toml"), "show Table I beside this model's");
-    add("files-from", cli::input_file("LIST"),
-        "also the logs that LIST names, one path a line; - is the standard input. One that is not there is rejected");
-    add("no-fit", "write OUT/flights and OUT/flights.csv alone: flightwatt fit fits the folders of several batches");
-    add("prune", "drop the flights of earlier runs that are not among the logs given");
-    add("jobs", cli::value("N")->default_value("0", "one a core"), "logs at a time");
-    cli::add_choice_options(stage.options);
-    cli::add_mix_option(stage.options);
-    cli::add_flight_options(stage.options);
-    return cli::run_stage(argc, argv, stage, run_over_logs);
+    BatchArguments arguments;
+    arguments.kind = cli::ModelKind::best;
+    arguments.fit.name = "batch";
+    auto& options = stage.options;
+    cli::add_model_options(options, arguments);
+    options.add("name", arguments.fit.name, {.value = "NAME"}, "the model's name");
+    options.add("files-from", arguments.files_from, cli::input_file("LIST"),
+                "also the logs that LIST names, one path a line; - is the standard input. A missing log is rejected");
+    options.add("no-fit", arguments.no_fit,
+                "write OUT/flights and OUT/flights.csv alone: flightwatt fit fits the folders of several batches");
+    options.add("prune", arguments.prune, "drop the flights of earlier runs that are not among the logs given");
+    cli::add_filter_options(options, arguments.filter);
+    cli::add_flight_options(options, arguments.flights);
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return run_over_logs(call, arguments); });
 }

@@ -20,20 +20,26 @@ namespace {
 
 using namespace flightwatt;
 
-battery::IdentificationOptions identification_options(const cli::StageCall& call) {
-    battery::IdentificationOptions options;
-    options.capacity_ah = cli::capacity_option(call);
-    if (call.has("cells")) options.cells = static_cast<int>(cli::count_option(call, "cells", 1, 24));
-    options.link_packs = !call.has("no-chain");
-    options.name = call.get_optional<std::string>("name").value_or(
-        call.output ? std::filesystem::path(*call.output).stem().string() : "identified");
+struct BatteryArguments {
+    battery::IdentificationOptions identification;
+    cli::FlightArguments flights;
+    bool no_pack_links = false;
+    std::optional<std::string> name;
+    std::size_t folds = battery::max_battery_folds;
+};
+
+battery::IdentificationOptions identification_options(const cli::StageCall& call, const BatteryArguments& arguments) {
+    auto options = arguments.identification;
+    options.link_packs = !arguments.no_pack_links;
+    options.name =
+        arguments.name.value_or(call.output ? std::filesystem::path(*call.output).stem().string() : "identified");
     return options;
 }
 
-/// The records that can be used; each flight that cannot is named, with the reason.
-std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call) {
-    auto options = cli::read_flight_options(call);
-    options.flight_required = false;  // without altitude there is no telling power faults, but a battery
+/// The records that can be used. Each flight without one is named, with the reason.
+std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call, cli::FlightArguments flights) {
+    flights.load.flight_required =
+        false;  // without altitude, power faults are not detected; the battery can be identified
     std::optional<InputError> last_refusal;
     const auto read = [&](const std::string& file, const flight::LoadedFlight& loaded) {
         try {
@@ -50,7 +56,7 @@ std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call) {
             return std::vector<battery::DischargeRecord>{};
         }
     };
-    auto records = cli::from_flights<battery::DischargeRecord>(call, options, read);
+    auto records = cli::from_flights<battery::DischargeRecord>(call, flights, read);
     if (records.empty() && last_refusal) throw InputError(*last_refusal);
     return records;
 }
@@ -68,7 +74,7 @@ void note_what_it_rests_on(const cli::StageCall& call, const battery::BatteryIde
     for (const auto& limit : cli::curve_limits(identified)) cli::note(call, limit);
     for (const auto& flight : identified.flights) {
         if (flight.link)
-            cli::note(call, cli::describe_link(flight) + "; --no-chain takes no flight for another's pack");
+            cli::note(call, cli::describe_link(flight) + "; --no-pack-links treats each flight's pack as another one");
     }
     if (!identified.battery.intervals.resistance_scatter)
         cli::note(
@@ -99,10 +105,10 @@ std::pair<battery::BatteryIdentification, std::vector<battery::LeaveOneOutCheck>
     return {std::move(identified), leave_one_out(records, options, show, folds)};
 }
 
-int identify(const cli::StageCall& call) {
-    const auto options = identification_options(call);
-    const auto folds = cli::count_option(call, "folds", 2);
-    const auto records = read_records(call);
+int identify(const cli::StageCall& call, const BatteryArguments& arguments) {
+    const auto options = identification_options(call, arguments);
+    const auto folds = arguments.folds;
+    const auto records = read_records(call, arguments.flights);
     cli::note_folds(call, records.size(), folds);
     const auto [identified, left_out] = identify_and_check(records, options, folds);
     note_what_it_rests_on(call, identified);
@@ -136,17 +142,21 @@ predict it. What was missing from the pack when a flight began is estimated with
 follows another on what looks like the same pack is chained to it. Each flight's own resistance tells
 the pack's state of health. Flights whose current was computed from throttle are refused.)" +
             std::string(cli::several_flights_text)};
-    stage.shows_table = true;
-    auto add = stage.options.add_options();
-    add("capacity", cli::value<double>("AH"),
-        "the pack's capacity, compared with what the flights indicate; without it, what a flight drew from full to "
-        "empty, or else a guess after the usual charts of lithium cells");
-    add("cells", cli::value("N"),
-        "cells in series, checked against the voltage at rest; default: by the highest resting voltage");
-    cli::add_folds_option(stage.options, battery::max_battery_folds);
-    add("no-chain", "take no flight for one on the pack of the flight before it");
-    add("name", cli::value("NAME"), "the battery's name; default: FILE's");
-    cli::add_mix_option(stage.options);
-    cli::add_flight_options(stage.options);
-    return cli::run_stage(argc, argv, stage, identify);
+    stage.examples = {"flightwatt battery my --capacity 2.2 -o pack.toml",
+                      "flightwatt battery my/flights/*.csv --cells 3"};
+    stage.reads_logs = stage.uses_threads = stage.shows_table = true;
+    BatteryArguments arguments;
+    auto& options = stage.options;
+    cli::add_capacity_option(
+        options, arguments.identification.capacity_ah,
+        "the pack's capacity, compared with the flights' estimate; default: the charge that a flight drew from full to "
+        "empty, or else an estimate from the usual charts of lithium cells");
+    options.add("cells", arguments.identification.cells, {.value = "N", .min = 1, .max = 24},
+                "cells in series, checked against the voltage at rest; default: by the highest resting voltage");
+    cli::add_folds_option(options, arguments.folds);
+    options.add("no-pack-links", arguments.no_pack_links,
+                "treat each flight's pack as another one than the flight before it", {.old_name = "no-chain"});
+    options.add("name", arguments.name, {.value = "NAME"}, "the battery's name; default: FILE's");
+    cli::add_flight_options(options, arguments.flights);
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return identify(call, arguments); });
 }

@@ -1,6 +1,7 @@
 // Several mission files to a table, ranked by what they leave in the battery.
 
 #include "cli/output/mission_output.h"
+#include "cli/output/stage_options.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "mission/mission_file.h"
@@ -29,10 +30,11 @@ std::string ranking_json(const std::vector<mission::MissionSummary>& ranking, bo
 }
 
 /// Runs a mission; one that is yet to be planned is planned first.
-mission::MissionSummary simulated_summary(const cli::StageCall& call, const mission::MissionVariant& mission,
-                                          const std::optional<mission::SamplingOptions>& sampling) {
+mission::MissionSummary simulated_summary(const mission::MissionVariant& mission,
+                                          const cli::SamplingArguments& arguments) {
     const auto& setup = setup_of(mission);
-    const auto disturbances = cli::read_disturb_option(call, setup);
+    const auto disturbances = read_disturbances(arguments, setup);
+    const auto sampling = sampling_options(arguments, false);
     const auto prepared = prepare_mission(mission);
     auto summary = simulate_prepared(prepared, {}, disturbances).simulation.summary;
     if (sampling && has_uncertainty(setup)) summary.samples = sample_flights(prepared, disturbances, *sampling);
@@ -83,8 +85,8 @@ int explain(const cli::StageCall& call, const std::vector<mission::MissionSummar
     return code;
 }
 
-int compare_missions(const cli::StageCall& call) {
-    const auto sampling = sampling_options(call, false);
+int compare_missions(const cli::StageCall& call, const cli::SamplingArguments& arguments) {
+    const bool is_sampled = arguments.samples.has_value();
     const auto form = form_of(call);
     // All are read before the first is run: a bad file leaves no half answer.
     std::vector<mission::MissionVariant> missions;
@@ -93,17 +95,17 @@ int compare_missions(const cli::StageCall& call) {
     for (const auto& mission : missions) cli::warn_of_setup(call, setup_of(mission));
     std::vector<mission::MissionSummary> summaries;
     summaries.reserve(missions.size());
-    for (const auto& mission : missions) summaries.push_back(simulated_summary(call, mission, sampling));
-    if (sampling &&
+    for (const auto& mission : missions) summaries.push_back(simulated_summary(mission, arguments));
+    if (is_sampled &&
         std::ranges::none_of(missions, [](const auto& mission) { return has_uncertainty(setup_of(mission)); })) {
         require_uncertainty(setup_of(missions.front()));  // says what is missing
     }
     const auto ranking = ranked(std::move(summaries));
     cli::write_result(call, ranking_text(call, ranking, form));
-    if (call.json) cli::print(ranking_json(ranking, sampling.has_value()));
+    if (call.json) cli::print(ranking_json(ranking, is_sampled));
     for (const auto& mission : missions)
         if (!call.json) cli::note_power_model(call, setup_of(mission));
-    return explain(call, ranking, sampling.has_value());
+    return explain(call, ranking, is_sampled);
 }
 
 }  // namespace
@@ -115,9 +117,10 @@ int flightwatt::stages::compare_stage(int argc, char** argv) {
 lasts longer comes first. A mission without a schedule is planned first, one with an adaptive policy in
 flight. --json lists the summaries in that order. -o FILE.md writes the table as Markdown, -o FILE.csv as CSV
 with all digits.)"};
-    stage.shows_table = true;
-    auto add = stage.options.add_options();
-    add("disturb", cli::input_file("FILE"), "let the disturbances of FILE happen to all (missions/disturbances/)");
-    add_sampling_options(stage);
-    return cli::run_stage(argc, argv, stage, compare_missions);
+    stage.examples = {"flightwatt compare missions/paper/*.toml",
+                      "flightwatt compare a.toml b.toml --samples 2000 -o ranking.csv"};
+    stage.uses_threads = stage.shows_table = true;
+    cli::SamplingArguments arguments;
+    add_sampling_options(stage.options, arguments);
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return compare_missions(call, arguments); });
 }

@@ -160,11 +160,14 @@ void tell(const cli::StageCall& call, const flight::FlightFile& file, const Conv
                           counts.padding_bytes > 0 ? fmt::format("; {} bytes set aside", counts.padding_bytes) : ""));
 }
 
-int convert(const cli::StageCall& call) {
-    constexpr std::size_t bytes_per_mb = 1'000'000;
+struct ConvertArguments {
+    std::optional<std::string> messages;
+    std::size_t max_log_bytes = telemetry::default_max_log_bytes;
+};
+
+int convert(const cli::StageCall& call, const ConvertArguments& arguments) {
     const std::filesystem::path path = call.inputs.front();
-    const auto max_bytes = bytes_per_mb * cli::count_option(call, "max-log-mb", 1, 1'000'000);
-    const flight::FlightFile file(path, max_bytes, call.get_optional<std::string>("messages"));
+    const flight::FlightFile file(path, arguments.max_log_bytes, arguments.messages);
     if (!file.framing()) {
         throw InputError({path.string()}, "is no binary log: no frames with right checksums follow each other in it",
                          "expected the .LOG or .tlm of an SD card, or a capture of a link");
@@ -203,9 +206,13 @@ of a serial line, of UDP or of an XBee (also .gz, .bz2, .xz, .zst). With -o NAME
 written beside it where the log has one. All stages read the binary log itself, too, and come to the
 same.)"};
     stage.max_inputs = 1;
-    stage.options.add_options()("messages", cli::input_file("FILE"),
-                                "definitions where no .log stands beside: a messages.xml, or the .log of the same "
-                                "build")("max-log-mb", cli::value("MB")->default_value("100"),
-                                         "refuse a compressed log that unpacks to more");
-    return cli::run_stage(argc, argv, stage, convert);
+    stage.examples = {"flightwatt convert flight.LOG -o flight.data",
+                      "flightwatt convert capture.bin --messages messages.xml"};
+    stage.reads_logs = true;
+    ConvertArguments arguments;
+    stage.options.add("messages", arguments.messages, cli::input_file("FILE"),
+                      "definitions for a log without a .log: a messages.xml, or the .log of the same build");
+    stage.options.add("max-log-mb", arguments.max_log_bytes, {.value = "MB", .min = 1.0, .max = 1e6, .scale = 1e6},
+                      "refuse a compressed log that unpacks to more");
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return convert(call, arguments); });
 }

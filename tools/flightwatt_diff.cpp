@@ -112,6 +112,8 @@ rest on narrow the intervals. Missions are computed: each difference is one; whe
 energies and final charge are judged by what 95 of 100 flights drawn for both differ by (basis flights).)"};
     stage.min_inputs = 2;
     stage.max_inputs = 2;
-    stage.shows_table = true;
+    stage.examples = {"flightwatt diff before.toml after.toml",
+                      "flightwatt diff missions/a.toml missions/b.toml -o diff.csv"};
+    stage.uses_threads = stage.shows_table = true;
     return cli::run_stage(argc, argv, stage, show_difference);
 }

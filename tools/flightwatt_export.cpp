@@ -6,6 +6,7 @@
 #include "cli/output/battery_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/mission_output.h"
+#include "cli/output/stage_options.h"
 #include "cli/stage.h"
 #include "exchange/autopilot_parameters.h"
 #include "exchange/flown_track.h"
@@ -32,12 +33,22 @@ namespace {
 
 using namespace flightwatt;
 
-/// What an input is, by what it holds.
+/// Kind of an input, by its content.
 enum class ExportKind { flight, model, battery, mission, batch };
 
 struct ExportInput {
     std::string file;
     ExportKind kind = ExportKind::flight;
+};
+
+struct ExportArguments {
+    std::optional<std::string> format;
+    exchange::TrackColour colour = exchange::TrackColour::phase;
+    std::optional<std::string> message;
+    exchange::EstimatorInput estimator;
+    std::optional<double> capacity_ah;
+    bool with_replay = false;
+    flight::LoadOptions load;
 };
 
 struct ExportRequest {
@@ -102,8 +113,7 @@ std::string format_names() {
     return names_of_formats([](const Format&) { return true; });
 }
 
-const Format& format_of(const cli::StageCall& call) {
-    const auto name = call.get_optional<std::string>("format");
+const Format& format_of(const cli::StageCall& call, const std::optional<std::string>& name) {
     const auto ending = call.output ? std::filesystem::path(*call.output).extension().string() : "";
     for (const auto& format : formats())
         if (name ? format.name == *name : !ending.empty() && format.ending == ending) return format;
@@ -158,8 +168,8 @@ void require_few(const std::vector<ExportInput>& inputs, const Format& format) {
 
 /// The format by --format or the ending of --output's file, and the inputs. Throws UsageError for no such format, for
 /// options or a number of inputs that the format does not take; InputError for inputs that it is not made of.
-ExportRequest read_export_request(const cli::StageCall& call) {
-    const auto& format = format_of(call);
+ExportRequest read_export_request(const cli::StageCall& call, const ExportArguments& arguments) {
+    const auto& format = format_of(call, arguments.format);
     refuse_idle_options(call, format);
     ExportRequest request{format.name, {}};
     for (const auto& file : call.inputs) request.inputs.push_back({file, kind_of(file)});
@@ -175,16 +185,10 @@ struct Exported {
     cli::Json facts = nlohmann::ordered_json::object();
 };
 
-exchange::TrackColour colour_of(const cli::StageCall& call) {
-    const auto name = call.get_optional<std::string>("colour").value_or("phase");
-    if (name == "phase") return exchange::TrackColour::phase;
-    if (name == "power") return exchange::TrackColour::power;
-    throw UsageError(fmt::format("--colour {}: expected phase or power", name));
-}
-
-Exported export_track(const cli::StageCall& call, const std::string& file, const std::string& format) {
-    const auto colour = colour_of(call);
-    auto options = cli::read_flight_options(call);
+Exported export_track(const cli::StageCall& call, const ExportArguments& arguments, const std::string& file,
+                      const std::string& format) {
+    const auto colour = arguments.colour;
+    auto options = arguments.load;
     options.flight_required = false;
     options.power_required = false;
     const auto loaded = cli::load_flight(call, file, options);
@@ -205,10 +209,10 @@ Exported export_track(const cli::StageCall& call, const std::string& file, const
     return result;
 }
 
-Exported export_columns(const cli::StageCall& call, const std::string& file) {
-    auto options = cli::read_flight_options(call);
+Exported export_columns(const cli::StageCall& call, const ExportArguments& arguments, const std::string& file) {
+    auto options = arguments.load;
     Exported result;
-    if (const auto message = call.get_optional<std::string>("message")) {
+    if (const auto& message = arguments.message) {
         auto table = exchange::message_table(flight::FlightFile(file, options.max_log_bytes, options.messages),
                                              *message, options.aircraft_id);
         if (!table.left_out.empty())
@@ -231,8 +235,8 @@ double compute_w(const mission::MissionVariant& mission) {
     return summary.duration_s > 0.0 ? units::joule_from_wh(summary.compute_energy_wh) / summary.duration_s : 0.0;
 }
 
-exchange::EstimatorInput estimator_input(const cli::StageCall& call, const std::vector<ExportInput>& inputs) {
-    exchange::EstimatorInput result;
+exchange::EstimatorInput estimator_input(const cli::StageCall& call, exchange::EstimatorInput result,
+                                         const std::vector<ExportInput>& inputs) {
     for (const auto& [file, kind] : inputs) {
         if (kind == ExportKind::model) result.model = mechanical::read_mechanical_model(file);
         if (kind == ExportKind::battery) {
@@ -249,27 +253,22 @@ exchange::EstimatorInput estimator_input(const cli::StageCall& call, const std::
         result.compute_w = compute_w(mission);
         if (setup.reserve_soc_percent > 0.0) result.reserve_percent = setup.reserve_soc_percent;
     }
-    constexpr std::uint64_t max_cells = 100;
-    if (call.has("cells")) result.cells_in_series = static_cast<int>(cli::count_option(call, "cells", 1, max_cells));
-    if (call.has("parallel"))
-        result.cells_in_parallel = static_cast<int>(cli::count_option(call, "parallel", 1, max_cells));
-    constexpr double max_idle_w = 1e5;
-    if (call.has("idle-power")) result.idle_w = cli::number_option(call, "idle-power", 0.0, max_idle_w);
     return result;
 }
 
-Exported export_parameters(const cli::StageCall& call, const std::vector<ExportInput>& inputs,
-                           const std::string& format) {
+Exported export_parameters(const cli::StageCall& call, const ExportArguments& arguments,
+                           const std::vector<ExportInput>& inputs, const std::string& format) {
     using Write = exchange::ParameterText (*)(const exchange::EstimatorInput&);
     static const std::map<std::string, Write> writers{{"px4", exchange::to_px4},
                                                       {"inav", exchange::to_inav},
                                                       {"paparazzi", exchange::to_paparazzi},
                                                       {"paparazzi-map", exchange::to_paparazzi_map}};
-    auto parameters = writers.at(format)(estimator_input(call, inputs));
+    auto parameters = writers.at(format)(estimator_input(call, arguments.estimator, inputs));
     return {std::move(parameters.text), std::move(parameters.notes)};
 }
 
-Exported export_latex(const cli::StageCall& call, const std::vector<ExportInput>& inputs) {
+Exported export_latex(const cli::StageCall& call, const ExportArguments& arguments,
+                      const std::vector<ExportInput>& inputs) {
     const auto& [file, kind] = inputs.front();
     if (kind == ExportKind::model) return {report::model_latex(mechanical::read_mechanical_model(file))};
     if (kind == ExportKind::battery) {
@@ -285,35 +284,36 @@ Exported export_latex(const cli::StageCall& call, const std::vector<ExportInput>
         else
             missions.push_back(mission::read_mission(input.file, {true, std::nullopt}));
     }
-    if (call.has("replay") && (!content || missions.empty()))
+    if (arguments.with_replay && (!content || missions.empty()))
         throw UsageError(
             "--replay flies missions on a batch's flights: give a folder of flightwatt batch and missions");
-    if (call.has("capacity") && !content)
+    if (arguments.capacity_ah && !content)
         throw UsageError("--capacity is that of the battery of flights: give a folder of flightwatt batch");
     const report::ReportLog log{[&](const std::string& text) { cli::warn(call, text); },
                                 [&](const std::string& text) { cli::note(call, text); }};
     std::vector<std::string> parts;
-    if (content) parts.push_back(batch_latex(*content, missions, cli::capacity_option(call), log));
+    if (content) parts.push_back(batch_latex(*content, missions, arguments.capacity_ah, log));
     if (!missions.empty()) parts.push_back(report::missions_latex(missions));
-    if (call.has("replay")) parts.push_back(replay_latex(*content, missions, log));
+    if (arguments.with_replay) parts.push_back(replay_latex(*content, missions, log));
     return {fmt::format("{}", fmt::join(parts, "\n"))};
 }
 
-Exported exported(const cli::StageCall& call, const std::vector<ExportInput>& inputs, const std::string& format) {
+Exported exported(const cli::StageCall& call, const ExportArguments& arguments, const std::vector<ExportInput>& inputs,
+                  const std::string& format) {
     const auto& file = inputs.front().file;
-    if (format == "geojson" || format == "kml" || format == "gpx") return export_track(call, file, format);
-    if (format == "csv") return export_columns(call, file);
-    if (format == "latex") return export_latex(call, inputs);
+    if (format == "geojson" || format == "kml" || format == "gpx") return export_track(call, arguments, file, format);
+    if (format == "csv") return export_columns(call, arguments, file);
+    if (format == "latex") return export_latex(call, arguments, inputs);
     if (format == "c") return {exchange::to_c_header(mechanical::read_mechanical_model(file))};
-    if (format != "json") return export_parameters(call, inputs, format);
+    if (format != "json") return export_parameters(call, arguments, inputs, format);
     return {inputs.front().kind == ExportKind::battery
                 ? exchange::to_json_text(battery::read_battery(file))
                 : exchange::to_json_text(mechanical::read_mechanical_model(file))};
 }
 
-int export_inputs(const cli::StageCall& call) {
-    const auto [format, inputs] = read_export_request(call);
-    const auto result = exported(call, inputs, format);
+int export_inputs(const cli::StageCall& call, const ExportArguments& arguments) {
+    const auto [format, inputs] = read_export_request(call, arguments);
+    const auto result = exported(call, arguments, inputs, format);
     cli::write_result(call, result.text);
     for (const auto& note : result.notes) cli::note(call, note);
     if (!call.json) return cli::ok;
@@ -333,15 +333,30 @@ int flightwatt::stages::export_stage(int argc, char** argv) {
 are told (px4, inav, paparazzi, paparazzi-map), from a model and a battery or from a mission. Of models,
 missions and the folder OUT of flightwatt batch: tables (latex). The form is that of FILE's ending
 (.geojson, .kml, .gpx, .csv, .json, .h, .params: px4, .tex) or of --format.)"};
-    auto add = stage.options.add_options();
-    add("format", cli::value("NAME"), "the form, where FILE's ending does not tell it");
-    add("colour", cli::value("HOW"), "of tracks: phase or power; phase if not given");
-    add("message", cli::value("NAME"), "of csv: all fields of one message, ENERGY ..., instead of the series' tracks");
-    add("cells", cli::value("N"), "in series, of the battery; default: its own, or else as few as 4.25 V a cell allow");
-    add("parallel", cli::value("N"), "cells in parallel, of the battery; 1 if not given");
-    add("idle-power", cli::value<double>("W"), "of inav: while the motor stands; default: the mission's computer");
-    add("capacity", cli::value<double>("AH"), "of latex: of the flights' battery; default: as flightwatt battery says");
-    add("replay", "of latex: also fly the missions on the flights of OUT (flightwatt replay)");
-    cli::add_flight_options(stage.options);
-    return cli::run_stage(argc, argv, stage, export_inputs);
+    stage.examples = {"flightwatt export flight.data -o flight.kml",
+                      "flightwatt export model.toml pack.toml --format px4"};
+    stage.reads_logs = stage.uses_threads = true;
+    ExportArguments arguments;
+    constexpr double max_cells = 100;
+    constexpr double max_idle_w = 1e5;
+    auto& options = stage.options;
+    options.add("format", arguments.format, {.value = "NAME"},
+                "the format, if the ending of FILE does not determine it");
+    options.add_choice("colour", arguments.colour,
+                       {{"phase", exchange::TrackColour::phase}, {"power", exchange::TrackColour::power}},
+                       {.value = "HOW"}, "of tracks: phase or power");
+    options.add("message", arguments.message, {.value = "NAME"},
+                "of csv: all fields of one message, ENERGY ..., instead of the series' tracks");
+    options.add("cells", arguments.estimator.cells_in_series, {.value = "N", .min = 1, .max = max_cells},
+                "in series, of the battery; default: its own, or else as few as 4.25 V a cell allow");
+    options.add("parallel", arguments.estimator.cells_in_parallel, {.value = "N", .min = 1, .max = max_cells},
+                "cells in parallel, of the battery");
+    options.add("idle-power", arguments.estimator.idle_w, {.value = "W", .min = 0.0, .max = max_idle_w, .unit = "W"},
+                "of inav: with the motor stopped; default: the mission's computer");
+    cli::add_capacity_option(options, arguments.capacity_ah,
+                             "of latex: of the flights' battery; default: the estimate of flightwatt battery");
+    options.add("replay", arguments.with_replay,
+                "of latex: also fly the missions on the flights of OUT (flightwatt replay)");
+    cli::add_flight_options(options, arguments.load);
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return export_inputs(call, arguments); });
 }

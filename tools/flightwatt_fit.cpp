@@ -5,6 +5,7 @@
 #include "cli/output/fit_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/physical_output.h"
+#include "cli/output/stage_options.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "mechanical/physical_fit.h"
@@ -13,6 +14,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <fmt/format.h>
@@ -21,38 +23,46 @@ namespace {
 
 using namespace flightwatt;
 
-mechanical::ModelFitOptions read_options(const cli::StageCall& call) {
-    auto options = read_fit_options(call);
-    options.name = call.get_optional<std::string>("name").value_or(
-        call.output ? std::filesystem::path(*call.output).stem().string() : "fitted");
-    return options;
+struct FitStageArguments : cli::FitArguments {
+    cli::FlightArguments flights;
+    cli::FlightFilter filter;
+    std::optional<std::string> name;
+    std::optional<std::string> table_file;
+    std::optional<std::string> constants_file;
+    std::optional<std::string> curves_file;
+    bool with_errors = false;
+    bool with_intervals = false;
+};
+
+/// Refuses a file whose ending names no form of tables, before the work.
+void check_table_file(const std::optional<std::string>& file) {
+    if (file) cli::table_text({{""}, {}}, *file);
 }
 
-int fit(const cli::StageCall& call) {
-    const auto kind = cli::model_kind(call);
+int fit(const cli::StageCall& call, FitStageArguments arguments) {
+    const auto& [options, kind, published_file] = static_cast<const cli::FitArguments&>(arguments);
+    const auto& [table_file, constants_file, curves_file] =
+        std::tie(arguments.table_file, arguments.constants_file, arguments.curves_file);
+    arguments.fit.name =
+        arguments.name.value_or(call.output ? std::filesystem::path(*call.output).stem().string() : "fitted");
+    check_table_file(table_file);
+    check_table_file(constants_file);
     const bool with_motion = kind == cli::ModelKind::physical;
-    const auto options = read_options(call);
-    const auto table_file = call.get_optional<std::string>("table");
-    if (table_file) cli::table_text({{""}, {}}, *table_file);  // refuses a bad ending before the work
-    const auto constants_file = call.get_optional<std::string>("constants");
-    if (constants_file && !with_motion) throw UsageError("--constants goes with --model physical");
-    if (constants_file) cli::table_text({{""}, {}}, *constants_file);
-    const auto curves_file = call.get_optional<std::string>("curves");
-    const auto published = cli::read_published(call);
-    const auto reading = cli::read_flight_options(call);
-    const auto measured = cli::measured_flights(cli::with_chosen_flights(call, reading), reading,
-                                                mechanical::min_samples(options.phases.order));
+    if (constants_file && !with_motion) throw UsageError("--constants goes with --model-kind physical");
+    const auto published = read_published(arguments);
+    const auto measured =
+        cli::measured_flights(cli::with_chosen_flights(call, arguments.filter, arguments.flights.load),
+                              arguments.flights, mechanical::min_samples(options.phases.order));
     std::vector<mechanical::FlightSamples> flights;
     flights.reserve(measured.size());
     for (const auto& flight : measured) flights.push_back(flight.samples);
     auto fitted = fit_model(flights, options);
     flight::PerPhase<mechanical::ErrorAnalysis> analyses;
-    const bool with_errors = call.has("errors") || call.has("intervals") || curves_file;
-    if (with_errors) analyses = mechanical::analyse_model(fitted);
+    if (arguments.with_errors || arguments.with_intervals || curves_file) analyses = mechanical::analyse_model(fitted);
 
-    const auto table =
-        cli::table_of(fitted.model, published,
-                      call.has("intervals") ? mechanical::TableIntervals::present : mechanical::TableIntervals::absent);
+    const auto table = cli::table_of(
+        fitted.model, published,
+        arguments.with_intervals ? mechanical::TableIntervals::present : mechanical::TableIntervals::absent);
     std::optional<mechanical::PhysicalFit> physical;
     if (with_motion) physical = cli::fit_motion(call, measured, fitted.model);
     if (kind == cli::ModelKind::best) cli::add_best_power(measured, options, fitted.model);
@@ -86,23 +96,24 @@ int flightwatt::stages::fit_stage(int argc, char** argv) {
 frequency for all flights, averaged over the flights with weights. The model goes to the standard output
 as TOML; with -o it goes to the file and Table I is shown.)" +
             std::string(cli::several_flights_text)};
-    stage.shows_table = true;
-    cli::add_fit_options(stage.options);
-    cli::add_model_option(stage.options, cli::ModelKind::fourier);
-    auto add = stage.options.add_options();
-    add("name", cli::value("NAME"), "the model's name");
-    add("published", cli::input_file("MODEL.toml"), "show Table I beside this model's");
-    add("table", cli::output_file("FILE"), "write Table I as .txt, .csv, .md or .tex");
-    add("constants", cli::output_file("FILE"),
-        "write the constants of the physical model with their 95 % intervals as .txt, .csv, .md or .tex");
-    add("errors",
-        "analyse the fit: standard errors, R2, condition, autocorrelation, spread between flights, into the "
+    stage.examples = {"flightwatt fit my -o model.toml --table table1.tex",
+                      "flightwatt fit my --since 2020-07-01 --model-kind physical -o model.toml"};
+    stage.reads_logs = stage.uses_threads = stage.shows_table = true;
+    FitStageArguments arguments;
+    auto& options = stage.options;
+    cli::add_model_options(options, arguments);
+    options.add("name", arguments.name, {.value = "NAME"}, "the model's name");
+    options.add("table", arguments.table_file, cli::output_file("FILE"), "write Table I as .txt, .csv, .md or .tex");
+    options.add("constants", arguments.constants_file, cli::output_file("FILE"),
+                "write the constants of the physical model with their 95 % intervals as .txt, .csv, .md or .tex");
+    options.add(
+        "errors", arguments.with_errors,
+        "analyse the fit: standard errors, R2, condition, autocorrelation, variability between flights, into the "
         "model and the JSON");
-    add("intervals", "Table I with 95 % intervals; implies --errors");
-    add("curves", cli::output_file("FILE.csv"),
-        "write the curves with their band and the flights' envelope; implies --errors");
-    cli::add_choice_options(stage.options);
-    cli::add_mix_option(stage.options);
-    cli::add_flight_options(stage.options);
-    return cli::run_stage(argc, argv, stage, fit);
+    options.add("intervals", arguments.with_intervals, "Table I with 95 % intervals; implies --errors");
+    options.add("curves", arguments.curves_file, cli::output_file("FILE.csv"),
+                "write the curves with their band and the flights' envelope; implies --errors");
+    cli::add_filter_options(options, arguments.filter);
+    cli::add_flight_options(options, arguments.flights);
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return fit(call, arguments); });
 }

@@ -2,7 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "cli/output/battery_output.h"
+#include "cli/output/stage_options.h"
 #include "cli/stage.h"
 #include "stages.h"
 
@@ -34,7 +34,7 @@ missions/first.csv: missions/first.toml fits/model.toml fits/pack.toml
 
 # Written once, then yours: every key is explained in it.
 missions/first.toml: | fits/model.toml fits/pack.toml
-	flightwatt new-mission --mechanical fits/model.toml --battery fits/pack.toml -o missions/first.toml
+	flightwatt new-mission --model fits/model.toml --battery fits/pack.toml -o missions/first.toml
 
 # The battery that they flew on. --capacity is what its label says [Ah]: it is compared with what the flights indicate.
 # Without it, that is used. All that follows takes the capacity from fits/pack.toml.
@@ -48,8 +48,7 @@ fits/model.toml: logs $(wildcard logs/*)
         capacity_ah ? fmt::format(" --capacity {}", *capacity_ah) : "");
 }
 
-int make_folder(const cli::StageCall& call) {
-    const auto capacity_ah = cli::capacity_option(call);
+int make_folder(const cli::StageCall& call, const std::optional<double>& capacity_ah) {
     const std::filesystem::path root = call.inputs.front();
     const std::filesystem::path list = call.output ? std::filesystem::path(*call.output) : root / "Makefile";
     std::error_code none;
@@ -82,8 +81,10 @@ logs to a report. Folders that are there stay; a Makefile that is there is not r
 made.)"};
     stage.max_inputs = 1;
     stage.output_help = "write the list of commands to FILE instead of DIR/Makefile";
-    stage.options.add_options()(
-        "capacity", cli::value<double>("AH"),
-        "what the pack's label says, for the command that identifies it; default: what the flights indicate");
-    return cli::run_stage(argc, argv, stage, make_folder);
+    stage.examples = {"flightwatt init my --capacity 2.2", "flightwatt init my -o my/commands.mk"};
+    std::optional<double> capacity_ah;
+    cli::add_capacity_option(
+        stage.options, capacity_ah,
+        "the capacity on the pack's label, for the command that identifies it; default: the flights' estimate");
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return make_folder(call, capacity_ah); });
 }

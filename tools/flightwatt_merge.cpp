@@ -69,14 +69,14 @@ void remove_model(const cli::StageCall& call, const std::filesystem::path& out) 
         cli::note(call, fmt::format("removed: {}: made from what the folder held before", fmt::join(removed, ", ")));
 }
 
-int merge(const cli::StageCall& call) {
+int merge(const cli::StageCall& call, bool prune) {
     if (!call.output) throw UsageError("no folder given: expected -o FOLDER");
     const std::filesystem::path out = *call.output;
     const std::vector<std::filesystem::path> batches(call.inputs.begin(), call.inputs.end());
     make_directories(out);
     const batch::FolderLock lock(out);
     const batch::RemoveIfEmpty folder{out};  // where nothing can be done
-    const auto plan = batch::plan_merge(batches, out, call.has("prune"));
+    const auto plan = batch::plan_merge(batches, out, prune);
     batch::refuse_foreign_files(plan.folder, out);
     for (const auto& dropped : plan.folder.dropped)
         cli::note(call, fmt::format("dropped: {}, {}", dropped.flight, dropped.reason));
@@ -118,6 +118,9 @@ name get the names NAME, NAME_2, ... by the paths of their logs. Nothing is fitt
 Nothing in OUT is replaced or removed but what OUT/batch.json lists as a batch's.)"};
     stage.shows_table = true;
     stage.output_help = "the folder of the results";
-    stage.options.add_options()("prune", "drop the flights of OUT that are in none of the folders given");
-    return cli::run_stage(argc, argv, stage, merge);
+    stage.examples = {"flightwatt merge part1 part2 -o all", "flightwatt merge part* -o all --prune"};
+    stage.uses_threads = true;
+    bool prune = false;
+    stage.options.add("prune", prune, "drop the flights of OUT that are in none of the folders given");
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return merge(call, prune); });
 }

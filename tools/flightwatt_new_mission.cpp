@@ -26,8 +26,15 @@ std::string named_from(const std::filesystem::path& folder, const std::filesyste
     return (error ? std::filesystem::absolute(file) : near).generic_string();
 }
 
-std::string required_file(const cli::StageCall& call, const std::string& option, const char* made_by) {
-    const auto file = call.get_optional<std::string>(option);
+struct NewMissionArguments {
+    std::optional<std::string> model;
+    std::optional<std::string> battery;
+    std::vector<std::string> profiles;
+    bool is_planned = false;
+    std::optional<std::string> name;
+};
+
+std::string required_file(const std::optional<std::string>& file, const char* option, const char* made_by) {
     if (!file) throw UsageError(fmt::format("expected --{} FILE, from `flightwatt {}`", option, made_by));
     return *file;
 }
@@ -41,9 +48,9 @@ std::string component_name(const std::filesystem::path& profile, const std::vect
     return name;
 }
 
-int write_new_mission(const cli::StageCall& call) {
-    const auto mechanical = required_file(call, "mechanical", "batch");
-    const auto pack = required_file(call, "battery", "battery");
+int write_new_mission(const cli::StageCall& call, const NewMissionArguments& arguments) {
+    const auto mechanical = required_file(arguments.model, "model", "batch");
+    const auto pack = required_file(arguments.battery, "battery", "battery");
     const std::filesystem::path file = call.output.value_or("mission.toml");
     std::error_code none;
     if (call.output && std::filesystem::exists(file, none)) {
@@ -53,14 +60,13 @@ int write_new_mission(const cli::StageCall& call) {
     if (!std::filesystem::is_directory(folder, none))
         throw OutputError(fmt::format("{}: there is no folder {}: make it first", file.string(), folder.string()));
     mission::NewMission fresh;
-    fresh.name = call.get_optional<std::string>("name").value_or(file.stem().string());
+    fresh.name = arguments.name.value_or(file.stem().string());
     fresh.mechanical = named_from(folder, mechanical);
     fresh.model = mechanical::read_mechanical_model(mechanical);
     fresh.battery = named_from(folder, pack);
     fresh.pack = battery::read_battery(pack);
-    fresh.is_planned = call.has("plan");
-    for (const auto& profile :
-         call.get_optional<std::vector<std::string>>("profile").value_or(std::vector<std::string>())) {
+    fresh.is_planned = arguments.is_planned;
+    for (const auto& profile : arguments.profiles) {
         fresh.components.push_back({component_name(profile, fresh.components), named_from(folder, profile),
                                     compute::read_power_profile(profile)});
     }
@@ -90,7 +96,7 @@ int write_new_mission(const cli::StageCall& call) {
 
 int flightwatt::stages::new_mission_stage(int argc, char** argv) {
     cli::StageDefinition stage{
-        "new-mission", "--mechanical MODEL.toml --battery PACK.toml [--profile P.csv]...",
+        "new-mission", "--model MODEL.toml --battery PACK.toml [--profile P.csv]...",
         R"(Writes a mission file to begin with, for that aircraft, pack and software. It simulates as it is: each
 component runs at the middle of what was profiled, and 20 % of charge are kept in reserve. Every other key of a
 mission stands in it as a comment, with what it means and an example. A file that is there is not
@@ -98,11 +104,18 @@ replaced.)"};
     stage.min_inputs = 0;
     stage.max_inputs = 0;
     stage.output_help = "write the mission to FILE, which names its files relative to it";
-    auto add = stage.options.add_options();
-    add("mechanical", cli::input_file("MODEL.toml"), "what the aircraft takes, from flightwatt batch or fit");
-    add("battery", cli::input_file("PACK.toml"), "its pack, from flightwatt battery");
-    add("profile", cli::input_files("FILE"), "software on board, from flightwatt profile; may be given several times");
-    add("plan", "leave the schedule to flightwatt plan: utilities and [plan] instead of [[schedule]]");
-    add("name", cli::value("NAME"), "the mission's name; default: FILE's");
-    return cli::run_stage(argc, argv, stage, write_new_mission);
+    stage.examples = {"flightwatt new-mission --model model.toml --battery pack.toml -o first.toml",
+                      "flightwatt new-mission --model model.toml --battery pack.toml --profile dnn.csv --plan"};
+    NewMissionArguments arguments;
+    auto& options = stage.options;
+    options.add("model", arguments.model,
+                {.value = "MODEL.toml", .file = cli::FileRole::input, .old_name = "mechanical"},
+                "the aircraft's mechanical power, from flightwatt batch or fit");
+    options.add("battery", arguments.battery, cli::input_file("PACK.toml"), "its pack, from flightwatt battery");
+    options.add("profile", arguments.profiles, cli::input_file("FILE"),
+                "software on board, from flightwatt profile; may be given several times");
+    options.add("plan", arguments.is_planned,
+                "leave the schedule to flightwatt plan: utilities and [plan] instead of [[schedule]]");
+    options.add("name", arguments.name, {.value = "NAME"}, "the mission's name; default: FILE's");
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return write_new_mission(call, arguments); });
 }

@@ -31,8 +31,7 @@ Json summary(const flight::LoadedFlight& loaded, const flight::Track& power) {
             {"warnings", loaded.warnings}};
 }
 
-int parse(const cli::StageCall& call) {
-    auto options = cli::read_flight_options(call);
+int parse(const cli::StageCall& call, flight::LoadOptions options) {
     options.flight_required = false;
     options.power_required = false;
     const auto loaded = cli::load_flight(call, call.inputs.front(), options);
@@ -71,7 +70,10 @@ int flightwatt::stages::parse_stage(int argc, char** argv) {
 altitude, position, speeds, wind, attitude, mode and block, each at the times when it was logged.
 Any stage reads the series file as it reads the log, and comes to the same.)"};
     stage.max_inputs = 1;
-    stage.shows_table = true;
-    cli::add_flight_options(stage.options);
-    return cli::run_stage(argc, argv, stage, parse);
+    stage.examples = {"flightwatt parse flight.data -o flight.csv",
+                      "flightwatt parse flight.LOG --messages messages.xml --json"};
+    stage.reads_logs = stage.uses_threads = stage.shows_table = true;
+    flight::LoadOptions load;
+    cli::add_flight_options(stage.options, load);
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return parse(call, load); });
 }

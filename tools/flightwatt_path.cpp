@@ -70,8 +70,7 @@ const flight::PhaseSpan& cruise_of(const flight::LoadedFlight& flight, const std
     throw InputError({file}, "has no cruise");
 }
 
-int take_path(const cli::StageCall& call, const std::string& file) {
-    auto options = cli::read_flight_options(call);
+int take_path(const cli::StageCall& call, flight::LoadOptions options, const std::string& file) {
     options.power_required = false;
     const auto loaded = cli::load_flight(call, file, options);
     if (!loaded.exclusion.empty()) throw InputError({file}, "is not used: " + loaded.exclusion);
@@ -99,22 +98,15 @@ int take_path(const cli::StageCall& call, const std::string& file) {
     return cli::ok;
 }
 
-/// How flights are read has no meaning for a mission.
-void refuse_flight_options(const cli::StageCall& call) {
-    boost::program_options::options_description of_flights;
-    cli::add_flight_options(of_flights);
-    for (const auto& option : of_flights.options()) {
-        const auto& name = option->long_name();
-        if (call.options.count(name) > 0 && !call.options[name].defaulted())
-            throw UsageError(fmt::format("--{} goes with --path-from", name));
-    }
-}
+struct PathArguments {
+    std::optional<std::string> log;
+    flight::LoadOptions load;
+};
 
-int show_or_take_path(const cli::StageCall& call) {
-    const auto log = call.get_optional<std::string>("path-from");
-    if (log.has_value() == !call.inputs.empty()) throw UsageError("give a mission, or a log with --path-from");
-    if (!log) refuse_flight_options(call);
-    return log ? take_path(call, *log) : show_path(call);
+int show_or_take_path(const cli::StageCall& call, const PathArguments& arguments) {
+    if (arguments.log.has_value() == !call.inputs.empty())
+        throw UsageError("give a mission, or a log with --path-from");
+    return arguments.log ? take_path(call, arguments.load, *arguments.log) : show_path(call);
 }
 
 }  // namespace
@@ -128,9 +120,11 @@ With --path-from the path of a log's cruise instead, as waypoints for a mission 
 [path]): a place every 30 s, with the airspeed on the way there and how long it took.)"};
     stage.min_inputs = 0;
     stage.max_inputs = 1;
+    stage.examples = {"flightwatt path mission.toml", "flightwatt path --path-from flight.data -o waypoints.csv"};
     stage.shows_table = true;
-    stage.options.add_options()("path-from", cli::input_file("LOG"),
-                                "write the path that was flown in LOG as waypoints");
-    cli::add_flight_options(stage.options);
-    return cli::run_stage(argc, argv, stage, show_or_take_path);
+    PathArguments arguments;
+    stage.options.add("path-from", arguments.log, cli::input_file("LOG"),
+                      "write the path that was flown in LOG as waypoints");
+    cli::add_flight_options(stage.options, arguments.load, {"path-from"});
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return show_or_take_path(call, arguments); });
 }

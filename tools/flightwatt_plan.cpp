@@ -36,13 +36,11 @@ struct MissionFile {
     mission::MissionVariant read_with_cruise(double cruise_s) const { return read({.cruise_s = cruise_s}); }
 };
 
-std::optional<double> probability(const cli::StageCall& call) {
-    const auto given = call.get_optional<double>("probability");
-    if (given && !(*given >= 0.5 && *given < 1.0)) {
-        throw UsageError(fmt::format("--probability {}: expected 0.5 or more, and less than 1", *given));
-    }
-    return given;
-}
+struct PlanArguments {
+    std::optional<double> probability;
+    bool longest_cruise = false;
+    bool largest_payload = false;
+};
 
 std::string describe(const mission::MissionPlan& plan, const mission::MissionSetup& mission) {
     const double utility = *plan.summary.utility;
@@ -61,19 +59,19 @@ std::string describe(const mission::MissionPlan& plan, const mission::MissionSet
 }
 
 /// What the chance that was asked for holds for.
-void note_sources(const cli::StageCall& call, const mission::MissionSetup& mission,
+void note_sources(const cli::StageCall& call, const PlanArguments& arguments, const mission::MissionSetup& mission,
                   const mission::UncertaintySources& sources, double standard_error = 0.0) {
     constexpr double worth_saying = 5e-4;
     const auto exactness = standard_error < worth_saying ? "" : fmt::format(" (computed to +- {:.4f})", standard_error);
     cli::note(call, fmt::format("{}: chance {}{} over flights as --samples draws them; {}", mission.name,
-                                *probability(call), exactness, describe(sources)));
+                                *arguments.probability, exactness, describe(sources)));
 }
 
-[[noreturn]] void refuse_infeasible(const cli::StageCall& call, const MissionFile& file,
+[[noreturn]] void refuse_infeasible(const cli::StageCall& call, const PlanArguments& arguments, const MissionFile& file,
                                     const mission::PlanningProblem& problem, const mission::MissionPlan& plan) {
     if (!plan.plan.deliverable) throw NoResultError(describe(plan.summary));
     const auto report = infeasibility_report(
-        problem, plan, [&](double cruise_s) { return file.read_with_cruise(cruise_s); }, probability(call));
+        problem, plan, [&](double cruise_s) { return file.read_with_cruise(cruise_s); }, arguments.probability);
     if (call.json) {
         auto json = cli::to_json(plan, problem.setup);
         json["shortfall"] = cli::to_json(report);
@@ -82,8 +80,7 @@ void note_sources(const cli::StageCall& call, const mission::MissionSetup& missi
     throw NoResultError(fmt::format("{}: {}", problem.setup.name, describe(problem.setup, report)));
 }
 
-int make_plan(const cli::StageCall& call, const MissionFile& file) {
-    const auto chance = probability(call);
+int make_plan(const cli::StageCall& call, const PlanArguments& arguments, const MissionFile& file) {
     const auto mission = file.read();
     const auto* problem = std::get_if<mission::PlanningProblem>(&mission);
     if (problem == nullptr) {
@@ -91,9 +88,9 @@ int make_plan(const cli::StageCall& call, const MissionFile& file) {
                          "add [plan], and what [[schedule]] says is fixed and the rest planned");
     }
     cli::warn_of_setup(call, problem->setup);
-    auto plan = plan_mission(*problem, chance);
+    auto plan = plan_mission(*problem, arguments.probability);
     plan.summary.by_flights = landing_by_flights(problem->setup, plan.mission.schedule);
-    if (!plan.plan.feasible) refuse_infeasible(call, file, *problem, plan);
+    if (!plan.plan.feasible) refuse_infeasible(call, arguments, file, *problem, plan);
     const auto text = describe(plan, problem->setup);
     // The files that the result names are found from where it will stand.
     const auto folder = std::filesystem::absolute(call.output.value_or("result")).parent_path();
@@ -106,7 +103,7 @@ int make_plan(const cli::StageCall& call, const MissionFile& file) {
     } else {
         cli::note(call, text);
         cli::note_power_model(call, problem->setup);
-        if (plan.sources) note_sources(call, problem->setup, *plan.sources, plan.probability_standard_error);
+        if (plan.sources) note_sources(call, arguments, problem->setup, *plan.sources, plan.probability_standard_error);
     }
     return cli::ok;
 }
@@ -118,15 +115,15 @@ std::string_view beyond(mission::LimitingFactor bound) {
     return texts.at(static_cast<std::size_t>(bound));
 }
 
-int answer(const cli::StageCall& call, const mission::MissionSetup& mission, const std::string& question,
-           const std::string& unit, const mission::FeasibilityLimit& most) {
+int print_limit(const cli::StageCall& call, const PlanArguments& arguments, const mission::MissionSetup& mission,
+                const std::string& question, const std::string& unit, const mission::FeasibilityLimit& most) {
     cli::warn_of_setup(call, mission);
     cli::Json json;
     json["mission"] = mission.name;
     json[question] = most.value;
     json["final_soc_percent"] = most.final_soc_percent;
     json["reserve_soc_percent"] = mission.reserve_soc_percent;
-    if (const auto chance = probability(call)) {
+    if (const auto chance = arguments.probability) {
         json["probability"] = *chance;
         json["margin_percent"] = most.margin_percent;
         cli::add_sources(*most.sources, json);
@@ -139,40 +136,38 @@ int answer(const cli::StageCall& call, const mission::MissionSetup& mission, con
     if (call.json) {
         cli::print(cli::json_text(json));
     } else {
-        const auto kept = probability(call) ? fmt::format("reserve {:.4f} % and {:.4f} points of margin",
-                                                          mission.reserve_soc_percent, most.margin_percent)
-                                            : fmt::format("reserve {:.4f} %", mission.reserve_soc_percent);
+        const auto kept = arguments.probability ? fmt::format("reserve {:.4f} % and {:.4f} points of margin",
+                                                              mission.reserve_soc_percent, most.margin_percent)
+                                                : fmt::format("reserve {:.4f} %", mission.reserve_soc_percent);
         cli::note(call, fmt::format("{}: then {:.4f} % are left, {}{}", mission.name, most.final_soc_percent, kept,
                                     beyond(most.limited_by)));
         cli::note_power_model(call, mission);
-        if (most.sources) note_sources(call, mission, *most.sources);
+        if (most.sources) note_sources(call, arguments, mission, *most.sources);
     }
     return cli::ok;
 }
 
 /// --longest-cruise.
-int answer_reach(const cli::StageCall& call, const MissionFile& file) {
+int print_reach(const cli::StageCall& call, const PlanArguments& arguments, const MissionFile& file) {
     const auto reach = mission::find_reach(
-        [&](const mission::MissionReadOptions& reading) { return file.read(reading); }, probability(call));
+        [&](const mission::MissionReadOptions& reading) { return file.read(reading); }, arguments.probability);
     const auto mission = file.read();
     const auto& setup = setup_of(mission);
     constexpr std::array<std::pair<const char*, const char*>, 3> questions{
         {{"longest_cruise_s", "s"}, {"most_circles", "circles"}, {"farthest_return_m", "m"}}};
     const auto& [question, unit] = questions.at(static_cast<std::size_t>(reach.unit));
-    return answer(call, setup, question, unit, reach.limit);
+    return print_limit(call, arguments, setup, question, unit, reach.limit);
 }
 
-int plan_file(const cli::StageCall& call) {
+int plan_file(const cli::StageCall& call, const PlanArguments& arguments) {
     const MissionFile file{call.inputs.front(), read_file(call.inputs.front())};
-    const bool cruise = call.has("longest-cruise");
-    const bool payload = call.has("largest-payload");
-    if (cruise && payload) throw UsageError("--longest-cruise and --largest-payload are two questions: ask one");
-    if (cruise) return answer_reach(call, file);
-    if (payload) {
+    if (arguments.longest_cruise) return print_reach(call, arguments, file);
+    if (arguments.largest_payload) {
         const auto mission = file.read();
-        return answer(call, setup_of(mission), "largest_payload_w", "W", largest_payload(mission, probability(call)));
+        return print_limit(call, arguments, setup_of(mission), "largest_payload_w", "W",
+                           largest_payload(mission, arguments.probability));
     }
-    return make_plan(call, file);
+    return make_plan(call, arguments, file);
 }
 
 }  // namespace
@@ -186,12 +181,18 @@ says beside [plan] is fixed. --longest-cruise and --largest-payload take the mis
 one that demands least energy. On a battery whose voltage falls with its charge (model = "thevenin"), or with a
 cut-off voltage, the battery itself is followed through every schedule that could be the best.)"};
     stage.max_inputs = 1;
-    auto add = stage.options.add_options();
-    add("probability", cli::value<double>("P"),
-        "keep the reserve with this chance, 0.5 or more, as flights differ; default: as modelled");
-    add("longest-cruise",
-        "instead: the longest cruise that lands with the reserve [s]; of a [path] the most circles, or without any the "
-        "farthest from where the mission returns [m]");
-    add("largest-payload", "instead: the largest constant power that can be fed besides [W]");
-    return flightwatt::cli::run_stage(argc, argv, stage, plan_file);
+    stage.examples = {"flightwatt plan mission.toml -o planned.toml",
+                      "flightwatt plan mission.toml --longest-cruise --probability 0.95"};
+    stage.uses_threads = true;
+    PlanArguments arguments;
+    auto& options = stage.options;
+    options.add("probability", arguments.probability, {.value = "P", .min = 0.5, .max = 1.0, .below_max = true},
+                "keep the reserve with this probability, 0.5 or more, as flights differ; default: as modelled");
+    options.add(
+        "longest-cruise", arguments.longest_cruise,
+        "instead: the longest cruise that lands with the reserve [s]; of a [path] the maximum number of circles, or "
+        "without any the maximum distance from where the mission returns [m]",
+        {.excludes = {"largest-payload"}});
+    options.add("largest-payload", arguments.largest_payload, "instead: the largest additional constant power [W]");
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return plan_file(call, arguments); });
 }

@@ -20,35 +20,43 @@ namespace {
 
 using namespace flightwatt;
 
+struct PlayArguments {
+    std::optional<std::string> to;
+    double speed = 1.0;
+    std::optional<std::string> messages;
+    bool as_aircraft = false;
+};
+
 /// The definitions that frames are made with and a binary log is read with: those of --messages, or of the log's own
 /// .log.
-telemetry::MessageDictionary read_definitions(const cli::StageCall& call) {
-    if (const auto file = call.get_optional<std::string>("messages")) return telemetry::read_message_dictionary(*file);
+telemetry::MessageDictionary read_definitions(const cli::StageCall& call, const PlayArguments& arguments) {
+    if (arguments.messages) return telemetry::read_message_dictionary(*arguments.messages);
     const auto& log = call.inputs.front();
-    if (const auto beside = telemetry::find_log_file(log)) return telemetry::read_message_dictionary(*beside);
-    throw InputError({log}, "no .log is beside it, and frames need the definitions of their messages",
+    if (const auto file = telemetry::find_log_file(log)) return telemetry::read_message_dictionary(*file);
+    throw InputError({log}, "has no .log, and frames need the definitions of their messages",
                      "give --messages messages.xml");
 }
 
-live::PlaybackTargetSetup target_setup(const cli::StageCall& call, const std::string& to) {
+live::PlaybackTargetSetup target_setup(const cli::StageCall& call, const PlayArguments& arguments) {
+    const auto& to = *arguments.to;
     const bool to_frames = to.starts_with("udp:") || to.starts_with("serial:");
-    if (!to.starts_with("ivy:") && call.has("as-aircraft"))
+    if (!to.starts_with("ivy:") && arguments.as_aircraft)
         throw UsageError("--as-aircraft goes with --to ivy:ADDRESS:PORT");
     live::PlaybackTargetSetup setup;
-    setup.as_aircraft = call.has("as-aircraft");
-    if (to_frames) setup.definitions = read_definitions(call);
+    setup.as_aircraft = arguments.as_aircraft;
+    if (to_frames) setup.definitions = read_definitions(call, arguments);
     return setup;
 }
 
 /// Those of a binary log; none of a text.
-std::optional<telemetry::MessageDictionary> log_definitions(const cli::StageCall& call,
+std::optional<telemetry::MessageDictionary> log_definitions(const cli::StageCall& call, const PlayArguments& arguments,
                                                             const live::PlaybackTargetSetup& setup) {
     const bool is_binary =
         telemetry::detect_binary_framing(telemetry::DataFile(call.inputs.front()).text()).has_value();
-    if (!is_binary && !setup.definitions && call.has("messages"))
+    if (!is_binary && !setup.definitions && arguments.messages)
         throw UsageError("--messages is of frames and of binary logs: this is a text, to a target that takes text");
     if (!is_binary) return std::nullopt;
-    return setup.definitions ? setup.definitions : read_definitions(call);
+    return setup.definitions ? setup.definitions : read_definitions(call, arguments);
 }
 
 /// Lines to the standard output, each at once.
@@ -72,7 +80,7 @@ cli::Json json_of(const live::PlaybackReport& report) {
             {"stopped", report.stopped}};
 }
 
-void tell(const cli::StageCall& call, const live::PlaybackReport& report) {
+void print_report(const cli::StageCall& call, const PlayArguments& arguments, const live::PlaybackReport& report) {
     for (const auto& [reason, lines] : report.left_out)
         cli::warn(call, fmt::format("{} line{} left out: {}", lines, lines == 1 ? "" : "s", reason));
     if (report.shortened_gaps > 0) {
@@ -82,26 +90,25 @@ void tell(const cli::StageCall& call, const live::PlaybackReport& report) {
     if (call.json) cli::print(cli::json_text(json_of(report)));
     const auto text = fmt::format("{} messages, {:.1f} s of the log, played in {:.1f} s{}\n", report.messages,
                                   report.log_s, report.played_s, report.stopped ? ": stopped" : "");
-    if (call.output || call.get<std::string>("to") != "-") return cli::write_result(call, text);
+    if (call.output || arguments.to != "-") return cli::write_result(call, text);
     cli::note(call, text);
 }
 
-int play(const cli::StageCall& call) {
-    constexpr double fastest = 100'000.0;
-    if (!call.has("to"))
+int play(const cli::StageCall& call, const PlayArguments& arguments) {
+    if (!arguments.to)
         throw UsageError(
             "nowhere to play to: expected --to udp:ADDRESS:PORT, serial:DEVICE:BAUD, ivy:ADDRESS:PORT, file:NAME.data or -");
-    const auto to = call.get<std::string>("to");
+    const auto& to = *arguments.to;
     if (to == "-" && call.json) throw UsageError("--json would stand among the lines of --to -");
-    const double speed = cli::positive_option(call, "speed", "times as fast", fastest).value_or(1.0);
+    const double speed = arguments.speed;
     const SignalWatch signals;
     const auto stop = [&] { return signals.received().has_value(); };
-    const auto setup = target_setup(call, to);
-    const auto definitions = log_definitions(call, setup);
+    const auto setup = target_setup(call, arguments);
+    const auto definitions = log_definitions(call, arguments, setup);
     if (to == "-") {
         OutputTarget output;
         const auto stop_output = [&] { return stop() || !output.has_reader(); };
-        tell(call, live::play(call.inputs.front(), speed, output, stop_output, definitions));
+        print_report(call, arguments, live::play(call.inputs.front(), speed, output, stop_output, definitions));
         return cli::ok;
     }
     const auto target = live::open_playback_target(to, setup);
@@ -109,7 +116,7 @@ int play(const cli::StageCall& call) {
     if (!target->has_receiver(max_wait)) {
         throw NoResultError(fmt::format("{}: no other agent came within {} s", to, max_wait.count()));
     }
-    tell(call, live::play(call.inputs.front(), speed, *target, stop, definitions));
+    print_report(call, arguments, live::play(call.inputs.front(), speed, *target, stop, definitions));
     return cli::ok;
 }
 
@@ -125,11 +132,20 @@ replay on an Ivy bus, as Paparazzi's log player says it), file:NAME.data (a file
 output).)"};
     stage.max_inputs = 1;
     stage.output_help = "write how it was played to FILE instead of the standard output";
-    auto add = stage.options.add_options();
-    add("to", cli::value("TARGET"), "where to");
-    add("speed", cli::value<double>("X"), "so many times as fast (1)");
-    add("messages", cli::input_file("FILE"),
-        "definitions of the messages, for udp, serial and binary logs: a messages.xml, or a .log (the one beside the log)");
-    add("as-aircraft", "for ivy: messages as the aircraft itself would say them, without their time");
-    return cli::run_stage(argc, argv, stage, play);
+    stage.examples = {"flightwatt play flight.data --to udp:127.0.0.1:4242 --speed 10",
+                      "flightwatt play flight.data --to - | flightwatt watch - --model model.toml --remaining 600"};
+    stage.reads_logs = true;
+    PlayArguments arguments;
+    constexpr double max_speed = 100'000.0;
+    auto& options = stage.options;
+    options.add("to", arguments.to, {.value = "TARGET"}, "the target");
+    options.add("speed", arguments.speed,
+                {.value = "X", .min = 0.0, .max = max_speed, .above_min = true, .unit = "times as fast"},
+                "speed relative to the log's own time");
+    options.add(
+        "messages", arguments.messages, cli::input_file("FILE"),
+        "definitions of the messages, for udp, serial and binary logs: a messages.xml, or a .log; default: the log's");
+    options.add("as-aircraft", arguments.as_aircraft,
+                "for ivy: messages as the aircraft itself sends them, without their time");
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return play(call, arguments); });
 }

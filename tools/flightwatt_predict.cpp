@@ -19,6 +19,12 @@ namespace {
 using namespace flightwatt;
 using cli::Prediction;
 
+struct PredictArguments {
+    cli::BasisArguments basis;
+    cli::RequestedTime time;
+    flight::LoadOptions load;
+};
+
 /// A flight at a moment, and what its log held by then.
 struct KnownFlight {
     mechanical::FlightProgress flown;
@@ -27,15 +33,14 @@ struct KnownFlight {
 
 /// What was known at the moment: nothing that the log wrote later is looked at, in what is read, chosen,
 /// judged or said.
-KnownFlight read_progress(const cli::StageCall& call, const cli::RequestedTime& moment) {
-    auto options = cli::read_flight_options(call);
+KnownFlight read_progress(const cli::StageCall& call, const cli::RequestedTime& time, flight::LoadOptions options) {
     const auto sortie = options.sortie.value_or(1) - 1;
     options.sortie.reset();
     options.flight_required = false;
     const auto& file = call.inputs.front();
     auto candidates =
         read_candidates(flight::FlightFile(file, options.max_log_bytes, options.messages), options.aircraft_id);
-    const double until_s = cli::resolve_log_time(moment, candidates, sortie, options.segmentation);
+    const double until_s = cli::resolve_log_time(time, candidates, sortie, options.segmentation);
     for (auto& series : candidates) series = truncate_series(series, until_s);
     auto series = choose_aircraft(std::move(candidates));
     cli::refuse_unknown_flights(options, {series.flight});
@@ -51,10 +56,9 @@ KnownFlight read_progress(const cli::StageCall& call, const cli::RequestedTime& 
     return {std::move(flown), std::move(loaded.series)};
 }
 
-Prediction predict_flight(const cli::StageCall& call) {
-    const auto moment = cli::read_requested_time(call);
-    const auto basis = cli::read_basis(call, cli::PathNeed::required);
-    const auto known = read_progress(call, moment);
+Prediction predict_flight(const cli::StageCall& call, const PredictArguments& arguments) {
+    const auto basis = cli::read_basis(call, arguments.basis);
+    const auto known = read_progress(call, arguments.time, arguments.load);
     live::Diagnostics remarks;
     try {
         auto prediction = live::predict_flight(basis, known.flown, known.series, remarks);
@@ -66,8 +70,8 @@ Prediction predict_flight(const cli::StageCall& call) {
     }
 }
 
-int predict(const cli::StageCall& call) {
-    const auto prediction = predict_flight(call);
+int predict(const cli::StageCall& call, const PredictArguments& arguments) {
+    const auto prediction = predict_flight(call, arguments);
     cli::write_result(call, cli::text_of(prediction));
     if (call.json) cli::print(cli::json_text(cli::json_of(prediction)));
     return cli::ok;
@@ -87,13 +91,12 @@ what it says of the rest of the mission's path in its wind. The 95 % interval is
 remaining energy; it holds the spread between flights, the drift within one, that of the wind, and
 that the model rests on few flights.)"};
     stage.max_inputs = 1;
-    auto add = stage.options.add_options();
-    add("model", cli::input_file("MODEL.toml"), "from flightwatt fit, of two flights or more");
-    add("until", cli::value("S|now")->default_value("now"),
-        "the moment, in seconds since lift-off as flightwatt segment finds it in what was flown; now: the end of the "
-        "log, which may still grow");
-    add("until-log-time", cli::value<double>("S"), "the moment in the log's own seconds, instead of --until");
-    cli::add_basis_options(stage.options, cli::PathNeed::required);
-    cli::add_flight_options(stage.options);
-    return cli::run_stage(argc, argv, stage, predict);
+    stage.examples = {"flightwatt predict flight.data --model model.toml --remaining 600",
+                      "flightwatt predict flight.data --mission mission.toml --at 300 --battery pack.toml"};
+    stage.reads_logs = true;
+    PredictArguments arguments;
+    cli::add_basis_options(stage.options, arguments.basis);
+    cli::add_time_options(stage.options, arguments.time);
+    cli::add_flight_options(stage.options, arguments.load);
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return predict(call, arguments); });
 }

@@ -28,20 +28,26 @@ std::vector<std::string> words_of(const std::string& list) {
     return boost::algorithm::split(words, list, [](char c) { return c == ','; });
 }
 
-compute::ProfileNaming naming_of(const cli::StageCall& call) {
+struct ProfileArguments {
+    bool checks_interpolation = false;
+    std::optional<std::string> parameters;
+    std::optional<std::string> columns;
+};
+
+compute::ProfileNaming naming_of(const ProfileArguments& arguments) {
     compute::ProfileNaming naming;
     naming.where.file = "the command line";
-    if (const auto names = call.get_optional<std::string>("parameters")) naming.parameters = words_of(*names);
-    if (const auto names = call.get_optional<std::string>("columns")) naming.columns = words_of(*names);
+    if (arguments.parameters) naming.parameters = words_of(*arguments.parameters);
+    if (arguments.columns) naming.columns = words_of(*arguments.columns);
     return naming;
 }
 
-int check_interpolation(const cli::StageCall& call) {
+int check_interpolation(const cli::StageCall& call, const ProfileArguments& arguments) {
     std::string text;
     const auto screen = call.output ? cli::Screen() : screen_of(call);
     auto json = nlohmann::ordered_json::array();
     for (const auto& file : call.inputs) {
-        const auto profile = read_power_profile(file, naming_of(call));
+        const auto profile = read_power_profile(file, naming_of(arguments));
         if (const auto negative = negative_power_warning(profile); !negative.empty()) cli::warn(call, negative);
         const auto error = compute::leave_one_out(profile);
         if (!text.empty()) text += "\n";
@@ -96,11 +102,8 @@ int conclude(const cli::StageCall& call, const compute::ProfileOutcome& outcome,
     return cli::no_answer;
 }
 
-int profile_components(const cli::StageCall& call) {
-    if (call.has("check-interpolation")) return check_interpolation(call);
-    if (call.has("parameters") || call.has("columns")) {
-        throw UsageError("--parameters and --columns belong to --check-interpolation");
-    }
+int profile_components(const cli::StageCall& call, const ProfileArguments& arguments) {
+    if (arguments.checks_interpolation) return check_interpolation(call, arguments);
     if (call.inputs.size() != 1) throw UsageError("expected one SPEC");
     if (!call.output) throw UsageError("no folder given: expected -o DIR");
     const auto specification = compute::read_profile_specification(call.inputs.front());
@@ -138,11 +141,16 @@ again while their part of SPEC is the same; remove DIR when a program itself has
 
 Samplers: auto, ina238, ina3221 (either of ina3221-iio, ina3221-hwmon), rapl, power_supply, command, recorded.)"};
     stage.output_help = "the folder of the results";
+    stage.examples = {"flightwatt profile detector.toml -o profiles",
+                      "flightwatt profile --check-interpolation profiles/detector.csv"};
     stage.shows_table = true;
-    auto add = stage.options.add_options();
-    add("check-interpolation", "of profiles: find each node from the others, and print the errors");
-    add("parameters", cli::value("A,B"), "the parameters' names, of a profile that has flags (--check-interpolation)");
-    add("columns", cli::value("A,B,power_w"),
-        "the columns' names, of a profile without a header (--check-interpolation)");
-    return cli::run_stage(argc, argv, stage, profile_components);
+    ProfileArguments arguments;
+    auto& options = stage.options;
+    options.add("check-interpolation", arguments.checks_interpolation,
+                "of profiles: interpolate each node from the others, and print the errors");
+    options.add("parameters", arguments.parameters, {.value = "A,B", .needs = {"check-interpolation"}},
+                "the parameters' names, of a profile that has flags");
+    options.add("columns", arguments.columns, {.value = "A,B,power_w", .needs = {"check-interpolation"}},
+                "the columns' names, of a profile without a header");
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return profile_components(call, arguments); });
 }

@@ -5,6 +5,7 @@
 #include "cli/output/flight_options.h"
 #include "cli/output/mission_output.h"
 #include "cli/output/replay_output.h"
+#include "cli/output/stage_options.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "mission/mission_file.h"
@@ -19,11 +20,18 @@ namespace {
 
 using namespace flightwatt;
 
-std::vector<mission::MissionVariant> read_missions(const cli::StageCall& call) {
-    if (!call.has("mission")) throw UsageError("no mission given: --mission FILE, as often as there are missions");
+struct ReplayArguments {
+    std::vector<std::string> missions;
+    std::optional<std::string> model;
+    mechanical::ModelFitOptions fit;
+    cli::FlightArguments flights;
+};
+
+std::vector<mission::MissionVariant> read_missions(const cli::StageCall& call, const std::vector<std::string>& files) {
+    if (files.empty()) throw UsageError("no mission given: --mission FILE, as often as there are missions");
     std::vector<mission::MissionVariant> missions;
     std::set<std::string> names;
-    for (const auto& file : call.get<std::vector<std::string>>("mission")) {
+    for (const auto& file : files) {
         missions.push_back(mission::read_mission(file, {true, std::nullopt}));
         const auto& setup = setup_of(missions.back());
         cli::warn_of_setup(call, setup);
@@ -33,14 +41,13 @@ std::vector<mission::MissionVariant> read_missions(const cli::StageCall& call) {
     return missions;
 }
 
-int replay(const cli::StageCall& call) {
+int replay(const cli::StageCall& call, const ReplayArguments& arguments) {
     mission::ReplayOptions options;
-    options.fit = cli::read_fit_options(call);
-    const auto missions = read_missions(call);
-    if (const auto file = call.get_optional<std::string>("model"))
-        options.model = mechanical::read_mechanical_model(*file);
+    options.fit = arguments.fit;
+    const auto missions = read_missions(call, arguments.missions);
+    if (arguments.model) options.model = mechanical::read_mechanical_model(*arguments.model);
     const auto flights =
-        cli::measured_flights(call, cli::read_flight_options(call), mechanical::min_samples(options.fit.phases.order));
+        cli::measured_flights(call, arguments.flights, mechanical::min_samples(options.fit.phases.order));
     auto replays = replay_flights(missions, flights, options);
     for (const auto& left : replays.not_replayed)
         cli::warn(call, fmt::format("{}: {} is not flown on it: {}", left.flight, left.mission, left.reason));
@@ -78,14 +85,17 @@ Where no plan keeps the reserve, what demands least energy is run, and the table
 utility that hindsight has more; schedules that do not keep the reserve have none. Last is said what replanning in flight was worth against planning
 beforehand. -o writes the table of schedules as CSV.)" +
             std::string(cli::several_flights_text)};
-    stage.shows_table = true;
+    stage.examples = {"flightwatt replay my --mission mission.toml",
+                      "flightwatt replay my --mission a.toml --mission b.toml -o replays.csv"};
+    stage.reads_logs = stage.uses_threads = stage.shows_table = true;
     stage.output_help = "write the table of schedules to FILE, as CSV";
-    auto add = stage.options.add_options();
-    add("mission", cli::input_files("FILE"), "a mission whose schedules are replayed; may be given several times");
-    add("model", cli::input_file("MODEL.toml"),
-        "what is known before each flight is this model, instead of one fitted to the other flights");
-    cli::add_fit_options(stage.options);
-    cli::add_mix_option(stage.options);
-    cli::add_flight_options(stage.options);
-    return cli::run_stage(argc, argv, stage, replay);
+    ReplayArguments arguments;
+    auto& options = stage.options;
+    options.add("mission", arguments.missions, cli::input_file("FILE"),
+                "a mission whose schedules are replayed; may be given several times");
+    options.add("model", arguments.model, cli::input_file("MODEL.toml"),
+                "plan each flight with this model, instead of one fitted to the other flights");
+    cli::add_fit_options(options, arguments.fit);
+    cli::add_flight_options(options, arguments.flights);
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return replay(call, arguments); });
 }

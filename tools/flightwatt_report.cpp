@@ -3,8 +3,8 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/text.h"
-#include "cli/output/battery_output.h"
 #include "cli/output/mission_output.h"
+#include "cli/output/stage_options.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
 #include "mission/mission_file.h"
@@ -30,19 +30,27 @@ namespace {
 
 using namespace flightwatt;
 
-std::optional<double> figure_width_pt(const cli::StageCall& call) {
-    const auto width = call.get_optional<std::string>("figure-width");
-    if (!width) return std::nullopt;
-    if (!call.has("figures")) throw UsageError("--figure-width is that of the files of --figures DIR");
-    return report::parse_figure_width_pt(*width);
+struct ReportArguments {
+    std::optional<std::string> figures;
+    std::optional<std::string> figure_width;
+    std::optional<std::string> published;
+    std::optional<std::string> reference_figures;
+    std::optional<std::string> title;
+    std::optional<double> capacity_ah;
+    bool with_replay = false;
+};
+
+std::optional<double> figure_width_pt(const ReportArguments& arguments) {
+    return arguments.figure_width ? std::optional(report::parse_figure_width_pt(*arguments.figure_width))
+                                  : std::nullopt;
 }
 
-report::ReportInput read_inputs(const cli::StageCall& call) {
+report::ReportInput read_inputs(const cli::StageCall& call, const ReportArguments& arguments) {
     report::ReportInput inputs;
-    inputs.capacity_ah = cli::capacity_option(call);
-    figure_width_pt(call);  // a bad one is refused before any work
-    inputs.published_file = call.get_optional<std::string>("published");
-    inputs.with_replay = call.has("replay");
+    inputs.capacity_ah = arguments.capacity_ah;
+    figure_width_pt(arguments);  // a bad one is refused before any work
+    inputs.published_file = arguments.published;
+    inputs.with_replay = arguments.with_replay;
     for (const auto& input : call.inputs) {
         std::error_code error;
         if (!std::filesystem::is_directory(input, error)) {
@@ -67,11 +75,11 @@ std::string time_of_report() {
 }
 
 /// Where figures are wanted as files.
-void write_figure_files(const cli::StageCall& call, const std::vector<report::Section>& sections,
-                        const report::WebFiles& web) {
-    const auto folder = call.get_optional<std::string>("figures");
+void write_figure_files(const cli::StageCall& call, const ReportArguments& arguments,
+                        const std::vector<report::Section>& sections, const report::WebFiles& web) {
+    const auto& folder = arguments.figures;
     if (!folder) return;
-    const auto files = write_figures(sections, web, *folder, figure_width_pt(call));
+    const auto files = write_figures(sections, web, *folder, figure_width_pt(arguments));
     cli::note(call, fmt::format("{} figures in {}: .vl.json{}{}", files.figures, *folder, files.has_svg ? ", .svg" : "",
                                 files.has_pdf ? ", .pdf" : ""));
     if (!files.has_svg) cli::warn(call, "node is not there: no figure was rendered");
@@ -87,24 +95,24 @@ report::ReportLog log_of(const cli::StageCall& call) {
             }};
 }
 
-int write_page(const cli::StageCall& call) {
-    auto input = read_inputs(call);
+int write_page(const cli::StageCall& call, const ReportArguments& arguments) {
+    auto input = read_inputs(call, arguments);
     if (input.with_replay && (input.outs.empty() || input.missions.empty()))
         throw UsageError(
             "--replay flies missions on a batch's flights: give a folder of flightwatt batch and missions");
-    const bool wants_page = call.output || (!call.json && !call.has("figures"));
+    const bool wants_page = call.output || (!call.json && !arguments.figures);
     std::optional<report::WebFiles> web;  // read before the work: where they are missing, that is told at once
-    if (wants_page || call.has("figures")) web = report::read_web_files(report::web_folder());
+    if (wants_page || arguments.figures) web = report::read_web_files(report::web_folder());
     report::PageHead head{"FlightWatt report",
                           {{"computed", time_of_report()}, {"by", "flightwatt " FLIGHTWATT_VERSION}}};
-    if (const auto title = call.get_optional<std::string>("title")) head.title = valid_utf8(*title);
-    if (const auto folder = call.get_optional<std::string>("reference-figures")) {
+    if (arguments.title) head.title = valid_utf8(*arguments.title);
+    if (const auto& folder = arguments.reference_figures) {
         input.figures = report::read_published_figures(*folder);
         head.facts.emplace_back("beside", "the paper's Figs. 2 (c-e), 3 (a, b) and 4, digitised");
     }
     const auto content = make_report(input, log_of(call));
     std::ranges::copy(content.facts, std::back_inserter(head.facts));
-    if (web) write_figure_files(call, content.sections, *web);
+    if (web) write_figure_files(call, arguments, content.sections, *web);
     if (wants_page) cli::write_result(call, page_html(head, content.sections, *web));
     if (!call.json) return cli::ok;
     cli::Json json{{"title", head.title}};
@@ -123,16 +131,23 @@ model, validation, battery; of several folders each its own) and of missions (so
 of service, plan). Its figures are Vega-Lite specifications with their data; --figures writes them as files
 for papers: .vl.json, .svg (by node) and .pdf (where rsvg-convert is). The model is the batch's own, with
 the bands that the batch stored.)"};
-    auto add = stage.options.add_options();
-    add("figures", cli::output_file("DIR"), "write every figure to DIR");
-    add("figure-width", cli::value("WIDTH"), "of those files: 3.5in, 89mm ...; their type is then set at 8 points");
-    add("published", cli::input_file("MODEL.toml"), "show Table I beside this model's");
-    add("reference-figures", cli::input_file("DIR"),
-        "show the paper's figures, digitised, beside ours: fig2_cruise.csv and others");
-    add("title", cli::value("TITLE"), "of the page");
-    add("capacity", cli::value<double>("AH"),
-        "the capacity of the flights' battery; without it that of the missions' pack, if it is of these flights, or "
-        "else what flightwatt battery would say");
-    add("replay", "fly the missions' schedules on the power that the batch's flights measured (flightwatt replay)");
-    return cli::run_stage(argc, argv, stage, write_page);
+    stage.examples = {"flightwatt report my missions/first.toml -o report.html",
+                      "flightwatt report my --figures figures --figure-width 3.5in"};
+    stage.uses_threads = true;
+    ReportArguments arguments;
+    auto& options = stage.options;
+    options.add("figures", arguments.figures, cli::output_file("DIR"), "write every figure to DIR");
+    options.add("figure-width", arguments.figure_width, {.value = "WIDTH", .needs = {"figures"}},
+                "of those files: 3.5in, 89mm ...; their type is then set at 8 points");
+    options.add("published", arguments.published, cli::input_file("MODEL.toml"), "show Table I next to this model's");
+    options.add("reference-figures", arguments.reference_figures, cli::input_file("DIR"),
+                "show the paper's figures, digitised, next to ours: fig2_cruise.csv and others");
+    options.add("title", arguments.title, {.value = "TITLE"}, "of the page");
+    cli::add_capacity_option(
+        options, arguments.capacity_ah,
+        "the capacity of the flights' battery; default: that of the missions' pack, if it is of these "
+        "flights, or else the estimate of flightwatt battery");
+    options.add("replay", arguments.with_replay,
+                "fly the missions' schedules on the power that the batch's flights measured (flightwatt replay)");
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return write_page(call, arguments); });
 }

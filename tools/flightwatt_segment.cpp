@@ -24,6 +24,7 @@ using namespace flightwatt;
 
 /// What the stage says of its flights.
 struct SegmentedFlights {
+    bool explains = false;
     bool are_several = false;  ///< then rows, and texts of --explain, begin with their flight
     std::string title;
     std::string csv;
@@ -58,20 +59,19 @@ void add_flight(const cli::StageCall& call, const std::string& file, const fligh
     else
         segmented.csv = flight::phases_csv(series, phases);
     if (call.json) segmented.json.push_back(cli::to_json(series, phases, power, loaded.warnings));
-    if (!call.has("explain")) return;
+    if (!segmented.explains) return;
     if (segmented.are_several)
         segmented.explained += (segmented.explained.empty() ? "" : "\n") + segmented.title + "\n";
     segmented.explained += cli::explanation(series, phases, power, screen_of(call));
 }
 
 /// The flights of several logs and folders. One that cannot be used is skipped.
-SegmentedFlights segment_several(const cli::StageCall& call, flight::LoadOptions options) {
+void segment_several(const cli::StageCall& call, flight::LoadOptions options, SegmentedFlights& segmented) {
     const auto files = cli::files_of(call, options);
     std::vector<std::string> names(files.size());
     std::ranges::transform(files, names.begin(), cli::flight_of_file);
     options.excluded = cli::expand_patterns(options.excluded, "exclude", names);
     cli::refuse_unknown_flights(options, names);
-    SegmentedFlights segmented;
     segmented.are_several = true;
     std::size_t used = 0;
     for (std::size_t i = 0; i < files.size(); ++i) {
@@ -89,21 +89,19 @@ SegmentedFlights segment_several(const cli::StageCall& call, flight::LoadOptions
     }
     if (used == 0) throw InputError({}, "no flight is left", "see the reasons above");
     segmented.title = fmt::format("{} flights", used);
-    return segmented;
 }
 
-int segment_flights(const cli::StageCall& call) {
-    auto options = cli::read_flight_options(call);
+int segment_flights(const cli::StageCall& call, flight::LoadOptions options, bool explain) {
     options.power_required = false;
     const auto& file = call.inputs.front();
     std::error_code none;
     SegmentedFlights segmented;
+    segmented.explains = explain;
     if (call.inputs.size() > 1 || std::filesystem::is_directory(file, none)) {
-        segmented = segment_several(call, options);
+        segment_several(call, options, segmented);
     } else {
         add_flight(call, file, cli::load_flight(call, file, options), segmented);
     }
-    const bool explain = call.has("explain");
     if (!explain || call.output) {
         write_csv_result(call, segmented.csv,
                          {segmented.title,
@@ -129,8 +127,11 @@ touchdown. TAKEOFF messages, mode and block stand beside each edge as witnesses;
 A log without measured power is segmented too; its columns of power are then empty. Of several logs, or of
 a FOLDER of logs or of flightwatt batch, each row begins with its flight, and --json is a list. A log that
 cannot be used is named and skipped, and the exit code is then 3.)"};
-    stage.shows_table = true;
-    stage.options.add_options()("explain", "show the reasons for each edge, and how good the power record is");
-    cli::add_flight_options(stage.options);
-    return cli::run_stage(argc, argv, stage, segment_flights);
+    stage.examples = {"flightwatt segment flight.data", "flightwatt segment logs --explain --aircraft 5 -o phases.csv"};
+    stage.reads_logs = stage.shows_table = true;
+    flight::LoadOptions load;
+    bool explain = false;
+    stage.options.add("explain", explain, "show the reasons for each edge, and the quality of the power record");
+    cli::add_flight_options(stage.options, load);
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return segment_flights(call, load, explain); });
 }

@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "cli/output/mission_output.h"
+#include "cli/output/stage_options.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "mission/mission_file.h"
@@ -17,10 +18,16 @@ namespace {
 
 using namespace flightwatt;
 
+struct SimulateArguments {
+    double step_s = 1.0;
+    std::optional<std::string> schedule_file;
+    cli::SamplingArguments sampling;
+    std::optional<std::string> samples_file;
+};
+
 /// The mission with the schedule that was flown, wherever it came from.
-void write_schedule(const cli::StageCall& call, const std::string& text, const mission::PreparedMission& prepared,
-                    const mission::SimulatedFlight& flight) {
-    const auto file = call.get_optional<std::string>("schedule-out");
+void write_schedule(const cli::StageCall& call, const std::optional<std::string>& file, const std::string& text,
+                    const mission::PreparedMission& prepared, const mission::SimulatedFlight& flight) {
     if (!file) return;
     const auto folder = std::filesystem::absolute(*file).parent_path();
     const auto heading = fmt::format("# {}\n", cli::one_line(describe(flight.simulation.summary)));
@@ -30,28 +37,28 @@ void write_schedule(const cli::StageCall& call, const std::string& text, const m
 }
 
 /// Draws flights if they were asked for.
-void sample(const cli::StageCall& call, const mission::PreparedMission& prepared,
+void sample(const SimulateArguments& arguments, const mission::PreparedMission& prepared,
             const std::vector<mission::Disturbance>& disturbed_by, mission::MissionSummary& summary) {
-    const auto options = sampling_options(call, call.has("samples-csv"));
+    const auto& file = arguments.samples_file;
+    const auto options = sampling_options(arguments.sampling, file.has_value());
     if (!options) return;
     summary.samples = sample_flights(prepared, disturbed_by, *options);
-    if (const auto file = call.get_optional<std::string>("samples-csv"))
-        write_file_atomically(*file, to_csv(summary.samples->bands));
+    if (file) write_file_atomically(*file, to_csv(summary.samples->bands));
 }
 
-int simulate_mission(const cli::StageCall& call) {
+int simulate_mission(const cli::StageCall& call, const SimulateArguments& arguments) {
     const auto text = read_file(call.inputs.front());
     const auto mission = mission::parse_mission(text, call.inputs.front());
     cli::warn_of_setup(call, setup_of(mission));
-    const auto disturbed_by = cli::read_disturb_option(call, setup_of(mission));
+    const auto disturbed_by = read_disturbances(arguments.sampling, setup_of(mission));
     const auto prepared = prepare_mission(mission);
     mission::SimulationOptions steps;
-    steps.output_s = call.get<double>("step");
+    steps.output_s = arguments.step_s;
     auto flight = simulate_prepared(prepared, steps, disturbed_by);
     auto& summary = flight.simulation.summary;
     if (summary.undeliverable) throw NoResultError(describe(summary));
-    sample(call, prepared, disturbed_by, summary);
-    write_schedule(call, text, prepared, flight);
+    sample(arguments, prepared, disturbed_by, summary);
+    write_schedule(call, arguments.schedule_file, text, prepared, flight);
     constexpr std::size_t rows = 24;
     write_csv_result(call, to_csv(flight.simulation.curve),
                      {summary.mission, {"time_s", "phase", "soc_percent", "power_w"}, rows});
@@ -79,14 +86,17 @@ A mission with [policy] kind = "adaptive" is planned anew in flight. --samples d
 their final state of charge; the CSV stays that of the mission as it is stated.)"};
     stage.max_inputs = 1;
     stage.shows_table = true;
-    auto add = stage.options.add_options();
-    add("step", cli::value<double>("S")->default_value(1.0, "1"),
-        "seconds between rows; jumps of power have rows besides");
-    add("disturb", cli::input_file("FILE"), "let the disturbances of FILE happen (missions/disturbances/)");
-    add("schedule-out", cli::output_file("FILE"), "write the mission with the schedule that was flown to FILE");
-    add_sampling_options(stage);
-    stage.options.add_options()(
-        "samples-csv", cli::output_file("FILE"),
-        "with --samples: write the state of charge over time that 5, 50 and 95 % of the flights are below");
-    return cli::run_stage(argc, argv, stage, simulate_mission);
+    stage.examples = {"flightwatt simulate mission.toml -o soc.csv",
+                      "flightwatt simulate mission.toml --samples 2000 --json"};
+    stage.uses_threads = true;
+    SimulateArguments arguments;
+    auto& options = stage.options;
+    options.add("step", arguments.step_s, {.value = "S"}, "seconds between rows; jumps of power have additional rows");
+    options.add("schedule-out", arguments.schedule_file, cli::output_file("FILE"),
+                "write the mission with the schedule that was flown to FILE");
+    add_sampling_options(options, arguments.sampling);
+    options.add("samples-csv", arguments.samples_file,
+                {.value = "FILE", .file = cli::FileRole::output, .needs = {"samples"}},
+                "write the state of charge over time that 5, 50 and 95 % of the drawn flights are below");
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return simulate_mission(call, arguments); });
 }

@@ -18,6 +18,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <random>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -63,16 +64,26 @@ std::string truth_csv(const synthetic::SyntheticScenario& scenario) {
     return csv.text();
 }
 
-/// The hazards asked for: none, one by its name, or all.
-std::vector<std::pair<std::string, synthetic::LogAnomaly>> chosen_hazards(const std::string& name) {
-    if (name == "none") return {{"", synthetic::LogAnomaly::none}};
-    if (name == "all") return synthetic::anomaly_names();
-    std::vector<std::string> names{"none", "all"};
-    for (const auto& known : synthetic::anomaly_names()) {
-        if (known.first == name) return {known};
-        names.push_back(known.first);
-    }
-    throw UsageError(fmt::format("--hazard {}: expected {}", name, fmt::join(names, ", ")));
+using Anomalies = std::vector<std::pair<std::string, synthetic::LogAnomaly>>;
+
+struct SynthesizeArguments {
+    std::size_t flights = 6;
+    std::uint64_t seed = 1;
+    std::string name = "opterra_synthetic";
+    synthetic::SpreadOptions spread;
+    synthetic::SyntheticSensors sensors;
+    std::optional<double> cruise_s;
+    bool flight_messages_only = false;
+    bool with_truth = false;
+    Anomalies anomalies;
+};
+
+/// The choices of --anomaly: none, each by its name, and all.
+std::vector<std::pair<std::string, Anomalies>> anomaly_choices() {
+    std::vector<std::pair<std::string, Anomalies>> choices{{"none", {{"", synthetic::LogAnomaly::none}}}};
+    for (const auto& anomaly : synthetic::anomaly_names()) choices.push_back({anomaly.first, {anomaly}});
+    choices.emplace_back("all", synthetic::anomaly_names());
+    return choices;
 }
 
 /// What one synthetic log is of, for its names.
@@ -81,29 +92,29 @@ struct LogIdentity {
     std::string made_by;
 };
 
-std::string log_name(const std::string& name, std::size_t number, const std::string& hazard) {
-    return fmt::format("{}_{:02}{}{}", name, number, hazard.empty() ? "" : "_", hazard);
+std::string log_name(const std::string& name, std::size_t number, const std::string& anomaly) {
+    return fmt::format("{}_{:02}{}{}", name, number, anomaly.empty() ? "" : "_", anomaly);
 }
 
 /// Refuses what would replace an input before the first log is written.
-template <typename Hazards>
-void declare_logs(const cli::StageCall& call, const std::string& name, std::size_t count, const Hazards& hazards) {
-    for (std::size_t i = 1; i <= count; ++i) {
-        for (const auto& hazard : hazards) {
-            const auto stem = (std::filesystem::path(*call.output) / log_name(name, i, hazard.first)).string();
+void register_logs(const cli::StageCall& call, const SynthesizeArguments& arguments) {
+    for (std::size_t i = 1; i <= arguments.flights; ++i) {
+        for (const auto& anomaly : arguments.anomalies) {
+            const auto name = log_name(arguments.name, i, anomaly.first);
+            const auto stem = (std::filesystem::path(*call.output) / name).string();
             for (const auto* ending : {".log", ".data", ".truth.csv"}) register_output(stem + ending);
         }
     }
 }
 
 /// Writes NAME.log, NAME.data and, if asked for, NAME.truth.csv; returns the log's size in bytes.
-std::size_t write_log(const cli::StageCall& call, const synthetic::SyntheticScenario& scenario,
-                      const synthetic::SyntheticSensors& sensors, const LogIdentity& identity, std::uint64_t seed) {
-    const auto log = make_synthetic_log(scenario, sensors, identity.name, identity.made_by, seed);
+std::size_t write_log(const cli::StageCall& call, const SynthesizeArguments& arguments,
+                      const synthetic::SyntheticScenario& scenario, const LogIdentity& identity, std::uint64_t seed) {
+    const auto log = make_synthetic_log(scenario, arguments.sensors, identity.name, identity.made_by, seed);
     const auto stem = std::filesystem::path(*call.output) / identity.name;
     write_file_atomically(stem.string() + ".log", log.log);
     write_file_atomically(stem.string() + ".data", log.data);
-    if (call.has("truth")) write_file_atomically(stem.string() + ".truth.csv", truth_csv(scenario));
+    if (arguments.with_truth) write_file_atomically(stem.string() + ".truth.csv", truth_csv(scenario));
     if (!call.json) {
         cli::note(call, fmt::format("{}: synthetic log of {}", stem.string(),
                                     duration_text(scenario.end_s - scenario.begin_s)));
@@ -132,53 +143,44 @@ void require_flyable(const mechanical::MechanicalModel& model, const std::string
     }
 }
 
-/// --name, where it can begin the name of a file.
-std::string read_name(const cli::StageCall& call) {
-    auto name = call.get<std::string>("name");
-    if (!name.empty() && name.find('/') == std::string::npos) return name;
-    throw UsageError(fmt::format("--name is '{}', expected the beginning of a file name, without '/'", name));
+/// Refuses a name that cannot begin the name of a file.
+void check_name(const std::string& name) {
+    if (name.empty() || name.find('/') != std::string::npos)
+        throw UsageError(fmt::format("--name is '{}', expected the beginning of a file name, without '/'", name));
 }
 
 /// The model, with another duration of cruise where one is asked for: its curve stretched.
-mechanical::MechanicalModel read_model(const cli::StageCall& call) {
+mechanical::MechanicalModel read_model(const cli::StageCall& call, const std::optional<double>& cruise_s) {
     auto model = mechanical::read_mechanical_model(call.inputs.front());
-    if (call.has("cruise")) {
+    if (cruise_s) {
         auto& cruise = model.phases[flight::Phase::cruise];
-        const double duration_s = cli::number_option(call, "cruise", 60.0, 1e5);
-        cruise.fourier = time_scaled_model(cruise, duration_s, mechanical::PhaseTimeScaling::stretched);
-        cruise.duration_s = duration_s;
+        cruise.fourier = time_scaled_model(cruise, *cruise_s, mechanical::PhaseTimeScaling::stretched);
+        cruise.duration_s = *cruise_s;
     }
     require_flyable(model, call.inputs.front());
     return model;
 }
 
-int synthesize(const cli::StageCall& call) {
+int synthesize(const cli::StageCall& call, SynthesizeArguments arguments) {
     if (!call.output) throw UsageError("no folder given: expected -o FOLDER");
-    const auto count = cli::count_option(call, "flights", 1, 1000);
-    const auto seed = cli::count_option(call, "seed");
-    const auto name = read_name(call);
-    synthetic::SpreadOptions spread;
-    spread.band_scale = cli::number_option(call, "spread", 0.0, 100.0);  // beyond, hardly a flight has power left
-    synthetic::SyntheticSensors sensors;
-    sensors.current_noise_a = cli::number_option(call, "current-noise", 0.0, 1000.0);
-    sensors.sends_other_messages = !call.has("flight-messages-only");
-    const auto hazard_list = chosen_hazards(call.get<std::string>("hazard"));
-    const auto model = read_model(call);
-    declare_logs(call, name, count, hazard_list);
+    const auto& [count, seed] = std::tie(arguments.flights, arguments.seed);
+    arguments.sensors.sends_other_messages = !arguments.flight_messages_only;
+    const auto model = read_model(call, arguments.cruise_s);
+    register_logs(call, arguments);
     make_directories(*call.output);
-    const auto flights = draw_flights(model, count, seed, spread);
+    const auto flights = draw_flights(model, count, seed, arguments.spread);
     cli::Json written = nlohmann::ordered_json::array();
     for (std::size_t i = 0; i < count; ++i) {
         std::mt19937_64 random(seed + 1000 * (i + 1));
         const auto flight = make_flight(flights[i], random);
         const auto log_seed = random();
-        for (const auto& [hazard_name, hazard] : hazard_list) {
+        for (const auto& [anomaly_name, anomaly] : arguments.anomalies) {
             LogIdentity identity;
-            identity.name = log_name(name, i + 1, hazard_name);
+            identity.name = log_name(arguments.name, i + 1, anomaly_name);
             identity.made_by =
                 fmt::format("Made by flightwatt synthesize: model {}, flight {} of {}, seed {}{}{}.", model.name, i + 1,
-                            count, seed, hazard_name.empty() ? "" : ", hazard ", hazard_name);
-            const auto bytes = write_log(call, scenario_with_anomaly(flight, hazard), sensors, identity, log_seed);
+                            count, seed, anomaly_name.empty() ? "" : ", anomaly ", anomaly_name);
+            const auto bytes = write_log(call, arguments, scenario_with_anomaly(flight, anomaly), identity, log_seed);
             written.push_back({{"flight", identity.name}, {"bytes", bytes}});
         }
     }
@@ -196,20 +198,30 @@ sensor noise, lost lines, durations that vary and a spread between flights. The 
 synthetic. The same seed gives the same files.)"};
     stage.max_inputs = 1;
     stage.output_help = "the folder to write into";
-    auto add = stage.options.add_options();
-    add("flights", cli::value("N")->default_value("6"), "how many");
-    add("seed", cli::value("S")->default_value("1"), "seed of everything random");
-    add("name", cli::value("NAME")->default_value("opterra_synthetic"), "file names begin with it");
-    add("spread", cli::value<double>("X")->default_value(1.0, "1"),
-        "flight-to-flight spread, as a multiple of the paper's bands");
-    add("current-noise", cli::value<double>("A")->default_value(synthetic::SyntheticSensors{}.current_noise_a, "0.001"),
-        "noise of the current sensor, as a standard deviation");
-    add("cruise", cli::value<double>("S"), "how long flights cruise, in seconds (the model's)");
-    add("flight-messages-only", "leave out the messages that no flight is read from: small logs");
-    add("truth", "write the true phases beside each log, as NAME.truth.csv");
-    add("hazard", cli::value("NAME")->default_value("none"),
-        "something that real logs do and that must not fool the segmentation: estimator-starts-at-zero, "
+    stage.examples = {"flightwatt synthesize model.toml -o logs --flights 12 --seed 7",
+                      "flightwatt synthesize model.toml -o logs --anomaly two-sorties --truth"};
+    SynthesizeArguments arguments;
+    const auto anomalies = anomaly_choices();
+    arguments.anomalies = anomalies.front().second;
+    auto& options = stage.options;
+    options.add("flights", arguments.flights, {.value = "N", .min = 1, .max = 1000}, "number of flights");
+    options.add("seed", arguments.seed, {.value = "S"}, "seed of everything random");
+    options.add("name", arguments.name, {.value = "NAME"}, "beginning of the file names");
+    options.add("spread", arguments.spread.band_scale, {.value = "X", .min = 0.0, .max = 100.0},
+                "variability between flights, as a multiple of the paper's bands");
+    options.add("current-noise", arguments.sensors.current_noise_a,
+                {.value = "A", .min = 0.0, .max = 1000.0, .unit = "A"},
+                "noise of the current sensor, as a standard deviation");
+    options.add("cruise", arguments.cruise_s, {.value = "S", .min = 60.0, .max = 1e5, .unit = "s"},
+                "duration of the cruise in seconds; default: the model's");
+    options.add("flight-messages-only", arguments.flight_messages_only,
+                "write only the messages from which flights are read: small logs");
+    options.add("truth", arguments.with_truth, "write the true phases next to each log, as NAME.truth.csv");
+    options.add_choice(
+        "anomaly", arguments.anomalies, anomalies, {.value = "NAME", .old_name = "hazard"},
+        "an event of real logs that must not mislead the segmentation: estimator-starts-at-zero, "
         "dives-in-cruise, run-up, power-burst-after-landing, throttle-burst-before-touchdown, two-sorties, "
         "begins-in-the-air, ends-in-the-air, landing-in-steps, works-low, or all, a log each");
-    return cli::run_stage(argc, argv, stage, synthesize);
+    options.add_rule([&] { check_name(arguments.name); });
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return synthesize(call, arguments); });
 }

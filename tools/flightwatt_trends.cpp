@@ -2,9 +2,9 @@
 
 #include "base/error.h"
 #include "batch/trend.h"
-#include "cli/output/battery_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/records.h"
+#include "cli/output/stage_options.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "report/page.h"
@@ -27,11 +27,17 @@ namespace {
 using namespace flightwatt;
 using Json = nlohmann::ordered_json;
 
-std::vector<report::FlightTrendData> read_flights(const cli::StageCall& call) {
-    const auto options = cli::read_flight_options(call);
-    const auto chosen = cli::with_chosen_flights(call, options);
+struct TrendsArguments {
+    std::optional<double> capacity_ah;
+    std::optional<std::string> figures;
+    cli::FlightFilter filter;
+    cli::FlightArguments flights;
+};
+
+std::vector<report::FlightTrendData> read_flights(const cli::StageCall& call, const TrendsArguments& arguments) {
+    const auto chosen = cli::with_chosen_flights(call, arguments.filter, arguments.flights.load);
     return cli::from_flights<report::FlightTrendData>(
-        chosen, options, [&](const std::string& file, flight::LoadedFlight& loaded) {
+        chosen, arguments.flights, [&](const std::string& file, flight::LoadedFlight& loaded) {
             if (!loaded.exclusion.empty()) {
                 cli::warn(call, fmt::format("excluded: {}: {}", loaded.series.flight, loaded.exclusion));
                 return std::vector<report::FlightTrendData>{};
@@ -133,31 +139,29 @@ void say_what_changes(const cli::StageCall& call, const std::vector<report::Flig
                   fmt::format("{} of {} quantities judged; one in 20 has a trend by chance", changing.size(), judged));
 }
 
-void write_figure_files(const cli::StageCall& call, const std::vector<report::AircraftTrend>& trends,
-                        const report::WebFiles& web) {
+void write_figure_files(const cli::StageCall& call, const std::string& folder,
+                        const std::vector<report::AircraftTrend>& trends, const report::WebFiles& web) {
     const auto section = trends_section(trends);
     if (!section) {
         cli::note(call, "there is no figure, as there is no trend");
         return;
     }
-    const auto folder = call.get<std::string>("figures");
     const auto files = report::write_figures({*section}, web, folder);
     cli::note(call, fmt::format("{} figure{} in {}: .vl.json{}{}", files.figures, files.figures == 1 ? "" : "s", folder,
                                 files.has_svg ? ", .svg" : "", files.has_pdf ? ", .pdf" : ""));
     if (!files.has_svg) cli::warn(call, "node is not there: no figure was rendered");
 }
 
-int show_trends(const cli::StageCall& call) {
-    const auto capacity_ah = cli::capacity_option(call);
+int show_trends(const cli::StageCall& call, const TrendsArguments& arguments) {
     std::optional<report::WebFiles> web;  // read before the work: where they are missing, that is told at once
-    if (call.has("figures")) web = report::read_web_files(report::web_folder());
-    auto flights = read_flights(call);
+    if (arguments.figures) web = report::read_web_files(report::web_folder());
+    auto flights = read_flights(call, arguments);
     if (flights.empty()) throw InputError({}, "no flight is left", "see the reasons above");
     std::ranges::stable_sort(flights, {}, [](const auto& flight) {
         return std::pair(flight.aircraft, flight.facts.start_clock_s.value_or(0.0));
     });
     constexpr std::size_t max_records = 60;
-    for (const auto& note : add_state_of_health(flights, max_records, capacity_ah)) cli::note(call, note);
+    for (const auto& note : add_state_of_health(flights, max_records, arguments.capacity_ah)) cli::note(call, note);
     const auto trends = trends_of(flights);
     const auto screen = screen_of(call);
     write_csv_result(call, flights_csv(flights),
@@ -169,7 +173,7 @@ int show_trends(const cli::StageCall& call) {
     else if (call.output || screen.is_terminal)
         cli::print(screen_text(trend_table(trends), screen, {"trends", {"quantity", "verdict", "in 30 days"}}));
     say_what_changes(call, flights, trends);
-    if (web) write_figure_files(call, trends, *web);
+    if (web) write_figure_files(call, *arguments.figures, trends, *web);
     return cli::ok;
 }
 
@@ -183,14 +187,18 @@ the air, the mean power of its cruise, the pack's resistance, its capacity where
 tell it, and the charge drawn, as CSV; and whether they rise or fall over the flights' dates, with 95 %
 intervals, each aircraft by itself. A flight that is in two folders of batch counts once.)" +
             std::string(cli::several_flights_text)};
-    stage.shows_table = true;
-    stage.options.add_options()("capacity", cli::value<double>("AH"),
-                                "the pack's capacity, the mean over these flights; without it, the trend of capacities "
-                                "is in percent where no flight tells their level");
-    stage.options.add_options()("mix-aircraft", "take flights of several aircraft: each gets its own trends");
-    stage.options.add_options()("figures", cli::output_file("DIR"),
-                                "draw each aircraft's trends into DIR, as flightwatt report --figures does");
-    cli::add_choice_options(stage.options);
-    cli::add_flight_options(stage.options);
-    return cli::run_stage(argc, argv, stage, show_trends);
+    stage.examples = {"flightwatt trends my -o trends.csv",
+                      "flightwatt trends season1 season2 --capacity 2.2 --figures figures"};
+    stage.reads_logs = stage.uses_threads = stage.shows_table = true;
+    TrendsArguments arguments;
+    auto& options = stage.options;
+    cli::add_capacity_option(
+        options, arguments.capacity_ah,
+        "the pack's capacity, the mean over these flights; default: trends of capacities are in percent "
+        "where no flight determines their level");
+    options.add("figures", arguments.figures, cli::output_file("DIR"),
+                "draw each aircraft's trends into DIR, as flightwatt report --figures does");
+    cli::add_filter_options(options, arguments.filter);
+    cli::add_flight_options(options, arguments.flights);
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return show_trends(call, arguments); });
 }

@@ -4,6 +4,7 @@
 #include "cli/output/fit_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/prediction_output.h"
+#include "cli/output/stage_options.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
@@ -45,13 +46,12 @@ std::vector<mechanical::MeasuredFlight> in_cruise(const cli::StageCall& call, co
 }
 
 /// The flights of all inputs. In flight, those that are not in cruise at the moment are excluded.
-std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call, std::size_t needed_samples,
-                                                     const std::optional<double>& until_s) {
-    const auto options = cli::read_flight_options(call);
-    if (!until_s) return cli::measured_flights(call, options, needed_samples);
-    return cli::from_flights<mechanical::MeasuredFlight>(call, options, [&](const auto&, const auto& loaded) {
-        return in_cruise(call, loaded, mechanical::extract_flights(loaded, needed_samples), *until_s,
-                         options.segmentation);
+std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call, const cli::FlightArguments& arguments,
+                                                     std::size_t needed_samples, const std::optional<double>& at_s) {
+    if (!at_s) return cli::measured_flights(call, arguments, needed_samples);
+    return cli::from_flights<mechanical::MeasuredFlight>(call, arguments, [&](const auto&, const auto& loaded) {
+        return in_cruise(call, loaded, mechanical::extract_flights(loaded, needed_samples), *at_s,
+                         arguments.load.segmentation);
     });
 }
 
@@ -61,16 +61,21 @@ std::vector<mechanical::ValidatedFlight> validate(const std::vector<mechanical::
     return leave_one_out(flights, options, fitting.callback(), folds);
 }
 
-int validate_flights(const cli::StageCall& call) {
-    const auto options = read_fit_options(call);
-    const auto until_s = cli::positive_option(call, "until", "s since lift-off");
-    const auto folds = cli::count_option(call, "folds", 2);
-    const auto flights = read_flights(call, mechanical::min_samples(options.phases.order), until_s);
+struct ValidateArguments {
+    mechanical::ModelFitOptions fit;
+    std::optional<double> at_s;
+    std::size_t folds = mechanical::max_validation_folds;
+    cli::FlightArguments flights;
+};
+
+int validate_flights(const cli::StageCall& call, const ValidateArguments& arguments) {
+    const auto& [options, at_s, folds, flight_arguments] = arguments;
+    const auto flights = read_flights(call, flight_arguments, mechanical::min_samples(options.phases.order), at_s);
     cli::note_folds(call, flights.size(), folds);
     auto validated = validate(flights, options, folds);
     if (const auto rejected = remove_rejected(validated); !rejected.empty()) cli::note(call, rejected);
     const auto screen = call.output ? cli::Screen() : screen_of(call);
-    cli::write_result(call, cli::validation_text(validated, until_s.has_value(), screen));
+    cli::write_result(call, cli::validation_text(validated, at_s.has_value(), screen));
     if (call.json) {
         auto json = cli::scores_json(validated);
         json["folds"] = std::min(flights.size(), folds);
@@ -91,7 +96,7 @@ from their durations alone; then compares with the integral of the power that wa
   nearest_flight  the mean power of the one flight whose durations are nearest
   physical        power from the airspeed and climb that were flown, as if they had been known before
                   (flightwatt fit --model physical); where flights measured them
-With --until S: S seconds after its lift-off a flight has measured its energy up to then; the rest of
+With --at S: S seconds after its lift-off a flight has measured its energy up to then; the rest of
 the cruise and the landing are predicted, by the models above as before the flight, and by
   in_flight           the cruise level shrunk between model and flight (see flightwatt predict)
   in_flight_constant  the same about the model's mean power
@@ -101,12 +106,15 @@ Errors in percent are parts of the phase's measured energy, the flown part inclu
 whose power is near zero. Bias is predicted less measured. physical is rejected, and not shown,
 where the mean power predicts better.)" +
             std::string(cli::several_flights_text)};
-    stage.shows_table = true;
-    cli::add_fit_options(stage.options);
-    auto add = stage.options.add_options();
-    add("until", cli::value<double>("S"), "validate the prediction in flight, S seconds after lift-off");
-    cli::add_folds_option(stage.options, mechanical::max_validation_folds);
-    cli::add_mix_option(stage.options);
-    cli::add_flight_options(stage.options);
-    return cli::run_stage(argc, argv, stage, validate_flights);
+    stage.examples = {"flightwatt validate my", "flightwatt validate my --at 120 --json"};
+    stage.reads_logs = stage.uses_threads = stage.shows_table = true;
+    ValidateArguments arguments;
+    auto& options = stage.options;
+    cli::add_fit_options(options, arguments.fit);
+    options.add("at", arguments.at_s,
+                {.value = "S", .min = 0.0, .above_min = true, .unit = "s since lift-off", .old_name = "until"},
+                "validate the prediction in flight, S seconds after lift-off");
+    cli::add_folds_option(options, arguments.folds);
+    cli::add_flight_options(options, arguments.flights);
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return validate_flights(call, arguments); });
 }

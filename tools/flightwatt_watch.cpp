@@ -30,11 +30,24 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
+struct WatchArguments {
+    cli::SourceArguments source;
+    cli::BasisArguments basis;
+    live::LiveOptions live;
+    bool replans = false;
+    std::optional<std::string> on_decision;
+    std::optional<std::string> record;
+    std::optional<std::string> serve;
+    bool until_landed = false;
+};
+
 /// Runs --on-decision's command where what runs changes.
 class DecisionHook {
   public:
-    DecisionHook(const cli::StageCall& call, const compute::ComputeModel& compute) : call_(call), compute_(compute) {
-        if (call.has("on-decision")) command_.emplace(call.get<std::string>("on-decision"));
+    DecisionHook(const cli::StageCall& call, const std::optional<std::string>& command,
+                 const compute::ComputeModel& compute)
+        : call_(call), compute_(compute) {
+        if (command) command_.emplace(*command);
     }
 
     void update_flight(const live::LiveState& state) {
@@ -67,12 +80,12 @@ class DecisionHook {
 /// Shows what is said on a page.
 class LivePage {
   public:
-    LivePage(const cli::StageCall& call, const compute::ComputeModel& compute,
-             const std::optional<live::PredictionInput>& basis)
+    LivePage(const cli::StageCall& call, const std::optional<std::string>& address,
+             const compute::ComputeModel& compute, const std::optional<live::PredictionInput>& basis)
         : compute_(compute), basis_(basis) {
-        if (!call.has("serve")) return;
+        if (!address) return;
         const auto web = report::read_live_web_files(report::web_folder());
-        server_.emplace(call.get<std::string>("serve"), report::live_page_html(web));
+        server_.emplace(*address, report::live_page_html(web));
         cli::note(call, "the page is at " + server_->address());
         if (web.libraries.empty())
             cli::warn(call, "the page has no charts: what draws them is not installed (scripts/install_dependencies)");
@@ -99,22 +112,20 @@ struct Watched {
     compute::ComputeModel compute;
 };
 
-Watched read_watched(const cli::StageCall& call) {
+Watched read_watched(const cli::StageCall& call, const cli::BasisArguments& arguments) {
     Watched watched;
-    const bool needs_mission = call.has("decide") || call.has("on-decision");
-    if (needs_mission && !call.has("mission")) throw UsageError("--decide and --on-decision go with --mission");
-    if (call.has("mission") || call.has("model"))
-        watched.basis = cli::read_basis(call, cli::PathNeed::optional, &watched.mission);
-    else if (call.has("battery") || call.has("remaining") || call.has("initial-soc"))
+    if (arguments.mission || arguments.model)
+        watched.basis = cli::read_basis(call, arguments, &watched.mission);
+    else if (arguments.battery || arguments.remaining_s)
         throw UsageError("no model given: expected --model MODEL.toml, or --mission MISSION.toml");
     if (watched.mission) watched.compute = setup_of(*watched.mission).compute;
     return watched;
 }
 
-/// The mission's schedule beside the flight; none for a mission that runs nothing.
-std::unique_ptr<live::LiveSchedule> schedule_of(const cli::StageCall& call, const Watched& watched) {
-    if (!watched.mission || (watched.compute.components.empty() && !call.has("decide"))) return nullptr;
-    return std::make_unique<live::LiveSchedule>(*watched.mission, call.has("decide"));
+/// The mission's schedule during the flight; none for a mission that runs nothing.
+std::unique_ptr<live::LiveSchedule> make_schedule(const Watched& watched, bool replans) {
+    if (!watched.mission || (watched.compute.components.empty() && !replans)) return nullptr;
+    return std::make_unique<live::LiveSchedule>(*watched.mission, replans);
 }
 
 /// Looks at the flight after every second of it, or of silence.
@@ -166,27 +177,25 @@ std::string watch_source(live::MessageSource& source, live::LiveFlight& flight, 
     }
 }
 
-int watch(const cli::StageCall& call) {
-    auto watched = read_watched(call);
-    live::LiveOptions options;
-    options.aircraft_id = call.get_optional<std::string>("aircraft");
-    options.silence_threshold_s = cli::positive_option(call, "silence-s", "s").value();
+int watch(const cli::StageCall& call, const WatchArguments& arguments) {
+    auto watched = read_watched(call, arguments.basis);
+    auto options = arguments.live;
     std::optional<std::string> log_text;
-    if (const auto file = cli::definitions_of_source(call)) {
+    if (const auto file = cli::definitions_of_source(arguments.source)) {
         log_text = read_file(*file, telemetry::max_log_configuration_bytes);
         options.configuration = telemetry::parse_log_configuration(*log_text, *file);
     }
-    const auto source = cli::open_source(call);
+    const auto source = cli::open_source(call, arguments.source);
     std::optional<live::Recorder> recorder;
-    if (const auto folder = call.get_optional<std::string>("record")) {
+    if (const auto& folder = arguments.record) {
         const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
         recorder.emplace(*folder, live::log_name(now), log_text);
         options.on_lines = [&](std::string_view lines, bool anew) { recorder->write(lines, anew); };
     }
-    live::LiveFlight flight(std::move(options), watched.basis, schedule_of(call, watched));
+    live::LiveFlight flight(std::move(options), watched.basis, make_schedule(watched, arguments.replans));
     cli::WatchOutput speaker(call, watched.compute);
-    DecisionHook hook(call, watched.compute);
-    LivePage page(call, watched.compute, watched.basis);
+    DecisionHook hook(call, arguments.on_decision, watched.compute);
+    LivePage page(call, arguments.serve, watched.compute, watched.basis);
     const auto update_flight = [&](double silent_s) -> std::string {
         auto state = flight.update(silent_s);
         for (const auto& [reason, count] : source->report().unusable) state.unusable[reason] += count;
@@ -194,7 +203,7 @@ int watch(const cli::StageCall& call) {
         page.print_state(state);
         hook.update_flight(state);
         if (!speaker.is_read()) return "nobody reads the output any more";
-        return call.has("until-landed") && state.landed ? "the aircraft has landed" : "";
+        return arguments.until_landed && state.landed ? "the aircraft has landed" : "";
     };
     const auto why = watch_source(*source, flight, update_flight);
     flight.end();
@@ -216,24 +225,36 @@ int flightwatt::stages::watch_stage(int argc, char** argv) {
         "watch", "SOURCE [--mission MISSION.toml | --model MODEL.toml --remaining S]",
         R"(Says once a second of a flight that is in the air: phase, energy, state of charge, and how it will
 land, as flightwatt predict does from the same telemetry; with a mission also the schedule from here,
-and with --decide one that is planned anew in flight. On a terminal it is one screen; else a line a
+and with --replan one that is planned again in flight. On a terminal it is one screen; else a line a
 second, with --json an object a line, with --serve also a page for a browser (docs/live.md). It ends
 with its source, or by a signal, and then says its last prediction. The source is one of --follow, --udp,
 --serial, --ivy and - (the standard input).)"};
     stage.min_inputs = 0;
     stage.max_inputs = 1;
     stage.output_help = "write the last prediction to FILE, when it ends, instead of the standard output";
-    auto add = stage.options.add_options();
-    cli::add_source_options(stage.options);
-    add("aircraft", cli::value("ID"), "the aircraft to watch; by default the one that flies");
-    add("model", cli::input_file("MODEL.toml"), "from flightwatt fit, of two flights or more");
-    cli::add_basis_options(stage.options, cli::PathNeed::optional);
-    add("decide", "plan the rest of the mission anew at every slot of its [plan], or as its [policy] says");
-    add("on-decision", cli::value("COMMAND"),
-        "run by sh at each change of what software runs, with the decision in its environment (FLIGHTWATT_...)");
-    add("record", cli::output_file("DIR"), "keep what came in as a log in this folder");
-    add("serve", cli::value("PORT"), "show it all as a page on this machine; at ADDRESS:PORT also on others");
-    add("silence-s", cli::value<double>("S")->default_value(30.0), "the link is called silent after so long");
-    add("until-landed", "end when the aircraft has landed");
-    return cli::run_stage(argc, argv, stage, watch);
+    stage.examples = {"flightwatt watch --udp 4242 --log flight.log --mission mission.toml --serve 8080",
+                      "flightwatt watch --follow flight.data --model model.toml --remaining 600 --json"};
+    WatchArguments arguments;
+    arguments.live.silence_threshold_s = 30.0;
+    arguments.basis.need = cli::PathNeed::optional;
+    auto& options = stage.options;
+    cli::add_source_options(options, arguments.source);
+    options.add("aircraft", arguments.live.aircraft_id, {.value = "ID"},
+                "the aircraft to watch; default: the one that flies");
+    cli::add_basis_options(options, arguments.basis);
+    options.add("replan", arguments.replans,
+                "plan the remaining mission again at every slot of its [plan], or as its [policy] states",
+                {.needs = {"mission"}, .old_name = "decide"});
+    options.add(
+        "on-decision", arguments.on_decision, {.value = "COMMAND", .needs = {"mission"}},
+        "run by sh at each change of the running software, with the decision in its environment (FLIGHTWATT_...)");
+    options.add("record", arguments.record, cli::output_file("DIR"),
+                "write the received messages as a log into this folder");
+    options.add("serve", arguments.serve, {.value = "PORT"},
+                "serve a page on this machine; at ADDRESS:PORT also to others");
+    options.add("silence-s", arguments.live.silence_threshold_s,
+                {.value = "S", .min = 0.0, .above_min = true, .unit = "s"},
+                "silence after which the link counts as lost");
+    options.add("until-landed", arguments.until_landed, "end when the aircraft has landed");
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return watch(call, arguments); });
 }

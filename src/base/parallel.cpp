@@ -24,10 +24,13 @@ std::size_t count_cores() {
     return std::max(1U, std::thread::hardware_concurrency());
 }
 
-/// Counted once: the system is asked.
+std::atomic<std::size_t> thread_limit = 0;
+
+/// The cores to use. Counted once: the system is asked.
 std::size_t cores() {
     static const std::size_t count = count_cores();
-    return count;
+    const std::size_t limit = thread_limit;
+    return limit > 0 ? limit : count;
 }
 
 /// Whether this thread works for a loop already: one within it would only make more threads than there are cores.
@@ -74,6 +77,8 @@ void for_each_in_parallel(std::size_t count, const std::function<void(std::size_
     }
     if (failure) std::rethrow_exception(failure);
 }
+
+void limit_threads(std::size_t max_threads) { thread_limit = max_threads; }
 
 std::size_t threads_for(std::size_t count, std::size_t max_threads) {
     return std::min(count, max_threads > 0 ? max_threads : cores());

@@ -11,6 +11,9 @@ namespace flightwatt {
 /// calls it alone.
 void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work, std::size_t max_threads = 0);
 
+/// From now on a loop with max_threads = 0 has so many threads at most; 0: as many as there are cores.
+void limit_threads(std::size_t max_threads);
+
 /// The most threads that a loop of `count` has: `max_threads`, or as many as it has cores to use (0).
 std::size_t threads_for(std::size_t count, std::size_t max_threads = 0);
 

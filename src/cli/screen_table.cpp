@@ -266,7 +266,7 @@ TextTable with_minutes(TextTable table) {
 
 Screen screen_of(const StageCall& call) {
     const auto ability = standard_output_ability();
-    return {ability.is_terminal, call.has("wide"), ability.columns};
+    return {ability.is_terminal, call.wide, ability.columns};
 }
 
 std::string screen_text(TextTable whole, const Screen& screen, const ScreenTable& options) {

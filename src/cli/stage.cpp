@@ -2,21 +2,20 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/number.h"
 #include "base/overwrite_guard.h"
-#include "base/toml_reader.h"
+#include "base/parallel.h"
 #include "cli/help.h"
 #include "cli/terminal.h"
 
 #include <cerrno>
-#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <filesystem>
-#include <map>
+#include <fstream>
+#include <iostream>
 #include <new>
 
 #include <fcntl.h>
@@ -28,11 +27,12 @@ namespace {
 
 namespace po = boost::program_options;
 
-constexpr const char* inputs_option = "inputs";
-
 /// Once the reader of the standard output has left (head): what is still printed goes nowhere, everything else is done
 /// to its end, and then the program ends as SIGPIPE ends programs.
 bool reader_has_left = false;
+
+/// --quiet was given.
+bool is_quiet = false;
 
 /// Diagnostics that nobody can read (closed, full disk) change nothing.
 void tell(const std::string& line) { std::fwrite(line.data(), 1, line.size(), stderr); }
@@ -86,115 +86,18 @@ void close_standard_output() {
     if (std::fclose(stdout) != 0) cannot_print();
 }
 
-/// Options of earlier versions, with what there is instead.
-const std::map<std::string, std::string>& removed_options() {
-    static const std::map<std::string, std::string> removed{
-        {"--above-idle", "state above_idle = true in the specification"},
-        {"--covariate", "'physical' predicts by airspeed and climb, where they were measured"},
-        {"--csv", "-o FILE.csv writes the table as CSV with all digits"},
-        {"--cut", "--sortie N reads one sortie of a log, in every stage"},
-        {"--curve", "the curve is that of least squares, and a note says where its frequency is open"},
-        {"--know-durations", "schedules are made for the durations that are known before the flight"},
-        {"--level", "the model's curve is expected; its mean where the flight is not known from its take-off on"},
-        {"--level-covariate", "fit by airspeed and climb instead: --model physical"},
-        {"--link-version", "frames are of version 2 of pprzlink"},
-        {"--loss", "fits are of least squares; leave flights out with --exclude"},
-        {"--markdown", "-o FILE.md writes the table as Markdown"},
-        {"--max-battery-flights", "up to 12 flights are taken"},
-        {"--max-periods", "a phase has 0.5 to 120 periods"},
-        {"--max-validation-flights", "up to 30 flights are taken"},
-        {"--min-periods", "a phase has 0.5 to 120 periods"},
-        {"--powprofiler", "DIR/NAME.csv holds the same powers, with names in place of flags"},
-        {"--sampler", "state its kind under [sampler] of the specification"},
-        {"--sysfs", "state sysfs under [sampler] of the specification"},
-        {"--trials", "every configuration is run"},
-        {"--weight", "leave flights out with --exclude, or choose another --weights"}};
-    return removed;
-}
-
-[[noreturn]] void refuse_option(const po::unknown_option& error, const po::options_description& known) {
-    if (const auto removed = removed_options().find(error.get_option_name()); removed != removed_options().end())
-        throw UsageError(fmt::format("{} was removed: {}", removed->first, removed->second));
-    std::vector<std::string> names;
-    for (const auto& option : known.options()) names.push_back("--" + option->long_name());
-    const auto near = nearest_word(error.get_option_name(), names);
-    throw UsageError(
-        fmt::format("{}; {}", error.what(), near.empty() ? "see --help" : fmt::format("did you mean '{}'?", near)));
-}
-
-/// Those of the stage, and those of every stage.
-po::options_description visible_options(const StageDefinition& definition) {
-    auto visible = definition.options;
-    if (definition.shows_table) visible.add_options()("wide", "on a terminal: all columns, also beyond its width");
-    visible.add_options()("output,o", output_file("FILE"), definition.output_help.c_str())(
-        "json", "print the summary as JSON")("help,h", "show this help")("version", "show the version");
-    return visible;
-}
-
-/// What the option takes: nothing, the name of a file that is read or written, or another value.
-std::string_view kind_of(const po::option_description& option) {
-    const auto* semantic = option.semantic().get();
-    if (semantic->max_tokens() == 0) return "flag";
-    const auto* file = dynamic_cast<const FileOption*>(semantic);
-    if (file == nullptr) return "value";
-    return file->role == FileRole::input ? "input" : "output";
-}
-
-/// For completion and man pages: a line an option with name, short name, kind, value and description, between tabs.
-std::string option_list(const po::options_description& options) {
-    std::string text;
-    for (const auto& option : options.options()) {
-        const auto shortest = option->canonical_display_name(po::command_line_style::allow_dash_for_short);
-        const auto kind = kind_of(*option);
-        text += fmt::format("--{}\t{}\t{}\t{}\t{}\n", option->long_name(),
-                            shortest.starts_with("-") && shortest.size() == 2 ? shortest : "", kind,
-                            kind == "flag" ? "" : option->format_parameter(), one_line(option->description()));
-    }
-    return text;
-}
-
-StageCall parse(int argc, char** argv, const StageDefinition& definition, const po::options_description& visible) {
-    StageCall call;
-    call.program = "flightwatt-" + definition.name;
-    po::options_description all = visible;
-    all.add_options()(inputs_option, po::value<std::vector<std::string>>());
-    po::positional_options_description positional;
-    positional.add(inputs_option, -1);
-    const int style = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
-    try {
-        auto parser = po::command_line_parser(argc, argv).options(all).positional(positional).style(style);
-        po::store(parser.run(), call.options);
-    } catch (const po::unknown_option& error) {
-        refuse_option(error, visible);
-    }
-    po::notify(call.options);
-    call.json = call.has("json");
-    call.output = call.get_optional<std::string>("output");
-    if (call.output == "-") call.output.reset();  // as everywhere: the standard output
-    if (call.has(inputs_option)) call.inputs = call.get<std::vector<std::string>>(inputs_option);
-    return call;
-}
-
 std::string usage_line(const StageDefinition& definition) {
     return fmt::format("usage: flightwatt {} {} [options]", definition.name, definition.arguments);
 }
 
-std::vector<std::string> files_of(const po::variable_value& value) {
-    if (const auto* files = boost::any_cast<std::vector<std::string>>(&value.value())) return *files;
-    return {value.as<std::string>()};
-}
-
-/// Registers which files the user named are read and written: a result that replaces what it was made from would lose
-/// a log for good.
-void declare_files(const StageCall& call, const po::options_description& options) {
+/// Registers the files that the user named: a result that replaces what it was made from would lose a log for good.
+void register_files(const StageCall& call, const Options& options, const Options::Given& given) {
     enable_overwrite_guard();
     for (const auto& input : call.inputs) register_input(input);
     for (const auto role : {FileRole::input, FileRole::output}) {
-        for (const auto& option : options.options()) {
-            const auto* names_file = dynamic_cast<const FileOption*>(option->semantic().get());
-            const auto& name = option->long_name();
-            if (names_file == nullptr || names_file->role != role || !call.has(name)) continue;
-            for (const auto& file : files_of(call.options[name])) {
+        for (const auto& [name, files] : given.options) {
+            if (options.find(name)->file != role) continue;
+            for (const auto& file : files) {
                 if (role == FileRole::input) register_input(file);
                 if (role == FileRole::output && file != "-") register_output(file, "--" + name);
             }
@@ -202,34 +105,131 @@ void declare_files(const StageCall& call, const po::options_description& options
     }
 }
 
-int run(int argc, char** argv, const StageDefinition& definition, const StageBody& body) {
-    const auto visible = visible_options(definition);
+/// A copy of the standard input as a file, which the readers of logs can map. It is removed with this object.
+class StandardInputFile {
+  public:
+    StandardInputFile() {
+        auto pattern = (std::filesystem::temp_directory_path() / "flightwatt-XXXXXX").string();
+        if (::mkdtemp(pattern.data()) == nullptr)
+            throw OutputError(fmt::format("{}: cannot make a folder: {}", pattern, std::strerror(errno)));
+        folder_ = pattern;
+        std::ofstream(file(), std::ios::binary) << std::cin.rdbuf();
+    }
+    ~StandardInputFile() {
+        std::error_code ignored;
+        std::filesystem::remove_all(folder_, ignored);
+    }
+    StandardInputFile(const StandardInputFile&) = delete;
+    StandardInputFile& operator=(const StandardInputFile&) = delete;
+    std::string file() const { return folder_ / "standard_input.data"; }
+
+  private:
+    std::filesystem::path folder_;
+};
+
+/// The options of every stage.
+struct CommonOptions {
+    bool wide = false;
+    std::optional<std::string> output;
+    bool json = false;
+    bool json_usage = false;
+    bool quiet = false;
+    bool help = false;
+    bool help_all = false;
+    bool version = false;
+    std::size_t jobs = 0;
+};
+
+void add_common_options(StageDefinition& stage, CommonOptions& common) {
+    constexpr double max_jobs = 256;
+    auto& options = stage.options;
+    options.begin_group("Common options");
+    options.add("output,o", common.output, {.value = "FILE", .file = FileRole::output}, stage.output_help);
+    options.add("json", common.json, "print the summary as JSON");
+    if (stage.shows_table) options.add("wide", common.wide, "on a terminal: all columns, also beyond its width");
+    if (stage.uses_threads)
+        options.add("jobs,j", common.jobs, {.value = "N", .max = max_jobs}, "threads; 0: one for each core");
+    options.add("quiet,q", common.quiet, "print no notes and no progress; warnings and errors remain");
+    options.add("help,h", common.help, "show this help");
+    options.add("help-all", common.help_all, "show this help, with expert options");
+    options.add("json-usage", common.json_usage, "print inputs and options of this stage as JSON");
+    options.add("version", common.version, "show the version");
+}
+
+std::string help_text(const StageDefinition& stage, bool all) {
+    auto text = fmt::format("{}\n\n{}\n\n{}", usage_line(stage), stage.description, stage.options.help_text(all));
+    const auto experts = std::ranges::count(stage.options.all(), true, &Option::is_expert);
+    if (!all && experts > 0) text += fmt::format("--help-all shows {} more options.\n\n", experts);
+    if (!stage.examples.empty()) text += "Examples:\n";
+    for (const auto& example : stage.examples) text += fmt::format("  {}\n", example);
+    return text;
+}
+
+Json usage_json(const StageDefinition& stage) {
+    return {{"format", 1},
+            {"stage", stage.name},
+            {"usage", fmt::format("flightwatt {} {} [options]", stage.name, stage.arguments)},
+            {"description", stage.description},
+            {"min_inputs", stage.min_inputs},
+            {"max_inputs", stage.max_inputs},
+            {"examples", stage.examples},
+            {"options", stage.options.json()}};
+}
+
+/// Whether the user asked for information on the stage, which is then printed.
+bool print_information(const StageDefinition& stage, const CommonOptions& common) {
+    if (common.help || common.help_all)
+        print(help_text(stage, common.help_all));
+    else if (common.json_usage)
+        print(json_text(usage_json(stage)));
+    else if (common.version)
+        print(fmt::format("flightwatt-{} {}\n", stage.name, version_text()));
+    else
+        return false;
+    return true;
+}
+
+void check_input_count(const StageDefinition& stage, const std::vector<std::string>& inputs) {
+    if (inputs.size() < stage.min_inputs) {
+        const auto found = inputs.empty() ? std::string("no input given")
+                                          : fmt::format("{} given, expected {}", inputs.size(), stage.min_inputs);
+        throw UsageError(fmt::format("{}; {}", found, usage_line(stage)));
+    }
+    if (inputs.size() > stage.max_inputs)
+        throw UsageError(fmt::format("unexpected argument '{}'; {}", inputs[stage.max_inputs], usage_line(stage)));
+}
+
+int run(int argc, char** argv, StageDefinition& stage, const StageBody& body) {
+    CommonOptions common;
+    add_common_options(stage, common);
     if (argc == 2 && std::string_view(argv[1]) == "--list-options") {
-        print(option_list(visible));
+        print(stage.options.list_text());
         return ok;
     }
-    const auto call = parse(argc, argv, definition, visible);
-    if (call.has("help")) {
-        std::ostringstream options;
-        options << visible;
-        print(fmt::format("{}\n\n{}\n\n{}", usage_line(definition), definition.description, options.str()));
-        return ok;
+    const auto given = stage.options.parse(argc, argv);
+    for (const auto& [name, texts] : given.options)
+        if (texts.front() == "true" && stage.options.find(name)->type == "flag")
+            stage.options.find(name)->assign(texts);
+    if (print_information(stage, common)) return ok;
+    stage.options.assign(given);
+    check_input_count(stage, given.inputs);
+    StageCall call;
+    call.program = "flightwatt-" + stage.name;
+    for (const auto& [name, texts] : given.options) call.given.insert(name);
+    call.inputs = given.inputs;
+    call.json = common.json;
+    call.wide = common.wide;
+    call.output = common.output == "-" ? std::nullopt : common.output;
+    is_quiet = common.quiet;
+    if (common.quiet) hide_progress();
+    limit_threads(common.jobs);
+    std::optional<StandardInputFile> standard_input;
+    for (auto& input : call.inputs) {
+        if (!stage.reads_logs || input != "-" || standard_input) continue;
+        standard_input.emplace();
+        input = standard_input->file();
     }
-    if (call.has("version")) {
-        print(fmt::format("{} {}\n", call.program, version_text()));
-        return ok;
-    }
-    if (call.inputs.size() < definition.min_inputs) {
-        const auto given = call.inputs.size();
-        const auto lack = given == 0 ? std::string("no input given")
-                                     : fmt::format("{} given, expected {}", given, definition.min_inputs);
-        throw UsageError(fmt::format("{}; {}", lack, usage_line(definition)));
-    }
-    if (call.inputs.size() > definition.max_inputs) {
-        throw UsageError(
-            fmt::format("unexpected argument '{}'; {}", call.inputs[definition.max_inputs], usage_line(definition)));
-    }
-    declare_files(call, visible);
+    register_files(call, stage.options, given);
     const int code = body(call);
     return code == ok && !call.skipped->empty() ? input_rejected : code;
 }
@@ -268,7 +268,7 @@ int run_guarded(const std::string& program, const std::function<int()>& body) {
     }
 }
 
-int run_stage(int argc, char** argv, const StageDefinition& definition, const StageBody& body) {
+int run_stage(int argc, char** argv, StageDefinition definition, const StageBody& body) {
     return run_guarded("flightwatt-" + definition.name, [&] { return run(argc, argv, definition, body); });
 }
 
@@ -330,31 +330,8 @@ void warn(const StageCall& call, std::string_view message) {
 }
 
 void note(const StageCall& call, std::string_view message) {
+    if (is_quiet) return;
     tell(fmt::format("{}: {}\n", call.program, one_line(message)));
-}
-
-std::uint64_t count_option(const StageCall& call, const std::string& option, std::uint64_t least, std::uint64_t most) {
-    const auto text = call.get<std::string>(option);
-    const auto number = parse_unsigned(text);
-    if (number && *number >= least && *number <= most) return *number;
-    const auto range = most < std::numeric_limits<std::uint64_t>::max() ? fmt::format(" from {} to {}", least, most)
-                       : least > 0                                      ? fmt::format(" from {}", least)
-                                                                        : std::string();
-    throw UsageError(fmt::format("--{} {}: expected a whole number{}", option, one_line(text), range));
-}
-
-double number_option(const StageCall& call, const std::string& option, double least, double most) {
-    const auto value = call.get<double>(option);
-    if (value >= least && value <= most) return value;
-    throw UsageError(fmt::format("--{} {:g}: expected {:g} to {:g}", option, value, least, most));
-}
-
-std::optional<double> positive_option(const StageCall& call, const std::string& option, const std::string& unit,
-                                      double most) {
-    const auto value = call.get_optional<double>(option);
-    if (!value || (*value > 0.0 && *value <= most && std::isfinite(*value))) return value;
-    const auto limit = std::isfinite(most) ? fmt::format(" and at most {:g}", most) : std::string();
-    throw UsageError(fmt::format("--{} {:g}: expected more than 0{} {}", option, *value, limit, unit));
 }
 
 }  // namespace flightwatt::cli

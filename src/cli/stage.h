@@ -1,18 +1,17 @@
 #pragma once
 
 #include "base/error.h"
-#include "cli/stage.h"
+#include "cli/options.h"
 
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include <boost/program_options.hpp>
 #include <nlohmann/json.hpp>
 
 namespace flightwatt::cli {
@@ -21,40 +20,18 @@ using Json = nlohmann::ordered_json;
 
 enum ExitCode : int { ok = 0, internal_error = 1, usage_error = 2, input_rejected = 3, no_answer = 4 };
 
-/// An option's value, as --help names it.
-template <typename T = std::string>
-auto* value(const char* name) {
-    return boost::program_options::value<T>()->value_name(name);
-}
-
-/// What the file (or folder) that an option names is to the stage.
-enum class FileRole { input, output };
-
-/// An option that names a file, or as T several, as --help names it. Files to write are refused before the work where
-/// they are files to read, or two of them are one.
-struct FileOption {
-    FileRole role;
-};
-template <typename T>
-struct FileValue : boost::program_options::typed_value<T>, FileOption {
-    FileValue(const char* name, FileRole of) : boost::program_options::typed_value<T>(nullptr), FileOption{of} {
-        this->value_name(name);
-    }
-};
-
-inline auto* input_files(const char* name) { return new FileValue<std::vector<std::string>>(name, FileRole::input); }
-inline auto* input_file(const char* name) { return new FileValue<std::string>(name, FileRole::input); }
-inline auto* output_file(const char* name) { return new FileValue<std::string>(name, FileRole::output); }
-
-/// What a stage program is called and accepts beyond --help, --version, --json and --output.
+/// Name and interface of a stage, beyond the options that every stage has (--help, --version, --json, --output, --quiet).
 struct StageDefinition {
-    std::string name;         ///< "fit"; the program is flightwatt-fit
-    std::string arguments;    ///< shown in the usage line: "FLIGHT..."
-    std::string description;  ///< what it does, for --help
-    boost::program_options::options_description options{"Options"};
+    std::string name;                        ///< "fit"; the program is flightwatt-fit
+    std::string arguments;                   ///< shown in the usage line: "FLIGHT..."
+    std::string description;                 ///< for --help
+    std::vector<std::string> examples = {};  ///< commands, for --help and the man page
+    Options options = {};
     std::size_t min_inputs = 1;
     std::size_t max_inputs = 1000000;
-    bool shows_table = false;  ///< on a terminal: then --wide is an option
+    bool reads_logs = false;    ///< its inputs are logs: - is the standard input
+    bool uses_threads = false;  ///< then --jobs is an option
+    bool shows_table = false;   ///< on a terminal: then --wide is an option
     std::string output_help = "write the result to FILE instead of the standard output";
 };
 
@@ -64,32 +41,25 @@ struct SkippedInput {
     std::string reason;
 };
 
-/// What the user gave.
+/// A call of a stage. The options of the stage itself are in the variables to which they are bound.
 struct StageCall {
-    std::string program;  ///< "flightwatt-fit", for diagnostics
-    boost::program_options::variables_map options;
+    std::string program;          ///< "flightwatt-fit", for diagnostics
+    std::set<std::string> given;  ///< names of the options that the user gave
     std::vector<std::string> inputs;
     bool json = false;
+    bool wide = false;
     std::optional<std::string> output;
     /// See skip_input; shared by copies of the call.
     std::shared_ptr<std::vector<SkippedInput>> skipped = std::make_shared<std::vector<SkippedInput>>();
 
-    bool has(const std::string& option) const { return options.count(option) > 0; }
-    template <typename T>
-    T get(const std::string& option) const {
-        return options[option].as<T>();
-    }
-    /// The option's value, if it was given.
-    template <typename T>
-    std::optional<T> get_optional(const std::string& option) const {
-        return has(option) ? std::optional<T>(get<T>(option)) : std::nullopt;
-    }
+    bool has(const std::string& option) const { return given.contains(option); }
 };
 
 using StageBody = std::function<int(const StageCall&)>;
 
-/// Parses the options of a stage, answers --help and --version, and runs the body, guarded as below.
-int run_stage(int argc, char** argv, const StageDefinition& definition, const StageBody& body);
+/// Sets the variables of the stage's options, and runs the body, guarded as below; or shows --help, --version or
+/// --json-usage.
+int run_stage(int argc, char** argv, StageDefinition definition, const StageBody& body);
 
 /// Names an input that cannot be used, on the standard error, so that the others go on. The exit code of the stage is
 /// then input_rejected instead of ok.
@@ -132,19 +102,5 @@ Json optional_json(const std::optional<T>& value) {
 /// A line on the standard error: "flightwatt-fit: warning: ...".
 void warn(const StageCall& call, std::string_view message);
 void note(const StageCall& call, std::string_view message);
-
-/// An option that holds a whole number from `least` to `most`. Throws UsageError "--option TEXT: expected ..." for another
-/// value, as those below. The option's value is a string: program_options would take -1 for a
-/// large number.
-std::uint64_t count_option(const StageCall& call, const std::string& option, std::uint64_t least = 0,
-                           std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
-
-/// A number from `least` to `most`.
-double number_option(const StageCall& call, const std::string& option, double least, double most);
-
-/// A finite number above 0 and at most `most`, or std::nullopt where the option was not given. `unit` is that
-/// of the number, for the message.
-std::optional<double> positive_option(const StageCall& call, const std::string& option, const std::string& unit,
-                                      double most = std::numeric_limits<double>::infinity());
 
 }  // namespace flightwatt::cli

@@ -14,6 +14,8 @@
 namespace flightwatt::cli {
 namespace {
 
+bool progress_is_hidden = false;
+
 std::string_view value_of(const Environment& environment, const char* name) {
     const char* value = environment(name);
     return value == nullptr ? std::string_view() : std::string_view(value);
@@ -76,7 +78,9 @@ TerminalCapabilities standard_output_ability() { return ability_of(STDOUT_FILENO
 
 bool standard_error_has_colors() { return ability_of(STDERR_FILENO).colors; }
 
-std::FILE* standard_error_terminal() { return ::isatty(STDERR_FILENO) != 0 ? stderr : nullptr; }
+void hide_progress() { progress_is_hidden = true; }
+
+std::FILE* standard_error_terminal() { return !progress_is_hidden && ::isatty(STDERR_FILENO) != 0 ? stderr : nullptr; }
 
 std::string progress_text(const ProgressState& state, const std::string& unit, std::size_t width) {
     auto text = fmt::format("{}/{}", state.done, state.all);

@@ -42,7 +42,10 @@ struct ProgressState {
 /// does not fit goes: the bar gets shorter, then rate and remaining time are not shown.
 std::string progress_text(const ProgressState& state, const std::string& unit, std::size_t width);
 
-/// The standard error, where it is a terminal.
+/// From now on no progress is shown (--quiet).
+void hide_progress();
+
+/// The standard error, where it is a terminal and progress is shown.
 std::FILE* standard_error_terminal();
 
 /// A progress bar on a terminal, drawn at most ten times a second in the terminal's width. It draws nothing

@@ -126,7 +126,7 @@ ParameterText to_inav(const EstimatorInput& input) {
             whole<std::uint16_t>(model.physical->mean_airspeed_m_per_s * cm_per_m, "nav_fw_cruise_speed"));
     } else {
         result.notes.emplace_back(
-            "the model knows no airspeed: nav_fw_cruise_speed is left out (fit --model physical)");
+            "the model knows no airspeed: nav_fw_cruise_speed is left out (fit --model-kind physical)");
     }
     if (input.reserve_percent) {
         set("rth_energy_margin", whole<std::uint8_t>(*input.reserve_percent, "rth_energy_margin"));
@@ -163,7 +163,7 @@ ParameterText to_paparazzi(const EstimatorInput& input) {
     if (!model.physical) {
         throw InputError(
             {}, fmt::format("the model {} knows no airspeed, over which {} takes power", model.name, energy_monitor),
-            "fit one with flightwatt fit --model physical");
+            "fit one with flightwatt fit --model-kind physical");
     }
     constexpr int airspeeds = 101;
     const auto power = fitted_polynomial(model.physical->airspeed_m_per_s, airspeeds, 2, [&](double airspeed) {

@@ -18,7 +18,7 @@ mission::PlanningProblem deciding(const mission::MissionVariant& mission) {
     const auto* problem = std::get_if<mission::PlanningProblem>(&mission);
     if (problem == nullptr) {
         throw InputError({setup_of(mission).file}, "its schedule is fixed: there is nothing to decide",
-                         "say in [plan] what may be chosen (docs/missions.md), or leave --decide out");
+                         "say in [plan] what may be chosen (docs/missions.md), or leave --replan out");
     }
     auto decided = *problem;
     if (!decided.adaptive) {

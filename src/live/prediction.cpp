@@ -191,7 +191,7 @@ void require_physical(const mechanical::MechanicalModel& model, const std::strin
     if (model.physical && model.physical->level_sd) return;
     throw InputError(
         {file}, model.physical ? "its [physical] rests on a single flight" : "it has no [physical]",
-        fmt::format("{} needs one of two flights or more: flightwatt fit --model physical FLIGHT...", option));
+        fmt::format("{} needs one of two flights or more: flightwatt fit --model-kind physical FLIGHT...", option));
 }
 
 double initial_soc_percent(const PredictionInput& basis, const battery::DischargeRecord& flown) {

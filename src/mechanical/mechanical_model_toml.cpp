@@ -91,7 +91,7 @@ void read_what_was_removed(const TomlTable& phase) {
     if (phase.is_table("level_law"))
         throw InputError(phase.where("level_law"), "a level law: cruises follow no covariate any more",
                          "remove it: the cruise has the flights' average level; or fit by airspeed and climb: "
-                         "flightwatt fit --model physical FLIGHT...");
+                         "flightwatt fit --model-kind physical FLIGHT...");
     for (const auto* key : {"airspeed", "airspeed_law", "airspeed_cubed_parts_m3_per_s3"}) phase.has(key);
 }
 

@@ -1,8 +1,8 @@
 // A day of made-up telemetry through the live watch: how long a look takes, how much memory it needs.
-//   live_day_bench MISSION.toml [HOURS [LOOK_EVERY_S [--decide]]]
+//   live_day_bench MISSION.toml [HOURS [LOOK_EVERY_S [--replan]]]
 // Ten messages a second: 40 minutes on the ground, 30 in the air, again and again; lost and doubled messages, gaps of
 // 22 s, another aircraft; where the mission has a path, positions along it, 20 m to its side. Times are of the
-// processor; every 30 s a look judges the whole record, and with --decide one a slot plans.
+// processor; every 30 s a look judges the whole record, and with --replan one a slot plans.
 
 #include "live/live_flight.h"
 #include "live/prediction.h"

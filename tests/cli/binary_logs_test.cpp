@@ -91,7 +91,7 @@ TEST_F(BinaryLogs, WithoutALogTakeTheirDefinitionsFromMessages) {
     for (const std::string command :
          {"parse bare/a.tlm", "segment bare/a.tlm", "fit bare/a.tlm bare/b.tlm --mix-aircraft",
           "validate bare/a.tlm bare/b.tlm --mix-aircraft", "battery bare/a.tlm --name x",
-          "predict bare/a.tlm --model spread.toml --until 300 --remaining 100", "batch bare -o made --mix-aircraft"}) {
+          "predict bare/a.tlm --model spread.toml --at 300 --remaining 100", "batch bare -o made --mix-aircraft"}) {
         const auto result = run(command + " --messages m.xml");
         EXPECT_EQ(result.code, 0) << command << "\n" << result.err;
     }

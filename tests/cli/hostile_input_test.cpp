@@ -88,8 +88,8 @@ class HostileInput : public testing::Test {
                 "flightwatt validate FILE",
                 "flightwatt battery FILE",
                 "flightwatt batch FILE -o out",
-                "flightwatt predict FILE --model spread.toml --until 100 --remaining 10",
-                "flightwatt predict " + log + " --model FILE --until 100 --remaining 10",
+                "flightwatt predict FILE --model spread.toml --at 100 --remaining 10",
+                "flightwatt predict " + log + " --model FILE --at 100 --remaining 10",
                 "flightwatt fit " + log + " --published FILE",
                 "flightwatt synthesize FILE -o synthetic",
                 "flightwatt simulate FILE",
@@ -220,9 +220,9 @@ TEST_F(HostileInputStudy, IsCutWhileABatchReadsIt) {
 
 /// Numbers that no option means.
 TEST_F(HostileInput, IsANumberThatIsNone) {
-    const auto help = [&](const std::string& program) { return test::run_shell(program + " --help", folder).out; };
-    for (const auto& option : {"rest", "hold", "idle-throttle", "cruise-fraction", "ground-fraction", "flight-height",
-                               "max-log-mb", "sortie"}) {
+    const auto help = [&](const std::string& program) { return test::run_shell(program + " --help-all", folder).out; };
+    for (const auto& option : {"rest-time", "hold-time", "idle-throttle", "cruise-fraction", "ground-fraction",
+                               "flight-height", "max-log-mb", "sortie"}) {
         ASSERT_THAT(help("flightwatt-segment"), HasSubstr(std::string("--") + option + " "));
         for (const auto& number : {"nan", "inf", "-inf", "-1", "1e300"}) {
             const auto result = test::run_shell(
@@ -241,12 +241,12 @@ TEST_F(HostileInput, IsANumberThatIsNone) {
         "fit " + log + "--order=",
         "battery " + log + "--capacity=",
         "battery " + log + "--cells=",
-        "predict " + log + "--model " + model + "--remaining 10 --until=",
-        "predict " + log + "--model " + model + "--remaining 10 --until-log-time=",
-        "predict " + log + "--model " + model + "--until 100 --remaining=",
-        "predict " + log + "--model " + model + "--until 100 --remaining 10 --airspeed=",
-        "predict " + log + "--model " + model + "--until 100 --remaining 10 --battery b.toml --initial-soc=",
-        "validate " + log + "--until=",
+        "predict " + log + "--model " + model + "--remaining 10 --at=",
+        "predict " + log + "--model " + model + "--remaining 10 --at-log-time=",
+        "predict " + log + "--model " + model + "--at 100 --remaining=",
+        "predict " + log + "--model " + model + "--at 100 --remaining 10 --airspeed=",
+        "predict " + log + "--model " + model + "--at 100 --remaining 10 --battery b.toml --initial-soc=",
+        "validate " + log + "--at=",
         "synthesize " + model + "-o s --flights=",
         "synthesize " + model + "-o s --spread=",
         "synthesize " + model + "-o s --current-noise=",

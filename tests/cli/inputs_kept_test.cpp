@@ -69,11 +69,11 @@ std::vector<Command> commands() {
         {"trends", "a.data s.series.csv", flight_files, "--output"},
         {"battery", "a.data s.series.csv", flight_files, "--output"},
         {"predict",
-         "a.data --model spread.toml --until 300 --remaining 100 --battery fits/battery/synthetic-3s.toml",
+         "a.data --model spread.toml --at 300 --remaining 100 --battery fits/battery/synthetic-3s.toml",
          {"a.data", "a.log", "spread.toml", "fits/battery/synthetic-3s.toml"},
          "--output"},
         {"predict",
-         "a.data --mission missions/synthetic/survey-path.toml --until 300",
+         "a.data --mission missions/synthetic/survey-path.toml --at 300",
          {"a.data", "a.log", "missions/synthetic/survey-path.toml", "fits/mechanical/synthetic-wing.toml"},
          "--output"},
         {"watch",
@@ -117,7 +117,7 @@ std::vector<Command> commands() {
           "fits/battery/synthetic-3s.toml", "fits/compute/tx2-detection.csv"},
          "--output"},
         {"new-mission",
-         "--mechanical " + model + " --battery fits/battery/paper.toml --profile fits/compute/tx2-detection.csv",
+         "--model " + model + " --battery fits/battery/paper.toml --profile fits/compute/tx2-detection.csv",
          {model, "fits/battery/paper.toml", "fits/compute/tx2-detection.csv"},
          "--output"},
         {"export", "a.data --format gpx", {"a.data", "a.log"}, "--output"},
@@ -250,9 +250,9 @@ const std::set<std::string> no_files{"N",
                                      "WIDTH"};
 
 /// Options that name files to read; those that write have a command above.
-const std::set<std::string> reading{
-    "--published", "--model", "--mission",  "--disturb",    "--battery", "--path-from", "--reference-figures",
-    "--follow",    "--log",   "--messages", "--mechanical", "--profile", "--files-from"};
+const std::set<std::string> reading{"--published", "--model",     "--mission",           "--disturb",
+                                    "--battery",   "--path-from", "--reference-figures", "--follow",
+                                    "--log",       "--messages",  "--profile",           "--files-from"};
 
 class InputsKept : public testing::Test {
   protected:

@@ -9,12 +9,12 @@
 #include <cctype>
 #include <cstddef>
 #include <filesystem>
-#include <regex>
 #include <set>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace flightwatt::cli {
 namespace {
@@ -52,16 +52,19 @@ bool has_word(const std::string& text, const std::string& word) {
     return false;
 }
 
-/// "--order" and so on, as the program's help lists them; of "-o [ --output ]" the short one, of -h the long.
+/// "--order" and so on: the stage's own options, "-o" and "--json".
 std::set<std::string> options_of(const std::string& program) {
-    const auto help = test::run_shell(program + " --help", test::binary_dir()).out;
-    const std::regex line("\n +(?:-h \\[ )?(-[a-z]|--[a-z][a-z-]*)");
+    const auto usage = nlohmann::json::parse(test::run_shell(program + " --json-usage", test::binary_dir()).out);
     std::set<std::string> options;
-    for (std::sregex_iterator at(help.begin(), help.end(), line), end; at != end; ++at) options.insert((*at)[1]);
+    for (const auto& option : usage.at("options")) {
+        const auto name = option.at("name").get<std::string>();
+        if (name == "output") options.insert("-o");
+        if (option.at("group") != "Common options" || name == "json") options.insert("--" + name);
+    }
     return options;
 }
 
-TEST(Options, AreEachUsedByATestOfTheirProgram) {
+TEST(StageOptions, AreEachUsedByATestOfTheirProgram) {
     const auto texts = texts_of_tests();
     const std::string prefix = "flightwatt-";
     std::size_t options = 0;

@@ -65,7 +65,7 @@ void expect_same_of_all(const std::vector<std::filesystem::path>& logs) {
     const auto all = parse_all(logs, folder);
     expect_same("fit --name x --errors", all, folder);
     expect_same("validate", all, folder);
-    expect_same("validate --until 300", all, folder);
+    expect_same("validate --at 300", all, folder);
     expect_same("battery --name x", all, folder);
     expect_same("battery --name x --correct-idle-offset", all, folder);
 }
@@ -77,7 +77,7 @@ TEST(SameOnEveryWayStudy, FitsTheRealFlights) {
     expect_same_of_all(real_logs());
     const auto folder = test::scratch_dir();
     const auto ways = parse_all(real_logs(), folder);
-    const auto fit = test::run_shell("flightwatt fit --model physical" + ways.series, folder);
+    const auto fit = test::run_shell("flightwatt fit --model-kind physical" + ways.series, folder);
     EXPECT_THAT(fit.out, HasSubstr("[physical]"));
 }
 
@@ -93,7 +93,7 @@ TEST(SameOnEveryWay, SegmentsEveryLog) {
             continue;
         }
         expect_same("segment", ways, folder);
-        expect_same("segment --json --hold 20 --cruise-fraction 0.8", ways, folder);
+        expect_same("segment --json --hold-time 20 --cruise-fraction 0.8", ways, folder);
         expect_same("segment --explain", ways, folder);
         expect_same("parse", ways, folder);
     }
@@ -157,9 +157,9 @@ TEST(NoHindsight, PredictsTheSameWhateverTheLogSaysLater) {
     const auto fit = test::run_shell(fmt::format("flightwatt fit {} -o {}", logs, test::shell_quoted(model)), folder);
     ASSERT_EQ(fit.code, 0) << fit.err;
     const auto options = "--remaining 200 --model " + test::shell_quoted(model);
-    expect_no_hindsight(sample_logs()[0], options, "--until-log-time 134.499");
-    expect_no_hindsight(sample_logs()[0], options, "--until 120");
-    expect_no_hindsight(sample_logs()[2], options, "--until 300");
+    expect_no_hindsight(sample_logs()[0], options, "--at-log-time 134.499");
+    expect_no_hindsight(sample_logs()[0], options, "--at 120");
+    expect_no_hindsight(sample_logs()[2], options, "--at 300");
 }
 
 TEST(NoHindsight, PredictsTheSameOfTheRealFlights) {
@@ -169,11 +169,11 @@ TEST(NoHindsight, PredictsTheSameOfTheRealFlights) {
     for (const auto& log : real_logs()) logs += " " + test::shell_quoted(log);
     const auto model = folder.parent_path() / "no_hindsight_real.toml";
     const auto fit = test::run_shell(
-        fmt::format("flightwatt fit --model physical {} -o {}", logs, test::shell_quoted(model)), folder);
+        fmt::format("flightwatt fit --model-kind physical {} -o {}", logs, test::shell_quoted(model)), folder);
     ASSERT_EQ(fit.code, 0) << fit.err;
     const auto options = "--airspeed 13 --remaining 300 --model " + test::shell_quoted(model);
     for (const auto& log : real_logs()) {
-        expect_no_hindsight(log, options, "--until 300");
+        expect_no_hindsight(log, options, "--at 300");
     }
 }
 

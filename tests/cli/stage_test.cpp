@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -24,6 +25,7 @@ namespace flightwatt::cli {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 struct Outcome {
@@ -38,25 +40,32 @@ void redirect(int stream, const std::filesystem::path& path) {
     if (file < 0 || ::dup2(file, stream) < 0) std::_Exit(99);
 }
 
+/// Variables of the stage's options, in the process that runs it.
+int count = 3;
+std::optional<std::string> name;
+
 StageDefinition definition() {
     StageDefinition stage;
     stage.name = "trial";
     stage.arguments = "FILE...";
     stage.description = "Tries things.";
     stage.max_inputs = 2;
-    namespace po = boost::program_options;
-    stage.options.add_options()("count", po::value<int>()->default_value(3), "how many")(
-        "name", po::value<std::string>(), "whose");
+    stage.examples = {"flightwatt trial a"};
+    stage.reads_logs = true;
+    stage.options.add("count", count, {.value = "N"}, "how many");
+    stage.options.add("name", name, {.value = "NAME"}, "whose");
     return stage;
 }
 
 /// Runs the stage in a process of its own: run_stage closes the standard output.
-Outcome run(std::vector<std::string> arguments, const StageBody& body, const std::filesystem::path& out = {}) {
+Outcome run(std::vector<std::string> arguments, const StageBody& body, const std::filesystem::path& out = {},
+            const std::filesystem::path& in = {}) {
     const auto folder = test::scratch_dir();
     const auto out_file = out.empty() ? folder / "stdout" : out;
     std::fflush(nullptr);  // or the child would print the rest of this process again
     const auto child = ::fork();
     if (child == 0) {
+        if (!in.empty() && ::dup2(::open(in.c_str(), O_RDONLY), STDIN_FILENO) < 0) std::_Exit(99);
         redirect(STDOUT_FILENO, out_file);
         redirect(STDERR_FILENO, folder / "stderr");
         arguments.insert(arguments.begin(), "flightwatt-trial");
@@ -80,9 +89,8 @@ StageBody failing_with(Error error) {
 
 TEST(RunStage, HandsOverWhatTheUserGave) {
     const auto result = run({"a", "--count", "7", "-o", "result.csv", "--json", "b"}, [](const StageCall& call) {
-        print(call.program + " " + call.inputs.at(0) + call.inputs.at(1) + " " +
-              std::to_string(call.get<int>("count")) + " " + call.output.value() + (call.json ? " json" : "") +
-              (call.get_optional<std::string>("name") ? " named" : " nameless"));
+        print(call.program + " " + call.inputs.at(0) + call.inputs.at(1) + " " + std::to_string(count) + " " +
+              call.output.value() + (call.json ? " json" : "") + (call.has("name") ? " named" : " nameless"));
         return ok;
     });
     EXPECT_EQ(result.code, 0);
@@ -92,7 +100,7 @@ TEST(RunStage, HandsOverWhatTheUserGave) {
 
 TEST(RunStage, HasDefaults) {
     const auto result = run({"a"}, [](const StageCall& call) {
-        return call.get<int>("count") == 3 && !call.json && !call.output ? ok : no_answer;
+        return count == 3 && !name && !call.json && !call.output ? ok : no_answer;
     });
     EXPECT_EQ(result.code, 0);
 }
@@ -110,7 +118,7 @@ TEST(RunStage, HelpsWithoutRunningTheBody) {
         const auto result = run({option}, failing_with(std::runtime_error("ran")));
         EXPECT_EQ(result.code, 0);
         EXPECT_THAT(result.out, StartsWith("usage: flightwatt trial FILE... [options]\n\nTries things.\n\nOptions:\n"));
-        EXPECT_THAT(result.out, HasSubstr("--count arg (=3)"));
+        EXPECT_THAT(result.out, HasSubstr("--count N (=3)"));
         EXPECT_EQ(result.err, "");
     }
     EXPECT_EQ(run({"--version"}, failing_with(std::runtime_error("ran"))).out,
@@ -124,7 +132,7 @@ TEST(RunStage, RefusesWrongUsage) {
         {{"a", "--counts", "1"}, "unrecognised option '--counts'; did you mean '--count'?"},
         {{"a", "--coun", "1"}, "unrecognised option '--coun'; did you mean '--count'?"},  // no guessing
         {{"a", "--elephant"}, "unrecognised option '--elephant'; see --help"},
-        {{"a", "--count", "x"}, "the argument ('x') for option '--count' is invalid; see --help"},
+        {{"a", "--count", "x"}, "--count x: expected a whole number"},
         {{"a", "--count=1", "--count=2"}, "option '--count' cannot be specified more than once; see --help"},
         {{"a", "--name"}, "the required argument for option '--name' is missing; see --help"},
     };
@@ -233,60 +241,37 @@ TEST(WriteResult, GoesToTheFileOrTheStandardOutput) {
     EXPECT_EQ(missing.err, "flightwatt-trial: error: cannot write /missing/folder/x: No such file or directory\n");
 }
 
-namespace po = boost::program_options;
-
-StageCall call_with(const std::vector<std::string>& arguments) {
-    po::options_description options;
-    options.add_options()("count", po::value<std::string>())("capacity", po::value<double>());
-    StageCall call;
-    po::store(po::command_line_parser(arguments).options(options).run(), call.options);
-    return call;
+TEST(RunStage, ReadsALogFromTheStandardInput) {
+    const auto input = test::scratch_dir().parent_path() / "StandardInput.data";
+    std::ofstream(input) << "a log\n";
+    const auto result = run(
+        {"-"},
+        [&](const StageCall& call) {
+            print(read_file(call.inputs.at(0)));
+            return ok;
+        },
+        {}, input);
+    EXPECT_EQ(result.out, "a log\n");
 }
 
-std::string refusal(const std::function<void()>& read) {
-    try {
-        read();
-    } catch (const UsageError& error) {
-        return error.what();
-    }
-    return "nothing refused";
+TEST(RunStage, IsQuietOnRequest) {
+    const auto body = [](const StageCall& call) {
+        note(call, "a note");
+        warn(call, "a warning");
+        return ok;
+    };
+    EXPECT_THAT(run({"a"}, body).err, HasSubstr("a note"));
+    const auto quiet = run({"a", "--quiet"}, body).err;
+    EXPECT_THAT(quiet, Not(HasSubstr("a note")));
+    EXPECT_THAT(quiet, HasSubstr("a warning"));
 }
 
-TEST(CountOption, TakesWholeNumbersInItsRange) {
-    EXPECT_EQ(count_option(call_with({"--count", "0"}), "count"), 0U);
-    EXPECT_EQ(count_option(call_with({"--count", "24"}), "count", 1, 24), 24U);
-}
-
-TEST(CountOption, RefusesOthersWithTheRange) {
-    for (const auto* text : {"-1", "1.5", "many", "25"}) {
-        const auto call = call_with({std::string("--count=") + text});
-        EXPECT_EQ(refusal([&] { count_option(call, "count", 1, 24); }),
-                  std::string("--count ") + text + ": expected a whole number from 1 to 24");
-    }
-    EXPECT_EQ(refusal([] { count_option(call_with({"--count=0"}), "count", 1); }),
-              "--count 0: expected a whole number from 1");
-    EXPECT_EQ(refusal([] { count_option(call_with({"--count=x"}), "count"); }), "--count x: expected a whole number");
-}
-
-TEST(NumberOption, LiesInItsRange) {
-    EXPECT_EQ(number_option(call_with({"--capacity", "2.5"}), "capacity", 0.0, 2.5), 2.5);
-    for (const auto* text : {"-1", "3", "inf", "nan"}) {
-        const auto call = call_with({std::string("--capacity=") + text});
-        EXPECT_EQ(refusal([&] { number_option(call, "capacity", 0.0, 2.5); }),
-                  std::string("--capacity ") + text + ": expected 0 to 2.5");
-    }
-}
-
-TEST(PositiveOption, IsAbsentOrAboveZero) {
-    EXPECT_EQ(positive_option(call_with({}), "capacity", "Ah"), std::nullopt);
-    EXPECT_EQ(positive_option(call_with({"--capacity", "2.5"}), "capacity", "Ah"), 2.5);
-    for (const auto* text : {"0", "-2", "inf", "nan"}) {
-        const auto call = call_with({std::string("--capacity=") + text});
-        EXPECT_EQ(refusal([&] { positive_option(call, "capacity", "Ah"); }),
-                  std::string("--capacity ") + text + ": expected more than 0 Ah");
-    }
-    EXPECT_EQ(refusal([] { positive_option(call_with({"--capacity=11"}), "capacity", "Ah", 10.0); }),
-              "--capacity 11: expected more than 0 and at most 10 Ah");
+TEST(RunStage, DescribesItselfAsJson) {
+    const auto json = Json::parse(run({"--json-usage"}, succeed).out);
+    EXPECT_EQ(json["stage"], "trial");
+    EXPECT_EQ(json["max_inputs"], 2);
+    EXPECT_EQ(json["examples"], Json::array({"flightwatt trial a"}));
+    EXPECT_EQ(json["options"][0]["name"], "count");
 }
 
 TEST(JsonText, EndsWithALineBreakAndReplacesWhatIsNotUtf8) {

@@ -76,7 +76,7 @@ class WatchFlights : public testing::Test {
         std::string options;
         for (const auto& word : basis) options += " '" + word + "'";
         const auto result =
-            test::run_shell(fmt::format("flightwatt-predict {} --until-log-time {}{}", log, until_s, options), folder);
+            test::run_shell(fmt::format("flightwatt-predict {} --at-log-time {}{}", log, until_s, options), folder);
         EXPECT_EQ(result.code, 0) << result.err;
         return Json::parse(result.out);
     }

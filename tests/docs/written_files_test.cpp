@@ -167,7 +167,7 @@ TEST(WrittenKeys, OfFlightsAreDocumented) {
     expect_keys(read_file(folder / "out" / "fit.json"), "", "Fit of a batch");
     expect_keys(read_file(folder / "out" / "batch.json"), "", "Manifest");
     expect_summary("validate", logs(), folder);
-    expect_summary("validate", logs() + Words{"--until", "300"}, folder);
+    expect_summary("validate", logs() + Words{"--at", "300"}, folder);
     expect_summary("battery", logs() + Words{"-o", "pack.toml"}, folder);
     expect_summary("export", {log_file, "-o", "track.kml"}, folder);
     expect_summary("export", {log_file, "-o", "columns.csv"}, folder);
@@ -184,12 +184,12 @@ TEST(WrittenKeys, OfProfilesAreDocumented) {
 TEST(WrittenKeys, OfModelsAreDocumented) {
     const auto folder = scratch_dir();
     expect_summary("fit", logs() + Words{"--errors", "-o", "model.toml"}, folder);
-    expect_summary("predict", {log_file, "--model", "model.toml", "--until", "300", "--remaining", "300"}, folder);
+    expect_summary("predict", {log_file, "--model", "model.toml", "--at", "300", "--remaining", "300"}, folder);
 }
 
 TEST(WrittenKeys, OfAWatchAreDocumented) {
     const auto folder = scratch_dir();
-    const auto said = run_shell("head -n 4000 " + shell_quoted(log_file) + " | flightwatt watch - --json --decide" +
+    const auto said = run_shell("head -n 4000 " + shell_quoted(log_file) + " | flightwatt watch - --json --replan" +
                                     " --mission " + shell_quoted(survey_path),
                                 folder);
     EXPECT_EQ(said.code, 0) << said.err;
@@ -205,7 +205,7 @@ TEST(WrittenKeys, OfMissionsAreDocumented) {
     expect_summary("simulate", {phased, "--samples", "10", "-o", "soc.csv"}, folder);
     expect_summary("compare", {phased, path_of("missions/paper/adaptive-replanned.toml")}, folder);
     expect_summary("init", {"home"}, folder);
-    expect_summary("new-mission", {"--mechanical", published, "--battery", path_of("fits/battery/paper.toml")}, folder);
+    expect_summary("new-mission", {"--model", published, "--battery", path_of("fits/battery/paper.toml")}, folder);
     expect_summary("plan", {path_of("missions/paper/plan.toml"), "-o", "planned.toml"}, folder);
     expect_summary("plan", {phased, "--longest-cruise"}, folder);
     expect_summary("plan", {phased, "--largest-payload"}, folder);

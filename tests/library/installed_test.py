@@ -82,7 +82,7 @@ def compare(example, build, log, model, battery, remaining_s):
             sys.exit(f"{log}: {line} is not the watch's {expected} at {state['time_s']} s")
     until_s = states[-1]["prediction"]["until_s"]
     predicted = json.loads(run([build / "bin/flightwatt-predict", log, "--model", model, "--remaining", remaining_s,
-                                "--battery", battery, "--until-log-time", until_s, "--json"]))
+                                "--battery", battery, "--at-log-time", until_s, "--json"]))
     if not all(map(same, lines[-1][2:4], predicted["interval_95_wh"])):
         sys.exit(f"{log}: {lines[-1]} is not what predict says at {until_s} s: {predicted['interval_95_wh']}")
     print(f"{Path(log).name}: {len(lines)} predictions as watch and predict say them")

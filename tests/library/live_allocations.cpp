@@ -1,5 +1,5 @@
 // What a live predictor takes of memory and time in a flight:
-//   live_allocations LOG.data MODEL.toml REMAINING_S BATTERY.toml | LOG.data MISSION.toml [--decide]
+//   live_allocations LOG.data MODEL.toml REMAINING_S BATTERY.toml | LOG.data MISSION.toml [--replan]
 // Counts what operator new is asked for after the start. Exit code 1 where a push allocates, or is refused, or where a
 // look allocates more often than ever was seen.
 

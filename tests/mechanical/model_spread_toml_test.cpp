@@ -47,7 +47,7 @@ TEST(ModelSpread, RefusesTheLevelLawOfEarlierVersions) {
         FAIL() << "it was read";
     } catch (const InputError& error) {
         EXPECT_NE(std::string(error.what()).find("cruises follow no covariate"), std::string::npos) << error.what();
-        EXPECT_NE(error.hint().find("--model physical"), std::string::npos) << error.hint();
+        EXPECT_NE(error.hint().find("--model-kind physical"), std::string::npos) << error.hint();
         EXPECT_GT(error.where().line, 1U);
     }
 }

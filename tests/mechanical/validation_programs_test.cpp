@@ -68,8 +68,8 @@ TEST(Validate, RefusesOneFlightAndMomentsThatAreNone) {
     const auto one = run(folder, "validate" + sample("01"));
     EXPECT_EQ(one.code, 4);
     EXPECT_THAT(one.err, HasSubstr("leaving one out needs 2 or more"));
-    EXPECT_EQ(run(folder, "validate --until -5" + samples()).code, 2);
-    const auto late = run(folder, "validate --until 5000" + samples());
+    EXPECT_EQ(run(folder, "validate --at -5" + samples()).code, 2);
+    const auto late = run(folder, "validate --at 5000" + samples());
     EXPECT_EQ(late.code, 4);
     EXPECT_THAT(late.err, HasSubstr("opterra_synthetic_01 is excluded"));
 }
@@ -108,7 +108,7 @@ TEST(Validate, AirspeedAndClimbExplainFlightsThatWereNotFitted) {
 
 TEST(Validate, KnowsTheRestOfACruiseByItsPath) {
     FLIGHTWATT_NEEDS_SHARED();
-    const auto json = Json::parse(run(test::scratch_dir(), "validate --until 300 --json" + real_flights()).out);
+    const auto json = Json::parse(run(test::scratch_dir(), "validate --at 300 --json" + real_flights()).out);
     EXPECT_LT(json["cruise"]["in_flight_path"]["mean_absolute_error_wh"],
               0.6 * json["cruise"]["in_flight"]["mean_absolute_error_wh"].get<double>());
     EXPECT_EQ(json["cruise"]["in_flight_path"]["coverage_95"], 1.0);
@@ -118,7 +118,7 @@ TEST(Fit, TellsThePhysicsOfRealFlights) {
     FLIGHTWATT_NEEDS_SHARED();
     const auto folder = test::scratch_dir();
     const auto result =
-        run(folder, "fit --model physical --json -o model.toml --constants constants.csv" + real_flights());
+        run(folder, "fit --model-kind physical --json -o model.toml --constants constants.csv" + real_flights());
     ASSERT_EQ(result.code, 0) << result.err;
     EXPECT_THAT(read_file(folder / "constants.csv"), HasSubstr("\ndrag,airspeed cubed,0.00"));
     const auto physical = Json::parse(result.out)["physical"];
@@ -128,7 +128,7 @@ TEST(Fit, TellsThePhysicsOfRealFlights) {
     EXPECT_GT(physical["terms"][1]["coefficient"], 8.0);
     EXPECT_EQ(physical["terms"][2]["term"], "descent");
     EXPECT_EQ(physical["flights"].size(), 3u);
-    EXPECT_EQ(run(folder, "predict --model model.toml --until 300 --remaining 300 --airspeed 13" +
+    EXPECT_EQ(run(folder, "predict --model model.toml --at 300 --remaining 300 --airspeed 13" +
                               real_flights().substr(0, real_flights().find(".data'") + 6))
                   .code,
               0);
@@ -142,8 +142,8 @@ std::string physical_table(const std::filesystem::path& model) {
 TEST(Fit, OfABatchFindsTheSamePhysics) {
     FLIGHTWATT_NEEDS_SHARED();
     const auto folder = test::scratch_dir();
-    ASSERT_EQ(run(folder, "fit --model physical -o model.toml" + real_flights()).code, 0);
-    const auto batch = "batch --model physical -o out" + real_flights();
+    ASSERT_EQ(run(folder, "fit --model-kind physical -o model.toml" + real_flights()).code, 0);
+    const auto batch = "batch --model-kind physical -o out" + real_flights();
     const auto first = run(folder, batch);
     ASSERT_EQ(first.code, 0) << first.err;
     EXPECT_THAT(first.out, HasSubstr("climb    climb rate"));
@@ -156,11 +156,11 @@ TEST(Fit, OfABatchFindsTheSamePhysics) {
 
 TEST(Fit, RefusesAPhysicalModelWithoutAirspeed) {
     const auto folder = test::scratch_dir();
-    const auto result = run(folder, "fit --model physical -o model.toml" + sample("01") + sample("02"));
+    const auto result = run(folder, "fit --model-kind physical -o model.toml" + sample("01") + sample("02"));
     EXPECT_EQ(result.code, 4);
     EXPECT_THAT(result.err, HasSubstr("opterra_synthetic_01: its airspeed was not measured"));
     EXPECT_FALSE(std::filesystem::exists(folder / "model.toml"));
-    EXPECT_EQ(run(folder, "batch --model physical -o out" + sample("01") + sample("02")).code, 4);
+    EXPECT_EQ(run(folder, "batch --model-kind physical -o out" + sample("01") + sample("02")).code, 4);
     EXPECT_FALSE(std::filesystem::exists(folder / "out/model.toml"));
     for (const std::string program : {"fit", "batch -o other"}) {
         const auto usage = run(folder, program + " --model newton" + sample("01"));
@@ -214,8 +214,8 @@ TEST(Predict, IsAboutNowWhereNoMomentIsGiven) {
     ASSERT_EQ(now.code, 0) << now.err;
     const double until_s = Json::parse(now.out)["until_s"];
     EXPECT_NEAR(until_s, 400.0, 2.0);
-    EXPECT_EQ(run(folder, "predict --json --model model.toml --remaining 200 --until now growing.data").out, now.out);
-    const auto at = run(folder, "predict --json --model model.toml --remaining 200 --until-log-time " +
+    EXPECT_EQ(run(folder, "predict --json --model model.toml --remaining 200 growing.data").out, now.out);
+    const auto at = run(folder, "predict --json --model model.toml --remaining 200 --at-log-time " +
                                     std::to_string(until_s) + " growing.data");
     EXPECT_EQ(at.out, now.out);
 }
@@ -224,7 +224,7 @@ TEST(Predict, TellsHowTheBatteryLands) {
     const auto folder = test::scratch_dir();
     ASSERT_EQ(run(folder, "fit -o model.toml" + samples()).code, 0);
     const auto pack = "'" + (test::source_dir() / "fits" / "battery" / "synthetic-3s.toml").string() + "'";
-    const auto predict = "predict --json --model model.toml --until 300 --remaining 290 --battery " + pack;
+    const auto predict = "predict --json --model model.toml --at 300 --remaining 290 --battery " + pack;
     const auto result = run(folder, predict + sample("01"));
     ASSERT_EQ(result.code, 0) << result.err;
     const auto json = Json::parse(result.out);
@@ -242,14 +242,14 @@ TEST(Predict, TellsHowTheBatteryLands) {
     EXPECT_FALSE(low["at_landing"]["fails_after_s"].is_null());
     EXPECT_EQ(run(folder, predict + " --initial-soc 1" + sample("01")).code, 4);  // more was drawn already
     EXPECT_EQ(run(folder, predict + " --initial-soc 101" + sample("01")).code, 2);
-    EXPECT_EQ(run(folder, "predict --model model.toml --until 300 --remaining 9 --initial-soc 50" + sample("01")).code,
+    EXPECT_EQ(run(folder, "predict --model model.toml --at 300 --remaining 9 --initial-soc 50" + sample("01")).code,
               2);
 }
 
 TEST(Predict, NeedsAPhysicalModelForAnAirspeed) {
     const auto folder = test::scratch_dir();
     ASSERT_EQ(run(folder, "fit -o model.toml" + samples()).code, 0);
-    const auto predict = "predict --model model.toml --until 300 --remaining 100 ";
+    const auto predict = "predict --model model.toml --at 300 --remaining 100 ";
     const auto result = run(folder, predict + std::string("--airspeed 13") + sample("01"));
     EXPECT_EQ(result.code, 3);
     EXPECT_THAT(result.err, HasSubstr("it has no [physical]"));
@@ -261,7 +261,7 @@ TEST(Predict, ForeseesASampleFlight) {
     const auto folder = test::scratch_dir();
     ASSERT_EQ(run(folder, "fit -o model.toml" + sample("02") + sample("03") + sample("04") + sample("05")).code, 0);
     // It lifts off at 64.5 s and begins to land at 661.9 s, after 4.54 Wh; 5.017 Wh in all.
-    const auto result = run(folder, "predict --json --model model.toml --until 400 --remaining 197.4" + sample("01"));
+    const auto result = run(folder, "predict --json --model model.toml --at 400 --remaining 197.4" + sample("01"));
     ASSERT_EQ(result.code, 0) << result.err;
     EXPECT_NEAR(Json::parse(result.out)["total_energy_wh"], 5.017, 0.1);
 }
@@ -269,23 +269,23 @@ TEST(Predict, ForeseesASampleFlight) {
 TEST(Predict, RefusesWhatCannotBePredicted) {
     const auto folder = test::scratch_dir();
     const auto published = "'" + (test::source_dir() / "fits" / "mechanical" / "opterra-table1.toml").string() + "'";
-    const auto without = run(folder, "predict --model " + published + " --until 300 --remaining 9" + sample("01"));
+    const auto without = run(folder, "predict --model " + published + " --at 300 --remaining 9" + sample("01"));
     EXPECT_EQ(without.code, 3);
     EXPECT_THAT(without.err, HasSubstr("[cruise] has no spread"));
     ASSERT_EQ(run(folder, "fit -o model.toml" + samples()).code, 0);
     const auto predict = [&](const std::string& options) {
         return run(folder, "predict --model model.toml " + options + sample("01")).code;
     };
-    EXPECT_EQ(predict("--until 300 --remaining 100"), 0);
-    EXPECT_EQ(predict("--until 300"), 2);
+    EXPECT_EQ(predict("--at 300 --remaining 100"), 0);
+    EXPECT_EQ(predict("--at 300"), 2);
     EXPECT_EQ(predict("--remaining 100"), 4);  // now: landed
-    EXPECT_EQ(predict("--until soon --remaining 100"), 2);
-    EXPECT_EQ(predict("--until 300 --until-log-time 300 --remaining 100"), 2);
-    EXPECT_EQ(predict("--until 300 --remaining=-1"), 2);
-    EXPECT_EQ(predict("--until nan --remaining 1"), 2);
-    EXPECT_EQ(predict("--until 10 --remaining 100"), 4);   // climbing
-    EXPECT_EQ(predict("--until 700 --remaining 100"), 4);  // landed
-    EXPECT_EQ(predict("--until 300 --remaining 100 --sortie 2"), 4);
+    EXPECT_EQ(predict("--at soon --remaining 100"), 2);
+    EXPECT_EQ(predict("--at 300 --at-log-time 300 --remaining 100"), 2);
+    EXPECT_EQ(predict("--at 300 --remaining=-1"), 2);
+    EXPECT_EQ(predict("--at nan --remaining 1"), 2);
+    EXPECT_EQ(predict("--at 10 --remaining 100"), 4);   // climbing
+    EXPECT_EQ(predict("--at 700 --remaining 100"), 4);  // landed
+    EXPECT_EQ(predict("--at 300 --remaining 100 --sortie 2"), 4);
 }
 
 }  // namespace

@@ -99,7 +99,7 @@ rule fit:
     log:
         f"{OUT}/fit.log",
     shell:
-        "{FLIGHTWATT} fit {OUT}/all --model best --name batch {config[fit_options]} -o {output.model} --table {output.table}"
+        "{FLIGHTWATT} fit {OUT}/all --model-kind best --name batch {config[fit_options]} -o {output.model} --table {output.table}"
         " > {log} 2>&1"
 
 

@@ -187,12 +187,4 @@ Json to_json(const battery::BatteryIdentification& identified, const std::vector
     return json;
 }
 
-std::optional<double> capacity_option(const StageCall& call) {
-    const auto capacity_ah = call.get_optional<double>("capacity");
-    if (capacity_ah && !(*capacity_ah > 0.0 && *capacity_ah <= battery::max_capacity_ah))
-        throw UsageError(fmt::format("--capacity {:g}: expected more than 0 and at most {:g} Ah; {}", *capacity_ah,
-                                     battery::max_capacity_ah, battery::capacity_hint));
-    return capacity_ah;
-}
-
 }  // namespace flightwatt::cli

@@ -43,7 +43,4 @@ std::string provenance(const battery::BatteryIdentification& identified);
 /// The stage's JSON: units are in the keys, null stands for what is not known.
 Json to_json(const battery::BatteryIdentification& identified, const std::vector<battery::LeaveOneOutCheck>& left_out);
 
-/// --capacity [Ah] of a pack, or std::nullopt where it was not given. Throws UsageError for one that no pack has.
-std::optional<double> capacity_option(const StageCall& call);
-
 }  // namespace flightwatt::cli

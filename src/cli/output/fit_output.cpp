@@ -69,30 +69,6 @@ std::string describe(const mechanical::ModelValidation& validation, bool has_phy
 
 }  // namespace
 
-void add_fit_options(boost::program_options::options_description& options) {
-    auto add = options.add_options();
-    add("order", value("N")->default_value("3"), "order of the Fourier series, 0 to 8");
-    add("weights", value("HOW")->default_value("agreement"), "uniform, inverse-variance or agreement");
-}
-
-mechanical::ModelFitOptions read_fit_options(const StageCall& call) {
-    mechanical::ModelFitOptions options;
-    if (call.get<std::string>("order") == "auto")
-        throw UsageError("--order auto was removed: compare orders with 'flightwatt validate --order N'");
-    options.phases.order = static_cast<int>(count_option(call, "order", 0, mechanical::max_order));
-    const auto name = call.get<std::string>("weights");
-    const auto weighting = mechanical::weighting_from(name);
-    if (!weighting)
-        throw UsageError(fmt::format("--weights {}: expected uniform, inverse-variance or agreement", name));
-    options.weighting = *weighting;
-    return options;
-}
-
-std::optional<mechanical::MechanicalModel> read_published(const StageCall& call) {
-    const auto file = call.get_optional<std::string>("published");
-    return file ? std::optional(mechanical::read_mechanical_model(*file)) : std::nullopt;
-}
-
 TextTable table_of(const mechanical::MechanicalModel& model,
                    const std::optional<mechanical::MechanicalModel>& published, mechanical::TableIntervals intervals) {
     return published ? table_one_comparison(*published, model, intervals) : table_one(model, intervals);

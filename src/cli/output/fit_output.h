@@ -13,15 +13,6 @@
 /// Options of a fit, and its output: Table I, and as JSON the model with its errors, its outliers and its order.
 namespace flightwatt::cli {
 
-/// The options of a fit, which several stages share.
-void add_fit_options(boost::program_options::options_description& options);
-
-/// What the user gave of them. Throws UsageError for options that make no sense or exclude each other.
-mechanical::ModelFitOptions read_fit_options(const StageCall& call);
-
-/// The model that --published names.
-std::optional<mechanical::MechanicalModel> read_published(const StageCall& call);
-
 /// Table I of a model, beside a published one where there is one.
 TextTable table_of(const mechanical::MechanicalModel& model,
                    const std::optional<mechanical::MechanicalModel>& published,

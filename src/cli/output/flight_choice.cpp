@@ -11,11 +11,9 @@
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <regex>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -24,38 +22,11 @@
 namespace flightwatt::cli {
 namespace {
 
-using Day = std::chrono::sys_days;
-
-std::optional<Day> day_option(const StageCall& call, const std::string& option) {
-    const auto text = call.get_optional<std::string>(option);
-    if (!text) return std::nullopt;
-    static const std::regex date("([0-9]{4})-([0-9]{2})-([0-9]{2})");
-    std::smatch match;
-    if (std::regex_match(*text, match, date)) {
-        const auto number = [&](std::size_t part) { return static_cast<unsigned>(std::stoul(match[part].str())); };
-        const std::chrono::year_month_day day{std::chrono::year(static_cast<int>(number(1))),
-                                              std::chrono::month(number(2)), std::chrono::day(number(3))};
-        if (day.ok()) return day;
-    }
-    throw UsageError(fmt::format("--{} {}: expected a date as 2020-07-05", option, *text));
-}
-
 bool matches(const std::string& pattern, const std::string& name) {
     return ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0;
 }
 
 bool is_pattern(const std::string& text) { return text.find_first_of("*?[") != std::string::npos; }
-
-std::vector<std::string> texts_of(const StageCall& call, const std::string& option) {
-    return call.get_optional<std::vector<std::string>>(option).value_or(std::vector<std::string>());
-}
-
-/// What the user chose.
-struct FlightChoice {
-    std::optional<Day> since;
-    std::optional<Day> until;
-    std::vector<std::string> patterns;
-};
 
 /// fnmatch takes a bracket that is not closed for a letter, and no pattern for one that no flight has.
 void require_pattern(const std::string& pattern) {
@@ -65,15 +36,15 @@ void require_pattern(const std::string& pattern) {
 }
 
 /// Why a flight is left out; empty for one that is used.
-std::string why_left_out(const FlightChoice& choice, const std::string& flight) {
+std::string why_left_out(const FlightFilter& filter, const std::string& flight) {
     const auto fits = [&](const auto& pattern) { return matches(pattern, flight); };
-    if (!choice.patterns.empty() && std::ranges::none_of(choice.patterns, fits)) return "its name is not of --glob";
-    if (!choice.since && !choice.until) return "";
+    if (!filter.patterns.empty() && std::ranges::none_of(filter.patterns, fits)) return "its name is not of --glob";
+    if (!filter.since && !filter.until) return "";
     const auto start = flight::start_in_name(flight);  // of a log that the ground station named after its start
     if (!start) return "its name holds no date (YY_MM_DD__hh_mm_ss)";
     const auto day = std::chrono::floor<std::chrono::days>(*start);
-    if (choice.since && day < *choice.since) return "it is before --since";
-    if (choice.until && day > *choice.until) return "it is after --until";
+    if (filter.since && day < *filter.since) return "it is before --since";
+    if (filter.until && day > *filter.until) return "it is after --until";
     return "";
 }
 
@@ -143,24 +114,26 @@ void add_logs_of_folder(const StageCall& call, const std::string& folder, const 
 
 }  // namespace
 
-void add_choice_options(boost::program_options::options_description& options) {
-    auto add = options.add_options();
-    add("since", value("DATE"), "flights of this day (2020-07-05) and later, by the date in their names");
-    add("until", value("DATE"), "flights of this day and before");
-    add("glob", value<std::vector<std::string>>("PATTERN")->composing(),
-        "flights whose name matches, '20_07_*'; may be given several times");
+void add_filter_options(Options& options, FlightFilter& filter) {
+    options.add("since", filter.since, {.value = "DATE"},
+                "flights of this day (2020-07-05) and later, by the date in their names");
+    options.add("until", filter.until, {.value = "DATE"}, "flights of this day and before");
+    options.add("glob", filter.patterns, {.value = "PATTERN"},
+                "flights whose name matches, '20_07_*'; may be given several times");
+    options.add_rule([&filter] {
+        std::ranges::for_each(filter.patterns, require_pattern);
+        if (filter.since && filter.until && *filter.since > *filter.until)
+            throw UsageError("--since is after --until: no flight is of both");
+    });
 }
 
-std::vector<bool> filter_flights(const StageCall& call, const std::vector<std::string>& flights) {
-    const FlightChoice choice{day_option(call, "since"), day_option(call, "until"), texts_of(call, "glob")};
-    std::ranges::for_each(choice.patterns, require_pattern);
-    if (choice.since && choice.until && *choice.since > *choice.until)
-        throw UsageError("--since is after --until: no flight is of both");
+std::vector<bool> filter_flights(const StageCall& call, const FlightFilter& filter,
+                                 const std::vector<std::string>& flights) {
     std::vector<bool> chosen;
     std::vector<std::string> left_out;
     chosen.reserve(flights.size());
     for (const auto& flight : flights) {
-        const auto why = why_left_out(choice, flight);
+        const auto why = why_left_out(filter, flight);
         chosen.push_back(why.empty());
         if (!why.empty()) left_out.push_back(fmt::format("{} ({})", flight, why));
     }
@@ -202,12 +175,12 @@ std::vector<std::string> files_of(const StageCall& call, const flight::LoadOptio
     return files;
 }
 
-StageCall with_chosen_flights(StageCall call, const flight::LoadOptions& options) {
+StageCall with_chosen_flights(StageCall call, const FlightFilter& filter, const flight::LoadOptions& options) {
     const auto files = files_of(call, options);
     std::vector<std::string> names;
     names.reserve(files.size());
     for (const auto& file : files) names.push_back(flight_of_file(file));
-    const auto chosen = filter_flights(call, names);
+    const auto chosen = filter_flights(call, filter, names);
     call.inputs.clear();
     for (std::size_t i = 0; i < files.size(); ++i)
         if (chosen[i]) call.inputs.push_back(files[i]);

@@ -19,13 +19,6 @@
 namespace flightwatt::cli {
 namespace {
 
-namespace po = boost::program_options;
-
-std::set<std::string> names_of(const StageCall& call, const std::string& option) {
-    const auto names = call.get_optional<std::vector<std::string>>(option).value_or(std::vector<std::string>{});
-    return {names.begin(), names.end()};
-}
-
 void refuse_unknown(const std::set<std::string>& names, const std::string& option,
                     const std::vector<std::string>& flights) {
     for (const auto& name : names) {
@@ -65,69 +58,58 @@ std::vector<std::size_t> without_copies(const StageCall& call, const std::vector
     return numbers;
 }
 
-/// Throws InputError for those of several aircraft, unless --mix-aircraft is given.
-void refuse_mix(const StageCall& call, const std::vector<ReadFlight>& flights, const std::vector<std::size_t>& used) {
+/// Throws InputError for flights of several aircraft.
+void refuse_mix(const std::vector<ReadFlight>& flights, const std::vector<std::size_t>& used) {
     std::vector<flight::FlightAircraft> flown;
     for (const auto i : used)
         if (flights[i].is_sound) flown.push_back(flights[i].flown);
-    const auto mix = call.has("mix-aircraft") ? "" : describe_mixed_aircraft(flown);
+    const auto mix = describe_mixed_aircraft(flown);
     if (mix.empty()) return;
     throw InputError({}, fmt::format("the flights are of several aircraft: {}", mix),
-                     "use one aircraft's alone, or let all in with --mix-aircraft");
+                     "use one aircraft's alone, or accept all with --mix-aircraft");
 }
 
 }  // namespace
 
-void add_flight_options(po::options_description& options) {
-    const flight::SegmentationOptions defaults;
-    const auto number = [](const char* unit, double usual, const char* shown) {
-        return value<double>(unit)->default_value(usual, shown);
-    };
-    const auto names = [] { return value<std::vector<std::string>>("FLIGHT")->composing(); };
-    po::options_description group("How flights are read");
-    auto add = group.add_options();
-    add("aircraft", value("ID"), "the aircraft to read, where several flew");
-    add("sortie", value("N"), "this sortie of the log alone, counted from 1");
-    add("exclude", names(), "do not use this flight");
-    add("keep", names(), "use this flight though it would be excluded (power faults, not-fitted.txt)");
-    add("correct-idle-offset", "take out of the power what the current sensor reads on the ground");
-    add("rest", number("S", defaults.rest_s, "10"),
-        "an aircraft that keeps its height so long [s] with its motor idling is at rest");
-    add("hold", number("S", defaults.hold_s, "30"),
-        "a height that grows by less than a tenth of the flight's in this time [s] is held");
-    add("idle-throttle", number("P", defaults.idle_throttle_percent, "5"), "up to this throttle [%] the motor idles");
-    add("cruise-fraction", number("X", defaults.cruise_fraction, "0.9"),
-        "take-off ends and landing begins at this fraction of the height held");
-    add("ground-fraction", number("X", defaults.ground_fraction, "0.025"),
-        "below this fraction of the flight's height it is on the ground");
-    add("flight-height", number("M", defaults.flight_height_m, "10"), "what stays below this height [m] is no flight");
-    add("max-log-mb", value("MB")->default_value("100"),
-        "refuse a compressed log that unpacks to more, and a larger series file");
-    add("messages", input_file("FILE"),
+void add_flight_options(Options& options, flight::LoadOptions& load, const std::vector<std::string>& needs) {
+    constexpr double max_s = 24.0 * units::seconds_per_hour;
+    constexpr double bytes_per_mb = 1e6;
+    options.begin_group("Flights", false, needs);
+    options.add("aircraft", load.aircraft_id, {.value = "ID"}, "the aircraft to read, where several flew");
+    options.add("sortie", load.sortie, {.value = "N", .min = 1}, "this sortie of the log alone, counted from 1");
+    options.add("exclude", load.excluded, {.value = "FLIGHT"}, "do not use this flight");
+    options.add("keep", load.keep, {.value = "FLIGHT"},
+                "use this flight though it would be excluded (power faults, not-fitted.txt)");
+    options.add(
+        "messages", load.messages, input_file("FILE"),
         "definitions for logs without a .log, above all binary ones: a messages.xml, or the .log of the same build");
-    options.add(group);
+    options.begin_group("Reading of flights", true, needs);
+    options.add("correct-idle-offset", load.correct_idle_offset,
+                "subtract from the power what the current sensor reads on the ground");
+    auto& thresholds = load.segmentation;
+    options.add("rest-time", thresholds.rest_s,
+                {.value = "S", .min = 1.0, .max = max_s, .unit = "s", .old_name = "rest"},
+                "an aircraft is at rest if its altitude is constant and its motor idles for this time [s]");
+    options.add("hold-time", thresholds.hold_s,
+                {.value = "S", .min = 0.0, .max = max_s, .above_min = true, .unit = "s", .old_name = "hold"},
+                "the altitude is held if it grows by less than a tenth of the flight's height in this time [s]");
+    options.add("idle-throttle", thresholds.idle_throttle_percent,
+                {.value = "P", .min = 0.0, .max = 100.0, .unit = "%"}, "up to this throttle [%] the motor idles");
+    options.add("cruise-fraction", thresholds.cruise_fraction, {.value = "X"},
+                "take-off ends and landing begins at this fraction of the height held");
+    options.add("ground-fraction", thresholds.ground_fraction, {.value = "X"},
+                "below this fraction of the flight's height it is on the ground");
+    options.add("flight-height", thresholds.flight_height_m, {.value = "M"}, "minimum height of a flight [m]");
+    options.add("max-log-mb", load.max_log_bytes, {.value = "MB", .min = 1.0, .max = 1e6, .scale = bytes_per_mb},
+                "refuse a compressed log that unpacks to more, and a larger series file");
+    options.add_rule([&load] { validate(load.segmentation); });
+    options.begin_group("Options");
 }
 
-flight::LoadOptions read_flight_options(const StageCall& call) {
-    constexpr double max_s = 24.0 * units::seconds_per_hour;
-    constexpr std::size_t bytes_per_mb = 1'000'000;
-    flight::LoadOptions options;
-    options.excluded = names_of(call, "exclude");
-    options.keep = names_of(call, "keep");
-    options.aircraft_id = call.get_optional<std::string>("aircraft");
-    if (call.has("sortie")) options.sortie = count_option(call, "sortie", 1);
-    options.correct_idle_offset = call.has("correct-idle-offset");
-    auto& segmentation = options.segmentation;
-    segmentation.rest_s = number_option(call, "rest", 1.0, max_s);
-    segmentation.hold_s = positive_option(call, "hold", "s", max_s).value();
-    segmentation.idle_throttle_percent = number_option(call, "idle-throttle", 0.0, 100.0);
-    segmentation.cruise_fraction = call.get<double>("cruise-fraction");
-    segmentation.ground_fraction = call.get<double>("ground-fraction");
-    segmentation.flight_height_m = call.get<double>("flight-height");
-    validate(segmentation);
-    if (const auto messages = call.get_optional<std::string>("messages")) options.messages = *messages;
-    options.max_log_bytes = bytes_per_mb * count_option(call, "max-log-mb", 1, 1'000'000);
-    return options;
+void add_flight_options(Options& options, FlightArguments& flights) {
+    options.add("mix-aircraft", flights.mix_aircraft,
+                "use flights of several aircraft as if they were of one, also synthetic ones");
+    add_flight_options(options, flights.load);
 }
 
 void warn_of(const StageCall& call, const std::string& file, const flight::LoadedFlight& flight) {
@@ -144,19 +126,14 @@ flight::LoadedFlight load_flight(const StageCall& call, const std::string& file,
     return loaded;
 }
 
-void add_mix_option(po::options_description& options) {
-    options.add_options()("mix-aircraft",
-                          "use flights of several aircraft as if they were of one, also synthetic ones");
-}
-
-std::vector<std::size_t> for_each_flight(const StageCall& call, const flight::LoadOptions& given,
+std::vector<std::size_t> for_each_flight(const StageCall& call, const FlightArguments& arguments,
                                          const std::function<void(const std::string&, flight::LoadedFlight&)>& read) {
-    auto options = given;
-    const auto inputs = files_of(call, given);
+    auto options = arguments.load;
+    const auto inputs = files_of(call, options);
     std::vector<std::string> flights;
     flights.reserve(inputs.size());
     for (const auto& file : inputs) flights.push_back(flight_of_file(file));
-    options.excluded = expand_patterns(given.excluded, "exclude", flights);
+    options.excluded = expand_patterns(options.excluded, "exclude", flights);
     flights.clear();
     std::vector<ReadFlight> known;
     std::optional<flight::OtherAircraftError> other;
@@ -198,13 +175,13 @@ std::vector<std::size_t> for_each_flight(const StageCall& call, const flight::Lo
     if (other && known.empty()) throw *other;
     if (unusable && known.empty()) throw InputError({}, "no flight is left", "see the reasons above");
     auto used = without_copies(call, known);
-    refuse_mix(call, known, used);
+    if (!arguments.mix_aircraft) refuse_mix(known, used);
     return used;
 }
 
-std::vector<mechanical::MeasuredFlight> measured_flights(const StageCall& call, const flight::LoadOptions& options,
+std::vector<mechanical::MeasuredFlight> measured_flights(const StageCall& call, const FlightArguments& arguments,
                                                          std::size_t needed_samples) {
-    return from_flights<mechanical::MeasuredFlight>(call, options, [&](const auto&, const auto& loaded) {
+    return from_flights<mechanical::MeasuredFlight>(call, arguments, [&](const auto&, const auto& loaded) {
         auto measured = mechanical::extract_flights(loaded, needed_samples);
         for (const auto& exclusion : measured.exclusions) warn(call, to_string(exclusion));
         return std::move(measured.flights);
@@ -214,12 +191,6 @@ std::vector<mechanical::MeasuredFlight> measured_flights(const StageCall& call, 
 void refuse_unknown_flights(const flight::LoadOptions& options, const std::vector<std::string>& flights) {
     refuse_unknown(options.excluded, "exclude", flights);
     refuse_unknown(options.keep, "keep", flights);
-}
-
-void add_folds_option(boost::program_options::options_description& options, std::size_t usual) {
-    options.add_options()("folds", value("N")->default_value(std::to_string(usual)),
-                          "leave more flights than N out in N groups, not each alone: the time then grows with the "
-                          "flights, not with their square");
 }
 
 void note_folds(const StageCall& call, std::size_t flights, std::size_t folds) {

@@ -13,46 +13,65 @@
 #include <string>
 #include <vector>
 
-#include <boost/program_options.hpp>
-
 /// Options of predict and watch: what a flight in the air is predicted from and at which time, and the source of its
 /// telemetry.
 namespace flightwatt::cli {
 
-/// Whether a mission has to say where it flies.
+/// Whether a mission has to state its path.
 enum class PathNeed { required, optional };
 
-/// --remaining, --airspeed, --climb, --mission, --battery, --initial-soc; --model is the stage's own.
-void add_basis_options(boost::program_options::options_description& options, PathNeed need);
+/// --model, --remaining, --airspeed, --climb, --mission, --battery, --initial-soc.
+struct BasisArguments {
+    PathNeed need = PathNeed::required;
+    std::optional<std::string> model;
+    std::optional<double> remaining_s;
+    std::optional<double> airspeed_m_per_s;
+    std::optional<double> climb_m_per_s;
+    std::optional<std::string> mission;
+    std::optional<std::string> battery;
+    std::optional<double> initial_soc_percent;
+};
 
-/// What the options say, with warnings of the model or the mission. Without a path a mission's cruise takes as long as
-/// it says. Where the path is optional, battery and state of charge are the mission's unless they are given. `mission`
-/// becomes what --mission names. Throws UsageError for what does not fit together, and as live::require_spread and
-/// live::require_physical.
-live::PredictionInput read_basis(const StageCall& call, PathNeed need,
+void add_basis_options(Options& options, BasisArguments& arguments);
+
+/// The input of predictions, with warnings of the model or the mission. Without a path a mission's cruise has the
+/// duration that it states. Where the path is optional, battery and state of charge are the mission's unless they are
+/// given. `mission` becomes the one of --mission. Throws UsageError for options that exclude each other, and as
+/// live::require_spread and live::require_physical.
+live::PredictionInput read_basis(const StageCall& call, const BasisArguments& arguments,
                                  std::optional<mission::MissionVariant>* mission = nullptr);
 
-/// The moment that is asked for: since lift-off, on the log's clock, or (none of them) the end of the log.
+/// The time that is asked for: since lift-off, on the log's clock, or (none of them) the end of the log.
 struct RequestedTime {
     std::optional<double> since_lift_off_s;
     std::optional<double> log_time_s;
 };
 
-/// Throws UsageError for both, or for what is no time.
-RequestedTime read_requested_time(const StageCall& call);
+/// --at and --at-log-time.
+void add_time_options(Options& options, RequestedTime& time);
 
 /// When it is, in the log's own seconds: of several aircraft, when the first has flown so long. `sortie` counts from 0.
 /// Throws as mechanical::log_time_after_lift_off.
-double resolve_log_time(const RequestedTime& moment, const std::vector<flight::FlightSeries>& candidates,
+double resolve_log_time(const RequestedTime& time, const std::vector<flight::FlightSeries>& candidates,
                         std::size_t sortie, const flight::SegmentationOptions& options);
 
 /// --follow, --udp, --serial, --ivy, --clock-factor, --log, --messages.
-void add_source_options(boost::program_options::options_description& options);
+struct SourceArguments {
+    std::optional<std::string> follow;
+    std::optional<std::string> udp;
+    std::optional<std::string> serial;
+    std::optional<std::string> ivy;
+    std::optional<double> clock_factor;
+    std::optional<std::string> log;
+    std::optional<std::string> messages;
+};
 
-/// The file of definitions: of --messages or --log, or the .log beside the file that is followed.
-std::optional<std::string> definitions_of_source(const StageCall& call);
+void add_source_options(Options& options, SourceArguments& arguments);
+
+/// The file of definitions: of --messages or --log, or the .log next to the file that is followed.
+std::optional<std::string> definitions_of_source(const SourceArguments& arguments);
 
 /// The one source that was named, opened: by these options, or - as the standard input.
-std::unique_ptr<live::MessageSource> open_source(const StageCall& call);
+std::unique_ptr<live::MessageSource> open_source(const StageCall& call, const SourceArguments& arguments);
 
 }  // namespace flightwatt::cli

@@ -41,32 +41,6 @@ void add_sources(const mission::UncertaintySources& sources, Json& json) {
     json["not_drawn"] = sources.fixed;
 }
 
-void add_sampling_options(StageDefinition& stage) {
-    auto add = stage.options.add_options();
-    add("samples", value("N"), "draw N flights from what the models (or [uncertainty]) say of how they differ");
-    add("seed", value("S"), "of --samples; 1 if not given");
-}
-
-std::optional<mission::SamplingOptions> sampling_options(const StageCall& call, bool with_bands) {
-    constexpr std::size_t band_times = 101;
-    if (!call.has("samples")) {
-        for (const std::string option : {"seed", "samples-csv"}) {
-            if (call.has(option)) throw UsageError(fmt::format("--{} belongs to --samples", option));
-        }
-        return std::nullopt;
-    }
-    mission::SamplingOptions options;
-    options.samples = count_option(call, "samples");
-    if (call.has("seed")) options.seed = count_option(call, "seed");
-    if (with_bands) options.band_points = band_times;
-    return options;
-}
-
-std::vector<mission::Disturbance> read_disturb_option(const StageCall& call, const mission::MissionSetup& mission) {
-    const auto file = call.get_optional<std::string>("disturb");
-    return file ? mission::read_disturbances(*file, mission.duration_s) : std::vector<mission::Disturbance>();
-}
-
 void warn_of_lost_comments(const StageCall& call, const mission::PlannedMissionText& written) {
     if (written.lost_comments)
         warn(call,

@@ -15,16 +15,6 @@
 /// What simulate, compare and plan have in common: drawing flights, and their answers as JSON.
 namespace flightwatt::cli {
 
-/// --samples and --seed.
-void add_sampling_options(StageDefinition& stage);
-
-/// None without --samples. Throws UsageError for what is no whole number, or belongs to --samples and stands
-/// without it.
-std::optional<mission::SamplingOptions> sampling_options(const StageCall& call, bool with_bands);
-
-/// What --disturb says of a mission.
-std::vector<mission::Disturbance> read_disturb_option(const StageCall& call, const mission::MissionSetup& mission);
-
 /// Warns of what no drone has: negative power of the model or of a profile, a battery of another unit.
 void warn_of_setup(const StageCall& call, const mission::MissionSetup& mission);
 

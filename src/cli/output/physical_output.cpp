@@ -126,22 +126,6 @@ void warn_of_physical(const StageCall& call, const mechanical::PhysicalFit& fit)
          "no interval; give two flights or more");
 }
 
-void add_model_option(boost::program_options::options_description& options, ModelKind usual) {
-    options.add_options()(
-        "model", value("KIND")->default_value(usual == ModelKind::best ? "best" : "fourier"),
-        "fourier: power over the time of each phase; physical: besides, power from airspeed and climb, for aircraft on "
-        "wings whose flights measured them; best: besides, the error of each model on flights left out of the fit, by "
-        "which missions choose one, and the physical model unless the mean power predicts better");
-}
-
-ModelKind model_kind(const StageCall& call) {
-    const auto name = call.get<std::string>("model");
-    if (name == "physical") return ModelKind::physical;
-    if (name == "fourier") return ModelKind::fourier;
-    if (name == "best") return ModelKind::best;
-    throw UsageError(fmt::format("--model {}: expected fourier, physical or best", name));
-}
-
 void add_best_power(std::span<const mechanical::MeasuredFlight> measured, const mechanical::ModelFitOptions& options,
                     mechanical::MechanicalModel& model) {
     ProgressBar fitting("fits");
@@ -153,7 +137,7 @@ mechanical::PhysicalFit fit_motion(const StageCall& call, std::span<const mechan
     std::vector<mechanical::BinnedFlight> motions;
     motions.reserve(measured.size());
     for (const auto& flight : measured) motions.push_back(flight.motion);
-    if (!call.options["weights"].defaulted())
+    if (call.has("weights"))
         note(call, "the weights are those of the curves over time: [physical] finds its own from how flights differ");
     auto physical = mechanical::fit_physical_model(motions);
     warn_of_physical(call, physical);

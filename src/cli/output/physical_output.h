@@ -26,19 +26,6 @@ Json physical_json(const mechanical::PhysicalFit& fit);
 /// Warns of flights that are not in the model, and of what it does not know.
 void warn_of_physical(const StageCall& call, const mechanical::PhysicalFit& fit);
 
-/// What is fitted besides the curves.
-enum class ModelKind {
-    fourier,   ///< nothing
-    physical,  ///< the physical model, whatever it predicts
-    best       ///< what mechanical::add_best_power adds
-};
-
-/// --model, the usual one if it is not given.
-void add_model_option(boost::program_options::options_description& options, ModelKind usual);
-
-/// Throws UsageError for another kind.
-ModelKind model_kind(const StageCall& call);
-
 /// mechanical::add_best_power, with its progress.
 void add_best_power(std::span<const mechanical::MeasuredFlight> measured, const mechanical::ModelFitOptions& options,
                     mechanical::MechanicalModel& model);

@@ -20,7 +20,7 @@ const mechanical::PhysicalModel& physical_of(const mechanical::MechanicalModel& 
     throw InputError(
         where,
         fmt::format("the mechanical model '{}' does not know what motion takes: it has no [physical]", model.name),
-        "fit one: flightwatt fit --model physical FLIGHT... -o MODEL.toml, of flights that measured their airspeed");
+        "fit one: flightwatt fit --model-kind physical FLIGHT... -o MODEL.toml, of flights that measured their airspeed");
 }
 
 /// Shifts the model's cruise so that its mean over the model's own duration is this power.

@@ -218,7 +218,7 @@ MissionVariant parse_mission(std::string_view text, const std::filesystem::path&
     if (root.is_table("conditions"))
         throw InputError(root.where("conditions"), "conditions are no longer read: a cruise follows its airspeed alone",
                          "leave them out, or state airspeed_m_per_s beside the mission's other keys, on a model of "
-                         "flightwatt fit --model physical");
+                         "flightwatt fit --model-kind physical");
     root.refuse_keys_except({"format", "name", "mechanical", "duration_s", "phase_clock", "airspeed_m_per_s", "path",
                              "wind", "battery", "initial_soc_percent", "capacity_ah", "cutoff_voltage_v",
                              "reserve_soc_percent", "may_charge", "components", "schedule", "plan", "policy",

@@ -1,4 +1,4 @@
-// The options of a fit.
+// Tables and JSON of a fit.
 
 #include "cli/output/fit_output.h"
 
@@ -15,43 +15,6 @@ namespace flightwatt::cli {
 namespace {
 
 using testing::HasSubstr;
-
-StageCall call_with(const std::vector<std::string>& arguments) {
-    namespace po = boost::program_options;
-    po::options_description options;
-    add_fit_options(options);
-    StageCall call;
-    call.program = "flightwatt-fit";
-    po::store(po::command_line_parser(arguments).options(options).run(), call.options);
-    return call;
-}
-
-std::string refusal(const std::vector<std::string>& arguments) {
-    try {
-        read_fit_options(call_with(arguments));
-    } catch (const UsageError& error) {
-        return error.what();
-    }
-    return "nothing refused";
-}
-
-TEST(FitOptions, AreTheLibrarysUnlessGiven) {
-    const mechanical::ModelFitOptions usual;
-    const auto options = read_fit_options(call_with({}));
-    EXPECT_EQ(options.phases.order, usual.phases.order);
-    EXPECT_EQ(options.weighting, usual.weighting);
-    EXPECT_EQ(read_fit_options(call_with({"--order", "5"})).phases.order, 5);
-}
-
-TEST(FitOptions, RefuseWhatIsNoOrder) {
-    EXPECT_THAT(refusal({"--order", "auto"}), HasSubstr("was removed: compare orders with 'flightwatt validate"));
-    EXPECT_THAT(refusal({"--order", "9"}), HasSubstr("--order 9: expected a whole number from 0 to 8"));
-    EXPECT_THAT(refusal({"--order=-1"}), HasSubstr("from 0 to 8"));
-}
-
-TEST(FitOptions, RefuseUnknownWeights) {
-    EXPECT_THAT(refusal({"--weights", "heavy"}), HasSubstr("expected uniform, inverse-variance or agreement"));
-}
 
 const TextTable small{{"name", "a0"}, {{"cruise", "24.5"}}};
 

@@ -71,20 +71,20 @@ TEST_F(FlightOptions, UseTheRecordingOfAFlightThatHasItsLog) {
 }
 
 TEST_F(FlightOptions, OfSegmentationReachEveryStage) {
-    const std::vector<std::string> options{"--cruise-fraction 0.7", "--ground-fraction 0.1", "--hold 3"};
+    const std::vector<std::string> options{"--cruise-fraction 0.7", "--ground-fraction 0.1", "--hold-time 3"};
     for (const auto& option : options) {
         expect_effect("segment" + sample(1), option);
         expect_effect("fit" + sample(1) + sample(2), option);
         expect_effect("validate" + sample(1) + sample(2), option);
     }
-    expect_effect("segment" + sample(1) + " --json", "--rest 60");
+    expect_effect("segment" + sample(1) + " --json", "--rest-time 60");
     expect_effect("segment" + sample(1) + " --json", "--idle-throttle 60");
-    expect_effect("predict --until 200 --remaining 100" + model() + sample(4), "--cruise-fraction 0.6");
+    expect_effect("predict --at 200 --remaining 100" + model() + sample(4), "--cruise-fraction 0.6");
     const auto high = run("fit --flight-height 5000" + sample(1));
     EXPECT_EQ(high.code, input_rejected);
     EXPECT_THAT(high.err, HasSubstr("holds no flight"));
     EXPECT_EQ(run("battery --flight-height 5000 --name x" + sample(1)).code, ok);
-    EXPECT_EQ(run("parse --hold 0" + sample(1)).code, usage_error);
+    EXPECT_EQ(run("parse --hold-time 0" + sample(1)).code, usage_error);
     EXPECT_EQ(run("batch -o out" + sample(1)).code, ok);
     const auto once = read_file(folder_ / "out" / "model.toml");
     EXPECT_EQ(run("batch -o out --cruise-fraction 0.7" + sample(1)).code, ok);
@@ -99,7 +99,7 @@ TEST_F(FlightOptions, ChooseTheAircraft) {
         EXPECT_THAT(refused.err, HasSubstr("several aircraft flew: 7, 8; choose one with --aircraft ID"));
         EXPECT_EQ(run(std::string(stage) + " two.data --aircraft 8").code, ok) << stage;
     }
-    const auto predict = "predict two.data --until 200 --remaining 100" + model();
+    const auto predict = "predict two.data --at 200 --remaining 100" + model();
     EXPECT_EQ(run(predict).code, input_rejected);
     EXPECT_EQ(run(predict + " --aircraft 7").code, ok);
     const auto other = run("segment two.data --aircraft 9");
@@ -126,7 +126,7 @@ TEST_F(FlightOptions, CorrectTheIdleOffset) {
         expect_effect(stage + sample(1), "--correct-idle-offset");
     }
     expect_effect("validate" + sample(1) + sample(2), "--correct-idle-offset");
-    expect_effect("predict --until 200 --remaining 100" + model() + sample(4), "--correct-idle-offset");
+    expect_effect("predict --at 200 --remaining 100" + model() + sample(4), "--correct-idle-offset");
 }
 
 TEST_F(FlightOptions, ExcludeAndKeepFlights) {

@@ -3,6 +3,7 @@
 #include "cli/output/live_options.h"
 
 #include "base/error.h"
+#include "helpers/given_options.h"
 #include "helpers/test_paths.h"
 
 #include <string>
@@ -13,35 +14,35 @@
 namespace flightwatt::cli {
 namespace {
 
-namespace po = boost::program_options;
-
 std::string path_of(const char* below_source) { return (test::source_dir() / below_source).string(); }
 
-StageCall call_of(const std::vector<std::string>& words, PathNeed need) {
-    po::options_description options;
-    options.add_options()("model", value("FILE"), "");
-    add_basis_options(options, need);
+BasisArguments arguments_of(const std::vector<std::string>& words, PathNeed need) {
+    BasisArguments arguments;
+    arguments.need = need;
+    Options options;
+    add_basis_options(options, arguments);
+    test::give_options(options, words);
+    return arguments;
+}
+
+live::PredictionInput basis_of(const std::vector<std::string>& words, PathNeed need,
+                               std::optional<mission::MissionVariant>* mission = nullptr) {
     StageCall call;
     call.program = "test";
-    po::store(po::command_line_parser(words).options(options).run(), call.options);
-    po::notify(call.options);
-    return call;
+    return read_basis(call, arguments_of(words, need), mission);
 }
 
 TEST(BasisOptions, OfAMissionWithoutAPathTakeItsCruiseAndItsBattery) {
-    const auto call = call_of({"--mission", path_of("missions/synthetic/thevenin-plan.toml")}, PathNeed::optional);
+    const std::vector<std::string> words{"--mission", path_of("missions/synthetic/thevenin-plan.toml")};
     std::optional<mission::MissionVariant> mission;
-    const auto basis = read_basis(call, PathNeed::optional, &mission);
+    const auto basis = basis_of(words, PathNeed::optional, &mission);
     ASSERT_TRUE(mission);
     EXPECT_EQ(basis.cruise_s, 1800.0);
     EXPECT_EQ(basis.limits.reserve_soc_percent, 20.0);
     EXPECT_TRUE(basis.battery && basis.battery->thevenin);
     EXPECT_FALSE(basis.initial_soc_percent) << "its voltage tells it";
     EXPECT_FALSE(basis.no_prediction_reason.empty()) << "a published model has no spread";
-    EXPECT_THROW(
-        read_basis(call_of({"--mission", path_of("missions/synthetic/thevenin-plan.toml")}, PathNeed::required),
-                   PathNeed::required),
-        InputError);
+    EXPECT_THROW(basis_of(words, PathNeed::required), InputError);
 }
 
 TEST(BasisOptions, ThatAreGivenCountBeforeTheMissions) {
@@ -49,7 +50,7 @@ TEST(BasisOptions, ThatAreGivenCountBeforeTheMissions) {
                                          "--battery",     path_of("fits/battery/paper.toml"),
                                          "--remaining",   "60",
                                          "--initial-soc", "77"};
-    const auto basis = read_basis(call_of(words, PathNeed::optional), PathNeed::optional);
+    const auto basis = basis_of(words, PathNeed::optional);
     EXPECT_FALSE(basis.battery->thevenin);
     EXPECT_EQ(basis.initial_soc_percent, 77.0);
     EXPECT_EQ(basis.remaining_s, 60.0);
@@ -63,8 +64,7 @@ TEST(BasisOptions, RefuseWhatDoesNotFitTogether) {
                                                         {"--model", model},
                                                         {"--model", model, "--remaining", "10", "--climb", "1"},
                                                         {"--model", model, "--remaining", "10", "--initial-soc", "50"}};
-    for (const auto& words : refused)
-        EXPECT_THROW(read_basis(call_of(words, PathNeed::optional), PathNeed::optional), UsageError);
+    for (const auto& words : refused) EXPECT_THROW(basis_of(words, PathNeed::optional), UsageError);
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ TEST(AirspeedToml, SetsTheLevelOfTheCruise) {
     EXPECT_EQ(
         refusal("opterra.toml", "13"),
         "m.toml:3:1: the mechanical model 'opterra-table1' does not know what motion takes: it has no [physical]; "
-        "fit one: flightwatt fit --model physical FLIGHT... -o MODEL.toml, of flights that measured their airspeed");
+        "fit one: flightwatt fit --model-kind physical FLIGHT... -o MODEL.toml, of flights that measured their airspeed");
     EXPECT_NE(refusal("none", "13").find("no meaning"), std::string::npos);
     const auto plain = scheduled(on_model("wing.toml", ""), folder / "m.toml");
     EXPECT_FALSE(plain.setup.cruise_level);
@@ -173,7 +173,7 @@ TEST(PathToml, NeedsAModelThatKnowsMotion) {
     EXPECT_EQ(
         rejected([&] { read(folder, "plain.toml", out_and_back); }, folder),
         "m.toml:3:1: the mechanical model 'opterra-table1' does not know what motion takes: it has no [physical]; "
-        "fit one: flightwatt fit --model physical FLIGHT... -o MODEL.toml, of flights that measured their airspeed");
+        "fit one: flightwatt fit --model-kind physical FLIGHT... -o MODEL.toml, of flights that measured their airspeed");
 }
 
 TEST(PathToml, ReadsWaypointsFromFiles) {

@@ -1,0 +1,74 @@
+#include "cli/output/stage_options.h"
+
+#include "battery/battery.h"
+
+namespace flightwatt::cli {
+
+void add_fit_options(Options& options, mechanical::ModelFitOptions& fit) {
+    using enum mechanical::Weighting;
+    options.add("order", fit.phases.order,
+                {.value = "N",
+                 .max = mechanical::max_order,
+                 .hint = "'flightwatt validate --order N' shows how each order predicts"},
+                "order of the Fourier series, 0 to 8");
+    options.add_choice("weights", fit.weighting,
+                       {{"uniform", uniform}, {"inverse-variance", inverse_variance}, {"agreement", agreement}},
+                       {.value = "HOW"}, "weights of the flights: uniform, inverse-variance or agreement");
+}
+
+void add_model_options(Options& options, FitArguments& arguments) {
+    add_fit_options(options, arguments.fit);
+    options.add_choice(
+        "model-kind", arguments.kind,
+        {{"fourier", ModelKind::fourier}, {"physical", ModelKind::physical}, {"best", ModelKind::best}},
+        {.value = "KIND", .old_name = "model"},
+        "fourier: power over the time of each phase; physical: also power from airspeed and climb, for aircraft on "
+        "wings whose flights measured them; best: also the error of each model on flights excluded from the fit, by "
+        "which missions choose one, and the physical model unless the mean power predicts better");
+    options.add("published", arguments.published, input_file("MODEL.toml"), "show Table I next to this model's");
+}
+
+std::optional<mechanical::MechanicalModel> read_published(const FitArguments& arguments) {
+    const auto& file = arguments.published;
+    return file ? std::optional(mechanical::read_mechanical_model(*file)) : std::nullopt;
+}
+
+void add_capacity_option(Options& options, std::optional<double>& capacity_ah, const std::string& description) {
+    options.add("capacity", capacity_ah,
+                {.value = "AH",
+                 .min = 0.0,
+                 .max = battery::max_capacity_ah,
+                 .above_min = true,
+                 .unit = "Ah",
+                 .hint = battery::capacity_hint},
+                description);
+}
+
+void add_folds_option(Options& options, std::size_t& folds) {
+    options.add("folds", folds, {.value = "N", .min = 2},
+                "exclude more flights than N in N groups, not one by one: the time then grows with the flights, not "
+                "with their square");
+}
+
+void add_sampling_options(Options& options, SamplingArguments& arguments) {
+    options.add("samples", arguments.samples, {.value = "N"},
+                "draw N flights from the variability that the models or [uncertainty] state");
+    options.add("seed", arguments.seed, {.value = "S", .needs = {"samples"}}, "seed of --samples");
+    options.add("disturb", arguments.disturbances, input_file("FILE"),
+                "apply the disturbances of FILE (missions/disturbances/)");
+}
+
+std::optional<mission::SamplingOptions> sampling_options(const SamplingArguments& arguments, bool with_bands) {
+    constexpr std::size_t band_times = 101;
+    if (!arguments.samples) return std::nullopt;
+    return mission::SamplingOptions{
+        .samples = *arguments.samples, .seed = arguments.seed, .band_points = with_bands ? band_times : 0};
+}
+
+std::vector<mission::Disturbance> read_disturbances(const SamplingArguments& arguments,
+                                                    const mission::MissionSetup& mission) {
+    return arguments.disturbances ? mission::read_disturbances(*arguments.disturbances, mission.duration_s)
+                                  : std::vector<mission::Disturbance>();
+}
+
+}  // namespace flightwatt::cli
