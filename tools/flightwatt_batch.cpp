@@ -38,13 +38,13 @@ struct BatchArguments : cli::FitArguments {
     bool prune = false;
 };
 
-/// Moves the bar on, or says what became of the log.
+/// Updates the progress bar, or prints the state of the log.
 batch::BatchProgress progress_of(const cli::StageCall& call, cli::ProgressBar& bar) {
     return [&](std::size_t done, std::size_t all, const batch::BatchFlight& flight) {
         if (cli::standard_error_terminal() != nullptr) return bar.show(done, all);
         const auto* what = flight.record.is_of_other_aircraft ? "left out"
                            : !flight.record.accepted          ? "rejected"
-                           : flight.log_is_missing            ? "kept, its log is gone"
+                           : flight.log_is_missing            ? "kept, its log is missing"
                            : flight.was_up_to_date            ? "up to date"
                                                               : "done";
         cli::note(call, fmt::format("[{}/{}] {}: {}", done, all, flight.record.flight, what));
@@ -114,13 +114,13 @@ std::string fingerprint_of(const BatchArguments& arguments, const batch::BatchFl
     return batch::fit_fingerprint(flights, arguments.fit, more);
 }
 
-/// What an earlier run fitted.
+/// The fit of an earlier run.
 FittedBatch known_fit(const std::filesystem::path& out) {
     const OverwriteExemption own;
     return {batch::read_batch_fit(out).value(), std::nullopt};
 }
 
-/// One model of several aircraft is a model of none.
+/// Refuses to fit one model to several aircraft.
 void refuse_mix(const cli::StageCall& call, const batch::BatchFlights& flights, const std::filesystem::path& out) {
     const auto mix = mixed_aircraft_reason(flights);
     if (mix.empty()) return;
@@ -143,8 +143,7 @@ nlohmann::ordered_json with_logs(nlohmann::ordered_json json, const batch::Batch
     return json;
 }
 
-/// The table of the flights, or of the first of them: nobody reads a hundred thousand rows, and they would fill the
-/// memory.
+/// The table of the flights, or of the first 1000 of them.
 std::string flights_text(const cli::StageCall& call, const batch::BatchFlights& flights,
                          const batch::BatchOptions& options) {
     constexpr std::size_t max_logs = 1000;
@@ -184,8 +183,8 @@ int exit_code(const cli::StageCall& call, const batch::Totals& totals) {
     return cli::input_rejected;
 }
 
-/// What follows the logs: the catalogue and the fit. Everything is written before anything is shown, so that a
-/// standard output that nobody reads loses nothing. Returns the exit code.
+/// Writes the catalogue and the fit, then prints them, so that a closed standard output loses no file. Returns the exit
+/// code.
 int finish(const cli::StageCall& call, const BatchArguments& arguments, batch::BatchFlights flights,
            const batch::BatchOptions& options, const std::optional<mechanical::MechanicalModel>& published) {
     const auto made_from = fingerprint_of(arguments, flights, options, published);
@@ -264,7 +263,7 @@ std::vector<std::string> listed_logs(const cli::StageCall& call, const std::opti
     return paths;
 }
 
-/// What the run will do to the folder, before it does it. Patterns of --exclude become names in `options`.
+/// The changes of the run to the folder, before it makes them. Patterns of --exclude become names in `options`.
 batch::BatchPlan make_plan(const cli::StageCall& call, const BatchArguments& arguments, batch::BatchOptions& options) {
     auto logs =
         chosen_logs(call, arguments.filter, batch::find_logs(call.inputs, listed_logs(call, arguments.files_from)));
@@ -293,8 +292,7 @@ void tell_plan(const cli::StageCall& call, const batch::BatchPlan& plan) {
                           earlier, *call.output));
     for (const auto& log : plan.logs)
         if (log.is_missing)
-            cli::note(call,
-                      fmt::format("{}: its log {} is gone; its results are kept as they are", log.flight, log.path));
+            cli::note(call, fmt::format("{}: its log {} is missing; its results are kept", log.flight, log.path));
 }
 
 int run_over_logs(const cli::StageCall& call, const BatchArguments& arguments) {
@@ -325,13 +323,13 @@ int flightwatt::stages::batch_stage(int argc, char** argv) {
         R"(Parses and segments every .data log (folders are searched to the bottom) into OUT/flights, several at a
 time, and fits them: OUT/model.toml, OUT/table1.txt, .csv, .md, and OUT/flights.csv, a row a flight and
 phase. Logs whose results are up to date are not done again. A log that cannot be used is reported and the
-others go on; the exit code is then 3. Flights of earlier runs into OUT stay, also those whose log is gone;
+others are processed; the exit code is then 3. Flights of earlier runs into OUT stay, also those whose log is missing;
 --prune drops what is not among the logs that are given. Nothing in OUT is replaced or removed but what
 OUT/batch.json lists as the batch's. Logs of a folder below FOLDER that holds a file not-fitted.txt are
-listed and excluded from the fit; its first line says why.
+listed and excluded from the fit; its first line states the reason.
 
-SIGINT (Ctrl-C), SIGTERM and SIGHUP end it within a second, with exit code 130, 143 and 129. However it
-ended, the same command goes on where it stopped and comes to the same results.)"};
+SIGINT (Ctrl-C), SIGTERM and SIGHUP end it within a second, with exit code 130, 143 and 129. After
+any end, the same command continues where it stopped, with the same results.)"};
     stage.examples = {"flightwatt batch logs -o my",
                       "flightwatt batch logs -o my --aircraft 5 --since 2020-07-01 --prune"};
     stage.min_inputs = 0;  // or --files-from

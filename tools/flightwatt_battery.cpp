@@ -69,7 +69,7 @@ void compare_capacity(const cli::StageCall& call, const battery::Battery& pack) 
         cli::note(call, cli::describe_given_capacity(pack));
 }
 
-void note_what_it_rests_on(const cli::StageCall& call, const battery::BatteryIdentification& identified) {
+void note_limits(const cli::StageCall& call, const battery::BatteryIdentification& identified) {
     if (const auto warning = cli::cells_warning(identified); !warning.empty()) cli::warn(call, warning);
     for (const auto& limit : cli::curve_limits(identified)) cli::note(call, limit);
     for (const auto& flight : identified.flights) {
@@ -84,8 +84,8 @@ void note_what_it_rests_on(const cli::StageCall& call, const battery::BatteryIde
     if (identified.trend) cli::note(call, cli::describe(*identified.trend));
     if (identified.capacity.origin == battery::CapacityOrigin::given) compare_capacity(call, identified.battery);
     if (identified.capacity.origin == battery::CapacityOrigin::chart) {
-        cli::warn(call, fmt::format("the flights do not tell the capacity, as none runs empty: {}; give what "
-                                    "the pack says with --capacity",
+        cli::warn(call, fmt::format("the flights do not determine the capacity, as none runs empty: {}; give the "
+                                    "capacity on the label with --capacity",
                                     cli::describe(identified.capacity)));
     }
     if (identified.fit.rc_resistance_ohm == 0.0) {
@@ -95,7 +95,7 @@ void note_what_it_rests_on(const cli::StageCall& call, const battery::BatteryIde
     }
 }
 
-/// On all records, and on all but each in turn: that is long work.
+/// Identification on all records, and leave-one-out on each.
 std::pair<battery::BatteryIdentification, std::vector<battery::LeaveOneOutCheck>> identify_and_check(
     const std::vector<battery::DischargeRecord>& records, const battery::IdentificationOptions& options,
     std::size_t folds) {
@@ -111,7 +111,7 @@ int identify(const cli::StageCall& call, const BatteryArguments& arguments) {
     const auto records = read_records(call, arguments.flights);
     cli::note_folds(call, records.size(), folds);
     const auto [identified, left_out] = identify_and_check(records, options, folds);
-    note_what_it_rests_on(call, identified);
+    note_limits(call, identified);
     if (left_out.empty()) cli::note(call, "a single flight: there is no other one to check the battery with");
     cli::write_result(call, cli::provenance(identified) + to_toml(identified.battery));
     if (call.json) {
@@ -139,7 +139,7 @@ state of charge, series resistance and one RC pair, with 95 % intervals, for mis
 "thevenin"). The battery goes to the standard output as TOML; with -o it goes to the file, and its
 parameters and flights are shown: how well each flight's voltage is met, and how well the others
 predict it. What was missing from the pack when a flight began is estimated with it, and a flight that
-follows another on what looks like the same pack is chained to it. Each flight's own resistance tells
+follows another, apparently on the same pack, is linked to it. Each flight's own resistance shows
 the pack's state of health. Flights whose current was computed from throttle are refused.)" +
             std::string(cli::several_flights_text)};
     stage.examples = {"flightwatt battery my --capacity 2.2 -o pack.toml",

@@ -61,12 +61,12 @@ std::string ranking_text(const cli::StageCall& call, const std::vector<mission::
                          "duration_s", "depleted_at_s", "cut_off_at_s"}});
 }
 
-/// What the table does not say.
+/// Notes and warnings beyond the table.
 int explain(const cli::StageCall& call, const std::vector<mission::MissionSummary>& ranking, bool sampled) {
     int code = cli::ok;
     for (const auto& summary : ranking) {
         if (sampled && !summary.samples) {
-            cli::note(call, fmt::format("{}: no flights drawn: neither its models nor [uncertainty] say how "
+            cli::note(call, fmt::format("{}: no flights drawn: neither its models nor [uncertainty] state how "
                                         "they differ",
                                         summary.mission));
         }
@@ -77,8 +77,8 @@ int explain(const cli::StageCall& call, const std::vector<mission::MissionSummar
         if (!summary.undeliverable && !lacks_plan) continue;
         cli::warn(call, summary.undeliverable
                             ? describe(summary)
-                            : fmt::format("{}: {}; shown is what demands least energy, and `flightwatt plan` "
-                                          "says what is missing",
+                            : fmt::format("{}: {}; the schedule of minimum energy is shown, and `flightwatt plan` "
+                                          "reports the shortfall",
                                           summary.mission, to_string(summary.schedule)));
         code = cli::no_answer;
     }
@@ -98,7 +98,7 @@ int compare_missions(const cli::StageCall& call, const cli::SamplingArguments& a
     for (const auto& mission : missions) summaries.push_back(simulated_summary(mission, arguments));
     if (is_sampled &&
         std::ranges::none_of(missions, [](const auto& mission) { return has_uncertainty(setup_of(mission)); })) {
-        require_uncertainty(setup_of(missions.front()));  // says what is missing
+        require_uncertainty(setup_of(missions.front()));  // throws, with the reason
     }
     const auto ranking = ranked(std::move(summaries));
     cli::write_result(call, ranking_text(call, ranking, form));

@@ -27,7 +27,7 @@ using namespace flightwatt;
 
 using Json = nlohmann::ordered_json;
 
-/// A binary log as text, and what stood in it.
+/// A binary log as text, and its content in numbers.
 struct ConvertedLog {
     std::string text;
     std::size_t lines = 0;
@@ -63,14 +63,14 @@ ConvertedLog convert_log(const flight::FlightFile& file) {
 }
 
 /// "103 of class 1: 10 frames".
-std::vector<std::string> told_ids(const std::map<std::uint16_t, std::size_t>& ids) {
-    std::vector<std::string> told;
-    told.reserve(ids.size());
+std::vector<std::string> describe_ids(const std::map<std::uint16_t, std::size_t>& ids) {
+    std::vector<std::string> texts;
+    texts.reserve(ids.size());
     for (const auto& [number, frames] : ids) {
-        told.push_back(
+        texts.push_back(
             fmt::format("{} of class {} ({} frame{})", number % 256, number / 256, frames, frames == 1 ? "" : "s"));
     }
-    return told;
+    return texts;
 }
 
 std::vector<std::string> warnings_of(const ConvertedLog& log, const std::string& definitions) {
@@ -78,14 +78,14 @@ std::vector<std::string> warnings_of(const ConvertedLog& log, const std::string&
     const auto& counts = log.counts;
     if (counts.unknown > 0) {
         warnings.push_back(fmt::format("{} frames are of messages that {} does not define: {}", counts.unknown,
-                                       definitions, short_list(told_ids(counts.unknown_ids))));
+                                       definitions, short_list(describe_ids(counts.unknown_ids))));
     }
     if (counts.length_mismatches > 0) {
         warnings.push_back(fmt::format("{} frames have other lengths than {} defines: {}", counts.length_mismatches,
-                                       definitions, short_list(told_ids(counts.other_length_ids))));
+                                       definitions, short_list(describe_ids(counts.other_length_ids))));
     }
     if (counts.skipped_bytes > 0) {
-        warnings.push_back(fmt::format("damaged: {} bytes in {} places hold no frame with a right checksum",
+        warnings.push_back(fmt::format("damaged: {} bytes in {} runs hold no frame with a right checksum",
                                        counts.skipped_bytes, counts.skipped_runs));
     }
     if (!log.start_s) warnings.emplace_back("a capture of a link, whose messages have no times: all are written as 0");
@@ -125,15 +125,15 @@ Json summary(const flight::FlightFile& file, const ConvertedLog& log, const std:
             {"warnings", warnings}};
 }
 
-/// NAME.log for NAME.data, where the binary log has a sound one beside it that is not there already.
+/// NAME.log for NAME.data, if the binary log has a valid one that is not this file already.
 std::optional<std::filesystem::path> log_to_write(const cli::StageCall& call, const flight::FlightFile& file) {
     const auto own = telemetry::find_log_file(file.path());
     if (!call.output || !own || *own != file.log_file()) return std::nullopt;
     const std::filesystem::path output = *call.output;
-    auto beside = output.parent_path() / (telemetry::flight_name(output) + ".log");
+    auto target = output.parent_path() / (telemetry::flight_name(output) + ".log");
     std::error_code error;
-    if (std::filesystem::equivalent(beside, *own, error)) return std::nullopt;
-    return beside;
+    if (std::filesystem::equivalent(target, *own, error)) return std::nullopt;
+    return target;
 }
 
 /// The .log first: no text stands without its definitions. Where the text cannot be written no .log is left of it.
@@ -150,7 +150,7 @@ void write_both(const cli::StageCall& call, const std::string& text,
     }
 }
 
-void tell(const cli::StageCall& call, const flight::FlightFile& file, const ConvertedLog& log) {
+void print_summary(const cli::StageCall& call, const flight::FlightFile& file, const ConvertedLog& log) {
     const auto& counts = log.counts;
     const auto times = log.start_s ? fmt::format(", {:.1f} to {:.1f} s", *log.start_s, log.end_s) : std::string();
     cli::note(call,
@@ -191,7 +191,7 @@ int convert(const cli::StageCall& call, const ConvertArguments& arguments) {
     if (call.json) {
         cli::print(cli::json_text(summary(file, converted, warnings)));
     } else {
-        tell(call, file, converted);
+        print_summary(call, file, converted);
     }
     return cli::ok;
 }
@@ -203,8 +203,8 @@ int flightwatt::stages::convert_stage(int argc, char** argv) {
         "convert", "LOG",
         R"(Writes a binary log as text, as Paparazzi's sd2log does: the .LOG or .tlm of an SD card, or a capture
 of a serial line, of UDP or of an XBee (also .gz, .bz2, .xz, .zst). With -o NAME.data, NAME.log is
-written beside it where the log has one. All stages read the binary log itself, too, and come to the
-same.)"};
+written next to it if the log has one. All stages also read the binary log itself, with the same
+results.)"};
     stage.max_inputs = 1;
     stage.examples = {"flightwatt convert flight.LOG -o flight.data",
                       "flightwatt convert capture.bin --messages messages.xml"};

@@ -1,4 +1,4 @@
-// flightwatt diff: what differs between two models, two batches or two missions, and whether it is more than chance.
+// flightwatt diff: differences of two models, two batches or two missions, and their significance.
 
 #include "base/error.h"
 #include "base/input_file.h"
@@ -105,11 +105,11 @@ int show_difference(const cli::StageCall& call) {
 int flightwatt::stages::diff_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "diff", "A B",
-        R"(Says what differs between two mechanical models, two folders of flightwatt batch, or two missions: B minus A
-with its 95 % interval, and whether that excludes 0. Coefficients are judged by the noise of the samples (basis noise),
-durations, mean powers, energies and physical terms by how flights differ (basis flights). Flights that both models
-rest on narrow the intervals. Missions are computed: each difference is one; where both say how flights differ, duration,
-energies and final charge are judged by what 95 of 100 flights drawn for both differ by (basis flights).)"};
+        R"(Compares two mechanical models, two folders of flightwatt batch, or two missions: B minus A with its 95 %
+interval, and whether that excludes 0. Intervals of coefficients follow from the noise of the samples (basis noise),
+those of durations, mean powers, energies and physical terms from the variability between flights (basis flights). Flights that both models
+rest on narrow the intervals. Differences of missions are exact; if both state the variability of flights, the intervals of
+duration, energies and final charge are those of 95 of 100 flights drawn for both (basis flights).)"};
     stage.min_inputs = 2;
     stage.max_inputs = 2;
     stage.examples = {"flightwatt diff before.toml after.toml",

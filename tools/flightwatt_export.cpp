@@ -178,7 +178,7 @@ ExportRequest read_export_request(const cli::StageCall& call, const ExportArgume
     return request;
 }
 
-/// The result, and what is said of it.
+/// The result, with notes and facts on it.
 struct Exported {
     std::string text;
     std::vector<std::string> notes = {};
@@ -202,9 +202,9 @@ Exported export_track(const cli::StageCall& call, const ExportArguments& argumen
                     {"parts", coloured_segments(track, colour).size()},
                     {"clock", clocks.at(static_cast<std::size_t>(track.clock))}};
     if (track.clock == exchange::TrackClock::name)
-        result.notes.push_back(file + ": no .log tells the date: that of its name is taken, as if it were UTC");
+        result.notes.push_back(file + ": no .log contains the date: that of its name is used, as UTC");
     if (track.clock == exchange::TrackClock::none)
-        result.notes.push_back(file + ": neither a .log nor its name tells the date: points have no time");
+        result.notes.push_back(file + ": neither a .log nor its name contains the date: points have no time");
     if (!track.points.front().altitude_m) result.notes.push_back(file + ": has no altitude: the track has none");
     return result;
 }
@@ -328,9 +328,9 @@ int export_inputs(const cli::StageCall& call, const ExportArguments& arguments) 
 int flightwatt::stages::export_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "export", "FLIGHT|MODEL.toml|PACK.toml|MISSION.toml|OUT...",
-        R"(Writes what others' programs read. Of a log or series: its track (geojson, kml, gpx), or columns over time
-(csv, for PlotJuggler). Of models: json, a header for C99 (c), and what the estimators of autopilots
-are told (px4, inav, paparazzi, paparazzi-map), from a model and a battery or from a mission. Of models,
+        R"(Writes the formats of other programs. Of a log or series: its track (geojson, kml, gpx), or columns over time
+(csv, for PlotJuggler). Of models: json, a header for C99 (c), and the parameters of
+autopilots' estimators (px4, inav, paparazzi, paparazzi-map), from a model and a battery or from a mission. Of models,
 missions and the folder OUT of flightwatt batch: tables (latex). The form is that of FILE's ending
 (.geojson, .kml, .gpx, .csv, .json, .h, .params: px4, .tex) or of --format.)"};
     stage.examples = {"flightwatt export flight.data -o flight.kml",

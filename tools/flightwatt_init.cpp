@@ -36,8 +36,8 @@ missions/first.csv: missions/first.toml fits/model.toml fits/pack.toml
 missions/first.toml: | fits/model.toml fits/pack.toml
 	flightwatt new-mission --model fits/model.toml --battery fits/pack.toml -o missions/first.toml
 
-# The battery that they flew on. --capacity is what its label says [Ah]: it is compared with what the flights indicate.
-# Without it, that is used. All that follows takes the capacity from fits/pack.toml.
+# The battery that they flew on. --capacity is the value on its label [Ah], compared with the flights' estimate.
+# Without it, that estimate is used. All that follows takes the capacity from fits/pack.toml.
 fits/pack.toml: fits/model.toml $(firstword $(MAKEFILE_LIST))
 	flightwatt battery fits{} -o fits/pack.toml
 

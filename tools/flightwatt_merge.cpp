@@ -25,7 +25,7 @@ namespace {
 using namespace flightwatt;
 using Json = nlohmann::ordered_json;
 
-/// What came of it.
+/// The result as JSON.
 Json json_of(const cli::StageCall& call, const batch::MergePlan& plan, const batch::BatchFlights& flights,
              const std::vector<batch::DuplicateFlight>& copies) {
     const auto accepted = std::ranges::count_if(flights, [](const auto& flight) { return flight.record.accepted; });
@@ -50,7 +50,7 @@ Json json_of(const cli::StageCall& call, const batch::MergePlan& plan, const bat
     return json;
 }
 
-/// The same for people.
+/// The result as text.
 std::string text_of(const cli::StageCall& call, const Json& json) {
     auto folders = json["batches"];
     folders.push_back({{"folder", json["folder"]}, {"flights", json["flights"]}});
@@ -62,7 +62,7 @@ std::string text_of(const cli::StageCall& call, const Json& json) {
                json["repeated_logs"].dump());
 }
 
-/// A model that stands in the folder was fitted to other flights.
+/// Removes a model in the folder: it was fitted to other flights.
 void remove_model(const cli::StageCall& call, const std::filesystem::path& out) {
     const auto removed = batch::remove_batch_fit(out);
     if (!removed.empty())

@@ -98,9 +98,8 @@ int flightwatt::stages::new_mission_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "new-mission", "--model MODEL.toml --battery PACK.toml [--profile P.csv]...",
         R"(Writes a mission file to begin with, for that aircraft, pack and software. It simulates as it is: each
-component runs at the middle of what was profiled, and 20 % of charge are kept in reserve. Every other key of a
-mission stands in it as a comment, with what it means and an example. A file that is there is not
-replaced.)"};
+component runs at the middle of what was profiled, and 20 % of charge are kept in reserve. It contains every other key of a
+mission as a comment, with its meaning and an example. An existing file is not replaced.)"};
     stage.min_inputs = 0;
     stage.max_inputs = 0;
     stage.output_help = "write the mission to FILE, which names its files relative to it";

@@ -65,10 +65,10 @@ int parse(const cli::StageCall& call, flight::LoadOptions options) {
 int flightwatt::stages::parse_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "parse", "FLIGHT.data",
-        R"(Reads a Paparazzi log with the .log beside it, .data or the .LOG of an SD card (also .gz, .bz2, .xz,
-.zst), and writes all that it tells of the flight as a series file (CSV): power, voltage, current, charge, energy, throttle,
+        R"(Reads a Paparazzi log with its .log, .data or the .LOG of an SD card (also .gz, .bz2, .xz, .zst), and
+writes its data on the flight as a series file (CSV): power, voltage, current, charge, energy, throttle,
 altitude, position, speeds, wind, attitude, mode and block, each at the times when it was logged.
-Any stage reads the series file as it reads the log, and comes to the same.)"};
+Any stage reads the series file as it reads the log, with the same results.)"};
     stage.max_inputs = 1;
     stage.examples = {"flightwatt parse flight.data -o flight.csv",
                       "flightwatt parse flight.LOG --messages messages.xml --json"};

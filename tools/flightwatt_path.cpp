@@ -44,7 +44,7 @@ int show_path(const cli::StageCall& call) {
     const auto& setup = setup_of(mission);
     if (!setup.cruise_path) {
         throw InputError({call.inputs.front()}, "the mission has no [path]",
-                         "say where it flies (docs/missions.md, path); of a log --path-from makes one");
+                         "add one (docs/missions.md, path); --path-from makes one from a log");
     }
     cli::warn_of_setup(call, setup);
     CsvWriter csv({"leg", "kind", "start_s", "duration_s", "length_m", "course_deg", "airspeed_m_per_s",

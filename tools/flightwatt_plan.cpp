@@ -47,10 +47,9 @@ std::string describe(const mission::MissionPlan& plan, const mission::MissionSet
     const double gap = plan.plan.utility_bound > 0.0
                            ? units::percentage(plan.plan.utility_bound - utility, plan.plan.utility_bound)
                            : 0.0;
-    const auto bound =
-        plan.plan.bound_is_proven
-            ? fmt::format("at most {:.6g} is possible (gap {:.4f} %)", plan.plan.utility_bound, std::max(gap, 0.0))
-            : "how much is possible is not known, as the battery is charged in flight";
+    const auto bound = plan.plan.bound_is_proven ? fmt::format("at most {:.6g} is possible (gap {:.4f} %)",
+                                                               plan.plan.utility_bound, std::max(gap, 0.0))
+                                                 : "no bound is known, as the battery is charged in flight";
     auto text = fmt::format("{}: utility {:.6g}, {}; {:.4f} % left, reserve {:.4f} %", mission.name, utility, bound,
                             *plan.summary.final_soc_percent, mission.reserve_soc_percent);
     if (plan.sources) text += fmt::format(" and {:.4f} points of margin", plan.margin_percent);
@@ -58,12 +57,13 @@ std::string describe(const mission::MissionPlan& plan, const mission::MissionSet
     return text;
 }
 
-/// What the chance that was asked for holds for.
+/// Notes the uncertainty that the requested probability covers.
 void note_sources(const cli::StageCall& call, const PlanArguments& arguments, const mission::MissionSetup& mission,
                   const mission::UncertaintySources& sources, double standard_error = 0.0) {
-    constexpr double worth_saying = 5e-4;
-    const auto exactness = standard_error < worth_saying ? "" : fmt::format(" (computed to +- {:.4f})", standard_error);
-    cli::note(call, fmt::format("{}: chance {}{} over flights as --samples draws them; {}", mission.name,
+    constexpr double min_shown_error = 5e-4;
+    const auto exactness =
+        standard_error < min_shown_error ? "" : fmt::format(" (computed to +- {:.4f})", standard_error);
+    cli::note(call, fmt::format("{}: probability {}{} over flights as --samples draws them; {}", mission.name,
                                 *arguments.probability, exactness, describe(sources)));
 }
 
@@ -85,7 +85,7 @@ int make_plan(const cli::StageCall& call, const PlanArguments& arguments, const 
     const auto* problem = std::get_if<mission::PlanningProblem>(&mission);
     if (problem == nullptr) {
         throw InputError({setup_of(mission).file}, "the mission has a schedule already: there is nothing to plan",
-                         "add [plan], and what [[schedule]] says is fixed and the rest planned");
+                         "add [plan]: entries of [[schedule]] are then fixed, and the other slots planned");
     }
     cli::warn_of_setup(call, problem->setup);
     auto plan = plan_mission(*problem, arguments.probability);
@@ -108,7 +108,7 @@ int make_plan(const cli::StageCall& call, const PlanArguments& arguments, const 
     return cli::ok;
 }
 
-/// What the battery does beyond a limit; empty if charge is what ends it.
+/// Failure of the battery beyond a limit; empty if charge is the limit.
 std::string_view beyond(mission::LimitingFactor bound) {
     constexpr std::array<std::string_view, 3> texts{"", "; beyond, the battery cannot deliver the power",
                                                     "; beyond, the battery is cut off"};
@@ -175,11 +175,11 @@ int plan_file(const cli::StageCall& call, const PlanArguments& arguments) {
 int flightwatt::stages::plan_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "plan", "MISSION.toml",
-        R"(Makes the schedule of most utility that still lands with the reserve, and proves how much better any
-other could be. The result is the mission with that schedule, for simulate and compare. What [[schedule]]
-says beside [plan] is fixed. --longest-cruise and --largest-payload take the mission's own schedule, or the
+        R"(Computes the schedule of maximum utility that lands with the reserve, with a proven bound on the utility
+of any other. The result is the mission with that schedule, for simulate and compare. Entries of
+[[schedule]] next to [plan] are fixed. --longest-cruise and --largest-payload take the mission's own schedule, or the
 one that demands least energy. On a battery whose voltage falls with its charge (model = "thevenin"), or with a
-cut-off voltage, the battery itself is followed through every schedule that could be the best.)"};
+cut-off voltage, the battery is simulated for each candidate schedule.)"};
     stage.max_inputs = 1;
     stage.examples = {"flightwatt plan mission.toml -o planned.toml",
                       "flightwatt plan mission.toml --longest-cruise --probability 0.95"};

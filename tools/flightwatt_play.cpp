@@ -125,10 +125,10 @@ int play(const cli::StageCall& call, const PlayArguments& arguments) {
 int flightwatt::stages::play_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "play", "LOG --to TARGET",
-        R"(Plays a log once more as it came in, in its own time or faster, over a link that flightwatt watch listens to:
-a test bench for what is to run while an aircraft flies. The log is text or binary. Targets: udp:ADDRESS:PORT
+        R"(Sends a log as live telemetry, in its own time or faster, over a link that flightwatt watch listens to: a test
+bench for software that runs during a flight. The log is text or binary. Targets: udp:ADDRESS:PORT
 (Paparazzi's link frames, a datagram each), serial:DEVICE:BAUD (the same on a serial line), ivy:ADDRESS:PORT (a
-replay on an Ivy bus, as Paparazzi's log player says it), file:NAME.data (a file that grows), - (the standard
+replay on an Ivy bus, in the form of Paparazzi's log player), file:NAME.data (a file that grows), - (the standard
 output).)"};
     stage.max_inputs = 1;
     stage.output_help = "write how it was played to FILE instead of the standard output";

@@ -25,14 +25,13 @@ struct PredictArguments {
     flight::LoadOptions load;
 };
 
-/// A flight at a moment, and what its log held by then.
+/// A flight at a time, and its log up to then.
 struct KnownFlight {
     mechanical::FlightProgress flown;
     flight::FlightSeries series;
 };
 
-/// What was known at the moment: nothing that the log wrote later is looked at, in what is read, chosen,
-/// judged or said.
+/// The state at the requested time. No later part of the log is used, for any choice, check or message.
 KnownFlight read_progress(const cli::StageCall& call, const cli::RequestedTime& time, flight::LoadOptions options) {
     const auto sortie = options.sortie.value_or(1) - 1;
     options.sortie.reset();
@@ -84,12 +83,12 @@ int flightwatt::stages::predict_stage(int argc, char** argv) {
         "predict", "FLIGHT.data|SERIES.csv --model MODEL.toml --remaining S | --mission MISSION.toml",
         R"(Predicts the energy from a moment in cruise to the end of the flight. What was measured until then
 moves the cruise level of the model towards this flight's own, weighted by the variances between
-flights and within one. Nothing after the moment is looked at: a log that ends there gives the same.
+flights and within one. No later part of the log is used: a log that ends there gives the same result.
 The remaining energy is that of --remaining more seconds of cruise and of a landing as in the model
-(its duration, too); with --airspeed the cruise is what the physical model says of it, with --mission
-what it says of the rest of the mission's path in its wind. The 95 % interval is that of the
-remaining energy; it holds the spread between flights, the drift within one, that of the wind, and
-that the model rests on few flights.)"};
+(its duration, too); with --airspeed the cruise has the power of the physical model, with --mission
+that of the remaining path in its wind. The 95 % interval of the remaining energy includes the
+variability between flights, the drift within one, that of the wind, and the uncertainty of a model
+from few flights.)"};
     stage.max_inputs = 1;
     stage.examples = {"flightwatt predict flight.data --model model.toml --remaining 600",
                       "flightwatt predict flight.data --mission mission.toml --at 300 --battery pack.toml"};

@@ -119,7 +119,7 @@ int profile_components(const cli::StageCall& call, const ProfileArguments& argum
     try {
         return conclude(call, profile(specification, options), specification);
     } catch (const compute::Interrupted& interrupted) {
-        cli::note(call, fmt::format("stopped by {} after {} of {} runs; the same command goes on from there",
+        cli::note(call, fmt::format("stopped by {} after {} of {} runs; the same command continues from there",
                                     signal_name(interrupted.signal()), runs.done, runs.all));
         return killed_by_signal + interrupted.signal();
     }
@@ -132,9 +132,9 @@ int flightwatt::stages::profile_stage(int argc, char** argv) {
         "profile", "SPEC -o DIR | --check-interpolation FILE...",
         R"(Runs each component of SPEC (TOML, or powprofiler's .cfg) over its quality of service while sampling
 power. DIR/NAME.csv is layer 2, configuration to mean power, energy and standard error, as missions
-take it; DIR/layer1 holds power over time of every run, DIR/runs.csv what became of each, DIR/idle.csv
+take it; DIR/layer1 holds power over time of every run, DIR/runs.csv the result of each, DIR/idle.csv
 the idle computer. A component that fails or hangs is recorded and ended with its process group, the
-others go on; the exit code is then 4. Ctrl-C leaves nothing running; the same command goes on where
+others are run; the exit code is then 4. Ctrl-C ends all processes; the same command continues where
 it stopped. Without duration_s in SPEC a run is as long as its command, ended as hung after timeout_s;
 with it the command is ended when its time is over, whatever it does. Runs that succeeded are not done
 again while their part of SPEC is the same; remove DIR when a program itself has changed.

@@ -50,7 +50,7 @@ int replay(const cli::StageCall& call, const ReplayArguments& arguments) {
         cli::measured_flights(call, arguments.flights, mechanical::min_samples(options.fit.phases.order));
     auto replays = replay_flights(missions, flights, options);
     for (const auto& left : replays.not_replayed)
-        cli::warn(call, fmt::format("{}: {} is not flown on it: {}", left.flight, left.mission, left.reason));
+        cli::warn(call, fmt::format("{}: {} is not replayed on it: {}", left.flight, left.mission, left.reason));
     for (const auto& flight : *call.skipped)
         for (const auto& mission : missions)
             replays.not_replayed.push_back({cli::flight_of_file(flight.file), setup_of(mission).name, flight.reason});
@@ -71,19 +71,19 @@ int replay(const cli::StageCall& call, const ReplayArguments& arguments) {
 int flightwatt::stages::replay_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "replay", "FLIGHT.data|SERIES.csv|FOLDER... --mission MISSION.toml",
-        R"(Judges schedules on flights that were flown: the power that each flight measured, phase by phase, and
-the computing power of a schedule deplete the mission's battery together. What is known before a flight is
-a model fitted to the other flights alone. Schedules:
+        R"(Evaluates schedules on measured flights: the measured power of each flight, phase by phase, and the
+computing power of a schedule together deplete the mission's battery. Before a flight, only a model fitted to
+the other flights is known. Schedules:
   given                by the mission file; of a mission to be planned instead all of these:
-  invariant            one configuration all the way, the best that the model says keeps the reserve
+  invariant            one configuration, the best that keeps the reserve by the model
   phased               one a phase
   planned              before the flight, by the model
   planned_with_margin  the same with a margin, to keep the reserve with the policy's probability
-  replanned            in flight, from the charge reached and the power seen so far ([policy], or its defaults)
+  replanned            in flight, from the current charge and the measured power ([policy], or its defaults)
   hindsight            by the power and durations that were measured: no schedule does better
-Where no plan keeps the reserve, what demands least energy is run, and the table says so. Regret is the
-utility that hindsight has more; schedules that do not keep the reserve have none. Last is said what replanning in flight was worth against planning
-beforehand. -o writes the table of schedules as CSV.)" +
+Where no plan keeps the reserve, the schedule of minimum energy is flown, and the table marks it. Regret is
+the utility of hindsight minus that of the schedule; schedules that do not keep the reserve have none. At the
+end replanning in flight is compared with planning beforehand. -o writes the table of schedules as CSV.)" +
             std::string(cli::several_flights_text)};
     stage.examples = {"flightwatt replay my --mission mission.toml",
                       "flightwatt replay my --mission a.toml --mission b.toml -o replays.csv"};

@@ -63,7 +63,7 @@ report::ReportInput read_inputs(const cli::StageCall& call, const ReportArgument
     return inputs;
 }
 
-/// Now, or what SOURCE_DATE_EPOCH says (reproducible-builds.org).
+/// Now, or the time in SOURCE_DATE_EPOCH (reproducible-builds.org).
 std::string time_of_report() {
     std::time_t now = std::time(nullptr);
     if (const char* given = std::getenv("SOURCE_DATE_EPOCH")) {
@@ -101,14 +101,14 @@ int write_page(const cli::StageCall& call, const ReportArguments& arguments) {
         throw UsageError(
             "--replay flies missions on a batch's flights: give a folder of flightwatt batch and missions");
     const bool wants_page = call.output || (!call.json && !arguments.figures);
-    std::optional<report::WebFiles> web;  // read before the work: where they are missing, that is told at once
+    std::optional<report::WebFiles> web;  // read first: missing files are an error before any work
     if (wants_page || arguments.figures) web = report::read_web_files(report::web_folder());
     report::PageHead head{"FlightWatt report",
                           {{"computed", time_of_report()}, {"by", "flightwatt " FLIGHTWATT_VERSION}}};
     if (arguments.title) head.title = valid_utf8(*arguments.title);
     if (const auto& folder = arguments.reference_figures) {
         input.figures = report::read_published_figures(*folder);
-        head.facts.emplace_back("beside", "the paper's Figs. 2 (c-e), 3 (a, b) and 4, digitised");
+        head.facts.emplace_back("reference", "the paper's Figs. 2 (c-e), 3 (a, b) and 4, digitised");
     }
     const auto content = make_report(input, log_of(call));
     std::ranges::copy(content.facts, std::back_inserter(head.facts));
@@ -126,8 +126,8 @@ int write_page(const cli::StageCall& call, const ReportArguments& arguments) {
 int flightwatt::stages::report_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "report", "[OUT...] [MISSION.toml...] -o report.html",
-        R"(Writes one HTML page, to be opened offline, of what flightwatt batch left in the folder OUT (flights,
-model, validation, battery; of several folders each its own) and of missions (software, schedules, quality
+        R"(Writes one HTML page, to be opened offline, of the folder OUT of flightwatt batch (flights, model,
+validation, battery; of several folders each its own) and of missions (software, schedules, quality
 of service, plan). Its figures are Vega-Lite specifications with their data; --figures writes them as files
 for papers: .vl.json, .svg (by node) and .pdf (where rsvg-convert is). The model is the batch's own, with
 the bands that the batch stored.)"};

@@ -22,7 +22,7 @@ namespace {
 
 using namespace flightwatt;
 
-/// What the stage says of its flights.
+/// The result of the stage.
 struct SegmentedFlights {
     bool explains = false;
     bool are_several = false;  ///< then rows, and texts of --explain, begin with their flight
@@ -123,7 +123,7 @@ int flightwatt::stages::segment_stage(int argc, char** argv) {
         "segment", "FLIGHT.data|SERIES.csv|FOLDER...",
         R"(Finds every sortie in a log by altitude and throttle and writes its phases as CSV: take-off from
 lift-off until the height held is reached, cruise, landing from where that height is left until
-touchdown. TAKEOFF messages, mode and block stand beside each edge as witnesses; they decide nothing.
+touchdown. TAKEOFF messages, mode and block are shown with each edge for comparison; they are not used.
 A log without measured power is segmented too; its columns of power are then empty. Of several logs, or of
 a FOLDER of logs or of flightwatt batch, each row begins with its flight, and --json is a list. A log that
 cannot be used is named and skipped, and the exit code is then 3.)"};

@@ -80,9 +80,9 @@ int flightwatt::stages::simulate_stage(int argc, char** argv) {
         R"(Computes the power that a mission demands and the battery's state of charge over time, as CSV:
 time_s, phase, mechanical_w, compute_w, power_w, current_a, soc_percent, terminal_voltage_v. Powers are what
 the mission demands; current is the battery's, 0 once it is empty or below the mission's cut-off voltage.
-What ended the flight and what was left is told besides; --json: final_soc_percent, energy_wh (demanded),
+The cause of the end and the remaining charge are printed as well; --json: final_soc_percent, energy_wh (demanded),
 delivered_energy_wh, depleted_at_s, cut_off_at_s (null: never), feasible, keeps_reserve, utility.
-A mission with [policy] kind = "adaptive" is planned anew in flight. --samples draws flights and reports
+A mission with [policy] kind = "adaptive" is replanned in flight. --samples draws flights and reports
 their final state of charge; the CSV stays that of the mission as it is stated.)"};
     stage.max_inputs = 1;
     stage.shows_table = true;

@@ -86,7 +86,7 @@ std::vector<std::pair<std::string, Anomalies>> anomaly_choices() {
     return choices;
 }
 
-/// What one synthetic log is of, for its names.
+/// Name and origin of a synthetic log.
 struct LogIdentity {
     std::string name;
     std::string made_by;
@@ -149,7 +149,7 @@ void check_name(const std::string& name) {
         throw UsageError(fmt::format("--name is '{}', expected the beginning of a file name, without '/'", name));
 }
 
-/// The model, with another duration of cruise where one is asked for: its curve stretched.
+/// The model, with another duration of its cruise where one is asked for: its curve is scaled in time.
 mechanical::MechanicalModel read_model(const cli::StageCall& call, const std::optional<double>& cruise_s) {
     auto model = mechanical::read_mechanical_model(call.inputs.front());
     if (cruise_s) {
@@ -194,7 +194,7 @@ int flightwatt::stages::synthesize_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "synthesize", "MODEL.toml -o FOLDER",
         R"(Writes synthetic Paparazzi logs (.log and .data) of flights whose power follows a mechanical model, with
-sensor noise, lost lines, durations that vary and a spread between flights. The files say that they are
+sensor noise, lost lines, durations and power that vary between flights. The files are marked as
 synthetic. The same seed gives the same files.)"};
     stage.max_inputs = 1;
     stage.output_help = "the folder to write into";

@@ -1,4 +1,4 @@
-// flightwatt trends: how aircraft and pack go over the dates of their flights.
+// flightwatt trends: ageing of aircraft and pack over the dates of their flights.
 
 #include "base/error.h"
 #include "batch/trend.h"
@@ -107,21 +107,21 @@ Json trends_json(const std::vector<report::FlightTrendData>& flights,
     return json;
 }
 
-void say_what_changes(const cli::StageCall& call, const std::vector<report::FlightTrendData>& flights,
-                      const std::vector<report::AircraftTrend>& trends) {
+void note_trends(const cli::StageCall& call, const std::vector<report::FlightTrendData>& flights,
+                 const std::vector<report::AircraftTrend>& trends) {
     std::vector<std::string> undated;
     for (const auto& flight : flights)
         if (!flight.facts.start_clock_s) undated.push_back(flight.name);
     if (!undated.empty()) {
-        cli::note(call,
-                  fmt::format("in no trend, as neither clock nor name tells the date: {}", fmt::join(undated, ", ")));
+        cli::note(call, fmt::format("in no trend, as neither clock nor name contains the date: {}",
+                                    fmt::join(undated, ", ")));
     }
-    std::size_t judged = 0;
+    std::size_t tested = 0;
     std::vector<std::string> changing;
     for (const auto& row : trends) {
         const auto& trend = row.answer.trend;
         if (!trend) continue;
-        ++judged;
+        ++tested;
         if (!is_significant(*trend)) continue;
         const auto [slope, low, high, unit] = shown_slope(row);
         const auto [least, most] = std::minmax({std::abs(low), std::abs(high)});
@@ -130,13 +130,13 @@ void say_what_changes(const cli::StageCall& call, const std::vector<report::Flig
                                        unit.empty() ? "" : " % of its level", least, most, unit));
     }
     for (const auto& text : changing) cli::note(call, text);
-    if (judged == 0)
-        cli::note(call, "no trend can be told: " + trends.front().answer.no_trend_reason);
+    if (tested == 0)
+        cli::note(call, "no trend can be determined: " + trends.front().answer.no_trend_reason);
     else if (changing.empty())
-        cli::note(call, fmt::format("none of {} quantities has a trend beyond its 95 % interval", judged));
+        cli::note(call, fmt::format("none of {} quantities has a trend beyond its 95 % interval", tested));
     else
-        cli::note(call,
-                  fmt::format("{} of {} quantities judged; one in 20 has a trend by chance", changing.size(), judged));
+        cli::note(call, fmt::format("{} of {} quantities have a trend; one in 20 has one by chance", changing.size(),
+                                    tested));
 }
 
 void write_figure_files(const cli::StageCall& call, const std::string& folder,
@@ -153,7 +153,7 @@ void write_figure_files(const cli::StageCall& call, const std::string& folder,
 }
 
 int show_trends(const cli::StageCall& call, const TrendsArguments& arguments) {
-    std::optional<report::WebFiles> web;  // read before the work: where they are missing, that is told at once
+    std::optional<report::WebFiles> web;  // read first: missing files are an error before any work
     if (arguments.figures) web = report::read_web_files(report::web_folder());
     auto flights = read_flights(call, arguments);
     if (flights.empty()) throw InputError({}, "no flight is left", "see the reasons above");
@@ -172,7 +172,7 @@ int show_trends(const cli::StageCall& call, const TrendsArguments& arguments) {
         cli::print(cli::json_text(trends_json(flights, trends)));
     else if (call.output || screen.is_terminal)
         cli::print(screen_text(trend_table(trends), screen, {"trends", {"quantity", "verdict", "in 30 days"}}));
-    say_what_changes(call, flights, trends);
+    note_trends(call, flights, trends);
     if (web) write_figure_files(call, *arguments.figures, trends, *web);
     return cli::ok;
 }
@@ -182,10 +182,10 @@ int show_trends(const cli::StageCall& call, const TrendsArguments& arguments) {
 int flightwatt::stages::trends_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "trends", "FLIGHT.data|SERIES.csv|FOLDER...",
-        R"(Says how aircraft and pack age: of every flight its energy by minute and by kilometre over ground and through
-the air, the mean power of its cruise, the pack's resistance, its capacity where the flight draws enough to
-tell it, and the charge drawn, as CSV; and whether they rise or fall over the flights' dates, with 95 %
-intervals, each aircraft by itself. A flight that is in two folders of batch counts once.)" +
+        R"(Shows the ageing of aircraft and pack: for each flight its energy per minute and per kilometre over ground and
+through the air, the mean power of its cruise, the pack's resistance, its capacity if the flight draws enough to
+determine it, and the charge drawn, as CSV; and their trends over the flights' dates, with 95 % intervals, for
+each aircraft. A flight that is in two folders of batch counts once.)" +
             std::string(cli::several_flights_text)};
     stage.examples = {"flightwatt trends my -o trends.csv",
                       "flightwatt trends season1 season2 --capacity 2.2 --figures figures"};

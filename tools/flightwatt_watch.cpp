@@ -56,18 +56,18 @@ class DecisionHook {
             changes_ = state.decision->changes;
             command_->run(cli::decision_environment(state, compute_));
         }
-        tell();
+        warn_of_failure();
     }
 
     void end() {
         constexpr int max_ms = 5000;
         if (!command_) return;
         if (!command_->wait(max_ms)) cli::warn(call_, "--on-decision: its command still runs");
-        tell();
+        warn_of_failure();
     }
 
   private:
-    void tell() {
+    void warn_of_failure() {
         if (const auto failure = command_->poll()) cli::warn(call_, "--on-decision: " + *failure);
     }
 
@@ -77,7 +77,7 @@ class DecisionHook {
     std::size_t changes_ = 0;
 };
 
-/// Shows what is said on a page.
+/// Publishes the state on a page.
 class LivePage {
   public:
     LivePage(const cli::StageCall& call, const std::optional<std::string>& address,
@@ -128,11 +128,11 @@ std::unique_ptr<live::LiveSchedule> make_schedule(const Watched& watched, bool r
     return std::make_unique<live::LiveSchedule>(*watched.mission, replans);
 }
 
-/// Looks at the flight after every second of it, or of silence.
-using Look = std::function<std::string(double silent_s)>;
+/// Updates the flight after every second of it, or of silence; returns the reason to end, if any.
+using Update = std::function<std::string(double silent_s)>;
 
-/// What was received and not looked at yet is recorded, and in the last words.
-void take_what_waits(live::MessageSource& source, live::LiveFlight& flight, double now_s) {
+/// Takes the messages that are still queued, so that they are recorded and in the last prediction.
+void receive_queued(live::MessageSource& source, live::LiveFlight& flight, double now_s) {
     constexpr double max_s = 10.0;
     const auto start = Clock::now();
     std::vector<live::IncomingMessage> messages;
@@ -143,15 +143,15 @@ void take_what_waits(live::MessageSource& source, live::LiveFlight& flight, doub
     } while (!messages.empty() && seconds_since(start) < max_s);
 }
 
-/// Until the source ends, a signal comes, or `update_flight` says why to end; returns that.
-std::string watch_source(live::MessageSource& source, live::LiveFlight& flight, const Look& update_flight) {
+/// Runs until the source ends, a signal arrives, or `update_flight` returns a reason; returns the reason.
+std::string watch_source(live::MessageSource& source, live::LiveFlight& flight, const Update& update_flight) {
     constexpr std::chrono::milliseconds wait{100};
-    constexpr double silence_said_s = 1.0;
+    constexpr double silence_shown_s = 1.0;
     const SignalWatch signals;
     const auto start = Clock::now();
     auto heard = start;
-    auto looked = start;
-    std::optional<double> looked_at_s;
+    auto updated = start;
+    std::optional<double> updated_at_s;
     std::vector<live::IncomingMessage> messages;
     while (true) {
         messages.clear();
@@ -159,21 +159,21 @@ std::string watch_source(live::MessageSource& source, live::LiveFlight& flight, 
         for (auto& message : messages) {
             flight.receive(std::move(message), seconds_since(start));
             const auto clock_s = flight.clock_s();
-            const bool is_due = clock_s && (!looked_at_s || std::abs(*clock_s - *looked_at_s) >= 1.0);
+            const bool is_due = clock_s && (!updated_at_s || std::abs(*clock_s - *updated_at_s) >= 1.0);
             if (!is_due) continue;
-            looked_at_s = clock_s;
+            updated_at_s = clock_s;
             if (auto why = update_flight(0.0); !why.empty()) return why;
-            looked = Clock::now();
+            updated = Clock::now();
         }
         if (!messages.empty()) heard = Clock::now();
         if (const auto signal = signals.received()) {
-            take_what_waits(source, flight, seconds_since(start));
+            receive_queued(source, flight, seconds_since(start));
             return "ended by " + signal_name(*signal);
         }
         if (source.at_end()) return "the telemetry ends";
-        if (seconds_since(looked) < silence_said_s) continue;
+        if (seconds_since(updated) < silence_shown_s) continue;
         if (auto why = update_flight(seconds_since(heard)); !why.empty()) return why;
-        looked = Clock::now();
+        updated = Clock::now();
     }
 }
 
@@ -190,7 +190,7 @@ int watch(const cli::StageCall& call, const WatchArguments& arguments) {
     if (const auto& folder = arguments.record) {
         const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
         recorder.emplace(*folder, live::log_name(now), log_text);
-        options.on_lines = [&](std::string_view lines, bool anew) { recorder->write(lines, anew); };
+        options.on_lines = [&](std::string_view lines, bool restarts) { recorder->write(lines, restarts); };
     }
     live::LiveFlight flight(std::move(options), watched.basis, make_schedule(watched, arguments.replans));
     cli::WatchOutput speaker(call, watched.compute);
@@ -202,7 +202,7 @@ int watch(const cli::StageCall& call, const WatchArguments& arguments) {
         speaker.print_state(state);
         page.print_state(state);
         hook.update_flight(state);
-        if (!speaker.is_read()) return "nobody reads the output any more";
+        if (!speaker.is_read()) return "the reader of the output has ended";
         return arguments.until_landed && state.landed ? "the aircraft has landed" : "";
     };
     const auto why = watch_source(*source, flight, update_flight);
@@ -223,11 +223,11 @@ int watch(const cli::StageCall& call, const WatchArguments& arguments) {
 int flightwatt::stages::watch_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "watch", "SOURCE [--mission MISSION.toml | --model MODEL.toml --remaining S]",
-        R"(Says once a second of a flight that is in the air: phase, energy, state of charge, and how it will
-land, as flightwatt predict does from the same telemetry; with a mission also the schedule from here,
+        R"(Prints once a second the phase, energy and state of charge of a flight in the air, and predicts its
+landing, as flightwatt predict does from the same telemetry; with a mission also the schedule from here,
 and with --replan one that is planned again in flight. On a terminal it is one screen; else a line a
 second, with --json an object a line, with --serve also a page for a browser (docs/live.md). It ends
-with its source, or by a signal, and then says its last prediction. The source is one of --follow, --udp,
+with its source, or by a signal, and then prints its last prediction. The source is one of --follow, --udp,
 --serial, --ivy and - (the standard input).)"};
     stage.min_inputs = 0;
     stage.max_inputs = 1;

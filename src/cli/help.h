@@ -17,7 +17,7 @@ struct HelpPage {
 std::vector<HelpPage> help_pages(const std::filesystem::path& folder);
 
 /// The commit that the program was built of; empty where it is unknown. Programs alone define it (cmake/commit.cmake),
-/// so that a new commit links them anew and compiles nothing.
+/// so that a new commit relinks them and compiles nothing.
 [[gnu::weak]] const char* commit();
 
 /// The version, and the commit in parentheses where it is known: "0.2.0 (c72d378)". For --version alone: files and JSON

@@ -66,14 +66,14 @@ void add_to(po::options_description& description, const Option& option) {
     description.add_options()(declared_name(option).c_str(), semantic_of(option), option.description.c_str());
 }
 
-/// Options of earlier versions, with what there is instead.
+/// Options of earlier versions, with their replacement.
 const std::map<std::string, std::string>& removed_options() {
     static const std::map<std::string, std::string> removed{
         {"--above-idle", "state above_idle = true in the specification"},
         {"--covariate", "'physical' predicts by airspeed and climb, where they were measured"},
         {"--csv", "-o FILE.csv writes the table as CSV with all digits"},
         {"--cut", "--sortie N reads one sortie of a log, in every stage"},
-        {"--curve", "the curve is that of least squares, and a note says where its frequency is open"},
+        {"--curve", "the curve is that of least squares, and a note states where its frequency is open"},
         {"--know-durations", "schedules are made for the durations that are known before the flight"},
         {"--level", "the model's curve is expected; its mean where the flight is not known from its take-off on"},
         {"--level-covariate", "fit by airspeed and climb instead: --model physical"},

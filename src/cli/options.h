@@ -21,7 +21,7 @@ namespace flightwatt::cli {
 /// well, and no two may be one.
 enum class FileRole { none, input, output };
 
-/// What is declared of an option beyond its name, its variable and its description.
+/// Declaration of an option beyond its name, its variable and its description.
 struct OptionDetails {
     std::string value = {};  ///< name of its value in --help: "AH"
     double min = -std::numeric_limits<double>::infinity();
@@ -30,7 +30,7 @@ struct OptionDetails {
     bool below_max = false;  ///< max itself is refused
     std::string unit = {};   ///< of the number
     double scale = 1.0;      ///< a whole number is multiplied by this
-    std::string hint = {};   ///< how to mend a number outside the range
+    std::string hint = {};   ///< how to correct a number outside the range
     FileRole file = FileRole::none;
     std::vector<std::string> needs = {};     ///< options of which one has to be given with it
     std::vector<std::string> excludes = {};  ///< options that must not be given with it
@@ -154,7 +154,7 @@ class Options {
 
     nlohmann::ordered_json json() const;
 
-    /// What was given: the texts of each option by its name, and the positional arguments.
+    /// The given options: the texts of each option by its name, and the positional arguments.
     struct Given {
         std::vector<std::pair<std::string, std::vector<std::string>>> options;
         std::vector<std::string> inputs;

@@ -34,10 +34,10 @@ bool reader_has_left = false;
 /// --quiet was given.
 bool is_quiet = false;
 
-/// Diagnostics that nobody can read (closed, full disk) change nothing.
-void tell(const std::string& line) { std::fwrite(line.data(), 1, line.size(), stderr); }
+/// Diagnostics that cannot be written (closed, full disk) are dropped.
+void print_diagnostic(const std::string& line) { std::fwrite(line.data(), 1, line.size(), stderr); }
 
-/// What a line begins with, in colour where the standard error has colours.
+/// Beginning of a line, in colour where the standard error has colours.
 std::string alert(const char* word, int color) {
     return standard_error_has_colors() ? fmt::format("\x1b[1;38;5;{}m{}:\x1b[0m", color, word)
                                        : fmt::format("{}:", word);
@@ -46,16 +46,16 @@ std::string alert(const char* word, int color) {
 constexpr int color_of_errors = 160;
 constexpr int color_of_warnings = 172;
 
-/// Says what went wrong, and where; returns the exit code that stands for it.
+/// Prints an error with its location; returns the exit code.
 ExitCode failed(ExitCode code, const std::string& program, const std::string& message, const std::string& where = "") {
-    const auto place = where.empty() ? "" : where + ": ";
-    tell(fmt::format("{}: {}{} {}\n", program, one_line(place), alert("error", color_of_errors),
-                     one_line(truncated(message))));
+    const auto prefix = where.empty() ? "" : where + ": ";
+    print_diagnostic(fmt::format("{}: {}{} {}\n", program, one_line(prefix), alert("error", color_of_errors),
+                                 one_line(truncated(message))));
     return code;
 }
 
 /// A standard stream that was closed before the start would become the first file that is opened, a log or a result.
-/// What is opened here instead cannot be written, so that a result for a closed standard output is an error.
+/// The streams opened here instead cannot be written, so that a result for a closed standard output is an error.
 void occupy_closed_streams() {
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
         if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF) ::open("/dev/null", O_RDONLY);
@@ -234,7 +234,7 @@ int run(int argc, char** argv, StageDefinition& stage, const StageBody& body) {
     return code == ok && !call.skipped->empty() ? input_rejected : code;
 }
 
-/// What is wrong with an input, with the way out.
+/// Defect of an input, with its remedy.
 std::string reason_of(const InputError& error) {
     return error.hint().empty() ? std::string(error.what()) : fmt::format("{}; {}", error.what(), error.hint());
 }
@@ -242,7 +242,7 @@ std::string reason_of(const InputError& error) {
 }  // namespace
 
 int run_guarded(const std::string& program, const std::function<int()>& body) {
-    // A closed pipe and a file beyond the limit (ulimit -f) are then failed writes: see print() and tell().
+    // A closed pipe and a file beyond the limit (ulimit -f) are then failed writes: see print().
     for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
     occupy_closed_streams();
     try {
@@ -326,12 +326,12 @@ std::string shell_quoted(std::string_view file) {
 }
 
 void warn(const StageCall& call, std::string_view message) {
-    tell(fmt::format("{}: {} {}\n", call.program, alert("warning", color_of_warnings), one_line(message)));
+    print_diagnostic(fmt::format("{}: {} {}\n", call.program, alert("warning", color_of_warnings), one_line(message)));
 }
 
 void note(const StageCall& call, std::string_view message) {
     if (is_quiet) return;
-    tell(fmt::format("{}: {}\n", call.program, one_line(message)));
+    print_diagnostic(fmt::format("{}: {}\n", call.program, one_line(message)));
 }
 
 }  // namespace flightwatt::cli

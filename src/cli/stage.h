@@ -61,7 +61,7 @@ using StageBody = std::function<int(const StageCall&)>;
 /// --json-usage.
 int run_stage(int argc, char** argv, StageDefinition definition, const StageBody& body);
 
-/// Names an input that cannot be used, on the standard error, so that the others go on. The exit code of the stage is
+/// Names an input that cannot be used, on the standard error, and continues with the others. The exit code of the stage is
 /// then input_rejected instead of ok.
 void skip_input(const StageCall& call, const std::string& file, const InputError& error);
 
@@ -74,11 +74,11 @@ int run_guarded(const std::string& program, const std::function<int()>& body);
 /// The result to --output's file (atomically), or to the standard output unless --json claims that.
 void write_result(const StageCall& call, std::string_view content);
 
-/// To the standard output. Throws OutputError (full disk, closed); of a pipe that nobody reads any more see
+/// To the standard output. Throws OutputError (full disk, closed); of a pipe without a reader see
 /// run_guarded.
 void print(std::string_view text);
 
-/// As print(), seen at once, for programs that go on; false if nobody reads any more.
+/// As print(), written at once, for programs that continue; false if the pipe has no reader any more.
 bool print_flushed(std::string_view text);
 
 /// `text` with blanks for control characters: diagnostics stay on one line, whatever a file (or its name) put

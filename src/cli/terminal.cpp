@@ -40,7 +40,7 @@ std::string rate_text(const ProgressState& state, const std::string& unit) {
     return fmt::format(", {:.{}f} {}/s, {} left", state.per_s, state.per_s < 100.0 ? 1 : 0, unit, clock_text(left_s));
 }
 
-/// "[###...] ", as wide as `width` if that is enough for a bar that tells anything.
+/// "[###...] ", as wide as `width` if that is enough for a readable bar.
 std::string bar_text(const ProgressState& state, std::size_t width) {
     constexpr std::size_t frame = 3;  // brackets and a blank
     constexpr std::size_t least = 5;
@@ -108,7 +108,7 @@ void ProgressBar::show(std::size_t done, std::size_t all) {
     const auto text =
         progress_text({done, all, per_s}, unit_, (columns > 0 ? columns : TerminalCapabilities().columns) - 1);
     erase();
-    std::fwrite(text.data(), 1, text.size(), terminal_);  // a terminal that is gone changes nothing
+    std::fwrite(text.data(), 1, text.size(), terminal_);  // a closed terminal is ignored
     std::fflush(terminal_);
     drawn_width_ = text.size();
 }

@@ -8,13 +8,13 @@
 #include <mutex>
 #include <string>
 
-/// What the terminal can show, and progress bars on it.
+/// Capabilities of the terminal, and progress bars on it.
 namespace flightwatt::cli {
 
-/// What the standard output can show.
+/// Capabilities of the standard output.
 struct TerminalCapabilities {
     bool is_terminal = false;
-    bool redraws = false;  ///< a terminal whose screen can be written anew
+    bool redraws = false;  ///< a terminal whose screen can be rewritten
     bool colors = false;   ///< one that has colours, and they are wanted (no-color.org)
     std::size_t columns = 80;
 };
@@ -22,7 +22,7 @@ struct TerminalCapabilities {
 /// The value of an environment variable, or nullptr.
 using Environment = std::function<const char*(const char* name)>;
 
-/// What a terminal of so many columns can show, after TERM (not "dumb") and NO_COLOR.
+/// Capabilities of a terminal with `columns`, from TERM (not "dumb") and NO_COLOR.
 TerminalCapabilities detect_capabilities(bool is_terminal, std::size_t columns, const Environment& environment);
 
 /// The same of the standard output of this program.
@@ -31,7 +31,7 @@ TerminalCapabilities standard_output_ability();
 /// Whether diagnostics are read on a terminal with colours.
 bool standard_error_has_colors();
 
-/// What a progress bar shows.
+/// Numbers of a progress bar.
 struct ProgressState {
     std::size_t done = 0;
     std::size_t all = 0;
@@ -59,7 +59,7 @@ class ProgressBar {
     ProgressBar& operator=(const ProgressBar&) = delete;
 
     void show(std::size_t done, std::size_t all);
-    void hide();  ///< until it is shown again: something else is to be told
+    void hide();  ///< until show(), so that other text can be printed
     void clear();
     /// show(), for what takes a function; not longer than this lives.
     std::function<void(std::size_t done, std::size_t all)> callback();

@@ -35,7 +35,7 @@ void require_pattern(const std::string& pattern) {
         throw UsageError(fmt::format("--glob '{}': expected a pattern as '20_07_*', each [ closed by ]", pattern));
 }
 
-/// Why a flight is left out; empty for one that is used.
+/// Reason to exclude a flight; empty for one that is used.
 std::string why_left_out(const FlightFilter& filter, const std::string& flight) {
     const auto fits = [&](const auto& pattern) { return matches(pattern, flight); };
     if (!filter.patterns.empty() && std::ranges::none_of(filter.patterns, fits)) return "its name is not of --glob";
@@ -48,10 +48,10 @@ std::string why_left_out(const FlightFilter& filter, const std::string& flight) 
     return "";
 }
 
-/// Why a flight of a batch is not of its fit, by what that batch was told; empty if it was told nothing of it.
+/// Reason why a flight of a batch is not in its fit, by the options of that batch; empty without one.
 std::string why_batch_left_out(const std::optional<batch::BatchFit>& fit, const std::string& flight) {
     if (!fit) return "";
-    if (fit->excluded.contains(flight)) return "its batch was told to --exclude it";
+    if (fit->excluded.contains(flight)) return "its batch has the option --exclude for it";
     const auto* copy = batch::original_of(flight, fit->copies);
     return copy == nullptr ? "" : "its batch found that it is " + *copy + " under another name";
 }
@@ -62,7 +62,7 @@ struct SeriesFile {
     std::string file;
 };
 
-/// The series of the flights that a batch accepted and may fit; --keep overrides what the batch was told.
+/// The series of the flights that a batch accepted and may fit; --keep overrides the options of the batch.
 std::vector<SeriesFile> series_of_batch(const StageCall& call, const std::filesystem::path& out,
                                         const flight::LoadOptions& options) {
     std::vector<SeriesFile> files;

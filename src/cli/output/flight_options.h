@@ -54,7 +54,7 @@ inline constexpr auto several_flights_text =
 /// count. A flight that is there under two names counts once, with a warning: it would be counted twice, and predict
 /// itself. The first with its .log counts, or else the first. Throws UsageError for two of
 /// one name, and for --exclude and --keep of a flight that is not there; InputError, when all are loaded, for those of
-/// several aircraft, or synthetic ones beside real ones, unless --mix-aircraft is given. One of several that cannot be
+/// several aircraft, or synthetic ones together with real ones, unless --mix-aircraft is given. One of several that cannot be
 /// used is skipped (skip_input); where none is left, InputError is thrown.
 std::vector<std::size_t> for_each_flight(
     const StageCall& call, const FlightArguments& arguments,
@@ -71,7 +71,7 @@ std::vector<T> from_flights(const StageCall& call, const FlightArguments& argume
     return all;
 }
 
-/// The sorties that were measured with so many samples a phase, of all flights that count; says which are excluded.
+/// The sorties that were measured with so many samples a phase, of all flights that count; warns of excluded ones.
 std::vector<mechanical::MeasuredFlight> measured_flights(const StageCall& call, const FlightArguments& arguments,
                                                          std::size_t needed_samples);
 
@@ -95,10 +95,10 @@ std::string flight_of_file(const std::filesystem::path& file);
 std::set<std::string> expand_patterns(const std::set<std::string>& names, const std::string& option,
                                       const std::vector<std::string>& flights);
 
-/// Throws UsageError for --exclude and --keep of a flight that is none of `flights`.
+/// Throws UsageError for --exclude and --keep of a flight that is not in `flights`.
 void refuse_unknown_flights(const flight::LoadOptions& options, const std::vector<std::string>& flights);
 
-/// Says so where flights are not left out alone.
+/// Notes that flights are excluded in groups, if they are.
 void note_folds(const StageCall& call, std::size_t flights, std::size_t folds);
 
 }  // namespace flightwatt::cli
