@@ -140,12 +140,12 @@ TEST(Export, SaysWhatATrackLacks) {
                           "0,1,43.1,1.2\n1,2,43.2,1.3\n2,3,43.3,1.4\n");
     const auto bare = exported("bare.csv --format gpx", folder);
     EXPECT_EQ(bare.code, 0) << bare.err;
-    EXPECT_THAT(bare.err, HasSubstr("neither a .log nor its name tells the date"));
+    EXPECT_THAT(bare.err, HasSubstr("neither a .log nor its name contains the date"));
     EXPECT_THAT(bare.err, HasSubstr("has no altitude"));
     EXPECT_EQ(bare.out.find("<time>"), std::string::npos);
     std::filesystem::copy_file(folder / "bare.csv", folder / "20_07_05__10_26_44.csv");
     const auto named = exported("20_07_05__10_26_44.csv --format gpx", folder);
-    EXPECT_THAT(named.err, HasSubstr("as if it were UTC"));
+    EXPECT_THAT(named.err, HasSubstr("is used, as UTC"));
     EXPECT_THAT(named.out, HasSubstr("<time>2020-07-05T10:26:45.000Z</time>"));
     write_file_atomically(folder / "none.csv", "time_s,power_w\n0,1\n1,2\n");
     const auto none = exported("none.csv --format kml", folder);
