@@ -15,7 +15,7 @@ sys.path.insert(0, os.path.join(ROOT, "tests/bench/table"))
 import rows  # noqa: E402
 
 BENCH = os.path.join(ROOT, "scripts/bench")
-HEADS = ["what", "of", "ours", "beside it", "ratio", "goal", "is"]
+HEADS = ["what", "of", "ours", "compared with", "ratio", "goal", "is"]
 QUANTITY = re.compile(r"(\d+(?:\.\d+)?(?:e[-+]\d+)?)(?: ([a-zA-Zµ%/]+))?")
 SCALES = {"µs": 1e-6, "ms": 1e-3, "k/s": 1e3, "M/s": 1e6}
 

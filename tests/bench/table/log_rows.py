@@ -42,7 +42,7 @@ def rows_of(of, runs):
     all_s, grep_s = runs["all"].wall_s, runs["grep"].wall_s  # of the clock
     return [
         row("energy messages of a log", "energy", "grep -F -c", "grep", 1),
-        row("energy messages, beside lines", "energy", "memchr", "lines", 0.5),
+        row("energy messages, against lines", "energy", "memchr", "lines", 0.5),
         row("every line into words", "words", "Python", "python", 5),
         row("words, fields as numbers", "numbers", "Python", "python", 5),
         row("flightwatt parse, one core", "parse", "grep -F -c", "grep", 1),

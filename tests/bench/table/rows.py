@@ -72,7 +72,7 @@ def times_as_fast(what, of, ours_s, beside, other_s, goal):
 
 def table(rows):
     """In Markdown, so that documents take it as it is."""
-    cells = [["what", "of", "ours", "beside it", "ratio", "goal", "is"]] + [row.cells() for row in rows]
+    cells = [["what", "of", "ours", "compared with", "ratio", "goal", "is"]] + [row.cells() for row in rows]
     widths = [max(len(line[i]) for line in cells) for i in range(len(cells[0]))]
     lines = ["| " + " | ".join(cell.ljust(width) for cell, width in zip(line, widths)) + " |" for line in cells]
     rule = "|" + "|".join("-" * (width + 2) for width in widths) + "|"
