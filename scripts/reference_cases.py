@@ -22,7 +22,8 @@ def golden_cases(source):
 
 def document_cases(source):
     """The commands whose output a document shows, in its order."""
-    for name in ("README.md", "CONTRIBUTING.md", "docs/exports.md", "docs/guide.md", "docs/validation.md"):
+    for name in ("README.md", "CONTRIBUTING.md", "docs/exports.md", "docs/guide.md", "docs/live.md",
+                 "docs/tutorial.md", "docs/validation.md"):
         with open(os.path.join(source, name), encoding="utf-8") as file:
             shown = re.findall(r"<!-- output of(?: \(needs ../shared\))?: ([^\n]+?) -->", file.read())
         links = 'for file in "$SOURCE"/*; do [ "${file##*/}" = out ] || ln -s "$file" .; done; mkdir out'
