@@ -95,7 +95,7 @@ from their durations alone; then compares with the integral of the power that wa
   constant_mean   the other flights' mean power in the phase
   nearest_flight  the mean power of the one flight whose durations are nearest
   physical        power from the airspeed and climb that were flown, as if they had been known before
-                  (flightwatt fit --model physical); where flights measured them
+                  (flightwatt fit --model-kind physical); where flights measured them
 With --at S: S seconds after its lift-off a flight has measured its energy up to then; the rest of
 the cruise and the landing are predicted, by the models above as before the flight, and by
   in_flight           the cruise level shrunk between model and flight (see flightwatt predict)

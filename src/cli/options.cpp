@@ -76,7 +76,7 @@ const std::map<std::string, std::string>& removed_options() {
         {"--curve", "the curve is that of least squares, and a note states where its frequency is open"},
         {"--know-durations", "schedules are made for the durations that are known before the flight"},
         {"--level", "the model's curve is expected; its mean where the flight is not known from its take-off on"},
-        {"--level-covariate", "fit by airspeed and climb instead: --model physical"},
+        {"--level-covariate", "fit by airspeed and climb instead: --model-kind physical"},
         {"--link-version", "frames are of version 2 of pprzlink"},
         {"--loss", "fits are of least squares; leave flights out with --exclude"},
         {"--markdown", "-o FILE.md writes the table as Markdown"},
