@@ -9,17 +9,16 @@
 
 namespace flightwatt::path {
 
-/// Where a flight is on its path, by its positions.
+/// Position of a flight on its path.
 struct PathFix {
-    std::optional<double> path_time_s = {};  ///< in the path's planned time; none: they do not lie on the path
-    bool is_on_path = true;                  ///< else it has left it, and was there last
-    double distance_m = 0.0;                 ///< so far from there now
+    std::optional<double> path_time_s = {};  ///< in the path's planned time; none: the positions are not on the path
+    bool is_on_path = true;                  ///< else it has left the path, at path_time_s
+    double distance_m = 0.0;                 ///< from there, now
 };
 
-/// Where a flight is on its path, by the positions of its cruise from its start until a moment: two forward filters
-/// over places on the path (docs/methods.md, Flight along a path), the first for where the path begins. Nothing later
-/// is taken into account. Both go on from moment to moment; where positions changed since, they begin anew, so that the
-/// answers depend on the series alone.
+/// Finds the position of a flight on its path from the positions of its cruise up to a given time, by a forward filter
+/// over the path (docs/methods.md, Flight along a path). Later data are ignored. The filter continues from call to call
+/// and restarts where positions have changed, so that results depend on the series alone.
 class PathTracker {
   public:
     /// `path` takes some time.
@@ -28,15 +27,15 @@ class PathTracker {
     PathTracker(const PathTracker&) = delete;
     PathTracker& operator=(const PathTracker&) = delete;
 
-    /// The path begins where the cruise does. std::nullopt where no positions tell.
+    /// The path begins where the cruise does. std::nullopt without positions.
     std::optional<PathFix> find(const flight::SelectedTracks& tracks, double cruise_start_s, double until_s);
 
   private:
-    class Filters;
-    std::unique_ptr<Filters> filters_;
+    class State;
+    std::unique_ptr<State> state_;
 };
 
-/// The same of one moment; std::nullopt of a path that takes no time, too.
+/// The same for a single time; std::nullopt also for a path that takes no time.
 std::optional<PathFix> locate_on_path(const PathForecast& path, const flight::FlightSeries& series,
                                       double cruise_start_s, double until_s);
 

@@ -13,11 +13,14 @@
 namespace flightwatt::path {
 namespace {
 
-// Chosen by what they mean; none was fitted to flights.
-constexpr double finest_s = 1.0;       // between places
-constexpr double max_places = 1200.0;  // on a path
+// Chosen by their meaning; none was fitted to flights.
+constexpr double finest_s = 1.0;       // between grid points
+constexpr double max_points = 1200.0;  // of a path
 constexpr double oldest_position_s = 5.0;
-constexpr double settled_after_s = 10.0;  // a link hands on late messages within seconds
+constexpr double settled_after_s = 10.0;   // a link delivers late messages within seconds
+constexpr double off_path_m = 25.0;        // one deviation: satellite navigation, and turns that cut corners
+constexpr double origin_sd_m = 60.0;       // of a cross-track error as a measurement of the path's offset
+constexpr double likelihood_weight = 0.5;  // of a position: its error is correlated with the one before
 
 LocalPosition unit(const LocalPosition& of, double min_m) {
     const double length_m = std::hypot(of.east_m, of.north_m);
@@ -61,14 +64,14 @@ class Positions {
 };
 
 constexpr double course_weight = 2.0;
-constexpr double off_sds = 3.5;  // from there on it is likelier that the path was left
+constexpr double off_sds = 3.5;  // beyond, it is more likely that the path was left
 constexpr double negligible = 1e-15;
 
 struct Advance {
-    std::ptrdiff_t places = 0;
-    double chance = 0.0;
+    std::ptrdiff_t points = 0;
+    double probability = 0.0;
 };
-// In the time that a place takes as planned; off the path a flight goes on where it left it, or elsewhere.
+// Grid points advanced in one step; off the path a flight resumes where it left it, or elsewhere.
 constexpr std::array advances_on_path{Advance{0, 0.25}, Advance{1, 0.45}, Advance{2, 0.22}, Advance{3, 0.08}};
 constexpr std::array advances_off_path{Advance{0, 0.7},     Advance{1, 0.2},      Advance{2, 0.07},
                                        Advance{3, 0.029},   Advance{-30, 0.0002}, Advance{30, 0.0005},
@@ -78,39 +81,41 @@ constexpr std::size_t max_ahead = 100;
 constexpr double leaves = 0.02;
 constexpr double comes_back = 0.05;
 
-}  // namespace
-
 double dot(const LocalPosition& a, const LocalPosition& b) { return a.east_m * b.east_m + a.north_m * b.north_m; }
+
+Eigen::Vector2d vector_of(const LocalPosition& of) { return {of.east_m, of.north_m}; }
+
+}  // namespace
 
 PathGrid make_path_grid(const PathForecast& path) {
     const auto& flown = path.flown();
     const auto& elements = path.plan().path.elements;
-    PathGrid places;
-    const double steps = std::clamp(std::ceil(flown.duration_s / finest_s), 1.0, max_places);
-    places.step_s = flown.duration_s / steps;
+    PathGrid grid;
+    const double steps = std::clamp(std::ceil(flown.duration_s / finest_s), 1.0, max_points);
+    grid.step_s = flown.duration_s / steps;
     const auto count = static_cast<std::size_t>(steps) + 1;
-    places.of.reserve(count);
+    grid.points.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
-        const double time_s = static_cast<double>(i) * places.step_s;
+        const double time_s = static_cast<double>(i) * grid.step_s;
         const auto here = position_at(flown, std::min(time_s, flown.duration_s));
-        const auto before = position_at(flown, std::max(0.0, time_s - 0.1 * places.step_s));
-        const auto after = position_at(flown, std::min(flown.duration_s, time_s + 0.1 * places.step_s));
-        PathPoint place;
-        place.at = local_position_at(path.plan().path, here);
-        place.course =
+        const auto before = position_at(flown, std::max(0.0, time_s - 0.1 * grid.step_s));
+        const auto after = position_at(flown, std::min(flown.duration_s, time_s + 0.1 * grid.step_s));
+        PathPoint point;
+        point.at = local_position_at(path.plan().path, here);
+        point.course =
             unit(local_position_at(path.plan().path, after) - local_position_at(path.plan().path, before), 1e-6);
         if (here.element < elements.size()) {
             const auto* hold = std::get_if<Hold>(&elements[here.element].shape);
-            place.is_unconstrained = hold != nullptr && !hold->over_ground;
+            point.is_unconstrained = hold != nullptr && !hold->over_ground;
         }
-        places.of.push_back(place);
+        grid.points.push_back(point);
     }
-    return places;
+    return grid;
 }
 
 void collect_observations(const flight::SelectedTracks& tracks, double start_s, double until_s, double step_s,
                           Observations& observations) {
-    auto& all = observations.of;
+    auto& all = observations.samples;
     all.clear();
     observations.settled = 0;
     Positions positions(tracks);
@@ -123,7 +128,7 @@ void collect_observations(const flight::SelectedTracks& tracks, double start_s, 
         const double time_s = start_s + static_cast<double>(k) * step_s;
         auto now = positions.at(time_s);
         if (now.is_known && !has_origin) {
-            // Without a position where the cruise began nothing tells where the path is.
+            // Without a position at the start of the cruise the location of the path is unknown.
             if (time_s > start_s + oldest_position_s) return all.clear();
             origin = now.at;
             has_origin = true;
@@ -138,17 +143,30 @@ void collect_observations(const flight::SelectedTracks& tracks, double start_s, 
     observations.settled = settled;
 }
 
-PathFilter::PathFilter(const PathGrid& places) : places_(&places) {
-    for (auto* of : {&on_, &off_, &next_on_}) of->resize(places.of.size());
-    next_off_.resize(max_back + places.of.size() + max_ahead);
+void OriginEstimate::add(const LocalPosition& offset, const LocalPosition& course) {
+    const Eigen::Vector2d across(-course.north_m, course.east_m);
+    constexpr double weight = likelihood_weight / (origin_sd_m * origin_sd_m);
+    information_ += weight * across * across.transpose();
+    weighted_sum_ += weight * across.dot(vector_of(offset)) * across;
 }
 
-void PathFilter::begin(double off_path_m, const LocalPosition& origin) {
-    off_path_m_ = off_path_m;
-    origin_ = origin;
-    taken_ = 0;
+LocalPosition OriginEstimate::value() const {
+    const Eigen::Vector2d value = covariance() * weighted_sum_;
+    return {value.x(), value.y()};
+}
+
+PathFilter::PathFilter(const PathGrid& grid) : grid_(&grid) {
+    for (auto* of : {&on_, &off_, &next_on_}) of->resize(grid.points.size());
+    next_off_.resize(max_back + grid.points.size() + max_ahead);
+    restart();
+}
+
+void PathFilter::restart() {
+    origin_estimate_ = {};
+    update_origin();
+    observation_count_ = 0;
     known_s_ = 0.0;
-    seen_on_path_s_ = 0.0;
+    on_path_s_ = 0.0;
     std::ranges::fill(on_, 0.0);
     std::ranges::fill(off_, 0.0);
     on_[0] = 1.0 - leaves;
@@ -156,13 +174,25 @@ void PathFilter::begin(double off_path_m, const LocalPosition& origin) {
     on_path_ = on_[0];
 }
 
-void PathFilter::add_observation(const Observation& seen) {
-    if (taken_ > 0) predict_step();
-    ++taken_;
-    if (!seen.is_known) return;
-    update_step(seen);
-    known_s_ += places_->step_s;
-    if (is_on_path()) seen_on_path_s_ += places_->step_s;
+void PathFilter::add_observation(const Observation& observation) {
+    if (observation_count_ > 0) predict_step();
+    ++observation_count_;
+    if (!observation.is_known) return;
+    last_ = observation;
+    update_step();
+    known_s_ += grid_->step_s;
+    if (!is_on_path()) return;
+    on_path_s_ += grid_->step_s;
+    const auto& point = point_at(median_position());
+    if (point.is_unconstrained) return;
+    origin_estimate_.add(last_.at - point.at, point.course);
+    update_origin();
+}
+
+void PathFilter::update_origin() {
+    origin_ = origin_estimate_.value();
+    const Eigen::Matrix2d of_positions = off_path_m * off_path_m * Eigen::Matrix2d::Identity();
+    offset_information_ = (of_positions + origin_estimate_.covariance()).inverse();
 }
 
 void PathFilter::predict_step() {
@@ -174,16 +204,16 @@ void PathFilter::predict_step() {
         if (off_[i] <= negligible) off_[i] = 0.0;
         next_on_[i] += off_[i] * comes_back;
         if (!(on_[i] > negligible)) continue;
-        for (const auto& [places, chance] : advances_on_path) {
-            const auto to = i + static_cast<std::size_t>(places_->of[i].is_unconstrained ? 1 : places);
-            next_on_[std::min(to, count - 1)] += on_[i] * chance * (1.0 - leaves);
+        for (const auto& [points, probability] : advances_on_path) {
+            const auto to = i + static_cast<std::size_t>(grid_->points[i].is_unconstrained ? 1 : points);
+            next_on_[std::min(to, count - 1)] += on_[i] * probability * (1.0 - leaves);
         }
         next_off[i] += on_[i] * leaves;
     }
-    for (const auto& [places, chance] : advances_off_path) {
-        const double part = chance * (1.0 - comes_back);
-        double* const to = next_off + places;
-        for (std::size_t i = 0; i < count; ++i) to[i] += off_[i] * part;
+    for (const auto& [points, probability] : advances_off_path) {
+        const double weight = probability * (1.0 - comes_back);
+        double* const to = next_off + points;
+        for (std::size_t i = 0; i < count; ++i) to[i] += off_[i] * weight;
     }
     on_.swap(next_on_);
     std::copy_n(next_off, count, off_.begin());
@@ -192,14 +222,13 @@ void PathFilter::predict_step() {
     on_path_ = std::accumulate(on_.begin(), on_.end(), 0.0);
 }
 
-void PathFilter::update_step(const Observation& seen) {
-    last_seen_ = seen;
-    const double off_chance = std::exp(-likelihood_weight * 0.5 * off_sds * off_sds);
+void PathFilter::update_step() {
+    const double off_likelihood = std::exp(-likelihood_weight * 0.5 * off_sds * off_sds);
     double on_path = 0.0;
     double off_path = 0.0;
     for (std::size_t i = 0; i < on_.size(); ++i) {
         if (on_[i] > negligible) on_[i] *= std::exp(likelihood_weight * log_likelihood(i));
-        off_[i] *= off_chance;
+        off_[i] *= off_likelihood;
         on_path += on_[i];
         off_path += off_[i];
     }
@@ -213,13 +242,12 @@ void PathFilter::update_step(const Observation& seen) {
 
 double PathFilter::log_likelihood(std::size_t i) const {
     constexpr double anywhere = -0.5;
-    const auto& point = places_->of[i];
+    const auto& point = grid_->points[i];
     if (point.is_unconstrained) return anywhere;
-    const auto& seen = last_seen_;
-    const auto off = seen.at - origin_ - point.at;
-    const bool have_courses = dot(point.course, point.course) > 0.0 && dot(seen.course, seen.course) > 0.0;
-    const double turned = have_courses ? 1.0 - dot(point.course, seen.course) : 0.0;
-    return -0.5 * dot(off, off) / (off_path_m_ * off_path_m_) - course_weight * turned;
+    const Eigen::Vector2d offset = vector_of(last_.at - origin_ - point.at);
+    const bool have_courses = dot(point.course, point.course) > 0.0 && dot(last_.course, last_.course) > 0.0;
+    const double turned = have_courses ? 1.0 - dot(point.course, last_.course) : 0.0;
+    return -0.5 * offset.dot(offset_information_ * offset) - course_weight * turned;
 }
 
 double PathFilter::median_position() const {
@@ -246,37 +274,19 @@ double PathFilter::nearest_position() const {
         best = score;
         nearest = i;
     }
-    const auto& point = places_->of[nearest];
+    const auto& point = grid_->points[nearest];
     if (point.is_unconstrained) return middle;
-    const double ahead_m = dot(last_seen_.at - origin_ - point.at, point.course);
-    const auto step = places_->of[std::min(nearest + 1, on_.size() - 1)].at - point.at;
+    const double ahead_m = dot(last_.at - origin_ - point.at, point.course);
+    const auto step = grid_->points[std::min(nearest + 1, on_.size() - 1)].at - point.at;
     const double step_m = std::max(1.0, std::hypot(step.east_m, step.north_m));
     return static_cast<double>(nearest) + std::clamp(ahead_m / step_m, -0.5, 0.5);
 }
 
-LocalPosition PathFilter::off(double place) const { return last_seen_.at - origin_ - point_of(place).at; }
+LocalPosition PathFilter::offset_from(double position) const { return last_.at - origin_ - point_at(position).at; }
 
-const PathPoint& PathFilter::point_of(double place) const { return places_->of[index_of(place)]; }
-
-std::size_t PathFilter::index_of(double place) const {
+std::size_t PathFilter::index_of(double position) const {
     const double last = static_cast<double>(on_.size()) - 1.0;
-    return static_cast<std::size_t>(std::clamp(std::round(place), 0.0, last));
-}
-
-void OriginEstimate::add(const LocalPosition& off, const LocalPosition& course) {
-    const LocalPosition across{-course.north_m, course.east_m};
-    constexpr double weight = PathFilter::likelihood_weight / (off_path_m * off_path_m);
-    const double off_m = dot(off, across);
-    ee_ += weight * across.east_m * across.east_m;
-    en_ += weight * across.east_m * across.north_m;
-    nn_ += weight * across.north_m * across.north_m;
-    e_ += weight * across.east_m * off_m;
-    n_ += weight * across.north_m * off_m;
-}
-
-LocalPosition OriginEstimate::value() const {
-    const double determinant = ee_ * nn_ - en_ * en_;
-    return {(nn_ * e_ - en_ * n_) / determinant, (ee_ * n_ - en_ * e_) / determinant};
+    return static_cast<std::size_t>(std::clamp(std::round(position), 0.0, last));
 }
 
 }  // namespace flightwatt::path

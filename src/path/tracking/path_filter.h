@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <vector>
 
+#include <Eigen/LU>
+
 namespace flightwatt::path {
 
 struct PathPoint {
@@ -14,16 +16,16 @@ struct PathPoint {
     bool is_unconstrained = false;
 };
 
-/// Places along a path, evenly in its planned time.
+/// Points of a path, equidistant in its planned time.
 struct PathGrid {
-    std::vector<PathPoint> of;
+    std::vector<PathPoint> points;
     double step_s = 0.0;
 };
 
 /// Of a path that takes some time.
 PathGrid make_path_grid(const PathForecast& path);
 
-/// Where a flight was seen, from where its cruise began.
+/// A position of a flight, relative to the one at the start of its cruise.
 struct Observation {
     LocalPosition at;
     LocalPosition course;  ///< of length 1, or 0 where it is not known
@@ -32,83 +34,74 @@ struct Observation {
     friend bool operator==(const Observation&, const Observation&) = default;
 };
 
-/// Positions of the cruise at times `step_s` apart, from its start until a moment.
+/// Positions of the cruise at times `step_s` apart, from its start until a given time.
 struct Observations {
-    std::vector<Observation> of;
-    std::size_t settled = 0;  ///< the first of them: positions lie so far behind them that late ones change none
+    std::vector<Observation> samples;
+    std::size_t settled = 0;  ///< number of leading samples that are too old for a late message to change
 };
 
-/// `observations` is filled anew. None where the log has no positions, or none where the cruise began.
+/// Replaces `observations`. Empty if the log has no positions, or none at the start of the cruise.
 void collect_observations(const flight::SelectedTracks& tracks, double start_s, double until_s, double step_s,
                           Observations& observations);
 
-double dot(const LocalPosition& a, const LocalPosition& b);
+/// Recursive estimate of the offset of the path from the first position, from cross-track errors.
+class OriginEstimate {
+  public:
+    void add(const LocalPosition& offset, const LocalPosition& course);
+    LocalPosition value() const;
+    Eigen::Matrix2d covariance() const { return information_.inverse(); }
 
-/// How likely a flight at each place of a path is, on the path and off it, by its observations one after the other.
+  private:
+    static constexpr double sd_m = 60.0;  ///< prior: some seconds of the climb
+    Eigen::Matrix2d information_ = Eigen::Matrix2d::Identity() / (sd_m * sd_m);
+    Eigen::Vector2d weighted_sum_ = Eigen::Vector2d::Zero();
+};
+
+/// Forward filter (docs/methods.md, Flight along a path): probability of each grid point, on the path and off it, and
+/// the offset of the path.
 class PathFilter {
   public:
-    static constexpr double likelihood_weight = 0.5;  ///< of a position: it is off as the one before was
+    explicit PathFilter(const PathGrid& grid);
 
-    /// The path lasts as long as the filter.
-    explicit PathFilter(const PathGrid& places);
+    /// At the start of the path, without observations.
+    void restart();
+    void add_observation(const Observation& observation);
 
-    /// From the beginning of the path, which lies `origin` off the first observation. `off_path_m`: one deviation of
-    /// positions from the path.
-    void begin(double off_path_m, const LocalPosition& origin);
-    void add_observation(const Observation& seen);
-
-    const LocalPosition& origin() const { return origin_; }
-    /// Observations since the beginning.
-    std::size_t taken() const { return taken_; }
-    /// Seconds of planned time that were seen, and those of them on the path.
+    std::size_t observation_count() const { return observation_count_; }
+    /// Planned time [s] with a known position, and the part of it on the path.
     double known_s() const { return known_s_; }
-    double seen_on_path_s() const { return seen_on_path_s_; }
+    double on_path_s() const { return on_path_s_; }
 
     bool is_on_path() const { return on_path_ >= 0.5; }
-    /// The middle of what is likely, in places.
+    /// Median of the probability over grid points.
     double median_position() const;
-    /// The place nearest to the last position that was seen, of those about the middle: the filter lags behind a flight
-    /// that is faster or slower than planned.
+    /// The grid point nearest to the last position, of those around the median: corrects the lag of the filter behind
+    /// flights that are faster or slower than planned.
     double nearest_position() const;
-    /// What the last position that was seen is off a place.
-    LocalPosition off(double place) const;
-    const PathPoint& point_of(double place) const;
+    /// The last position relative to a grid point.
+    LocalPosition offset_from(double position) const;
 
   private:
     void predict_step();
-    void update_step(const Observation& seen);
+    void update_step();
+    void update_origin();
     double log_likelihood(std::size_t i) const;
-    std::size_t index_of(double place) const;
+    const PathPoint& point_at(double position) const { return grid_->points[index_of(position)]; }
+    std::size_t index_of(double position) const;
 
-    const PathGrid* places_;
-    double off_path_m_ = 0.0;
+    const PathGrid* grid_;
+    OriginEstimate origin_estimate_;
     LocalPosition origin_;
-    Observation last_seen_;
-    std::size_t taken_ = 0;
+    Eigen::Matrix2d offset_information_;  ///< inverse covariance of a position's offset from its grid point
+    Observation last_;
+    std::size_t observation_count_ = 0;
     double known_s_ = 0.0;
-    double seen_on_path_s_ = 0.0;
+    double on_path_s_ = 0.0;
     std::vector<double> on_;
     std::vector<double> off_;
     double on_path_ = 0.0;          ///< sum of `on_`
-    std::vector<double> next_on_;   ///< of go_on
-    std::vector<double> next_off_;  ///< and what goes over an end of the path
-};
-
-/// From where a path begins: what positions are off it, across it, as far as that is known better than beforehand.
-class OriginEstimate {
-  public:
-    static constexpr double off_path_m = 60.0;  ///< one deviation of positions while the origin is not known
-
-    void add(const LocalPosition& off, const LocalPosition& course);
-    LocalPosition value() const;
-
-  private:
-    static constexpr double sd_m = 60.0;  ///< beforehand: some seconds of the climb
-    double ee_ = 1.0 / (sd_m * sd_m);
-    double en_ = 0.0;
-    double nn_ = 1.0 / (sd_m * sd_m);
-    double e_ = 0.0;
-    double n_ = 0.0;
+    std::vector<double> next_on_;   ///< of predict_step
+    std::vector<double> next_off_;  ///< with the overflow at both ends of the path
 };
 
 }  // namespace flightwatt::path
