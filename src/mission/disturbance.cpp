@@ -32,12 +32,12 @@ double read_mission_time_s(const TomlTable& entry, std::string_view key, const T
                      fmt::format("it takes {:.6g} s in this mission", frame.duration_s));
 }
 
-/// Throws where one of `keys` stands with `other`.
+/// Throws where one of `keys` is given together with `other`.
 void refuse_beside(const TomlTable& entry, std::string_view other, std::initializer_list<std::string_view> keys,
                    std::string_view why) {
     for (const auto key : keys) {
         if (!entry.has(key) || !entry.has(other)) continue;
-        throw InputError(entry.where(key), fmt::format("`{}` stands with `{}`: {}", key, other, why),
+        throw InputError(entry.where(key), fmt::format("`{}` cannot be given with `{}`: {}", key, other, why),
                          "make two entries of it, or remove one");
     }
 }
@@ -48,7 +48,7 @@ void read_when(const TomlTable& entry, const TimeFrame& frame, Disturbance& dist
     if (entry.has("at")) {
         disturbance.start_s = read_mission_time_s(entry, "at", frame);
         if (disturbance.start_s < disturbance.end_s) return;
-        throw InputError(entry.where("at"), fmt::format("{} is over then", frame.name), "let it be earlier");
+        throw InputError(entry.where("at"), fmt::format("{} is over then", frame.name), "choose an earlier time");
     }
     if (entry.has("from")) disturbance.start_s = read_mission_time_s(entry, "from", frame);
     if (entry.has("to")) disturbance.end_s = read_mission_time_s(entry, "to", frame);

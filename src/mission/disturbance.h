@@ -9,12 +9,12 @@
 
 namespace flightwatt::mission {
 
-/// What happens to a flight that nobody planned for, from one mission time to another.
+/// An unplanned change of power or battery between two mission times.
 struct Disturbance {
     double start_s = 0.0;
     double end_s = std::numeric_limits<double>::infinity();
     double mechanical_factor = 1.0;
-    double mechanical_w = 0.0;  ///< added to what the factor makes of the power
+    double mechanical_w = 0.0;  ///< added after the factor
     double compute_factor = 1.0;
     double compute_w = 0.0;
     double soc_drop_percent = 0.0;   ///< [points] lost at once, at start_s
@@ -31,7 +31,7 @@ battery::Battery apply_disturbances(battery::Battery battery, const Disturbances
 Disturbances rescale_to_flown_durations(Disturbances disturbances, const PerPhase<double>& planned_s,
                                         const PerPhase<double>& flown_s);
 
-/// Reads a file of disturbances (docs/missions.md) of a mission whose phases take so long. Throws InputError for
+/// Reads a file of disturbances (docs/missions.md) for a mission of these durations. Throws InputError for
 /// unknown keys, values out of range, segments that are empty or not within their phase, phases that are not flown,
 /// and entries that change nothing.
 Disturbances read_disturbances(const std::filesystem::path& path, const PerPhase<double>& duration_s);

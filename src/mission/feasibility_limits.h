@@ -9,21 +9,21 @@
 
 namespace flightwatt::mission {
 
-/// All limits are of the mission's own schedule, or if it is yet to be planned of the one that demands least energy.
-/// With a `probability`, that part of the flights which sampling/flight_draws.h makes of the answer keep the reserve;
-/// and they throw as require_known_spread does.
+/// Limits of a mission with its own schedule, or if it is yet to be planned with the one of least energy demand. With a
+/// `probability`, that fraction of the drawn flights (sampling/flight_draws.h) keeps the reserve; throws then also as
+/// require_known_spread does.
 
 /// The longest cruise [s]. Throws NoResultError if no cruise that the schedule fits into is short enough, or none is
 /// too long.
 FeasibilityLimit longest_cruise(const MissionVariation& with_cruise_s,
                                 const std::optional<double>& probability = std::nullopt);
 
-/// The greatest constant power [W] that the mission can feed besides, all the way. Throws NoResultError if it
-/// does not land with its reserve as it is.
+/// The greatest additional constant power [W] over the whole mission. Throws NoResultError if it does not land with its
+/// reserve without it.
 FeasibilityLimit largest_payload(const MissionVariant& mission,
                                  const std::optional<double>& probability = std::nullopt);
 
-/// The mission with a constant load besides.
+/// The mission with an additional constant load.
 Mission with_payload(const Mission& mission, double payload_w);
 
 /// The least capacity [Ah] with which the mission lands with its reserve, its battery otherwise as it is. None if no
@@ -36,13 +36,13 @@ std::optional<double> min_capacity_ah(const MissionVariant& mission,
 FeasibilityLimit max_circles(const MissionVariation& with_circles,
                              const std::optional<double>& probability = std::nullopt);
 
-/// The farthest [m] along the legs, which are `length_m` long, after which the mission can turn back along the same
-/// legs; all of them if it returns from their end. Legs behind one whose way back the wind forbids are none to return
-/// from. Throws NoResultError if it does not return from anywhere.
+/// The farthest distance [m] along the legs, of `length_m` in all, from which the mission can return along the same
+/// legs. Legs after one that is infeasible on the way back are out of reach. Throws NoResultError if it returns from
+/// nowhere.
 FeasibilityLimit farthest_return(const MissionVariation& with_return_after_m, double length_m,
                                  const std::optional<double>& probability = std::nullopt);
 
-/// What the reach of a mission is counted in.
+/// Measure of a mission's reach.
 enum class ReachUnit {
     cruise_s,  ///< of a mission without a path
     circles,   ///< of a path that has some
@@ -57,24 +57,24 @@ struct Reach {
 
 ReachUnit reach_unit_of(const MissionSetup& mission);
 
-/// The mission's file, read as it says.
+/// Reads the mission's file with given options.
 using MissionLoader = std::function<MissionVariant(const MissionReadOptions&)>;
 
 /// longest_cruise, max_circles or farthest_return; throws as they do.
 Reach find_reach(const MissionLoader& mission_of, const std::optional<double>& probability = std::nullopt);
 
-/// Whether the length of the cruise differs between flights, as nothing states it of the mission.
+/// Whether the duration of the cruise differs between flights, because the mission does not state it.
 bool cruise_duration_varies(const MissionSetup& mission);
 
-/// What to state of such a cruise instead of `now_s` [s]: "a stated cruise of at most 20 min 1 s (duration_s = ...".
+/// Remedy for such a cruise of `now_s`: "a stated cruise of at most 20 min 1 s (duration_s = ...".
 std::string describe_stated_cruise(double max_s, double now_s);
 
-/// By how much a mission that no schedule lands with its reserve misses it, and what would mend that, each
-/// measure on its own; a measure that alone is not enough is none.
+/// How far a mission without a feasible schedule misses its reserve, and remedies, each sufficient on its own; none
+/// where a measure alone is not sufficient.
 struct InfeasibilityReport {
     double shortfall_percent = 0.0;                   ///< of the schedule that demands least energy
-    double shortfall_wh = 0.0;                        ///< the same, as a part of what a full battery holds
-    std::optional<double> cut_off_at_s;               ///< short is then also what is demanded after the cut-off
+    double shortfall_wh = 0.0;                        ///< the same, of the energy of a full battery
+    std::optional<double> cut_off_at_s;               ///< the shortfall then includes the demand after it
     std::optional<double> cruise_s;                   ///< the longest that lands, its duration stated by the mission
     bool cruise_differs_now = false;                  ///< between flights, as the mission does not state its duration
     std::optional<double> min_fixed_surplus_percent;  ///< over the reserve, with the least where quality is fixed

@@ -37,8 +37,8 @@ SearchLimits effort_for(const PlanningTables& planner, double slots_left) {
     return {searches ? 1e-4 : 1.0, 200};
 }
 
-/// How far mechanical power may be above the model's with the policy's probability, as a part of it: as the policy
-/// states, or as flights differ (levels independent from phase to phase), or where nothing says so by 5 %.
+/// Quantile of the relative deviation of mechanical power from the model's at the policy's probability: by the policy's
+/// standard deviation, by that of flights (independent between phases), or by 5 %.
 double expected_reach(const PlanningProblem& mission) {
     constexpr double sd_if_unknown_percent = 5.0;
     const auto& policy = *mission.adaptive;
@@ -151,7 +151,6 @@ Plan FlightReplanner::replan(const PhaseTime& moment, const battery::BatteryStat
     auto plan =
         plan_remaining(nominal_, *adaptive_.planner, start, reserve_percent,
                        effort_for(*adaptive_.planner, (planned_.duration_s - start.time_s) / nominal_.plan.slot_s));
-    // Nothing that the battery can deliver is known: fly on with what demands least energy.
     if (plan.schedule.empty()) plan.schedule = minimum_energy_schedule(nominal_, start.time_s);
     return plan;
 }

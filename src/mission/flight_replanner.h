@@ -11,7 +11,7 @@ namespace flightwatt::mission {
 struct MissionLoad;
 struct PlanningTables;
 
-/// What a flight controller knows beforehand: the mission as it was stated, and how that depletes the battery.
+/// The mission as stated, with its planning tables.
 struct AdaptivePlanner {
     PlanningProblem nominal;
     std::shared_ptr<const PlanningTables> planner;
@@ -26,33 +26,33 @@ struct PhaseTime {
     double time_s = 0.0;
 };
 
-/// Decides in flight as an adaptive policy does, in a real flight or a simulated one: the best plan of the rest from
-/// the state of charge reached, with the factor of mechanical power that what was flown has taught (docs/methods.md,
-/// Eqs. 33 and 34). The planner must outlive it.
+/// Replans in a real or simulated flight as an adaptive policy does: the best plan of the remaining mission from the
+/// present state of charge, with the estimated factor of mechanical power (docs/methods.md, Eqs. 33 and 34). The
+/// planner must outlive it.
 class FlightReplanner {
   public:
     explicit FlightReplanner(const AdaptivePlanner& planner);
 
-    /// The plan from a moment on. Where nothing that the battery can deliver is known, what demands least energy. Takes
-    /// milliseconds; less than 0.2 s for any mission of a few thousand slots.
+    /// The plan from a time on; the schedule of least energy demand if none is deliverable. Takes milliseconds, less
+    /// than 0.2 s for a few thousand slots.
     Plan replan(const PhaseTime& moment, const battery::BatteryState& now) const;
 
-    /// Learns from an interval that was flown with `run`: where the battery was before, and what is left.
+    /// Updates the factor of mechanical power from an interval flown with `run`.
     void update(const PhaseSegment& interval, const Schedule& run, const battery::BatteryState& before,
                 double soc_after_percent);
 
-    /// Of mechanical power to the model's, as learned so far.
+    /// Estimated ratio of mechanical power to the model's.
     double mechanical_factor() const;
 
   private:
-    /// Seconds flown and points lost so far, where they tell of mechanical power.
+    /// Sums over the intervals that are used to estimate mechanical power.
     struct Learned {
         double time_s = 0.0;
         double observed_percent = 0.0;
         double predicted_percent = 0.0;
         double mechanical_percent = 0.0;
     };
-    /// What a part of a flight depletes [points], as predicted.
+    /// Predicted depletion [points] of a part of a flight.
     struct PredictedDepletion {
         double percent = 0.0;
         double mechanical_percent = 0.0;  ///< how much more by mechanical power of twice as much
@@ -71,10 +71,10 @@ class FlightReplanner {
     Learned learned_;
     std::optional<compute::Configuration> running_;
     double running_for_s_ = 0.0;
-    double required_deviation_ = 0.0;  ///< what the reserve is kept against, as a part of mechanical power
+    double required_deviation_ = 0.0;  ///< of mechanical power, as a fraction: the reserve is kept up to it
 };
 
-/// What of a plan lies within an interval.
+/// The part of a plan within an interval.
 Schedule clip_to_interval(const Schedule& plan, const PhaseSegment& interval);
 
 }  // namespace flightwatt::mission

@@ -35,8 +35,7 @@ struct Utility {
     std::vector<double> points_value;  ///< not falling, as many
 };
 
-/// Standard deviations between flights that a mission states itself; sampling/flight_draws.h says what differs
-/// without them.
+/// Standard deviations between flights as stated by a mission; without them see collect_uncertainty.
 struct Uncertainty {
     PerPhase<std::optional<double>> level_sd_percent;  ///< of the phase's mean mechanical power
     PerPhase<std::optional<double>> duration_sd_s;
@@ -53,9 +52,8 @@ struct MissionSetup {
     mechanical::PhaseTimeScaling phase_clock = mechanical::PhaseTimeScaling::stretched;
     /// The cruise's mean power at the stated airspeed, or along its path; the cruise has this level then.
     std::optional<mechanical::ConstantPower> cruise_level = {};
-    std::optional<path::CruisePath> cruise_path =
-        {};  ///< what the cruise's power is then, instead of the model's curve
-    /// Of a flight that was flown: the power of its phases as it was measured, instead of what model and path say.
+    std::optional<path::CruisePath> cruise_path = {};  ///< source of the cruise's power instead of the model's curve
+    /// Measured power of each phase in a replay, instead of the power by model and path.
     PerPhase<std::shared_ptr<const path::PiecewisePower>> measured_power = {};
     PerPhase<double> duration_s;        ///< 0: the phase is not flown
     PerPhase<bool> duration_is_stated;  ///< by the mission, and not its model's: all flights take so long
@@ -69,8 +67,8 @@ struct MissionSetup {
     double reserve_soc_percent = 0.0;  ///< what should be left at the end
     Uncertainty uncertainty;
     std::optional<mechanical::HeldOutScore> power_model =
-        {};                               ///< what says the power, of a model file with a validation
-    std::vector<std::string> notes = {};  ///< what people should know of how it was read
+        {};                               ///< of the model that predicts the power, if its file has a validation
+    std::vector<std::string> notes = {};  ///< warnings from reading the file
 };
 
 /// A mission that can be flown.
@@ -79,7 +77,7 @@ struct Mission {
     Schedule schedule;  ///< in order, covers each instant of each phase exactly once
 };
 
-/// What a planner may choose for one component.
+/// Choices of a planner for one component.
 struct ComponentChoices {
     std::vector<std::vector<double>> levels;  ///< of each parameter; every combination may be chosen
     bool may_be_off = false;
@@ -88,29 +86,29 @@ struct ComponentChoices {
 /// How a mission's schedule may be planned.
 struct PlanSettings {
     double slot_s = 10.0;                          ///< QoS may change at its multiples, counted from each phase's start
-    double dwell_s = 0.0;                          ///< a configuration once chosen stays at least so long
+    double dwell_s = 0.0;                          ///< minimum duration of a configuration
     std::vector<ComponentChoices> choices;         ///< one a component
     PerPhase<double> slot_scale{{1.0, 1.0, 1.0}};  ///< of slot_s, where a phase takes another time than was planned
 };
 
-/// How a schedule is made in flight; mission/prepared_mission.h says what the numbers do.
+/// How a schedule is made in flight (see simulate_adaptive).
 struct AdaptivePolicy {
     double decide_every_s = 0.0;  ///< of each phase; by default the slot of the plan
     /// How far flights' mechanical power is expected from the model's; by default as its flights differ.
     std::optional<double> mechanical_sd_percent = {};
-    double learning_time_s = 60.0;  ///< after so long, what was seen counts as much as what is expected
+    double learning_time_s = 60.0;  ///< after it, observation and prior have equal weight
     double probability = 0.95;      ///< with which the reserve is to be kept, of every decision
 };
 
 /// A mission whose schedule is yet to be made.
 struct PlanningProblem {
     MissionSetup setup;
-    Schedule fixed;  ///< in order: what is scheduled beforehand
+    Schedule fixed;  ///< in order: the segments scheduled by the mission
     PlanSettings plan;
     std::optional<AdaptivePolicy> adaptive;  ///< the schedule is made in flight, again and again
 };
 
-/// What a mission file may hold.
+/// Content of a mission file.
 using MissionVariant = std::variant<Mission, PlanningProblem>;
 
 /// The mission with another value of one of its numbers, such as the length of its cruise [s]. May throw InputError
@@ -122,8 +120,8 @@ const MissionSetup& setup_of(const MissionVariant& mission);
 /// Half the width of a normal 95 % interval, in deviations.
 inline constexpr double sd_per_half_95 = 1.96;
 
-/// How much the battery holds in 95 of 100 flights: as [uncertainty] states it, else as the battery's file has it. None
-/// where the mission states the capacity alone, or nothing says.
+/// 95 % interval of the capacity over flights: by [uncertainty], else by the battery's file. None where the mission
+/// states the capacity without a deviation, or both lack it.
 std::optional<Interval> capacity_interval_ah(const MissionSetup& mission);
 
 double utility_per_s(const Utility& utility, const std::vector<double>& qos);
@@ -132,7 +130,7 @@ double utility_per_s(const Utility& utility, const std::vector<double>& qos);
 /// `utilities` has one entry a component of the model (or none at all).
 double utility_per_s(const std::vector<std::optional<Utility>>& utilities, const compute::Configuration& configuration);
 
-/// Mean utility a second of what a schedule runs up to `until_s` [mission time], over the duration of the
+/// Mean utility a second of a schedule up to `until_s` [mission time], over the duration of the
 /// whole mission; none if the mission states no utility.
 std::optional<double> mean_utility(const MissionSetup& mission, const Schedule& schedule, double until_s);
 

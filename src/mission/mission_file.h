@@ -10,20 +10,18 @@
 
 namespace flightwatt::mission {
 
-/// What else than the file decides how a mission is read.
+/// Options of reading a mission.
 struct MissionReadOptions {
     bool allow_unplanned = false;         ///< accept a mission that is yet to be planned
-    std::optional<double> cruise_s = {};  ///< fly the cruise this long, whatever the file says
-    // Of a path: fly the last circles of it so often; or turn back after so many metres of legs.
+    std::optional<double> cruise_s = {};  ///< duration of the cruise, instead of the file's
+    // Of a path: turns of its last circles; or distance along the legs from which it returns.
     std::optional<double> circles = {};
     std::optional<double> return_after_m = {};
 };
 
-/// Reads a mission file (docs/missions.md). A mission with [plan], with an adaptive policy, or with components and no
-/// [[schedule]], is a planning problem: its [[schedule]] is what is fixed. Unless its policy plans in flight, it is
-/// refused where `reading` does not accept it. Paths are relative to the mission file. Throws InputError, placed in
-/// the file that is wrong, for a missing file, a key missing, unknown or out of range, and whatever schedules and
-/// models refuse.
+/// Reads a mission file (docs/missions.md). A mission with [plan], an adaptive policy, or components and no
+/// [[schedule]] is a planning problem, and its [[schedule]] is the fixed part; without an adaptive policy it is refused
+/// unless allow_unplanned. Paths are relative to the file. Throws InputError with the location of the error.
 MissionVariant read_mission(const std::filesystem::path& path, const MissionReadOptions& reading = {});
 
 /// The same from text; `path` names it and is where relative paths start.
@@ -33,12 +31,12 @@ MissionVariant parse_mission(std::string_view text, const std::filesystem::path&
 /// A mission file with another schedule.
 struct PlannedMissionText {
     std::string text;
-    bool lost_comments = false;  ///< the keys are sorted and stand without what was said of them
+    bool lost_comments = false;  ///< the keys are sorted and have no comments
 };
 
-/// The mission file `text` (of `path`) with `schedule` in the place of its [plan], [policy] and [[schedule]];
-/// everything else stands as it was written, with its comments, if the text allows that: lines end as Unix ends them.
-/// `compute` is the mission's. The files that it names are found from `folder`, where the result is to stand.
+/// The mission file `text` (of `path`) with `schedule` instead of its [plan], [policy] and [[schedule]]; the rest is
+/// kept as written, with comments, where the notation permits. Lines end with \n. `compute` is the mission's. Names of
+/// files are relative to `folder`, where the result is written.
 PlannedMissionText planned_mission_toml(std::string_view text, const std::filesystem::path& path,
                                         const compute::ComputeModel& compute, const Schedule& schedule,
                                         const std::filesystem::path& folder);
@@ -50,7 +48,7 @@ struct NewComponent {
     compute::PowerProfile power;
 };
 
-/// What a new mission is made of. Files are named as the mission is to name them.
+/// Contents of a new mission. Files are named as the mission is to name them.
 struct NewMission {
     std::string name;
     std::string mechanical;

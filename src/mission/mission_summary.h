@@ -25,7 +25,7 @@ enum class ScheduleOrigin {
 /// "optimal", "no plan keeps the reserve" ...; empty for one that was given.
 std::string to_string(ScheduleOrigin origin);
 
-/// What an adaptive policy decided.
+/// Decisions of an adaptive policy.
 struct AdaptiveDecisions {
     std::size_t made = 0;
     std::size_t without_plan = 0;    ///< where no plan kept the reserve: least energy demand was run
@@ -40,14 +40,14 @@ struct SocBand {
     double p95_percent = 0.0;
 };
 
-/// What differs between flights that are drawn, and what it rests on; and what is the same in all for want of a spread,
-/// or because the mission states it.
+/// Quantities that vary between drawn flights, each with its basis; and those that are fixed, because their variability
+/// is unknown or the mission states them.
 struct UncertaintySources {
     std::vector<std::string> varied;
     std::vector<std::string> fixed;
 };
 
-/// "drawn: ...; not drawn: ...", wherever a chance is told.
+/// "drawn: ...; not drawn: ...".
 std::string describe(const UncertaintySources& sources);
 
 inline constexpr std::array<int, 5> shown_quantiles_percent{5, 25, 50, 75, 95};
@@ -73,23 +73,23 @@ struct MonteCarloResult {
     std::vector<SocBand> bands;
 };
 
-/// What forbids more.
+/// Cause of a limit.
 enum class LimitingFactor {
     charge,
-    power,   ///< beyond, the battery could not deliver the power, whatever its charge
+    power,   ///< beyond, the battery could not deliver the power at any charge
     cut_off  ///< beyond, its voltage would fall below the cut-off
 };
 
 /// "charge", "power" or "cut-off".
 std::string to_string(LimitingFactor bound);
 
-/// The most of something with which a mission still lands with its reserve.
+/// The greatest value with which a mission lands with its reserve.
 struct FeasibilityLimit {
     double value = 0.0;
-    double final_soc_percent = 0.0;                            ///< then, simulated
-    double margin_percent = 0.0;                               ///< for the sake of a probability
+    double final_soc_percent = 0.0;                            ///< with it, simulated
+    double margin_percent = 0.0;                               ///< for a probability
     std::optional<UncertaintySources> sources = std::nullopt;  ///< what may differ with that probability
-    double residual_percent = 0.0;                             ///< what is left, less reserve and margin
+    double residual_percent = 0.0;                             ///< final charge minus reserve and margin
     LimitingFactor limited_by = LimitingFactor::charge;
 };
 
@@ -104,7 +104,7 @@ struct EstimatedLanding {
 /// "59.70 % with the 2.05 Ah that the flights indicate"
 std::string describe(const EstimatedLanding& landing, int decimals = 2);
 
-/// What a mission comes to. Energies are what the whole mission demands, also beyond the battery's end.
+/// Result of a mission. Energies are the demand of the whole mission, also after the battery's end.
 struct MissionSummary {
     std::string mission;
     ScheduleOrigin schedule = ScheduleOrigin::given;
@@ -121,7 +121,7 @@ struct MissionSummary {
     /// the mission states utilities. What would run after the battery's end has none.
     std::optional<double> utility;
     bool feasible = false;             ///< the battery lasts: empty at the very end counts, any earlier does not
-    double reserve_soc_percent = 0.0;  ///< what the mission asks to be left
+    double reserve_soc_percent = 0.0;  ///< required by the mission
     bool keeps_reserve = false;        ///< feasible, and the reserve is left
     std::optional<AdaptiveDecisions> decisions = std::nullopt;  ///< of an adaptive policy
     std::optional<MonteCarloResult> samples = std::nullopt;     ///< if flights were drawn
@@ -136,7 +136,7 @@ std::string describe(const mechanical::HeldOutScore& power_model);
 /// When the battery ended or failed, or the mission's end if it lasts.
 double powered_end_s(const MissionSummary& summary);
 
-/// One line for people: what is left, or when and why the battery failed.
+/// One line for people: the final charge, or time and cause of the battery's failure.
 std::string describe(const MissionSummary& summary);
 
 /// The best first: by state of charge left, then (when empty) by how long the battery lasted; those whose

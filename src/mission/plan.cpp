@@ -15,14 +15,14 @@ namespace {
 constexpr int max_rounds_to_land = 10;
 constexpr int max_margin_rounds = 8;
 constexpr int max_rounds_to_any = 24;    ///< until a plan is better than the one of least energy demand
-constexpr double slack_fraction = 2e-3;  // of the flights' deviation: 0.0002 of a chance of 0.05
+constexpr double slack_fraction = 2e-3;  // of the flights' deviation: 0.0002 of a probability of 0.05
 
 /// How far below `wanted_percent` a simulated mission ends [points], counting what it demanded after the
-/// battery ended as a part of what a full one holds. Negative if there is more.
+/// battery ended as a fraction of its full energy. Negative if there is more.
 double reserve_deficit_percent(const MissionSetup& mission, const MissionSummary& summary, double wanted_percent) {
     const double deficit = wanted_percent - summary.final_soc_percent.value_or(0.0);
     if (summary.feasible) return deficit;
-    // What is left after a cut-off cannot be drawn: it does not make up for what was demanded later.
+    // The charge left after a cut-off cannot serve the later demand.
     return std::max(deficit, 0.0) +
            units::percentage(summary.energy_wh - summary.delivered_energy_wh, full_energy_wh(mission.battery));
 }
@@ -45,8 +45,7 @@ Trial fly(const PlanningProblem& problem, Schedule schedule) {
 
 PlanStart start_of(const PlanningProblem& problem) { return {0.0, problem.setup.initial_soc_percent}; }
 
-/// What is asked anew where the simulation says that a schedule does not land, by a rounding error or because a full
-/// battery refused charge: for a little more than that.
+/// Tightens the limit that the simulated schedule misses, by rounding or because a full battery refused charge.
 void make_stricter(const Trial& trial, double part, double slack_percent, PlanningProblem& problem) {
     if (trial.summary.undeliverable)
         problem.setup.battery.resistance_ohm *= 1.0 + part;
@@ -58,7 +57,7 @@ void make_stricter(const Trial& trial, double part, double slack_percent, Planni
 
 /// The best schedule found that lands, and into `plan` the bound of the problem as stated.
 Trial searched(const PlanningProblem& problem, const PlanningTables& planner, const Trial& least, Plan& plan) {
-    const double slack_percent = planner.step_s ? 3e-6 : 1e-12;  // what a search is off by, and sums of slots
+    const double slack_percent = planner.step_s ? 3e-6 : 1e-12;  // errors of a search, and of sums of slots
     auto stricter = problem;
     double part = 1e-8;
     for (int round = 0; round < max_rounds_to_land; ++round) {
@@ -111,8 +110,8 @@ MissionPlan least_plan(const PlanningProblem& problem, const FlightUncertainty& 
     return plan;
 }
 
-/// Plans with a margin above the reserve, and looks for the least with which enough of the plan's flights keep it.
-MissionPlan plan_with_chance(const PlanningProblem& problem, double probability) {
+/// Plans with the least margin above the reserve with which enough of the plan's flights keep it.
+MissionPlan plan_with_probability(const PlanningProblem& problem, double probability) {
     require_known_spread(problem.setup);
     const auto spreads = collect_uncertainty(problem.setup);
     auto best = least_plan(problem, spreads, probability);
@@ -164,8 +163,8 @@ bool has_uncertainty(const MissionSetup& mission) { return !collect_uncertainty(
 void require_uncertainty(const MissionSetup& mission) {
     if (has_uncertainty(mission)) return;
     throw InputError({mission.file},
-                     "there is nothing to draw flights from: neither the mechanical model, nor the profiles, "
-                     "nor the battery say how they differ",
+                     "there is nothing to draw flights from: mechanical model, profiles and battery have no "
+                     "variability between flights",
                      "fit the model to two flights or more (flightwatt fit), or state it: [uncertainty] with "
                      "level_sd_percent = { cruise = 5 }, duration_sd_s = { cruise = 20 }, "
                      "compute_sd_percent, capacity_sd_percent or initial_soc_sd_percent");
@@ -179,7 +178,7 @@ void require_known_spread(const MissionSetup& mission) {
 }
 
 MissionPlan plan_mission(const PlanningProblem& problem, const std::optional<double>& probability) {
-    return probability ? plan_with_chance(problem, *probability) : plan_certain(problem);
+    return probability ? plan_with_probability(problem, *probability) : plan_certain(problem);
 }
 
 MissionSummary summary_with_origin(const MissionPlan& plan) {

@@ -33,8 +33,8 @@ TrainingOverlap saw(const std::vector<std::string>& model_flights, const std::st
     return std::ranges::count(model_flights, flight) > 0 ? TrainingOverlap::yes : TrainingOverlap::no;
 }
 
-/// Why a mission cannot be flown on a flight; empty if it can.
-std::string why_not(const MissionSetup& mission, const mechanical::MeasuredFlight& flight) {
+/// Reason why a mission cannot be replayed on a flight; empty if it can.
+std::string no_replay_reason(const MissionSetup& mission, const mechanical::MeasuredFlight& flight) {
     for (const auto phase : all_phases) {
         if (mission.duration_s[phase] == 0.0 || flight.power[phase]) continue;
         return fmt::format("the power of its {} was not measured from end to end", to_string(phase));
@@ -42,7 +42,7 @@ std::string why_not(const MissionSetup& mission, const mechanical::MeasuredFligh
     return "";
 }
 
-void note_what_differs(const MissionSetup& mission, const mechanical::MeasuredFlight& flight, Replay& replay) {
+void add_notes(const MissionSetup& mission, const mechanical::MeasuredFlight& flight, Replay& replay) {
     if (mission.cruise_path)
         replay.notes.emplace_back(
             "the mission's path is not flown: its duration is planned for, with the model's cruise");
@@ -54,7 +54,7 @@ void note_what_differs(const MissionSetup& mission, const mechanical::MeasuredFl
     }
 }
 
-/// Energies, durations and gaps of what is flown.
+/// Energies, durations and gaps of the flight.
 void describe_flight(const LeaveOneOutMission& folded, const mechanical::MeasuredFlight& flight, Replay& replay) {
     replay.planned_s = folded.known.duration_s;
     replay.flown_s = folded.actual.duration_s;
@@ -67,7 +67,7 @@ void describe_flight(const LeaveOneOutMission& folded, const mechanical::Measure
             time_scaled_model(folded.known.mechanical->phases[phase], planned_s, folded.known.phase_clock);
         replay.expected_mechanical_wh += units::wh_from_joule(energy_j(curve, planned_s));
         const auto& pieces = *folded.actual.measured_power[phase];
-        replay.measured_mechanical_wh += units::wh_from_joule(energy_until_j(pieces, pieces.back().end_s));
+        replay.measured_mechanical_wh += units::wh_from_joule(pieces.energy_j.back());
         const auto& statistics = flight.power[phase]->statistics;
         measured_wh += statistics.energy_wh;
         replay.gaps += statistics.gaps;
@@ -82,9 +82,9 @@ void describe_flight(const LeaveOneOutMission& folded, const mechanical::Measure
         replay.notes.push_back(fmt::format("power measured below 0 counts as 0, which adds {:.3f} Wh", added_wh));
 }
 
-/// A schedule that was made beforehand, flown.
-ReplayedSchedule flown_schedule(const LeaveOneOutMission& folded, ScheduleMethod way, const Schedule& schedule,
-                                ScheduleOrigin origin) {
+/// Simulates a schedule that was made before the flight.
+ReplayedSchedule replay_schedule(const LeaveOneOutMission& folded, ScheduleMethod way, const Schedule& schedule,
+                                 ScheduleOrigin origin) {
     ReplayedSchedule replayed;
     replayed.way = way;
     replayed.expected_soc_percent = simulate(folded.known, schedule).summary.final_soc_percent;
@@ -94,10 +94,10 @@ ReplayedSchedule flown_schedule(const LeaveOneOutMission& folded, ScheduleMethod
     return replayed;
 }
 
-ReplayedSchedule planned_before(const LeaveOneOutMission& folded, const PlanningProblem& problem, ScheduleMethod way,
-                                const std::optional<double>& probability = std::nullopt) {
+ReplayedSchedule replay_plan(const LeaveOneOutMission& folded, const PlanningProblem& problem, ScheduleMethod way,
+                             const std::optional<double>& probability = std::nullopt) {
     const auto plan = plan_mission(problem, probability);
-    return flown_schedule(folded, way, plan.mission.schedule, summary_with_origin(plan).schedule);
+    return replay_schedule(folded, way, plan.mission.schedule, summary_with_origin(plan).schedule);
 }
 
 /// The best configuration that, run wherever nothing is fixed, keeps the reserve; else the one of least power.
@@ -123,14 +123,14 @@ ReplayedSchedule invariant(const LeaveOneOutMission& folded, const PlanningProbl
     }
     for (std::size_t choice = 0; choice < low; ++choice)
         if (planner.utility_per_s[choice] > planner.utility_per_s[best]) best = choice;
-    return flown_schedule(folded, ScheduleMethod::invariant, schedule_with(best),
-                          any ? ScheduleOrigin::planned : ScheduleOrigin::infeasible);
+    return replay_schedule(folded, ScheduleMethod::invariant, schedule_with(best),
+                           any ? ScheduleOrigin::planned : ScheduleOrigin::infeasible);
 }
 
 ReplayedSchedule phased(const LeaveOneOutMission& folded, PlanningProblem problem) {
     problem.plan.slot_s = std::ranges::max(problem.setup.duration_s.values);
     problem.plan.dwell_s = 0.0;
-    return planned_before(folded, problem, ScheduleMethod::phased);
+    return replay_plan(folded, problem, ScheduleMethod::phased);
 }
 
 ReplayedSchedule replanned(const LeaveOneOutMission& folded, const AdaptivePlanner& planner) {
@@ -144,8 +144,8 @@ ReplayedSchedule replanned(const LeaveOneOutMission& folded, const AdaptivePlann
     return replayed;
 }
 
-/// The best that is known afterwards: the plan by the measured power, or one of the schedules if that is better still
-/// (it may change between the plan's slots).
+/// The best schedule for the measured power: a plan, or one of the other schedules if that is better (it may change
+/// between the plan's slots).
 void add_hindsight(const LeaveOneOutMission& folded, PlanningProblem problem, Replay& replay) {
     for (const auto phase : all_phases) {
         if (folded.known.duration_s[phase] == 0.0) continue;
@@ -179,7 +179,7 @@ void add_hindsight(const LeaveOneOutMission& folded, PlanningProblem problem, Re
     replay.schedules.push_back(std::move(best));
 }
 
-/// What may be chosen in hindsight where the mission does not say so: what was profiled, and what its schedule runs.
+/// Choices in hindsight for a mission without [plan]: the profiled levels, and those of its schedule.
 PlanningProblem choices_in_hindsight(const Mission& mission, const MissionSetup& known) {
     PlanningProblem problem{known, {}, {}, std::nullopt};
     for (const auto& component : mission.setup.compute.components)
@@ -203,7 +203,7 @@ PlanningProblem choices_in_hindsight(const Mission& mission, const MissionSetup&
 
 void replay_given(const Mission& mission, const LeaveOneOutMission& folded, Replay& replay) {
     const auto known = rescale_to_flown_durations(mission.schedule, mission.setup.duration_s, folded.known.duration_s);
-    replay.schedules.push_back(flown_schedule(folded, ScheduleMethod::given, known, ScheduleOrigin::given));
+    replay.schedules.push_back(replay_schedule(folded, ScheduleMethod::given, known, ScheduleOrigin::given));
     if (std::ranges::any_of(mission.setup.utilities, [](const auto& utility) { return utility.has_value(); }))
         add_hindsight(folded, choices_in_hindsight(mission, folded.known), replay);
     else
@@ -223,11 +223,11 @@ void replay_planned(const PlanningProblem& stated, const LeaveOneOutMission& fol
     auto& schedules = replay.schedules;
     schedules.push_back(invariant(folded, problem, *planner.planner));
     schedules.push_back(phased(folded, problem));
-    schedules.push_back(planned_before(folded, problem, ScheduleMethod::planned));
+    schedules.push_back(replay_plan(folded, problem, ScheduleMethod::planned));
     try {
         require_known_spread(problem.setup);
         schedules.push_back(
-            planned_before(folded, problem, ScheduleMethod::planned_with_margin, problem.adaptive->probability));
+            replay_plan(folded, problem, ScheduleMethod::planned_with_margin, problem.adaptive->probability));
     } catch (const InputError& error) {
         replay.notes.push_back(fmt::format("no plan with a margin: {}", error.what()));
     }
@@ -256,7 +256,7 @@ void require_flights(std::span<const mechanical::MeasuredFlight> flights, const 
     mechanical::require_distinct(flights);
 }
 
-/// Throws InputError for a mission that cannot be replayed whatever the flight.
+/// Throws InputError for a mission that cannot be replayed on any flight.
 void require_flies(const MissionSetup& mission) {
     if (mission.mechanical) return;
     throw InputError({mission.file}, "nothing flies in this mission: there is no power to measure for it",
@@ -275,7 +275,7 @@ Replay replay_one(const MissionVariant& mission, const mechanical::MeasuredFligh
     replay.model = model.name;
     replay.model_flights = flights_of(model);
     replay.model_saw_flight = saw(replay.model_flights, replay.flight);
-    note_what_differs(stated, flight, replay);
+    add_notes(stated, flight, replay);
     describe_flight(folded, flight, replay);
     if (const auto* scheduled = std::get_if<Mission>(&mission))
         replay_given(*scheduled, folded, replay);
@@ -289,7 +289,7 @@ const ReplayedSchedule* schedule_by(const Replay& replay, ScheduleMethod way) {
     return found == replay.schedules.end() ? nullptr : &*found;
 }
 
-ComparisonOutcome verdict_of(const MissionSummary& ours, const MissionSummary& theirs) {
+ComparisonOutcome compare(const MissionSummary& ours, const MissionSummary& theirs) {
     if (ours.keeps_reserve != theirs.keeps_reserve)
         return ours.keeps_reserve ? ComparisonOutcome::better : ComparisonOutcome::worse;
     double more = 0.0;
@@ -321,19 +321,19 @@ Replays replay_flights(std::span<const MissionVariant> missions, std::span<const
     require_flights(flights, options);
     for (const auto& mission : missions) require_flies(setup_of(mission));
     std::vector<std::optional<mechanical::MechanicalModel>> models(flights.size());
-    std::vector<std::string> why_no_model(flights.size());
+    std::vector<std::string> no_model_reason(flights.size());
     for (std::size_t i = 0; i < flights.size(); ++i) {
         try {
             models[i] = model_for(flights[i], flights, options);
         } catch (const NoResultError& error) {
-            why_no_model[i] = fmt::format("there is no model of the other flights: {}", error.what());
+            no_model_reason[i] = fmt::format("there is no model of the other flights: {}", error.what());
         }
     }
     Replays result;
     for (const auto& mission : missions) {
         const auto& setup = setup_of(mission);
         for (std::size_t i = 0; i < flights.size(); ++i) {
-            auto reason = models[i] ? why_not(setup, flights[i]) : why_no_model[i];
+            auto reason = models[i] ? no_replay_reason(setup, flights[i]) : no_model_reason[i];
             if (!reason.empty())
                 result.not_replayed.push_back({flights[i].samples.flight, setup.name, std::move(reason)});
             else
@@ -354,7 +354,7 @@ std::vector<Comparison> compare_replanned(std::span<const Replay> replays, const
         const auto& ours = replanned->summary;
         const auto& theirs = other->summary;
         Comparison comparison{replay.flight,
-                              verdict_of(ours, theirs),
+                              compare(ours, theirs),
                               ours.keeps_reserve,
                               theirs.keeps_reserve,
                               ours.utility.value_or(0.0) - theirs.utility.value_or(0.0),

@@ -11,11 +11,11 @@
 
 namespace flightwatt::mission {
 
-/// Who made a schedule, and what was known then.
+/// How a schedule was made.
 enum class ScheduleMethod {
     given,                ///< by the mission file
-    invariant,            ///< one configuration all the way: the best that the model says keeps the reserve
-    phased,               ///< one a phase: the plan whose slots are whole phases
+    invariant,            ///< one configuration throughout: the best that keeps the reserve by the model
+    phased,               ///< one configuration per phase
     planned,              ///< before the flight, by the model
     planned_with_margin,  ///< the same, to keep the reserve with the policy's probability
     replanned,            ///< in flight, by the adaptive policy
@@ -25,12 +25,11 @@ enum class ScheduleMethod {
 /// "given", "planned_with_margin", ...
 std::string to_string(ScheduleMethod way);
 
-/// What one schedule came to on one flight's measured power.
+/// One schedule on the measured power of one flight.
 struct ReplayedSchedule {
     ScheduleMethod way = ScheduleMethod::given;
-    MissionSummary
-        summary;  ///< its origin is what the model said: infeasible where that saw no way to keep the reserve
-    std::optional<double> expected_soc_percent = {};  ///< at the end, by what was known beforehand
+    MissionSummary summary;  ///< with the origin by the model: infeasible if no schedule keeps the reserve
+    std::optional<double> expected_soc_percent = {};  ///< at the end, as expected before the flight
     Schedule schedule = {};                           ///< as it was flown
     /// The utility that hindsight has more; none where a reserve is not kept, or the mission states no utility.
     std::optional<double> regret = {};
@@ -76,24 +75,21 @@ struct Replays {
     std::vector<SkippedReplay> not_replayed;
 };
 
-/// Flies each flight's measured power, with each schedule's computing power on top, on each mission's battery
-/// (docs/methods.md, Replay). The model that schedules are made with is fitted to the other flights alone. Of a mission
-/// with a schedule that schedule is flown; of one to be planned all the other ways are. Throws NoResultError for a
-/// single flight without options.model, UsageError for a flight given twice, InputError for a mission without a flight
-/// (mechanical = "none"), and what plan_mission throws.
+/// Simulates each mission on each flight's measured mechanical power (docs/methods.md, Replay), with its own schedule,
+/// or if it is to be planned with all other methods. Schedules are made with a model of the other flights. Throws
+/// NoResultError for a single flight without options.model, UsageError for a flight given twice, InputError for a
+/// mission with mechanical = "none", and as plan_mission.
 Replays replay_flights(std::span<const MissionVariant> missions, std::span<const mechanical::MeasuredFlight> flights,
                        const ReplayOptions& options = {});
 
-/// What a schedule that was made in flight was against one made before it: one that keeps the reserve is better than
-/// one that does not; of two that keep it, the one of more utility; of two that do not, the one that lasts longer, or
-/// leaves more. It is a tie where utilities are within tie_tolerance of the better one, or charges and times within
-/// rounding.
+/// A schedule made in flight, compared with one made before it: better if only it keeps the reserve; if both do, by
+/// utility (a tie within tie_tolerance of the greater); if neither does, by endurance or remaining charge.
 enum class ComparisonOutcome { better, tie, worse };
 inline constexpr double tie_tolerance = 1e-3;
 
 struct Comparison {
     std::string flight;
-    ComparisonOutcome verdict = ComparisonOutcome::tie;
+    ComparisonOutcome outcome = ComparisonOutcome::tie;
     bool replanned_keeps_reserve = false;
     bool baseline_keeps_reserve = false;
     double more_utility = 0.0;               ///< replanned less baseline

@@ -49,7 +49,7 @@ Interval wilson_interval(double p, double n) {
     const double z2 = z * z;
     const double middle = (p + z2 / (2.0 * n)) / (1.0 + z2 / n);
     const double reach = z / (1.0 + z2 / n) * std::sqrt(p * (1.0 - p) / n + z2 / (4.0 * n * n));
-    // At 0 and 1 the ends are exact; rounding may leave them beside.
+    // At 0 and 1 the ends are exact, except for rounding.
     return {p == 0.0 ? 0.0 : std::max(0.0, middle - reach), p == 1.0 ? 1.0 : std::min(1.0, middle + reach)};
 }
 
@@ -152,11 +152,11 @@ DrawnIntervals intervals_of(const std::vector<FlownQuantities>& of_a, const std:
     return {middle_95(a), middle_95(b), middle_95(difference)};
 }
 
-/// Says of what two missions have whether it deviates alike in both.
+/// Names the sources that vary jointly in both missions and those that vary independently.
 void name_sources(const MissionSetup& a, const MissionSetup& b, const CommonSources& common,
                   SampledDifference& difference) {
-    const auto add = [&](bool alike, const std::string& name) {
-        (alike ? difference.shared_sources : difference.independent_sources).push_back(name);
+    const auto add = [&](bool is_shared, const std::string& name) {
+        (is_shared ? difference.shared_sources : difference.independent_sources).push_back(name);
     };
     if (a.mechanical || b.mechanical) add(common.mechanical, "mechanical model");
     add(common.battery, "battery");
@@ -189,7 +189,7 @@ MonteCarloResult sample_flights(const PreparedMission& prepared, const Disturban
     flights.sources = spreads.sources;
     std::vector<double> final_percent;
     final_percent.reserve(landings.size());
-    // What is left in a battery that failed flies nobody home.
+    // Charge left after a battery failure counts as 0.
     for (const auto& landing : landings)
         final_percent.push_back(landing.battery_failure ? 0.0 : landing.final_soc_percent);
     flights.final_soc_mean_percent = mean(final_percent);
@@ -213,7 +213,7 @@ std::optional<SampledDifference> sample_difference(const PreparedMission& a, con
     const auto spreads_b = collect_uncertainty(b.setup);
     if (spreads_a.sources.varied.empty() || spreads_b.sources.varied.empty()) return std::nullopt;
     const auto common = common_sources(a.setup, b.setup);
-    const auto other_seed = ~options.seed;  // of what is not in common
+    const auto other_seed = ~options.seed;  // of sources that are not common
     const auto normals_of_a = [&](std::size_t i) { return draw_normals(count_normals(a.setup), options.seed, i); };
     const auto of_a = fly_compared(a, spreads_a, options.samples, normals_of_a);
     const auto of_b = fly_compared(b, spreads_b, options.samples, [&](std::size_t i) {
@@ -240,8 +240,8 @@ std::string describe(const SampledDifference& difference) {
     const auto a = describe(difference.sources_a);
     const auto b = describe(difference.sources_b);
     return fmt::format("intervals hold 95 in 100 of {} flights drawn for both{}{}; {}", difference.samples,
-                       list("deviating alike in both", difference.shared_sources),
-                       list("deviating on its own in each", difference.independent_sources),
+                       list("varying jointly in both", difference.shared_sources),
+                       list("varying independently in each", difference.independent_sources),
                        a == b ? a : fmt::format("a: {}; b: {}", a, b));
 }
 

@@ -17,20 +17,20 @@ struct SamplingOptions {
     std::size_t band_points = 0;  ///< at which the state of charge is kept of every flight; 0, or 2 and more
 };
 
-/// Draws flights (sampling/flight_draws.h) and flies them, an adaptive policy each anew, under the disturbances, which
-/// happen at the same part of each flight. Flights depend on the seed and their own number alone, so the
-/// answer is the same for any number of threads. Throws as require_spread does, and UsageError for fewer than 2
-/// samples or more than 10 million.
+/// Draws flights (sampling/flight_draws.h) and simulates them, an adaptive policy in each, with the disturbances at the
+/// same fraction of each flight. Flights depend on the seed and their own number alone, so the result is the same for
+/// any number of threads. Throws as require_uncertainty, and UsageError for less than 2 samples or more than 10
+/// million.
 MonteCarloResult sample_flights(const PreparedMission& prepared, const Disturbances& disturbances,
                                 const SamplingOptions& options);
 
-/// What 95 of 100 flights of two missions, and their difference b - a, lie between.
+/// 95 % intervals over the flights of two missions, and of the difference b - a.
 struct DrawnIntervals {
     Interval a, b, difference;
 };
 
-/// Two missions on flights drawn for both. What they have in common (the same mechanical model, the same battery, a
-/// component with the same profile, the wind) deviates alike in both; what they do not deviates on its own.
+/// Two missions on flights drawn for both. Common sources (the same mechanical model, battery, profile of a component,
+/// the wind) vary jointly, the others independently.
 struct SampledDifference {
     std::size_t samples = 0;
     DrawnIntervals duration_s, mechanical_energy_wh, compute_energy_wh, energy_wh, final_soc_percent;
@@ -39,12 +39,12 @@ struct SampledDifference {
     std::vector<std::string> independent_sources;
 };
 
-/// Flies both with common random numbers (docs/methods.md, Two missions); a battery that failed has 0 % left. None
-/// where nothing says how flights of one of them differ. Throws as sample_flights for a number of samples.
+/// Simulates both with common random numbers (docs/methods.md, Two missions); a failed battery has 0 % left. None if
+/// the variability of one of them is unknown. Throws as sample_flights for a number of samples.
 std::optional<SampledDifference> sample_difference(const PreparedMission& a, const PreparedMission& b,
                                                    const SamplingOptions& options = {});
 
-/// For people.
+/// Text for people.
 std::string describe(const MonteCarloResult& flights);
 std::string describe(const SampledDifference& difference);
 

@@ -27,7 +27,7 @@ constexpr double same_time_tolerance_s(double phase_duration_s) {
     return 1e-9 * (phase_duration_s > 1.0 ? phase_duration_s : 1.0);
 }
 
-/// Where a time of the mission lies when its phases take other durations: at the same part of the same phase.
+/// A mission time for other phase durations: at the same fraction of the same phase.
 double rescale_to_flown_durations_s(double time_s, const PerPhase<double>& planned_s, const PerPhase<double>& flown_s);
 
 /// A part of a phase in which one configuration runs.
@@ -48,10 +48,10 @@ struct Plan {
     double utility = 0.0;            ///< mean utility a second of the rest of the mission
     double utility_bound = 0.0;      ///< no schedule that keeps the reserve has more; 0 if infeasible
     bool bound_is_proven = true;     ///< false: something charges a battery whose state counts
-    double final_soc_percent = 0.0;  ///< as if the battery went on below empty
+    double final_soc_percent = 0.0;  ///< continued below empty
 };
 
-/// Appends a segment; if it runs what the last one of the same phase runs, that one becomes longer.
+/// Appends a segment, or extends the last one if phase and configuration are the same.
 void append_merged(Schedule& schedule, ScheduleSegment segment);
 
 /// Every different configuration of a schedule, in order of appearance.

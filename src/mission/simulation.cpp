@@ -40,7 +40,7 @@ std::vector<double> output_times(const LoadSegment& segment, double output_s) {
     return times;
 }
 
-/// A row, unless the last one says the same already: not every end of a segment is a jump.
+/// Adds a row unless it equals the last one: not every end of a segment is a jump.
 void add_row(SocCurve& curve, const battery::Battery& battery, const LoadSegment& segment, double time_s,
              const battery::Discharge& state) {
     SocRow row{time_s, segment.phase, mechanical_w(segment, time_s), segment.compute_w, power_w(segment, time_s)};

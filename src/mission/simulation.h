@@ -13,7 +13,7 @@ namespace flightwatt::mission {
 struct SocRow {
     double time_s = 0.0;  ///< since the mission began
     Phase phase = Phase::takeoff;
-    double mechanical_w = 0.0;  ///< what the mission demands, whatever the battery has left
+    double mechanical_w = 0.0;  ///< demand, also after the battery's end
     double compute_w = 0.0;
     double power_w = 0.0;    ///< both together
     double current_a = 0.0;  ///< inside the battery (Eq. 10); 0 once it has ended

@@ -1,5 +1,6 @@
 #include "path/cruise_path.h"
 
+#include "base/piecewise_linear.h"
 #include "base/units.h"
 
 #include <algorithm>
@@ -12,22 +13,21 @@ namespace {
 
 constexpr double same_power_fraction = 1e-12;
 
-/// Neighbours of the same power are one piece.
+/// Neighbours of the same power become one piece.
 PiecewisePower power_pieces(const mechanical::PhysicalModel& model, const PathTrajectory& flown, double factor) {
     PiecewisePower pieces;
+    std::optional<double> last_w;
     for (const auto& [time_s, motion, element] : flown.pieces) {
         const double power_w = factor * mechanical::power_w(model, motion);
-        if (pieces.empty()) {
-            pieces.push_back({0.0, time_s, power_w, 0.0});
-            continue;
-        }
-        auto& last = pieces.back();
-        const double end_s = last.end_s + time_s;
-        if (std::abs(power_w - last.power_w) <= same_power_fraction * std::abs(last.power_w)) {
-            last.end_s = end_s;
+        const double end_s = pieces.time_s.back() + time_s;
+        const double end_j = pieces.energy_j.back() + power_w * time_s;
+        if (last_w && std::abs(power_w - *last_w) <= same_power_fraction * std::abs(*last_w)) {
+            pieces.time_s.back() = end_s;
+            pieces.energy_j.back() = end_j;
         } else {
-            const double energy_j = last.energy_before_j + last.power_w * (last.end_s - last.start_s);
-            pieces.push_back({last.end_s, end_s, power_w, energy_j});
+            pieces.time_s.push_back(end_s);
+            pieces.energy_j.push_back(end_j);
+            last_w = power_w;
         }
     }
     return pieces;
@@ -50,20 +50,14 @@ CruisePath compute_cruise(std::shared_ptr<const PlannedPath> plan, const Wind& w
     return cruise;
 }
 
-double duration_s(const CruisePath& cruise) { return cruise.pieces->back().end_s; }
+double duration_s(const CruisePath& cruise) { return cruise.pieces->time_s.back(); }
 
-double energy_j(const CruisePath& cruise) { return energy_until_j(*cruise.pieces, duration_s(cruise)); }
+double energy_j(const CruisePath& cruise) { return cruise.pieces->energy_j.back(); }
 
 double mean_power_w(const CruisePath& cruise) { return energy_j(cruise) / duration_s(cruise); }
 
-const PowerSegment& segment_at(const PiecewisePower& pieces, double time_s) {
-    const auto after = std::ranges::upper_bound(pieces, time_s, {}, &PowerSegment::start_s);
-    return after == pieces.begin() ? pieces.front() : *(after - 1);
-}
-
 double energy_until_j(const PiecewisePower& pieces, double time_s) {
-    const auto& piece = segment_at(pieces, time_s);
-    return piece.energy_before_j + piece.power_w * (time_s - piece.start_s);
+    return interpolate_extended(pieces.time_s, pieces.energy_j, time_s);
 }
 
 std::vector<PathElementResult> path_element_results(const PlannedPath& plan) {
@@ -128,8 +122,8 @@ std::vector<std::string> path_warnings(const PlannedPath& plan, const PathTrajec
             warned = element;
             if (++extrapolated > max_named) continue;
             warnings.push_back(fmt::format(
-                "{}: {:.4g} m/s with a climb of {:.3g} m/s is beyond what the model's flights flew ({}, climb {}): its power "
-                "is extrapolated",
+                "{}: {:.4g} m/s with a climb of {:.3g} m/s is beyond what the model's flights flew ({}, climb {}): its "
+                "power is extrapolated",
                 name, motion.airspeed_m_per_s, motion.climb_m_per_s, range_text(plan.power.airspeed_m_per_s),
                 range_text(plan.power.climb_m_per_s)));
         }

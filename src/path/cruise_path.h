@@ -12,13 +12,12 @@
 
 namespace flightwatt::path {
 
-/// A part of a phase with constant mechanical power, in seconds since the phase began; the first starts at 0, each other
-/// where the one before ends.
-struct PowerSegment : flight::TimeInterval {
-    double power_w = 0.0;
-    double energy_before_j = 0.0;  ///< of all pieces before
+/// Mechanical power of a phase, constant between times since its start: the energy up to each time, 0 at the first, 0
+/// s.
+struct PiecewisePower {
+    std::vector<double> time_s{0.0};
+    std::vector<double> energy_j{0.0};
 };
-using PiecewisePower = std::vector<PowerSegment>;
 
 /// Where a cruise is flown, in which wind, and what its motion takes.
 struct PlannedPath {
@@ -30,7 +29,7 @@ struct PlannedPath {
 /// A cruise whose power follows from a path, and not from a curve over time. Copies are cheap.
 struct CruisePath {
     std::shared_ptr<const PlannedPath> plan;
-    std::shared_ptr<const PiecewisePower> pieces;  ///< never empty
+    std::shared_ptr<const PiecewisePower> pieces;  ///< one or more
     bool is_infeasible = false;                    ///< by a wind that was drawn: the flight fails
 };
 
@@ -42,10 +41,7 @@ double duration_s(const CruisePath& cruise);
 double energy_j(const CruisePath& cruise);
 double mean_power_w(const CruisePath& cruise);
 
-/// The piece at a time of the phase; at a jump the one that starts. Times outside have the nearest.
-const PowerSegment& segment_at(const PiecewisePower& pieces, double time_s);
-
-/// The energy [J] from the start of the phase to a time within it.
+/// Energy [J] from the start of the phase to a time within it.
 double energy_until_j(const PiecewisePower& pieces, double time_s);
 
 /// One element of a path as it is flown: means over its time.

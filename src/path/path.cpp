@@ -23,25 +23,19 @@ PathElement reversed(PathElement element, const ClimbRates& back) {
     return element;
 }
 
-void add(LocalPosition& at, double length_m, double course_deg) {
-    const double course_rad = course_deg / units::degree_per_rad;
-    at.east_m += length_m * std::sin(course_rad);
-    at.north_m += length_m * std::cos(course_rad);
-}
-
-void add_part(LocalPosition& at, const PathElement& element, double part) {
-    if (const auto* leg = std::get_if<Leg>(&element.shape)) {
-        add(at, leg->length_m * part, leg->course_deg);
-    } else if (const auto* hold = std::get_if<Hold>(&element.shape); hold != nullptr && hold->over_ground) {
-        add(at, hold->over_ground->length_m * part, hold->over_ground->course_deg);
-    } else if (const auto* circles = std::get_if<Circles>(&element.shape)) {
+LocalPosition after_part(const LocalPosition& at, const PathElement& element, double part) {
+    if (const auto* circles = std::get_if<Circles>(&element.shape)) {
         constexpr double quarter_deg = 90.0;
         constexpr double turn_deg = 360.0;
         const double side = circles->to_right ? 1.0 : -1.0;
         const double turned_deg = turn_deg * circles->turns * part;
-        add(at, circles->radius_m, circles->start_course_deg + side * quarter_deg);
-        add(at, circles->radius_m, circles->start_course_deg + side * (turned_deg - quarter_deg));
+        const auto centre = moved(at, circles->radius_m, circles->start_course_deg + side * quarter_deg);
+        return moved(centre, circles->radius_m, circles->start_course_deg + side * (turned_deg - quarter_deg));
     }
+    const auto* leg = std::get_if<Leg>(&element.shape);
+    if (const auto* hold = std::get_if<Hold>(&element.shape); hold != nullptr && hold->over_ground)
+        leg = &*hold->over_ground;
+    return leg != nullptr ? moved(at, leg->length_m * part, leg->course_deg) : at;
 }
 
 }  // namespace
@@ -77,10 +71,15 @@ double length_of_legs_m(const FlightPath& path) {
     return length_m;
 }
 
+LocalPosition moved(const LocalPosition& from, double length_m, double course_deg) {
+    const double course_rad = course_deg / units::degree_per_rad;
+    return {from.east_m + length_m * std::sin(course_rad), from.north_m + length_m * std::cos(course_rad)};
+}
+
 LocalPosition local_position_at(const FlightPath& path, const PathPosition& place) {
     LocalPosition at;
     for (std::size_t i = 0; i < path.elements.size() && i <= place.element; ++i)
-        add_part(at, path.elements[i], i < place.element ? 1.0 : place.part);
+        at = after_part(at, path.elements[i], i < place.element ? 1.0 : place.part);
     return at;
 }
 

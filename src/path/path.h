@@ -24,7 +24,7 @@ struct Leg {
     double course_deg = 0.0;  ///< clockwise from north
 };
 
-/// Around a fixed place on the ground, whatever the wind.
+/// Around a fixed point on the ground, in any wind.
 struct Circles {
     double radius_m = 0.0;
     double turns = 0.0;             ///< need not be whole
@@ -69,10 +69,10 @@ FlightPath out_and_back(const FlightPath& path, double return_after_m, const Cli
 /// Over the ground, of the legs alone, without the way home.
 double length_of_legs_m(const FlightPath& path);
 
-/// A place on a path: so much of an element's time has passed.
+/// A position on a path: the completed fraction of an element's time.
 struct PathPosition {
     std::size_t element = 0;
-    double part = 0.0;  ///< of 1
+    double part = 0.0;  ///< 0 to 1
 };
 
 /// East and north [m], from an origin; or a difference of two of them, or a direction of length 1.
@@ -86,8 +86,10 @@ struct LocalPosition {
     }
 };
 
-/// Where a place of a path is, from its start. A hold moves nothing, as the path goes on from where it was planned to,
-/// but where it stands for a leg whose time was measured.
+/// A position moved straight over ground.
+LocalPosition moved(const LocalPosition& from, double length_m, double course_deg);
+
+/// Location of a position, from the start of the path. Holds do not move it, except those of legs with a measured time.
 LocalPosition local_position_at(const FlightPath& path, const PathPosition& place);
 
 }  // namespace flightwatt::path

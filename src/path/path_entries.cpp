@@ -40,9 +40,8 @@ class PathBuilder {
             PathEntry home;
             home.name = "return to start";
             home.where = defaults_.where;
-            if (defaults_.altitude_m) home.altitude_m = defaults_.altitude_m;
+            home.altitude_m = defaults_.altitude_m;
             home.place = start_;
-            home.rates = {};
             change_m_ = altitude_change_m(home);
             fly_to(home, start_);
             if (!path_.elements.empty() && path_.elements.back().name == home.name)
@@ -73,7 +72,7 @@ class PathBuilder {
                 "give the place and no circles; hold_s waits, and circles are timed by their radius and the airspeed");
         }
         if (!has_place && !entry.length_m && !entry.circles && !entry.hold_s) {
-            refuse(entry, "says nothing to fly",
+            refuse(entry, "is empty",
                    "give a place (east_m and north_m, or latitude_deg and longitude_deg), length_m and course_deg, "
                    "circles and radius_m, or hold_s");
         }
@@ -91,7 +90,7 @@ class PathBuilder {
         return change_m;
     }
 
-    /// A first waypoint that is the start says how high that is.
+    /// A first waypoint at the start defines its altitude.
     bool is_at_start(const PathEntry& entry) const {
         if (!path_.elements.empty() || entry.circles || entry.length_m) return false;
         const auto place = place_of(entry);
@@ -129,38 +128,28 @@ class PathBuilder {
 
     void fly_leg(const PathEntry& entry, double length_m, double course_deg) {
         course_deg_ = std::fmod(course_deg + 360.0, 360.0);
-        const double course_rad = course_deg / units::degree_per_rad;
-        place_.east_m += length_m * std::sin(course_rad);
-        place_.north_m += length_m * std::cos(course_rad);
+        place_ = moved(place_, length_m, course_deg);
         add_element(entry, Leg{length_m, course_deg_});
     }
 
     /// Straight towards the centre, or from it, to the edge.
     void fly_to_circle(const PathEntry& entry, const LocalPosition& centre) {
         const auto out = place_ - centre;
-        const double distance_m = std::hypot(out.east_m, out.north_m);
-        const double course_rad = course_deg_ / units::degree_per_rad;
-        const double out_east = distance_m > same_place_m ? out.east_m / distance_m : std::sin(course_rad);
-        const double out_north = distance_m > same_place_m ? out.north_m / distance_m : std::cos(course_rad);
-        auto edge = entry;
-        edge.duration_s.reset();
-        fly_to(edge, {centre.east_m + *entry.radius_m * out_east, centre.north_m + *entry.radius_m * out_north});
-        const double bearing_deg = std::atan2(out_east, out_north) * units::degree_per_rad;
+        const bool is_at_centre = std::hypot(out.east_m, out.north_m) <= same_place_m;
+        const double bearing_deg =
+            is_at_centre ? course_deg_ : std::atan2(out.east_m, out.north_m) * units::degree_per_rad;
+        fly_to(entry, moved(centre, *entry.radius_m, bearing_deg));
         course_deg_ = std::fmod(bearing_deg + (entry.to_right ? 90.0 : 270.0) + 360.0, 360.0);
     }
 
     void circle(const PathEntry& entry, const std::optional<LocalPosition>& centre) {
         const double side = entry.to_right ? 1.0 : -1.0;
         const double radius_m = *entry.radius_m;
-        const double start_rad = course_deg_ / units::degree_per_rad;
-        const auto middle = centre.value_or(LocalPosition{place_.east_m + side * radius_m * std::cos(start_rad),
-                                                          place_.north_m - side * radius_m * std::sin(start_rad)});
+        const auto middle = centre.value_or(moved(place_, radius_m, course_deg_ + side * 90.0));
         add_element(entry, Circles{radius_m, *entry.circles, entry.to_right, course_deg_});
         const double turned_deg = 360.0 * std::fmod(*entry.circles, 1.0);
         course_deg_ = std::fmod(course_deg_ + side * turned_deg + 360.0, 360.0);
-        const double end_rad = course_deg_ / units::degree_per_rad;
-        place_ = {middle.east_m - side * radius_m * std::cos(end_rad),
-                  middle.north_m + side * radius_m * std::sin(end_rad)};
+        place_ = moved(middle, radius_m, course_deg_ - side * 90.0);
     }
 
     /// Adds an element; the first of an entry takes the change of height.
@@ -189,7 +178,7 @@ class PathBuilder {
         const auto rate = rate_of(entry);
         if (!rate) {
             refuse(entry, fmt::format("changes the altitude by {:.4g} m where the aircraft is already", change_m_),
-                   "say how fast: climb_m_per_s or descent_m_per_s; or for how long: hold_s");
+                   "state the rate, climb_m_per_s or descent_m_per_s, or the time, hold_s");
         }
         add_element(entry, Hold{std::abs(change_m_) / *rate});
     }

@@ -8,7 +8,7 @@
 
 namespace flightwatt::path {
 
-// What the numbers of a path may be: beyond, a unit was mistaken.
+// Ranges of a path's numbers: beyond, the unit is wrong.
 inline constexpr double max_m_per_s = 300.0;
 inline constexpr double largest_circle_count = 1e4;
 inline constexpr double min_radius_m = 1.0;
@@ -24,7 +24,7 @@ struct GeodeticPosition {
 /// The place in the plane that touches the ellipsoid at `origin`: exact to 1e-6 of distances within 10 km of it.
 LocalPosition to_local(const GeodeticPosition& place, const GeodeticPosition& origin);
 
-/// One entry of a path as it was written: where to fly, and what to do there. What is not stated is as before.
+/// One entry of a path as written: where to fly, and what to do there. Values not given continue.
 struct PathEntry {
     std::string name;  ///< "leg 3"
     Location where;
@@ -42,7 +42,7 @@ struct PathEntry {
     std::optional<double> hold_s;
 };
 
-/// What holds for a whole path unless an entry says otherwise.
+/// Defaults of a path, which an entry may override.
 struct PathDefaults {
     double airspeed_m_per_s = 0.0;
     std::optional<double> altitude_m;  ///< at the start

@@ -47,7 +47,7 @@ PathForecast::PathForecast(PlannedPath plan) : plan_(std::move(plan)) {
 }
 
 const PathTrajectory& PathForecast::flown() const {
-    if (!flown_.infeasible_elements.empty()) compute_trajectory(plan_.path, plan_.wind);  // says what is wrong
+    if (!flown_.infeasible_elements.empty()) compute_trajectory(plan_.path, plan_.wind);  // throws
     return flown_;
 }
 
@@ -66,7 +66,7 @@ RemainingPath PathForecast::predict(const mechanical::FlightProgress& flown, con
     const auto count = static_cast<double>(energies_wh.size());
     rest.infeasible_fraction = 1.0 - count / static_cast<double>(in_likely_winds_.size());
     if (rest.infeasible_fraction > 0.5)
-        throw NoResultError("most of the winds that [wind] makes likely forbid the rest of the path");
+        throw NoResultError("the rest of the path is infeasible in most of the winds by [wind]");
     rest.duration_s /= count;
     rest.trajectory = remaining_trajectory(flown_, place);
     const auto& ahead = rest.trajectory;

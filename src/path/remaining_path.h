@@ -10,7 +10,7 @@
 
 namespace flightwatt::path {
 
-/// A prediction of what is left of a path, and how long that takes: means over the winds that let it be flown.
+/// Prediction of the remaining path and its duration: means over the winds in which it is feasible.
 struct RemainingPath {
     mechanical::RemainingCruise cruise;
     double duration_s = 0.0;
@@ -18,18 +18,17 @@ struct RemainingPath {
     PathTrajectory trajectory;         ///< in the plan's wind
 };
 
-/// A plan's path as it is flown in each of the winds that its spread makes likely, for forecasts of what is left of it
-/// from many places: flying it takes most of the time of a forecast.
+/// A plan's path computed once in each of the likely winds, for forecasts of its remainder from many positions.
 class PathForecast {
   public:
     explicit PathForecast(PlannedPath plan);
 
     const PlannedPath& plan() const { return plan_; }
-    /// In the plan's wind. Throws InputError where that forbids it.
+    /// In the plan's wind. Throws InputError if it is infeasible in it.
     const PathTrajectory& flown() const;
     /// The rest of a cruise (predict_remaining_physical), over 7 equally likely speeds by 7 directions of the wind that
     /// the plan's spread makes of its wind, none slower than 0; where they differ the interval is wider. Throws
-    /// NoResultError as predict_remaining_physical, or where most of the winds forbid what is left.
+    /// NoResultError as predict_remaining_physical, or if most of the winds make the remainder infeasible.
     RemainingPath predict(const mechanical::FlightProgress& flown, const PathPosition& place) const;
 
   private:

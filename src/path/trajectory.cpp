@@ -19,7 +19,7 @@ constexpr double max_path_s = 1e7;
 constexpr double nearly = 1.0 - 1e-9;
 
 /// A part of a track with one climb rate.
-struct Stretch {
+struct TrackInterval {
     double from_m = 0.0;
     double to_m = 0.0;
     double climb_m_per_s = 0.0;
@@ -100,28 +100,28 @@ class PathFlight {
             add(crawl_s, 0.0);
             return;
         }
-        const auto stretches = height_m() == 0.0              ? std::vector<Stretch>{{0.0, track.length_m(), 0.0}}
+        const auto intervals = height_m() == 0.0              ? std::vector<TrackInterval>{{0.0, track.length_m(), 0.0}}
                                : element_->climb_rate_m_per_s ? climb_first(track, least)
                                                               : climb_all_along(track, least);
-        for (const auto& stretch : stretches) fly_stretch(track, stretch);
+        for (const auto& interval : intervals) fly_interval(track, interval);
     }
 
-    void fly_stretch(const GroundTrack& track, const Stretch& stretch) {
-        const double horizontal = horizontal_of(airspeed(), stretch.climb_m_per_s);
+    void fly_interval(const GroundTrack& track, const TrackInterval& interval) {
+        const double horizontal = horizontal_of(airspeed(), interval.climb_m_per_s);
         const double tolerance_m = 1e-9 * track.length_m();
         const double piece_m = track.segment_length_m();
         const auto period = track.segments_per_turn();
         std::vector<TrajectorySegment> whole;  // of the first turn: the others are the same
         for (std::size_t k = 0;; ++k) {
-            const double from_m = stretch.from_m + piece_m * static_cast<double>(k);
-            if (from_m >= stretch.to_m - tolerance_m) break;
-            const bool is_whole = from_m + piece_m <= stretch.to_m - tolerance_m;
+            const double from_m = interval.from_m + piece_m * static_cast<double>(k);
+            if (from_m >= interval.to_m - tolerance_m) break;
+            const bool is_whole = from_m + piece_m <= interval.to_m - tolerance_m;
             if (is_whole && whole.size() == period) {
-                add(whole[k % period].time_s, stretch.climb_m_per_s, whole[k % period].motion.load_factor);
+                add(whole[k % period].time_s, interval.climb_m_per_s, whole[k % period].motion.load_factor);
                 continue;
             }
-            const double to_m = is_whole ? from_m + piece_m : stretch.to_m;
-            add(track.time_s(from_m, to_m, horizontal), stretch.climb_m_per_s,
+            const double to_m = is_whole ? from_m + piece_m : interval.to_m;
+            add(track.time_s(from_m, to_m, horizontal), interval.climb_m_per_s,
                 std::sqrt(track.load_factor_squared(from_m, to_m, horizontal)));
             if (is_whole) whole.push_back(flown_.pieces.back());
         }
@@ -134,7 +134,7 @@ class PathFlight {
     }
 
     /// At the stated rate from the start on.
-    std::vector<Stretch> climb_first(const GroundTrack& track, double least) {
+    std::vector<TrackInterval> climb_first(const GroundTrack& track, double least) {
         const double rate = *element_->climb_rate_m_per_s;
         require_slower_than_airspeed(rate);
         const double horizontal = horizontal_of(airspeed(), rate);
@@ -153,7 +153,7 @@ class PathFlight {
     }
 
     /// At the one rate that reaches the height at the end.
-    std::vector<Stretch> climb_all_along(const GroundTrack& track, double least) {
+    std::vector<TrackInterval> climb_all_along(const GroundTrack& track, double least) {
         constexpr double below_steepest = 1.0 - 1e-6;
         const double steepest = below_steepest * horizontal_of(airspeed(), least);
         const auto above_m = [&](double rate) {

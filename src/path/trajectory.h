@@ -45,7 +45,7 @@ std::optional<double> ground_speed_m_per_s(double airspeed_m_per_s, double cours
 /// Where a path is after a time from its start, at most its duration.
 PathPosition position_at(const PathTrajectory& flown, double time_s);
 
-/// What is left of a path from a place on, which may have been found in another wind.
+/// The remainder of a path from a position, which may have been determined in another wind.
 PathTrajectory remaining_trajectory(const PathTrajectory& flown, const PathPosition& place);
 
 }  // namespace flightwatt::path

@@ -16,7 +16,7 @@
 namespace flightwatt::path {
 namespace {
 
-/// What a value of a waypoint may be.
+/// Checks and sets a value of a waypoint.
 void set_value(PathEntry& entry, std::string_view name, double value, const Location& where) {
     const auto checked = [&](NumberRange range) {
         require_in(range, value, name, where);

@@ -135,7 +135,7 @@ TEST(DisturbanceFile, RefusesWhatMakesNoSense) {
     EXPECT_EQ(refused("soc_drop_percent = 3"),
               "d.toml:2:1: a drop happens at one moment, and none is given; add at = SECONDS");
     EXPECT_EQ(refused("capacity_factor = 0.9\nfrom = 10"),
-              "d.toml:3:1: `from` stands with `capacity_factor`: a pack is weaker from the start on; make "
+              "d.toml:3:1: `from` cannot be given with `capacity_factor`: a pack is weaker from the start on; make "
               "two entries of it, or remove one");
     EXPECT_NE(refused("phase = \"cruise\"").find("d.toml:1:1: this entry changes nothing"), std::string::npos);
     EXPECT_NE(refused("compute_w = 1\n[[disturbance]]\nformat = 2").find("unknown key 'format'"), std::string::npos);

@@ -219,14 +219,14 @@ const BadMission bad_missions[] = {
     // When.
     {"\"cruise\"", "\"cruize\"", "m.toml:14:1: there is no phase 'cruize'; the phases are takeoff, cruise and landing"},
     {"phase = \"cruise\"\nmiddle = 120\n", "",
-     "m.toml:13:1: this entry does not say when; give it a phase, or `otherwise = true` for whatever the "
+     "m.toml:13:1: this entry has no time; give it a phase, or `otherwise = true` for whatever the "
      "others leave"},
-    {"otherwise = true", "otherwise = false", "m.toml:19:1: `otherwise = false` says nothing; leave it out"},
+    {"otherwise = true", "otherwise = false", "m.toml:19:1: `otherwise = false` has no effect; leave it out"},
     {"otherwise = true", "otherwise = true\nfrom = 10",
-     "m.toml:20:1: `from` stands with `otherwise`; `otherwise` is what is left; leave one of them out"},
+     "m.toml:20:1: `from` is given with `otherwise`; `otherwise` is what is left; leave one of them out"},
     {"middle = 120", "middel = 120", "m.toml:15:1: unknown key 'middel'; did you mean 'middle'?"},
     {"middle = 120", "middle = 120\nto = 5",
-     "m.toml:15:1: `middle` stands with `from` or `to`; use one way of saying when"},
+     "m.toml:15:1: `middle` is given with `from` or `to`; state the time in one way"},
     {"middle = 120", "middle = 601",
      "m.toml:15:1: the segment cruise from -0.5 s to 600.5 s is not within the phase; it takes 600 s in this "
      "mission"},
@@ -256,7 +256,7 @@ const BadMission bad_missions[] = {
      "whole phase "
      "`otherwise = true`, and it takes what the others leave"},
     {"otherwise = true", "phase = \"cruise\"\nfrom = 300\nto = 400",
-     "m.toml:18:1: cruise from 300 s to 360 s is scheduled twice, here and in line 13; let one end where the "
+     "m.toml:18:1: cruise from 300 s to 360 s is scheduled twice, here and in line 13; end one where the "
      "other "
      "begins"},
     {"takeoff = 28, cruise = 600, landing = 60 }", "takeoff = 0, cruise = 120, landing = 0 }",
@@ -308,7 +308,7 @@ TEST(MissionFile, RefusesAMissionThatDoesNotFitItsParts) {
     EXPECT_EQ(of(flight + "[components.detection]\nprofile = \"detection.csv\"\n"),
               "m.toml:3:2: there are components and no [[schedule]] that runs them; add [[schedule]] with "
               "otherwise = "
-              "true and run = { ... }, or let `flightwatt plan` make a schedule");
+              "true and run = { ... }, or make a schedule with `flightwatt plan`");
     EXPECT_EQ(of(flight + "[[schedule]]\notherwise = true\nrun = { detection = { fps = 1 } }\n"),
               "m.toml:5:9: there is no component 'detection'; the mission has no [components.NAME]");
     EXPECT_EQ(of(flight + "phase_clock = \"stretched\"\n"),

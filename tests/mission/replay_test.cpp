@@ -193,11 +193,11 @@ TEST(Replay, SaysWhatReplanningWasWorth) {
     const auto replays = replay_flights(missions, flights, options).replays;
     const auto comparisons = compare_replanned(replays, problem.setup.name, ScheduleMethod::planned);
     ASSERT_EQ(comparisons.size(), 3U);
-    EXPECT_NE(comparisons[0].verdict, ComparisonOutcome::better) << "nothing was to be learned";
-    EXPECT_EQ(comparisons[1].verdict, ComparisonOutcome::better);
+    EXPECT_NE(comparisons[0].outcome, ComparisonOutcome::better) << "nothing was to be learned";
+    EXPECT_EQ(comparisons[1].outcome, ComparisonOutcome::better);
     EXPECT_TRUE(comparisons[1].replanned_keeps_reserve);
     EXPECT_FALSE(comparisons[1].baseline_keeps_reserve);
-    EXPECT_EQ(comparisons[2].verdict, ComparisonOutcome::better);
+    EXPECT_EQ(comparisons[2].outcome, ComparisonOutcome::better);
     EXPECT_GT(comparisons[2].more_utility, 0.0);
     EXPECT_LT(*comparisons[2].more_soc_percent, 0.0) << "what was saved was spent";
     for (const auto& replay : replays) {

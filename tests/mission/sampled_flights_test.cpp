@@ -175,7 +175,7 @@ TEST(SampleDifference, OfTwoAircraftIsWider) {
     const double sd_wh = std::hypot(1.0, 1.1) / 3.6;
     EXPECT_NEAR(drawn->energy_wh.difference.low, 2.0 / 3.6 - 1.96 * sd_wh, 0.02);
     EXPECT_NEAR(drawn->energy_wh.difference.high, 2.0 / 3.6 + 1.96 * sd_wh, 0.02);
-    EXPECT_NE(describe(*drawn).find("deviating on its own in each: mechanical model"), std::string::npos);
+    EXPECT_NE(describe(*drawn).find("varying independently in each: mechanical model"), std::string::npos);
 }
 
 TEST(SampleDifference, IsUnknownWhereOneDoesNotSayHowFlightsDiffer) {

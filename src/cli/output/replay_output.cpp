@@ -166,7 +166,7 @@ Json comparison_json(const std::string& mission, ScheduleMethod baseline,
               {"sentence", sentence(mission, baseline, comparisons)}};
     json["flights"] = list_json(comparisons, [](const auto& comparison) -> Json {
         return {{"flight", comparison.flight},
-                {"verdict", to_string(comparison.verdict)},
+                {"verdict", to_string(comparison.outcome)},
                 {"replanned_keeps_reserve", comparison.replanned_keeps_reserve},
                 {"baseline_keeps_reserve", comparison.baseline_keeps_reserve},
                 {"more_utility", comparison.more_utility},

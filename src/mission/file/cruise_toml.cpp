@@ -11,15 +11,15 @@
 namespace flightwatt::mission {
 namespace {
 
-/// A power is extrapolated up to so many times that of the airspeeds that were flown, and down to its inverse.
+/// Limit of the extrapolated power relative to that of the airspeeds that were flown, and of its inverse.
 constexpr double max_power_ratio = 2.0;
 
-/// Throws InputError at the place that needs it where the model does not know what motion takes.
+/// Throws InputError at `where` if the model has no physical part.
 const mechanical::PhysicalModel& physical_of(const mechanical::MechanicalModel& model, const Location& where) {
     if (model.physical) return *model.physical;
     throw InputError(
         where,
-        fmt::format("the mechanical model '{}' does not know what motion takes: it has no [physical]", model.name),
+        fmt::format("the mechanical model '{}' has no [physical] part, which predicts power from motion", model.name),
         "fit one: flightwatt fit --model-kind physical FLIGHT... -o MODEL.toml, of flights that measured their airspeed");
 }
 
@@ -131,8 +131,8 @@ std::vector<path::PathEntry> read_entries(const TomlTable& path) {
     if (path.has("flight_plan") != path.has("waypoint_order")) {
         throw InputError(
             path.where(), "flight_plan and waypoint_order belong together",
-            "a flight plan's blocks are a program that is not run: say which of its waypoints are flown, in "
-            "order, waypoint_order = [\"1\", \"2\"]");
+            "a flight plan's blocks are not executed: list the waypoints in the order in which they are flown, "
+            "waypoint_order = [\"1\", \"2\"]");
     }
     if (has_waypoints) entries = path::read_waypoints(file_of(path, "waypoints"));
     if (path.has("flight_plan"))
@@ -152,8 +152,8 @@ void refuse_what_the_path_decides(const TomlTable& root) {
         refuse(durations->where("cruise"), "the duration of the cruise follows from [path]",
                "leave it out, or the path");
     if (root.has("airspeed_m_per_s"))
-        refuse(root.where("airspeed_m_per_s"), "airspeed_m_per_s and [path] both say how the cruise is flown",
-               "leave it out: [path] has airspeed_m_per_s of its own, and [wind] stands beside it");
+        refuse(root.where("airspeed_m_per_s"), "airspeed_m_per_s and [path] both define the cruise",
+               "leave it out: [path] has its own airspeed_m_per_s, and [wind] belongs to it");
     const auto uncertainty = root.optional_table("uncertainty");
     if (!uncertainty) return;
     if (const auto durations = uncertainty->optional_table("duration_sd_s"); durations && durations->has("cruise"))
@@ -161,7 +161,7 @@ void refuse_what_the_path_decides(const TomlTable& root) {
                "state how the wind differs: speed_sd_m_per_s and direction_sd_deg in [wind]");
 }
 
-/// What the motion takes.
+/// The physical model of the mission.
 const mechanical::PhysicalModel& power_model(const TomlTable& path, const MissionSetup& mission) {
     if (!mission.mechanical)
         throw InputError(path.where(), "a path has no meaning with mechanical = \"none\"", "leave it out");

@@ -8,19 +8,20 @@
 #include <optional>
 #include <string_view>
 
-/// The tables of a mission file (docs/missions.md). All throw InputError for what is unknown, missing or out of range.
+/// The tables of a mission file (docs/missions.md). All throw InputError for keys that are unknown, missing or out of
+/// range.
 namespace flightwatt::mission {
 
 /// The file that a key names, relative to the mission file. Throws InputError at the key where it cannot be read.
 std::filesystem::path file_of(const TomlTable& table, std::string_view key);
 
-/// Sets the level of the cruise to that of the mission's airspeed_m_per_s by the physical model; leaves it where none is
-/// stated. Throws InputError for a model without one, and far beyond what its flights flew.
+/// Sets the level of the cruise to that of the mission's airspeed_m_per_s by the physical model; leaves it where none
+/// is stated. Throws InputError for a model without one, and far beyond what its flights flew.
 void apply_airspeed(const TomlTable& mission_table, MissionSetup& mission);
 
 /// Reads [path] and [wind] of a mission file (docs/missions.md), where there is a path, and makes the cruise of it: its
 /// path, duration and level. `reading` may change how much of it is flown. Throws InputError for a key missing, unknown
-/// or out of range, a path that cannot be flown, and a model that does not know what motion takes.
+/// or out of range, a path that cannot be flown, and a model without a physical part.
 void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& reading, MissionSetup& mission);
 
 /// The `utility` of a component.

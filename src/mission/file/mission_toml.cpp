@@ -24,8 +24,8 @@ std::optional<mechanical::MechanicalModel> read_mechanical(const TomlTable& root
     return with_default_power(mechanical::read_mechanical_model(file_of(root, "mechanical")));
 }
 
-/// The model that says the power, where its file knows how it predicts flights; of a mission with an airspeed, or a
-/// path, that of the cruise.
+/// The held-out score of the model that predicts the power (with an airspeed or a path, that of the cruise), if its
+/// file has one.
 void find_power_model(const TomlTable& root, MissionSetup& mission) {
     if (!mission.mechanical || !mission.mechanical->validation) return;
     const auto& validation = *mission.mechanical->validation;
@@ -163,15 +163,15 @@ Uncertainty read_uncertainty(const TomlTable& mission, const compute::ComputeMod
 void require_schedule(const TomlTable& root, bool lacks_schedule) {
     if (lacks_schedule && !root.has("plan")) {
         throw InputError(root.where("components"), "there are components and no [[schedule]] that runs them",
-                         "add [[schedule]] with otherwise = true and run = { ... }, or let `flightwatt plan` "
-                         "make a schedule");
+                         "add [[schedule]] with otherwise = true and run = { ... }, or make a schedule with "
+                         "`flightwatt plan`");
     }
     if (!root.has("plan")) return;
     throw InputError(root.where("plan"), "this mission has no complete schedule: it is yet to be planned",
                      "`flightwatt plan` makes one; without [plan], [[schedule]] is taken as complete");
 }
 
-/// The mission with its schedule; or with what is fixed of it, the rest to be planned.
+/// The mission with its schedule, or the planning problem with the fixed part of it.
 MissionVariant with_read_schedule(const TomlTable& root, const MissionReadOptions& reading, MissionSetup setup) {
     auto adaptive = read_adaptive_policy(root);
     auto entries = read_schedule(root, setup.compute, setup.duration_s);
@@ -217,7 +217,7 @@ MissionVariant parse_mission(std::string_view text, const std::filesystem::path&
     require_kind(root, FileKind::mission);
     if (root.is_table("conditions"))
         throw InputError(root.where("conditions"), "conditions are no longer read: a cruise follows its airspeed alone",
-                         "leave them out, or state airspeed_m_per_s beside the mission's other keys, on a model of "
+                         "leave them out, or state airspeed_m_per_s at the top of the mission, with a model of "
                          "flightwatt fit --model-kind physical");
     root.refuse_keys_except({"format", "name", "mechanical", "duration_s", "phase_clock", "airspeed_m_per_s", "path",
                              "wind", "battery", "initial_soc_percent", "capacity_ah", "cutoff_voltage_v",

@@ -16,7 +16,7 @@ std::string_view new_mission_template();
 
 namespace {
 
-/// What stands for {{name}} in the template.
+/// Replacement for each {{name}} of the template.
 using Values = std::map<std::string, std::string, std::less<>>;
 
 std::string fill_line(std::string_view line, const Values& values) {
@@ -64,7 +64,7 @@ void add_aircraft(const mechanical::MechanicalModel& model, Values& values) {
     values["airspeed"] = fmt::format("{:.1f}", airspeed_m_per_s);
 }
 
-/// As the battery says; else of LiPo cells, by the voltage of a full pack, or by the paper's constant one.
+/// As in the battery file; else estimated from the voltage of a full pack, or from the constant one, of LiPo cells.
 int cells_of(const battery::Battery& pack) {
     constexpr double full_v = 4.2;
     constexpr double nominal_v = 3.7;

@@ -12,27 +12,14 @@
 #include <string_view>
 #include <vector>
 
+#include <boost/algorithm/string/replace.hpp>
+#include <boost/algorithm/string/split.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
 
 namespace flightwatt::mission {
 namespace {
-
-struct Line {
-    std::string text;
-    bool is_kept = true;
-};
-
-std::vector<Line> lines_of(std::string_view text) {
-    std::vector<Line> lines;
-    while (!text.empty()) {
-        const auto end = std::min(text.find('\n'), text.size());
-        lines.push_back({std::string(text.substr(0, end))});
-        text.remove_prefix(std::min(end + 1, text.size()));
-    }
-    return lines;
-}
 
 char first_character(const std::string& line) {
     const auto at = line.find_first_not_of(" \t\r");
@@ -43,39 +30,40 @@ bool is_blank(const std::string& line) { return first_character(line) == '\0'; }
 bool is_comment(const std::string& line) { return first_character(line) == '#'; }
 bool is_header(const std::string& line) { return first_character(line) == '['; }
 
-/// The section that begins at `header` up to the next, without the comments that stand apart at its end.
-void drop_section(std::vector<Line>& lines, std::size_t header) {
+/// Erases the section at `header`, without comments at its end that are separated from its keys.
+void erase_section(std::vector<std::string>& lines, std::size_t header) {
     auto end = header + 1;
-    while (end < lines.size() && !is_header(lines[end].text)) ++end;
+    while (end < lines.size() && !is_header(lines[end])) ++end;
     auto last = end;
-    while (last > header + 1 && (is_blank(lines[last - 1].text) || is_comment(lines[last - 1].text))) --last;
-    while (last < end && is_comment(lines[last].text)) ++last;  // directly below its last key
-    if (last == end && end < lines.size()) {                    // or directly above the next header, which it is of
-        while (last > header + 1 && is_comment(lines[last - 1].text)) --last;
+    while (last > header + 1 && (is_blank(lines[last - 1]) || is_comment(lines[last - 1]))) --last;
+    while (last < end && is_comment(lines[last])) ++last;  // directly below its last key
+    if (last == end && end < lines.size()) {               // or directly above the next header, to which they belong
+        while (last > header + 1 && is_comment(lines[last - 1])) --last;
     }
     auto first = header;
-    while (first > 0 && is_comment(lines[first - 1].text)) --first;
-    for (auto i = first; i < last; ++i) lines[i].is_kept = false;
-    if (first > 0 && last < lines.size() && is_blank(lines[first - 1].text) && is_blank(lines[last].text))
-        lines[last].is_kept = false;
+    while (first > 0 && is_comment(lines[first - 1])) --first;
+    if (first > 0 && last < lines.size() && is_blank(lines[first - 1]) && is_blank(lines[last])) ++last;
+    lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(first), lines.begin() + static_cast<std::ptrdiff_t>(last));
 }
 
-void drop_schedule(std::vector<Line>& lines) {
+void erase_schedule(std::vector<std::string>& lines) {
     static const std::regex of_header(R"(^\s*\[\[?\s*(plan|policy|schedule)\s*(\.|\]).*)");
     static const std::regex of_key(R"(^\s*(plan|policy|schedule)\s*(\.|=).*)");
-    bool in_root = true;
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        in_root = in_root && !is_header(lines[i].text);
-        if (std::regex_match(lines[i].text, of_header)) drop_section(lines, i);
-        if (in_root && std::regex_match(lines[i].text, of_key)) lines[i].is_kept = false;
-    }
+    const auto is_section = [&](const std::string& line) { return std::regex_match(line, of_header); };
+    for (auto at = std::ranges::find_if(lines, is_section); at != lines.end();
+         at = std::ranges::find_if(lines, is_section))
+        erase_section(lines, static_cast<std::size_t>(at - lines.begin()));
+    const auto root_end = std::ranges::find_if(lines, is_header);
+    lines.erase(
+        std::remove_if(lines.begin(), root_end, [&](const auto& line) { return std::regex_match(line, of_key); }),
+        root_end);
 }
 
-/// Puts the text of `wanted` where `read` stands in the line, quoted on one line.
-void rename_file(std::vector<Line>& lines, const toml::value<std::string>& read, const std::string& wanted) {
+/// Replaces the string `read` in its line by `wanted`, if it is quoted on one line.
+void rename_file(std::vector<std::string>& lines, const toml::value<std::string>& read, const std::string& wanted) {
     const auto place = read.source().begin;
     if (place.line < 1 || place.line > lines.size()) return;
-    auto& line = lines[place.line - 1].text;
+    auto& line = lines[place.line - 1];
     const std::size_t start = place.column - 1;
     if (start >= line.size() || (line[start] != '"' && line[start] != '\'')) return;
     const auto end = line.find(line[start], start + 1);
@@ -84,7 +72,7 @@ void rename_file(std::vector<Line>& lines, const toml::value<std::string>& read,
 }
 
 /// Follows both tables and renames what differs in a text.
-void rename_files(std::vector<Line>& lines, const toml::table& read, const toml::table& wanted) {
+void rename_files(std::vector<std::string>& lines, const toml::table& read, const toml::table& wanted) {
     for (auto&& [key, node] : read) {
         const auto* other = wanted.get(key.str());
         if (other == nullptr) continue;
@@ -96,35 +84,24 @@ void rename_files(std::vector<Line>& lines, const toml::table& read, const toml:
     }
 }
 
-std::string joined(const std::vector<Line>& lines) {
-    std::string text;
-    for (const auto& line : lines)
-        if (line.is_kept) text += line.text + "\n";
-    while (text.ends_with("\n\n")) text.pop_back();
-    return text;
-}
-
 /// Without a byte order mark, and with the line ends of Unix.
 std::string normalise_text(std::string_view text) {
     constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
     if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
-    std::string plain;
-    plain.reserve(text.size());
-    for (std::size_t i = 0; i < text.size(); ++i)
-        if (!text.substr(i).starts_with("\r\n")) plain += text[i];
-    return plain;
+    return boost::algorithm::replace_all_copy(std::string(text), "\r\n", "\n");
 }
 
-/// The text of a mission file that says what `wanted` says, with its comments, its order and its numbers as they were
-/// written: without its plan, policy and schedule and the comments directly above and in them, with other names of
-/// files, and with a format if it had none. `read` is what `text`, a plain one, says. std::nullopt for a text that is
-/// written in a way that this does not follow; what it gives was read again and says what `wanted` says.
+/// Edits `text`, whose content is `read`, to the content `wanted`, and keeps comments, order and spelling of the rest:
+/// removes plan, policy and schedule with the comments directly above and in them, renames files, adds the format.
+/// The result is parsed again; std::nullopt if its content is not `wanted`.
 std::optional<std::string> edit_keeping_comments(std::string_view text, const toml::table& read,
                                                  const toml::table& wanted) {
-    auto lines = lines_of(text);
+    std::vector<std::string> lines;
+    boost::algorithm::split(lines, text, [](char c) { return c == '\n'; });
     rename_files(lines, read, wanted);
-    drop_schedule(lines);
-    auto kept = joined(lines);
+    erase_schedule(lines);
+    while (!lines.empty() && lines.back().empty()) lines.pop_back();
+    auto kept = fmt::format("{}\n", fmt::join(lines, "\n"));
     if (!read.contains("format") && wanted.contains("format")) {
         const auto version = wanted["format"].value_or<std::int64_t>(0);
         std::size_t at = 0;  // below the comments that the file begins with
@@ -134,12 +111,12 @@ std::optional<std::string> edit_keeping_comments(std::string_view text, const to
     try {
         if (toml::parse(kept) == wanted) return kept;
     } catch (const toml::parse_error&) {
-        // a section that was written in a way not looked for
+        // a section in an unexpected notation
     }
     return std::nullopt;
 }
 
-/// As it was named where the working folder is gone.
+/// Unchanged if the working folder does not exist any more.
 std::filesystem::path absolute_path(const std::filesystem::path& path) {
     std::error_code error;
     auto absolute = std::filesystem::absolute(path, error);
@@ -155,7 +132,7 @@ void move_path(toml::table& table, std::string_view key, const std::filesystem::
     if (named.is_absolute()) return;
     std::error_code error;
     const auto near = std::filesystem::proximate(from / named, to, error);
-    *value = (error ? from / named : near).generic_string();  // what cannot be followed is left where it is
+    *value = (error ? from / named : near).generic_string();
 }
 
 std::string run_text(const compute::ComputeModel& compute, const compute::Configuration& run) {

@@ -42,8 +42,8 @@ void read_segment(const TomlTable& table, double duration_s, ScheduleEntry& entr
     entry.end_s = has_to ? read_time_s(table, "to", duration_s) : duration_s;
     if (has_middle) {
         if (has_from || has_to) {
-            throw InputError(table.where("middle"), "`middle` stands with `from` or `to`",
-                             "use one way of saying when");
+            throw InputError(table.where("middle"), "`middle` is given with `from` or `to`",
+                             "state the time in one way");
         }
         const double length_s = read_time_s(table, "middle", duration_s);
         entry.start_s = (duration_s - length_s) / 2.0;
@@ -62,8 +62,8 @@ void read_segment(const TomlTable& table, double duration_s, ScheduleEntry& entr
     }
 }
 
-/// Before a key is missed: one that is there, and wrong, is what the user has to find. `what` begins the message,
-/// `of_none` and `of_known` the hint.
+/// Throws at the first unknown key, before a missing one is reported. `what` begins the message, `of_none` and
+/// `of_known` the hint.
 void refuse_unknown_names(const TomlTable& table, const std::vector<std::string>& known, const std::string& what,
                           std::string_view of_none, std::string_view of_known) {
     for (const auto& key : table.keys()) {
@@ -109,16 +109,16 @@ ScheduleEntry read_entry(const TomlTable& table, const compute::ComputeModel& co
     entry.where = table.where();
     entry.otherwise = table.optional_boolean("otherwise").value_or(false);
     if (table.has("otherwise") && !entry.otherwise)
-        throw InputError(table.where("otherwise"), "`otherwise = false` says nothing", "leave it out");
+        throw InputError(table.where("otherwise"), "`otherwise = false` has no effect", "leave it out");
     if (table.has("phase")) entry.phase = read_flown_phase(table, duration_s);
     if (!entry.phase && !entry.otherwise) {
-        throw InputError(entry.where, "this entry does not say when",
+        throw InputError(entry.where, "this entry has no time",
                          "give it a phase, or `otherwise = true` for whatever the others leave");
     }
     if (entry.phase && !entry.otherwise) read_segment(table, duration_s[*entry.phase], entry);
     for (const std::string_view key : {"from", "to", "middle"}) {
         if (entry.otherwise && table.has(key)) {
-            throw InputError(table.where(key), fmt::format("`{}` stands with `otherwise`", key),
+            throw InputError(table.where(key), fmt::format("`{}` is given with `otherwise`", key),
                              "`otherwise` is what is left; leave one of them out");
         }
     }
@@ -155,10 +155,10 @@ void refuse_second_otherwise(const std::vector<ScheduleEntry>& entries) {
                     earlier.where.line),
         first.whole_phase || second.whole_phase
             ? "give the entry of the whole phase `otherwise = true`, and it takes what the others leave"
-            : "let one end where the other begins");
+            : "end one where the other begins");
 }
 
-/// Where an entry lies once it meets its neighbours, or an end of the phase, up to rounding.
+/// An entry, with times that meet its neighbours and the ends of the phase exactly.
 struct PlacedEntry {
     PhaseSegment segment;
     const ScheduleEntry* entry;

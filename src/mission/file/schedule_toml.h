@@ -32,14 +32,14 @@ std::vector<ScheduleEntry> read_schedule(const TomlTable& mission, const compute
 /// twice or has nothing left to cover.
 Schedule resolve_schedule(const std::vector<ScheduleEntry>& entries, const PerPhase<double>& duration_s);
 
-/// The segments of the explicit entries alone, in order: what is fixed of a schedule yet to be planned. Throws
+/// The segments of the explicit entries, in order: the fixed part of a schedule to be planned. Throws
 /// InputError for two entries at the same time, and for `otherwise`, which would leave nothing to plan.
 Schedule resolve_fixed_segments(const std::vector<ScheduleEntry>& entries, const PerPhase<double>& duration_s);
 
 /// The phase at `phase`. Throws InputError for one that there is not, or that the mission does not fly.
 Phase read_flown_phase(const TomlTable& entry, const PerPhase<double>& duration_s);
 
-/// The time at `key`: seconds, or percent ("40 %") of `duration_s`. Throws InputError for what is neither.
+/// The time at `key`: seconds, or percent ("40 %") of `duration_s`. Throws InputError for anything else.
 double read_time_s(const TomlTable& entry, std::string_view key, double duration_s);
 
 }  // namespace flightwatt::mission

@@ -6,7 +6,7 @@
 namespace flightwatt::mission {
 namespace {
 
-/// Whether b lies on or below the line from a to c.
+/// Whether b is on or below the line from a to c.
 bool is_under(const CurvePoint& a, const CurvePoint& b, const CurvePoint& c) {
     return (b.y - a.y) * (c.x - a.x) <= (c.y - a.y) * (b.x - a.x);
 }

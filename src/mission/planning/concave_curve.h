@@ -20,8 +20,7 @@ ConcaveCurve concave_hull(std::vector<CurvePoint> points);
 
 double value_at(const ConcaveCurve& curve, double x);
 
-/// What is known of a rising map over a part of its axis: where the part's end is mapped to, and that the map rises by
-/// at least `growth` for 1.
+/// A rising map on an interval: the image of its end, and the least slope.
 struct MappedCell {
     double start = 0.0;
     double end = 0.0;
@@ -29,7 +28,7 @@ struct MappedCell {
     double growth = 1.0;
 };
 
-/// Adds points under whose hull lies `curve` plus `gain`, applied to whatever the map may be within the cell.
+/// Adds points whose hull is an upper bound of `gain` plus `curve` of any map that is possible within the cell.
 void add_mapped(const ConcaveCurve& curve, const MappedCell& cell, double gain, std::vector<CurvePoint>& points);
 
 }  // namespace flightwatt::mission

@@ -12,7 +12,7 @@ struct Label : RunStep {
     CostAndUtility sum;
 };
 
-/// The best found and what is known of the rest.
+/// The best solution found, and bounds.
 struct Search {
     const KnapsackGraph& graph;
     double budget = 0.0;
@@ -27,12 +27,12 @@ struct Search {
 /// Rounding in sums of costs.
 double slack(double budget) { return 1e-12 * std::max(1.0, std::abs(budget)); }
 
-/// One pass from the first slot to the last with at most so many labels at a time.
+/// One pass from the first slot to the last with a limited number of labels.
 class LabelPass {
   public:
     LabelPass(const Search& search, std::size_t max_labels, double utility_gap)
         : search_(search), max_labels_(max_labels), utility_gap_(utility_gap) {
-        // Half of the gap for what is dropped as good as dominated, in two prunings a slot; half for bounds.
+        // Half of the gap for nearly dominated labels, in two prunings a slot; half for bounds.
         as_good_ = utility_gap / 2.0 / static_cast<double>(2 * search.graph.slots + 2);
         dropped_bound_ = search.best.sum.utility;
     }
@@ -93,8 +93,8 @@ class LabelPass {
         return label.sum.utility + utility_to_go + search_.slope * (search_.budget - label.sum.cost);
     }
 
-    /// Leaves labels that can still win, none as good as dominated by another. `utility_to_go` and `minus_cost`
-    /// are what the rest can bring by slope and what it costs at least.
+    /// Removes labels that are nearly dominated or cannot win. `utility_to_go` bounds the utility of the remaining
+    /// slots by slope, `minus_cost` is minus their least cost.
     void prune(std::vector<Label>& labels, double utility_to_go, double minus_cost) {
         const double max_cost = search_.budget + minus_cost + slack(search_.budget);
         std::erase_if(labels, [&](const Label& label) {
@@ -138,8 +138,8 @@ KnapsackPath path_by(const KnapsackGraph& graph, double utility_weight, double c
     return best_path(graph, cost_to_go(graph, utility_weight, cost_weight), utility_weight, cost_weight);
 }
 
-/// Brings the relaxation's slope to where its bound is least: between a path that costs too much and one
-/// that does not, the slope of the line through both, until no path lies above that line.
+/// Minimizes the bound of the relaxation over its slope: that of the line through a path within the budget and one
+/// beyond it, until no path is above that line.
 void relax(const KnapsackPath& greedy, Search& search) {
     auto& beyond = search.beyond;
     beyond = greedy;
@@ -155,9 +155,8 @@ void relax(const KnapsackPath& greedy, Search& search) {
     }
 }
 
-/// The best within the budget of the paths that begin as one of two and end as the other. Where all slots are alike,
-/// the relaxation jumps from one path to the other, and everything in between is as good by its slope: more than labels
-/// hold. Returns whether one is better than the best.
+/// Tries the paths that begin as one of the two and end as the other. Where all slots are equal, all of these have the
+/// same bound, and are more than labels hold. Returns whether one improves the best.
 bool cross(const MultipleChoiceKnapsack& problem, Search& search) {
     const auto from = search.best;
     const auto& to = search.beyond;
@@ -213,8 +212,8 @@ void add_run(const MultipleChoiceKnapsack& problem, std::size_t from, std::size_
         run.sum.utility += problem.utility_per_s[choice] * slot.duration_s;
     } while (lasts_s < problem.dwell_s - same_duration_s && run.to < end);
     const bool lasts = lasts_s >= problem.dwell_s - same_duration_s;
-    const bool goes_on = end < slots.size() && slots[end].fixed == choice;
-    if (!lasts && !goes_on && !begins_gap(slots, from)) return;
+    const bool continues = end < slots.size() && slots[end].fixed == choice;
+    if (!lasts && !continues && !begins_gap(slots, from)) return;
     if (std::isfinite(run.sum.cost)) runs.push_back(run);
 }
 
@@ -224,7 +223,7 @@ ChoiceRun single(const MultipleChoiceKnapsack& problem, std::size_t slot, std::s
     return {choice, slot + 1, {s.cost[choice], problem.utility_per_s[choice] * s.duration_s}};
 }
 
-/// What runs already goes on until it has lasted.
+/// The running choice continues until its dwell time is over.
 void commit_running(const MultipleChoiceKnapsack& problem, KnapsackGraph& graph) {
     if (!problem.running || problem.slots.empty() || problem.slots[0].fixed) return;
     graph.begin_choice = problem.running->choice;

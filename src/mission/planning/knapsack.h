@@ -14,7 +14,7 @@ struct KnapsackSlot {
     std::vector<double> cost;          ///< of every choice, in the unit of the budget; infinite: impossible
 };
 
-/// What runs already as the first slot starts.
+/// The choice that is running when the first slot starts.
 struct RunningChoice {
     std::size_t choice = 0;
     double since_s = 0.0;
@@ -26,7 +26,7 @@ struct RunningChoice {
 struct MultipleChoiceKnapsack {
     std::vector<KnapsackSlot> slots;
     std::vector<double> utility_per_s;  ///< of every choice
-    std::size_t free_choices = 0;       ///< the first so many may be chosen, the others are only fixed
+    std::size_t free_choices = 0;       ///< number of leading choices that may be chosen; the others are only fixed
     double budget = 0.0;
     double dwell_s = 0.0;
     std::optional<RunningChoice> running;
@@ -44,13 +44,13 @@ struct KnapsackSolution {
 /// How far to search.
 struct SearchLimits {
     double relative_gap = 1e-6;      ///< between utility and bound, at which the search ends
-    std::size_t max_labels = 20000;  ///< kept a slot; if more are needed, the bound says what that may cost
+    std::size_t max_labels = 20000;  ///< per slot; dropping more of them raises the bound
     std::size_t value_cells = 96;    ///< of the bound over charge, where the battery's state counts (schedule_value.h)
 };
 
-/// Lagrangian relaxation finds the slope of utility over cost and a bound; labels (cost, utility) are then
-/// carried from slot to slot, without those that another one dominates or whose own bound says that they
-/// cannot win. What is dropped for want of room raises the bound, so that it holds in any case.
+/// Lagrangian relaxation gives a bound and a slope of utility over cost; a label search over (cost, utility) then drops
+/// labels that are dominated or cannot exceed the best by their bound. Labels dropped to limit their number raise the
+/// bound.
 KnapsackSolution solve_knapsack(const MultipleChoiceKnapsack& problem, const SearchLimits& effort = {});
 
 /// The sums of a part of a sequence of slots.
@@ -66,8 +66,8 @@ struct ChoiceRun {
     CostAndUtility sum;
 };
 
-/// The choices as a graph: between two slots stands a choice that has been on for long enough to end. From
-/// there either a run begins that lasts as long as it must, or the same choice goes on for one slot more.
+/// The choices as a graph: at a node between two slots, a choice has run for long enough to end. From there either a
+/// run of minimum duration begins, or the same choice continues for one slot.
 struct KnapsackGraph {
     std::size_t slots = 0;
     std::size_t choices = 0;
@@ -85,12 +85,12 @@ KnapsackGraph make_knapsack_graph(const MultipleChoiceKnapsack& problem);
 /// The best that can follow: the greatest of utility_weight * utility - cost_weight * cost over the rest.
 struct CostToGo {
     std::vector<double> any;                ///< at each slot, free to begin a run
-    std::vector<std::vector<double>> with;  ///< the same while a choice runs that may go on
+    std::vector<std::vector<double>> with;  ///< the same while a choice runs that may continue
 };
 
 CostToGo cost_to_go(const KnapsackGraph& graph, double utility_weight, double cost_weight);
 
-/// A part of a schedule that ends with a run; `before` is where the run before stands in the trail.
+/// A part of a schedule that ends with a run; `before` is the index of the previous run in the trail.
 struct RunStep {
     std::size_t before = 0;
     std::size_t choice = 0;

@@ -38,32 +38,23 @@ double surplus_percent(const Mission& mission) {
 
 Mission LimitSearch::mission(double value) const { return with_minimum_energy_schedule(variation_(value)); }
 
-std::optional<Mission> LimitSearch::mission_if_it_fits(double value) {
+bool LimitSearch::fits(double value) {
     try {
-        return mission(value);
+        mission(value);
+        return true;
     } catch (const InputError& error) {
         misfit_ = error;
-        return std::nullopt;
+        return false;
     }
 }
 
-double LimitSearch::surplus(double value) const {
-    const auto known = known_.find(value);
-    if (known != known_.end()) return known->second;
-    return known_[value] = surplus(mission(value));
-}
-
-double LimitSearch::surplus(const Mission& mission) const {
-    return probability_ ? drawn(mission, *probability_).spare_percent(*probability_) : surplus_percent(mission);
-}
-
-std::optional<double> LimitSearch::surplus_if_it_fits(double value) {
-    try {
-        return surplus(value);
-    } catch (const InputError& error) {
-        misfit_ = error;
-        return std::nullopt;
+std::optional<double> LimitSearch::surplus(double value) {
+    const auto [known, is_new] = known_.try_emplace(value);
+    if (is_new && fits(value)) {
+        const auto at = mission(value);
+        known->second = probability_ ? drawn(at, *probability_).spare_percent(*probability_) : surplus_percent(at);
     }
+    return known->second;
 }
 
 std::string LimitSearch::share_text() const {

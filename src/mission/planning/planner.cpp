@@ -26,21 +26,25 @@ bool draws_less(const Choice& a, const Choice& b) {
     return a.power_w != b.power_w ? a.power_w < b.power_w : a.utility_per_s > b.utility_per_s;
 }
 
-/// Every way to run one component; none stands for off.
-std::vector<std::optional<compute::RunningComponent>> ways_to_run(std::size_t component,
-                                                                  const ComponentChoices& choices) {
-    std::vector<std::optional<compute::RunningComponent>> ways{compute::RunningComponent{component, {}}};
-    for (const auto& levels : choices.levels) {
-        std::vector<std::optional<compute::RunningComponent>> longer;
-        for (const auto& way : ways) {
-            for (const double level : levels) {
-                longer.push_back(way);
-                longer.back()->qos.push_back(level);
-            }
+/// Each of `starts` with each of `values`, which `add` appends.
+template <typename Start, typename Values, typename Add>
+std::vector<Start> combined(const std::vector<Start>& starts, const Values& values, const Add& add) {
+    std::vector<Start> all;
+    for (const auto& value : values) {
+        for (const auto& start : starts) {
+            all.push_back(start);
+            add(all.back(), value);
         }
-        ways = std::move(longer);
     }
-    if (choices.may_be_off) ways.emplace_back(std::nullopt);
+    return all;
+}
+
+/// Every way to run one component; empty: off.
+std::vector<compute::Configuration> ways_to_run(std::size_t component, const ComponentChoices& choices) {
+    std::vector<compute::Configuration> ways{{{component, {}}}};
+    for (const auto& levels : choices.levels)
+        ways = combined(ways, levels, [](auto& way, double level) { way.front().qos.push_back(level); });
+    if (choices.may_be_off) ways.emplace_back();
     return ways;
 }
 
@@ -56,21 +60,14 @@ void require_few(const PlanningProblem& problem) {
     throw InputError({problem.setup.file},
                      fmt::format("the components have {:.3g} combinations of levels, more than {:.0e} to choose from",
                                  combinations, max_combinations),
-                     "say with `levels` in [plan] which ones may be chosen");
+                     "restrict the choices with `levels` in [plan]");
 }
 
 std::vector<Choice> every_choice(const PlanningProblem& problem) {
     std::vector<compute::Configuration> runs{{}};
-    for (std::size_t i = 0; i < problem.plan.choices.size(); ++i) {
-        std::vector<compute::Configuration> longer;
-        for (const auto& way : ways_to_run(i, problem.plan.choices[i])) {
-            for (const auto& run : runs) {
-                longer.push_back(run);
-                if (way) longer.back().push_back(*way);
-            }
-        }
-        runs = std::move(longer);
-    }
+    for (std::size_t i = 0; i < problem.plan.choices.size(); ++i)
+        runs = combined(runs, ways_to_run(i, problem.plan.choices[i]),
+                        [](auto& run, const auto& way) { run.insert(run.end(), way.begin(), way.end()); });
     std::vector<Choice> choices;
     choices.reserve(runs.size());
     for (auto& run : runs) {
@@ -81,8 +78,8 @@ std::vector<Choice> every_choice(const PlanningProblem& problem) {
     return choices;
 }
 
-/// Only what has more utility than everything that draws less. Whatever else is kept: with a dwell time, going
-/// on with what is fixed can be better than something better.
+/// Choices with more utility than all that draw less, and those of `kept`: with a dwell time, continuing a fixed
+/// configuration can be better than a change.
 std::vector<Choice> undominated(std::vector<Choice> choices, const std::vector<compute::Configuration>& kept) {
     std::ranges::stable_sort(choices, draws_less);
     std::optional<double> most;
@@ -115,7 +112,7 @@ void require_few_slots(const PlanningProblem& problem, double duration_s) {
         "make slot_s in [plan] longer");
 }
 
-/// None if it is none of the choices.
+/// std::nullopt if it is not among the choices.
 std::optional<std::size_t> index_of(const PlanningTables& planner, const compute::Configuration& run) {
     const auto found = std::ranges::find(planner.configurations, run);
     if (found == planner.configurations.end()) return std::nullopt;
@@ -167,8 +164,8 @@ std::vector<double> compute_w_of(const PlanningProblem& problem, const PlanningT
     return compute_w;
 }
 
-/// In steps of a length, but not shorter than the planner's. What longer ones are off by falls with the square of the
-/// step, as at a knot of the open-circuit voltage.
+/// With steps of at least the planner's length. The error of longer ones is proportional to the square of the step, as
+/// at a knot of the open-circuit voltage.
 SlotDynamics dynamics_of(const PlanningProblem& problem, const PlanningTables& planner, const PlanStart& start,
                          const std::vector<MissionSlot>& slots, double step_s) {
     const double longer_s = std::max(step_s, *planner.step_s);

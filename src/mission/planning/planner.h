@@ -14,19 +14,19 @@ struct MissionSlot : PhaseSegment {
     std::optional<compute::Configuration> fixed;
 };
 
-/// What a slot takes of the battery [points].
+/// Depletion of the battery by a slot [points].
 struct SlotDepletion {
     double mechanical_percent = 0.0;  ///< while nothing runs
     std::vector<double> percent;      ///< with each of the choices; infinite if the battery cannot deliver that
 };
 
-/// What all plans of a problem have in common: configurations with their utility, and how they deplete the battery.
+/// Tables for all plans of a problem: configurations with their utility and depletion.
 struct PlanningTables {
     std::vector<compute::Configuration> configurations;  ///< the choices
     std::vector<double> utility_per_s;                   ///< of each of them
-    std::size_t free_choices = 0;                        ///< the first so many may be chosen; the others are only fixed
-    std::vector<MissionSlot> slots;                      ///< of the whole mission
-    std::vector<SlotDepletion> depletions;               ///< of each slot
+    std::size_t free_choices = 0;           ///< number of leading ones that may be chosen; the others are only fixed
+    std::vector<MissionSlot> slots;         ///< of the whole mission
+    std::vector<SlotDepletion> depletions;  ///< of each slot
     /// The step of schedule_search.h, for batteries whose depletion by a slot depends on what ran before: their source
     /// follows their charge, or they may be cut off. There are no depletions then.
     std::optional<double> step_s = std::nullopt;
@@ -57,10 +57,10 @@ std::vector<MissionSlot> make_slots(const PlanningProblem& problem, double time_
 struct PlanStart {
     double time_s = 0.0;  ///< of the mission
     double soc_percent = 100.0;
-    /// For the dwell time; ignored if it is none of the planner's.
+    /// For the dwell time; ignored if it is not among the configurations.
     std::optional<compute::Configuration> running = std::nullopt;
     double running_for_s = 0.0;
-    double mechanical_factor = 1.0;  ///< of mechanical power to what the model predicts
+    double mechanical_factor = 1.0;  ///< of mechanical power to the model's
     double rc_voltage_v = 0.0;       ///< of a Thévenin battery
 };
 

@@ -19,14 +19,14 @@ struct ComputeRange {
     std::size_t min_choice = 0;
 };
 
-ComputeRange range_of(const ScheduleProblem& question, std::size_t slot) {
-    const auto& compute_w = question.coarse.compute_w;
-    if (const auto fixed = question.choices.slots[slot].fixed) return {compute_w[*fixed], compute_w[*fixed], *fixed};
+ComputeRange range_of(const ScheduleProblem& problem, std::size_t slot) {
+    const auto& compute_w = problem.coarse.compute_w;
+    if (const auto fixed = problem.choices.slots[slot].fixed) return {compute_w[*fixed], compute_w[*fixed], *fixed};
     ComputeRange range{compute_w[0], compute_w[0], 0};
     for (std::size_t c = 0; c < compute_w.size(); ++c) {
-        const bool is_free = c < question.choices.free_choices;
-        const bool goes_on = question.choices.running && question.choices.running->choice == c;
-        if (!is_free && !goes_on) continue;
+        const bool is_free = c < problem.choices.free_choices;
+        const bool continues = problem.choices.running && problem.choices.running->choice == c;
+        if (!is_free && !continues) continue;
         if (compute_w[c] < range.min_w) {
             range.min_w = compute_w[c];
             range.min_choice = c;
@@ -56,19 +56,19 @@ SlopeRange slopes_in(const SlotDynamics& dynamics, double from_percent, double t
 }
 
 /// No schedule that lands has less in the quick dynamics.
-double quick_reserve_percent(const ScheduleProblem& question) {
-    return question.reserve_soc_percent - question.coarse.error_percent;
+double quick_reserve_percent(const ScheduleProblem& problem) {
+    return problem.reserve_soc_percent - problem.coarse.error_percent;
 }
 
-bool fly_least(const ScheduleProblem& question, UtilityBound& value) {
-    value.min_power_trajectory = {question.start};
-    for (std::size_t i = 0; i < question.coarse.slots.size(); ++i) {
+bool fly_least(const ScheduleProblem& problem, UtilityBound& value) {
+    value.min_power_trajectory = {problem.start};
+    for (std::size_t i = 0; i < problem.coarse.slots.size(); ++i) {
         const auto after =
-            advance_slot(question.coarse, i, range_of(question, i).min_choice, value.min_power_trajectory.back());
+            advance_slot(problem.coarse, i, range_of(problem, i).min_choice, value.min_power_trajectory.back());
         if (!after) return false;
         value.min_power_trajectory.push_back(*after);
     }
-    value.spare_percent = value.min_power_trajectory.back().soc_percent - quick_reserve_percent(question);
+    value.spare_percent = value.min_power_trajectory.back().soc_percent - quick_reserve_percent(problem);
     return value.spare_percent >= 0.0;
 }
 
@@ -99,8 +99,8 @@ std::optional<CurrentBound> current_bound(double power_w, double source_v, doubl
 
 /// A volt of RC voltage costs current, the least at the least power, for as long as it lasts; with it goes a part of
 /// the charge, whose slope makes up for some of it.
-void set_rc_low(const ScheduleProblem& question, UtilityBound& value) {
-    const auto& dynamics = question.coarse;
+void set_rc_low(const ScheduleProblem& problem, UtilityBound& value) {
+    const auto& dynamics = problem.coarse;
     value.rc_low.assign(dynamics.slots.size() + 1, 0.0);
     if (dynamics.circuit.rc_resistance_ohm == 0.0) return;
     const double steepest =
@@ -108,7 +108,7 @@ void set_rc_low(const ScheduleProblem& question, UtilityBound& value) {
             .greatest;
     for (std::size_t i = dynamics.slots.size(); i-- > 0;) {
         const auto& slot = dynamics.slots[i];
-        const double power_w = slot.min_mechanical_w + range_of(question, i).min_w;
+        const double power_w = slot.min_mechanical_w + range_of(problem, i).min_w;
         const double source_v = open_circuit_voltage_v(dynamics, value.min_power_trajectory[i].soc_percent);
         const auto bound = current_bound(std::max(0.0, power_w), source_v, dynamics.circuit.resistance_ohm);
         const double percent_per_vs =
@@ -118,24 +118,24 @@ void set_rc_low(const ScheduleProblem& question, UtilityBound& value) {
     }
 }
 
-double max_w(const ScheduleProblem& question, std::size_t slot) {
+double max_w(const ScheduleProblem& problem, std::size_t slot) {
     return (1.0 + between_samples) *
-           std::max(0.0, question.coarse.slots[slot].max_mechanical_w + range_of(question, slot).max_w);
+           std::max(0.0, problem.coarse.slots[slot].max_mechanical_w + range_of(problem, slot).max_w);
 }
 
 /// The greatest RC voltage of what lands; none if the power limit is near.
-std::optional<double> max_rc_v(const ScheduleProblem& question, const UtilityBound& value) {
-    const auto& dynamics = question.coarse;
+std::optional<double> max_rc_v(const ScheduleProblem& problem, const UtilityBound& value) {
+    const auto& dynamics = problem.coarse;
     double power_w = 0.0;
-    for (std::size_t i = 0; i < dynamics.slots.size(); ++i) power_w = std::max(power_w, max_w(question, i));
+    for (std::size_t i = 0; i < dynamics.slots.size(); ++i) power_w = std::max(power_w, max_w(problem, i));
     const double rest_v = open_circuit_voltage_v(dynamics, min_percent(value, dynamics.slots.size()));
-    double rc_v = question.start.rc_voltage_v;
+    double rc_v = problem.start.rc_voltage_v;
     constexpr int rounds = 50;  // to where the current's own voltage holds it
     for (int round = 0; round < rounds; ++round) {
         const auto bound = current_bound(power_w, rest_v - rc_v, dynamics.circuit.resistance_ohm);
         if (!bound) return std::nullopt;
         const double next_v =
-            std::max(question.start.rc_voltage_v, dynamics.circuit.rc_resistance_ohm * bound->current_a);
+            std::max(problem.start.rc_voltage_v, dynamics.circuit.rc_resistance_ohm * bound->current_a);
         if (next_v <= rc_v * (1.0 + 1e-9)) return next_v * (1.0 + 1e-6);
         rc_v = next_v;
     }
@@ -149,21 +149,21 @@ double outweighing_percent_per_v(const SlotDynamics& dynamics, double from_perce
     return least > 0.0 ? 1.0 / least : std::numeric_limits<double>::infinity();
 }
 
-/// The same as set_rc_low from above: what a volt costs at most, as long as a cut-off or the power limit cannot end
-/// what lands otherwise; where they can, what outweighs it.
-void set_rc_high(const ScheduleProblem& question, UtilityBound& value) {
-    const auto& dynamics = question.coarse;
+/// Upper counterpart of set_rc_low: the greatest cost of a volt, unless a cut-off or the power limit could end a flight
+/// that lands otherwise; then the charge that outweighs it.
+void set_rc_high(const ScheduleProblem& problem, UtilityBound& value) {
+    const auto& dynamics = problem.coarse;
     value.rc_usual.assign(dynamics.slots.size() + 1, 0.0);
     value.rc_high.assign(dynamics.slots.size() + 1, 0.0);
     value.rc_joined = value.rc_high;
     if (dynamics.circuit.rc_resistance_ohm == 0.0) return;
-    const auto rc_v = max_rc_v(question, value);
+    const auto rc_v = max_rc_v(problem, value);
     const double end_percent = min_percent(value, dynamics.slots.size());
     bool may_end = false;
-    double of_limit = 0.0;  // what a volt gives in a slot whose power the voltage limits
+    double of_limit = 0.0;  // gain by a volt in a slot whose power the voltage limits
     for (std::size_t i = dynamics.slots.size(); i-- > 0;) {
         const double source_v = open_circuit_voltage_v(dynamics, min_percent(value, i + 1)) - rc_v.value_or(0.0);
-        const auto bound = current_bound(max_w(question, i), source_v, dynamics.circuit.resistance_ohm);
+        const auto bound = current_bound(max_w(problem, i), source_v, dynamics.circuit.resistance_ohm);
         const double outweighs =
             outweighing_percent_per_v(dynamics, end_percent, value.min_power_trajectory[i].soc_percent);
         double usual = outweighs;
@@ -202,19 +202,18 @@ double energy_j(const SlotDynamics& dynamics, std::size_t from, const ChoiceRun&
     return sum_j;
 }
 
-/// How far the RC voltage of what draws most gets above the least, in equal levels; what is above the last counts as
-/// there.
-void set_levels(const ScheduleProblem& question, UtilityBound& value) {
+/// Equal levels of RC voltage from the least power's to the greatest power's; voltages above count as the last.
+void set_levels(const ScheduleProblem& problem, UtilityBound& value) {
     constexpr std::size_t levels = 5;
     constexpr std::size_t cells_with_levels = 48;  // fewer cells are meant to be quick
-    const auto& dynamics = question.coarse;
+    const auto& dynamics = problem.coarse;
     value.level_v.assign(dynamics.slots.size() + 1, 0.0);
     if (dynamics.circuit.rc_resistance_ohm == 0.0 || value.cells < cells_with_levels) return;
     value.levels = levels;
     value.cells /= 3;
     double above_v = 0.0;
     for (std::size_t i = 0; i < dynamics.slots.size(); ++i) {
-        const auto range = range_of(question, i);
+        const auto range = range_of(problem, i);
         const double source_v = open_circuit_voltage_v(dynamics, value.min_power_trajectory[i].soc_percent);
         const double steady_v = dynamics.circuit.rc_resistance_ohm * (range.max_w - range.min_w) / source_v;
         above_v = relaxed(above_v, steady_v / dynamics.circuit.rc_time_constant_s,
@@ -224,16 +223,16 @@ void set_levels(const ScheduleProblem& question, UtilityBound& value) {
 }
 
 /// From the mission's end back, by bisection.
-void set_enough(const ScheduleProblem& question, UtilityBound& value) {
+void set_enough(const ScheduleProblem& problem, UtilityBound& value) {
     constexpr std::size_t steps = 40;
     constexpr int halvings = 20;
-    const auto& dynamics = question.coarse;
+    const auto& dynamics = problem.coarse;
     if (dynamics.cutoff_voltage_v == 0.0) return;
     const std::size_t slots = dynamics.slots.size();
     const auto levels = static_cast<double>(value.levels);
     for (std::size_t i = 0; i <= slots; ++i)
         value.enough_step_v.push_back(value.level_v[i] * levels / static_cast<double>(steps));
-    value.min_charge_percent.assign(slots + 1, std::vector<double>(steps + 1, quick_reserve_percent(question)));
+    value.min_charge_percent.assign(slots + 1, std::vector<double>(steps + 1, quick_reserve_percent(problem)));
     for (std::size_t i = slots; i-- > 0;) {
         for (std::size_t k = 0; k <= steps; ++k) {
             const double rc_v =
@@ -242,7 +241,7 @@ void set_enough(const ScheduleProblem& question, UtilityBound& value) {
             double high = value.min_power_trajectory[i].soc_percent;
             for (int halving = 0; halving < halvings; ++halving) {
                 const double middle = std::midpoint(too_low, high);
-                const auto after = advance_slot(dynamics, i, range_of(question, i).min_choice, {middle, rc_v});
+                const auto after = advance_slot(dynamics, i, range_of(problem, i).min_choice, {middle, rc_v});
                 (after && may_land(value, i + 1, *after) ? high : too_low) = middle;
             }
             value.min_charge_percent[i][k] = too_low;
@@ -259,7 +258,7 @@ const std::vector<ConcaveCurve>& curves_with(const UtilityBound& value, std::siz
     return choice < with.size() && !with[choice].empty() ? with[choice] : value.any[slot];
 }
 
-/// Two charges part by what the higher one's voltage saves: of a slope m at least m P / U^2 points a second for each.
+/// Two charges diverge as the higher one's voltage saves current: of a slope m by m P / U^2 points a second or more.
 RunTransition reach_of(const SlotDynamics& dynamics, const UtilityBound& value, std::size_t from,
                        const ChoiceRun& run) {
     const std::size_t charges = value.cells + 1;
@@ -300,9 +299,9 @@ void add_run_points(const UtilityBound& value, std::size_t from, std::size_t lev
 }
 
 /// The curves of one slot, of those behind it.
-void set_curves(const ScheduleProblem& question, const KnapsackGraph& graph, std::size_t i, UtilityBound& value) {
-    for (const auto& run : graph.runs[i]) value.runs[i].push_back(reach_of(question.coarse, value, i, run));
-    for (const auto& run : graph.one_more[i]) value.one_more[i].push_back(reach_of(question.coarse, value, i, run));
+void set_curves(const ScheduleProblem& problem, const KnapsackGraph& graph, std::size_t i, UtilityBound& value) {
+    for (const auto& run : graph.runs[i]) value.runs[i].push_back(reach_of(problem.coarse, value, i, run));
+    for (const auto& run : graph.one_more[i]) value.one_more[i].push_back(reach_of(problem.coarse, value, i, run));
     if (!graph.one_more[i].empty()) value.with[i].resize(graph.choices);
     for (std::size_t level = 0; level < value.levels; ++level) {
         std::vector<CurvePoint> points;
@@ -319,21 +318,21 @@ void set_curves(const ScheduleProblem& question, const KnapsackGraph& graph, std
 
 }  // namespace
 
-UtilityBound make_schedule_value(const ScheduleProblem& question, const KnapsackGraph& graph, std::size_t cells) {
+UtilityBound make_schedule_value(const ScheduleProblem& problem, const KnapsackGraph& graph, std::size_t cells) {
     UtilityBound value;
     value.cells = cells;
-    value.possible = fly_least(question, value);
+    value.possible = fly_least(problem, value);
     if (!value.possible) return value;
-    set_rc_low(question, value);
-    set_rc_high(question, value);
-    set_levels(question, value);
-    set_enough(question, value);
+    set_rc_low(problem, value);
+    set_rc_high(problem, value);
+    set_levels(problem, value);
+    set_enough(problem, value);
     value.any.resize(graph.slots + 1);
     value.with.resize(graph.slots + 1);
     value.runs.resize(graph.slots);
     value.one_more.resize(graph.slots);
-    value.any.back().assign(value.levels, {{{quick_reserve_percent(question), 0.0}}});
-    for (std::size_t i = graph.slots; i-- > graph.begin;) set_curves(question, graph, i, value);
+    value.any.back().assign(value.levels, {{{quick_reserve_percent(problem), 0.0}}});
+    for (std::size_t i = graph.slots; i-- > graph.begin;) set_curves(problem, graph, i, value);
     return value;
 }
 

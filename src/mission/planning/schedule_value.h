@@ -9,12 +9,12 @@
 
 namespace flightwatt::mission {
 
-/// A question to search schedules for: which choice to run in each slot, so that the battery lands with the reserve.
+/// Which choice to run in each slot, so that the battery lands with the reserve.
 struct ScheduleProblem {
     const SlotDynamics& exact;
     const SlotDynamics& coarse;             ///< in longer steps, for the many states that are compared
-    const SlotDynamics& medium;             ///< in between, where `coarse` cannot tell
-    const MultipleChoiceKnapsack& choices;  ///< its costs and its budget count for nothing
+    const SlotDynamics& medium;             ///< in between, where `coarse` is too inaccurate
+    const MultipleChoiceKnapsack& choices;  ///< costs and budget are ignored
     battery::BatteryState start;
     double reserve_soc_percent = 0.0;
 };
@@ -33,15 +33,14 @@ struct RunTransition {
 
 /// An upper bound of the utility that can follow from any state in which a slot may be reached.
 ///
-/// If nothing charges, more charge and less RC voltage are better at any later time: with y = -U_rc the right sides of
-/// Eqs. 23 and 26 rise with the other variable (a cooperative system). So no schedule has more charge or less RC
-/// voltage than the one of least power, the difference of two charges never shrinks, and RC voltage above the least can
-/// be traded for charge: `rc_low` points a volt are no loss, `rc_high` are no gain.
+/// If nothing charges, more charge and less RC voltage are better at any later time (Eqs. 23 and 26 with -U_rc are a
+/// cooperative system). So no schedule has more charge or less RC voltage than that of least power, the difference of
+/// two charges never shrinks, and RC voltage costs between `rc_low` and `rc_high` points a volt.
 struct UtilityBound {
-    /// Of the course of least power at each slot's start, and the mission's end.
+    /// Of the schedule of least power at each slot's start, and the mission's end.
     std::vector<battery::BatteryState> min_power_trajectory;
-    double spare_percent = 0.0;  ///< that course lands with so much above the reserve; no state that lands is lower
-    std::size_t cells = 0;       ///< the charges from there up to the course
+    double spare_percent = 0.0;  ///< surplus of that schedule over the reserve; no state that lands is lower by more
+    std::size_t cells = 0;       ///< of charge, from there up to min_power_trajectory
     std::vector<double> rc_low;  ///< [points/V] at each slot's start
     std::vector<double> rc_high;
     std::vector<double> rc_usual;  ///< rc_high, if neither a cut-off nor the power limit ends what lands otherwise
@@ -54,13 +53,13 @@ struct UtilityBound {
     std::vector<std::vector<double>> min_charge_percent;
     std::vector<double> enough_step_v;
     std::vector<std::vector<ConcaveCurve>> any;  ///< of each level, over effective charge; free to begin a run
-    std::vector<std::vector<std::vector<ConcaveCurve>>> with;  ///< while a choice runs that may go on; none: as any
+    std::vector<std::vector<std::vector<ConcaveCurve>>> with;  ///< while a choice runs that may continue; empty: as any
     std::vector<std::vector<RunTransition>> runs;              ///< as the graph's
     std::vector<std::vector<RunTransition>> one_more;
     bool possible = true;  ///< the course of least power lands with the reserve
 };
 
-UtilityBound make_schedule_value(const ScheduleProblem& question, const KnapsackGraph& graph, std::size_t cells);
+UtilityBound make_schedule_value(const ScheduleProblem& problem, const KnapsackGraph& graph, std::size_t cells);
 
 EffectiveCharge effective_charge(const UtilityBound& value, std::size_t slot, const battery::BatteryState& state);
 

@@ -68,7 +68,7 @@ struct SlotStep {
     const battery::StepLength<double>& length;
 };
 
-/// What a step leads to.
+/// Result of a step.
 struct StepEnd {
     Moment end;
     double middle_percent = 0.0;
@@ -136,7 +136,7 @@ double max_transient_s(const battery::Battery& battery) {
     return has_pair ? battery.thevenin->rc_time_constant_s : std::numeric_limits<double>::infinity();
 }
 
-/// Whether missions that run one choice throughout end alike, where they do.
+/// Whether missions that run one choice throughout end with the same charge, where both end.
 bool agree(const SlotDynamics& a, const SlotDynamics& b, double soc_percent, double within_percent) {
     for (std::size_t choice = 0; choice < a.compute_w.size(); ++choice) {
         const auto end = advance_run(a, 0, a.slots.size(), choice, {soc_percent});

@@ -9,9 +9,8 @@
 
 namespace flightwatt::mission {
 
-/// The state of charge and the RC voltage, followed through slots in which one choice runs. `simulate` has the last
-/// word; this is for the many thousand parts of schedules that a search tries: the power is looked up, and steps are as
-/// long as the accuracy allows.
+/// Fast integration of state of charge and RC voltage over slots in which one choice runs, for the many schedules that
+/// a search compares: power is tabulated, and steps are as long as the accuracy permits. `simulate` is the reference.
 struct SlotDynamics {
     /// A part of a slot without a jump of power: the mechanical power at the starts, middles and ends of its
     /// steps, in each of which the current is a parabola.
@@ -33,12 +32,12 @@ struct SlotDynamics {
     battery::Circuit<double> circuit;
     battery::OpenCircuitVoltage open_circuit;
     double cutoff_voltage_v = 0.0;  ///< 0: never
-    // By what long steps are off at most. A battery that fails by less is let live.
+    // Error bounds of long steps. A battery that fails by less than these is not ended.
     double error_percent = 0.0;
     double error_v = 0.0;
 };
 
-/// What steps of choose_coarse_step_s are taken to be off by at most.
+/// Assumed error bounds for steps of choose_coarse_step_s.
 constexpr double coarse_error_percent = 2e-4;
 constexpr double coarse_error_v = 1e-4;
 
@@ -57,8 +56,8 @@ double choose_coarse_step_s(const MissionSetup& mission, const std::vector<Phase
                             const std::vector<double>& compute_w, double step_s);
 
 /// The battery at the end of a slot; none if it was cut off (by a parabola through the voltages at the start,
-/// middle and end of each step), or could not deliver at the start or the end of a step. State of charge goes on below
-/// 0, and not above 100.
+/// middle and end of each step), or could not deliver at the start or the end of a step. State of charge continues
+/// below 0, and not above 100.
 std::optional<battery::BatteryState> advance_slot(const SlotDynamics& dynamics, std::size_t slot, std::size_t choice,
                                                   const battery::BatteryState& state);
 

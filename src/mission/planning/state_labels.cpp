@@ -47,7 +47,7 @@ void join(const StateLabel& label, const MergeWeights& weights, StateLabel& into
 
 constexpr double unreachable = -std::numeric_limits<double>::infinity();
 
-/// What a choice's current leaves across the RC pair when it has run for long.
+/// RC voltage after a choice has run for long.
 double steady_rc_v(const SlotDynamics& dynamics, std::size_t slot, double compute_w, double soc_percent) {
     const double power_w = dynamics.slots[slot].mechanical_energy_j / dynamics.slots[slot].duration_s + compute_w;
     const double source_v = open_circuit_voltage_v(dynamics, soc_percent);
@@ -56,9 +56,9 @@ double steady_rc_v(const SlotDynamics& dynamics, std::size_t slot, double comput
     return dynamics.circuit.rc_resistance_ohm * 2.0 * power_w / (source_v + std::sqrt(std::max(0.0, discriminant)));
 }
 
-double after_run(const ScheduleProblem& question, const UtilityBound& bounds, const HeuristicValue& value,
+double after_run(const ScheduleProblem& problem, const UtilityBound& bounds, const HeuristicValue& value,
                  std::size_t from, const ChoiceRun& run, double soc_percent) {
-    const auto& dynamics = question.coarse;
+    const auto& dynamics = problem.coarse;
     const double min_w = *std::ranges::min_element(dynamics.compute_w);
     const double more_v = steady_rc_v(dynamics, from, dynamics.compute_w[run.choice], soc_percent) -
                           steady_rc_v(dynamics, from, min_w, soc_percent);
@@ -95,7 +95,7 @@ std::vector<StateLabel> merge_labels(const std::vector<StateLabel>& labels, cons
     return kept;
 }
 
-HeuristicValue make_cautious_value(const ScheduleProblem& question, const KnapsackGraph& graph,
+HeuristicValue make_cautious_value(const ScheduleProblem& problem, const KnapsackGraph& graph,
                                    const UtilityBound& bounds, std::size_t cells) {
     HeuristicValue value;
     value.at.resize(graph.slots + 1);
@@ -103,14 +103,14 @@ HeuristicValue make_cautious_value(const ScheduleProblem& question, const Knapsa
         auto& at = value.at[i];
         const double max_percent = bounds.min_power_trajectory[i].soc_percent;
         at.min_percent =
-            bounds.min_charge_percent.empty() ? question.reserve_soc_percent : bounds.min_charge_percent[i].front();
+            bounds.min_charge_percent.empty() ? problem.reserve_soc_percent : bounds.min_charge_percent[i].front();
         at.step_percent = std::max(1e-9, max_percent - at.min_percent) / static_cast<double>(cells);
         at.utility.assign(cells + 1, i == graph.slots ? 0.0 : unreachable);
         if (i == graph.slots) continue;
         for (std::size_t k = 0; k <= cells; ++k) {
             const double soc_percent = at.min_percent + at.step_percent * static_cast<double>(k);
             for (const auto& run : graph.runs[i])
-                at.utility[k] = std::max(at.utility[k], after_run(question, bounds, value, i, run, soc_percent));
+                at.utility[k] = std::max(at.utility[k], after_run(problem, bounds, value, i, run, soc_percent));
         }
     }
     return value;

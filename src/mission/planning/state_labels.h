@@ -7,8 +7,8 @@
 
 namespace flightwatt::mission {
 
-/// Schedules of the first slots that leave nearly the same: one of them by its last run, and a state and a utility that
-/// none of them is better than.
+/// Schedules of the first slots with nearly the same result: one of them, by its last run, and a state and a utility
+/// that none of them exceeds.
 struct StateLabel : RunStep {
     battery::BatteryState state;
     double utility = 0.0;
@@ -27,15 +27,14 @@ struct MergeWeights {
     double utility_tolerance = 0.0;    ///< a utility that counts for nothing
 };
 
-/// Labels, given in the order of their weighed charge, without those that another one is as good as: that has as much
-/// charge and, with RC voltage weighed by what it may cost at most, as much again; or no more RC voltage, where that
-/// may end a flight. Of the others, those that differ by less than `tolerance`, a utility, become one that none of them
-/// is better than.
+/// Removes dominated labels: another one has no less charge, neither adjusted by the least nor by the greatest cost of
+/// its RC voltage (or no more RC voltage, where that may end a flight). Of the others, those that differ by a utility
+/// of less than `tolerance` are merged into one that none of them exceeds. `labels` is in order of adjusted charge.
 std::vector<StateLabel> merge_labels(const std::vector<StateLabel>& labels, const MergeWeights& weights,
                                      double tolerance);
 
-/// About what utility can still follow, where a bound promises too much: before a cut-off that comes late, bounds like
-/// best the schedules that save their charge for what the voltage will not allow. Neither a bound nor a promise.
+/// Heuristic estimate of the utility that can follow, to rank labels where a late cut-off makes the upper bound too
+/// loose. It may be too high or too low.
 struct HeuristicValue {
     /// At a slot's start: from the least charge that may land up to that of the course of least power, in equal steps.
     struct AtSlot {
@@ -46,9 +45,9 @@ struct HeuristicValue {
     std::vector<AtSlot> at;
 };
 
-/// By dynamic programming over `cells` of charge a slot, as if the RC voltage stood above that of the course of least
-/// power by what the choice that begins makes of it in the end, and every run lasted no longer than it must.
-HeuristicValue make_cautious_value(const ScheduleProblem& question, const KnapsackGraph& graph,
+/// By dynamic programming over `cells` of charge a slot, with the steady RC voltage of each choice and runs of minimum
+/// duration.
+HeuristicValue make_cautious_value(const ScheduleProblem& problem, const KnapsackGraph& graph,
                                    const UtilityBound& bounds, std::size_t cells);
 
 double utility_to_go(const HeuristicValue& value, std::size_t slot, double soc_percent);

@@ -5,7 +5,7 @@
 namespace flightwatt::mission {
 namespace {
 
-constexpr double shortest_piece_s = 1.0;  // as long as the coarse steps of flights that are flown by the thousand
+constexpr double shortest_piece_s = 1.0;  // as the coarse steps of drawn flights
 
 }  // namespace
 
@@ -13,17 +13,13 @@ path::PiecewisePower measured_power_profile(const mechanical::PhasePower& measur
     const auto& time_s = measured.time_s;
     const auto& power_w = measured.power_w;
     path::PiecewisePower pieces;
-    double energy_j = 0.0;  // of the piece that is being made
-    double start_s = 0.0;
-    double before_j = 0.0;
+    double energy_j = 0.0;  // of the current piece
     for (std::size_t i = 1; i < time_s.size(); ++i) {
         energy_j += (power_w[i - 1] + power_w[i]) / 2.0 * (time_s[i] - time_s[i - 1]);
-        const double length_s = time_s[i] - start_s;
+        const double length_s = time_s[i] - pieces.time_s.back();
         if (length_s <= 0.0 || (length_s < shortest_piece_s && i + 1 < time_s.size())) continue;
-        const double mean_w = std::max(0.0, energy_j / length_s);
-        pieces.push_back({start_s, time_s[i], mean_w, before_j});
-        before_j += mean_w * length_s;
-        start_s = time_s[i];
+        pieces.time_s.push_back(time_s[i]);
+        pieces.energy_j.push_back(pieces.energy_j.back() + std::max(0.0, energy_j));
         energy_j = 0.0;
     }
     return pieces;

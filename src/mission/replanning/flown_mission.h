@@ -5,15 +5,15 @@
 
 namespace flightwatt::mission {
 
-/// Pieces of constant power with the energy that was measured in each: from sample to sample, or over as many as make a
-/// second. What was measured below 0, which no motor gives back, counts as 0.
+/// Pieces of constant power with the measured energy, of 1 s or more, at least from sample to sample. Negative energy
+/// counts as 0.
 path::PiecewisePower measured_power_profile(const mechanical::PhasePower& measured);
 
-/// What is known of a mission before a flight: the mission with another mechanical model. Conditions and path are
-/// dropped. Phases whose duration the mission does not state take as long as the model's.
+/// The mission as known before a flight: with another mechanical model, its durations where the mission states none,
+/// and without a path.
 MissionSetup nominal_mission(const MissionSetup& stated, const mechanical::MechanicalModel& model);
 
-/// The mission as a flight was: with its power and its durations. The flight must have every phase that is flown.
+/// The mission with the power and durations of a flight, which must have every phase that is flown.
 MissionSetup measured_mission(const MissionSetup& known, const mechanical::MeasuredFlight& flight);
 
 }  // namespace flightwatt::mission

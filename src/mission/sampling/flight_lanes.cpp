@@ -18,7 +18,7 @@ namespace {
 using battery::lane_count;
 using battery::Lanes;
 
-/// Energy demanded after the battery failed, as a part of what a full one holds [points].
+/// Energy demanded after the battery failed, as a fraction of its full energy [points].
 double unserved_demand_percent(const DrawnFlight& flight, double failed_at_s) {
     double missed_j = 0.0;
     for (const auto& segment : flight.segments) {
@@ -39,7 +39,7 @@ FlightOutcome land(const DrawnFlight& flight, const battery::Discharge& charge, 
     landing.depleted = charge.empty_at_s && *charge.empty_at_s < lasted_s;
     landing.battery_failure = charge.undeliverable || (charge.ended_at_s() && *charge.ended_at_s() < lasted_s);
     if (const auto& path = flight.setup.cruise_path; path && path->is_infeasible) {
-        landing.battery_failure = true;  // it never gets there
+        landing.battery_failure = true;
         landing.remaining_percent = std::min(-1e-9, landing.remaining_percent - units::percent_per_whole);
     } else if (landing.battery_failure) {
         const double failed_at_s = charge.undeliverable ? charge.undeliverable->time_s : *charge.ended_at_s();
@@ -48,7 +48,7 @@ FlightOutcome land(const DrawnFlight& flight, const battery::Discharge& charge, 
     return landing;
 }
 
-/// The powers of segments side by side, every half of a step. Each harmonic goes on by x'' = 2 cos(turn) x' - x.
+/// The powers of segments side by side, every half of a step. Each harmonic advances by x'' = 2 cos(turn) x' - x.
 class PowerLanes {
   public:
     void begin(int lane, const LoadSegment& segment, double step_s) {
@@ -120,8 +120,8 @@ class FlightLanes {
     /// The next flight that is not over at once takes the lane.
     void begin_flight(int lane) {
         auto& own = flying(lane);
-        bool goes_on = false;
-        while (!goes_on && next_ < outcomes_.size()) {
+        bool continues = false;
+        while (!continues && next_ < outcomes_.size()) {
             own.number = next_++;
             if (!own.flight) own.flight = DrawnFlight{mission_, {}};
             draw_(first_ + own.number, *own.flight);
@@ -129,14 +129,14 @@ class FlightLanes {
             own.charge = {{own.flight->setup.initial_soc_percent}};
             own.noted_percent.clear();
             if (mission_.battery.thevenin) batteries_.set_battery(lane, own.flight->setup.battery);
-            goes_on = go_on(lane);
+            continues = next_segment(lane);
         }
-        is_active_[static_cast<std::size_t>(lane)] = goes_on;
+        is_active_[static_cast<std::size_t>(lane)] = continues;
     }
 
-    /// Goes on with the flight's next segment; false if it has landed. Segments without steps side by side are flown at
+    /// Starts the flight's next segment; false if it has landed. Segments that need no SIMD steps are simulated at
     /// once.
-    bool go_on(int lane) {
+    bool next_segment(int lane) {
         auto& own = flying(lane);
         auto& [setup, segments, times_s] = *own.flight;
         const auto has_ended = [&] { return own.charge.ended_at_s() || own.charge.undeliverable; };
@@ -199,13 +199,13 @@ class FlightLanes {
             own.charge =
                 battery::fast_discharge(own.flight->setup.battery, {power, start_s, start_s + own.step_s},
                                         batteries_.state_before(lane), {own.step_s, mission_.cutoff_voltage_v});
-            if (own.charge.ended_at_s() || own.charge.undeliverable) return go_on(lane);
+            if (own.charge.ended_at_s() || own.charge.undeliverable) return next_segment(lane);
             batteries_.set_state(lane, own.charge);
         }
         if (steps_ < own.end_step) return true;
         own.charge = {batteries_.state(lane)};
         ++own.segment;
-        return go_on(lane);
+        return next_segment(lane);
     }
 
     const MissionSetup& mission_;

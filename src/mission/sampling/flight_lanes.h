@@ -10,7 +10,7 @@
 
 namespace flightwatt::mission {
 
-/// A flight as it is to be flown.
+/// A drawn flight.
 struct DrawnFlight {
     MissionSetup setup;
     std::vector<LoadSegment> segments;
@@ -22,12 +22,12 @@ struct FlightOutcome {
     double final_soc_percent = 0.0;
     bool depleted = false;
     bool battery_failure = false;  ///< that, or cut off, or beyond the power limit, or on a path that the wind forbids
-    /// What is left [points]; after a failure less than 0, by the energy demanded later as a part of a full battery's.
+    /// Final charge [points]; after a failure minus the later demand, as a fraction of the full energy.
     double remaining_percent = 0.0;
     std::vector<double> soc_percent;  ///< at the times that were asked for
 };
 
-/// A flight lands below the reserve too where its battery failed, with whatever charge.
+/// A battery failure counts as below the reserve at any charge.
 inline bool misses_reserve(const FlightOutcome& landing, double reserve_soc_percent) {
     return landing.battery_failure || landing.final_soc_percent < reserve_soc_percent;
 }
@@ -36,11 +36,11 @@ inline bool misses_reserve(const FlightOutcome& landing, double reserve_soc_perc
 using FlightDraw = std::function<void(std::size_t number, DrawnFlight& flight)>;
 
 /// Flies flights of a mission side by side, from number `first` on: each through its own segments, as advance_segment()
-/// does, to 1e-9 points. How one lands depends on its own numbers alone, whatever flies beside it.
+/// does, to 1e-9 points. The result of a flight depends on its own numbers alone.
 void fly_side_by_side(const MissionSetup& mission, const FlightDraw& draw, std::size_t first,
                       std::span<FlightOutcome> outcomes);
 
-/// The same of so many flights on all threads.
+/// The same on all threads.
 std::vector<FlightOutcome> fly_drawn(const MissionSetup& mission, const FlightDraw& draw, std::size_t first,
                                      std::size_t count);
 

@@ -8,16 +8,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include <fmt/format.h>
 
 namespace flightwatt::mission {
 namespace {
-
-bool is_of_flights(const MeanPowerDeviation& deviation) {
-    return deviation.source != DeviationSource::none && deviation.source != DeviationSource::fit_error;
-}
 
 /// Notes down a source, as drawn or not.
 void note_source(FlightUncertainty& spreads, bool is_drawn, const std::string& source, const std::string& basis) {
@@ -28,24 +23,6 @@ void note_source(FlightUncertainty& spreads, bool is_drawn, const std::string& s
 std::string student_words(double degrees_of_freedom) {
     return fmt::format("Student t with {:.4g} degree{} of freedom", degrees_of_freedom,
                        degrees_of_freedom == 1.0 ? "" : "s");
-}
-
-std::string basis_of(const MeanPowerDeviation& deviation) {
-    const auto sd = fmt::format("sd {:.4g} W, ", deviation.sd_w);
-    switch (deviation.source) {
-        case DeviationSource::none:
-            return "the model has no spread: fit two flights or more";
-        case DeviationSource::stated:
-            return sd + "stated";
-        case DeviationSource::motion:
-            return sd + "of the flights about what their motion says, " + student_words(deviation.degrees_of_freedom);
-        case DeviationSource::flights:
-            return sd +
-                   fmt::format("of {} flights, {}", deviation.flights, student_words(deviation.degrees_of_freedom));
-        case DeviationSource::fit_error:
-            return sd + "the fit's standard error; not how flights differ";
-    }
-    throw std::logic_error("basis_of: no such source of a deviation");
 }
 
 bool has_wind_spread(const MissionSetup& mission) {
@@ -65,7 +42,7 @@ void find_wind(const MissionSetup& mission, FlightUncertainty& spreads) {
     note(wind.direction_sd_deg, "wind direction", "degrees", "direction_sd_deg");
 }
 
-/// What each of the model's flights that count in a phase shows of it.
+/// A quantity of each flight that counts in a phase.
 template <typename Shown>
 std::vector<std::optional<double>> of_flights(const MissionSetup& mission, Phase phase, const Shown& shown) {
     std::vector<std::optional<double>> values;
@@ -76,7 +53,7 @@ std::vector<std::optional<double>> of_flights(const MissionSetup& mission, Phase
     return values;
 }
 
-/// Notes how often a level stands at 0, because a flight takes no power back, where one in 2000 flights or more does.
+/// Share of the flights whose mean power is limited to 0, if it is 1 in 2000 or more.
 std::string at_zero_words(const MissionSetup& mission, Phase phase, const MeanPowerDeviation& deviation) {
     constexpr double min_share = 5e-4;
     const auto& model = mission.mechanical->phases[phase];
@@ -92,10 +69,10 @@ void find_level(const MissionSetup& mission, Phase phase, FlightUncertainty& spr
                 std::vector<EstimatedSpread>& estimated) {
     const auto deviation = level_deviation(mission, phase);
     spreads.level_sd_w[phase] = deviation.sd_w;
-    auto basis = basis_of(deviation) + at_zero_words(mission, phase, deviation);
+    auto basis = deviation.basis + at_zero_words(mission, phase, deviation);
     if (deviation.degrees_of_freedom < infinite_dof) {
         EstimatedSpread spread{level_index(phase), deviation.sd_w, deviation.degrees_of_freedom, {}};
-        if (deviation.source == DeviationSource::flights) {
+        if (deviation.flights > 0) {
             spread.of_flights = of_flights(mission, phase, [](const auto& part) { return part.mean_power_w; });
             if (!is_known_of_flights(spread)) basis += ", correlated with nothing: the model has no mean_power_w";
         }
@@ -104,7 +81,7 @@ void find_level(const MissionSetup& mission, Phase phase, FlightUncertainty& spr
     note_source(spreads, deviation.sd_w > 0.0, fmt::format("{} level", to_string(phase)), basis);
 }
 
-/// Throughout, what the mission states is fixed, and [uncertainty] alone gives it a spread.
+/// Durations that the mission states are fixed, unless [uncertainty] varies them.
 void find_duration(const MissionSetup& mission, Phase phase, FlightUncertainty& spreads,
                    std::vector<EstimatedSpread>& estimated) {
     const auto source = fmt::format("{} duration", to_string(phase));
@@ -220,38 +197,44 @@ double highest_measured_power_w(const mechanical::MechanicalModel& model) {
 
 bool has_flight_variability(const MissionSetup& mission) {
     return mission.mechanical && std::ranges::all_of(all_phases, [&](Phase phase) {
-               return !(mission.duration_s[phase] > 0.0) || is_of_flights(level_deviation(mission, phase));
+               return !(mission.duration_s[phase] > 0.0) || level_deviation(mission, phase).is_between_flights;
            });
 }
 
 MeanPowerDeviation level_deviation(const MissionSetup& mission, Phase phase) {
     const auto& model = mission.mechanical->phases[phase];
-    if (const auto percent = mission.uncertainty.level_sd_percent[phase])
-        return {units::amount_from_percent(mean_level_w(mission, phase), *percent), DeviationSource::stated};
-    if (phase == Phase::cruise && mission.cruise_level && mission.cruise_level->sd_w)
-        return {*mission.cruise_level->sd_w, DeviationSource::motion, 0, mission.cruise_level->degrees_of_freedom};
-    if (const auto& spread = model.level_spread) {
-        const double weight_square_sum = forecast_of(*mission.mechanical, phase).weight_square_sum;
-        return {spread->between_flight_sd_w * std::sqrt(1.0 + weight_square_sum), DeviationSource::flights,
-                spread->flights, static_cast<double>(spread->flights - 1)};
+    const auto of = [](double sd_w, const std::string& basis) { return fmt::format("sd {:.4g} W, {}", sd_w, basis); };
+    if (const auto percent = mission.uncertainty.level_sd_percent[phase]) {
+        const double sd_w = units::amount_from_percent(mean_level_w(mission, phase), *percent);
+        return {sd_w, of(sd_w, "stated"), true};
     }
-    if (model.errors) return {model.errors->curve_w, DeviationSource::fit_error, 0, model.errors->degrees_of_freedom};
-    return {};
-}
-
-double level_sd_w(const MissionSetup& mission, Phase phase) {
-    const auto deviation = level_deviation(mission, phase);
-    if (is_of_flights(deviation)) return deviation.sd_w;
-    throw InputError(
-        {mission.file},
-        fmt::format("the mechanical model does not say how flights differ: [{}] has no spread", to_string(phase)),
-        "fit it to two flights or more (flightwatt fit FLIGHT... -o MODEL.toml), or state it: "
-        "[uncertainty] with level_sd_percent");
+    if (phase == Phase::cruise && mission.cruise_level && mission.cruise_level->sd_w) {
+        const auto& [mean_w, sd_w, freedom] = *mission.cruise_level;
+        return {*sd_w, of(*sd_w, "of the flights' deviations from the physical model, " + student_words(freedom)), true,
+                0, freedom};
+    }
+    if (const auto& spread = model.level_spread) {
+        const double sd_w =
+            spread->between_flight_sd_w * std::sqrt(1.0 + forecast_of(*mission.mechanical, phase).weight_square_sum);
+        const auto freedom = static_cast<double>(spread->flights - 1);
+        return {sd_w, of(sd_w, fmt::format("of {} flights, {}", spread->flights, student_words(freedom))), true,
+                spread->flights, freedom};
+    }
+    if (const auto& errors = model.errors)
+        return {errors->curve_w, of(errors->curve_w, "the fit's standard error; not how flights differ"), false, 0,
+                errors->degrees_of_freedom};
+    return {0.0, "the model has no spread: fit two flights or more"};
 }
 
 void require_flight_variability(const MissionSetup& mission) {
-    for (const auto phase : all_phases)
-        if (mission.mechanical && mission.duration_s[phase] > 0.0) level_sd_w(mission, phase);
+    for (const auto phase : all_phases) {
+        if (!(mission.duration_s[phase] > 0.0) || level_deviation(mission, phase).is_between_flights) continue;
+        throw InputError({mission.file},
+                         fmt::format("the mechanical model has no variability between flights: [{}] has no spread",
+                                     to_string(phase)),
+                         "fit it to two flights or more (flightwatt fit FLIGHT... -o MODEL.toml), or state it: "
+                         "[uncertainty] with level_sd_percent");
+    }
 }
 
 FlightUncertainty collect_uncertainty(const MissionSetup& mission) {

@@ -5,44 +5,32 @@
 #include "mission/sampling/joint_spread.h"
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 namespace flightwatt::mission {
 
-/// What says how the mean mechanical power of a phase differs between flights.
-enum class DeviationSource {
-    none,
-    stated,    ///< the mission's [uncertainty]
-    motion,    ///< the flights about what their motion says
-    flights,   ///< the model's flights about their average
-    fit_error  ///< the standard error of the fit alone, which is not how flights differ
-};
-
-/// Standard deviation of a phase's mean mechanical power about the model's, of a flight to come.
+/// Standard deviation of a phase's mean mechanical power about the model's, of a future flight.
 struct MeanPowerDeviation {
     double sd_w = 0.0;
-    DeviationSource source = DeviationSource::none;
-    std::size_t flights = 0;  ///< that it is of, if of the model's
-    /// Of the Student t that the level of a flight to come is, in units of sd_w; infinite: it is normal.
-    double degrees_of_freedom = infinite_dof;
+    std::string basis = {};                    ///< for people
+    bool is_between_flights = false;           ///< else it is unknown, or the standard error of the fit alone
+    std::size_t flights = 0;                   ///< of the model, if it is by these
+    double degrees_of_freedom = infinite_dof;  ///< of its Student t; infinite: normal
 };
 
-/// The first of the sources, in their order, that the mission has. Of the model's flights: their standard
-/// deviation times sqrt(1 + sum of their squared weights), which is that of a new flight about an average of
-/// few; estimated from so few, it goes with Student's t. Needs a mechanical model.
+/// By the first of these that the mission has: [uncertainty], the deviations of the flights from the physical model,
+/// the standard deviation of the model's flights times sqrt(1 + sum of their squared weights), as of a new flight about
+/// an average of few, the standard error of the fit. Needs a mechanical model.
 MeanPowerDeviation level_deviation(const MissionSetup& mission, Phase phase);
 
 /// The mean mechanical power [W] of a phase, as the mission has it. Needs a mechanical model.
 double mean_level_w(const MissionSetup& mission, Phase phase);
 
-/// Whether the mission says of each phase that is flown how flights differ.
+/// Whether the variability between flights is known for each flown phase.
 bool has_flight_variability(const MissionSetup& mission);
 
-/// The deviation [W] where it is how flights differ. Throws InputError where the model does not say so. Needs one too.
-double level_sd_w(const MissionSetup& mission, Phase phase);
-
-/// Throws InputError where the mechanical model does not say of each phase that is flown how flights differ: a chance
-/// without that would be a promise about nothing.
+/// Throws InputError unless it is. Needs a mechanical model.
 void require_flight_variability(const MissionSetup& mission);
 
 /// How the power of one component differs between flights.
@@ -51,9 +39,8 @@ struct ComponentSpread {
     std::vector<double> node_sd_w;   ///< of each by itself; or empty
 };
 
-/// What differs between the flights of a mission: the one definition of it, for plans that keep a reserve with a
-/// chance and for flights that are drawn. What is not in it is the same in every flight: schedule, cut-off voltage,
-/// and the course of the power within a flight beside its phases' levels.
+/// Variability between the flights of a mission, for plans with a probability and drawn flights. All else is equal in
+/// every flight: schedule, cut-off voltage, the shape of the power within a phase.
 struct FlightUncertainty {
     PerPhase<double> level_sd_w;  ///< of a phase's mean mechanical power
     PerPhase<double> duration_sd_s;
@@ -68,13 +55,13 @@ struct FlightUncertainty {
 /// model keeps neither.
 double highest_measured_power_w(const mechanical::MechanicalModel& model);
 
-/// An aircraft draws a quarter more than it was measured to, at most: so far levels are drawn.
+/// Drawn mean powers are limited to 1.25 times the highest measured power.
 inline constexpr double power_margin = 1.25;
 
-/// What the mission's [uncertainty] states, which is normal. Else: levels as level_deviation says; durations as the
-/// model's flights show, in proportion, with the same factor for a flight to come, unless the mission states the
-/// duration; both by Student's t, together as they were in the flights; computing by the standard errors of the
-/// profile's nodes; the battery by the 95 % intervals of its file, but not a capacity that the mission states.
+/// The mission's [uncertainty], as normal deviations. Else: mean powers by level_deviation, and durations in proportion
+/// to those of the model's flights unless the mission states them, both by Student's t with the correlations of the
+/// flights; computing by the standard errors of the profile's nodes; the battery by the 95 % intervals of its file, but
+/// not a capacity that the mission states.
 FlightUncertainty collect_uncertainty(const MissionSetup& mission);
 
 }  // namespace flightwatt::mission

@@ -19,7 +19,7 @@ using Policy = boost::math::policies::policy<boost::math::policies::promote_doub
 using Student = boost::math::students_t_distribution<double, Policy>;
 using Normal = boost::math::normal_distribution<double, Policy>;
 
-/// The quantile of `to` beyond which lies what lies beyond `value` of `from`, by the chance of the nearer tail.
+/// The quantile of `to` with the same tail probability as `value` of `from`.
 template <typename From, typename To>
 double as_far_out(const From& from, const To& to, double value) {
     using boost::math::cdf;

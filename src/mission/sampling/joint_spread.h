@@ -12,16 +12,16 @@
 
 namespace flightwatt::mission {
 
-/// Degrees of freedom of a deviation that is known: its Student t is normal.
+/// Degrees of freedom of a known standard deviation: Student's t is then normal.
 inline constexpr double infinite_dof = std::numeric_limits<double>::infinity();
 
 /// No number of Student's t is drawn further out: with one degree of freedom, 6 of 10 million would be.
 inline constexpr double max_student = 1e6;
 
-/// The chance of a standard normal number beyond `deviations`.
+/// Probability of a standard normal number above `deviations`.
 double normal_tail_probability(double deviations);
 
-/// The number of Student's t beyond which just as many lie as beyond `normal` of a standard normal.
+/// The quantile of Student's t with the same tail probability as `normal` of a standard normal.
 double student_from_normal(double normal, double degrees_of_freedom);
 
 /// The inverse of that.
@@ -54,7 +54,7 @@ struct JointDistribution {
 };
 
 /// Spreads of as many degrees of freedom together, with the correlations that the flights show which have all that is
-/// known of any. What is known of fewer than two flights is correlated with nothing.
+/// known of any. Quantities known of less than two flights are uncorrelated.
 std::vector<JointDistribution> estimate_joint_distributions(const std::vector<EstimatedSpread>& spreads);
 
 /// True of a spread that `spreads` draws by how it went together with the others of its flights.

@@ -28,7 +28,7 @@ class LandingSampler {
         if (uncertainty.sources.varied.empty()) result_.left_percent = {result_.nominal_percent};
     }
 
-    /// Until there are so many in all; one where nothing differs.
+    /// Up to `flights` in all; one where nothing varies.
     const LandingDistribution& draw_until(std::size_t flights) {
         if (uncertainty_.sources.varied.empty()) return result_;
         auto& left_percent = result_.left_percent;

@@ -10,7 +10,7 @@
 
 namespace flightwatt::mission {
 
-/// What drawn flights of a mission are left with.
+/// Remaining charge of drawn flights of a mission.
 struct LandingDistribution {
     std::vector<double> left_percent;  ///< rising; negative where the battery failed: FlightOutcome::remaining_percent
     double nominal_percent = 0.0;      ///< of the flight as stated
@@ -19,7 +19,7 @@ struct LandingDistribution {
 
     /// The part of the flights that lands below the reserve.
     double below() const;
-    /// Of `below`, as so many flights are drawn; 0 where nothing differs.
+    /// Of `below`, by the number of flights; 0 where nothing varies.
     double standard_error() const;
     /// The state of charge that `probability` of the flights land with or above.
     double quantile_percent(double probability) const;
@@ -35,19 +35,19 @@ inline constexpr std::size_t landing_flights = 20000;  ///< standard error of a 
 LandingDistribution draw_landings(const Mission& mission, const FlightUncertainty& uncertainty,
                                   std::size_t flights = landing_flights);
 
-/// The same with as few flights as show on which side of `probability` (0.5 to below 1) the mission is, by four standard
-/// errors. Throws std::invalid_argument for another probability.
+/// The same with as few flights as show on which side of `probability` (0.5 to below 1) the mission is, by four
+/// standard errors. Throws std::invalid_argument for another probability.
 LandingDistribution draw_landings_until_known(const Mission& mission, const FlightUncertainty& uncertainty,
                                               double probability, std::size_t max_flights = landing_flights);
 
-/// Looks for the least margin above a reserve whose answer keeps the reserve with a chance. More margin, more is left.
+/// Secant search with bracketing for the least margin above a reserve whose plan keeps the reserve with a probability.
 class MarginSearch {
   public:
     explicit MarginSearch(double first_percent) : margin_percent_(first_percent) {}
 
     double margin_percent() const { return margin_percent_; }
 
-    /// What the flights of the answer keep with that chance above the reserve, and what they should at most.
+    /// Surplus of the plan's flights with that probability, and its target.
     void add_result(double slack_percent, double wanted_percent) {
         auto& end_percent = slack_percent >= 0.0 ? enough_percent_ : too_little_percent_;
         end_percent = margin_percent_;
@@ -56,13 +56,13 @@ class MarginSearch {
         move_to(margin_percent_ + step * (wanted_percent - slack_percent));
     }
 
-    /// There is no answer with so much.
+    /// There is no plan with this margin.
     void mark_infeasible() {
         enough_percent_ = margin_percent_;
         move_to(std::midpoint(too_little_percent_.value_or(0.0), margin_percent_));
     }
 
-    /// Nothing is left between what is enough and what is not.
+    /// The bracket is closed.
     bool has_converged() const {
         return too_little_percent_ && enough_percent_ && *enough_percent_ - *too_little_percent_ < 1e-6;
     }
@@ -73,7 +73,7 @@ class MarginSearch {
         double slack_percent;
     };
 
-    /// How much more margin a point of slack takes, by the last two: chances that are not normal take more than one.
+    /// Margin per point of slack, by the last two plans.
     double margin_per_slack(double slack_percent) const {
         constexpr double least = 0.5;
         constexpr double most = 8.0;

@@ -1,6 +1,7 @@
 #include "mission/simulation/load_segments.h"
 
 #include "base/error.h"
+#include "base/piecewise_linear.h"
 #include "base/units.h"
 #include "battery/fast_discharge.h"
 
@@ -20,7 +21,7 @@ constexpr double edge_tolerance_s = 1e-9;
 constexpr double coarse_step_s = 1.0;
 constexpr double longest_quick_step_s = 20.0;
 
-/// The segments, cut at the times that lie within them.
+/// The segments, cut at the times within them.
 std::vector<LoadSegment> cut_at(std::vector<double> times_s, const std::vector<LoadSegment>& segments) {
     std::ranges::sort(times_s);
     std::vector<LoadSegment> parts;
@@ -66,7 +67,7 @@ bool depends_on_power_alone(const battery::Battery& battery, double cutoff_volta
     return bounds.low >= 0.0 && is_deliverable(battery, cutoff_voltage_v, bounds.high);
 }
 
-/// What a segment takes of a constant source that delivers it.
+/// Depletion of a constant source that delivers a segment.
 double depleted_percent(const battery::Battery& battery, const LoadSegment& segment) {
     constexpr double pieces_a_turn = 4.0;  // of the highest harmonic: exact to rounding
     const double capacity_as = units::coulomb_from_ah(battery.capacity_ah);
@@ -91,7 +92,7 @@ double depleted_percent(const battery::Battery& battery, const LoadSegment& segm
     return units::percentage(charge_as, capacity_as);
 }
 
-constexpr double points_a_turn = 16.0;        // of the highest harmonic: one valley lies between two neighbours
+constexpr double points_a_turn = 16.0;        // of the highest harmonic: one valley between two neighbours
 constexpr double rounding_of_power_w = 1e-6;  // fits that touch 0 do not charge
 constexpr double never_enough_w = std::numeric_limits<double>::infinity();
 
@@ -111,15 +112,21 @@ PowerAt extreme_w(const LoadSegment& segment, double sign, double enough_w) {
     return min_power_w(curve, {start_s, segment.end_s - segment.phase_start_s}, enough_w);
 }
 
-/// A piece of constant power, from the end of the part before it, or the segment's start, to the end of the piece, or
-/// the segment's.
-LoadSegment part_of(const LoadSegment& segment, double start_s, const path::PowerSegment& piece, bool is_last) {
-    auto part = segment;
-    part.mechanical = mechanical::FourierModel{0.0, piece.power_w, {}, {}};
-    part.start_s = start_s;
-    part.end_s = segment.phase_start_s + piece.end_s;
-    if (is_last || part.end_s >= segment.end_s - edge_tolerance_s) part.end_s = segment.end_s;
-    return part;
+/// The parts of a segment with the constant power of each piece.
+std::vector<LoadSegment> constant_power_parts(LoadSegment part, const path::PiecewisePower& pieces) {
+    const auto& [time_s, energy_j] = pieces;
+    const double end_s = part.end_s;
+    const double start_s = part.start_s - part.phase_start_s + edge_tolerance_s;
+    std::vector<LoadSegment> parts;
+    for (auto k = find_knot_interval(time_s, start_s).lower;; ++k) {
+        const double power_w = (energy_j[k + 1] - energy_j[k]) / (time_s[k + 1] - time_s[k]);
+        part.mechanical = mechanical::FourierModel{0.0, power_w, {}, {}};
+        part.end_s = part.phase_start_s + time_s[k + 1];
+        if (k + 2 == time_s.size() || part.end_s >= end_s - edge_tolerance_s) part.end_s = end_s;
+        parts.push_back(part);
+        if (part.end_s == end_s) return parts;
+        part.start_s = part.end_s;
+    }
 }
 
 }  // namespace
@@ -162,13 +169,8 @@ std::vector<LoadSegment> load_segments(const MissionLoad& load, const ScheduleSe
     segment.mechanical = load.mechanical[scheduled.phase];
     segment.compute_w = power_w(load.mission.compute, scheduled.run);
     const auto& pieces = load.pieces[scheduled.phase];
-    if (!pieces) return {std::move(segment)};
-    std::vector<LoadSegment> parts;
-    const auto* const last = &pieces->back();
-    for (const auto* piece = &segment_at(*pieces, scheduled.start_s + edge_tolerance_s);; ++piece) {
-        parts.push_back(part_of(segment, parts.empty() ? segment.start_s : parts.back().end_s, *piece, piece == last));
-        if (parts.back().end_s == segment.end_s) return parts;
-    }
+    if (pieces) return constant_power_parts(std::move(segment), *pieces);
+    return {std::move(segment)};
 }
 
 std::vector<LoadSegment> load_segments(const MissionSetup& mission, const Schedule& schedule) {
@@ -296,8 +298,8 @@ void refuse_charging(const MissionSetup& mission, const std::vector<LoadSegment>
                         "charges the battery in flight",
                         mission.name, least.time_s, to_string(segment.phase), least.power_w + segment.compute_w,
                         least.power_w, segment.compute_w),
-            "a model or profile is wrong there: fit it anew (another order, flights whose power is measured right), or "
-            "say may_charge = true if something aboard feeds the battery");
+            "check the model or profile and fit it again (another order, flights with correct power), or "
+            "state may_charge = true if a source aboard charges the battery");
     }
 }
 

@@ -13,8 +13,7 @@ namespace flightwatt::mission {
 /// A battery that ends this near to the end of its mission has lasted.
 inline constexpr double end_tolerance_s = 1e-6;
 
-/// What a mission demands while one configuration runs: smooth mechanical power and constant computing. Times are those
-/// of the mission.
+/// Demand of a mission while one configuration runs: smooth mechanical and constant computing power, in mission time.
 struct LoadSegment : TimeInterval {
     Phase phase = Phase::takeoff;
     double phase_start_s = 0.0;
@@ -23,7 +22,7 @@ struct LoadSegment : TimeInterval {
     double soc_drop_percent = 0.0;  ///< [points] that the battery loses at once as this starts
 };
 
-/// What the schedules of a mission demand, as far as it does not depend on the schedule. Refers to the mission.
+/// Demand of a mission that does not depend on its schedule. Refers to the mission.
 struct MissionLoad {
     const MissionSetup& mission;
     MissionTimeline timeline;
@@ -36,7 +35,7 @@ struct MissionLoad {
 MissionLoad make_mission_load(const MissionSetup& mission);
 
 /// The load of a part of a schedule: one segment, or one of constant power for each piece that a path or a measured
-/// flight has meanwhile. In order and without gaps: each starts exactly where the one before ends.
+/// flight has in that time. In order and without gaps: each starts exactly where the one before ends.
 std::vector<LoadSegment> load_segments(const MissionLoad& load, const ScheduleSegment& scheduled);
 /// The same of a whole schedule.
 std::vector<LoadSegment> load_segments(const MissionSetup& mission, const Schedule& schedule);
@@ -58,9 +57,9 @@ double quick_step_s(const LoadSegment& segment);
 double mechanical_energy_j(const LoadSegment& segment, double time_s);
 double compute_energy_j(const LoadSegment& segment, double time_s);
 
-/// What a part of a schedule takes [points] of a source that does not follow its charge, as if it went on below empty:
-/// without resistance the closed integral of Eq. 1, with it Gauss quadrature. Infinite where the battery cannot deliver
-/// the power, or its voltage would be below the cut-off.
+/// Depletion [points] of a constant source by a part of a schedule, continued below empty: the closed integral of Eq. 1
+/// without resistance, else Gauss quadrature. Infinite where the battery cannot deliver the power, or its voltage would
+/// be below the cut-off.
 double depletion_percent(const MissionLoad& load, const ScheduleSegment& scheduled);
 
 /// The battery after the charge that it loses at once as a segment starts.
@@ -86,7 +85,7 @@ PowerAt min_power_w(const mechanical::FourierModel& curve, const TimeInterval& w
 bool charges_battery(const LoadSegment& segment);
 
 /// Throws InputError where a mission asks for power below 0, with phase, time and power: it would charge the battery,
-/// and nobody said that something aboard does (may_charge).
+/// without may_charge.
 void refuse_charging(const MissionSetup& mission, const std::vector<LoadSegment>& segments);
 
 }  // namespace flightwatt::mission

@@ -68,7 +68,7 @@ TEST(AirspeedToml, SetsTheLevelOfTheCruise) {
               "an airspeed near these, or fit a model to flights that were flown so");
     EXPECT_EQ(
         refusal("opterra.toml", "13"),
-        "m.toml:3:1: the mechanical model 'opterra-table1' does not know what motion takes: it has no [physical]; "
+        "m.toml:3:1: the mechanical model 'opterra-table1' has no [physical] part, which predicts power from motion; "
         "fit one: flightwatt fit --model-kind physical FLIGHT... -o MODEL.toml, of flights that measured their airspeed");
     EXPECT_NE(refusal("none", "13").find("no meaning"), std::string::npos);
     const auto plain = scheduled(on_model("wing.toml", ""), folder / "m.toml");
@@ -172,7 +172,7 @@ TEST(PathToml, NeedsAModelThatKnowsMotion) {
     const auto folder = path_folder();
     EXPECT_EQ(
         rejected([&] { read(folder, "plain.toml", out_and_back); }, folder),
-        "m.toml:3:1: the mechanical model 'opterra-table1' does not know what motion takes: it has no [physical]; "
+        "m.toml:3:1: the mechanical model 'opterra-table1' has no [physical] part, which predicts power from motion; "
         "fit one: flightwatt fit --model-kind physical FLIGHT... -o MODEL.toml, of flights that measured their airspeed");
 }
 
@@ -220,8 +220,7 @@ TEST(PathToml, RefusesWhatContradictsThePath) {
     };
     EXPECT_EQ(refusal("duration_s = { cruise = 600 }\n", out_and_back),
               "m.toml:3:16: the duration of the cruise follows from [path]; leave it out, or the path");
-    EXPECT_NE(refusal("airspeed_m_per_s = 12\n", out_and_back).find("both say how the cruise is flown"),
-              std::string::npos);
+    EXPECT_NE(refusal("airspeed_m_per_s = 12\n", out_and_back).find("both define the cruise"), std::string::npos);
     EXPECT_NE(
         refusal("uncertainty = { duration_sd_s = { cruise = 5 } }\n", out_and_back).find("state how the wind differs"),
         std::string::npos);

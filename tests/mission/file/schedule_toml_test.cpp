@@ -104,7 +104,7 @@ TEST(ScheduleEntries, RefusesOverlaps) {
                                     part(flight::Phase::cruise, 100.0, 250.0, 1, 4), rest({}, 1)},
                                    durations);
               }),
-              "m.toml:9:1: cruise from 200 s to 250 s is scheduled twice, here and in line 4; let one end "
+              "m.toml:9:1: cruise from 200 s to 250 s is scheduled twice, here and in line 4; end one "
               "where the other "
               "begins");
     auto whole = part(flight::Phase::cruise, 0.0, 600.0, 1, 12);
@@ -123,7 +123,7 @@ TEST(ScheduleEntries, RefusesASegmentWithinAnother) {
                       {part(flight::Phase::cruise, 0.0, 500.0, 1, 2), part(flight::Phase::cruise, 100.0, 200.0, 1, 3)},
                       durations);
               }),
-              "m.toml:3:1: cruise from 100 s to 200 s is scheduled twice, here and in line 2; let one end "
+              "m.toml:3:1: cruise from 100 s to 200 s is scheduled twice, here and in line 2; end one "
               "where the other "
               "begins");
 }

@@ -129,7 +129,7 @@ TEST(FlightLanes, FlyDisturbancesAndPieces) {
     auto mission = flown_mission(2, 1.0);
     const double cruise_s = mission.setup.duration_s[Phase::cruise];
     mission.setup.measured_power[Phase::cruise] = std::make_shared<const path::PiecewisePower>(
-        path::PiecewisePower{{{0.0, 0.3 * cruise_s}, 20.0, 0.0}, {{0.3 * cruise_s, cruise_s}, 30.0, 6.0 * cruise_s}});
+        path::PiecewisePower{{0.0, 0.3 * cruise_s, cruise_s}, {0.0, 6.0 * cruise_s, 27.0 * cruise_s}});
     Disturbance gust{20.0, 90.0, 1.3};
     Disturbance drop{100.0, 200.0};
     drop.soc_drop_percent = 3.0;
