@@ -183,7 +183,6 @@ int convert(const cli::StageCall& call, const ConvertArguments& arguments) {
         }
     }
     const auto converted = convert_log(file);
-    file.require_unchanged();
     write_both(call, converted.text, log_file, file);
     auto warnings = warnings_of(converted, file.log_file().string());
     if (!file.log_error().empty()) warnings.push_back(file.log_error());

@@ -51,8 +51,7 @@ live::PlaybackTargetSetup target_setup(const cli::StageCall& call, const PlayArg
 /// Those of a binary log; none of a text.
 std::optional<telemetry::MessageDictionary> log_definitions(const cli::StageCall& call, const PlayArguments& arguments,
                                                             const live::PlaybackTargetSetup& setup) {
-    const bool is_binary =
-        telemetry::detect_binary_framing(telemetry::DataFile(call.inputs.front()).text()).has_value();
+    const bool is_binary = telemetry::detect_binary_framing(telemetry::read_data_file(call.inputs.front())).has_value();
     if (!is_binary && !setup.definitions && arguments.messages)
         throw UsageError("--messages is of frames and of binary logs: this is a text, to a target that takes text");
     if (!is_binary) return std::nullopt;

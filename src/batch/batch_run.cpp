@@ -117,7 +117,6 @@ void conclude(FlightRecord& record, const LogFile& log, const std::string& finge
 BatchFlight do_existing(const LogFile& log, const BatchOptions& options, std::string& fingerprint) {
     const flight::FlightFile file(log.path, options.load.max_log_bytes, options.load.messages);
     fingerprint = fingerprint_of(file, log, options);
-    file.require_unchanged();
     auto record = remembered(options, log, fingerprint);
     const bool was_up_to_date = record.has_value();
     if (!record) {

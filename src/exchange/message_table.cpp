@@ -138,7 +138,6 @@ MessageCsv message_table(const flight::FlightFile& file, const std::string& mess
     const auto fields = fields_of(configuration, message);
     if (fields.empty()) refuse_absent(file, message, false);
     const auto log = read_message(file, std::move(configuration), {message, fields});
-    file.require_unchanged();
     const auto sent = [&](const telemetry::SenderLog& sender_log) {
         const auto* table = sender_log.table(message);
         return table != nullptr && !table->empty();

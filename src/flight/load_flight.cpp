@@ -152,7 +152,7 @@ std::vector<FlightSeries> all_candidates(telemetry::TelemetryLog log) {
 }
 
 /// Why a .log cannot be used; empty if it can.
-std::string fault_of_definitions(const std::filesystem::path& log, bool for_frames) {
+std::string error_of_definitions(const std::filesystem::path& log, bool for_frames) {
     try {
         const auto text = read_file(log, telemetry::max_log_configuration_bytes);
         telemetry::parse_log_configuration(text, log);
@@ -194,43 +194,33 @@ FlightFile::FlightFile(const std::filesystem::path& path, std::size_t max_bytes,
                        const std::optional<std::filesystem::path>& messages)
     : path_(path) {
     std::error_code error;
-    if (path.extension() == ".csv" && std::filesystem::is_regular_file(path, error)) {
-        series_text_ = read_file(path, max_bytes, "if it is a series all the same, --max-log-mb raises the limit");
+    is_series_ = path.extension() == ".csv" && std::filesystem::is_regular_file(path, error);
+    if (is_series_) {
+        text_ = read_file(path, max_bytes, "if it is a series, --max-log-mb raises the limit");
         return;
     }
-    data_.emplace(path, max_bytes);
-    framing_ = telemetry::detect_binary_framing(data_->text());
+    text_ = telemetry::read_data_file(path, max_bytes);
+    framing_ = telemetry::detect_binary_framing(text_);
     auto log = telemetry::find_log_file(path);
-    if (log && messages) log_fault_ = fault_of_definitions(*log, framing_.has_value());
-    if (!log || !log_fault_.empty()) log = messages;
+    if (log && messages) log_error_ = error_of_definitions(*log, framing_.has_value());
+    if (!log || !log_error_.empty()) log = messages;
     if (log) {
         log_file_ = *log;
         log_text_ = read_file(*log, telemetry::max_log_configuration_bytes);
     }
-    if (!log_fault_.empty()) log_fault_ += fmt::format(": the definitions are those of {}", log_file_.string());
+    if (!log_error_.empty()) log_error_ += fmt::format(": the definitions are those of {}", log_file_.string());
 }
 
 telemetry::MessageDictionary FlightFile::definitions() const {
     if (!log_text_) {
-        throw InputError({path_.string()}, "is a binary log, and no .log beside it defines its messages",
+        throw InputError({path_.string()}, "is a binary log without a .log that defines its messages",
                          "name the messages.xml or .log of the aircraft and build that flew, with --messages FILE");
     }
     return telemetry::parse_message_dictionary(*log_text_, log_file_);
 }
 
-void FlightFile::require_unchanged() const {
-    if (data_) data_->require_unchanged();
-}
-
 std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id) {
-    std::vector<FlightSeries> candidates;
-    try {
-        candidates = parse_candidates(file, aircraft_id);
-    } catch (const InputError&) {
-        file.require_unchanged();  // or what was found to be wrong is where it was cut
-        throw;
-    }
-    file.require_unchanged();
+    auto candidates = parse_candidates(file, aircraft_id);
     for (auto& series : candidates)
         if (!file.log_error().empty()) series.notes.push_back(file.log_error());
     return candidates;

@@ -30,7 +30,7 @@ struct LoadOptions {
     bool flight_required = true;
     /// False: a log without measured power is segmented all the same, if it has an altitude.
     bool power_required = true;
-    std::size_t max_log_bytes = telemetry::default_max_log_bytes;  ///< see DataFile
+    std::size_t max_log_bytes = telemetry::default_max_log_bytes;  ///< see read_data_file
     std::optional<std::filesystem::path> messages = {};            ///< see FlightFile
 };
 
@@ -48,9 +48,8 @@ struct LoadedFlight : FlightAssessment {
     std::map<std::string, std::string> sources = {};  ///< where each chosen track came from, by name
 };
 
-/// A log, of text or binary, with its .log, or a series CSV, in memory: mapped once for all who read it. A log that has
-/// no .log, or a damaged one, has the definitions of `messages`, a messages.xml or another .log, where that is given.
-/// Throws InputError for a file that cannot be read.
+/// A text or binary log with its .log, or a series CSV, in memory. `messages` (a messages.xml or another .log) defines
+/// the messages of a log whose .log is missing or damaged. Throws InputError for a file that cannot be read.
 class FlightFile {
   public:
     explicit FlightFile(const std::filesystem::path& path, std::size_t max_bytes = telemetry::default_max_log_bytes,
@@ -59,31 +58,29 @@ class FlightFile {
     FlightFile& operator=(const FlightFile&) = delete;
 
     const std::filesystem::path& path() const { return path_; }
-    bool is_series() const { return !data_.has_value(); }
-    std::string_view text() const { return data_ ? data_->text() : series_text_; }
-    /// How the frames of a binary log are packed; std::nullopt for text.
+    bool is_series() const { return is_series_; }
+    std::string_view text() const { return text_; }
+    /// Framing of a binary log; std::nullopt for text.
     std::optional<telemetry::Framing> framing() const { return framing_; }
-    /// The .log beside a log, or what stands in for it; std::nullopt without one.
+    /// Text of the log's .log or of `messages`; std::nullopt without one.
     const std::optional<std::string>& log_text() const { return log_text_; }
     std::filesystem::path log_file() const { return log_file_; }
-    /// What is wrong with the .log that `messages` stand in for; empty if nothing is.
-    const std::string& log_error() const { return log_fault_; }
-    /// Of a binary log. Throws InputError where nothing defines its messages.
+    /// Error of the .log that `messages` replace; empty without one.
+    const std::string& log_error() const { return log_error_; }
+    /// The messages of a binary log. Throws InputError if nothing defines them.
     telemetry::MessageDictionary definitions() const;
-    /// See DataFile: to be asked after the text was read.
-    void require_unchanged() const;
 
   private:
     std::filesystem::path path_;
-    std::optional<telemetry::DataFile> data_;
+    bool is_series_ = false;
+    std::string text_;
     std::optional<telemetry::Framing> framing_;
-    std::string series_text_;
     std::filesystem::path log_file_;
     std::optional<std::string> log_text_;
-    std::string log_fault_;
+    std::string log_error_;
 };
 
-/// Calls use(BinaryLog) with a binary file. Throws InputError where nothing defines its messages.
+/// Calls use(BinaryLog) for a binary file. Throws InputError if nothing defines its messages.
 template <typename Use>
 auto with_binary_log(const FlightFile& file, const Use& use) {
     const auto messages = file.definitions();

@@ -110,20 +110,19 @@ void PlaybackTarget::wait_until(Clock::time_point then) { std::this_thread::slee
 
 PlaybackReport play(const std::filesystem::path& log, double speed, PlaybackTarget& target,
                     const std::function<bool()>& stop, const std::optional<telemetry::MessageDictionary>& definitions) {
-    const telemetry::DataFile file(log);
-    const auto framing = telemetry::detect_binary_framing(file.text());
+    const auto text = telemetry::read_data_file(log);
+    const auto framing = telemetry::detect_binary_framing(text);
     if (framing && !definitions) {
         throw InputError({log.string()}, "is a binary log, and no .log beside it defines its messages",
                          "name the messages.xml or .log of the aircraft and build that flew, with --messages FILE");
     }
     Player player(speed, target, stop);
     if (framing) {
-        play_binary({file.text(), *framing, log, log, &*definitions}, player);
+        play_binary({text, *framing, log, log, &*definitions}, player);
     } else {
         TextReader reader(player);
-        play_bytes(file.text(), reader, player);
+        play_bytes(text, reader, player);
     }
-    file.require_unchanged();
     drain(target, stop);
     return player.end();
 }

@@ -7,6 +7,7 @@
 #include "telemetry/binary/frame_scanner.h"
 #include "telemetry/binary/wire_value.h"
 #include "telemetry/columns/message_plan.h"
+#include "telemetry/text/lines.h"
 #include "telemetry/text/skip_counter.h"
 
 #include <algorithm>
@@ -23,15 +24,12 @@
 namespace flightwatt::telemetry {
 namespace {
 
-/// Whether it begins as a .data does: TIME SENDER NAME.
+/// Whether the first line is one of a .data file: TIME SENDER NAME.
 bool begins_with_telemetry(std::string_view bytes) {
     constexpr std::size_t max_beginning = 200;
     auto line = bytes.substr(0, std::min(max_beginning, bytes.find('\n')));
     std::array<std::string_view, 3> words;
-    for (auto& word : words) {
-        word = line.substr(0, line.find(' '));
-        line.remove_prefix(std::min(word.size() + 1, line.size()));
-    }
+    for (auto& word : words) word = take_word(line);
     return parse_number(words[0]) && !words[1].empty() && !words[2].empty() &&
            std::isupper(static_cast<unsigned char>(words[2].front())) != 0;
 }
@@ -39,26 +37,24 @@ bool begins_with_telemetry(std::string_view bytes) {
 /// Class and id of a message in one number.
 std::size_t number_of(std::uint8_t class_id, std::uint8_t id) { return class_id * std::size_t{256} + id; }
 
-/// Where in a frame the wanted fields of a message stand.
-struct FramePlan {
-    std::size_t plan = 0;
-    std::vector<std::size_t> offsets;  ///< of the plan's targets; empty where they differ from frame to frame
-    std::vector<int> decimals;         ///< of the plan's targets, in the last frame
+/// A field of a frame.
+struct FieldBytes {
+    WireType type;
+    const char* first;
+    std::size_t elements;
 };
 
 /// Reads the frames of one log into its tables.
 class FrameReader {
   public:
     FrameReader(TelemetryLog& log, const BinaryLog& binary, const std::vector<MessageRequest>& wanted)
-        : log_(log), binary_(binary), skips_({}), tables_(log, wanted.size()), link_time_(*binary.messages) {
+        : log_(log), binary_(binary), link_time_(*binary.messages) {
         plan_of_.fill(none);
-        places_.fill(none);
         for (const auto& request : wanted) plans_.push_back(make_decode_plan(request, log.configuration));
         for (const auto& message : binary.messages->messages()) {
             const auto found = std::ranges::find(wanted, message.definition.name, &MessageRequest::message);
             if (found == wanted.end()) continue;
-            plan_of_[number_of(message.class_id, message.id)] = frame_plans_.size();
-            frame_plans_.push_back({static_cast<std::size_t>(found - wanted.begin()), {}, {}});
+            plan_of_[number_of(message.class_id, message.id)] = static_cast<std::size_t>(found - wanted.begin());
         }
     }
 
@@ -76,7 +72,7 @@ class FrameReader {
                 if (gap_.bytes > 0) note_gap(time_s);
                 if (found.length_matches) {
                     const auto plan = plan_of_[number_of(found.class_id, found.id)];
-                    if (plan != none) read_message(frame_plans_[plan], found, time_s);
+                    if (plan != none) read_message(plan, found, time_s);
                 } else if (found.carries_message) {
                     note_misfit(found, time_s);
                 }
@@ -103,10 +99,9 @@ class FrameReader {
 
   private:
     static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
-    /// So many ids are told one by one.
-    static constexpr std::size_t max_ids = 20;
+    static constexpr std::size_t max_ids = 20;  ///< that are counted one by one
 
-    /// NaN before the first TIMESTAMP: such frames are counted, and told of at the end.
+    /// NaN before the first TIMESTAMP; such frames are counted.
     double link_time_s(const FoundFrame& found) {
         const auto time_s = found.length_matches ? link_time_.time_s(found) : link_time_.last_s();
         if (time_s) {
@@ -130,62 +125,37 @@ class FrameReader {
         const auto reason =
             found.message == nullptr ? SkipReason::undefined_frame : SkipReason::frame_of_another_length;
         auto number = number_of(found.class_id, found.id);
-        if (told_.size() >= max_ids && !told_.contains(number)) {
+        if (listed_.size() >= max_ids && !listed_.contains(number)) {
             number = none;
         } else {
-            told_.insert(number);
+            listed_.insert(number);
         }
         skips_.add({reason, number}, time_s, found.offset + 1);
     }
 
-    void read_message(FramePlan& frame_plan, const FoundFrame& found, double time_s) {
-        auto& plan = plans_[frame_plan.plan];
-        const auto& fields = found.message->fields;
-        if (plan.definition == nullptr && !choose_definition(plan, fields.size()))
-            return skips_.add({SkipReason::other_field_count, frame_plan.plan}, time_s, found.offset + 1);
-        if (plan.definition->fields.size() != fields.size())
-            return skips_.add({SkipReason::other_field_count, frame_plan.plan}, time_s, found.offset + 1);
-        if (frame_plan.offsets.size() != plan.targets.size() || found.message->has_counted)
-            find_offsets(plan, found, frame_plan.offsets);
-        frame_plan.decimals.resize(plan.targets.size());
-        auto& table = table_of(found.sender, frame_plan.plan, plan, found.offset);
-        if (table.time_s.size() == table.time_s.capacity()) reserve_rows(table, found.offset + 1, binary_.bytes.size());
-        table.time_s.push_back(time_s);
-        for (std::size_t i = 0; i < plan.targets.size(); ++i) {
-            const auto& target = plan.targets[i];
-            const auto offset = frame_plan.offsets[i];
-            double number = std::numeric_limits<double>::quiet_NaN();
-            if (offset != none)
-                number = wire_value(fields[target.field].type, found.fields.data() + offset, frame_plan.decimals[i]);
-            if (!std::isfinite(number)) {
-                number = std::numeric_limits<double>::quiet_NaN();
-                skips_.add({SkipReason::not_a_number, frame_plan.plan * max_fields + target.field}, time_s,
-                           found.offset + 1);
-            }
-            table.columns[i].values.push_back(number * target.factor);
-        }
+    void read_message(std::size_t index, const FoundFrame& found, double time_s) {
+        auto& plan = plans_[index];
+        if (const auto reason = check_field_count(plan, found.message->fields.size()))
+            return skips_.add({*reason, index}, time_s, found.offset + 1);
+        fields_.clear();
+        for_each_field(*found.message, found.fields, [&](const WireField& field, const char* p, std::size_t elements) {
+            fields_.push_back({field.type, p, elements});
+        });
+        append_row(
+            table_of(log_, std::to_string(found.sender), plan, found.offset), plan, time_s,
+            [&](const DecodePlan::Target& target) { return value_of(target); },
+            [&](std::size_t field) {
+                skips_.add({SkipReason::not_a_number, index * max_fields + field}, time_s, found.offset + 1);
+            });
     }
 
-    /// Where the plan's targets stand in the frame; none for what is no single number.
-    static void find_offsets(const DecodePlan& plan, const FoundFrame& found, std::vector<std::size_t>& offsets) {
-        std::vector<std::pair<std::size_t, std::size_t>> fields;
-        for_each_field(*found.message, found.fields,
-                       [&](const WireField& /*field*/, const char* p, std::size_t elements) {
-                           fields.emplace_back(p - found.fields.data(), elements);
-                       });
-        offsets.clear();
-        for (const auto& target : plan.targets) {
-            const auto& [offset, elements] = fields[target.field];
-            const bool is_number = elements == 1 || (elements > 1 && target.is_first_element);
-            const bool is_text = found.message->fields[target.field].type == WireType::text;
-            offsets.push_back(is_number && !is_text ? offset : none);
-        }
-    }
-
-    MessageTable& table_of(std::uint8_t sender, std::size_t plan_index, const DecodePlan& plan, std::size_t offset) {
-        auto& place = places_[sender];
-        if (place == none) place = tables_.sender_index(std::to_string(sender), offset);
-        return tables_.table_of(place, plan_index, plan);
+    /// NaN for a text, an array (unless its first element is wanted) and a value that is not finite.
+    double value_of(const DecodePlan::Target& target) const {
+        const auto& [type, first, elements] = fields_[target.field];
+        const bool is_number = elements == 1 || (elements > 1 && target.is_first_element);
+        if (!is_number || type == WireType::text) return std::numeric_limits<double>::quiet_NaN();
+        const double value = wire_value(type, first);
+        return std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN();
     }
 
     std::string name_of(std::size_t number) const {
@@ -204,6 +174,7 @@ class FrameReader {
             case SkipReason::frame_of_another_length:
                 return fmt::format("{}: another length than {} defines", name_of(skip.detail), definitions);
             case SkipReason::other_field_count:
+            case SkipReason::unknown_message:
                 return fmt::format("{}: another number of fields than its first definition has",
                                    plans_[skip.detail].request.message);
             case SkipReason::not_a_number:
@@ -212,24 +183,22 @@ class FrameReader {
             case SkipReason::no_time:
                 return "before the first TIMESTAMP";
             default:
-                return skip.detail == 1 ? "the last frame is cut off" : "damaged, no frame with a right checksum";
+                return skip.detail == 1 ? "the last frame is cut off" : "damaged, no frame with a valid checksum";
         }
     }
 
     TelemetryLog& log_;
     const BinaryLog& binary_;
     std::vector<DecodePlan> plans_;
-    std::vector<FramePlan> frame_plans_;
-    std::array<std::size_t, std::size_t{16} * 256> plan_of_{};  ///< by class and id: place in frame_plans_
-    std::array<std::size_t, 256> places_{};                     ///< of senders
+    std::array<std::size_t, std::size_t{16} * 256> plan_of_{};  ///< by class and id: index in plans_
+    std::vector<FieldBytes> fields_;                            ///< of the last message
     SkipCounter skips_;
-    LogTables tables_;
     FrameClock clock_;
     LinkTime link_time_;
     bool has_times_ = false;
     std::size_t untimed_ = 0;
     Gap gap_;
-    std::set<std::size_t> told_;
+    std::set<std::size_t> listed_;  ///< messages that are counted by their ids
     LinkCounts counts_;
 };
 
@@ -265,13 +234,13 @@ LinkVersion link_version(const BinaryLog& log) {
     const auto version = detect_version(log.bytes, log.framing, *log.messages);
     if (version) return *version;
     throw InputError({log.file.string()},
-                     fmt::format("holds {} frames, none of whose messages {} defines with their length",
+                     fmt::format("has {} frames, but no message with the length that {} defines",
                                  to_string(log.framing), log.definitions.string()),
                      name_others);
 }
 
 void require_fitting(const LinkCounts& counts, const BinaryLog& log) {
-    // Definitions of a neighbouring build misfit a ninth of a real log's frames, those of another decade 40 to 64 %.
+    // Definitions of a similar build mismatch a ninth of a real log's frames, those of another decade 40 to 64 %.
     constexpr std::size_t of_which_one = 4;
     const auto defined = counts.messages + counts.length_mismatches;
     if (counts.length_mismatches * of_which_one < std::max<std::size_t>(1, defined)) return;
@@ -293,7 +262,7 @@ TelemetryLog read_binary_telemetry(const BinaryLog& log, LogConfiguration config
     if (!parsed.has_times) {
         throw InputError({log.file.string()}, "is a capture of a link, whose messages have no times",
                          "flights need an SD card's log, or a capture with TIMESTAMP messages; flightwatt convert "
-                         "writes what it holds as text");
+                         "writes the messages as text");
     }
     return std::move(parsed.log);
 }

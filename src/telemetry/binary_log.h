@@ -14,37 +14,37 @@
 
 namespace flightwatt::telemetry {
 
-/// How the messages of a log are framed, told by its content; nothing for text. Text is what begins with a line of
-/// telemetry; binary is where frames with right checksums follow each other.
+/// The framing of a log's messages, detected from its content; std::nullopt for text. A text begins with a line of
+/// telemetry; a binary log has consecutive frames with valid checksums.
 std::optional<Framing> detect_binary_framing(std::string_view bytes);
 
-/// A log that is known to be binary, and what its definitions are.
+/// A binary log and its message definitions.
 struct BinaryLog {
     std::string_view bytes;
     Framing framing = Framing::card;
-    std::filesystem::path file;         ///< named in errors
-    std::filesystem::path definitions;  ///< the same
+    std::filesystem::path file;         ///< of the log, for errors
+    std::filesystem::path definitions;  ///< file of the definitions, for errors
     const MessageDictionary* messages = nullptr;
 };
 
-/// The header of its messages. Throws InputError where none fits the definitions.
+/// The version of the message headers. Throws InputError if no message matches the definitions.
 LinkVersion link_version(const BinaryLog& log);
 
-/// Reads the wanted messages, from bytes to columns; `configuration` is what the file of the definitions says. A float
-/// becomes the decimal number that its text would be, so that text and binary of a log are read alike. Throws
-/// InputError where a quarter of the messages or more have other lengths than the definitions say, which then are
-/// another aircraft's, and for a capture of a link that tells no times.
+/// Reads the requested messages into columns; `configuration` is that of the definitions' file. A float becomes the
+/// decimal number of its text, so that text and binary form of a log have the same values. Throws InputError if a
+/// quarter of the messages or more have other lengths than defined (another build's definitions), and for a capture of
+/// a link without times.
 TelemetryLog read_binary_telemetry(const BinaryLog& log, LogConfiguration configuration,
                                    const std::vector<MessageRequest>& wanted);
 
-/// The same without asking that it can be used: what fits is read.
+/// The same without these two checks.
 TelemetryLog parse_binary_telemetry(const BinaryLog& log, LogConfiguration configuration,
                                     const std::vector<MessageRequest>& wanted);
 
-/// Throws InputError as read_binary_telemetry does, by what a decoder counted.
+/// Throws InputError if a quarter of the counted messages or more have other lengths than defined.
 void require_fitting(const LinkCounts& counts, const BinaryLog& log);
 
-/// Names of the messages with their counts, most frequent first, as count_messages does for text.
+/// Names and counts of the messages, most frequent first: count_messages() for binary logs.
 std::vector<std::pair<std::string, std::size_t>> census_of_binary_messages(const BinaryLog& log);
 
 }  // namespace flightwatt::telemetry

@@ -35,7 +35,7 @@ void append_number(Number number, std::string& text) {
     }
 }
 
-/// What would end a line or a quoted field stands for nothing else.
+/// Replaces characters that would end a line or a quoted field.
 char shown_character(char c) {
     const auto code = static_cast<unsigned char>(c);
     return code < ' ' || code == 0x7F || c == '"' ? '?' : c;
@@ -52,7 +52,7 @@ void append_element(WireType type, const char* p, std::string& text) {
     });
 }
 
-/// Zeros behind it fill a char[n] up.
+/// Appends text in quotes, without the zeros that fill a char[n].
 void append_quoted(std::string_view characters, std::string& text) {
     while (!characters.empty() && characters.back() == '\0') characters.remove_suffix(1);
     text += '"';
@@ -60,9 +60,9 @@ void append_quoted(std::string_view characters, std::string& text) {
     text += '"';
 }
 
-/// Appends a message that fits its definition as a line of a .data without time and break: sender, name, fields; arrays
-/// joined by commas, char[] in quotes (a quote or control character in it becomes '?'), floats in as few digits as give
-/// them back, with a point or an exponent.
+/// Appends a message as a line of a .data file without time and break: sender, name, fields. Arrays are joined by commas,
+/// char[] are in quotes (a quote or control character becomes '?'), floats have the fewest digits that read back, with
+/// a point or an exponent.
 void append_message_text(const FoundFrame& found, std::string& text) {
     append_number(unsigned{found.sender}, text);
     text += ' ';
@@ -77,27 +77,25 @@ void append_message_text(const FoundFrame& found, std::string& text) {
     });
 }
 
-/// The values of its fields; NaN for what is no single finite number.
+/// The values of the fields; NaN for an array, a text and a value that is not finite.
 void read_message_values(const FoundFrame& found, std::vector<double>& values) {
     values.clear();
     for_each_field(*found.message, found.fields, [&](const WireField& field, const char* p, std::size_t elements) {
-        int decimals = 4;  // often enough
         const bool is_number = elements == 1 && field.type != WireType::text;
-        const double value = is_number ? wire_value(field.type, p, decimals) : std::nan("");
+        const double value = is_number ? wire_value(field.type, p) : std::nan("");
         values.push_back(std::isfinite(value) ? value : std::nan(""));
     });
 }
 
-/// So many bytes are looked at in one go.
-constexpr std::size_t step_bytes = 4096;
-/// So many may tell no framing before the first half of them is given up.
+constexpr std::size_t step_bytes = 4096;  // scanned at a time
+/// After this many bytes without a recognised framing, the first half is discarded.
 constexpr std::size_t max_undecided_bytes = 8192;
 
 std::uint16_t number_of(const FoundFrame& found) { return static_cast<std::uint16_t>(found.class_id * 256 + found.id); }
 
 }  // namespace
 
-double shortest_decimal_general(float value) {
+double shortest_decimal(float value) {
     if (!std::isfinite(value)) return double{value};
     std::array<char, 32> digits{};
     const auto written = std::to_chars(digits.data(), digits.data() + digits.size(), value);
@@ -115,7 +113,7 @@ struct LinkDecoder::State {
         with_framing(framing, [&]<Framing of>() { scanner.emplace<FrameScanner<of>>(dictionary, version); });
     }
 
-    /// Decides the framing by what has come; true once it is.
+    /// Decides the framing from the bytes so far; true once it is decided.
     bool find_framing(InputContinuation behind) {
         if (counts.framing) return true;
         if (const auto found = detect_framing(buffer, behind == InputContinuation::end)) {
@@ -123,10 +121,10 @@ struct LinkDecoder::State {
             return true;
         }
         if (buffer.size() > max_undecided_bytes || behind == InputContinuation::end) {
-            const auto given_up = behind == InputContinuation::end ? buffer.size() : buffer.size() / 2;
-            buffer.erase(0, given_up);
-            counts.skipped_bytes += given_up;
-            counts.skipped_runs += given_up > 0 ? 1 : 0;
+            const auto discarded = behind == InputContinuation::end ? buffer.size() : buffer.size() / 2;
+            buffer.erase(0, discarded);
+            counts.skipped_bytes += discarded;
+            counts.skipped_runs += discarded > 0 ? 1 : 0;
         }
         return false;
     }

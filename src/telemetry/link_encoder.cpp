@@ -1,6 +1,7 @@
 #include "telemetry/link_encoder.h"
 
 #include "base/number.h"
+#include "telemetry/text/lines.h"
 
 #include <algorithm>
 #include <array>
@@ -52,15 +53,7 @@ bool append_element(WireType type, std::string_view word, std::string& bytes) {
     });
 }
 
-/// What stands before the next `mark`, which is taken off with it.
-std::string_view take_word(std::string_view& text, char mark) {
-    const auto end = std::min(text.find(mark), text.size());
-    const auto word = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
-    return word;
-}
-
-/// A string: quoted by " or |, or as it stands, and then the last field is all that is left, blanks too.
+/// Removes a string: in " or |, or unquoted; the last field may contain blanks.
 std::string_view take_string(std::string_view& text, bool is_last) {
     const char quote = text.empty() ? '\0' : text.front();
     if (quote == '"' || quote == '|') {
@@ -122,9 +115,9 @@ LinkEncoder::LinkEncoder(const MessageDictionary& dictionary, LinkVersion versio
 
 std::string_view LinkEncoder::append_frame(std::string_view text, std::string& frames) {
     const auto sender = parse_element<std::uint8_t>(take_word(text, ' '));
-    if (!sender) return "their sender is no aircraft";
+    if (!sender) return "their sender is not an aircraft";
     const auto found = by_name_.find(take_word(text, ' '));
-    if (found == by_name_.end()) return "their message is not among the definitions of telemetry";
+    if (found == by_name_.end()) return "their message is not defined";
     const auto& message = *found->second;
     payload_.assign(1, static_cast<char>(*sender));
     if (version_ == LinkVersion::v2) {
@@ -132,7 +125,7 @@ std::string_view LinkEncoder::append_frame(std::string_view text, std::string& f
         payload_ += static_cast<char>(message.class_id);
     }
     payload_ += static_cast<char>(message.id);
-    if (!append_fields(message, text, payload_)) return "their fields do not fit their definition";
+    if (!append_fields(message, text, payload_)) return "their fields do not match the definition";
     constexpr std::size_t around = 4;
     const auto length = payload_.size() + around;
     if (length > std::numeric_limits<std::uint8_t>::max()) return "they are too long for a frame";

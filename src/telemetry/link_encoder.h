@@ -8,15 +8,13 @@
 
 namespace flightwatt::telemetry {
 
-/// Lines of a .data file as the frames of a link that would have brought them: what LinkDecoder takes apart. Floats
-/// lose what their wire has no bits for.
+/// Encodes lines of a .data file as link frames, which LinkDecoder decodes. Floats are rounded to 32 bits.
 class LinkEncoder {
   public:
     LinkEncoder(const MessageDictionary& dictionary, LinkVersion version);
 
-    /// Appends the frame of "20 ENERGY 57 11.62 ...". Where it cannot be one (another sender than an aircraft, a
-    /// message that telemetry does not define, fields that its definition does not have), nothing is appended; the
-    /// reason is returned, and empty else.
+    /// Appends the frame of "20 ENERGY 57 11.62 ..." and returns an empty text. Otherwise (the sender is not an aircraft,
+    /// the message is not defined, or its fields do not match the definition) returns the reason and appends nothing.
     std::string_view append_frame(std::string_view text, std::string& frames);
 
   private:

@@ -16,7 +16,7 @@
 namespace flightwatt::telemetry {
 namespace {
 
-/// The messages that an aircraft sends stand in class "telemetry"; other classes may reuse their names.
+/// Prefers the messages of class "telemetry", which an aircraft sends; other classes may reuse their names.
 void read_messages(std::vector<ProtocolMessage> protocol, LogConfiguration& configuration) {
     std::stable_partition(protocol.begin(), protocol.end(),
                           [](const auto& message) { return message.class_name == "telemetry"; });
@@ -26,8 +26,8 @@ void read_messages(std::vector<ProtocolMessage> protocol, LogConfiguration& conf
     }
 }
 
-/// The end of the tag that opens at `begin` (at its '>'), passing over quoted values and their escaped quotes. npos
-/// for one that another tag interrupts, or that is longer than any: then a quote is missing somewhere.
+/// Position of the '>' of the tag that opens at `begin`, outside of quoted values. npos if another tag begins first or
+/// the tag is too long: then a quote is missing.
 std::size_t tag_end(std::string_view text, std::size_t begin) {
     constexpr std::size_t max_tag = 4096;
     char quote = '\0';
@@ -155,7 +155,7 @@ std::optional<std::filesystem::path> find_log_file(const std::filesystem::path& 
     const auto flight = flight_name(data_file);
     std::vector<std::string> stems{flight};
     if (flight.ends_with("_SD")) stems.push_back(flight.substr(0, flight.size() - 3));
-    // A card's X.LOG has its X.log beside it, which may also be called X.LOG where the card's is X.tlm.
+    // The .log of a card's X.LOG is X.log; that of X.tlm may be X.LOG.
     for (const auto& stem : stems) {
         for (const auto* ending : {".log", ".LOG", ".Log"}) {
             const auto candidate = data_file.parent_path() / (stem + ending);
@@ -166,7 +166,7 @@ std::optional<std::filesystem::path> find_log_file(const std::filesystem::path& 
                 if (is_usual || begins_as_xml(candidate)) return candidate;
                 continue;
             }
-            // One that is there and cannot be read is not passed over: reading it says why.
+            // A .log that cannot be read is returned: reading it reports the reason.
             const bool is_absent = !error || error == std::errc::no_such_file_or_directory ||
                                    error == std::errc::not_a_directory || error == std::errc::filename_too_long;
             if (is_usual && !is_absent) return candidate;

@@ -18,10 +18,10 @@ struct AircraftConfiguration {
     std::optional<double> ground_altitude_m;
     std::map<int, std::string> block_names;
     CurrentOrigin current_origin = CurrentOrigin::unknown;
-    std::string firmware = {};  ///< "fixedwing", "rotorcraft", "rover"; empty if it is not told
+    std::string firmware = {};  ///< "fixedwing", "rotorcraft", "rover"; empty if unknown
 };
 
-/// What a Paparazzi .log says: message definitions by name, and the aircraft by id.
+/// Contents of a Paparazzi .log: message definitions by name, and aircraft by id.
 struct LogConfiguration {
     std::filesystem::path file;
     std::optional<double> time_of_day_s;  ///< Unix time at which the log's own seconds begin
@@ -29,24 +29,24 @@ struct LogConfiguration {
     std::map<std::string, AircraftConfiguration> aircraft;
 };
 
-/// What a .log may hold: an aircraft's whole configuration has about one MB.
+/// Maximum size of a .log; the configuration of an aircraft has about one MB.
 inline constexpr std::size_t max_log_configuration_bytes = 16'000'000;
 
-/// Reads a .log. Such files are often not well-formed XML ("&&", bare "<", escaped quotes in flight plans),
-/// so only the <protocol> element is read as XML; of the aircraft, single tags. Throws InputError where there
-/// is no <protocol>, it holds no message, or it cannot be read.
+/// Reads a .log. Such files are often not well-formed XML ("&&", bare "<", escaped quotes in flight plans), so only the
+/// <protocol> element and single tags of the aircraft are read as XML. Throws InputError if there is no <protocol>, it
+/// has no message, or it cannot be read.
 LogConfiguration read_log_configuration(const std::filesystem::path& path);
 LogConfiguration parse_log_configuration(const std::string& text, const std::filesystem::path& file);
 
-/// The .log that belongs to a log ("X.data", "X.data.gz", "X_SD.data", a card's "X.LOG"): "X.log" beside it, else an
-/// X.LOG that is XML; never the log itself. One that is there and cannot be read (a folder without permission, a link
-/// loop) counts: reading it says why.
+/// The .log of a log ("X.data", "X.data.gz", "X_SD.data", a card's "X.LOG"): "X.log" in the same folder, else an X.LOG
+/// that is XML; never the log itself. A .log that cannot be read (a folder without permission, a link loop) is returned,
+/// so that reading it reports the reason.
 std::optional<std::filesystem::path> find_log_file(const std::filesystem::path& data_file);
 
-/// Whether a file begins as XML does: an X.LOG may be an SD card's log or what says how to read X.tlm.
+/// Whether a file begins like XML: an X.LOG may be an SD card's log or the definitions of X.tlm.
 bool begins_as_xml(const std::filesystem::path& path);
 
-/// "20_07_03__12_17_45" for "logs/20_07_03__12_17_45.data.gz": the name without folder and endings.
+/// The name without folder and endings: "20_07_03__12_17_45" for "logs/20_07_03__12_17_45.data.gz".
 std::string flight_name(const std::filesystem::path& data_file);
 
 }  // namespace flightwatt::telemetry

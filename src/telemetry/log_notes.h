@@ -5,10 +5,10 @@
 #include <string_view>
 #include <vector>
 
-/// What is known of a log beside its values.
+/// Metadata of a log.
 namespace flightwatt::telemetry {
 
-/// Where the autopilot's current came from.
+/// Source of the autopilot's current.
 enum class CurrentOrigin {
     unknown,
     sensor,    ///< the airframe converts an ADC reading: MilliAmpereOfAdc
@@ -18,8 +18,8 @@ enum class CurrentOrigin {
 /// "measured by a sensor", "computed from throttle" or "unknown".
 std::string_view to_string(CurrentOrigin origin);
 
-/// Lines or values that could not be used, by reason and time; of binary logs frames, or bytes between them. What has
-/// no time counts to the next message that has: what stands behind the last message of a log has an infinite time.
+/// Unusable lines or values by reason and time; of binary logs frames, or bytes between them. A line without a time
+/// gets that of the next message, or an infinite time after the last message.
 struct SkippedLines {
     enum class Unit { line, frame, byte };
     struct AtTime {
@@ -30,7 +30,7 @@ struct SkippedLines {
     };
     std::string reason;
     std::vector<AtTime> lines;  ///< by time, which rises strictly
-    Unit unit = Unit::line;     ///< what is counted
+    Unit unit = Unit::line;
 
     std::size_t count() const;
     std::size_t first_line() const;  ///< 0 without any
@@ -43,10 +43,10 @@ std::string_view to_string(SkippedLines::Unit unit);
 /// bytes, first at byte 1201".
 std::string describe(const SkippedLines& skipped);
 
-/// A message's layout that was assumed for want of a .log, or what was assumed of its units where the .log has none or
-/// none that is known; and since when it was needed.
+/// A message layout that was assumed because there is no .log, or a unit because the .log has none or an unknown one;
+/// and the time from which on it was needed.
 struct AssumedDefinition {
-    std::string text;  ///< "ENERGY: 2018 (6 fields)", "POWER_DEVICE: current has none: A is assumed"
+    std::string text;  ///< "ENERGY: 2018 (6 fields)", "POWER_DEVICE: current has no unit: A is assumed"
     double since_s = 0.0;
     bool operator==(const AssumedDefinition&) const = default;
 };

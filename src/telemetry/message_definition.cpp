@@ -120,8 +120,8 @@ std::vector<ProtocolMessage> parse_protocol(const std::string& text, const std::
     constexpr std::string_view closing = "</protocol>";
     const auto end = begin == std::string::npos ? begin : text.find(closing, begin);
     if (end == std::string::npos) {
-        throw InputError({file.string()}, "holds no <protocol> element with message definitions",
-                         "expected the .log that Paparazzi's server wrote beside the .data, or a messages.xml");
+        throw InputError({file.string()}, "has no <protocol> element with message definitions",
+                         "expected the .log of Paparazzi's server, or a messages.xml");
     }
     pugi::xml_document document;
     const auto parsed = document.load_buffer(text.data() + begin, end + closing.size() - begin);

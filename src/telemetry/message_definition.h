@@ -14,7 +14,7 @@ class xml_node;
 
 namespace flightwatt::telemetry {
 
-/// One field of a message as the flight's own .log declares it. Arrays are one field.
+/// One field of a message as a .log declares it. An array is one field.
 struct FieldDefinition {
     std::string name;
     std::string type;
@@ -29,7 +29,7 @@ struct MessageDefinition {
     std::string origin;  ///< ".log", or which built-in definition was assumed
 };
 
-/// What turns a field's raw value into the base unit of its quantity.
+/// Conversion of a field's raw value to the base unit of its quantity.
 struct FieldConversion {
     std::optional<units::Quantity> quantity;  ///< absent: a number without a unit, such as a mode or a block
     double factor = 1.0;
@@ -39,19 +39,18 @@ struct FieldConversion {
 /// BAT.amps, an integer declared "A", counts 0.01 A in every version of Paparazzi.
 FieldConversion find_conversion(std::string_view message, const FieldDefinition& field);
 
-/// The unit that Paparazzi's own definitions give a field that `definition`, of a .log, gives none: those of its own
-/// POWER_DEVICE have none. Empty where it has one, where none is known, and where layouts that have the field differ
-/// and none has the definition's fields.
+/// The built-in unit of a field that the .log's `definition` declares without one (Paparazzi's POWER_DEVICE). Empty if
+/// the field has a unit, if none is known, and if the layouts with this field differ and none matches the definition.
 std::string undeclared_unit(const MessageDefinition& definition, std::size_t field);
 
 /// Index of a field; std::nullopt if the message has none of that name.
 std::optional<std::size_t> field_index(const MessageDefinition& definition, std::string_view field);
 
-/// Built-in definitions of the messages that FlightWatt reads, for logs that come without a .log: every
-/// layout of `message` that Paparazzi has had, told apart by their numbers of fields. Empty if unknown.
+/// Built-in definitions for logs without a .log: every layout that Paparazzi has had of `message`, each with another
+/// number of fields. Empty if unknown.
 const std::vector<MessageDefinition>& builtin_definitions(std::string_view message);
 
-/// A message of a <protocol>, with what it and its class are called and numbered; numbers as they stand there.
+/// A message of a <protocol> with the names and numbers of its class and itself, as in the file.
 struct ProtocolMessage {
     std::string class_name;
     std::string class_id;  ///< empty in older logs
@@ -59,11 +58,11 @@ struct ProtocolMessage {
     MessageDefinition definition;
 };
 
-/// An attribute by its name in lower case; it may be upper case in the file.
+/// An attribute by its lower-case name; the file may have it in upper case.
 std::string xml_attribute(const pugi::xml_node& node, std::string_view lower);
 
-/// The messages of the <protocol> element of a .log or messages.xml, in their order. Only it is read as XML. Throws
-/// InputError where there is none, it is no XML, or it defines no message.
+/// The messages of the <protocol> element of a .log or messages.xml, in order; only this element is read as XML. Throws
+/// InputError if it is missing, not XML, or defines no message.
 std::vector<ProtocolMessage> parse_protocol(const std::string& text, const std::filesystem::path& file);
 
 }  // namespace flightwatt::telemetry

@@ -48,7 +48,7 @@ std::optional<std::uint8_t> byte_of(std::string_view text) {
     return read.ec == std::errc() && read.ptr == end ? std::optional(value) : std::nullopt;
 }
 
-/// What pprzlink numbers the classes, where a file does not say: those before 2014 do not.
+/// pprzlink's number of a class, for files before 2014, which have none.
 std::optional<std::uint8_t> default_class_id(std::string_view name) {
     static constexpr std::string_view names[] = {"telemetry", "datalink", "ground", "alert", "intermcu"};
     const auto* const found = std::ranges::find(names, name);
@@ -91,8 +91,8 @@ void MessageDictionary::add(std::string_view class_id, std::string_view class_na
     const auto group = class_id.empty() ? default_class_id(class_name) : byte_of(class_id);
     const auto id = byte_of(message_id);
     if (!group || *group >= max_classes || !id) return;
-    auto& place = places_[*group * std::size_t{256} + *id];
-    if (place != 0) return;
+    auto& number = numbers_[*group * std::size_t{256} + *id];
+    if (number != 0) return;
     WireMessage message{definition, *group, *id, {}, 0, false};
     for (const auto& field : definition.fields) {
         const auto wire = wire_field_of(field.type);
@@ -102,7 +102,7 @@ void MessageDictionary::add(std::string_view class_id, std::string_view class_na
         message.fixed_bytes += wire->elements * size_of(wire->type);
     }
     messages_.push_back(std::move(message));
-    place = static_cast<std::uint16_t>(messages_.size());
+    number = static_cast<std::uint16_t>(messages_.size());
 }
 
 MessageDictionary parse_message_dictionary(const std::string& text, const std::filesystem::path& file) {

@@ -25,14 +25,14 @@ enum class LinkVersion { v1 = 1, v2 = 2 };
 std::string_view to_string(Framing framing);
 std::string_view to_string(LinkVersion version);
 
-/// What a field, or each element of an array, is on the wire: little endian, unaligned.
+/// Type of a field, or of an array's elements, on the wire: little endian, unaligned.
 enum class WireType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64, text };
 
-/// How many elements a field has.
+/// Kind of a field's number of elements.
 enum class WireCount : std::uint8_t {
     one,      ///< a scalar
     fixed,    ///< T[n]: n of them
-    counted,  ///< T[] and string: a uint8 says how many follow
+    counted,  ///< T[] and string: a uint8 with their number precedes them
 };
 
 /// One field of a message on the wire.
@@ -77,17 +77,17 @@ inline std::size_t size_of(WireType type) {
     return with_wire_type(type, []<typename T>() { return sizeof(T); });
 }
 
-/// A message as frames carry it: known by the number of its class and its own.
+/// A message of frames, identified by the numbers of its class and itself.
 struct WireMessage {
     MessageDefinition definition;
     std::uint8_t class_id = 0;
     std::uint8_t id = 0;
-    std::vector<WireField> fields;  ///< of definition.fields, one each
+    std::vector<WireField> fields;  ///< one for each of definition.fields
 
     std::size_t fixed_bytes = 0;  ///< of the fields that are not counted
     bool has_counted = false;
 
-    /// Whether fields of these types fill the payload to its last byte, and need none beyond.
+    /// Whether the fields fill the payload exactly.
     bool fits(std::string_view payload) const {
         return has_counted ? fits_counted(payload) : payload.size() == fixed_bytes;
     }
@@ -96,21 +96,20 @@ struct WireMessage {
     bool fits_counted(std::string_view payload) const;
 };
 
-/// The messages of all classes of a <protocol>, found by the numbers that frames carry.
+/// The messages of all classes of a <protocol>, by the numbers in frames.
 class MessageDictionary {
   public:
     static constexpr std::uint8_t telemetry_class = 1;
     static constexpr std::uint8_t datalink_class = 2;
 
-    /// A message whose numbers are taken, or over 255, or a type of whose fields is not known, is none that frames
-    /// carry.
+    /// Ignores a message whose numbers are taken or over 255, or which has a field of an unknown type.
     void add(std::string_view class_id, std::string_view class_name, std::string_view message_id,
              const MessageDefinition& definition);
-    /// The message; nullptr for one that is not defined.
+    /// The message; nullptr if it is not defined.
     const WireMessage* find(std::uint8_t class_id, std::uint8_t message_id) const {
         if (class_id >= max_classes) return nullptr;
-        const auto place = places_[std::size_t{class_id} * 256 + message_id];
-        return place == 0 ? nullptr : &messages_[place - 1];
+        const auto number = numbers_[std::size_t{class_id} * 256 + message_id];
+        return number == 0 ? nullptr : &messages_[number - 1];
     }
     const std::vector<WireMessage>& messages() const { return messages_; }
     bool empty() const { return messages_.empty(); }
@@ -119,10 +118,10 @@ class MessageDictionary {
     static constexpr std::size_t max_classes = 16;
 
     std::vector<WireMessage> messages_;
-    std::array<std::uint16_t, max_classes * 256> places_{};  ///< of messages_, from 1 on; 0 without
+    std::array<std::uint16_t, max_classes * 256> numbers_{};  ///< in messages_, from 1; 0: not defined
 };
 
-/// The definitions of a messages.xml, or of the <protocol> of a .log. Throws InputError where there is none.
+/// The definitions of a messages.xml, or of the <protocol> of a .log. Throws InputError if it has none.
 MessageDictionary read_message_dictionary(const std::filesystem::path& path);
 MessageDictionary parse_message_dictionary(const std::string& text, const std::filesystem::path& file);
 

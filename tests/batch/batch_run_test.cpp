@@ -254,7 +254,7 @@ TEST_F(BatchOfTwo, RecordsALogThatBecameBad) {
     write_text(in / "opterra_synthetic_01.data", "rubbish\n");
     const auto flights_now = batch(in, out);
     EXPECT_FALSE(flights_now[0].record.accepted);
-    EXPECT_THAT(flights_now[0].record.error, HasSubstr("opterra_synthetic_01.data:1: holds no telemetry"));
+    EXPECT_THAT(flights_now[0].record.error, HasSubstr("opterra_synthetic_01.data:1: has no telemetry"));
     EXPECT_TRUE(flights_now[1].was_up_to_date);
     EXPECT_FALSE(std::filesystem::exists(flights / "opterra_synthetic_01.series.csv"));
     EXPECT_FALSE(std::filesystem::exists(flights / "opterra_synthetic_01.phases.csv"));

@@ -42,7 +42,7 @@ BatchFlight two_sorties() {
 BatchFlight rejected_flight() {
     BatchFlight flight;
     flight.record.flight = "bad";
-    flight.record.error = "bad.data:1: holds no telemetry, \"none\"";
+    flight.record.error = "bad.data:1: has no telemetry, \"none\"";
     return flight;
 }
 
@@ -74,7 +74,7 @@ TEST(Catalogue, HasARowAPhaseAndARejectedLog) {
     EXPECT_EQ(cell(3, "flight"), "bad");
     EXPECT_EQ(cell(3, "phase"), "");
     EXPECT_EQ(cell(3, "used"), "false");
-    EXPECT_EQ(cell(3, "error"), "bad.data:1: holds no telemetry, \"none\"");
+    EXPECT_EQ(cell(3, "error"), "bad.data:1: has no telemetry, \"none\"");
 }
 
 TEST(FlightsTable, HasARowASortie) {

@@ -2,7 +2,7 @@
 
 #include "base/number.h"
 #include "flight/telemetry_series.h"
-#include "telemetry/text/line_scanner.h"
+#include "telemetry/text/lines.h"
 
 #include <algorithm>
 #include <array>
@@ -41,12 +41,11 @@ std::size_t count_lines(std::string_view text) {
 
 WordCount count_words(std::string_view text) {
     WordCount count;
-    count.lines = telemetry::scan_lines(text, [&](const telemetry::ScannedLine& line) {
-        telemetry::WordCursor words(line);
-        std::string_view word;
-        while (words.next(word)) {
+    telemetry::for_each_line(text, [&](std::string_view rest) {
+        ++count.lines;
+        while (!rest.empty()) {
             ++count.words;
-            count.characters += word.size();
+            count.characters += telemetry::take_word(rest).size();
         }
     });
     return count;
@@ -54,10 +53,10 @@ WordCount count_words(std::string_view text) {
 
 NumberCount count_numbers(std::string_view text) {
     NumberCount count;
-    count.lines = telemetry::scan_lines(text, [&](const telemetry::ScannedLine& line) {
-        telemetry::WordCursor words(line);
-        std::string_view word;
-        for (int i = 0; words.next(word); ++i) {
+    telemetry::for_each_line(text, [&](std::string_view rest) {
+        ++count.lines;
+        for (int i = 0; !rest.empty(); ++i) {
+            const auto word = telemetry::take_word(rest);
             if (i == 1 || i == 2) continue;  // the sender and the message's name
             const double number = number_or_nan(word);
             if (std::isnan(number)) {

@@ -46,10 +46,10 @@ telemetry::TelemetryLog parse_energy(const std::filesystem::path& path, std::str
 /// the same at the peak, whenever that is, as it is at the end.
 void print_memory(const std::filesystem::path& path) {
     constexpr std::size_t page_size = 4096;
-    const telemetry::DataFile data(path);
+    const auto data = telemetry::read_data_file(path);
     std::size_t breaks = 0;
-    for (std::size_t i = 0; i < data.text().size(); i += page_size) breaks += data.text()[i] == '\n' ? 1 : 0;
-    const auto log = parse_energy(path, data.text());
+    for (std::size_t i = 0; i < data.size(); i += page_size) breaks += data[i] == '\n' ? 1 : 0;
+    const auto log = parse_energy(path, data);
     const auto peak_kb = status_kb("VmHWM");
     const auto file_kb = status_kb("RssFile");
     fmt::print("rows {} pages_at_a_break {} peak_kb {} file_kb {} beyond_file_kb {}\n", row_count(log), breaks, peak_kb,
@@ -58,15 +58,15 @@ void print_memory(const std::filesystem::path& path) {
 
 int run(std::string_view pass, const std::filesystem::path& path) {
     if (pass == "energy") {
-        const auto log = parse_energy(path, telemetry::DataFile(path).text());
+        const auto log = parse_energy(path, telemetry::read_data_file(path));
         fmt::print("lines {} rows {}\n", log.lines, row_count(log));
     } else if (pass == "lines") {
-        fmt::print("lines {}\n", count_lines(telemetry::DataFile(path).text()));
+        fmt::print("lines {}\n", count_lines(telemetry::read_data_file(path)));
     } else if (pass == "words") {
-        const auto count = count_words(telemetry::DataFile(path).text());
+        const auto count = count_words(telemetry::read_data_file(path));
         fmt::print("lines {} words {} characters {}\n", count.lines, count.words, count.characters);
     } else if (pass == "numbers") {
-        const auto count = count_numbers(telemetry::DataFile(path).text());
+        const auto count = count_numbers(telemetry::read_data_file(path));
         fmt::print("lines {} numbers {} others {} sum {}\n", count.lines, count.numbers, count.others, count.sum);
     } else if (pass == "memory") {
         print_memory(path);

@@ -14,35 +14,33 @@
 namespace flightwatt::bench {
 namespace {
 
-constexpr std::size_t one_part = 1;  // on one core, as binary logs are read
-
-void count_bytes(benchmark::State& state, const telemetry::DataFile& data) {
-    state.SetBytesProcessed(static_cast<std::int64_t>(data.text().size()) * state.iterations());
+void count_bytes(benchmark::State& state, const std::string& data) {
+    state.SetBytesProcessed(static_cast<std::int64_t>(data.size()) * state.iterations());
 }
 
 void energy_messages_of_a_log(benchmark::State& state) {
     const auto path = benchmark_log();
-    const telemetry::DataFile data(path);
+    const auto data = telemetry::read_data_file(path);
     std::optional<telemetry::LogConfiguration> configuration;
     if (const auto log_file = telemetry::find_log_file(path))
         configuration = telemetry::read_log_configuration(*log_file);
     for (auto _ : state) {
-        benchmark::DoNotOptimize(parse_telemetry(data.text(), path, configuration, energy_messages(), one_part));
+        benchmark::DoNotOptimize(parse_telemetry(data, path, configuration, energy_messages()));
     }
     count_bytes(state, data);
 }
 BENCHMARK(energy_messages_of_a_log)->Unit(benchmark::kMillisecond);
 
 void every_message_into_words(benchmark::State& state) {
-    const telemetry::DataFile data(benchmark_log());
-    for (auto _ : state) benchmark::DoNotOptimize(count_words(data.text()));
+    const auto data = telemetry::read_data_file(benchmark_log());
+    for (auto _ : state) benchmark::DoNotOptimize(count_words(data));
     count_bytes(state, data);
 }
 BENCHMARK(every_message_into_words)->Unit(benchmark::kMillisecond);
 
 void every_message_as_numbers(benchmark::State& state) {
-    const telemetry::DataFile data(benchmark_log());
-    for (auto _ : state) benchmark::DoNotOptimize(count_numbers(data.text()));
+    const auto data = telemetry::read_data_file(benchmark_log());
+    for (auto _ : state) benchmark::DoNotOptimize(count_numbers(data));
     count_bytes(state, data);
 }
 BENCHMARK(every_message_as_numbers)->Unit(benchmark::kMillisecond);
@@ -59,8 +57,8 @@ struct CardAndText {
 CardAndText card_and_text() {
     const auto log_file = telemetry::find_log_file(benchmark_log()).value();
     CardAndText made{telemetry::read_message_dictionary(log_file), telemetry::read_log_configuration(log_file), {}, {}};
-    const telemetry::DataFile data(benchmark_log());
-    const auto once = test::card_log(data.text(), made.messages, telemetry::LinkVersion::v2);
+    const auto data = telemetry::read_data_file(benchmark_log());
+    const auto once = test::card_log(data, made.messages, telemetry::LinkVersion::v2);
     for (int i = 0; i < 30; ++i) made.card += once;
     telemetry::LinkDecoder decoder(made.messages, telemetry::Framing::card);
     decoder.push(made.card, [&](const telemetry::LinkMessage& message) {
@@ -82,7 +80,7 @@ BENCHMARK(energy_messages_of_a_card)->Unit(benchmark::kMillisecond);
 void energy_messages_of_its_text(benchmark::State& state) {
     const auto made = card_and_text();
     for (auto _ : state)
-        benchmark::DoNotOptimize(parse_telemetry(made.text, "x.data", made.configuration, energy_messages(), one_part));
+        benchmark::DoNotOptimize(parse_telemetry(made.text, "x.data", made.configuration, energy_messages()));
     state.SetItemsProcessed(made.count * state.iterations());
     state.SetBytesProcessed(static_cast<std::int64_t>(made.text.size()) * state.iterations());
 }

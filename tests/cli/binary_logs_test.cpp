@@ -145,11 +145,11 @@ TEST_F(BinaryLogs, SayWhatTheyLack) {
     write_file_atomically(folder / "card" / "a.LOG", log.substr(0, log.size() - 7) + std::string(4096, '\0'));
     const auto result = run("parse card/a.LOG -o s.csv");
     EXPECT_EQ(result.code, 0) << result.err;
-    EXPECT_THAT(result.err, HasSubstr("damaged, no frame with a right checksum: "));
+    EXPECT_THAT(result.err, HasSubstr("damaged, no frame with a valid checksum: "));
     const auto series = run("parse s.csv");
-    EXPECT_THAT(series.err, HasSubstr("damaged, no frame with a right checksum: ")) << "a series file loses nothing";
+    EXPECT_THAT(series.err, HasSubstr("damaged, no frame with a valid checksum: ")) << "a series file loses nothing";
     const auto converted = run("convert card/a.LOG -o x.data");
-    EXPECT_THAT(converted.err, HasSubstr("hold no frame with a right checksum"));
+    EXPECT_THAT(converted.err, HasSubstr("hold no frame with a valid checksum"));
     EXPECT_THAT(converted.err, HasSubstr("set aside"));
 }
 

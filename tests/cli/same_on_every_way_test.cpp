@@ -131,7 +131,7 @@ void expect_no_hindsight(const std::filesystem::path& log, const std::string& op
     const auto folder = test::scratch_dir();
     const auto command = "flightwatt predict flight.data " + options + " " + moment;
     const auto put = [&](const std::string& text) { write_file_atomically(folder / "flight.data", text); };
-    const std::string text(telemetry::DataFile(log).text());
+    const auto text = telemetry::read_data_file(log);
     std::filesystem::copy_file(telemetry::find_log_file(log).value(), folder / "flight.log");
     put(text);
     const auto whole = test::run_shell(command, folder);

@@ -69,7 +69,7 @@ void expect_no_hindsight_in_every(std::size_t step) {
     const auto logs = test::all_logs();
     for (std::size_t i = 0; i < logs.size(); i += step) {
         SCOPED_TRACE(logs[i].string());
-        expect_no_hindsight(std::string(telemetry::DataFile(logs[i]).text()), test::configuration_of(logs[i]));
+        expect_no_hindsight(telemetry::read_data_file(logs[i]), test::configuration_of(logs[i]));
     }
 }
 

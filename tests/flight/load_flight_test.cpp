@@ -121,7 +121,7 @@ CardAndText stored_on_card(const std::filesystem::path& data, test::LinkVersion 
     const auto folder = test::scratch_dir();
     const auto log = telemetry::find_log_file(data).value();
     const auto messages = telemetry::read_message_dictionary(log);
-    const std::string source(telemetry::DataFile(data).text());
+    const auto source = telemetry::read_data_file(data);
     const auto bytes = test::card_log(source, messages, version);
     std::string text;
     telemetry::LinkDecoder decoder(messages);
@@ -205,10 +205,10 @@ TEST(FlightFile, TakesNamedDefinitionsForADamagedLog) {
 
 /// The sample flight again and again, its clock going on.
 std::string many_flights(std::size_t count) {
-    const telemetry::DataFile data(test::source_dir() / "logs" / "opterra_synthetic_01.data");
+    const auto data = telemetry::read_data_file(test::source_dir() / "logs" / "opterra_synthetic_01.data");
     std::string text;
     for (std::size_t k = 0; k < count; ++k) {
-        for (std::string_view rest = data.text(); !rest.empty();) {
+        for (std::string_view rest = data; !rest.empty();) {
             const auto line = rest.substr(0, rest.find('\n') + 1);
             const auto blank = line.find(' ');
             text += fmt::format("{:.3f}", number_or_nan(line.substr(0, blank)) + 1000.0 * static_cast<double>(k));

@@ -27,8 +27,8 @@ TEST(SeriesFile, LosesNothingOfAnyLog) {
     std::size_t read = 0;
     for (const auto& log : test::all_logs()) {
         SCOPED_TRACE(log.string());
-        const telemetry::DataFile data(log);
-        for (const auto& series : test::all_series(data.text(), test::configuration_of(log))) {
+        const auto data = telemetry::read_data_file(log);
+        for (const auto& series : test::all_series(data, test::configuration_of(log))) {
             if (power_track(series).empty() && select_track(series, "altitude_m").time_s.size() < 2) continue;
             const auto text = to_csv(series);
             const auto again = parse_series_csv(text, series.file);
@@ -143,8 +143,8 @@ TEST(SeriesFile, RefusesANewerFormatAndWhatItDoesNotKnow) {
 
 TEST(SeriesFile, OfACorrectedSeriesIsNotCorrectedAgain) {
     const auto log = test::source_dir() / "logs" / "opterra_synthetic_01.data";
-    const telemetry::DataFile data(log);
-    auto series = test::all_series(data.text(), test::configuration_of(log)).at(0);
+    const auto data = telemetry::read_data_file(log);
+    auto series = test::all_series(data, test::configuration_of(log)).at(0);
     correct_idle_offset(series, IdleCurrent{0.1, 0.01, 100});
     const auto again = parse_series_csv(to_csv(series), series.file);
     EXPECT_TRUE(again == series);

@@ -99,7 +99,7 @@ TEST(BinaryLog, CountsWhatItSkips) {
     for (const auto& skipped : log.skipped) reasons.push_back(describe(skipped));
     EXPECT_THAT(reasons, ElementsAre("message 200 of class 1: not defined in messages.xml: 1 frame, first at byte 31",
                                      "PONG: another length than messages.xml defines: 1 frame, first at byte 41",
-                                     "damaged, no frame with a right checksum: 4 bytes, first at byte 52",
+                                     "damaged, no frame with a valid checksum: 4 bytes, first at byte 52",
                                      "ESTIMATOR.z: not a finite number: 1 frame, first at byte 56",
                                      "the last frame is cut off: 6 bytes, first at byte 104"));
     EXPECT_EQ(log.skipped.at(2).lines.at(0).time_s, 4.0) << "the next message's";
@@ -136,7 +136,7 @@ TEST(BinaryLog, RefusesDefinitionsOfAnotherBuild) {
     EXPECT_THAT(test::rejected([&] {
                     link_version({log, Framing::card, "x.LOG", "none.xml", &nothing});
                 }),
-                HasSubstr("none of whose messages none.xml defines"));
+                HasSubstr("no message with the length that none.xml defines"));
 }
 
 TEST(BinaryLog, RefusesALinkWithoutTimes) {

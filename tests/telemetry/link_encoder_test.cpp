@@ -60,14 +60,14 @@ TEST_P(LinkEncoderTest, MakesFramesThatADecoderTurnsIntoTheSameLines) {
 TEST_P(LinkEncoderTest, SaysWhyALineCannotBeAFrame) {
     LinkEncoder encoder(dictionary, GetParam());
     std::string frames;
-    EXPECT_EQ(encoder.append_frame("ground EMPTY", frames), "their sender is no aircraft");
-    EXPECT_EQ(encoder.append_frame("256 EMPTY", frames), "their sender is no aircraft");
+    EXPECT_EQ(encoder.append_frame("ground EMPTY", frames), "their sender is not an aircraft");
+    EXPECT_EQ(encoder.append_frame("256 EMPTY", frames), "their sender is not an aircraft");
     for (const auto* unknown : {"20 SETTING 1", "20 NEVER 1", "20", ""}) {
         EXPECT_NE(encoder.append_frame(unknown, frames), "") << unknown;
     }
     for (const auto* wrong : {"20 EMPTY 1", "20 NOTE 256 a", "20 NOTE -1 a", "20 NOTE 1.5 a", "20 LISTS 1 1. a abcd",
                               "20 LISTS 1 1.,2. a abcde", "20 LISTS 1,,2 1.,2. a abcd", "20 ALL 1"}) {
-        EXPECT_EQ(encoder.append_frame(wrong, frames), "their fields do not fit their definition") << wrong;
+        EXPECT_EQ(encoder.append_frame(wrong, frames), "their fields do not match the definition") << wrong;
     }
     EXPECT_EQ(encoder.append_frame("20 NOTE 1 " + std::string(250, 'x'), frames), "they are too long for a frame");
     EXPECT_EQ(frames, "");

@@ -55,7 +55,7 @@ TEST(MessageDictionary, RefusesWhatDefinesNothing) {
     EXPECT_EQ(test::rejected([&] { read_message_dictionary(folder / "x.xml"); }, folder),
               "x.xml:1: its <protocol> defines no message");
     EXPECT_THAT(test::rejected([&] { read_message_dictionary(folder / "y.xml"); }, folder),
-                testing::HasSubstr("y.xml: holds no <protocol>"));
+                testing::HasSubstr("y.xml: has no <protocol>"));
 }
 
 TEST(MessageDictionary, ReadsRealDefinitions) {

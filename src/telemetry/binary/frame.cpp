@@ -7,8 +7,8 @@
 namespace flightwatt::telemetry {
 namespace {
 
-/// Calls on_frame(frame, whether it stands right behind another) for all frames with right checksums, one after the
-/// other, until it returns false.
+/// Calls on_frame(frame, whether it directly follows another) for all frames with valid checksums, in order, until it
+/// returns false.
 template <Framing framing, typename OnFrame>
 void for_each_frame(std::string_view bytes, OnFrame&& on_frame) {
     Frame frame;
@@ -51,12 +51,12 @@ FramedBytes framed_bytes(std::string_view bytes) {
     return framed;
 }
 
-/// Takes bytes off a frame, one after the other.
+/// Reads the bytes of a frame, one after the other.
 class PacketReader {
   public:
     PacketReader(const char* p, const char* end, bool escaped) : p_(p), end_(end), escaped_(escaped) {}
 
-    /// Nothing at the end, and for what an escaped frame does not hold.
+    /// std::nullopt at the end, and for a byte that an escaped frame cannot contain.
     std::optional<std::uint8_t> next() {
         constexpr std::uint8_t escape = 0x7D;
         if (p_ == end_) return std::nullopt;
@@ -84,7 +84,7 @@ class PacketReader {
     bool refused_ = false;
 };
 
-/// Where the message begins behind what the kind of packet says: 0x80 from a 64-bit address, 0x81 from a 16-bit one,
+/// Size of the header before the message, by the type of packet: 0x80 from a 64-bit address, 0x81 from a 16-bit one,
 /// 0x90 of later series; 0 for any other.
 std::size_t header_of(std::uint8_t kind) {
     switch (kind) {
@@ -102,18 +102,18 @@ std::size_t header_of(std::uint8_t kind) {
 }  // namespace
 
 std::optional<Framing> detect_framing(std::string_view bytes, bool is_whole) {
-    // Right checksums by chance: two of them one behind the other once in 4 billion bytes.
+    // Two consecutive checksums are valid by chance once in 4 billion bytes.
     constexpr std::size_t min_followers = 2;
     const auto filled = bytes.find_last_not_of('\0') + 1;
     std::optional<Framing> best;
-    std::size_t most = 0;
+    std::size_t max_score = 0;
     for (const auto framing : {Framing::card, Framing::link, Framing::xbee}) {
         const auto framed = with_framing(framing, [&]<Framing f>() { return framed_bytes<f>(bytes); });
         std::size_t score = framed.followers >= min_followers ? framed.in_chains : 0;
         constexpr std::size_t nearly = 10;  // all but a tenth
         if (score == 0 && is_whole && framed.all > filled - filled / nearly) score = framed.all;
-        if (score > most) {
-            most = score;
+        if (score > max_score) {
+            max_score = score;
             best = framing;
         }
     }

@@ -9,23 +9,23 @@
 
 namespace flightwatt::telemetry {
 
-/// Fewer zeros between frames are damage, not room that was set aside.
+/// From this many zeros between frames on they are preallocated space; fewer are damage.
 inline constexpr std::size_t min_padding_zeros = 16;
 
-/// The time of messages on links that have none of their own: what the last TIMESTAMP message said [ms], as an OpenLog
-/// stores them.
+/// Time of messages on links, which have none of their own: that of the last TIMESTAMP message [ms] (OpenLog).
 class LinkTime {
   public:
     explicit LinkTime(const MessageDictionary& dictionary) {
         for (const auto& message : dictionary.messages()) {
-            const bool tells = message.class_id == MessageDictionary::telemetry_class &&
-                               message.definition.name == "TIMESTAMP" && message.fields.size() == 1 &&
-                               message.fields[0].type == WireType::uint32 && message.fields[0].count == WireCount::one;
-            if (tells) id_ = message.id;
+            const bool is_timestamp = message.class_id == MessageDictionary::telemetry_class &&
+                                      message.definition.name == "TIMESTAMP" && message.fields.size() == 1 &&
+                                      message.fields[0].type == WireType::uint32 &&
+                                      message.fields[0].count == WireCount::one;
+            if (is_timestamp) id_ = message.id;
         }
     }
 
-    /// Of a message that fits its definition; nothing before the first TIMESTAMP.
+    /// Time of a message that fits its definition; std::nullopt before the first TIMESTAMP.
     std::optional<double> time_s(const FoundFrame& found) {
         constexpr double ms_per_s = 1000.0;
         if (found.id == id_ && found.class_id == MessageDictionary::telemetry_class)
@@ -39,9 +39,8 @@ class LinkTime {
     std::optional<double> last_s_;
 };
 
-/// The time of card frames, which starts anew after 119.3 h. It is taken to have done so where a time is before the
-/// last one and, counted across the end of the range, less than an hour behind it: a damaged time or a clock that was
-/// set back does not count as one.
+/// Time of card frames, whose counter overflows after 119.3 h. An overflow is a time before the last one that is, across
+/// the end of the range, less than an hour later; a damaged time or a clock that was set back is not.
 class FrameClock {
   public:
     double time_s(std::uint32_t time_100us) {
@@ -51,7 +50,7 @@ class FrameClock {
             round = ++round_;
             last_ = time_100us;
         } else if (time_100us > last_ && last_ - time_100us < hour && round_ > 0) {
-            --round;  // a frame from before, late
+            --round;  // a late frame from before the overflow
         } else {
             last_ = time_100us;
         }

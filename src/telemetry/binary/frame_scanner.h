@@ -16,33 +16,32 @@ namespace flightwatt::telemetry {
 struct Gap {
     std::size_t offset = 0;
     std::size_t bytes = 0;
-    std::size_t zeros = 0;    ///< at its end: room that was set aside, not damage
-    bool is_cut_off = false;  ///< begins where a frame should, of which there is too little
+    std::size_t zeros = 0;    ///< at the end: preallocated space, not damage
+    bool is_cut_off = false;  ///< begins with an incomplete frame
 };
 
-/// What comes behind the bytes that are scanned.
+/// Input after the scanned bytes.
 enum class InputContinuation {
-    more,   ///< more bytes, at once
-    pause,  ///< more may come
+    more,   ///< more bytes, immediately
+    pause,  ///< perhaps more bytes, later
     end,
 };
 
-/// Frames out of bytes, also damaged ones (docs/formats.md, "Damage"). A frame whose checksum is right and whose
-/// message fits its definition counts; where the next frame does not follow, only if none that fits begins within it.
-/// One that does not fit counts if none that fits begins within it and it stands where a frame should, or one follows,
-/// or its sender is known. So a damaged length cannot swallow the frames behind it.
+/// Finds frames in bytes that may be damaged (docs/formats.md, "Damage"). Accepted are frames with a valid checksum
+/// - whose message matches its definition, if another frame follows or no matching frame begins within;
+/// - without a match, if no matching frame begins within, and a frame precedes or follows or the sender is known.
+/// So a damaged length cannot hide the frames behind it.
 template <Framing framing>
 class FrameScanner {
   public:
-    /// Without a version that of most frames so far is taken that fit one alone. `dictionary` is kept.
+    /// Without a version, the one that matches more of the frames so far is used. `dictionary` must outlive this.
     FrameScanner(const MessageDictionary& dictionary, std::optional<LinkVersion> version)
         : dictionary_(&dictionary), version_(version) {}
 
     std::optional<LinkVersion> version() const { return version_ ? version_ : likely_version(); }
 
-    /// Calls on_frame(FoundFrame, Frame) and on_gap(Gap) in the order of the bytes; a gap is told with the frame behind
-    /// it, or at the end. Returns how many bytes are done with: the others are to be given again, with more behind
-    /// them.
+    /// Calls on_frame(FoundFrame, Frame) and on_gap(Gap) in the order of the bytes; a gap is reported with the frame that
+    /// follows it, or at the end. Returns the number of processed bytes; pass the others again, with more behind them.
     template <typename OnFrame, typename OnGap>
     std::size_t scan(std::string_view bytes, InputContinuation behind, OnFrame&& on_frame, OnGap&& on_gap) {
         begin_ = bytes.data();
@@ -58,27 +57,27 @@ class FrameScanner {
                 p = stop;
                 continue;
             }
-            const auto look = look_at(p, frame_);
-            if (look == ParseStatus::incomplete && behind != InputContinuation::end &&
+            const auto status = parse(p, frame_);
+            if (status == ParseStatus::incomplete && behind != InputContinuation::end &&
                 !find_matching_frame(p + 1, end_))
                 break;
-            if (look == ParseStatus::frame) {
+            if (status == ParseStatus::frame) {
                 const char* const stop = p + frame_.size;
                 auto found = read(frame_, true);
                 const bool is_sure = found.length_matches && looks_like_two_frames<framing>(stop, end_);
-                const auto verdict = is_sure ? FrameDecision::count : decide(found, p, stop, behind);
-                if (verdict == FrameDecision::wait) break;
-                if (verdict != FrameDecision::reject) {
+                const auto decision = is_sure ? FrameDecision::count : decide(found, p, stop, behind);
+                if (decision == FrameDecision::wait) break;
+                if (decision != FrameDecision::reject) {
                     close_gap(on_gap);
                     found.offset = offset_of(p);
                     in_sync_ = true;
                     if (found.length_matches) known_senders_.set(found.sender);
                     on_frame(static_cast<const FoundFrame&>(found), static_cast<const Frame&>(frame_));
-                    p = verdict == FrameDecision::count ? stop : fitting_;
+                    p = decision == FrameDecision::count ? stop : fitting_;
                     continue;
                 }
             }
-            skip(p, p + 1, look == ParseStatus::incomplete);
+            skip(p, p + 1, status == ParseStatus::incomplete);
             ++p;
         }
         const auto done = static_cast<std::size_t>(p - begin_);
@@ -98,14 +97,14 @@ class FrameScanner {
         const bool is_followed = is_last || *stop == sync_byte(framing);
         if (found.length_matches && is_last) return FrameDecision::count;
         if (found.length_matches && is_followed) {
-            const auto next = look_at(stop, inner_);
+            const auto next = parse(stop, inner_);
             if (next == ParseStatus::incomplete && behind == InputContinuation::more) return FrameDecision::wait;
             if (next == ParseStatus::frame || (next == ParseStatus::incomplete && behind == InputContinuation::pause))
                 return FrameDecision::count;
         }
         if (find_matching_frame(p + 1, stop)) {
-            // Of a frame that has lost its last byte, and of one that has lost its first, the neighbour may stand in
-            // for it: both were sent, and which of them is damaged cannot be told.
+            // A frame without its last byte, or without its first, may look complete with a byte of its neighbour:
+            // both were sent, and which one is damaged is unknown.
             return found.length_matches && fitting_ >= stop - checksum_bytes(framing) ? FrameDecision::count_both
                                                                                       : FrameDecision::reject;
         }
@@ -113,11 +112,11 @@ class FrameScanner {
         return counts ? FrameDecision::count : FrameDecision::reject;
     }
 
-    /// Of an XBee's packet that has a right checksum both as it stands and escaped, the one whose message fits.
-    ParseStatus look_at(const char* p, Frame& frame) {
-        const auto look = parse_frame<framing>(p, end_, frame);
+    /// Parses a frame; of an XBee's packet that is valid both unescaped and escaped, the one whose message matches.
+    ParseStatus parse(const char* p, Frame& frame) {
+        const auto status = parse_frame<framing>(p, end_, frame);
         if constexpr (framing == Framing::xbee) {
-            if (look != ParseStatus::frame || read(frame, false).length_matches) return look;
+            if (status != ParseStatus::frame || read(frame, false).length_matches) return status;
             for (const bool escaped : {false, true}) {
                 if (parse_xbee_frame(p, end_, escaped, other_) != ParseStatus::frame ||
                     !read(other_, false).length_matches)
@@ -125,10 +124,10 @@ class FrameScanner {
                 return parse_xbee_frame(p, end_, escaped, frame);
             }
         }
-        return look;
+        return status;
     }
 
-    /// `counts`: whether the frame tells which version this is.
+    /// `counts`: whether the frame is used to detect the version.
     FoundFrame read(const Frame& frame, bool counts) {
         return version_ ? read_message_header(frame, *version_, *dictionary_) : read_of_any_version(frame, counts);
     }
@@ -151,7 +150,7 @@ class FrameScanner {
         return fit_v1_ > fit_v2_ ? LinkVersion::v1 : LinkVersion::v2;
     }
 
-    /// Whether a frame that fits begins in [from, to). Each byte is looked at once.
+    /// Whether a matching frame begins in [from, to). Each byte is searched once.
     bool find_matching_frame(const char* from, const char* to) {
         if (fitting_ != nullptr && fitting_ >= from) return fitting_ < to;
         fitting_ = nullptr;
@@ -159,7 +158,7 @@ class FrameScanner {
             const void* const next = std::memchr(p, sync_byte(framing), static_cast<std::size_t>(to - p));
             if (next == nullptr) break;
             p = static_cast<const char*>(next);
-            if (look_at(p, inner_) != ParseStatus::frame || !read(inner_, false).length_matches) continue;
+            if (parse(p, inner_) != ParseStatus::frame || !read(inner_, false).length_matches) continue;
             fitting_ = p;
             searched_ = p + 1;
             return true;
@@ -191,12 +190,12 @@ class FrameScanner {
     std::size_t fit_v1_ = 0;
     std::size_t fit_v2_ = 0;
     std::bitset<256> known_senders_;
-    bool in_sync_ = true;  ///< the last frame ended where the next byte is
+    bool in_sync_ = true;  ///< the next byte directly follows a frame
     Gap gap_;
     std::size_t offset_ = 0;  ///< of begin_
     const char* begin_ = nullptr;
     const char* end_ = nullptr;
-    const char* searched_ = nullptr;  ///< up to here no frame that fits begins, but
+    const char* searched_ = nullptr;  ///< before this no matching frame begins, except
     const char* fitting_ = nullptr;   ///< this one
     Frame frame_;
     Frame inner_;

@@ -1,8 +1,11 @@
 #include "telemetry/columns/message_plan.h"
 
 #include "base/error.h"
+#include "base/number.h"
+#include "telemetry/text/lines.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,11 +19,11 @@ constexpr std::string_view first_element = "[0]";
 /// Paparazzi's ids are bytes; some ground programs send under names.
 constexpr std::size_t max_senders = 300;
 
-/// What a field of a .log's definition is taken for.
+/// Conversion of a field that a .log declares.
 FieldConversion declared_conversion(DecodePlan& plan, std::size_t index) {
     auto field = plan.definition->fields[index];
     if (const auto unit = undeclared_unit(*plan.definition, index); !unit.empty()) {
-        plan.units.push_back(fmt::format("{} has none: {} is assumed", field.name, unit));
+        plan.units.push_back(fmt::format("{} has no unit: {} is assumed", field.name, unit));
         field.unit = unit;
     }
     const auto conversion = find_conversion(plan.definition->name, field);
@@ -28,13 +31,30 @@ FieldConversion declared_conversion(DecodePlan& plan, std::size_t index) {
         constexpr std::size_t max_unit = 20;
         std::ranges::replace_if(
             field.unit, [](char c) { return c < ' ' || c > '~'; }, '?');
-        plan.units.push_back(
-            fmt::format("{} has '{}', which is none that is known", field.name, field.unit.substr(0, max_unit)));
+        plan.units.push_back(fmt::format("{} has the unknown unit '{}'", field.name, field.unit.substr(0, max_unit)));
     }
     return conversion;
 }
 
-/// When any sender first sent the message.
+/// Chooses the definition that has that number of fields, if there is one.
+void choose_definition(DecodePlan& plan, std::size_t field_count) {
+    const auto found = std::ranges::find_if(
+        plan.candidates, [&](const MessageDefinition& candidate) { return candidate.fields.size() == field_count; });
+    if (found == plan.candidates.end()) return;
+    plan.definition = &*found;
+    for (const auto& field : plan.request.fields) {
+        const bool is_first_element = field.ends_with(first_element);
+        const auto index =
+            field_index(*found, field.substr(0, field.size() - (is_first_element ? first_element.size() : 0)));
+        if (!index) continue;
+        const auto conversion = is_first_element ? FieldConversion{}
+                                : plan.from_log  ? declared_conversion(plan, *index)
+                                                 : find_conversion(found->name, found->fields[*index]);
+        plan.targets.push_back({*index, conversion.quantity, conversion.factor, is_first_element});
+    }
+}
+
+/// Time of the first such message of any sender.
 double first_time_s(const TelemetryLog& log, const std::string& message) {
     double first_s = std::numeric_limits<double>::infinity();
     for (const auto& sender : log.senders) {
@@ -62,24 +82,22 @@ DecodePlan make_decode_plan(const MessageRequest& request, const std::optional<L
     return plan;
 }
 
-bool choose_definition(DecodePlan& plan, std::size_t field_count) {
-    const auto fits = [&](const MessageDefinition& candidate) { return candidate.fields.size() == field_count; };
-    const auto found = std::find_if(plan.candidates.begin(), plan.candidates.end(), fits);
-    if (found == plan.candidates.end()) return false;
-    plan.definition = &*found;
-    plan.fields_wanted = 0;
-    for (const auto& field : plan.request.fields) {
-        const bool is_first_element = field.ends_with(first_element);
-        const auto index =
-            field_index(*found, field.substr(0, field.size() - (is_first_element ? first_element.size() : 0)));
-        if (!index) continue;
-        const auto conversion = is_first_element ? FieldConversion{}
-                                : plan.from_log  ? declared_conversion(plan, *index)
-                                                 : find_conversion(found->name, found->fields[*index]);
-        plan.targets.push_back({*index, conversion.quantity, conversion.factor, is_first_element});
-        plan.fields_wanted = std::max(plan.fields_wanted, *index + 1);
-    }
-    return true;
+std::optional<SkipReason> check_field_count(DecodePlan& plan, std::size_t field_count) {
+    if (plan.definition == nullptr) choose_definition(plan, field_count);
+    if (plan.definition == nullptr && plan.candidates.empty()) return SkipReason::unknown_message;
+    const bool fits = plan.definition != nullptr && plan.definition->fields.size() == field_count;
+    return fits ? std::nullopt : std::optional(SkipReason::other_field_count);
+}
+
+std::size_t split_fields(std::string_view fields, std::vector<std::string_view>& words) {
+    if (fields.ends_with('\r')) fields.remove_suffix(1);
+    words.clear();
+    while (!fields.empty() && words.size() < max_fields) words.push_back(take_word(fields));
+    return words.size();
+}
+
+double field_value(const DecodePlan::Target& target, std::string_view word) {
+    return number_or_nan(target.is_first_element ? word.substr(0, word.find(',')) : word);
 }
 
 std::string assumption_of(const DecodePlan& plan) {
@@ -121,36 +139,18 @@ void note_assumptions(const std::vector<DecodePlan>& plans, TelemetryLog& log) {
     }
 }
 
-std::size_t LogTables::sender_index(std::string_view sender, std::size_t line) {
-    const auto [known, is_new] = sender_index_.try_emplace(std::string(sender), log_.senders.size());
-    if (!is_new) return known->second;
-    if (log_.senders.size() == max_senders) {
-        throw InputError({log_.data_file.string(), line},
-                         fmt::format("'{}' is the sender number {} of this log", sender, max_senders + 1),
-                         "no network has so many: the second word of a line should be an aircraft's id");
+MessageTable& table_of(TelemetryLog& log, std::string_view sender, const DecodePlan& plan, std::size_t line) {
+    auto found = std::ranges::find(log.senders, sender, &SenderLog::id);
+    if (found == log.senders.end()) {
+        if (log.senders.size() == max_senders) {
+            throw InputError({log.data_file.string(), line},
+                             fmt::format("'{}' is the sender number {} of this log", sender, max_senders + 1),
+                             "a network has fewer: the second word of a line should be an aircraft's id");
+        }
+        found = log.senders.insert(found, {std::string(sender), {}});
     }
-    log_.senders.push_back({std::string(sender), {}});
-    slots_.emplace_back(plans_, no_table);
-    return known->second;
-}
-
-MessageTable& LogTables::new_table(std::size_t sender, std::size_t plan_index, const DecodePlan& plan) {
-    auto& tables = log_.senders[sender].tables;
-    slots_[sender][plan_index] = tables.size();
-    tables.push_back(empty_table(plan));
-    return tables.back();
-}
-
-void reserve_rows(MessageTable& table, std::size_t read, std::size_t all) {
-    constexpr std::size_t too_few_for_a_rate = 1000;
-    const auto rows = table.time_s.size();
-    auto room = std::max<std::size_t>(64, 2 * rows);
-    if (rows >= too_few_for_a_rate) {
-        const double promised = static_cast<double>(rows) * static_cast<double>(all) / static_cast<double>(read);
-        room = std::max(static_cast<std::size_t>(1.1 * promised), rows + rows / 2);
-    }
-    table.time_s.reserve(room);
-    for (auto& column : table.columns) column.values.reserve(room);
+    const auto table = std::ranges::find(found->tables, plan.request.message, &MessageTable::message);
+    return table == found->tables.end() ? found->tables.emplace_back(empty_table(plan)) : *table;
 }
 
 }  // namespace flightwatt::telemetry

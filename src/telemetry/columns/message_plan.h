@@ -4,26 +4,25 @@
 #include "telemetry/telemetry_log.h"
 #include "telemetry/text/skip_counter.h"
 
+#include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
-/// What readers of text and of frames share: from wanted messages to the columns of a TelemetryLog.
+/// Common part of the readers of text and of frames: from requested messages to the columns of a TelemetryLog.
 namespace flightwatt::telemetry {
 
 inline constexpr std::size_t max_fields = 64;
 
-/// Which fields of a message go into which columns, and by what factor.
+/// The columns of a message: their fields and factors.
 struct DecodePlan {
     MessageRequest request;
-    std::vector<MessageDefinition> candidates;  ///< the .log's one, or the built-in ones
+    std::vector<MessageDefinition> candidates;  ///< the .log's definition, or the built-in ones
     bool from_log = false;
     std::string definitions;                        ///< "the .log" or "messages.xml"
-    const MessageDefinition* definition = nullptr;  ///< chosen at the first message that fits
+    const MessageDefinition* definition = nullptr;  ///< chosen with the first message that fits
     struct Target {
         std::size_t field;
         std::optional<units::Quantity> quantity;
@@ -31,16 +30,22 @@ struct DecodePlan {
         bool is_first_element = false;  ///< of an array
     };
     std::vector<Target> targets;
-    std::vector<std::string> units;          ///< what is odd about the .log's units, and what is done about it
-    std::size_t fields_wanted = max_fields;  ///< up to the last target's; all while no definition is chosen
+    std::vector<std::string> units;  ///< unexpected units of the .log, and the assumption made for each
 };
 
 DecodePlan make_decode_plan(const MessageRequest& request, const std::optional<LogConfiguration>& configuration);
 
-/// Chooses the definition by the number of fields; false if none has it.
-bool choose_definition(DecodePlan& plan, std::size_t field_count);
+/// Chooses the definition by the number of fields, once. Returns why a message with that number cannot be used.
+std::optional<SkipReason> check_field_count(DecodePlan& plan, std::size_t field_count);
 
-/// What is assumed of the message, for want of a .log or of its units; empty if nothing is.
+/// Splits the fields of a message into `words`, up to `max_fields` of them; returns how many the message has (at most
+/// `max_fields`). A carriage return at the end is ignored.
+std::size_t split_fields(std::string_view fields, std::vector<std::string_view>& words);
+
+/// The raw number of a target from its word; NaN if it is not a finite number.
+double field_value(const DecodePlan::Target& target, std::string_view word);
+
+/// The assumption about the message because the .log or its unit is missing; empty without one.
 std::string assumption_of(const DecodePlan& plan);
 
 /// Why a message, or its `field`, cannot be used.
@@ -49,35 +54,24 @@ std::string describe_skipped(SkipReason reason, const DecodePlan& plan, std::siz
 /// The table of the plan's message, without rows.
 MessageTable empty_table(const DecodePlan& plan);
 
-/// Adds to the log what was assumed of its messages, and since when.
-void note_assumptions(const std::vector<DecodePlan>& plans, TelemetryLog& log);
+/// The sender's table of the plan's message, which is added if it is missing. Throws InputError, at `line`, for more
+/// senders than a network can have.
+MessageTable& table_of(TelemetryLog& log, std::string_view sender, const DecodePlan& plan, std::size_t line);
 
-/// The tables of a log by sender and message, made as they are needed.
-class LogTables {
-  public:
-    LogTables(TelemetryLog& log, std::size_t plans) : log_(log), plans_(plans) {}
-
-    /// The place of `sender` among the log's. Throws InputError for one too many, at `line`.
-    std::size_t sender_index(std::string_view sender, std::size_t line);
-    MessageTable& table_of(std::size_t sender, std::size_t plan_index, const DecodePlan& plan) {
-        const auto slot = slots_[sender][plan_index];
-        return slot == no_table ? new_table(sender, plan_index, plan) : log_.senders[sender].tables[slot];
+/// Appends a row. value_of(target) is the raw number or NaN; on_missing(field) is called for each NaN.
+template <typename ValueOf, typename OnMissing>
+void append_row(MessageTable& table, const DecodePlan& plan, double time_s, const ValueOf& value_of,
+                const OnMissing& on_missing) {
+    table.time_s.push_back(time_s);
+    for (std::size_t i = 0; i < plan.targets.size(); ++i) {
+        const auto& target = plan.targets[i];
+        const double number = value_of(target);
+        if (std::isnan(number)) on_missing(target.field);
+        table.columns[i].values.push_back(number * target.factor);
     }
+}
 
-  private:
-    static constexpr std::size_t no_table = std::numeric_limits<std::size_t>::max();
-
-    MessageTable& new_table(std::size_t sender, std::size_t plan_index, const DecodePlan& plan);
-
-    TelemetryLog& log_;
-    std::size_t plans_;
-    std::vector<std::vector<std::size_t>> slots_;  ///< by sender and plan: index of the table
-    std::unordered_map<std::string, std::size_t> sender_index_;
-};
-
-/// Room for as many rows as the rest of a log promises at the rate so far, and a tenth more: memory that is never
-/// written costs nothing, while columns that grow step by step are copied and faulted in again. `read` of `all` bytes
-/// are read.
-void reserve_rows(MessageTable& table, std::size_t read, std::size_t all);
+/// Adds the assumptions about the log's messages, each with the time from which on it was needed.
+void note_assumptions(const std::vector<DecodePlan>& plans, TelemetryLog& log);
 
 }  // namespace flightwatt::telemetry

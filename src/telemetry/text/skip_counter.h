@@ -1,10 +1,8 @@
 #pragma once
 
 #include "telemetry/log_notes.h"
-#include "telemetry/text/line_scanner.h"
 
 #include <cstddef>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -28,30 +26,27 @@ struct SkipKind {
     bool operator==(const SkipKind&) const = default;
 };
 
-/// Counts lines that cannot be used, by kind and time, so that a log that is cut later is counted as if it had
-/// been cut before. Memory grows with the different times alone. Part of parse_telemetry.
+/// Counts unusable lines by kind and time, so that truncating the counts at a time gives those of the truncated log.
+/// Memory grows with the number of distinct times.
 class SkipCounter {
   public:
-    explicit SkipCounter(std::string_view text) : text_(text) {}
-
     void add(const SkipKind& kind, double time_s, std::size_t line_number, std::size_t count = 1);
-    /// A line without a time counts to the next one in the text that has one. Fast in the order of the text.
-    void add_without_time(const SkipKind& kind, const ScannedLine& line);
+    /// Counts a line without a time; it gets the time of the next line that has one.
+    void add_without_time(const SkipKind& kind, std::size_t line_number);
+    bool waits_for_time() const { return !untimed_.empty(); }
+    /// Assigns a time to the lines that wait for one.
+    void set_time(double time_s);
 
-    /// Adds what was counted in a later part of the same text, which begins behind `lines_before` lines.
-    void append(const SkipCounter& later, std::size_t lines_before);
-
-    /// What was counted, by first line. `reason` is left empty.
+    /// The counts, by first line; lines that still wait get an infinite time. `reason` is left empty.
     std::vector<std::pair<SkipKind, SkippedLines>> take();
 
   private:
-    double time_behind_s(const char* line_end);
+    using Counts = std::vector<std::pair<SkipKind, SkippedLines>>;
 
-    std::string_view text_;
-    std::vector<std::pair<SkipKind, SkippedLines>> skips_;
-    const char* searched_from_ = nullptr;  ///< from here to there no line has a time
-    const char* searched_to_ = nullptr;
-    double found_s_ = 0.0;
+    static SkippedLines& lines_of(Counts& counts, const SkipKind& kind);
+
+    Counts skips_;
+    Counts untimed_;  ///< of each kind one entry, without its time
 };
 
 }  // namespace flightwatt::telemetry

@@ -45,7 +45,7 @@ class FlightOptions : public testing::Test {
     /// Two aircraft in one log, of which both fly.
     void write_two_aircraft() {
         const auto log = test::source_dir() / "logs" / "opterra_synthetic_01.data";
-        const std::string text(telemetry::DataFile(log).text());
+        const auto text = telemetry::read_data_file(log);
         std::string other;
         for (auto line : test::lines_of(text)) {
             if (const auto at = line.find(" 7 "); at != std::string::npos) line.replace(at, 3, " 8 ");
