@@ -17,19 +17,19 @@ namespace {
 constexpr int manual_mode = 0;
 constexpr int auto2_mode = 2;
 
-/// A change of a state (mode or block); of a message without states, that it came.
+/// A change of a state (mode or block), or a message without states.
 struct Change {
     double time_s;
     int from = 0;
     int to = 0;
 };
 
-/// Those within reach of a time; of a track of states its changes, of one of messages all.
-std::vector<Change> changes_about(const Track& state, double about_s, bool is_message) {
+/// The changes of a state, or all messages, near a time.
+std::vector<Change> changes_near(const Track& state, double near_s, bool is_message) {
     std::vector<Change> changes;
-    const auto first = std::ranges::lower_bound(state.time_s, about_s - max_event_distance_s) - state.time_s.begin();
+    const auto first = std::ranges::lower_bound(state.time_s, near_s - max_event_distance_s) - state.time_s.begin();
     for (auto i = static_cast<std::size_t>(first); i < state.value.size(); ++i) {
-        if (state.time_s[i] > about_s + max_event_distance_s) break;
+        if (state.time_s[i] > near_s + max_event_distance_s) break;
         if (is_message) {
             changes.push_back({state.time_s[i]});
             continue;
@@ -47,13 +47,13 @@ bool name_contains(const BlockNames& names, int block, std::string_view word) {
     if (found == names.end()) return false;
     std::string lower;
     for (const char c : found->second) {
-        if (std::isalnum(static_cast<unsigned char>(c)) == 0) continue;  // "Take-off" and "Take Off" alike
+        if (std::isalnum(static_cast<unsigned char>(c)) == 0) continue;  // "Take-off" and "Take Off" are equal
         lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     }
     return lower.find(word) != std::string::npos;
 }
 
-/// Which changes of a track speak of an edge.
+/// Changes of a track that belong to an edge.
 struct Sign {
     EdgeKind edge;
     const char* track;
@@ -85,13 +85,13 @@ std::string event_text(const FlightSeries& series, std::string_view track, const
     return fmt::format("block {} -> {}", name(change.from), name(change.to));
 }
 
-/// Of each sign of that edge the nearest one within reach.
+/// The nearest event of each sign of that edge.
 std::vector<EdgeEvent> events_of(const SelectedTracks& tracks, EdgeKind kind, double edge_s) {
     const auto& series = tracks.series();
     std::vector<EdgeEvent> events;
     for (const auto& sign : signs) {
         if (sign.edge != kind) continue;
-        auto changes = changes_about(tracks[sign.track], edge_s, kind == EdgeKind::lift_off);
+        auto changes = changes_near(tracks[sign.track], edge_s, kind == EdgeKind::lift_off);
         const auto distance_s = [&](const Change& change) { return std::abs(change.time_s - edge_s); };
         std::erase_if(changes, [&](const Change& change) {
             return distance_s(change) > max_event_distance_s || !sign.matches(series.block_names, change);
@@ -103,7 +103,7 @@ std::vector<EdgeEvent> events_of(const SelectedTracks& tracks, EdgeKind kind, do
     return events;
 }
 
-/// Whether what events_of finds happens at the edge itself, and not somewhere about it.
+/// Whether the events of an edge happen at the edge itself.
 bool marks_edge(EdgeKind kind) { return kind == EdgeKind::lift_off || kind == EdgeKind::landing_start; }
 
 }  // namespace
@@ -116,19 +116,19 @@ std::string_view to_string(EdgeKind kind) {
 std::vector<EdgeReport> compare_edges_with_events(const SelectedTracks& tracks, const Sortie& sortie) {
     std::vector<EdgeReport> edges;
     const auto add = [&](EdgeKind kind, const PhaseEdge& edge) {
-        EdgeReport explained;
-        explained.kind = kind;
-        explained.edge = edge;
-        explained.height_percent =
+        EdgeReport report;
+        report.kind = kind;
+        report.edge = edge;
+        report.height_percent =
             units::percent_per_whole * (edge.altitude_m - sortie.ground_altitude_m) / sortie.height_m;
-        (marks_edge(kind) ? explained.matching_events : explained.other_events) = events_of(tracks, kind, edge.time_s);
-        if (explained.matching_events.empty()) {
-            explained.agreement = "no witness";
+        (marks_edge(kind) ? report.matching_events : report.other_events) = events_of(tracks, kind, edge.time_s);
+        if (report.matching_events.empty()) {
+            report.agreement = "no event";
         } else {
-            const double apart_s = std::abs(explained.matching_events.front().after_s);
-            explained.agreement = apart_s <= agreement_s ? "agrees" : fmt::format("differs by {:.0f} s", apart_s);
+            const double distance_s = std::abs(report.matching_events.front().after_s);
+            report.agreement = distance_s <= agreement_s ? "agrees" : fmt::format("differs by {:.0f} s", distance_s);
         }
-        edges.push_back(std::move(explained));
+        edges.push_back(std::move(report));
     };
     for (const auto& span : sortie.phases) {
         if (span.phase == Phase::takeoff) {

@@ -20,7 +20,7 @@
 namespace flightwatt::flight {
 namespace {
 
-/// Altitude and what is electrical, as far as it varies: what a flight is known by.
+/// Tracks that identify a flight: altitude, voltage, current and power that vary.
 bool identifies(const Track& track) {
     constexpr std::array<std::string_view, 4> names{"altitude_m", "voltage_v", "current_a", "power_w"};
     return std::ranges::find(names, track.name) != names.end() && !is_constant(track);
@@ -52,7 +52,7 @@ FlightContent content_of(const FlightSeries& series) {
     bool is_known = false;
     for (const auto& track : series.tracks) {
         if (!identifies(track)) continue;
-        // As binary frames have them: a text may have more digits.
+        // Rounded to 32 bits like binary frames; a text may have more digits.
         const std::vector<float> values(track.value.begin(), track.value.end());
         fingerprint.add(fmt::format("{} {} {}\n", track.name, track.source, values.size()));
         fingerprint.add({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)});
@@ -79,7 +79,7 @@ std::string describe_mixed_aircraft(std::span<const FlightAircraft> flights) {
         if (!id.empty()) ids.insert(id);
         if (!name.empty()) names.insert(name);
     }
-    names.erase(unnamed_synthetic);  // one without its .log goes with any other synthetic one of its id
+    names.erase(unnamed_synthetic);  // may be any synthetic aircraft of its id
     const auto synthetic =
         std::ranges::count_if(flights, [](const FlightAircraft& by) { return is_synthetic(by.aircraft_name); });
     const bool any_real = std::ranges::any_of(names, [](const auto& name) { return !is_synthetic(name); });

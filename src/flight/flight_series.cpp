@@ -14,19 +14,11 @@ double interpolate(const Track& track, std::size_t after, double time_s) {
     if (after == 0) return track.value.front();
     if (after == track.time_s.size()) return track.value.back();
     const double begin_s = track.time_s[after - 1];
-    const double part = (time_s - begin_s) / (track.time_s[after] - begin_s);
-    return std::lerp(track.value[after - 1], track.value[after], part);
+    const double fraction = (time_s - begin_s) / (track.time_s[after] - begin_s);
+    return std::lerp(track.value[after - 1], track.value[after], fraction);
 }
 
-/// Most messages come in the order of their times, each a time of its own.
-bool is_track(const std::vector<double>& time_s, const std::vector<double>& values) {
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        if (!std::isfinite(values[i]) || (i > 0 && time_s[i] <= time_s[i - 1])) return false;
-    }
-    return true;
-}
-
-void cut_skipped(std::vector<telemetry::SkippedLines>& skipped, double until_s) {
+void truncate_skipped(std::vector<telemetry::SkippedLines>& skipped, double until_s) {
     for (auto& skip : skipped) {
         std::erase_if(skip.lines, [&](const auto& at) { return at.time_s > until_s; });
     }
@@ -44,7 +36,7 @@ double median_interval_s(const std::vector<double>& time_s) {
 }
 
 double gap_threshold_s(const std::vector<double>& time_s) {
-    constexpr double max_s = 10.0;  // however seldom there are samples
+    constexpr double max_s = 10.0;
     return std::min(3.0 * median_interval_s(time_s), max_s);
 }
 
@@ -61,41 +53,28 @@ double integrated(const std::vector<double>& time_s, const std::vector<double>& 
     return integral + 0.5 * (last + interpolate_clamped(time_s, values, end_s)) * (end_s - last_s);
 }
 
-Track make_track(const std::vector<double>& time_s, std::vector<double> values, Merge merge) {
-    Track track;
-    if (is_track(time_s, values)) {
-        track.time_s = time_s;
-        track.value = std::move(values);
-        return track;
-    }
-    const auto finite =
-        static_cast<std::size_t>(std::ranges::count_if(values, [](double value) { return std::isfinite(value); }));
-    track.time_s.reserve(finite);
-    track.value.reserve(finite);
-    std::size_t merged = 0;  // how many rows the last point is made of
-    const auto add = [&](std::size_t i) {
-        if (!track.empty() && track.time_s.back() == time_s[i]) {
-            ++merged;
-            auto& value = track.value.back();
-            value = merge == Merge::latest ? values[i] : value + (values[i] - value) / static_cast<double>(merged);
-            return;
-        }
-        merged = 1;
-        track.time_s.push_back(time_s[i]);
-        track.value.push_back(values[i]);
-    };
-    if (std::ranges::is_sorted(time_s)) {  // of most: a message came twice
-        for (std::size_t i = 0; i < values.size(); ++i)
-            if (std::isfinite(values[i])) add(i);
-        return track;
-    }
+Track make_track(const std::vector<double>& time_s, const std::vector<double>& values, Merge merge) {
     std::vector<std::size_t> order;
-    order.reserve(finite);
+    order.reserve(values.size());
     for (std::size_t i = 0; i < values.size(); ++i)
         if (std::isfinite(values[i])) order.push_back(i);
-    const auto is_earlier = [&](std::size_t a, std::size_t b) { return time_s[a] < time_s[b]; };
-    if (!std::ranges::is_sorted(order, is_earlier)) std::stable_sort(order.begin(), order.end(), is_earlier);
-    for (const auto i : order) add(i);
+    const auto time_of = [&](std::size_t i) { return time_s[i]; };
+    if (!std::ranges::is_sorted(order, {}, time_of)) std::ranges::stable_sort(order, {}, time_of);
+    Track track;
+    track.time_s.reserve(order.size());
+    track.value.reserve(order.size());
+    std::size_t merged = 0;  // rows of the last point
+    for (const auto i : order) {
+        if (track.empty() || track.time_s.back() != time_s[i]) {
+            merged = 1;
+            track.time_s.push_back(time_s[i]);
+            track.value.push_back(values[i]);
+            continue;
+        }
+        ++merged;
+        auto& value = track.value.back();
+        value = merge == Merge::latest ? values[i] : value + (values[i] - value) / static_cast<double>(merged);
+    }
     return track;
 }
 
@@ -164,22 +143,17 @@ void replace_track(FlightSeries& series, Track track) {
     series.tracks.insert(series.tracks.begin() + at, std::move(track));
 }
 
-FlightSeries truncate_series(const FlightSeries& series, double until_s) {
-    return truncate_series(FlightSeries(series), until_s);
-}
-
-FlightSeries truncate_series(FlightSeries&& series, double until_s) {
-    FlightSeries cut = std::move(series);
-    std::erase_if(cut.tracks, [&](const Track& track) { return track.since_s > until_s; });
-    for (auto& track : cut.tracks) {
+FlightSeries truncate_series(FlightSeries series, double until_s) {
+    std::erase_if(series.tracks, [&](const Track& track) { return track.since_s > until_s; });
+    for (auto& track : series.tracks) {
         const auto kept = std::ranges::upper_bound(track.time_s, until_s) - track.time_s.begin();
         track.time_s.resize(static_cast<std::size_t>(kept));
         track.value.resize(static_cast<std::size_t>(kept));
     }
-    std::erase_if(cut.assumed_definitions, [&](const auto& definition) { return definition.since_s > until_s; });
-    cut_skipped(cut.skipped, until_s);
-    if (cut.clock_restart && cut.clock_restart->visible_from_s > until_s) cut.clock_restart.reset();
-    return cut;
+    std::erase_if(series.assumed_definitions, [&](const auto& definition) { return definition.since_s > until_s; });
+    truncate_skipped(series.skipped, until_s);
+    if (series.clock_restart && series.clock_restart->visible_from_s > until_s) series.clock_restart.reset();
+    return series;
 }
 
 }  // namespace flightwatt::flight

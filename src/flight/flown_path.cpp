@@ -10,42 +10,42 @@
 namespace flightwatt::flight {
 namespace {
 
-constexpr double part_s = 30.0;
+constexpr double interval_s = 30.0;
 constexpr double track_every_s = 1.0;
-constexpr double look_every_s = 0.5;  // faster than airspeed is logged
+constexpr double airspeed_step_s = 0.5;  // shorter than airspeed intervals of logs
 
-constexpr double bend_m = 3.0;  // about what satellite navigation is off
+constexpr double tolerance_m = 3.0;  // about the error of satellite navigation
 
-/// Parts of about 30 s, as their edges.
-std::vector<double> edges_of_parts(const PhaseSpan& phase) {
+/// Edges of intervals of about 30 s.
+std::vector<double> interval_edges(const PhaseSpan& phase) {
     const double start_s = phase.start.time_s;
     const double duration_s = phase.end.time_s - start_s;
-    const auto parts = static_cast<std::size_t>(std::max(1.0, std::round(duration_s / part_s)));
+    const auto parts = static_cast<std::size_t>(std::max(1.0, std::round(duration_s / interval_s)));
     std::vector<double> times_s(parts + 1);
     for (std::size_t i = 0; i <= parts; ++i)
         times_s[i] = start_s + duration_s * static_cast<double>(i) / static_cast<double>(parts);
     return times_s;
 }
 
-/// A track at the times; throws where the log has none.
+/// A track at the times; throws InputError if the log has none.
 std::vector<double> required_at(const FlightSeries& series, const char* name, const std::vector<double>& times_s) {
     auto values = sample_selected_track(series, name, times_s);
     if (values.empty()) {
-        throw InputError({series.file}, std::string("has no ") + name + ", which a path needs",
-                         "a path as it was flown takes airspeed, altitude and position");
+        throw InputError({series.file}, std::string("has no ") + name,
+                         "a flown path needs airspeed, altitude and position");
     }
     return values;
 }
 
-/// The root of the mean cube from one time to another.
+/// Cube root of the mean cube between two times.
 double mean_airspeed(const Track& airspeed, double from_s, double to_s) {
-    const auto looks = static_cast<std::size_t>(std::ceil((to_s - from_s) / look_every_s));
+    const auto steps = static_cast<std::size_t>(std::ceil((to_s - from_s) / airspeed_step_s));
     double sum = 0.0;
-    for (std::size_t k = 0; k < looks; ++k) {
-        const double part = (static_cast<double>(k) + 0.5) / static_cast<double>(looks);
-        sum += std::pow(std::max(0.0, value_at(airspeed, from_s + part * (to_s - from_s))), 3);
+    for (std::size_t k = 0; k < steps; ++k) {
+        const double fraction = (static_cast<double>(k) + 0.5) / static_cast<double>(steps);
+        sum += std::pow(std::max(0.0, value_at(airspeed, from_s + fraction * (to_s - from_s))), 3);
     }
-    return std::cbrt(sum / static_cast<double>(looks));
+    return std::cbrt(sum / static_cast<double>(steps));
 }
 
 /// The ground track at times, in both coordinates.
@@ -57,8 +57,8 @@ struct GroundTrack {
     double metres_per_second = 1.0;
 };
 
-/// How far a point of the track lies from the straight line between two others.
-double off_line_m(const GroundTrack& track, std::size_t from, std::size_t to, std::size_t at) {
+/// Distance of a point of the track from the straight line between two others.
+double distance_from_line_m(const GroundTrack& track, std::size_t from, std::size_t to, std::size_t at) {
     const auto x = [&](std::size_t i) { return (track.first[i] - track.first[from]) * track.metres_per_first; };
     const auto y = [&](std::size_t i) { return (track.second[i] - track.second[from]) * track.metres_per_second; };
     const double length2 = x(to) * x(to) + y(to) * y(to);
@@ -66,15 +66,15 @@ double off_line_m(const GroundTrack& track, std::size_t from, std::size_t to, st
     return std::hypot(x(at) - part * x(to), y(at) - part * y(to));
 }
 
-/// The points between two that straight lines need to stay within bend_m of the track (Douglas and Peucker 1973),
+/// The points between two that straight lines need to stay within tolerance_m of the track (Douglas and Peucker 1973),
 /// appended in order.
 void add_bends(const GroundTrack& track, std::size_t from, std::size_t to, std::vector<std::size_t>& bends) {
     std::size_t farthest = from;
-    double max_m = bend_m;
+    double max_m = tolerance_m;
     for (std::size_t i = from + 1; i < to; ++i) {
-        const double off_m = off_line_m(track, from, to, i);
-        if (!(off_m > max_m)) continue;
-        max_m = off_m;
+        const double distance_m = distance_from_line_m(track, from, to, i);
+        if (!(distance_m > max_m)) continue;
+        max_m = distance_m;
         farthest = i;
     }
     if (farthest == from) return;
@@ -83,7 +83,7 @@ void add_bends(const GroundTrack& track, std::size_t from, std::size_t to, std::
     add_bends(track, farthest, to, bends);
 }
 
-/// The track of a part at about every second, its ends among them.
+/// The track at about every second, including both ends.
 GroundTrack ground_track(const FlightSeries& series, bool is_geographic, double from_s, double to_s) {
     GroundTrack track;
     const auto steps = static_cast<std::size_t>(std::max(1.0, std::round((to_s - from_s) / track_every_s)));
@@ -93,7 +93,7 @@ GroundTrack ground_track(const FlightSeries& series, bool is_geographic, double 
     track.first = required_at(series, is_geographic ? "latitude_deg" : "east_m", track.time_s);
     track.second = required_at(series, is_geographic ? "longitude_deg" : "north_m", track.time_s);
     if (is_geographic) {
-        track.metres_per_first = units::metre_per_degree;  // it only decides how fine places are
+        track.metres_per_first = units::metre_per_degree;  // affects only the tolerance
         track.metres_per_second = units::metre_per_degree * std::cos(track.first.front() / units::degree_per_rad);
     }
     return track;
@@ -102,7 +102,7 @@ GroundTrack ground_track(const FlightSeries& series, bool is_geographic, double 
 }  // namespace
 
 FlownPath flown_path(const FlightSeries& series, const PhaseSpan& phase) {
-    const auto edges_s = edges_of_parts(phase);
+    const auto edges_s = interval_edges(phase);
     required_at(series, "airspeed_m_per_s", {edges_s.front()});
     const auto airspeed = select_track(series, "airspeed_m_per_s");
     const auto altitude_m = required_at(series, "altitude_m", edges_s);
@@ -110,7 +110,7 @@ FlownPath flown_path(const FlightSeries& series, const PhaseSpan& phase) {
     path.is_geographic = select_track(series, "east_m").empty() && !select_track(series, "latitude_deg").empty();
     for (std::size_t part = 0; part + 1 < edges_s.size(); ++part) {
         const double start_s = edges_s[part];
-        const double of_part_s = edges_s[part + 1] - start_s;
+        const double duration_s = edges_s[part + 1] - start_s;
         const auto track = ground_track(series, path.is_geographic, start_s, edges_s[part + 1]);
         if (part == 0) path.waypoints.push_back({track.first.front(), track.second.front(), altitude_m.front()});
         const double mean_m_per_s = mean_airspeed(airspeed, start_s, edges_s[part + 1]);
@@ -119,7 +119,7 @@ FlownPath flown_path(const FlightSeries& series, const PhaseSpan& phase) {
         chosen.push_back(track.time_s.size() - 1);
         double before_s = start_s;
         for (const auto i : chosen) {
-            const double done = (track.time_s[i] - start_s) / of_part_s;
+            const double done = (track.time_s[i] - start_s) / duration_s;
             path.waypoints.push_back({track.first[i], track.second[i],
                                       std::lerp(altitude_m[part], altitude_m[part + 1], done),
                                       track.time_s[i] - before_s, mean_m_per_s});
@@ -128,9 +128,9 @@ FlownPath flown_path(const FlightSeries& series, const PhaseSpan& phase) {
     }
     if (path.is_geographic) return path;
     const auto origin = path.waypoints.front();
-    for (auto& place : path.waypoints) {
-        place.east_m -= origin.east_m;
-        place.north_m -= origin.north_m;
+    for (auto& point : path.waypoints) {
+        point.east_m -= origin.east_m;
+        point.north_m -= origin.north_m;
     }
     return path;
 }

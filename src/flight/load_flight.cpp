@@ -19,9 +19,9 @@
 namespace flightwatt::flight {
 namespace {
 
-constexpr std::size_t min_altitudes = 2;  // by which a flight can be segmented
+constexpr std::size_t min_altitudes = 2;  // for segmentation
 
-/// The messages of a log, the most frequent first: "GPS 310, ALIVE 12, ...".
+/// The messages of a log, most frequent first: "GPS 310, ALIVE 12, ...".
 std::string census(const FlightFile& file) {
     if (file.is_series()) return "";
     std::vector<std::string> names;
@@ -48,7 +48,7 @@ telemetry::TelemetryLog read_log(const FlightFile& file) {
     return telemetry::read_telemetry(file.text(), file.path(), std::move(configuration), flight_messages());
 }
 
-/// A synthetic log says in its first line, which is the ground's, what its .log says by the aircraft's name.
+/// A synthetic log without a .log is recognised by its first line.
 void name_synthetic(const FlightFile& file, std::vector<FlightSeries>& candidates) {
     if (file.framing()) return;
     if (file.text().substr(0, file.text().find('\n')).find("INFO_MSG \"SYNTHETIC:") == std::string_view::npos) return;
@@ -56,8 +56,7 @@ void name_synthetic(const FlightFile& file, std::vector<FlightSeries>& candidate
         if (series.aircraft_name.empty()) series.aircraft_name = unnamed_synthetic;
 }
 
-/// The one that flew, with the power that `file` tells of it. Without power it is refused where that is required, or
-/// has no altitude either.
+/// The aircraft that flew. Throws InputError without power if it is required or there is no altitude either.
 FlightSeries read_series(const FlightFile& file, const std::optional<std::string>& aircraft_id, bool power_required) {
     auto series = choose_aircraft(read_candidates(file, aircraft_id));
     const bool needs_power = power_required || SelectedTracks(series)["altitude_m"].time_s.size() < min_altitudes;
@@ -65,18 +64,13 @@ FlightSeries read_series(const FlightFile& file, const std::optional<std::string
     return series;
 }
 
-/// What a series shows: whether there is a flight, and else what there is.
-struct SeriesOverview {
-    bool flew = false;
-    std::string instead;
-};
-
-SeriesOverview summarize_series(const FlightSeries& series) {
+/// Why the aircraft did not fly; empty if it did.
+std::string not_flown_reason(const FlightSeries& series) {
     const SelectedTracks tracks(series);
-    if (tracks["altitude_m"].time_s.size() < 2) return {false, "no altitude"};
+    if (tracks["altitude_m"].time_s.size() < min_altitudes) return "no altitude";
     const auto phases = segment(tracks);
-    if (!phases.sorties.empty()) return {true, ""};
-    return {false, phases.ground_events.empty() ? "stood still" : phases.ground_events.front().what};
+    if (!phases.sorties.empty()) return "";
+    return phases.ground_events.empty() ? "no motion" : phases.ground_events.front().what;
 }
 
 void restrict_to_sortie(FlightPhases& phases, std::size_t number, const std::string& file) {
@@ -89,47 +83,47 @@ void restrict_to_sortie(FlightPhases& phases, std::size_t number, const std::str
 
 std::string parenthesised(const std::string& text) { return text.empty() ? "" : fmt::format(" ({})", text); }
 
-/// Nobody flies so often in one log: a log of a day with twenty sorties at 10 Hz has 17 million samples.
-void refuse_endless_work(const SelectedTracks& tracks, const FlightPhases& phases) {
+/// Limits sorties times samples: a log of a day with twenty sorties at 10 Hz has 17 million.
+void limit_work(const SelectedTracks& tracks, const FlightPhases& phases) {
     constexpr std::size_t max_work = 100'000'000;
     const auto samples = tracks["power_w"].time_s.size();
     if (phases.sorties.size() * samples <= max_work) return;
     throw InputError({tracks.series().file},
                      fmt::format("{} sorties in {} samples of power", phases.sorties.size(), samples),
-                     "is it the log of one flight? Split it, or choose one with --sortie N");
+                     "is it the log of one flight? Split it, or select a sortie with --sortie N");
 }
 
 std::vector<std::string> all_warnings(const SelectedTracks& tracks, const FlightPhases& phases,
-                                      const FlightAssessment& judgement) {
+                                      const FlightAssessment& assessment) {
     auto warnings = warnings_of(tracks);
-    if (!judgement.lacks_power.empty())
-        warnings.push_back(judgement.lacks_power + ": the energy of its phases is not known");
-    for (const auto* more : {&phases.warnings, &judgement.power.warnings})
+    if (!assessment.lacks_power.empty())
+        warnings.push_back(assessment.lacks_power + ": the energy of its phases is unknown");
+    for (const auto* more : {&phases.warnings, &assessment.power.warnings})
         warnings.insert(warnings.end(), more->begin(), more->end());
     return warnings;
 }
 
-std::string exclusion_of(const std::string& flight, const FlightAssessment& judgement, const LoadOptions& options) {
+std::string exclusion_of(const std::string& flight, const FlightAssessment& assessment, const LoadOptions& options) {
     if (options.excluded.contains(flight)) return "--exclude names it";
-    if (judgement.lacks_power.empty() && options.keep.contains(flight)) return "";
-    return exclusion_reason(judgement);
+    if (assessment.lacks_power.empty() && options.keep.contains(flight)) return "";
+    return exclusion_reason(assessment);
 }
 
-/// What was flown before the log began or after it ended is in no sum.
+/// The energy before the beginning and after the end of the log is missing.
 void warn_of_missing_ends(LoadedFlight& loaded) {
     for (const auto& sortie : loaded.phases.sorties) {
         const auto& first = sortie.phases.front();
         const auto& last = sortie.phases.back();
         const auto warn = [&](const char* what, double time_s) {
             loaded.warnings.push_back(fmt::format(
-                "the log {} in the air, at {:.0f} s: its energy is only that of what it shows", what, time_s));
+                "the log {} in the air, at {:.0f} s: the energy is only that of the logged part", what, time_s));
         };
         if (first.phase != Phase::takeoff || !first.complete) warn("begins", sortie.start_s());
         if (last.phase != Phase::landing || !last.complete) warn("ends", sortie.end_s());
     }
 }
 
-/// Each is segmented to see whether it flew, and holds what was skipped of the whole log.
+/// The series of all senders of telemetry, each with the skipped lines of the whole log.
 std::vector<FlightSeries> all_candidates(telemetry::TelemetryLog log) {
     constexpr std::size_t max_candidates = 32;
     constexpr std::size_t max_skips = 10'000'000;
@@ -141,11 +135,11 @@ std::vector<FlightSeries> all_candidates(telemetry::TelemetryLog log) {
     if (senders.size() > max_candidates || (senders.size() > 1 && skips * senders.size() > max_skips)) {
         throw InputError({log.data_file.string()},
                          fmt::format("{} senders may be aircraft: {}", senders.size(), short_list(senders)),
-                         "choose one with --aircraft ID");
+                         "select one with --aircraft ID");
     }
     std::vector<FlightSeries> candidates;
     for (const auto& sender : senders) {
-        candidates.push_back(extract_flight_series(log, sender));
+        candidates.push_back(flight_series(log, sender));
         candidates.back().skipped = skipped;
     }
     return candidates;
@@ -179,13 +173,13 @@ std::vector<FlightSeries> parse_candidates(const FlightFile& file, const std::op
             return candidates;
         }
         if (std::find(ids.begin(), ids.end(), *aircraft_id) != ids.end()) {
-            candidates.push_back(extract_flight_series(log, *aircraft_id));
+            candidates.push_back(flight_series(log, *aircraft_id));
             name_synthetic(file, candidates);
             return candidates;
         }
     }
     throw OtherAircraftError({file.path().string()}, fmt::format("aircraft {} sent nothing", *aircraft_id),
-                             "the log holds " + short_list(ids));
+                             "the log has " + short_list(ids));
 }
 
 }  // namespace
@@ -213,7 +207,7 @@ FlightFile::FlightFile(const std::filesystem::path& path, std::size_t max_bytes,
 
 telemetry::MessageDictionary FlightFile::definitions() const {
     if (!log_text_) {
-        throw InputError({path_.string()}, "is a binary log without a .log that defines its messages",
+        throw InputError({path_.string()}, "is a binary log, and no .log defines its messages",
                          "name the messages.xml or .log of the aircraft and build that flew, with --messages FILE");
     }
     return telemetry::parse_message_dictionary(*log_text_, log_file_);
@@ -228,22 +222,22 @@ std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::opt
 
 FlightSeries choose_aircraft(std::vector<FlightSeries> candidates) {
     if (candidates.size() == 1) return std::move(candidates.front());
-    std::vector<SeriesOverview> sightings(candidates.size());
-    std::ranges::transform(candidates, sightings.begin(), summarize_series);
-    const bool any = std::ranges::any_of(sightings, &SeriesOverview::flew);
+    std::vector<std::string> reasons(candidates.size());
+    std::ranges::transform(candidates, reasons.begin(), not_flown_reason);
+    const bool any = std::ranges::any_of(reasons, &std::string::empty);
     std::vector<std::string> ids;
     std::size_t last = 0;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-        if (any && !sightings[i].flew) continue;
+        if (any && !reasons[i].empty()) continue;
         const auto& id = candidates[i].aircraft_id;
-        ids.push_back(any ? id : fmt::format("{} ({})", id, sightings[i].instead));
+        ids.push_back(any ? id : fmt::format("{} ({})", id, reasons[i]));
         last = i;
     }
     if (ids.size() > 1) {
         throw InputError(
             {candidates.front().file},
             fmt::format("{}: {}", any ? "several aircraft flew" : "none of its aircraft flew", short_list(ids)),
-            any ? "choose one with --aircraft ID" : "");
+            any ? "select one with --aircraft ID" : "");
     }
     return std::move(candidates[last]);
 }
@@ -253,48 +247,47 @@ FlightAssessment assess_flight(const SelectedTracks& tracks, const FlightPhases&
     const auto& series = tracks.series();
     const bool has_altitude = tracks["altitude_m"].time_s.size() >= min_altitudes;
     const bool has_power = !tracks["power_w"].empty();
-    FlightAssessment judgement;
-    if (!has_power) judgement.lacks_power = "no measured power" + parenthesised(no_power_reason(series));
-    judgement.power.origin = series.current_origin;
-    if (has_altitude && has_power) judgement.power = check_power_record(tracks, phases, options);
-    judgement.warnings = all_warnings(tracks, phases, judgement);
-    return judgement;
+    FlightAssessment assessment;
+    if (!has_power) assessment.lacks_power = "no measured power" + parenthesised(no_power_reason(series));
+    assessment.power.origin = series.current_origin;
+    if (has_altitude && has_power) assessment.power = check_power_record(tracks, phases, options);
+    assessment.warnings = all_warnings(tracks, phases, assessment);
+    return assessment;
 }
 
-std::string exclusion_reason(const FlightAssessment& judgement) {
-    if (!judgement.lacks_power.empty()) return judgement.lacks_power;
-    return judgement.power.power_faults.empty() ? "" : describe_power_faults(judgement.power.power_faults);
+std::string exclusion_reason(const FlightAssessment& assessment) {
+    if (!assessment.lacks_power.empty()) return assessment.lacks_power;
+    return assessment.power.power_faults.empty() ? "" : describe_power_faults(assessment.power.power_faults);
 }
 
 LoadedFlight segment_and_check(FlightSeries series, const LoadOptions& options) {
     LoadedFlight loaded;
-    FlightAssessment& judgement = loaded;
+    FlightAssessment& assessment = loaded;
     {
         const SelectedTracks tracks(series);
-        tracks.compute_all();
         const bool has_altitude = tracks["altitude_m"].time_s.size() >= min_altitudes;
         if (options.power_required || !has_altitude || series.clock_restart) require_power(series);
         if (options.flight_required || has_altitude) loaded.phases = segment(tracks, options.segmentation);
         if (options.flight_required) require_sortie(series, loaded.phases, series.file);
         if (options.sortie) restrict_to_sortie(loaded.phases, *options.sortie, series.file);
-        if (options.flight_required) refuse_endless_work(tracks, loaded.phases);
-        judgement = assess_flight(tracks, loaded.phases, options.segmentation);
+        if (options.flight_required) limit_work(tracks, loaded.phases);
+        assessment = assess_flight(tracks, loaded.phases, options.segmentation);
         loaded.sources = track_sources(tracks);
     }
     if (options.correct_idle_offset && loaded.lacks_power.empty()) {
         correct_idle_offset(series, loaded.power.idle);
         const SelectedTracks tracks(series);
-        loaded.warnings = all_warnings(tracks, loaded.phases, judgement);
+        loaded.warnings = all_warnings(tracks, loaded.phases, assessment);
         loaded.sources = track_sources(tracks);
     }
-    loaded.exclusion = exclusion_of(series.flight, judgement, options);
+    loaded.exclusion = exclusion_of(series.flight, assessment, options);
     loaded.series = std::move(series);
     return loaded;
 }
 
 LoadedFlight load_flight(const FlightFile& file, const LoadOptions& options) {
     auto loaded = segment_and_check(read_series(file, options.aircraft_id, options.power_required), options);
-    warn_of_missing_ends(loaded);  // not in segment_and_check: predict looks at what is still in the air
+    warn_of_missing_ends(loaded);  // not in segment_and_check: predict processes logs that end in the air
     return loaded;
 }
 
@@ -302,7 +295,7 @@ LoadedFlight load_flight(const std::filesystem::path& path, const LoadOptions& o
     try {
         return load_flight(FlightFile(path, options.max_log_bytes, options.messages), options);
     } catch (const std::bad_alloc&) {
-        throw InputError({path.string()}, "there is not enough memory to read it");
+        throw InputError({path.string()}, "cannot be read: not enough memory");
     }
 }
 

@@ -18,34 +18,34 @@
 
 namespace flightwatt::flight {
 
-/// How a flight is read, segmented and judged: the same for every program.
+/// Options of reading, segmenting and checking a flight, common to all programs.
 struct LoadOptions {
     std::optional<std::string> aircraft_id;  ///< one of several in the log
-    std::optional<std::size_t> sortie;       ///< from 1: the others are taken for ground
+    std::optional<std::size_t> sortie;       ///< from 1: the other sorties are ignored
     SegmentationOptions segmentation;
     bool correct_idle_offset = false;     ///< see correct_idle_offset()
     std::set<std::string> excluded = {};  ///< flights that are not used
-    std::set<std::string> keep = {};      ///< flights that are used in spite of power faults
-    /// False: a log without altitude has no phases, and one in which nothing flew no sortie.
+    std::set<std::string> keep = {};      ///< flights that are used despite power faults
+    /// False: a log without altitude or flight is accepted, and has no phases.
     bool flight_required = true;
-    /// False: a log without measured power is segmented all the same, if it has an altitude.
+    /// False: a log without measured power is accepted if it has an altitude.
     bool power_required = true;
     std::size_t max_log_bytes = telemetry::default_max_log_bytes;  ///< see read_data_file
     std::optional<std::filesystem::path> messages = {};            ///< see FlightFile
 };
 
-/// What a series that is segmented is worth: its power record, why none can be used, and what a user should know.
+/// Quality of a segmented series.
 struct FlightAssessment {
     PowerReport power;                  ///< as measured, before any correction
-    std::string lacks_power = {};       ///< why no power was measured; empty if it was
+    std::string lacks_power = {};       ///< why there is no measured power; empty if there is
     std::vector<std::string> warnings;  ///< of the series, the segmentation and the power
 };
 
 struct LoadedFlight : FlightAssessment {
-    FlightSeries series;  ///< its idle offset is corrected if that was asked for
+    FlightSeries series;  ///< with the idle offset corrected, if requested
     FlightPhases phases;
-    std::string exclusion = {};                       ///< why the flight is not to be used; empty if it is
-    std::map<std::string, std::string> sources = {};  ///< where each chosen track came from, by name
+    std::string exclusion = {};                       ///< why the flight is excluded; empty if it is used
+    std::map<std::string, std::string> sources = {};  ///< source of each selected track, by name
 };
 
 /// A text or binary log with its .log, or a series CSV, in memory. `messages` (a messages.xml or another .log) defines
@@ -87,36 +87,33 @@ auto with_binary_log(const FlightFile& file, const Use& use) {
     return use(telemetry::BinaryLog{file.text(), file.framing().value(), file.path(), file.log_file(), &messages});
 }
 
-/// A log that is sound, of other aircraft than the one that is asked for.
+/// The log is valid, but has no data of the requested aircraft.
 class OtherAircraftError : public InputError {
     using InputError::InputError;
 };
 
-/// The series of each aircraft that may be meant: of the one that is named, else of all that sent telemetry.
-/// Judges nothing yet. Throws InputError where the file holds no telemetry, OtherAircraftError where the
-/// named one sent nothing.
+/// The series of the named aircraft, else of all that sent telemetry, without checks. Throws InputError if the file has
+/// no telemetry, OtherAircraftError if the named aircraft sent nothing.
 std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id);
 
-/// The one that flew: the segmentation finds a sortie. Where none did, the only one. Throws InputError if that leaves
-/// several (it says which, and where none flew what they did instead).
+/// The aircraft that flew (has a sortie), or the only one. Throws InputError if there are several.
 FlightSeries choose_aircraft(std::vector<FlightSeries> candidates);
 
 FlightAssessment assess_flight(const SelectedTracks& tracks, const FlightPhases& phases,
                                const SegmentationOptions& options = {});
 
-/// Why power of that judgement is not to be used; empty if it is.
-std::string exclusion_reason(const FlightAssessment& judgement);
+/// Why the power of an assessment is not used; empty if it is.
+std::string exclusion_reason(const FlightAssessment& assessment);
 
-/// Segments and judges a series. Throws InputError where no power was measured (if it is required, or no altitude
-/// either), for a sortie that the log has not, and, if a flight is required, where there is no altitude or nothing
-/// flew.
+/// Segments and checks a series. Throws InputError without measured power (if required, or without altitude too), for a
+/// missing sortie, and, if a flight is required, without altitude or flight.
 LoadedFlight segment_and_check(FlightSeries series, const LoadOptions& options);
 
-/// From file to judgement: Paparazzi .data or binary log (compressed or not, with its .log beside it) or series CSV.
+/// Reads, segments and checks a Paparazzi .data or binary log (compressed or not) or series CSV.
 LoadedFlight load_flight(const FlightFile& file, const LoadOptions& options);
 LoadedFlight load_flight(const std::filesystem::path& path, const LoadOptions& options = {});
 
-/// The series alone. Throws InputError where no power was measured.
+/// Only the series. Throws InputError without measured power.
 FlightSeries read_flight(const std::filesystem::path& path,
                          const std::optional<std::string>& aircraft_id = std::nullopt);
 

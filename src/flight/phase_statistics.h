@@ -8,23 +8,23 @@
 
 namespace flightwatt::flight {
 
-/// What was measured between two times.
+/// Measurements between two times.
 struct PhaseStatistics {
     std::size_t samples = 0;                  ///< power samples in [start, end]
-    double mean_power_w = 0.0;                ///< the energy over the duration; 0 of no duration
+    double mean_power_w = 0.0;                ///< energy over duration; 0 without a duration
     double energy_wh = 0.0;                   ///< integral of the power, linear between samples
-    std::optional<double> counter_energy_wh;  ///< what the on-board counter counted meanwhile
+    std::optional<double> counter_energy_wh;  ///< difference of the on-board counter
     std::size_t gaps = 0;                     ///< times without a sample, see gap_threshold_s()
     double max_gap_s = 0.0;
 };
 
-/// The power of a series, made once to be asked for many phases.
+/// Statistics of the power of a series, for many phases.
 class PowerStatistics {
   public:
     explicit PowerStatistics(const FlightSeries& series);
 
     bool has_power() const { return !power_.empty(); }
-    /// Statistics of [start_s, end_s]; of a series without power none.
+    /// Statistics of [start_s, end_s]; without power all zero.
     PhaseStatistics between(double start_s, double end_s) const;
 
   private:
@@ -35,7 +35,7 @@ class PowerStatistics {
 
 /// Energy [Wh] of the series' power between two times: trapezoids, the ends interpolated.
 double integrated_energy_wh(const FlightSeries& series, double start_s, double end_s);
-/// The same of its power track.
+/// The same for a power track.
 double integrated_energy_wh(const Track& power_w, double start_s, double end_s);
 
 }  // namespace flightwatt::flight

@@ -13,7 +13,7 @@
 namespace flightwatt::flight {
 namespace {
 
-/// One row and the table that it stands in.
+/// One row of a table.
 struct RowReader {
     const CsvTable& table;
     const CsvTable::Row& row;
@@ -27,7 +27,7 @@ struct RowReader {
         const auto value = maybe(column);
         return value ? std::optional(static_cast<int>(std::lround(*value))) : std::nullopt;
     }
-    InputError refusal(const std::string& column, const std::string& expected) const {
+    InputError error(const std::string& column, const std::string& expected) const {
         return InputError({table.file, row.line, cell(column).column},
                           fmt::format("{} is '{}', expected {}", column, cell(column).text, expected));
     }
@@ -47,9 +47,9 @@ PhaseEdge edge_of(const RowReader& row, const std::string& side) {
 
 PhaseSpan span_of(const RowReader& row) {
     const auto phase = phase_from(row.cell("phase").text);
-    if (!phase) throw row.refusal("phase", "takeoff, cruise or landing");
+    if (!phase) throw row.error("phase", "takeoff, cruise or landing");
     const auto& complete = row.cell("complete").text;
-    if (complete != "true" && complete != "false") throw row.refusal("complete", "true or false");
+    if (complete != "true" && complete != "false") throw row.error("complete", "true or false");
     return {*phase, edge_of(row, "start"), edge_of(row, "end"), complete == "true"};
 }
 
@@ -108,7 +108,7 @@ FlightPhases read_phases_csv(const std::filesystem::path& path) {
         if (sortie == last + 1.0) {
             phases.sorties.emplace_back();
         } else if (sortie != last || phases.sorties.empty()) {
-            throw row.refusal("sortie", "sorties that count up from 1");
+            throw row.error("sortie", "sorties that count up from 1");
         }
         phases.sorties.back().phases.push_back(span_of(row));
     }

@@ -16,7 +16,7 @@
 namespace flightwatt::flight {
 namespace {
 
-/// Between the last sample at or before a time and the first one after it; 0 outside of the samples.
+/// Interval between the samples around a time; 0 outside of the samples.
 double gap_around_s(const std::vector<double>& sample_s, double time_s) {
     const auto after = std::upper_bound(sample_s.begin(), sample_s.end(), time_s);
     return after == sample_s.begin() || after == sample_s.end() ? 0.0 : *after - *(after - 1);
@@ -24,7 +24,7 @@ double gap_around_s(const std::vector<double>& sample_s, double time_s) {
 
 constexpr double long_gap_s = 10.0;  // for an edge between altitudes
 
-/// With what is noted beside an edge.
+/// An edge with its evidence.
 PhaseEdge describe_edge(const SelectedTracks& tracks, const ResampledFlight& grid, double exact_s) {
     PhaseEdge edge;
     const double time_s = to_millisecond(exact_s);
@@ -67,14 +67,14 @@ Sortie make_sortie(const FlightCandidate& flown) {
     return sortie;
 }
 
-/// Warns of edges that lie somewhere within a long time without an altitude.
+/// Warns of edges in long gaps of the altitude.
 void warn_of_gaps(const Sortie& sortie, std::vector<std::string>& warnings) {
     for (std::size_t i = 0; i <= sortie.phases.size(); ++i) {
         const bool last = i == sortie.phases.size();
         const auto& edge = last ? sortie.phases.back().end : sortie.phases[i].start;
         if (edge.gap_s <= long_gap_s) continue;
         warnings.push_back(fmt::format(
-            "sortie {}: the {} at {:.1f} s lies somewhere in {:.0f} s without an altitude", sortie.number,
+            "sortie {}: the {} at {:.1f} s is uncertain: {:.0f} s without an altitude", sortie.number,
             last ? "end" : fmt::format("start of the {}", to_string(sortie.phases[i].phase)), edge.time_s, edge.gap_s));
     }
 }
@@ -102,32 +102,31 @@ FlightPhases segment(const SelectedTracks& tracks, const SegmentationOptions& op
     phases.motor_source = grid.motor_evidence;
     const auto rests = find_rests(grid, options);
     for (const auto& rest : rests) phases.rests.push_back({grid.time_s(rest.begin), grid.time_s(rest.end)});
-    auto why_not = ground_vehicle_reason(tracks);
-    if (why_not.empty()) why_not = grid.unusable;
-    if (!why_not.empty()) {
-        phases.ground_events.push_back({grid.time_s(0), grid.time_s(grid.size() - 1), std::move(why_not)});
+    auto reason = ground_vehicle_reason(tracks);
+    if (reason.empty()) reason = grid.unusable;
+    if (!reason.empty()) {
+        phases.ground_events.push_back({grid.time_s(0), grid.time_s(grid.size() - 1), std::move(reason)});
         return phases;
     }
     phases.warnings = grid.warnings;
-    if (auto doubt = suspected_unit_error(tracks, grid); !doubt.empty()) phases.warnings.push_back(std::move(doubt));
     const auto ground_m = ground_altitude_m(tracks);
     for (const auto& activity : find_activities(grid, rests, options)) {
         const auto grounds = estimate_ground_levels(grid, activity, ground_m);
         const auto heights = compute_heights(grid, activity, grounds);
         const FlightCandidate candidate{tracks, grid, activity, heights, options};
-        auto why = no_flight_reason(candidate);
-        if (!why.empty()) {
+        auto no_flight = no_flight_reason(candidate);
+        if (!no_flight.empty()) {
             phases.ground_events.push_back(
-                {grid.time_s(activity.moving.begin), grid.time_s(activity.moving.end - 1), std::move(why)});
+                {grid.time_s(activity.moving.begin), grid.time_s(activity.moving.end - 1), std::move(no_flight)});
             continue;
         }
         if (grounds.disagreed) {
             phases.warnings.push_back(fmt::format(
-                "the ground before the sortie at {:.0f} s was read as {:.0f} m and after it as {:.0f} m: the "
-                "latter counts",
-                grid.time_s(activity.moving.begin), *activity.ground_before_m, *activity.ground_after_m));
+                "the ground is at {:.0f} m before the sortie at {:.0f} s and at {:.0f} m after it: the latter is used",
+                *activity.ground_before_m, grid.time_s(activity.moving.begin), *activity.ground_after_m));
         }
-        if (auto doubt = motor_doubt(candidate); !doubt.empty()) phases.warnings.push_back(std::move(doubt));
+        if (auto warning = motor_contradiction(candidate); !warning.empty())
+            phases.warnings.push_back(std::move(warning));
         auto sortie = make_sortie(candidate);
         if (sortie.phases.empty()) {
             phases.ground_events.push_back({grid.time_s(activity.moving.begin), grid.time_s(activity.moving.end - 1),
@@ -149,12 +148,11 @@ void require_sortie(const FlightSeries& series, const FlightPhases& phases, cons
          std::span(phases.ground_events).first(std::min<std::size_t>(phases.ground_events.size(), 3))) {
         events.push_back(fmt::format("{} ({:.0f} to {:.0f} s)", other.what, other.start_s, other.end_s));
     }
-    const auto seen = events.empty() ? std::string("it stood still throughout")
-                                     : fmt::format("seen instead: {}", fmt::join(events, "; "));
+    const auto instead = events.empty() ? std::string("no motion") : fmt::format("it has: {}", fmt::join(events, "; "));
     auto clock = power_track(series);
     if (clock.empty()) clock = select_track(series, "altitude_m");
-    throw InputError({file}, fmt::format("holds no flight in {:.0f} s", clock.time_s.back() - clock.time_s.front()),
-                     seen);
+    throw InputError({file}, fmt::format("has no flight in {:.0f} s", clock.time_s.back() - clock.time_s.front()),
+                     instead);
 }
 
 }  // namespace flightwatt::flight

@@ -8,16 +8,16 @@
 
 namespace flightwatt::flight {
 
-/// Throws UsageError for thresholds that make no sense.
+/// Throws UsageError for thresholds outside of their range.
 void validate(const SegmentationOptions& options);
 
-/// Finds every sortie of the series, and its phases, by altitude and throttle. An aircraft flies between two rests;
-/// lift-off is where it last leaves the ground on its way up, touchdown where it first is back for good; take-off ends
-/// where it reaches, and landing begins where it leaves, the height that it holds after and before. TAKEOFF, mode and
-/// block are noted as witnesses and decide nothing. Throws InputError where the series has no altitude.
+/// Finds all sorties and their phases by altitude and throttle. A sortie is between two rests; lift-off is where the
+/// aircraft last leaves the ground on its way up, touchdown where it first is back for good; take-off ends where the
+/// held height is reached, landing begins where it is left. TAKEOFF, mode and block are recorded, but not used. Throws
+/// InputError if the series has no altitude.
 FlightPhases segment(const SelectedTracks& tracks, const SegmentationOptions& options = {});
 
-/// Throws InputError saying what the log shows instead, if there is no sortie. `file` is named in it.
+/// Throws InputError, naming `file` and the ground events, if there is no sortie.
 void require_sortie(const FlightSeries& series, const FlightPhases& phases, const std::string& file);
 
 }  // namespace flightwatt::flight

@@ -1,7 +1,6 @@
 #include "flight/selected_track.h"
 
 #include "base/error.h"
-#include "base/parallel.h"
 #include "base/statistics.h"
 #include "base/units.h"
 #include "flight/checks/runs.h"
@@ -29,18 +28,17 @@ constexpr auto any_source = [](const Track&) { return true; };
 
 using Choice = TrackSelection;
 
-void put_first(std::vector<std::string>& notes, const std::vector<std::string>& earlier) {
+void prepend(std::vector<std::string>& notes, const std::vector<std::string>& earlier) {
     notes.insert(notes.begin(), earlier.begin(), earlier.end());
 }
 
-/// Leaves out what cannot be.
-Choice sound_choice(const FlightSeries& series, const Track& candidate) {
+/// The candidate without outliers.
+Choice cleaned_choice(const FlightSeries& series, const Track& candidate) {
     const bool is_current = candidate.name == "current_a";
     auto choice = remove_outliers(candidate, {}, is_current ? dropout_throttle(series, candidate) : Track{});
-    if (candidate.name != "voltage_v" && !is_current) return choice;
-    // Where the message contradicts itself is said of its power.
-    const auto contradicted_s = contradicted_times(series, candidate.source);
-    if (!contradicted_s.empty()) erase_times(choice.own(), contradicted_s);
+    // Contradictions within a message are noted with its power.
+    if (candidate.name == "voltage_v" || is_current)
+        erase_times(choice.track, contradicted_times(series, candidate.source));
     return choice;
 }
 
@@ -49,14 +47,14 @@ Choice first_that_varies(const FlightSeries& series, std::string_view name, cons
     Choice constant;
     for (const auto& track : series.tracks) {
         if (track.name != name || track.empty() || !track.device.empty() || !accept(track)) continue;
-        if (is_constant(track) && !constant.track().empty()) continue;
-        auto sound = sound_choice(series, track);
-        put_first(sound.removal_notes, constant.removal_notes);
-        if (!is_constant(sound.track())) return sound;
-        if (sound.track().empty()) {
-            constant.removal_notes = std::move(sound.removal_notes);
-        } else if (constant.track().empty()) {
-            constant = std::move(sound);
+        if (is_constant(track) && !constant.track.empty()) continue;
+        auto cleaned = cleaned_choice(series, track);
+        prepend(cleaned.removal_notes, constant.removal_notes);
+        if (!is_constant(cleaned.track)) return cleaned;
+        if (cleaned.track.empty()) {
+            constant.removal_notes = std::move(cleaned.removal_notes);
+        } else if (constant.track.empty()) {
+            constant = std::move(cleaned);
         }
     }
     return constant;
@@ -64,47 +62,45 @@ Choice first_that_varies(const FlightSeries& series, std::string_view name, cons
 
 Choice first_of(const FlightSeries& series, std::string_view name) {
     for (const auto& track : series.tracks)
-        if (track.name == name && !track.empty()) return sound_choice(series, track);
+        if (track.name == name && !track.empty()) return cleaned_choice(series, track);
     return {};
 }
 
-/// Whether a throttle is written as 0 to 1: power tells that a motor ran at so little, or what is no whole percent.
+/// Whether a throttle is logged as 0 to 1: the motor takes power at such values, or they are not whole percents.
 bool is_fraction(const Track& throttle, const FlightSeries& series) {
     constexpr std::size_t enough = 10;
     constexpr double idle = 0.05;
     constexpr double runs = 0.2;
     constexpr double full = 1.5;
     if (throttle.empty()) return false;
-    const auto [least, most] = std::ranges::minmax(throttle.value);
-    if (most < runs || most > full || least < -idle) return false;
-    const auto selection = select_power(series);
-    const auto& power = selection.track();
+    const auto [low, high] = std::ranges::minmax(throttle.value);
+    if (high < runs || high > full || low < -idle) return false;
+    const auto power = select_power(series).track;
     std::vector<double> idle_w;
     std::vector<double> running_w;
     for (std::size_t i = 0; i < power.time_s.size(); ++i) {
-        const double part = value_at(throttle, power.time_s[i]);
-        if (part <= idle) idle_w.push_back(power.value[i]);
-        if (part >= runs) running_w.push_back(power.value[i]);
+        const double fraction = value_at(throttle, power.time_s[i]);
+        if (fraction <= idle) idle_w.push_back(power.value[i]);
+        if (fraction >= runs) running_w.push_back(power.value[i]);
     }
     if (!is_constant(power) && idle_w.size() >= enough && running_w.size() >= enough)
         return median_high(std::move(running_w)) >= 3.0 * std::max(median_high(std::move(idle_w)), 0.0) + 1.0;
-    const auto is_part = [](double value) { return value > idle && value != 1.0; };
-    return std::ranges::count_if(throttle.value, is_part) >= static_cast<std::ptrdiff_t>(enough);
+    const auto is_between = [](double value) { return value > idle && value != 1.0; };
+    return std::ranges::count_if(throttle.value, is_between) >= static_cast<std::ptrdiff_t>(enough);
 }
 
-/// In percent.
+/// Converts a fraction to percent.
 void scale_fraction(const FlightSeries& series, Choice& throttle) {
-    if (throttle.track().empty() || !is_fraction(throttle.track(), series)) return;
-    auto& track = throttle.own();
-    const auto [least, most] = std::ranges::minmax(track.value);
+    auto& track = throttle.track;
+    if (!is_fraction(track, series)) return;
+    const auto [low, high] = std::ranges::minmax(track.value);
     throttle.removal_notes.push_back(
-        fmt::format("the throttle ({}) runs from {:.3g} to {:.3g}: it is taken for a fraction, "
-                    "{:.0f} to {:.0f} %",
-                    track.source, least, most, units::percentage(least, 1.0), units::percentage(most, 1.0)));
+        fmt::format("the throttle ({}) is {:.3g} to {:.3g}: it is read as a fraction, {:.0f} to {:.0f} %", track.source,
+                    low, high, units::percentage(low, 1.0), units::percentage(high, 1.0)));
     for (auto& value : track.value) value = units::percentage(value, 1.0);
 }
 
-/// The commands, if they are those of a throttle; nullptr if there are none.
+/// The commands, if they are those of a throttle, or nullptr.
 const Track* commands_of(const FlightSeries& series) {
     const auto found = std::ranges::find(series.tracks, commanded_throttle, &Track::source);
     const bool is_throttle = found != series.tracks.end() && !found->empty() &&
@@ -112,18 +108,15 @@ const Track* commands_of(const FlightSeries& series) {
     return is_throttle ? &*found : nullptr;
 }
 
-/// Takes the commands while the throttle idles where they do not for half a minute in all, as in manual mode.
+/// Replaces an idle throttle by the commands in runs where these are not idle for half a minute (manual mode).
 void follow_commands(const FlightSeries& series, Choice& throttle) {
     constexpr SegmentationOptions limits;
     const auto* commands = commands_of(series);
-    if (commands == nullptr || throttle.track().empty() || throttle.track().source == commanded_throttle) return;
-    const auto& track = throttle.track();
+    auto& track = throttle.track;
+    if (commands == nullptr || track.empty() || track.source == commanded_throttle) return;
     const auto percent = resample(*commands, track.time_s);
     const auto idles = [&](std::size_t i) { return track.value[i] <= limits.idle_throttle_percent; };
     const auto runs = [&](std::size_t i) { return commands->value[i] >= limits.flight_throttle_percent; };
-    const auto first_from = [](const std::vector<double>& times_s, double time_s) {
-        return static_cast<std::size_t>(std::ranges::lower_bound(times_s, time_s) - times_s.begin());
-    };
     const auto first_after = [](const std::vector<double>& times_s, double time_s) {
         return static_cast<std::size_t>(std::ranges::upper_bound(times_s, time_s) - times_s.begin());
     };
@@ -131,36 +124,36 @@ void follow_commands(const FlightSeries& series, Choice& throttle) {
     double together_s = 0.0;
     std::optional<double> first_s;
     for (const auto& run : runs_of({0, track.time_s.size()}, idles)) {
-        const IndexSpan sent{first_from(commands->time_s, track.time_s[run.begin]),
+        const auto first = std::ranges::lower_bound(commands->time_s, track.time_s[run.begin]);
+        const IndexSpan sent{static_cast<std::size_t>(first - commands->time_s.begin()),
                              first_after(commands->time_s, track.time_s[run.end - 1])};
         const double running_s = time_where(commands->time_s, sent, gap_s, runs);
         if (running_s < contradicted_s) continue;
-        const auto last = first_after(track.time_s, commands->time_s[sent.end - 1]);  // what stopped says nothing
+        const auto last = first_after(track.time_s, commands->time_s[sent.end - 1]);  // after it no command is known
         std::copy(percent.begin() + static_cast<std::ptrdiff_t>(run.begin),
                   percent.begin() + static_cast<std::ptrdiff_t>(last),
-                  throttle.own().value.begin() + static_cast<std::ptrdiff_t>(run.begin));
+                  track.value.begin() + static_cast<std::ptrdiff_t>(run.begin));
         together_s += running_s;
         if (!first_s) first_s = track.time_s[run.begin];
     }
     if (!first_s) return;
     throttle.removal_notes.push_back(
-        fmt::format("{} is at idle while {} is not for {:.0f} s, first from {:.0f} s on: the latter "
-                    "counts there",
-                    throttle.track().source, commanded_throttle, together_s, *first_s));
+        fmt::format("{} is idle while {} is not for {:.0f} s, first from {:.0f} s: the latter is used there",
+                    track.source, commanded_throttle, together_s, *first_s));
 }
 
 Choice throttle(const FlightSeries& series) {
-    constexpr double often_s = 2.0;  // of commands that come more seldom a throttle is only made where nothing else is
+    constexpr double max_interval_s = 2.0;  // rarer commands are used only without a power
     const auto* commands = commands_of(series);
-    const bool counts =
-        commands != nullptr && (median_interval_s(commands->time_s) <= often_s || select_power(series).track().empty());
+    const bool counts = commands != nullptr &&
+                        (median_interval_s(commands->time_s) <= max_interval_s || select_power(series).track.empty());
     const auto is_thrust = [](const Track& track) { return track.source == "ROTORCRAFT_FP.thrust"; };
     auto found = first_that_varies(series, "throttle_percent", [&](const Track& track) {
         return !is_thrust(track) && (track.source != commanded_throttle || counts);
     });
-    if (found.track().empty()) {
+    if (found.track.empty()) {
         auto thrust = first_that_varies(series, "throttle_percent", is_thrust);
-        put_first(thrust.removal_notes, found.removal_notes);
+        prepend(thrust.removal_notes, found.removal_notes);
         found = std::move(thrust);
     }
     scale_fraction(series, found);
@@ -168,72 +161,45 @@ Choice throttle(const FlightSeries& series) {
     return found;
 }
 
-/// The pack's current, or else the sum of what its consumers report.
+/// The pack's current, else the sum of the consumers' currents.
 Choice current(const FlightSeries& series) {
     auto found = first_that_varies(series, "current_a");
     for (const std::string_view message : {std::string_view("ESC"), power_device}) {
-        if (!found.track().empty()) break;
+        if (!found.track.empty()) break;
         if (message == power_device && !differing_voltages_reason(series).empty()) continue;
-        found.logged = nullptr;
-        found.derived = sum_over_devices(series, "current_a", message).track;
+        found.track = sum_over_devices(series, "current_a", message).track;
     }
     return found;
 }
 
-/// Of circuits with voltages of their own none.
+/// No voltage for circuits with different voltages.
 Choice voltage(const FlightSeries& series) {
     auto found = first_that_varies(series, "voltage_v");
-    if (!found.track().source.starts_with(power_device)) return found;
+    if (!found.track.source.starts_with(power_device)) return found;
     auto reason = differing_voltages_reason(series);
     if (reason.empty()) return found;
     return {.removal_notes = {std::move(reason)}};
-}
-
-Choice charge(const FlightSeries& series) {
-    const bool exchanged = energy_and_power_are_swapped(series);
-    auto found = first_that_varies(series, "charge_ah", [&](const Track& track) {
-        return exchanged ? track.source != "ENERGY.energy" : track.source != power_read_as_energy;
-    });
-    if (found.track().source == power_read_as_energy) found.own().source = "ENERGY.energy";
-    return found;
 }
 
 Choice choose(const FlightSeries& series, std::string_view name) {
     if (name == "power_w") return select_power(series);
     if (name == "current_a") return current(series);
     if (name == "voltage_v") return voltage(series);
-    if (name == "charge_ah") return charge(series);
     if (name == "throttle_percent") return throttle(series);
     if (name == "ground_speed_m_per_s") return first_of(series, name);
     auto found = first_that_varies(series, name);
-    if (name == "airspeed_m_per_s" && is_constant(found.track()))
+    if (name == "airspeed_m_per_s" && is_constant(found.track))
         return {.removal_notes = std::move(found.removal_notes)};
     return found;
 }
 
 }  // namespace
 
-Track select_track(const FlightSeries& series, std::string_view name) {
-    auto choice = choose(series, name);
-    return std::move(choice.own());
-}
+Track select_track(const FlightSeries& series, std::string_view name) { return choose(series, name).track; }
 
 const TrackSelection& SelectedTracks::choice(std::string_view name) const {
-    const auto made = made_.find(name);
-    return made != made_.end() ? made->second : made_.emplace(name, choose(series_, name)).first->second;
-}
-
-void SelectedTracks::compute_all() const {
-    constexpr std::size_t few_samples = 100'000;  // are judged before another thread has begun
-    std::size_t samples = 0;
-    for (const auto& track : series_.tracks) samples += track.time_s.size();
-    std::vector<std::string> names;
-    std::ranges::copy_if(track_names(), std::back_inserter(names),
-                         [&](const std::string& name) { return !made_.contains(name); });
-    std::vector<TrackSelection> choices(names.size());
-    for_each_in_parallel(
-        names.size(), [&](std::size_t i) { choices[i] = choose(series_, names[i]); }, samples < few_samples ? 1 : 0);
-    for (std::size_t i = 0; i < names.size(); ++i) made_.emplace(names[i], std::move(choices[i]));
+    const auto known = choices_.find(name);
+    return known != choices_.end() ? known->second : choices_.emplace(name, choose(series_, name)).first->second;
 }
 
 std::vector<double> sample_selected_track(const SelectedTracks& tracks, std::string_view name,
@@ -250,7 +216,7 @@ std::map<std::string, std::string> track_sources(const SelectedTracks& tracks) {
 }
 
 std::optional<double> ground_altitude_m(const SelectedTracks& tracks) {
-    // A rotorcraft's heights are above the reference on the ground.
+    // Altitudes of a rotorcraft are above the reference on the ground.
     if (tracks["altitude_m"].source.starts_with("ROTORCRAFT_FP")) return 0.0;
     const auto& logged = tracks["ground_altitude_m"];
     return logged.empty() ? tracks.series().planned_ground_altitude_m : logged.value.back();
@@ -259,48 +225,40 @@ std::optional<double> ground_altitude_m(const SelectedTracks& tracks) {
 std::vector<std::string> warnings_of(const SelectedTracks& tracks) {
     const auto& series = tracks.series();
     std::vector<std::string> warnings;
-    if (energy_and_power_are_swapped(series)) {
-        warnings.emplace_back("ENERGY holds its power before its energy: the two were exchanged");
-    }
     if (!series.assumed_definitions.empty()) {
         std::vector<std::string> assumed;
         for (const auto& definition : series.assumed_definitions) assumed.push_back(definition.text);
-        warnings.push_back(
-            fmt::format("{}: {}", series.log_is_missing ? "no .log beside it: message layouts assumed" : units_in_log,
-                        fmt::join(assumed, ", ")));
+        warnings.push_back(fmt::format("{}: {}",
+                                       series.log_is_missing ? "no .log: message layouts assumed" : units_in_log,
+                                       fmt::join(assumed, ", ")));
     }
     if (series.current_origin == CurrentOrigin::throttle) {
         warnings.emplace_back(
-            "the airframe defines MILLIAMP_AT_FULL_THROTTLE and no current sensor: its current was computed "
-            "from throttle, so a power model fitted to it is circular");
+            "the airframe defines MILLIAMP_AT_FULL_THROTTLE and no current sensor: the current is computed from the "
+            "throttle, so a power model fitted to it is circular");
     }
     const auto& power_w = tracks["power_w"];
     for (const auto& reason : tracks.choice("power_w").rejected_sources) {
         if (power_w.empty()) break;  // see no_power_reason
-        warnings.push_back(fmt::format("{}: power is taken from {}", reason, power_w.source));
+        warnings.push_back(fmt::format("{}: power is that of {}", reason, power_w.source));
     }
-    const auto add_said = [&](const std::string& name) {
-        const auto& said = tracks.choice(name).removal_notes;
-        warnings.insert(warnings.end(), said.begin(), said.end());
+    const auto add = [&](const std::vector<std::string>& notes) {
+        warnings.insert(warnings.end(), notes.begin(), notes.end());
     };
-    add_said("power_w");
-    for (const auto* message : {"ESC", "POWER_DEVICE"}) {
-        if (!power_w.source.starts_with(message)) continue;
-        for (auto& doubt : find_suspect_devices(series, message)) warnings.push_back(std::move(doubt));
-    }
-    for (const auto& name : track_names()) {
-        if (name == "power_w") continue;
-        add_said(name);
-    }
+    add(tracks.choice("power_w").removal_notes);
+    for (const auto* message : {"ESC", "POWER_DEVICE"})
+        if (power_w.source.starts_with(message)) add(find_suspect_devices(series, message));
+    for (const auto& name : track_names())
+        if (name != "power_w") add(tracks.choice(name).removal_notes);
     for (const auto& skip : series.skipped) warnings.push_back(describe(skip));
-    if (series.log_is_missing && series.assumed_definitions.empty()) warnings.emplace_back("no .log beside it");
-    warnings.insert(warnings.end(), series.notes.begin(), series.notes.end());
+    if (series.log_is_missing && series.assumed_definitions.empty()) warnings.emplace_back("no .log");
+    add(series.notes);
     return warnings;
 }
 
 std::string no_power_reason(const FlightSeries& series) {
     auto power = select_power(series);
-    if (!power.track().empty()) return "";
+    if (!power.track.empty()) return "";
     auto reasons = std::move(power.rejected_sources);
     for (const auto& skip : series.skipped) reasons.push_back(describe(skip));
     for (const auto& assumed : series.assumed_definitions)
@@ -308,19 +266,19 @@ std::string no_power_reason(const FlightSeries& series) {
     return fmt::format("{}", fmt::join(reasons, "; "));
 }
 
-void require_power(const FlightSeries& series, const std::string& holds) {
+void require_power(const FlightSeries& series, const std::string& messages) {
     if (const auto& restart = series.clock_restart) {
         throw InputError({series.file},
-                         fmt::format("its clock runs back from {:.3f} to {:.3f} s (aircraft {}, {})", restart->from_s,
+                         fmt::format("the clock runs back from {:.3f} to {:.3f} s (aircraft {}, {})", restart->from_s,
                                      restart->to_s, series.aircraft_id, restart->message),
-                         "it holds several recordings, or one over another: split it where the time begins anew");
+                         "the file has several recordings: split it there");
     }
-    if (!select_power(series).track().empty()) return;
+    if (!select_power(series).track.empty()) return;
     const auto reasons = no_power_reason(series);
     const auto reason = reasons.empty() ? "" : fmt::format(" ({})", reasons);
-    throw InputError({series.file}, fmt::format("holds no measured power of aircraft {}{}", series.aircraft_id, reason),
+    throw InputError({series.file}, fmt::format("has no measured power of aircraft {}{}", series.aircraft_id, reason),
                      fmt::format("expected ENERGY with power, BAT or ENERGY with current, ESC or POWER_DEVICE{}{}",
-                                 holds.empty() ? "" : "; it holds ", holds));
+                                 messages.empty() ? "" : "; it has ", messages));
 }
 
 }  // namespace flightwatt::flight

@@ -4,7 +4,6 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/number.h"
-#include "base/parallel.h"
 #include "base/text.h"
 #include "base/toml_reader.h"
 #include "flight/selected_track.h"
@@ -27,7 +26,7 @@ namespace {
 
 constexpr std::array origins{CurrentOrigin::unknown, CurrentOrigin::sensor, CurrentOrigin::throttle};
 
-/// Counters of lines; what stands behind the last message has no time, so `time_s` is then one shorter.
+/// Counts of skipped lines; those after the last message have no time, so `time_s` is then one shorter.
 std::string skipped_text(const telemetry::SkippedLines& skipped) {
     std::vector<double> time_s;
     std::vector<std::size_t> count;
@@ -60,7 +59,7 @@ telemetry::SkippedLines read_skipped(const TomlTable& table) {
     if (const auto unit = table.optional_string("unit")) skipped.unit = read_skip_unit(*unit, table.where());
     table.refuse_unknown_keys();
     if (first_line.size() != count.size() || time_s.size() > count.size() || time_s.size() + 1 < count.size()) {
-        throw InputError(table.where(), "time_s, count and first_line are not equally long");
+        throw InputError(table.where(), "time_s, count and first_line have different lengths");
     }
     for (std::size_t i = 0; i < count.size(); ++i) {
         skipped.lines.push_back({i < time_s.size() ? time_s[i] : std::numeric_limits<double>::infinity(),
@@ -98,10 +97,10 @@ std::map<int, std::string> read_block_names(const TomlTable& table) {
     return names;
 }
 
-/// What the comment lines at the beginning of a series file say.
+/// The comment lines at the beginning of a series file.
 struct FrontMatter {
     bool present = false;
-    FlightSeries series;               ///< without values; `tracks` as the file has columns
+    FlightSeries series;               ///< without values; `tracks` in the order of the file's columns
     std::vector<std::string> columns;  ///< of each track
 };
 
@@ -131,7 +130,7 @@ FrontMatter read_matter(const TomlTable& table) {
     return matter;
 }
 
-/// What each track's column is called: its name, and NAME.2, NAME.3 ... for further candidates.
+/// Names of the columns: NAME of the first candidate of each name, NAME.2, NAME.3 ... of the others.
 std::vector<std::string> column_names(const std::vector<Track>& tracks) {
     std::map<std::string, int> count;
     std::vector<std::string> names;
@@ -142,7 +141,7 @@ std::vector<std::string> column_names(const std::vector<Track>& tracks) {
     return names;
 }
 
-/// What holds for the whole flight, as comment lines of TOML: `# format = 1` ...
+/// The metadata as comment lines of TOML: `# format = 1` ...
 std::string format_front_matter(const FlightSeries& series) {
     std::string toml = format_line();
     toml += fmt::format("flight = {}\naircraft_id = {}\naircraft_name = {}\n", toml_string(series.flight),
@@ -175,7 +174,7 @@ std::string format_front_matter(const FlightSeries& series) {
     return fmt::format("# {}\n", boost::algorithm::replace_all_copy(toml, "\n", "\n# "));
 }
 
-/// Throws InputError for a format that is newer, and for what is not as format_front_matter writes it.
+/// Throws InputError for a newer format, and for metadata that format_front_matter does not write.
 FrontMatter read_front_matter(std::string_view text, const std::string& file) {
     std::string toml;
     bool is_ours = false;
@@ -195,68 +194,35 @@ FrontMatter read_front_matter(std::string_view text, const std::string& file) {
     return matter;
 }
 
-/// What is left of a track within a part of the table.
-struct Cursor {
-    const double* time_s;
-    const double* end_s;
-    const double* value;
-
-    double next_s() const { return time_s == end_s ? std::numeric_limits<double>::infinity() : *time_s; }
-};
-
-/// The rows of a part of the table: one for each time at which any track has a value, with a cell for each track.
-std::string rows_between(const std::vector<Track>& tracks, double from_s, double until_s) {
-    std::vector<Cursor> cursors;
-    cursors.reserve(tracks.size());
-    for (const auto& track : tracks) {
-        const auto first = std::ranges::lower_bound(track.time_s, from_s) - track.time_s.begin();
-        const auto last = std::ranges::lower_bound(track.time_s, until_s) - track.time_s.begin();
-        cursors.push_back({track.time_s.data() + first, track.time_s.data() + last, track.value.data() + first});
-    }
+/// Writes a row for each time at which any track has a value, with a cell for each track.
+void write_rows(const std::vector<Track>& tracks, const TextSink& sink) {
+    constexpr std::size_t chunk_size = 1 << 16;
+    constexpr double infinite_s = std::numeric_limits<double>::infinity();
+    std::vector<std::size_t> next(tracks.size(), 0);  // index of each track's next value
+    const auto next_s = [&](std::size_t k) {
+        return next[k] == tracks[k].time_s.size() ? infinite_s : tracks[k].time_s[next[k]];
+    };
     std::vector<char> row((tracks.size() + 1) * (number_buffer_size + 1));
     std::string text;
     while (true) {
-        double time_s = std::numeric_limits<double>::infinity();
-        for (const auto& cursor : cursors) time_s = std::min(time_s, cursor.next_s());
-        if (!std::isfinite(time_s)) return text;
+        double time_s = infinite_s;
+        for (std::size_t k = 0; k < tracks.size(); ++k) time_s = std::min(time_s, next_s(k));
+        if (!std::isfinite(time_s)) break;
         char* to = write_number(row.data(), time_s);
-        for (auto& cursor : cursors) {
+        for (std::size_t k = 0; k < tracks.size(); ++k) {
             *to++ = ',';
-            if (cursor.next_s() != time_s) continue;
-            to = write_number(to, *cursor.value);
-            ++cursor.time_s;
-            ++cursor.value;
+            if (next_s(k) == time_s) to = write_number(to, tracks[k].value[next[k]++]);
         }
         *to++ = '\n';
         text.append(row.data(), to);
+        if (text.size() < chunk_size) continue;
+        sink(text);
+        text.clear();
     }
+    sink(text);
 }
 
-/// The rows in parts, made on `max_threads` at most (0: on every core), in order.
-void write_rows(const std::vector<Track>& tracks, const TextSink& sink, std::size_t max_threads) {
-    constexpr std::size_t samples_at_once = 1024;
-    constexpr double infinite_s = std::numeric_limits<double>::infinity();
-    std::vector<double> borders_s{-infinite_s};
-    const auto densest = std::ranges::max_element(tracks, {}, [](const Track& track) { return track.time_s.size(); });
-    if (densest != tracks.end()) {
-        for (auto i = samples_at_once; i < densest->time_s.size(); i += samples_at_once)
-            borders_s.push_back(densest->time_s[i]);
-    }
-    borders_s.push_back(infinite_s);
-    const auto parts = borders_s.size() - 1;
-    constexpr std::size_t parts_a_thread = 16;  // more than are made at a time need not lie in memory
-    std::vector<std::string> texts(std::min(parts, parts_a_thread * threads_for(parts, max_threads)));
-    for (std::size_t first = 0; first < parts; first += texts.size()) {
-        const auto count = std::min(texts.size(), parts - first);
-        const auto make = [&](std::size_t k) {
-            texts[k] = rows_between(tracks, borders_s[first + k], borders_s[first + k + 1]);
-        };
-        for_each_in_parallel(count, make, max_threads);
-        for (std::size_t k = 0; k < count; ++k) sink(texts[k]);
-    }
-}
-
-/// Reads the table behind the front matter row by row.
+/// Reads the table row by row.
 class TableReader {
   public:
     TableReader(FrontMatter matter, std::string file) : matter_(std::move(matter)), file_(std::move(file)) {}
@@ -267,7 +233,7 @@ class TableReader {
         if (!(time_s > last_s_)) {
             throw InputError({file_, row.line, row.cells[time_column_].column},
                              fmt::format("time_s = {} does not rise from {}", time_s, last_s_),
-                             "sort the rows by time and keep one of each");
+                             "sort the rows by time and remove repeated times");
         }
         last_s_ = time_s;
         for (std::size_t i = 0; i < columns_.size(); ++i) {
@@ -278,7 +244,7 @@ class TableReader {
         }
     }
 
-    /// The series; the tracks are those that have a column.
+    /// The series with the tracks that have a column.
     FlightSeries take() {
         std::size_t track = 0;
         std::erase_if(matter_.series.tracks, [&](const Track&) { return !is_bound_[track++]; });
@@ -304,14 +270,14 @@ class TableReader {
         for (std::size_t i = 0; i < columns_.size(); ++i) {
             const auto here = columns_.begin() + static_cast<std::ptrdiff_t>(i);
             if (std::find(columns_.begin(), here, *here) != here) {
-                throw InputError({file_, header.line}, fmt::format("column '{}' stands there twice", *here),
+                throw InputError({file_, header.line}, fmt::format("column '{}' appears twice", *here),
                                  "keep one of them");
             }
             track_of_.push_back(i == time_column_ ? 0 : find_track(header.line, *here));
         }
     }
 
-    /// The track that the column holds; one that no front matter knows is made.
+    /// Index of the column's track; a track without metadata is added.
     std::size_t find_track(std::size_t line, const std::string& column) {
         const auto listed = std::find(matter_.columns.begin(), matter_.columns.end(), column);
         if (listed != matter_.columns.end()) {
@@ -346,15 +312,14 @@ class TableReader {
 
 std::string to_csv(const FlightSeries& series) {
     std::string text;
-    write_csv(
-        series, [&](std::string_view piece) { text += piece; }, 1);
+    write_csv(series, [&](std::string_view chunk) { text += chunk; });
     return text;
 }
 
-void write_csv(const FlightSeries& series, const TextSink& sink, std::size_t max_threads) {
+void write_csv(const FlightSeries& series, const TextSink& sink) {
     const auto names = column_names(series.tracks);
     sink(fmt::format("{}time_s,{}\n", format_front_matter(series), fmt::join(names, ",")));
-    write_rows(series.tracks, sink, max_threads);
+    write_rows(series.tracks, sink);
 }
 
 FlightSeries parse_series_csv(std::string_view text, const std::filesystem::path& file) {

@@ -1,18 +1,14 @@
 #include "flight/telemetry_series.h"
 
-#include "base/parallel.h"
 #include "base/units.h"
 #include "flight/sources/derived_tracks.h"
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
-#include <set>
 #include <tuple>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -36,23 +32,7 @@ bool has_late_rows(const telemetry::MessageTable& table, double later_than_s) {
     });
 }
 
-/// A jump back of a minute is another log, or another boot, behind the first one. Of all that show it, the pair of
-/// times that shows it first.
-std::optional<ClockRestart> restart_in(const telemetry::MessageTable& table) {
-    std::optional<ClockRestart> restart;
-    if (!has_late_rows(table, restart_s)) return restart;
-    std::set<double> seen_s;
-    for (const double time_s : table.time_s) {
-        const auto first = seen_s.upper_bound(time_s + restart_s);
-        if (first != seen_s.end() && (!restart || *first < restart->visible_from_s)) {
-            restart = {*first, *seen_s.rbegin(), time_s, table.message};
-        }
-        seen_s.insert(time_s);
-    }
-    return restart;
-}
-
-/// A row that came before in the file, and the earliest time that shows it to be late (infinite: none).
+/// A row seen before in the file, and the earliest time that shows it to be late (infinite: none).
 struct SeenRow {
     std::size_t row;
     double late_by_s;
@@ -67,9 +47,9 @@ bool differ(const telemetry::MessageTable& table, std::size_t a, std::size_t b) 
     });
 }
 
-/// Whether a row lies where the rows before it in the file lack none. It looks at nothing later than `known_s`, so that
-/// a log which ends there shows the same.
-bool lies_over(const telemetry::MessageTable& table, std::size_t row, const SeenRows& seen, double known_s) {
+/// Whether a row is between rows of the file before it that lack none, considering only times up to `known_s`, so that
+/// a log which ends there gives the same result.
+bool is_overlap(const telemetry::MessageTable& table, std::size_t row, const SeenRows& seen, double known_s) {
     const double time_s = table.time_s[row];
     const auto counts = [&](SeenRows::const_iterator at) { return at->second.late_by_s > known_s; };
     auto above = seen.lower_bound(time_s);
@@ -89,31 +69,46 @@ bool lies_over(const telemetry::MessageTable& table, std::size_t row, const Seen
     return above->first - before_s.front() < hole_intervals * *low;
 }
 
-void add_overlaps(const telemetry::MessageTable& table, std::vector<ClockRestart>& overlaps) {
+/// Restarts and overlapping rows of one message.
+struct ClockFaults {
+    std::optional<ClockRestart> restart;
+    std::vector<ClockRestart> overlaps;
+};
+
+void add_faults(const telemetry::MessageTable& table, ClockFaults& faults) {
     if (!has_late_rows(table, late_s)) return;
+    // Several devices report at one time and in any order.
+    const bool may_overlap = table.message != "ESC" && table.message != "POWER_DEVICE";
     SeenRows seen;
     for (std::size_t row = 0; row < table.time_s.size(); ++row) {
         const double time_s = table.time_s[row];
-        const auto shows_late = seen.upper_bound(time_s + late_s);
-        const double known_s = shows_late == seen.end() ? std::numeric_limits<double>::infinity() : shows_late->first;
-        if (std::isfinite(known_s) && lies_over(table, row, seen, known_s))
-            overlaps.push_back({known_s, known_s, time_s, table.message});
+        const auto shows = [&](double later_s) {
+            const auto at = seen.upper_bound(time_s + later_s);
+            return at == seen.end() ? std::numeric_limits<double>::infinity() : at->first;
+        };
+        const double restart_from_s = shows(restart_s);
+        auto& restart = faults.restart;
+        if (std::isfinite(restart_from_s) && (!restart || restart_from_s < restart->visible_from_s))
+            restart = {restart_from_s, seen.rbegin()->first, time_s, table.message};
+        const double known_s = shows(late_s);
+        if (may_overlap && std::isfinite(known_s) && is_overlap(table, row, seen, known_s))
+            faults.overlaps.push_back({known_s, known_s, time_s, table.message});
         seen.emplace(time_s, SeenRow{row, known_s});
     }
 }
 
 using units::Quantity;
 
-/// A field that is a track as it stands.
+/// A field that is a track without computation.
 struct FieldTrack {
     const char* name;
     const char* message;
     const char* field;
-    std::optional<Quantity> quantity;  ///< that the field must have
+    std::optional<Quantity> quantity;  ///< required of the field
     Merge merge;
 };
 
-/// In the order of preference; of different names the order does not matter.
+/// In the order of preference within each name.
 const std::vector<FieldTrack>& field_tracks() {
     constexpr auto metre = Quantity::metre;
     constexpr auto speed = Quantity::metre_per_second;
@@ -172,61 +167,22 @@ const std::vector<FieldTrack>& field_tracks() {
     return fields;
 }
 
-std::size_t place_of(const Track& track) {
+std::size_t order_of(const Track& track) {
     const auto& names = track_names();
     return static_cast<std::size_t>(std::find(names.begin(), names.end(), track.name) - names.begin());
 }
 
-/// A short log is read before another thread has begun.
-std::size_t threads_worth(const telemetry::SenderLog& sender) {
-    constexpr std::size_t few_rows = 100'000;
-    std::size_t rows = 0;
-    for (const auto& table : sender.tables) rows += table.time_s.size();
-    return rows < few_rows ? 1 : 0;
-}
-
-/// A field that the sender's log has, for a track.
-template <typename Table, typename Column>
-struct LoggedField {
-    const FieldTrack* wanted;
-    Table* table;
-    Column* column;
-};
-
-template <typename Sender>
-auto logged_fields(Sender& sender) {
-    using Table = std::remove_reference_t<decltype(sender.tables.front())>;
-    using Column = std::remove_reference_t<decltype(sender.tables.front().columns.front())>;
-    std::vector<LoggedField<Table, Column>> found;
-    for (const auto& wanted : field_tracks()) {
-        const auto table = std::ranges::find(sender.tables, wanted.message, &telemetry::MessageTable::message);
-        if (table == sender.tables.end()) continue;
-        const auto column = std::ranges::find(table->columns, wanted.field, &telemetry::Column::field);
-        if (column == table->columns.end() || (wanted.quantity && column->quantity != wanted.quantity)) continue;
-        found.push_back({&wanted, &*table, &*column});
+/// All candidates of all tracks, in the order of track_names() and of preference.
+std::vector<Track> logged_tracks(const telemetry::SenderLog& sender) {
+    std::vector<Track> tracks;
+    for (const auto& [name, message, field, quantity, merge] : field_tracks()) {
+        const auto* table = sender.table(message);
+        const auto* column = table == nullptr ? nullptr : table->column(field);
+        if (column == nullptr || (quantity && column->quantity != quantity)) continue;
+        tracks.push_back(make_candidate(name, fmt::format("{}.{}", message, field), *table, column->values, merge));
     }
-    return found;
-}
-
-/// Every candidate of every track that the sender's messages tell, in the order of track_names() and of preference. The
-/// columns of a sender that is not const go into the tracks: a field is at most one of them as it stands, since its
-/// quantity says which.
-template <typename Sender>
-std::vector<Track> logged_tracks(Sender& sender, bool definitions_assumed) {
-    std::vector<Track> made;
-    add_derived_tracks(made, sender, definitions_assumed);
-    const auto fields = logged_fields(sender);
-    std::vector<Track> tracks(fields.size());
-    for_each_in_parallel(
-        fields.size(),
-        [&](std::size_t i) {
-            const auto& [wanted, table, column] = fields[i];
-            tracks[i] = make_candidate(wanted->name, fmt::format("{}.{}", wanted->message, wanted->field), *table,
-                                       std::move(column->values), wanted->merge);
-        },
-        threads_worth(sender));
-    std::ranges::move(made, std::back_inserter(tracks));
-    std::ranges::stable_sort(tracks, {}, place_of);
+    add_derived_tracks(tracks, sender);
+    std::ranges::stable_sort(tracks, {}, order_of);
     return tracks;
 }
 
@@ -246,36 +202,16 @@ void add_configuration(FlightSeries& series, const telemetry::TelemetryLog& log)
     series.current_origin = aircraft.current_origin;
 }
 
-/// The columns of a log that is not const go into the tracks.
-template <typename Log>
-FlightSeries make_series(Log& log, const std::string& aircraft_id) {
-    FlightSeries series;
-    series.file = log.data_file.string();
-    series.flight = log.flight;
-    series.aircraft_id = aircraft_id;
-    add_configuration(series, log);
-    const auto sender = std::ranges::find(log.senders, aircraft_id, &telemetry::SenderLog::id);
-    if (sender == log.senders.end()) return series;
-    series.clock_restart = find_clock_restart(*sender);
-    series.tracks = logged_tracks(*sender, series.log_is_missing);
-    return series;
-}
-
 }  // namespace
 
 std::optional<ClockRestart> find_clock_restart(const telemetry::SenderLog& sender) {
-    std::optional<ClockRestart> first;
-    std::vector<ClockRestart> overlaps;
-    for (const auto& table : sender.tables) {
-        const auto restart = restart_in(table);
-        if (restart && (!first || restart->visible_from_s < first->visible_from_s)) first = restart;
-        // Several devices report at one time and in any order.
-        if (table.message != "ESC" && table.message != "POWER_DEVICE") add_overlaps(table, overlaps);
-    }
-    if (overlaps.size() < enough_late_rows) return first;
-    std::ranges::sort(overlaps, {},
+    ClockFaults faults;
+    for (const auto& table : sender.tables) add_faults(table, faults);
+    const auto& first = faults.restart;
+    if (faults.overlaps.size() < enough_late_rows) return first;
+    std::ranges::sort(faults.overlaps, {},
                       [](const ClockRestart& at) { return std::tuple(at.visible_from_s, at.to_s, at.message); });
-    const auto& shown = overlaps[enough_late_rows - 1];
+    const auto& shown = faults.overlaps[enough_late_rows - 1];
     return first && first->visible_from_s <= shown.visible_from_s ? first : shown;
 }
 
@@ -316,11 +252,16 @@ std::vector<std::string> telemetry_senders(const telemetry::TelemetryLog& log) {
 }
 
 FlightSeries flight_series(const telemetry::TelemetryLog& log, const std::string& aircraft_id) {
-    return make_series(log, aircraft_id);
-}
-
-FlightSeries extract_flight_series(telemetry::TelemetryLog& log, const std::string& aircraft_id) {
-    return make_series(log, aircraft_id);
+    FlightSeries series;
+    series.file = log.data_file.string();
+    series.flight = log.flight;
+    series.aircraft_id = aircraft_id;
+    add_configuration(series, log);
+    const auto sender = std::ranges::find(log.senders, aircraft_id, &telemetry::SenderLog::id);
+    if (sender == log.senders.end()) return series;
+    series.clock_restart = find_clock_restart(*sender);
+    series.tracks = logged_tracks(*sender);
+    return series;
 }
 
 }  // namespace flightwatt::flight

@@ -113,7 +113,7 @@ PlaybackReport play(const std::filesystem::path& log, double speed, PlaybackTarg
     const auto text = telemetry::read_data_file(log);
     const auto framing = telemetry::detect_binary_framing(text);
     if (framing && !definitions) {
-        throw InputError({log.string()}, "is a binary log, and no .log beside it defines its messages",
+        throw InputError({log.string()}, "is a binary log, and no .log defines its messages",
                          "name the messages.xml or .log of the aircraft and build that flew, with --messages FILE");
     }
     Player player(speed, target, stop);

@@ -146,8 +146,8 @@ void require_regular_file(const std::filesystem::path& path) {
     if (!std::filesystem::is_regular_file(status)) throw InputError({path.string()}, "is not a regular file");
 }
 
-/// The bytes that the file had when it was opened. Throws InputError for more than `max_zeros` bytes in blocks of zeros:
-/// a sparse file can be larger than any memory.
+/// The bytes that the file had when it was opened. Throws InputError for more than `max_zeros` bytes in blocks of
+/// zeros: a sparse file can be larger than any memory.
 std::string read_bytes(const InputFile& file, std::size_t max_zeros) {
     constexpr std::size_t block = 1 << 16;
     std::string bytes;

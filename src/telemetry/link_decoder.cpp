@@ -60,9 +60,9 @@ void append_quoted(std::string_view characters, std::string& text) {
     text += '"';
 }
 
-/// Appends a message as a line of a .data file without time and break: sender, name, fields. Arrays are joined by commas,
-/// char[] are in quotes (a quote or control character becomes '?'), floats have the fewest digits that read back, with
-/// a point or an exponent.
+/// Appends a message as a line of a .data file without time and break: sender, name, fields. Arrays are joined by
+/// commas, char[] are in quotes (a quote or control character becomes '?'), floats have the fewest digits that read
+/// back, with a point or an exponent.
 void append_message_text(const FoundFrame& found, std::string& text) {
     append_number(unsigned{found.sender}, text);
     text += ' ';

@@ -41,8 +41,9 @@ struct LinkCounts {
     std::map<std::uint16_t, std::size_t> other_length_ids = {};
 };
 
-/// Decodes messages from bytes that arrive in chunks of any size. Damage is skipped and counted; memory is constant, and
-/// nothing is allocated after the first message of each length. A message is delivered with the last byte of its frame.
+/// Decodes messages from bytes that arrive in chunks of any size. Damage is skipped and counted; memory is constant,
+/// and nothing is allocated after the first message of each length. A message is delivered with the last byte of its
+/// frame.
 class LinkDecoder {
   public:
     using Sink = std::function<void(const LinkMessage&)>;

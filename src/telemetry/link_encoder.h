@@ -13,8 +13,9 @@ class LinkEncoder {
   public:
     LinkEncoder(const MessageDictionary& dictionary, LinkVersion version);
 
-    /// Appends the frame of "20 ENERGY 57 11.62 ..." and returns an empty text. Otherwise (the sender is not an aircraft,
-    /// the message is not defined, or its fields do not match the definition) returns the reason and appends nothing.
+    /// Appends the frame of "20 ENERGY 57 11.62 ..." and returns an empty text. Otherwise (the sender is not an
+    /// aircraft, the message is not defined, or its fields do not match the definition) returns the reason and appends
+    /// nothing.
     std::string_view append_frame(std::string_view text, std::string& frames);
 
   private:

@@ -39,8 +39,8 @@ LogConfiguration read_log_configuration(const std::filesystem::path& path);
 LogConfiguration parse_log_configuration(const std::string& text, const std::filesystem::path& file);
 
 /// The .log of a log ("X.data", "X.data.gz", "X_SD.data", a card's "X.LOG"): "X.log" in the same folder, else an X.LOG
-/// that is XML; never the log itself. A .log that cannot be read (a folder without permission, a link loop) is returned,
-/// so that reading it reports the reason.
+/// that is XML; never the log itself. A .log that cannot be read (a folder without permission, a link loop) is
+/// returned, so that reading it reports the reason.
 std::optional<std::filesystem::path> find_log_file(const std::filesystem::path& data_file);
 
 /// Whether a file begins like XML: an X.LOG may be an SD card's log or the definitions of X.tlm.

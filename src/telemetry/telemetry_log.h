@@ -80,8 +80,8 @@ class MessageDecoder {
     MessageDecoder& operator=(const MessageDecoder&) = delete;
 
     /// Decodes "ENERGY 57 11.62 1.64". If `values` of the fields are given (NaN for text and arrays), only the name and
-    /// arrays are read from the text. The table has one row and is valid until the next call; nullptr for a message that
-    /// is not requested, or not usable (and counted).
+    /// arrays are read from the text. The table has one row and is valid until the next call; nullptr for a message
+    /// that is not requested, or not usable (and counted).
     const MessageTable* decode(double time_s, std::string_view message, std::span<const double> values = {});
     /// Starts another log: without a .log its messages may have other built-in definitions.
     void restart();

@@ -132,7 +132,7 @@ TEST(SampleLogs, OfSeveralAircraftAskWhich) {
     }
     const auto both = test::write_text(folder / "opterra_synthetic_01.data", text);
     EXPECT_EQ(test::rejected([&] { flight::read_flight(both); }, folder),
-              "opterra_synthetic_01.data: several aircraft flew: 7, 8; choose one with --aircraft ID");
+              "opterra_synthetic_01.data: several aircraft flew: 7, 8; select one with --aircraft ID");
     const auto seventh = flight::read_flight(both, "7");
     const auto alone = flight::read_flight(test::sample(1));
     EXPECT_EQ(flight::phases_csv(seventh, flight::segment(seventh)), flight::phases_csv(alone, flight::segment(alone)));

@@ -84,7 +84,7 @@ TEST_F(BinaryLogs, WithoutALogTakeTheirDefinitionsFromMessages) {
     for (const std::string command : {"parse bare/a.tlm", "convert bare/b.tlm"}) {
         const auto refused = run(command);
         EXPECT_EQ(refused.code, 3);
-        EXPECT_THAT(refused.err, HasSubstr("is a binary log, and no .log beside it defines its messages"));
+        EXPECT_THAT(refused.err, HasSubstr("is a binary log, and no .log defines its messages"));
         EXPECT_THAT(refused.err, HasSubstr("--messages FILE"));
     }
     ASSERT_EQ(run("fit card/a.LOG card/b.LOG -o spread.toml").code, 0);

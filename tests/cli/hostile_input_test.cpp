@@ -182,7 +182,7 @@ TEST_F(HostileInput, IsALogOfManyAircraft) {
     EXPECT_EQ(result.code, 3);
     EXPECT_THAT(result.err,
                 HasSubstr("many.data: error: 40 senders may be aircraft: 100, 101, 102, 103, 104, 105, 106, "
-                          "107, 108, 109, 110, 111 ... and 28 more; choose one with --aircraft ID"));
+                          "107, 108, 109, 110, 111 ... and 28 more; select one with --aircraft ID"));
 }
 
 /// Each phase is looked up among all samples.
@@ -198,7 +198,7 @@ TEST_F(HostileInput, IsALogOfManySorties) {
     const auto result = test::run_shell("flightwatt segment many.data", folder);
     EXPECT_EQ(result.code, 3);
     EXPECT_THAT(result.err, HasSubstr("many.data: error: 1200 sorties in 120000 samples of power; is it the log of one "
-                                      "flight? Split it, or choose one with --sortie N"));
+                                      "flight? Split it, or select a sortie with --sortie N"));
     EXPECT_EQ(test::run_shell("flightwatt segment many.data --sortie 3 -o phases.csv", folder).code, 0);
 }
 

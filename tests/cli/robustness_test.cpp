@@ -189,7 +189,7 @@ TEST_F(Robustness, Case03FindsNoFlightOfAnAircraftThatStands) {
     for (const double begin_s : {0.0, 300.0}) {
         const auto stood = segment(test::damaged_sample([&](test::Words& words) { stand(words, begin_s); }));
         EXPECT_EQ(stood.result.code, 3) << begin_s;
-        EXPECT_THAT(stood.result.err, HasSubstr("holds no flight")) << begin_s;
+        EXPECT_THAT(stood.result.err, HasSubstr("has no flight")) << begin_s;
     }
 }
 

@@ -41,7 +41,7 @@ TEST(EdgeEvents, GivesAVerdictOnEveryEdge) {
                      {.name = "mode", .time_s = {0, 110, 703}, .value = {0, 2, 1}}};
     series.block_names = {{3, "Take-off"}, {4, "Standby"}, {6, "Land Right"}};
     const auto sortie = sortie_at(100, 130, 702, 760);
-    EXPECT_THAT(verdicts(series, sortie), testing::ElementsAre("agrees", "no witness", "agrees", "no witness"));
+    EXPECT_THAT(verdicts(series, sortie), testing::ElementsAre("agrees", "no event", "agrees", "no event"));
     const auto edges = compare_edges_with_events(SelectedTracks(series), sortie);
     EXPECT_EQ(edges[0].matching_events.size(), 1u);
     EXPECT_EQ(edges[0].matching_events[0].after_s, -2.0);
@@ -56,12 +56,12 @@ TEST(EdgeEvents, SaysHowFarApartTheyAre) {
     FlightSeries series;
     series.tracks = {takeoff_at({80.0}), {.name = "mode", .time_s = {0, 110, 720}, .value = {0, 2, 1}}};
     EXPECT_THAT(verdicts(series, sortie_at(100, 130, 702, 760)),
-                testing::ElementsAre("differs by 20 s", "no witness", "differs by 18 s", "no witness"));
+                testing::ElementsAre("differs by 20 s", "no event", "differs by 18 s", "no event"));
 }
 
 TEST(EdgeEvents, HasNoneInASeriesWithoutMessagesAndNoEdgeThatTheLogCuts) {
     auto sortie = sortie_at(100, 130, 702, 760);
-    EXPECT_THAT(verdicts({}, sortie), testing::Each("no witness"));
+    EXPECT_THAT(verdicts({}, sortie), testing::Each("no event"));
     sortie.phases.erase(sortie.phases.begin());
     sortie.phases.back().complete = false;
     const auto edges = compare_edges_with_events(SelectedTracks(FlightSeries{}), sortie);

@@ -2,7 +2,6 @@
 
 #include "base/atomic_file.h"
 #include "base/number.h"
-#include "base/parallel.h"
 #include "flight/phases_file.h"
 #include "flight/selected_track.h"
 #include "flight/series_file.h"
@@ -53,11 +52,10 @@ TEST(LoadFlight, SegmentsAFlightWithoutPowerWhereNoneIsRequired) {
     EXPECT_NEAR(flight.phases.sorties[0].end_s(), plain.sorties[0].end_s(), 1.0);
     EXPECT_EQ(flight.lacks_power, "no measured power (ENERGY.power is 0 throughout)");
     EXPECT_EQ(flight.exclusion, flight.lacks_power);
-    EXPECT_THAT(flight.warnings, testing::Contains(HasSubstr(": the energy of its phases is not known")));
+    EXPECT_THAT(flight.warnings, testing::Contains(HasSubstr(": the energy of its phases is unknown")));
     EXPECT_THAT(phases_csv(flight.series, flight.phases), HasSubstr("\n1,takeoff,"));
     EXPECT_THAT(phases_csv(flight.series, flight.phases), HasSubstr(",,,,,,,true,")) << "empty, not 0";
-    EXPECT_THAT(test::rejected([] { segment_and_check(unmeasured_flight(), {}); }),
-                HasSubstr("holds no measured power"));
+    EXPECT_THAT(test::rejected([] { segment_and_check(unmeasured_flight(), {}); }), HasSubstr("has no measured power"));
 }
 
 TEST(LoadFlight, OfASeriesFileWithoutPowerIsTheSame) {
@@ -176,7 +174,7 @@ TEST(FlightFile, OfABinaryLogNeedsDefinitions) {
     std::filesystem::copy_file(made.card, bare);
     EXPECT_EQ(FlightFile(bare).framing(), telemetry::Framing::card);
     EXPECT_THAT(test::rejected([&] { load_flight(bare); }, folder),
-                HasSubstr("bare.tlm: is a binary log, and no .log beside it defines its messages; name the"));
+                HasSubstr("bare.tlm: is a binary log, and no .log defines its messages; name the"));
     LoadOptions options;
     options.messages = made.text.parent_path() / "x.log";
     EXPECT_EQ(load_flight(bare, options).phases.sorties.size(), 1u);
@@ -201,46 +199,6 @@ TEST(FlightFile, TakesNamedDefinitionsForADamagedLog) {
     }
     write_file_atomically(made.card.parent_path() / "x.log", definitions);
     EXPECT_EQ(load_flight(made.card, options).warnings, load_flight(made.card).warnings);
-}
-
-/// The sample flight again and again, its clock going on.
-std::string many_flights(std::size_t count) {
-    const auto data = telemetry::read_data_file(test::source_dir() / "logs" / "opterra_synthetic_01.data");
-    std::string text;
-    for (std::size_t k = 0; k < count; ++k) {
-        for (std::string_view rest = data; !rest.empty();) {
-            const auto line = rest.substr(0, rest.find('\n') + 1);
-            const auto blank = line.find(' ');
-            text += fmt::format("{:.3f}", number_or_nan(line.substr(0, blank)) + 1000.0 * static_cast<double>(k));
-            text += line.substr(blank);
-            rest.remove_prefix(line.size());
-        }
-    }
-    return text;
-}
-
-TEST(LoadFlight, OfManyFlightsIsTheSameOnOneThread) {
-    constexpr std::size_t flights = 14;  // more rows than are left to one thread
-    const auto text = many_flights(flights);
-    const auto load = [&] {
-        auto log = telemetry::parse_telemetry(text, "x.data", std::nullopt, flight_messages());
-        const auto copied = flight_series(log, "7");
-        auto series = extract_flight_series(log, "7");
-        EXPECT_TRUE(series == copied);
-        return segment_and_check(std::move(series), {});
-    };
-    const auto on_all = load();
-    LoadedFlight on_one;
-    for_each_in_parallel(
-        1, [&](std::size_t) { on_one = load(); }, 1);
-    EXPECT_EQ(on_all.phases.sorties.size(), flights);
-    EXPECT_TRUE(on_all.series == on_one.series);
-    EXPECT_EQ(on_all.warnings, on_one.warnings);
-    EXPECT_EQ(on_all.sources, on_one.sources);
-    EXPECT_EQ(on_all.sources, track_sources(on_all.series));
-    const SelectedTracks tracks(on_all.series);
-    tracks.compute_all();
-    for (const auto& name : track_names()) EXPECT_TRUE(tracks[name] == select_track(on_all.series, name)) << name;
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ TEST(PowerReport, TakesTheIdleCurrentOutOnlyWhenAsked) {
         EXPECT_NEAR(corrected.current_a[i], measured.current_a[i] - report.idle->mean_a, 1e-12);
         EXPECT_NEAR(corrected.power_w[i], measured.power_w[i] - report.idle->mean_a * measured.voltage_v[i], 1e-9);
     }
-    EXPECT_THAT(warnings_of(series), Contains(HasSubstr("was taken out")));
+    EXPECT_THAT(warnings_of(series), Contains(HasSubstr("was subtracted")));
     EXPECT_EQ(power_track(series).source, power_track(before).source);
 }
 

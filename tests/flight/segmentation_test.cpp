@@ -265,11 +265,11 @@ TEST(Segmentation, SaysWhatItSawWhereNothingFlew) {
         }
         return std::string("accepted");
     };
-    EXPECT_THAT(refusal({{0, 5, 0}, {100, 5, 0}}), HasSubstr("holds no flight in 99 s; it stood still throughout"));
+    EXPECT_THAT(refusal({{0, 5, 0}, {100, 5, 0}}), HasSubstr("has no flight in 99 s; no motion"));
     EXPECT_THAT(refusal({{0, 5, 0}, {50, 5, 0}, {51, 5, 70}, {60, 5, 70}, {61, 5, 0}, {100, 5, 0}}),
                 HasSubstr("run-up, taxi or hop: throttle to 70 %"));
     EXPECT_THAT(refusal({{0, 5, 0}, {50, 5, 0}, {60, 60, 0}, {70, 5, 0}, {100, 5, 0}}),
-                HasSubstr("estimator without a fix"));
+                HasSubstr("its estimator has no fix"));
 }
 
 TEST(Segmentation, RefusesWhatCannotBeSegmented) {

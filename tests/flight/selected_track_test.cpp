@@ -38,8 +38,8 @@ TEST(SelectedThrottle, IsTheCommandsWhereItIdlesInManualMode) {
     };
     const auto manual = with_commands(30.0, "4800,-20,30");
     EXPECT_EQ(lowest(manual), 50.0);
-    EXPECT_THAT(warnings_of(manual), Contains(HasSubstr("ENERGY.throttle is at idle while COMMANDS.throttle is not for "
-                                                        "30 s, first from 100 s on: the latter counts there")));
+    EXPECT_THAT(warnings_of(manual), Contains(HasSubstr("ENERGY.throttle is idle while COMMANDS.throttle is not for "
+                                                        "30 s, first from 100 s: the latter is used there")));
     EXPECT_EQ(lowest(with_commands(29.0, "4800,-20,30")), 0.0) << "half a minute";
     EXPECT_EQ(lowest(with_commands(40.0, "4800,-20,30", 125)), 0.0) << "what stopped says nothing";
     EXPECT_EQ(lowest(with_commands(40.0, "1900,-20,30")), 0.0) << "less than any flight takes";

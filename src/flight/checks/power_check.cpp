@@ -2,7 +2,6 @@
 
 #include "flight/checks/power_record.h"
 #include "flight/checks/power_rules.h"
-#include "flight/sources/power_source.h"
 
 #include <algorithm>
 #include <iterator>
@@ -45,9 +44,8 @@ void correct_idle_offset(FlightSeries& series, const std::optional<IdleCurrent>&
     current.time_s = power.time_s;
     current.value = current_a;
     for (auto& value : current.value) value -= idle->mean_a;
-    // What was not chosen goes, since its offset is not known; what was said of the choice stays.
+    // Other candidates are removed, since their offset is unknown; warnings about the selection are kept.
     const auto before = warnings_of(series);
-    if (energy_and_power_are_swapped(series)) replace_track(series, select_track(series, "charge_ah"));
     replace_track(series, std::move(power));
     replace_track(series, std::move(current));
     const auto after = warnings_of(series);
@@ -55,7 +53,7 @@ void correct_idle_offset(FlightSeries& series, const std::optional<IdleCurrent>&
         if (std::find(after.begin(), after.end(), warning) == after.end()) series.notes.push_back(warning);
     }
     series.notes.push_back(
-        fmt::format("the idle current of {:.4f} A ({} samples at rest) was taken out", idle->mean_a, idle->samples));
+        fmt::format("the idle current of {:.4f} A ({} samples at rest) was subtracted", idle->mean_a, idle->samples));
 }
 
 }  // namespace flightwatt::flight

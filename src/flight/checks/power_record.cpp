@@ -11,11 +11,11 @@
 namespace flightwatt::flight {
 namespace {
 
-constexpr double powerless_fraction = 0.05;   // of the upper quartile of the power at an open throttle
-constexpr std::size_t min_step_samples = 10;  // in a step of throttle, to know its usual power
+constexpr double powerless_fraction = 0.05;   // of the upper quartile of the power with an open throttle
+constexpr std::size_t min_step_samples = 10;  // of a step of throttle
 
-/// The decimal place that a counter is rounded to, from 1 down to a millionth: the first of which all its values are
-/// multiples. However seldom it is logged, that is how well it is known.
+/// The decimal place to which a counter is rounded, from 1 down to a millionth: the first of which all values are
+/// multiples.
 double resolution_of(const Track& counter) {
     constexpr double finest = 1e-6;
     constexpr double logged_digits = 1e-6;
@@ -29,7 +29,7 @@ double resolution_of(const Track& counter) {
     return unit;
 }
 
-/// Compares the integral of `rate` over all sorties with what the counter counted, if it did.
+/// Compares the integral of `rate` over all sorties with the counter, if that counted.
 void close(const PowerRecord& record, const std::vector<double>& rate, OnBoardCounter& counter) {
     if (rate.empty() || counter.value.empty()) return;
     double integral = 0.0;
@@ -59,7 +59,8 @@ std::vector<std::size_t> resting_samples(const PowerRecord& record, const std::v
     return indices;
 }
 
-/// The autopilot switches loads on the ground too (a burst after landing): the middle half of the samples is idle.
+/// Mean and standard deviation of the current at rest, without outliers: the autopilot switches loads on the ground
+/// too.
 std::optional<IdleCurrent> idle_current(const std::vector<double>& current_a, const std::vector<std::size_t>& resting) {
     constexpr std::size_t enough = 10;
     if (current_a.empty() || resting.size() < enough) return std::nullopt;
@@ -68,22 +69,13 @@ std::optional<IdleCurrent> idle_current(const std::vector<double>& current_a, co
     const double middle = median_high(values);
     std::vector<double> distances(values.size());
     std::ranges::transform(values, distances.begin(), [&](double value) { return std::abs(value - middle); });
-    const double reach = 5.0 * std::max(median_high(std::move(distances)), 1e-6);  // beyond 3 sigma is no idling
-    std::erase_if(values, [&](double value) { return std::abs(value - middle) > reach; });
-    IdleCurrent idle;
-    double squares = 0.0;
-    for (const double value : values) {
-        ++idle.samples;
-        const double delta = value - idle.mean_a;
-        idle.mean_a += delta / static_cast<double>(idle.samples);
-        squares += delta * (value - idle.mean_a);
-    }
-    if (idle.samples > 1) idle.sd_a = std::sqrt(squares / static_cast<double>(idle.samples - 1));
-    return idle;
+    const double max_distance = 5.0 * std::max(median_high(std::move(distances)), 1e-6);  // some 3 sigma
+    std::erase_if(values, [&](double value) { return std::abs(value - middle) > max_distance; });
+    return IdleCurrent{mean(values), values.size() > 1 ? std::sqrt(sample_variance(values)) : 0.0, values.size()};
 }
 
-/// In steps of throttle with so many samples or more; nowhere known where these are fewer than two steps: a switch, or
-/// a throttle that stands still.
+/// Median power of each 5 % step of the throttle with at least `min_step_samples`; NaN elsewhere, and everywhere if
+/// there are fewer than two such steps (a switch, or a constant throttle).
 std::vector<double> usual_power_w(const PowerRecord& record) {
     constexpr double step_percent = 5.0;
     std::vector<double> usual_w(record.time_s.size(), std::numeric_limits<double>::quiet_NaN());
@@ -103,7 +95,7 @@ std::vector<double> usual_power_w(const PowerRecord& record) {
     return usual_w;
 }
 
-/// What the rules ask of all samples in flight together.
+/// Sums and extremes over the samples in flight.
 void add_sums(PowerRecord& record) {
     std::vector<double> currents_a;
     std::vector<double> voltages_v;
@@ -164,19 +156,19 @@ PowerRecord make_power_record(const SelectedTracks& tracks, const FlightPhases& 
 }
 
 void add_facts(PowerRecord& record, const std::vector<std::size_t>& resting) {
-    using Place = PowerRecord::Place;
+    using State = PowerRecord::State;
     const auto& time_s = record.time_s;
     record.gaps = gaps_in(time_s, record.sorties);
     record.at_rest = idle_current(record.current_a, resting);
-    record.places.assign(time_s.size(), Place::neither);
+    record.states.assign(time_s.size(), State::neither);
     if (record.has_throttle())
-        for (const auto i : resting) record.places[i] = Place::rest;
+        for (const auto i : resting) record.states[i] = State::rest;
     auto rest = resting.begin();
     for (const auto& flown : record.in_flight) {
         const auto lift_off = std::lower_bound(rest, resting.end(), flown.begin);
         record.rests.push_back(idle_current(record.current_a, {rest, lift_off}));
         rest = lift_off;
-        set_part(record.places, flown, Place::flight);
+        set_part(record.states, flown, State::flight);
     }
     record.rests.push_back(idle_current(record.current_a, {rest, resting.end()}));
     record.step_s.assign(time_s.size(), 0.0);
@@ -187,6 +179,8 @@ void add_facts(PowerRecord& record, const std::vector<std::size_t>& resting) {
         record.step_s[i] += half_s;
     }
     record.usual_w = usual_power_w(record);
+    record.smooth_w = running_median<11>(record.power_w);
+    record.smooth_percent = running_median<11>(record.throttle_percent);
     add_sums(record);
 }
 

@@ -12,12 +12,15 @@
 namespace flightwatt::flight {
 namespace {
 
-constexpr std::size_t standing = 30;  // samples alike
-constexpr double loaded_rest_a = 5.0;
-constexpr double doubtful_rest_a = 1.0;
-constexpr double doubtful_rest_percent = 5.0;  // of the mean in flight
+constexpr std::size_t stuck_samples = 30;  // equal values in a row
+constexpr double faulty_rest_a = 5.0;
+constexpr double suspect_rest_a = 1.0;
+constexpr double suspect_rest_percent = 5.0;  // of the mean in flight
 constexpr double gliding_sink_m_per_s = 0.5;
-constexpr double usual_factor = 0.65;      // of the power at the same throttle
+constexpr double usual_factor = 0.65;  // of the power at the same throttle, or of the samples around
+constexpr double usual_factor_without_throttle = 0.3;
+constexpr double same_throttle_factor = 0.7;
+constexpr double same_throttle_percent = 5.0;
 constexpr double max_pack_v = 60.0;        // 14 LiPo cells
 constexpr double min_pack_v = 2.5;         // one cell, empty
 constexpr double min_voltage_part = 0.55;  // 2.3 V of a cell that began full
@@ -28,36 +31,35 @@ using Test = bool (*)(const PowerRecord&, std::size_t);
 constexpr Test always = [](const PowerRecord&, std::size_t) { return true; };
 constexpr Test in_flight = [](const PowerRecord& r, std::size_t i) { return r.is_flown(i); };
 
-/// Of what a rule's share is.
+/// Basis of a rule's share.
 enum class Share { samples, time, energy, time_or_energy };
 enum class Consequence { warning, fault };
 
-/// A rule that looks at samples has `holds`, one that looks at the record as a whole `when`, an unusual one `texts`.
+/// A rule for samples has `holds`, a rule for the whole record `when`, and any other one `texts`.
 struct PowerRule {
-    const char* text = "";  ///< with the arguments of text_of()
+    const char* text = "";  ///< with the arguments of format_finding()
     bool (*when)(const PowerRecord&) = nullptr;
     Texts (*texts)(const PowerRecord&) = nullptr;
-    /// Among the samples of which `applies` is true, those in runs of which `holds` is.
-    Test applies = in_flight;
-    Test holds = nullptr;
-    Test continues = always;     ///< a run ends where it is false of a sample and the one before it
-    std::size_t least_run = 1;   ///< samples, from which a run counts
-    double least_level_s = 0.0;  ///< from so long on a run counts, and if it does not sink
+    Test applies = in_flight;  ///< selects the samples
+    Test holds = nullptr;      ///< of these samples it finds runs
+    Test continues = always;   ///< compares a sample with the one before it; a run ends where it is false
+    std::size_t min_run = 1;   ///< samples of a run
+    double min_level_s = 0.0;  ///< duration of a run; if above 0, the aircraft must not sink
     std::size_t min_samples = 0;
-    double min_s = 0.0;  ///< of all runs
+    double min_s = 0.0;  ///< of all runs together
     Share share = Share::samples;
     double (*energy_w)(const PowerRecord&, std::size_t) = [](const PowerRecord& r, std::size_t i) {
         return r.power_w[i];
     };
-    double limit = 0.0;  ///< of the share: reported above it
+    double limit = 0.0;  ///< the rule reports a share above it
     Consequence consequence = Consequence::warning;
-    bool needs_energy = true;      ///< of a warning: not where the energy in flight is not above 0, which is a fault
-    bool unless_previous = false;  ///< not where the rule before found something
+    bool needs_energy = true;      ///< of a warning: skipped if the energy in flight is not positive (a fault)
+    bool unless_previous = false;  ///< skipped if the previous rule has a finding
 };
 
 bool is_loaded_at_rest(const PowerRecord& r) {
     if (!r.at_rest || std::ranges::none_of(r.in_flight, &IndexSpan::size)) return false;
-    return std::abs(r.at_rest->mean_a) >= doubtful_rest_a || r.rest_percent() >= doubtful_rest_percent;
+    return std::abs(r.at_rest->mean_a) >= suspect_rest_a || r.rest_percent() >= suspect_rest_percent;
 }
 
 bool is_constant_in_flight(const PowerRecord& r) {
@@ -70,27 +72,40 @@ bool is_constant_in_flight(const PowerRecord& r) {
 
 bool has_pack_voltage(const PowerRecord& r) { return r.max_v >= min_pack_v && r.max_v <= max_pack_v; }
 
-/// From when to when the altitude is logged; without one as the power is.
+/// First and last time of the altitude, or of the power without one.
 std::pair<double, double> altitude_span(const PowerRecord& r) {
     const auto& time_s = r.altitude_time_s.empty() ? r.time_s : r.altitude_time_s;
     return {time_s.front(), time_s.back()};
 }
 
-double doubtful_lack_s(const PowerRecord& r) {
+/// Altitude without power for longer than this is reported.
+double max_missing_s(const PowerRecord& r) {
     const auto [from_s, to_s] = altitude_span(r);
     return std::max(30.0, 0.05 * (to_s - from_s));
 }
 
-/// In the order of the reports. Every doubt that could hide 5 % of the energy is reported (docs/methods.md says why
-/// each limit is what it is).
+/// Whether a sample differs from the running medians of power and throttle: power by usual_factor without the throttle,
+/// or, if no throttle is known, by a larger factor.
+bool is_brief_change(const PowerRecord& r, std::size_t i) {
+    const double smooth_w = r.smooth_w[i];
+    const double ratio = r.power_w[i] / std::max(smooth_w, 1e-9);
+    if (!r.has_throttle()) return ratio < usual_factor_without_throttle || usual_factor_without_throttle * ratio > 1.0;
+    const double percent = r.throttle_percent[i];
+    const double smooth_percent = r.smooth_percent[i];
+    if (ratio < usual_factor) return r.is_open(i) && percent >= same_throttle_factor * smooth_percent;
+    return usual_factor * ratio > 1.0 && percent <= smooth_percent / same_throttle_factor + same_throttle_percent;
+}
+
+/// In the order of the reports. Whatever could hide 5 % of the energy is reported (reasons for the limits:
+/// docs/methods.md).
 constexpr PowerRule rules[] = {
     {.text = "more than 5 A in {percent:.0f} % of the samples on the ground with the motor off",
      .applies = [](const PowerRecord& r, std::size_t i) { return r.is_at_rest(i) && r.has_current(); },
-     .holds = [](const PowerRecord& r, std::size_t i) { return std::abs(r.current_a[i]) > loaded_rest_a; },
+     .holds = [](const PowerRecord& r, std::size_t i) { return std::abs(r.current_a[i]) > faulty_rest_a; },
      .min_samples = 10,
      .limit = 0.10,
      .consequence = Consequence::fault},
-    {.texts = power_is_no_product, .consequence = Consequence::fault},
+    {.texts = power_contradicts_product, .consequence = Consequence::fault},
     {.texts = counters_run_back, .consequence = Consequence::fault},
     {.texts = counters_contradict, .consequence = Consequence::fault},
     {.text = "power is negative on average in flight",
@@ -98,29 +113,32 @@ constexpr PowerRule rules[] = {
      .consequence = Consequence::fault},
     {.text = "power does not change in flight", .when = is_constant_in_flight, .consequence = Consequence::fault},
 
-    {.text =
-         "the current is {rest_a:.2f} A at rest on the ground, {rest_percent:.0f} % of the mean in flight: what the "
-         "electronics draw, or an offset of the sensor that its counters share; --correct-idle-offset takes it out",
+    {.text = "the current is {rest_a:.2f} A at rest on the ground, {rest_percent:.0f} % of the mean in flight: "
+             "electronics, or an offset of the sensor and its counters; --correct-idle-offset removes it",
      .when = is_loaded_at_rest,
      .needs_energy = false},
     {.texts = current_at_rest_drifts, .needs_energy = false},
-    {.text = "a voltage of {max_v:.4g} V is that of more than 14 LiPo cells: is its unit V?",
+    {.text = "the voltage of {max_v:.4g} V is that of more than 14 LiPo cells: is its unit V?",
      .when = [](const PowerRecord& r) { return r.max_v > max_pack_v; },
      .needs_energy = false},
-    {.text = "a voltage of {max_v:.4g} V is less than a LiPo cell's: is its unit V?",
+    {.text = "the voltage of {max_v:.4g} V is less than a LiPo cell's: is its unit V?",
      .when = [](const PowerRecord& r) { return r.max_v < min_pack_v; },
      .needs_energy = false},
-    {.text = "the voltage falls to {min_v:.4g} V from {max_v:.4g} V: no pack stands that",
+    {.text = "the voltage falls from {max_v:.4g} to {min_v:.4g} V, too far for a pack: is its sensor damaged?",
      .when = [](const PowerRecord& r) { return has_pack_voltage(r) && r.min_v < min_voltage_part * r.max_v; },
      .needs_energy = false},
     {.texts = counters_differ},
     {.texts = phases_differ_from_counter},
-    {.texts = gain_drifts, .unless_previous = true},
-    {.texts = devices_contradict_themselves},
-    {.texts = altitude_pauses},
-    {.texts = power_pauses},
-    {.texts = power_changes_briefly},
-    {.text = "power is far from what it usually is at the same throttle in {samples} samples in flight: "
+    {.texts = power_differs_from_product},
+    {.texts = altitude_has_gaps},
+    {.texts = power_has_gaps},
+    {.text = "power rises or falls for up to 5 samples without the throttle, in {samples} samples in flight: "
+             "{percent:.0f} % of the energy",
+     .holds = is_brief_change,
+     .share = Share::energy,
+     .energy_w = [](const PowerRecord& r, std::size_t i) { return r.power_w[i] - r.smooth_w[i]; },
+     .limit = 0.02},
+    {.text = "power differs from the usual power at the same throttle in {samples} samples in flight: "
              "{less_percent:.0f} % of the energy less, {more_percent:.0f} % more",
      .holds =
          [](const PowerRecord& r, std::size_t i) {
@@ -130,28 +148,28 @@ constexpr PowerRule rules[] = {
      .share = Share::energy,
      .energy_w = [](const PowerRecord& r, std::size_t i) { return r.power_w[i] - r.usual_w[i]; },
      .limit = 0.04},
-    {.text = "power stands still at {power_w:.2f} W from {from_s:.1f} to {to_s:.1f} s, {percent:.0f} % of the flight",
+    {.text = "power is stuck at {power_w:.2f} W from {from_s:.1f} to {to_s:.1f} s, {percent:.0f} % of the flight",
      .holds = [](const PowerRecord& r, std::size_t i) { return r.power_w[i] != 0.0 || r.is_open(i); },
      .continues = [](const PowerRecord& r, std::size_t i) { return r.power_w[i] == r.power_w[i - 1]; },
-     .least_run = standing,
+     .min_run = stuck_samples,
      .share = Share::time_or_energy,
      .limit = 0.04},
-    {.text = "the current stands still in {percent:.0f} % of the samples in flight: a sensor that hangs?",
+    {.text = "the current is stuck in {percent:.0f} % of the samples in flight: is its sensor damaged?",
      .holds = [](const PowerRecord& r, std::size_t i) { return r.has_current() && r.current_a[i] > 0.0; },
      .continues = [](const PowerRecord& r, std::size_t i) { return r.current_a[i] == r.current_a[i - 1]; },
-     .least_run = standing,
+     .min_run = stuck_samples,
      .limit = 0.04},
-    {.text = "the current is {max_a:.4g} A, its highest, in {percent:.0f} % of the samples in flight: does its sensor "
-             "reach further?",
+    {.text = "the current is {max_a:.4g} A, its highest, in {percent:.0f} % of the samples in flight: is its sensor "
+             "saturated?",
      .holds = [](const PowerRecord& r, std::size_t i) { return r.has_current() && r.current_a[i] == r.max_a; },
-     .min_samples = standing,
+     .min_samples = stuck_samples,
      .limit = 0.05,
      .unless_previous = true},
     {.text = "{source} is 0 for {lasts_s:.0f} s in flight without a descent, the longest from {from_s:.0f} s on: "
              "{percent:.0f} % of the flight has no power",
      .holds = [](const PowerRecord& r,
                  std::size_t i) { return r.power_w[i] == 0.0 && (r.is_open(i) || !r.has_throttle()); },
-     .least_level_s = 5.0,
+     .min_level_s = 5.0,
      .share = Share::time,
      .limit = 0.02},
     {.text = "power is negative in {samples} samples in flight, {percent:.0f} % of the energy",
@@ -163,39 +181,37 @@ constexpr PowerRule rules[] = {
      .holds = [](const PowerRecord& r, std::size_t i) { return std::abs(r.power_w[i]) <= r.powerless_w; },
      .limit = 0.15},
     {.text = "{energy_wh:.3f} Wh, {percent:.0f} % of the energy in flight, were drawn outside of it with more than "
-             "30 % throttle: a long run-up, or is the altitude wrong?",
+             "30 % throttle: was it a long run-up, or is the altitude wrong?",
      .applies = [](const PowerRecord& r, std::size_t i) { return !r.is_flown(i); },
      .holds = [](const PowerRecord& r, std::size_t i) { return r.is_open(i); },
      .min_s = 30.0,
      .share = Share::energy,
      .limit = 0.05},
     {.texts = climbs_without_power},
-    {.text = "a mean of {mean_w:.3g} W in flight: hardly anything flies on that; is its unit W?",
+    {.text = "the mean power of {mean_w:.3g} W in flight is less than an aircraft needs: is its unit W?",
      .when = [](const PowerRecord& r) { return r.energy_j / r.duration_s < min_mean_power_w; }},
     {.text =
-         "power is logged from {power_from_s:.0f} s, altitude from {altitude_from_s:.0f} s: what was flown before is "
-         "not seen",
-     .when = [](const PowerRecord& r) { return r.time_s.front() - altitude_span(r).first > doubtful_lack_s(r); },
+         "power is logged from {power_from_s:.0f} s, altitude from {altitude_from_s:.0f} s: earlier power is missing",
+     .when = [](const PowerRecord& r) { return r.time_s.front() - altitude_span(r).first > max_missing_s(r); },
      .needs_energy = false},
-    {.text =
-         "power is logged to {power_to_s:.0f} s, altitude to {altitude_to_s:.0f} s: what was flown after is not seen",
-     .when = [](const PowerRecord& r) { return altitude_span(r).second - r.time_s.back() > doubtful_lack_s(r); },
+    {.text = "power is logged to {power_to_s:.0f} s, altitude to {altitude_to_s:.0f} s: later power is missing",
+     .when = [](const PowerRecord& r) { return altitude_span(r).second - r.time_s.back() > max_missing_s(r); },
      .needs_energy = false},
 };
 
-/// What a rule for samples found.
+/// Samples that a rule found.
 struct Found {
     std::size_t applied = 0;
     std::size_t samples = 0;
     double lasts_s = 0.0;
-    double more_j = 0.0;  ///< where the rule's power is positive
-    double less_j = 0.0;  ///< where it is negative
+    double more_j = 0.0;  ///< of positive values of the rule's energy_w
+    double less_j = 0.0;  ///< of negative values
     IndexSpan longest{0, 0};
 
     double energy_j() const { return more_j + less_j; }
 };
 
-/// Whether a run sinks as an aircraft does that glides.
+/// Whether the aircraft sinks in a run as in a glide.
 bool sinks(const PowerRecord& record, const IndexSpan& run) {
     if (record.altitude_m.empty()) return true;
     const double sunk_m = record.altitude_m[run.begin] - record.altitude_m[run.end - 1];
@@ -210,8 +226,8 @@ Found scan(const PowerRule& rule, const PowerRecord& record) {
     const auto continues = [&](std::size_t i) { return rule.continues(record, i); };
     for (const auto& run : runs_of({0, count}, joins, continues)) {
         const double run_s = record.time_s[run.end - 1] - record.time_s[run.begin];
-        if (run.size() < rule.least_run || run_s < rule.least_level_s) continue;
-        if (rule.least_level_s > 0.0 && sinks(record, run)) continue;
+        if (run.size() < rule.min_run || run_s < rule.min_level_s) continue;
+        if (rule.min_level_s > 0.0 && sinks(record, run)) continue;
         found.samples += run.size();
         for (auto i = run.begin; i < run.end; ++i) {
             const double energy_j = rule.energy_w(record, i) * record.step_s[i];
@@ -239,7 +255,7 @@ double share_of(const PowerRule& rule, const Found& found, const PowerRecord& re
     return 0.0;
 }
 
-std::string text_of(const PowerRule& rule, const PowerRecord& record, const Found& found, double share) {
+std::string format_finding(const PowerRule& rule, const PowerRecord& record, const Found& found, double share) {
     const auto last = std::max<std::size_t>(found.longest.end, 1) - 1;
     return fmt::format(
         fmt::runtime(rule.text), fmt::arg("percent", share * units::percent_per_whole),
@@ -259,11 +275,11 @@ std::string text_of(const PowerRule& rule, const PowerRecord& record, const Foun
 
 Texts apply(const PowerRule& rule, const PowerRecord& record) {
     if (rule.texts != nullptr) return rule.texts(record);
-    if (rule.when != nullptr) return rule.when(record) ? Texts{text_of(rule, record, {}, 0.0)} : Texts{};
+    if (rule.when != nullptr) return rule.when(record) ? Texts{format_finding(rule, record, {}, 0.0)} : Texts{};
     const auto found = scan(rule, record);
     const double share = found.samples > 0 ? share_of(rule, found, record) : 0.0;
     const bool counts = share > rule.limit && found.samples >= rule.min_samples && found.lasts_s >= rule.min_s;
-    return counts ? Texts{text_of(rule, record, found, share)} : Texts{};
+    return counts ? Texts{format_finding(rule, record, found, share)} : Texts{};
 }
 
 }  // namespace

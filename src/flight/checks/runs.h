@@ -1,13 +1,14 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
 
 namespace flightwatt::flight {
 
-/// The samples, or points of a grid, [begin, end).
+/// Samples, or points of a grid, [begin, end).
 struct IndexSpan {
     std::size_t begin;
     std::size_t end;
@@ -24,8 +25,8 @@ void set_part(std::vector<T>& values, IndexSpan span, T value) {
               values.begin() + static_cast<std::ptrdiff_t>(span.end), value);
 }
 
-/// The runs of neighbouring samples of `within` for which joins(i) is true, where each also continues(i), which
-/// compares it with the one before it. In order; none is empty.
+/// The runs of consecutive samples of `within` for which joins(i) is true; a run ends where continues(i), which
+/// compares sample i with the one before it, is false. In order; no run is empty.
 template <typename Joins, typename Continues>
 std::vector<IndexSpan> runs_of(IndexSpan within, const Joins& joins, const Continues& continues) {
     std::vector<IndexSpan> runs;
@@ -42,7 +43,7 @@ std::vector<IndexSpan> runs_of(IndexSpan within, const Joins& joins) {
     return runs_of(within, joins, [](std::size_t) { return true; });
 }
 
-/// How long it holds within a range [s], from sample to sample; gaps of more than `gap_s` do not count.
+/// Time within a range for which holds(i) is true of both samples around it [s], without gaps of more than `gap_s`.
 template <typename Holds>
 double time_where(const std::vector<double>& time_s, IndexSpan within, double gap_s, const Holds& holds) {
     double together_s = 0.0;
@@ -51,7 +52,7 @@ double time_where(const std::vector<double>& time_s, IndexSpan within, double ga
     return together_s;
 }
 
-/// The runs of at least so many samples that repeat one value.
+/// The runs of at least `min_samples` equal values.
 inline std::vector<IndexSpan> runs_of_equal(const std::vector<double>& values, std::size_t min_samples) {
     std::vector<IndexSpan> runs;
     for (std::size_t begin = 0, end = 0; begin < values.size(); begin = end) {
@@ -59,6 +60,21 @@ inline std::vector<IndexSpan> runs_of_equal(const std::vector<double>& values, s
         if (end - begin >= min_samples) runs.push_back({begin, end});
     }
     return runs;
+}
+
+/// Median of an odd number of values around each: removes spikes of less than half that width and keeps ramps. The
+/// first and last half width is unchanged.
+template <std::size_t Width>
+std::vector<double> running_median(const std::vector<double>& values) {
+    constexpr auto reach = static_cast<std::ptrdiff_t>(Width / 2);
+    std::vector<double> smooth = values;
+    for (std::ptrdiff_t i = reach; i + reach < static_cast<std::ptrdiff_t>(values.size()); ++i) {
+        std::array<double, Width> near{};
+        std::copy_n(values.begin() + i - reach, Width, near.begin());
+        std::nth_element(near.begin(), near.begin() + reach, near.end());
+        smooth[static_cast<std::size_t>(i)] = near[Width / 2];
+    }
+    return smooth;
 }
 
 }  // namespace flightwatt::flight

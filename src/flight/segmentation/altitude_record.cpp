@@ -11,24 +11,24 @@
 namespace flightwatt::flight {
 namespace {
 
-// From one sample to the next an altitude changes by no more than this, or it has jumped: 60 m/s is more than a small
-// aircraft climbs or dives, and an estimator may correct itself by 10 m.
+// Larger changes between samples are jumps: 60 m/s is more than a small aircraft climbs or dives, and an estimator may
+// correct itself by 10 m.
 constexpr double jump_m = 10.0;
 constexpr double jump_m_per_s = 60.0;
-constexpr double fix_jump_m = 60.0;  // beside a time in which it repeated one value, and over a time left out
+constexpr double fix_jump_m = 60.0;  // next to repeated values, and across removed samples
 constexpr double fix_jump_m_per_s = 5.0;
-constexpr double excursion_s = 30.0;    // what comes back from a jump within this time was somewhere else meanwhile
-constexpr double fix_loss_s = 120.0;    // so was what stood still meanwhile, without a fix
-constexpr std::size_t max_jumps = 10;   // with more nothing can be concluded from an altitude
-constexpr double stuck_s = 10.0;        // a value that is repeated for so long, and
-constexpr std::size_t stuck_count = 5;  // so often, is that of an estimator without a fix
-constexpr double shortest_piece_s = 5.0;
+constexpr double excursion_s = 30.0;    // an altitude that returns from a jump within this time is removed,
+constexpr double fix_loss_s = 120.0;    // or within this time, if it was stuck (no fix)
+constexpr std::size_t max_jumps = 10;   // of a usable altitude
+constexpr double stuck_s = 10.0;        // a value that is repeated for this time,
+constexpr std::size_t stuck_count = 5;  // in this many samples, is that of an estimator without a fix
+constexpr double min_piece_s = 5.0;
 constexpr double long_piece_s = 20.0;
-constexpr double farthest_jump_m = 1000.0;
-constexpr std::size_t passes = 10;    // what is left out brings others together
-constexpr std::size_t returns = 100;  // jumps among which the one back is looked for
+constexpr double max_jump_m = 1000.0;
+constexpr std::size_t passes = 10;    // a removal may create further excursions
+constexpr std::size_t returns = 100;  // jumps among which the return is searched
 
-/// Which samples repeat one value for long.
+/// Samples of long runs of one value.
 std::vector<bool> stuck_samples(const Track& track) {
     std::vector<bool> stuck(track.value.size(), false);
     for (const auto& run : runs_of_equal(track.value, stuck_count))
@@ -43,13 +43,13 @@ bool is_beyond(const Track& track, std::size_t i, std::size_t j, double step_m, 
 /// The pieces between jumps, in order.
 std::vector<IndexSpan> pieces_of(const Track& track) {
     const auto stuck = stuck_samples(track);
-    const auto goes_on = [&](std::size_t i) {
+    const auto continues = [&](std::size_t i) {
         const bool has_fix = !stuck[i - 1] && !stuck[i];
         return (has_fix || !is_beyond(track, i - 1, i, fix_jump_m, fix_jump_m_per_s)) &&
                !is_beyond(track, i - 1, i, jump_m, jump_m_per_s);
     };
     return runs_of(
-        {0, stuck.size()}, [](std::size_t) { return true; }, goes_on);
+        {0, stuck.size()}, [](std::size_t) { return true; }, continues);
 }
 
 /// The samples after jumps, in order.
@@ -60,19 +60,19 @@ std::vector<std::size_t> jumps_of(const Track& track) {
     return jumps;
 }
 
-/// Leaves out what lies between a jump and one back. Returns how many samples.
-std::size_t leave_out_excursions(Track& track) {
+/// Removes the samples between a jump and its return. Returns their number.
+std::size_t remove_excursions(Track& track) {
     const auto jumps = jumps_of(track);
     std::vector<bool> out(track.time_s.size(), false);
     const auto stuck = stuck_samples(track);
-    std::size_t after = 0;  // the first sample after what was left out last
+    std::size_t after = 0;  // the first sample after the last removal
     for (std::size_t a = 0; a < jumps.size(); ++a) {
         const auto first = jumps[a];
         if (first < after) continue;
         for (std::size_t b = a + 1; b < std::min(jumps.size(), a + returns); ++b) {
             const auto back = jumps[b];
-            const bool stands_still = b == a + 1 && stuck[first] && stuck[back - 1];
-            const double max_s = stands_still ? fix_loss_s : excursion_s;
+            const bool is_stuck = b == a + 1 && stuck[first] && stuck[back - 1];
+            const double max_s = is_stuck ? fix_loss_s : excursion_s;
             if (track.time_s[back] - track.time_s[first - 1] > max_s) break;
             if (is_beyond(track, first - 1, back, fix_jump_m, fix_jump_m_per_s)) continue;
             set_part(out, {first, back}, true);
@@ -83,17 +83,17 @@ std::size_t leave_out_excursions(Track& track) {
     return erase_samples(track, [&](std::size_t i) { return out[i]; });
 }
 
-/// Leaves out pieces between jumps that are too short to tell anything. Returns how many samples.
-std::size_t leave_out_short_pieces(Track& track) {
+/// Removes short pieces between jumps. Returns the number of samples.
+std::size_t remove_short_pieces(Track& track) {
     const auto pieces = pieces_of(track);
     if (pieces.size() == 1) return 0;
     std::vector<bool> out(track.time_s.size(), false);
     for (const auto& piece : pieces)
-        if (track.time_s[piece.end - 1] - track.time_s[piece.begin] < shortest_piece_s) set_part(out, piece, true);
+        if (track.time_s[piece.end - 1] - track.time_s[piece.begin] < min_piece_s) set_part(out, piece, true);
     return erase_samples(track, [&](std::size_t i) { return out[i]; });
 }
 
-/// Whether an altitude that moves on both sides, and for a while, jumps further than any estimator that gets its fix.
+/// Whether an altitude that moves for a while on both sides jumps further than an estimator that gets a fix.
 bool jumps_too_far(const Track& track) {
     const auto stuck = stuck_samples(track);
     const auto pieces = pieces_of(track);
@@ -103,7 +103,7 @@ bool jumps_too_far(const Track& track) {
     for (std::size_t p = 1; p < pieces.size(); ++p) {
         const auto i = pieces[p].begin;
         const bool moves = !stuck[i - 1] && !stuck[i] && lasts(pieces[p - 1]) && lasts(pieces[p]);
-        if (moves && std::abs(track.value[i] - track.value[i - 1]) > farthest_jump_m) return true;
+        if (moves && std::abs(track.value[i] - track.value[i - 1]) > max_jump_m) return true;
     }
     return false;
 }
@@ -119,38 +119,37 @@ CleanedAltitude clean_altitude(Track altitude) {
     altitude.value = running_median<3>(altitude.value);
     const auto before = jumps_of(altitude);
     const double first_jump_s = before.empty() ? 0.0 : altitude.time_s[before.front()];
-    std::size_t left_out = 0;
+    std::size_t removed = 0;
     const auto until_none = [&](std::size_t (*leave)(Track&)) {
         for (std::size_t count = before.size(), pass = 0; count > 0 && pass < passes; ++pass) {
             count = altitude.empty() ? 0 : leave(altitude);
-            left_out += count;
+            removed += count;
         }
     };
-    until_none(leave_out_excursions);
+    until_none(remove_excursions);
     const auto lasting = jumps_of(altitude).size();
-    until_none(leave_out_short_pieces);
+    until_none(remove_short_pieces);
     const auto jumps = jumps_of(altitude);
     record.altitude = std::move(altitude);
     const auto& left = record.altitude;
     for (const auto i : jumps) record.jumps_s.push_back(left.time_s[i]);
-    const bool runs_away = 2 * left_out > all || left.time_s.size() < 2 || jumps_too_far(left);
+    const bool runs_away = 2 * removed > all || left.time_s.size() < 2 || jumps_too_far(left);
     if (runs_away || lasting > max_jumps) {
-        record.unusable_reason = fmt::format(
-            "its altitude runs from {:.6g} to {:.6g} m{}: an estimator that ran away, or another "
-            "unit than m",
-            min_m, max_m, lasting > 0 ? fmt::format(" with {} jumps", lasting) : "");
+        record.unusable_reason =
+            fmt::format("the altitude runs from {:.6g} to {:.6g} m{}: its estimator diverged, or its unit is not m",
+                        min_m, max_m, lasting > 0 ? fmt::format(" with {} jumps", lasting) : "");
     }
-    if (left_out > 0) {
+    if (removed > 0) {
         record.warnings.push_back(
-            fmt::format("{} of {} altitudes were left out: it jumped away and back, first at {:.1f} s", left_out, all,
+            fmt::format("{} of {} altitudes are removed, between jumps away and back, first at {:.1f} s", removed, all,
                         first_jump_s));
     }
     if (!jumps.empty()) {
         const auto i = jumps.front();
-        record.warnings.push_back(fmt::format(
-            "the altitude jumps by {:+.0f} m at {:.1f} s{}: what lies before and after has a ground of its own",
-            left.value[i] - left.value[i - 1], left.time_s[i],
-            jumps.size() > 1 ? fmt::format(" (and {} times more)", jumps.size() - 1) : ""));
+        record.warnings.push_back(
+            fmt::format("the altitude jumps by {:+.0f} m at {:.1f} s{}: before and after it the ground levels differ",
+                        left.value[i] - left.value[i - 1], left.time_s[i],
+                        jumps.size() > 1 ? fmt::format(" (and {} more times)", jumps.size() - 1) : ""));
     }
     return record;
 }

@@ -10,14 +10,13 @@
 #include <cmath>
 #include <limits>
 
-#include <boost/circular_buffer.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace flightwatt::flight {
 namespace {
 
-/// The altitude at the grid's times, piece by piece: nothing is interpolated over a jump.
+/// The altitude at the grid's times, piece by piece, without interpolation across jumps.
 void add_altitude(ResampledFlight& grid, const CleanedAltitude& record, const std::vector<double>& time_s) {
     const auto& track = record.altitude;
     std::size_t begin = 0;
@@ -45,52 +44,8 @@ void add_altitude(ResampledFlight& grid, const CleanedAltitude& record, const st
     }
 }
 
-/// Points in a row whose heights differ by no more than `height_m`: it grows at its end and shrinks at its beginning.
-class ConstantHeightWindow {
-  public:
-    /// Of up to `max_size` points.
-    ConstantHeightWindow(const std::vector<double>& altitude_m, double height_m, std::size_t max_size)
-        : altitude_m_(altitude_m), height_m_(height_m), low_(max_size), high_(max_size) {}
-
-    /// Takes the next point; false, and without it, where the heights would differ by more.
-    bool take(std::size_t i) {
-        const double height_m = altitude_m_[i];
-        if (!low_.empty() &&
-            std::max(height_m, altitude_m_[high_.front()]) - std::min(height_m, altitude_m_[low_.front()]) > height_m_)
-            return false;
-        if (low_.empty()) first_ = i;
-        while (!low_.empty() && altitude_m_[low_.back()] >= height_m) low_.pop_back();
-        while (!high_.empty() && altitude_m_[high_.back()] <= height_m) high_.pop_back();
-        low_.push_back(i);
-        high_.push_back(i);
-        end_ = i + 1;
-        return true;
-    }
-    /// The first point leaves.
-    void leave() {
-        ++first_;
-        if (low_.front() < first_) low_.pop_front();
-        if (high_.front() < first_) high_.pop_front();
-    }
-    void clear() {
-        low_.clear();
-        high_.clear();
-        first_ = end_ = 0;
-    }
-    std::size_t first() const { return first_; }
-    std::size_t size() const { return end_ - first_; }
-
-  private:
-    const std::vector<double>& altitude_m_;
-    double height_m_;
-    std::size_t first_ = 0;
-    std::size_t end_ = 0;
-    boost::circular_buffer<std::size_t> low_;  ///< points that are the lowest from there to the end; their heights rise
-    boost::circular_buffer<std::size_t> high_;  ///< the highest; they fall
-};
-
-/// Where no speed tells rest from flight: the points from which it comes down by the height of a flight, or more,
-/// before the motor runs again. There it glides, though it may keep its height for a while.
+/// Without a speed: the points from which the aircraft descends by the height of a flight or more before the motor runs
+/// again. There it glides, even if it keeps its height for a while.
 std::vector<bool> gliding_points(const ResampledFlight& grid, double idle_percent, double height_m) {
     std::vector<bool> gliding(grid.size(), false);
     if (grid.motor_percent.empty() || !grid.ground_speed_m_per_s.empty()) return gliding;
@@ -105,7 +60,7 @@ std::vector<bool> gliding_points(const ResampledFlight& grid, double idle_percen
     return gliding;
 }
 
-/// How many points the grid has. Throws InputError where its times are none.
+/// Number of points of the grid. Throws InputError for an implausible duration.
 std::size_t size_until(const FlightSeries& series, const ResampledFlight& grid, double end_s) {
     const double span_s = end_s - grid.start_s;
     constexpr double max_s = 30.0 * 24.0 * units::seconds_per_hour;
@@ -116,11 +71,11 @@ std::size_t size_until(const FlightSeries& series, const ResampledFlight& grid, 
     return static_cast<std::size_t>(std::floor(span_s / grid.step_s)) + 1;
 }
 
-void refuse_without_altitude(const FlightSeries& series, const Track& altitude) {
+void require_altitude(const FlightSeries& series, const Track& altitude) {
     if (!altitude.empty()) return;
     const auto warnings = warnings_of(series);
     throw InputError(
-        {series.file.empty() ? series.flight : series.file}, "has no altitude, so its phases cannot be told apart",
+        {series.file.empty() ? series.flight : series.file}, "has no altitude, so phases cannot be found",
         fmt::format("expected ESTIMATOR, GPS, GPS_INT, AIR_DATA or ROTORCRAFT_FP, or a column altitude_m{}{}",
                     warnings.empty() ? "" : "; ", fmt::join(warnings, "; ")));
 }
@@ -136,13 +91,13 @@ std::vector<double> ResampledFlight::times_s(IndexSpan span) const {
 ResampledFlight make_grid(const SelectedTracks& tracks) {
     const auto& series = tracks.series();
     const auto& raw = tracks["altitude_m"];
-    refuse_without_altitude(series, raw);
+    require_altitude(series, raw);
     ResampledFlight grid;
     const auto& power = tracks["power_w"];
     const auto& clock = power.empty() ? raw : power;
     grid.start_s = clock.time_s.front();
     const auto time_s = grid.times_s({0, size_until(series, grid, clock.time_s.back())});
-    auto altitude = clean_altitude(raw);  // on its own clock, before the grid's
+    auto altitude = clean_altitude(raw);  // on its own clock
     grid.unusable = std::move(altitude.unusable_reason);
     grid.warnings = std::move(altitude.warnings);
     if (altitude.altitude.empty()) {
@@ -152,29 +107,29 @@ ResampledFlight make_grid(const SelectedTracks& tracks) {
         add_altitude(grid, altitude, time_s);
     }
     auto motor = motor_record(tracks, altitude.altitude);
-    grid.motor_sign = motor.sign;
+    grid.motor_indicator = motor.indicator;
     grid.motor_evidence = std::move(motor.evidence);
     grid.warnings.insert(grid.warnings.end(), motor.warnings.begin(), motor.warnings.end());
     if (!motor.percent.empty()) {
         grid.motor_percent = resample(motor.percent, time_s);
         grid.min_motor_percent = *std::ranges::min_element(grid.motor_percent);
     }
-    if (motor.sign == MotorIndicator::throttle) grid.throttle_percent = grid.motor_percent;
+    if (motor.indicator == MotorIndicator::throttle) grid.throttle_percent = grid.motor_percent;
     const auto& speed = tracks["ground_speed_m_per_s"];
     if (!speed.empty()) grid.ground_speed_m_per_s = running_median<5>(resample(speed, time_s));
     return grid;
 }
 
-/// Some airframes never report less than a trimmed or armed idle. Where the speed tells rest from flight too, the least
-/// throttle of the log is taken for that.
+/// Some airframes never report less than a trimmed or armed idle. With a speed to identify rests, the minimum throttle
+/// of the log counts as idle.
 double idle_motor_percent(const ResampledFlight& grid, const SegmentationOptions& options) {
-    if (grid.motor_sign == MotorIndicator::power) return idle_power_percent;
+    if (grid.motor_indicator == MotorIndicator::power) return idle_power_percent;
     if (grid.motor_percent.empty() || grid.ground_speed_m_per_s.empty()) return options.idle_throttle_percent;
     return std::max(grid.min_motor_percent, 0.0) + options.idle_throttle_percent;
 }
 
 double flight_motor_percent(const ResampledFlight& grid, const SegmentationOptions& options) {
-    return grid.motor_sign == MotorIndicator::power ? flight_power_percent : options.flight_throttle_percent;
+    return grid.motor_indicator == MotorIndicator::power ? flight_power_percent : options.flight_throttle_percent;
 }
 
 std::vector<IndexSpan> find_rests(const ResampledFlight& grid, const SegmentationOptions& options) {
@@ -192,7 +147,7 @@ std::vector<IndexSpan> find_rests(const ResampledFlight& grid, const Segmentatio
             if (!is_idle(i)) return false;
         return high_m - low_m <= height_m;
     };
-    // Where neither motor nor speed is known, a height that is kept is that of a rest only near the ground.
+    // Without motor and speed, a constant height is that of a rest only near the ground.
     const bool by_altitude = grid.motor_percent.empty() && grid.ground_speed_m_per_s.empty();
     const auto max_rest_m = [&](const IndexSpan& piece) {
         const auto [low_m, high_m] = std::ranges::minmax(part_of(grid.altitude_m, piece));
@@ -203,21 +158,19 @@ std::vector<IndexSpan> find_rests(const ResampledFlight& grid, const Segmentatio
     const auto edge = grid.steps(0.3 * options.rest_s) + 1;
     for (const auto& piece : grid.pieces) {
         const double max_m = max_rest_m(piece);
-        ConstantHeightWindow stretch(grid.altitude_m, options.rest_height_m, window + 1);
+        std::size_t idle = 0;  // consecutive points
         auto marked = piece.begin;
-        for (auto end = piece.begin; end < piece.end; ++end) {
-            if (!is_idle(end)) {
-                stretch.clear();
-                continue;
-            }
-            while (!stretch.take(end)) stretch.leave();
-            if (stretch.size() > window) stretch.leave();
-            if (stretch.size() < window || grid.altitude_m[stretch.first()] > max_m) continue;
-            set_part(resting, {std::max(marked, stretch.first()), end + 1}, true);
-            marked = end + 1;
+        for (auto end = piece.begin + 1; end <= piece.end; ++end) {
+            idle = is_idle(end - 1) ? idle + 1 : 0;
+            if (idle < window || grid.altitude_m[end - window] > max_m) continue;
+            const auto [low_m, high_m] = std::ranges::minmax(part_of(grid.altitude_m, {end - window, end}));
+            if (high_m - low_m > options.rest_height_m) continue;
+            set_part(resting, {std::max(marked, end - window), end}, true);
+            marked = end;
         }
         if (piece.begin + edge > piece.end) continue;
-        // The log may begin just before lift-off or end just after touchdown: there less time does, within less height.
+        // The log may begin just before lift-off or end just after touchdown: there a shorter rest is enough, if its
+        // height is more constant.
         if (grid.altitude_m[piece.begin] <= max_m &&
             is_still(piece.begin, piece.begin + edge, 0.3 * options.rest_height_m)) {
             set_part(resting, {piece.begin, piece.begin + edge}, true);
@@ -227,7 +180,7 @@ std::vector<IndexSpan> find_rests(const ResampledFlight& grid, const Segmentatio
             set_part(resting, {piece.end - edge, piece.end}, true);
     }
     const auto gliding = gliding_points(grid, idle_percent, options.flight_height_m);
-    // None across a jump of the altitude.
+    // A rest does not extend across a jump of the altitude.
     auto rests = runs_of(
         {0, grid.size()}, [&](std::size_t i) { return resting[i]; },
         [&](std::size_t i) { return !std::ranges::binary_search(grid.pieces, i, {}, &IndexSpan::begin); });

@@ -12,7 +12,7 @@
 
 namespace flightwatt::flight {
 
-/// A flight on an even clock, for the segmentation: spikes of single samples are gone.
+/// A flight with a constant time step, for the segmentation, without spikes of single samples.
 struct ResampledFlight {
     double start_s = 0.0;
     double step_s = segmentation_step_s;
@@ -22,26 +22,26 @@ struct ResampledFlight {
     double min_motor_percent = 0.0;
     std::vector<double> ground_speed_m_per_s;  ///< empty if unknown
     std::vector<IndexSpan> pieces;             ///< between jumps of the altitude; together the whole grid
-    MotorIndicator motor_sign = MotorIndicator::unknown;
+    MotorIndicator motor_indicator = MotorIndicator::unknown;
     std::string motor_evidence;         ///< see MotorRecord
-    std::vector<std::string> warnings;  ///< what was left out, and what is used instead
+    std::vector<std::string> warnings;  ///< removed and substituted data
     std::string unusable;               ///< see CleanedAltitude
 
     std::size_t size() const { return altitude_m.size(); }
     double time_s(std::size_t index) const { return start_s + step_s * static_cast<double>(index); }
     std::vector<double> times_s(IndexSpan span) const;
-    /// How many steps make up `duration_s`.
+    /// Number of steps of `duration_s`.
     std::size_t steps(double duration_s) const { return static_cast<std::size_t>(duration_s / step_s); }
 };
 
-/// On the time of the power samples, or where there are none of the altitude. Throws InputError where the series has
-/// no altitude.
+/// Resamples the altitude, motor and speed over the time of the power samples, or without power of the altitude. Throws
+/// InputError if the series has no altitude.
 ResampledFlight make_grid(const SelectedTracks& tracks);
 
 /// The spans in which the aircraft is at rest: see SegmentationOptions.
 std::vector<IndexSpan> find_rests(const ResampledFlight& grid, const SegmentationOptions& options);
 
-/// Up to this motor_percent the motor idles; what rises without ever getting to the other one is no flight.
+/// Maximum motor_percent of an idling motor; minimum of the maximum in a flight.
 double idle_motor_percent(const ResampledFlight& grid, const SegmentationOptions& options);
 double flight_motor_percent(const ResampledFlight& grid, const SegmentationOptions& options);
 

@@ -17,23 +17,23 @@
 namespace flightwatt::flight {
 namespace {
 
-// docs/methods.md says why.
+// Reasons: docs/methods.md.
 constexpr double max_climb_5_s_m_per_s = 60.0;
 constexpr double max_climb_30_s_m_per_s = 30.0;
-constexpr double max_gps_motion_fraction = 0.25;  // of the altitude's; beside half of the least height of a flight
-constexpr double min_confirming_fraction = 0.5;   // of it, by which another altitude confirms it
+constexpr double max_gps_motion_fraction = 0.25;  // of the altitude's, if it contradicts it
+constexpr double min_confirming_fraction = 0.5;   // of the altitude's, if it confirms it
 constexpr double min_flight_m_per_s = 5.0;        // of a fixed wing
-constexpr double min_time_aloft_s = 15.0;         // above half of its height, where nothing tells of the motor
-constexpr double min_height_factor = 2.0;         // of the least height of a flight, where no speed is known either
+constexpr double min_time_aloft_s = 15.0;         // above half of its height, without motor data
+constexpr double min_height_factor = 2.0;         // of flight_height_m, without motor data and speed
 constexpr double road_slope = 0.03;
-constexpr double road_slack_m = 2.0;  // that an altitude may be off
+constexpr double road_tolerance_m = 2.0;  // error of an altitude
 constexpr double position_window_s = 10.0;
 constexpr double standing_extent_m = 30.0;
-// At this airspeed, for this time, so much height (or the energy of as much) is gained by a motor or a thermal.
-constexpr double least_airspeed_m_per_s = 7.0;
+// At this airspeed, such a gain of energy height in this time takes a motor or a thermal.
+constexpr double min_airspeed_m_per_s = 7.0;
 constexpr double climb_window_s = 20.0;
 constexpr double climbed_by_motor_m = 15.0;
-constexpr std::size_t enough_changes = 10;  // values that change: a receiver without a fix repeats its last one
+constexpr std::size_t min_changes = 10;  // of values: a receiver without a fix repeats its last one
 
 std::vector<double> sorted(std::span<const double> values) {
     std::vector<double> in_order(values.begin(), values.end());
@@ -41,10 +41,10 @@ std::vector<double> sorted(std::span<const double> values) {
     return in_order;
 }
 
-/// What is exceeded for a tenth of the time.
-double fast(std::span<const double> speeds) { return quantile(sorted(speeds), 0.9); }
+/// The speed that is exceeded for a tenth of the time.
+double fast_speed(std::span<const double> speeds) { return quantile(sorted(speeds), 0.9); }
 
-/// From the 5th to the 95th percentile.
+/// Range from the 5th to the 95th percentile.
 double spread_of(std::span<const double> values) {
     const auto in_order = sorted(values);
     return quantile(in_order, 0.95) - quantile(in_order, 0.05);
@@ -52,10 +52,10 @@ double spread_of(std::span<const double> values) {
 
 const std::string& altitude_source(const FlightCandidate& c) { return c.tracks["altitude_m"].source; }
 
-/// A rotorcraft's altitude is that above the ground.
+/// The altitude of a rotorcraft is above the ground.
 bool is_above_ground(const FlightCandidate& c) { return altitude_source(c).starts_with("ROTORCRAFT_FP"); }
 
-/// Those of an activity's values that were taken above half of its height.
+/// The values of an activity above half of its height.
 std::vector<double> when_high(std::span<const double> values, const Heights& heights) {
     std::vector<double> high;
     high.reserve(values.size());
@@ -64,7 +64,7 @@ std::vector<double> when_high(std::span<const double> values, const Heights& hei
     return high;
 }
 
-/// The values of a track within a span, as far as they are altitudes.
+/// The values of a track within a span and the bounds of altitudes.
 std::vector<double> altitudes_within(const Track& track, const ResampledFlight& grid, IndexSpan span) {
     const double end_s = grid.time_s(span.end - 1);
     const auto bounds = physical_bounds("altitude_m").value();
@@ -92,21 +92,21 @@ std::string stays_low(const FlightCandidate& c) {
     if (c.heights.max_m >= c.options.flight_height_m) return "";
     const double height_m = std::max(c.heights.max_m, 0.0);
     const double motor_percent = c.max_motor_percent();
-    const bool by_power = c.grid.motor_sign == MotorIndicator::power;
-    if (c.grid.motor_sign == MotorIndicator::unknown)
-        return fmt::format("carried, rolled or hop: height to {:.1f} m; nothing tells of the motor", height_m);
+    const bool by_power = c.grid.motor_indicator == MotorIndicator::power;
+    if (c.grid.motor_indicator == MotorIndicator::unknown)
+        return fmt::format("carried, rolled or hop: height to {:.1f} m, motor unknown", height_m);
     if (motor_percent <= (by_power ? idle_power_percent : c.options.idle_throttle_percent))
         return fmt::format("carried or rolled: height to {:.1f} m, {}", height_m,
                            by_power ? "power at its idle" : "motor off");
     const auto motor =
-        by_power
-            ? std::string("power of a running motor")
-            : fmt::format("{} to {:.0f} %", c.grid.motor_sign == MotorIndicator::throttle ? "throttle" : "motor speed",
-                          motor_percent);
+        by_power ? std::string("power of a running motor")
+                 : fmt::format("{} to {:.0f} %",
+                               c.grid.motor_indicator == MotorIndicator::throttle ? "throttle" : "motor speed",
+                               motor_percent);
     return fmt::format("run-up, taxi or hop: {}, height to {:.1f} m", motor, height_m);
 }
 
-/// Whether the airspeed shows flight: so much energy of height and speed is gained within a window of flying speed.
+/// Whether energy height is gained within a window of flying speed.
 bool flies_by_airspeed(const FlightCandidate& c) {
     const auto& airspeed = c.tracks["airspeed_m_per_s"];
     if (airspeed.empty()) return false;
@@ -118,7 +118,7 @@ bool flies_by_airspeed(const FlightCandidate& c) {
     const auto steps = c.grid.steps(climb_window_s);
     std::size_t flying = 0;  // points in a row at flying speed
     for (std::size_t i = 0; i < speed.size(); ++i) {
-        flying = speed[i] >= least_airspeed_m_per_s ? flying + 1 : 0;
+        flying = speed[i] >= min_airspeed_m_per_s ? flying + 1 : 0;
         if (flying > steps && energy_height_m(i) - energy_height_m(i - steps) >= climbed_by_motor_m) return true;
     }
     return false;
@@ -126,8 +126,8 @@ bool flies_by_airspeed(const FlightCandidate& c) {
 
 std::string rises_without_motor(const FlightCandidate& c) {
     if (!c.is_motor_off() || flies_by_airspeed(c)) return "";
-    return fmt::format("altitude moved by {:.0f} m with {}: an estimator without a fix", c.heights.max_m,
-                       c.grid.motor_sign == MotorIndicator::power ? "the power at its idle" : "the motor off");
+    return fmt::format("altitude changed by {:.0f} m with {}: its estimator has no fix", c.heights.max_m,
+                       c.grid.motor_indicator == MotorIndicator::power ? "the power at its idle" : "the motor off");
 }
 
 std::string climbs_too_fast(const FlightCandidate& c) {
@@ -135,20 +135,19 @@ std::string climbs_too_fast(const FlightCandidate& c) {
     for (const auto& [over_s, limit] :
          {std::pair{5.0, max_climb_5_s_m_per_s}, std::pair{30.0, max_climb_30_s_m_per_s}}) {
         const auto steps = c.grid.steps(over_s);
-        double fastest = 0.0;
+        double max_m_per_s = 0.0;
         for (std::size_t i = 0; i + steps < altitude_m.size(); ++i)
-            fastest = std::max(fastest, std::abs(altitude_m[i + steps] - altitude_m[i]) / over_s);
-        if (fastest > limit) {
+            max_m_per_s = std::max(max_m_per_s, std::abs(altitude_m[i + steps] - altitude_m[i]) / over_s);
+        if (max_m_per_s > limit) {
             return fmt::format(
-                "altitude changes by {:.0f} m/s for {:.0f} s: an estimator that ran away, or another "
-                "unit than m",
-                fastest, over_s);
+                "altitude changes by {:.0f} m/s for {:.0f} s: its estimator diverged, or its unit is not m",
+                max_m_per_s, over_s);
         }
     }
     return "";
 }
 
-/// A GPS that is alive says that nothing moved, and no other altitude of the log does.
+/// A GPS with a fix shows no motion, and no other altitude confirms the motion.
 std::string is_contradicted(const FlightCandidate& c) {
     const auto& chosen = c.tracks["altitude_m"];
     const auto own = altitudes_within(chosen, c.grid, c.activity.moving);
@@ -161,38 +160,39 @@ std::string is_contradicted(const FlightCandidate& c) {
         const double other_m = other.empty() ? 0.0 : spread_of(other);
         if (other_m >= min_confirming_fraction * own_m) return "";
         const bool is_alive =
-            other.size() >= enough_changes && 2 * changes_within(track, c.grid, c.activity.moving) >= other.size();
-        const bool stands = other_m < max_gps_motion_fraction * own_m && other_m < 0.5 * c.options.flight_height_m;
-        if (is_alive && stands && track.source.starts_with("GPS")) {
-            contradicts = fmt::format("{} moves by {:.0f} m, {} by {:.1f} m: an estimator that ran away", chosen.source,
+            other.size() >= min_changes && 2 * changes_within(track, c.grid, c.activity.moving) >= other.size();
+        const bool is_still = other_m < max_gps_motion_fraction * own_m && other_m < 0.5 * c.options.flight_height_m;
+        if (is_alive && is_still && track.source.starts_with("GPS")) {
+            contradicts = fmt::format("{} changes by {:.0f} m, {} by {:.1f} m: its estimator diverged", chosen.source,
                                       own_m, track.source, other_m);
         }
     }
     return contradicts;
 }
 
-/// What only an altitude shows, as short, low or slow as an estimator that settles.
+/// Only the altitude shows a flight, and it is as short, low or slow as the convergence of an estimator.
 std::string only_settles(const FlightCandidate& c) {
-    if (c.grid.motor_sign != MotorIndicator::unknown) return "";
-    const auto seen = fmt::format("altitude alone shows a height of {:.0f} m", c.heights.max_m);
+    if (c.grid.motor_indicator != MotorIndicator::unknown) return "";
+    const auto seen = fmt::format("only the altitude shows a height of {:.0f} m", c.heights.max_m);
     const auto high_s = static_cast<double>(when_high(c.heights.height_m, c.heights).size()) * c.grid.step_s;
-    if (high_s < min_time_aloft_s) return fmt::format("{}, for {:.0f} s: an estimator that settles", seen, high_s);
+    if (high_s < min_time_aloft_s) return fmt::format("{}, for {:.0f} s: its estimator converged", seen, high_s);
     if (c.grid.ground_speed_m_per_s.empty()) {
         const bool is_low = c.heights.max_m < min_height_factor * c.options.flight_height_m;
-        return is_low ? seen + ": an estimator that settles" : "";
+        return is_low ? seen + ": its estimator converged" : "";
     }
-    const double speed = fast(when_high(part_of(c.grid.ground_speed_m_per_s, c.activity.span), c.heights));
+    const double speed = fast_speed(when_high(part_of(c.grid.ground_speed_m_per_s, c.activity.span), c.heights));
     if (is_above_ground(c) || speed >= min_flight_m_per_s) return "";
-    return fmt::format("{}, at {:.1f} m/s over ground: an estimator that settles", seen, speed);
+    return fmt::format("{}, at {:.1f} m/s over ground: its estimator converged", seen, speed);
 }
 
-/// From ground to ground, faster than what is carried, it goes up and down as roads do.
+/// From ground to ground, with slopes of roads.
 std::string moves_on_a_road(const FlightCandidate& c) {
     const auto& span = c.activity.span;
     if (!c.activity.ground_before_m || !c.activity.ground_after_m || c.grid.ground_speed_m_per_s.empty()) return "";
-    constexpr double often_s = 5.0;  // of what is seen more seldom no slope is known
-    const auto seen = altitudes_within(c.tracks["altitude_m"], c.grid, span).size();
-    if (static_cast<double>(seen) * often_s < c.grid.time_s(span.end - 1) - c.grid.time_s(span.begin)) return "";
+    constexpr double max_interval_s = 5.0;  // rarer altitudes give no slope
+    const auto altitudes = altitudes_within(c.tracks["altitude_m"], c.grid, span).size();
+    if (static_cast<double>(altitudes) * max_interval_s < c.grid.time_s(span.end - 1) - c.grid.time_s(span.begin))
+        return "";
     std::vector<double> way_m{0.0};
     way_m.reserve(span.end - span.begin + 1);
     for (const double speed : part_of(c.grid.ground_speed_m_per_s, span))
@@ -202,58 +202,56 @@ std::string moves_on_a_road(const FlightCandidate& c) {
         const auto steps = c.grid.steps(over_s);
         for (std::size_t i = 0; i + steps < altitude_m.size(); ++i) {
             const double climbed_m = std::abs(altitude_m[i + steps] - altitude_m[i]);
-            if (climbed_m > road_slope * (way_m[i + steps] - way_m[i]) + road_slack_m) return "";
+            if (climbed_m > road_slope * (way_m[i + steps] - way_m[i]) + road_tolerance_m) return "";
         }
     }
-    return fmt::format("altitude never moves by more than {:.0f} % of the way, from ground to ground: driven",
+    return fmt::format("altitude never changes by more than {:.0f} % of the distance, from ground to ground: driven",
                        units::percentage(road_slope, 1.0));
 }
 
-/// It shows no ground and no climb, and is as slow as what drives. A rotorcraft hovers, and who writes a CSV knows what
-/// it is of.
+/// No ground, no climb, and the speed of a ground vehicle. Not for a rotorcraft, which hovers, nor for a user's CSV.
 std::string only_drives(const FlightCandidate& c) {
     const auto& [moving, span, ground_before_m, ground_after_m] = c.activity;
     if (ground_before_m || ground_after_m || c.grid.ground_speed_m_per_s.empty()) return "";
     if (is_above_ground(c) || altitude_source(c) == plain_source) return "";
     const auto [low_m, high_m] = std::ranges::minmax(part_of(c.grid.altitude_m, moving));
-    const double speed = fast(part_of(c.grid.ground_speed_m_per_s, moving));
+    const double speed = fast_speed(part_of(c.grid.ground_speed_m_per_s, moving));
     if (high_m - low_m >= c.options.flight_height_m || speed >= min_flight_m_per_s) return "";
     return fmt::format(
-        "altitude moves by no more than {:.1f} m and the ground is not seen, at {:.1f} m/s over ground: "
-        "driven or carried",
+        "altitude changes by at most {:.1f} m, without a rest, at {:.1f} m/s over ground: driven or carried",
         high_m - low_m, speed);
 }
 
-/// Ground speed and position, both measured, show that it stood still or was carried while its altitude shows a height.
-/// A rotorcraft hovers, and a fixed wing may stand against the wind, but not within the width of a field.
+/// Measured ground speed and position show no flight while the altitude does. Not for a rotorcraft, which hovers; a
+/// fixed wing may fly against the wind, but not within the width of a field.
 std::string stands_still(const FlightCandidate& c) {
     if (altitude_source(c) == plain_source || is_above_ground(c) || c.tracks.series().firmware == "rotorcraft")
         return "";
     const auto time_s = c.grid.times_s(c.activity.span);
     const auto is_dead = [&](const char* name) {
-        return changes_within(c.tracks[name], c.grid, c.activity.span) < enough_changes;
+        return changes_within(c.tracks[name], c.grid, c.activity.span) < min_changes;
     };
     if (is_dead("ground_speed_m_per_s") || is_dead("east_m") || is_dead("north_m")) return "";
     const auto east_m = resample(c.tracks["east_m"], time_s);
     const auto north_m = resample(c.tracks["north_m"], time_s);
-    const double speed = fast(when_high(resample(c.tracks["ground_speed_m_per_s"], time_s), c.heights));
+    const double speed = fast_speed(when_high(resample(c.tracks["ground_speed_m_per_s"], time_s), c.heights));
     if (speed >= min_flight_m_per_s) return "";
     const auto steps = c.grid.steps(position_window_s);
-    std::vector<double> by_position(time_s.size(), 0.0);  // how fast it moves, from so long before on
+    std::vector<double> by_position(time_s.size(), 0.0);  // speed over the window
     for (std::size_t i = steps; i < by_position.size(); ++i)
         by_position[i] = std::hypot(east_m[i] - east_m[i - steps], north_m[i] - north_m[i - steps]) / position_window_s;
-    if (fast(when_high(by_position, c.heights)) >= min_flight_m_per_s) return "";
+    if (fast_speed(when_high(by_position, c.heights)) >= min_flight_m_per_s) return "";
     const double extent_m = std::max(spread_of(when_high(east_m, c.heights)), spread_of(when_high(north_m, c.heights)));
     if (!c.tracks["airspeed_m_per_s"].empty() && extent_m >= standing_extent_m) return "";
     return fmt::format(
-        "altitude shows a height of {:.0f} m, but it moves at {:.1f} m/s over ground, within {:.0f} m: "
-        "it stood still or was carried",
+        "altitude shows a height of {:.0f} m, but the aircraft moves at {:.1f} m/s over ground, within {:.0f} m: not "
+        "moved or carried",
         c.heights.max_m, speed, extent_m);
 }
 
 using Rejection = std::string (*)(const FlightCandidate&);
 
-/// The first one that gives a reason counts.
+/// The first reason counts.
 constexpr Rejection rejections[] = {stays_low,    rises_without_motor, climbs_too_fast, is_contradicted,
                                     only_settles, moves_on_a_road,     only_drives,     stands_still};
 
@@ -264,7 +262,7 @@ double FlightCandidate::max_motor_percent() const {
 }
 
 bool FlightCandidate::is_motor_off() const {
-    return grid.motor_sign != MotorIndicator::unknown && max_motor_percent() < flight_motor_percent(grid, options);
+    return grid.motor_indicator != MotorIndicator::unknown && max_motor_percent() < flight_motor_percent(grid, options);
 }
 
 std::string ground_vehicle_reason(const SelectedTracks& tracks) {
@@ -275,15 +273,14 @@ std::string ground_vehicle_reason(const SelectedTracks& tracks) {
 
 std::string no_flight_reason(const FlightCandidate& candidate) {
     for (const auto rejection : rejections)
-        if (auto why = rejection(candidate); !why.empty()) return why;
+        if (auto reason = rejection(candidate); !reason.empty()) return reason;
     return "";
 }
 
-std::string motor_doubt(const FlightCandidate& c) {
+std::string motor_contradiction(const FlightCandidate& c) {
     if (!c.is_motor_off()) return "";
     return fmt::format(
-        "{} says that the motor is off from {:.0f} to {:.0f} s, airspeed and climb that it flies: the "
-        "latter count",
+        "the motor is off by {} from {:.0f} to {:.0f} s, but airspeed and climb show a flight: the latter are used",
         c.grid.motor_evidence, c.grid.time_s(c.activity.moving.begin), c.grid.time_s(c.activity.moving.end - 1));
 }
 

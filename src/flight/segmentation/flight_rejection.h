@@ -9,7 +9,7 @@
 
 namespace flightwatt::flight {
 
-/// An activity that may be a flight, and what there is to know of it.
+/// An activity that may be a flight, with its data.
 struct FlightCandidate {
     const SelectedTracks& tracks;
     const ResampledFlight& grid;
@@ -18,21 +18,16 @@ struct FlightCandidate {
     const SegmentationOptions& options;
 
     double max_motor_percent() const;
-    bool is_motor_off() const;  ///< as far as something tells of it
+    bool is_motor_off() const;  ///< false if unknown
 };
 
-/// Why the vehicle is none that flies; empty if that is not said: "a ground vehicle: it sends ROVER_STATUS".
+/// Why the vehicle does not fly: "a ground vehicle: it sends ROVER_STATUS"; empty otherwise.
 std::string ground_vehicle_reason(const SelectedTracks& tracks);
 
-/// Why an activity is no flight; empty if it is one. By the table of flight_rejection.cpp (docs/methods.md).
+/// Why an activity is not a flight, by the rules of flight_rejection.cpp (docs/methods.md); empty if it is one.
 std::string no_flight_reason(const FlightCandidate& candidate);
 
-/// What contradicts the motor of an activity that is a flight: "ENERGY.throttle says that the motor is off ..."; empty
-/// if nothing does.
-std::string motor_doubt(const FlightCandidate& candidate);
-
-/// Whether the altitude moves, all in all, much more or less than the climb rate or another altitude of the log says:
-/// "ESTIMATOR.z moves 100 times as much as GPS.alt says: is one of them in cm?"; empty if it does not.
-std::string suspected_unit_error(const SelectedTracks& tracks, const ResampledFlight& grid);
+/// Warning about a flight with the motor off by its indicator; empty without this contradiction.
+std::string motor_contradiction(const FlightCandidate& candidate);
 
 }  // namespace flightwatt::flight

@@ -17,16 +17,11 @@
 namespace flightwatt::flight {
 namespace {
 
-constexpr double glitch_s = 10.0;  // throttle without power for less than this is a fault of the record
+constexpr double glitch_s = 10.0;  // throttle without power for a shorter time is an error of the record
 
-/// quantile of what is not sorted.
-double quantile_of(std::vector<double>& values, double probability) {
-    const auto below = static_cast<std::ptrdiff_t>(static_cast<double>(values.size() - 1) * probability);
-    const auto at = values.begin() + below;
-    std::nth_element(values.begin(), at, values.end());
-    if (at + 1 == values.end()) return *at;
-    const double place = static_cast<double>(values.size() - 1) * probability;
-    return std::lerp(*at, *std::min_element(at + 1, values.end()), place - static_cast<double>(below));
+double quantile_of(std::vector<double> values, double probability) {
+    std::ranges::sort(values);
+    return quantile(values, probability);
 }
 
 struct PowerLevels {
@@ -35,42 +30,39 @@ struct PowerLevels {
     double percent(double power_w) const { return units::percentage(power_w - idle_w, running_w - idle_w); }
 };
 
-/// Idle and running power of the record; std::nullopt if it does not tell one from the other.
+/// Idle and running power of the record; std::nullopt if they do not differ enough.
 std::optional<PowerLevels> power_levels(const Track& power, const Track& altitude_m) {
     constexpr std::size_t enough = 20;
     if (power.time_s.size() < enough) return std::nullopt;
-    auto heights = altitude_m.value;
-    const double low_m = quantile_of(heights, 0.02);
-    const double ground_m = low_m + std::max(3.0, 0.1 * (quantile_of(heights, 0.98) - low_m));
+    const double low_m = quantile_of(altitude_m.value, 0.02);
+    const double ground_m = low_m + std::max(3.0, 0.1 * (quantile_of(altitude_m.value, 0.98) - low_m));
     const auto at_m = resample(altitude_m, power.time_s);
     std::vector<double> on_ground_w;
     for (std::size_t i = 0; i < at_m.size(); ++i) {
         if (at_m[i] <= ground_m) on_ground_w.push_back(power.value[i]);
     }
     if (on_ground_w.size() < enough / 2) return std::nullopt;
-    auto all_w = power.value;
-    const PowerLevels levels{quantile_of(on_ground_w, 0.25), quantile_of(all_w, 0.98)};
-    const bool apart = levels.running_w >= min_running_to_idle_ratio * levels.idle_w &&
-                       levels.running_w >= levels.idle_w + min_running_above_idle_w;
-    return apart ? std::optional(levels) : std::nullopt;
+    const PowerLevels levels{quantile_of(std::move(on_ground_w), 0.25), quantile_of(power.value, 0.98)};
+    const bool differ = levels.running_w >= min_running_to_idle_ratio * levels.idle_w &&
+                        levels.running_w >= levels.idle_w + min_running_above_idle_w;
+    return differ ? std::optional(levels) : std::nullopt;
 }
 
-/// The motor's speed in percent of its full one; empty where nothing measures it or it tells nothing.
+/// The motor's speed in percent of its full speed; empty if it is not measured, constant or too low.
 MotorRecord record_of_motor_speed(const SelectedTracks& tracks) {
     MotorRecord record;
     auto speed = tracks["motor_speed_rpm"];
     if (speed.empty() || is_constant(speed)) return record;
-    auto sorted_rpm = speed.value;
-    const double full_rpm = quantile_of(sorted_rpm, 0.98);
+    const double full_rpm = quantile_of(speed.value, 0.98);
     if (full_rpm < min_running_rpm) return record;
     for (auto& value : speed.value) value = std::min(units::percentage(value, full_rpm), units::percent_per_whole);
-    record.sign = MotorIndicator::motor_speed;
+    record.indicator = MotorIndicator::motor_speed;
     record.evidence = fmt::format("{}: full {:.0f} rpm", speed.source, full_rpm);
     record.percent = std::move(speed);
     return record;
 }
 
-/// The throttle on the clock of the power samples, on which it is asked for everywhere, or on its own.
+/// The throttle on the clock of the power samples, or without power on its own.
 Track throttle_of(const SelectedTracks& tracks, const Track& power) {
     auto throttle = tracks["throttle_percent"];
     if (throttle.empty() || power.empty()) return throttle;
@@ -79,8 +71,8 @@ Track throttle_of(const SelectedTracks& tracks, const Track& power) {
     return throttle;
 }
 
-/// A throttle that opens for less than ten seconds while the power stays at its idle: 0 again. Returns how many.
-std::size_t take_out_glitches(Track& throttle, const Track& power, const PowerLevels& levels, double idle_percent) {
+/// Closes a throttle that opens for less than ten seconds while the power is idle. Returns the number of samples.
+std::size_t remove_glitches(Track& throttle, const Track& power, const PowerLevels& levels, double idle_percent) {
     std::size_t count = 0;
     const auto& time_s = throttle.time_s;
     const auto opens = [&](std::size_t i) { return throttle.value[i] > idle_percent; };
@@ -94,15 +86,16 @@ std::size_t take_out_glitches(Track& throttle, const Track& power, const PowerLe
     return count;
 }
 
-/// What shows that the motor runs while the throttle idles: how hard, on the throttle's clock.
+/// Motor effort by other data than the throttle, on the throttle's clock.
 struct RunningEvidence {
     std::vector<double> percent;
     double idle_percent;
     double flight_percent;
 };
 
-/// A throttle that idles while the motor runs for half a minute in all (manual mode, which the field of some autopilots
-/// leaves out): the evidence's percent, where the aircraft moves. Says where; `running` describes the mean percent.
+/// Replaces an idle throttle by the evidence where the aircraft moves, in runs in which the motor runs for half a
+/// minute in all (in manual mode some autopilots report no throttle). Returns a warning; `running` describes the mean
+/// percent.
 std::string follow_evidence(const SelectedTracks& tracks, Track& throttle, const RunningEvidence& evidence,
                             double idle_percent, const std::function<std::string(double)>& running) {
     const auto& time_s = throttle.time_s;
@@ -130,11 +123,11 @@ std::string follow_evidence(const SelectedTracks& tracks, Track& throttle, const
         together_s += running_s;
     }
     if (!first_s) return "";
-    return fmt::format("{} is at idle while {}, for {:.0f} s in all, first from {:.0f} s on: the latter counts there",
+    return fmt::format("{} is idle while {}, for {:.0f} s in all, first from {:.0f} s: the latter is used there",
                        throttle.source, running(mean_percent), together_s, *first_s);
 }
 
-/// By power where it tells, else by the motor's speed.
+/// Uses the power if its levels are known, else the motor's speed.
 std::string follow_motor(const SelectedTracks& tracks, Track& throttle, const std::optional<PowerLevels>& levels,
                          double idle_percent) {
     if (levels) {
@@ -163,18 +156,17 @@ MotorRecord motor_record(const SelectedTracks& tracks, const Track& altitude_m) 
     const auto& power = tracks["power_w"];
     auto throttle = throttle_of(tracks, power);
     const auto levels = altitude_m.empty() ? std::nullopt : power_levels(power, altitude_m);
-    const bool stands_still = is_constant(throttle);  // as that of a log which has none
-    if (!throttle.empty() && !(stands_still && levels)) {
-        record.sign = MotorIndicator::throttle;
+    const bool is_unused = is_constant(throttle);  // as of an autopilot without a throttle
+    if (!throttle.empty() && !(is_unused && levels)) {
+        record.indicator = MotorIndicator::throttle;
         record.evidence = throttle.source;
         const double idle_percent =
             std::max(*std::ranges::min_element(throttle.value), 0.0) + SegmentationOptions{}.idle_throttle_percent;
         if (levels) {
-            const auto glitches = take_out_glitches(throttle, power, *levels, idle_percent);
+            const auto glitches = remove_glitches(throttle, power, *levels, idle_percent);
             if (glitches > 0) {
-                record.warnings.push_back(fmt::format(
-                    "{} throttles say that the motor runs while the power stays at its idle: they were left out",
-                    glitches));
+                record.warnings.push_back(
+                    fmt::format("{} samples of the throttle are removed: it is open, but the power idle", glitches));
             }
         }
         auto contradiction = follow_motor(tracks, throttle, levels, idle_percent);
@@ -182,22 +174,22 @@ MotorRecord motor_record(const SelectedTracks& tracks, const Track& altitude_m) 
         record.percent = std::move(throttle);
         return record;
     }
-    const std::string lack = throttle.empty() ? "no throttle" : "the throttle never changes";
+    const std::string no_throttle = throttle.empty() ? "no throttle" : "the throttle never changes";
     if (!levels) {
         record = record_of_motor_speed(tracks);
         if (!record.percent.empty()) {
-            record.warnings.push_back(fmt::format(
-                "{} and no power that tells: the motor is taken to run by its speed ({})", lack, record.evidence));
+            record.warnings.push_back(
+                fmt::format("{} and no clear power: the motor runs by its speed ({})", no_throttle, record.evidence));
             return record;
         }
         record.evidence = "nothing";
-        record.warnings.push_back(lack + ": segmented by altitude alone");
+        record.warnings.push_back(no_throttle + ": segmented by altitude only");
         return record;
     }
-    record.sign = MotorIndicator::power;
+    record.indicator = MotorIndicator::power;
     record.evidence = fmt::format("power: idle {:.1f} W, running {:.1f} W", levels->idle_w, levels->running_w);
     record.warnings.push_back(fmt::format(
-        "{}: the motor is taken to run above {:.1f} W ({})", lack,
+        "{}: the motor runs above {:.1f} W ({})", no_throttle,
         std::lerp(levels->idle_w, levels->running_w, idle_power_percent / units::percent_per_whole), record.evidence));
     record.percent.time_s = power.time_s;
     for (const double power_w : power.value) record.percent.value.push_back(levels->percent(power_w));

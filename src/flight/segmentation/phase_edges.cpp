@@ -9,8 +9,8 @@
 namespace flightwatt::flight {
 namespace {
 
-/// The ground beside an activity: the last (or first) twenty seconds of the rest there.
-double ground_beside(const ResampledFlight& grid, IndexSpan rest, bool before) {
+/// Ground level next to an activity: the last (or first) twenty seconds of the rest there.
+double adjacent_ground_m(const ResampledFlight& grid, IndexSpan rest, bool before) {
     const auto length = std::min(grid.steps(20.0) + 1, rest.end - rest.begin);
     return median_altitude_m(
         grid, before ? IndexSpan{rest.end - length, rest.end} : IndexSpan{rest.begin, rest.begin + length});
@@ -24,15 +24,15 @@ double median_of_upper_half(const std::vector<double>& heights, double highest) 
     return upper.empty() ? highest : median_high(std::move(upper));
 }
 
-constexpr double airborne_fraction = 0.25;  // of the flight's height: there it is in the air, and no longer low
+constexpr double airborne_fraction = 0.25;  // of the flight's height: above it is in the air
 
-/// One sortie on the grid: where it is in the air, and what heights that means.
+/// One sortie on the grid.
 struct Flown {
     const ResampledFlight& grid;
     const Activity& activity;
     const Heights& heights;
     const SegmentationOptions& options;
-    std::size_t lift_off = 0;   ///< of heights.height_m, as is
+    std::size_t lift_off = 0;   ///< index in heights.height_m
     std::size_t touchdown = 0;  ///< the last point
 
     double height(std::size_t i) const { return heights.height_m[i]; }
@@ -41,14 +41,15 @@ struct Flown {
     double ground_m() const { return options.ground_fraction * heights.cruise_height_m; }
 };
 
-/// Between two neighbouring points, where the height crosses `level`.
+/// Time between two consecutive points at which the height crosses `level`.
 double crossing_s(const Flown& flown, std::size_t i, double level) {
     const double step = flown.height(i + 1) - flown.height(i);
     const double part = step == 0.0 ? 0.0 : std::clamp((level - flown.height(i)) / step, 0.0, 1.0);
     return flown.time_s(i) + part * flown.grid.step_s;
 }
 
-/// Where the search for lift-off begins: before the motor first runs nothing flies, if it comes down again by then.
+/// Start of the search for lift-off: where the motor first runs, or earlier if the aircraft is already in the air
+/// there.
 std::size_t first_flyable(const Flown& flown) {
     const auto& motor = flown.grid.motor_percent;
     if (motor.empty()) return 0;
@@ -62,7 +63,7 @@ std::size_t first_flyable(const Flown& flown) {
     return runs;
 }
 
-/// Where it last leaves the ground on its way up and is first back for good, to the grid and between its points.
+/// Finds lift-off and touchdown, as grid points and interpolated times.
 void find_ground_edges(Flown& flown, SortieEdges& edges) {
     const auto& height = flown.heights.height_m;
     const auto is_high = [&](double h) { return h > flown.airborne_m(); };
@@ -93,21 +94,21 @@ double height_after_takeoff(const Flown& flown) {
     for (std::size_t i = 0; i < count; ++i) {
         const double later = highest[std::min(i + hold, count - 1)];
         const bool holds = later - highest[i] <= flown.options.hold_fraction * flown.heights.cruise_height_m;
-        // Lower down it trims after the launch.
+        // At lower heights it trims after the launch.
         if (holds && highest[i] > 0.5 * flown.heights.cruise_height_m) return later;
     }
     return highest[count - 1];
 }
 
-/// A height that is held for good, on the grid: from where all above it is behind, to where it is left.
+/// A held height on the grid, after which the aircraft does not return to a greater one.
 struct Hold {
     double height_m;
     std::size_t begin;
     std::size_t end;  ///< the last point at the cruise fraction of it, or the first of the sortie
 };
 
-/// The heights that are held for good, the last first. Seen back from touchdown: as long as the greatest height that is
-/// still to come grows by no more than the hold fraction within the hold time, it is held.
+/// The held heights, the last first. Going back from touchdown, a height is held while the maximum of the later heights
+/// grows by no more than the hold fraction within the hold time.
 std::vector<Hold> holds_before_landing(const Flown& flown) {
     const auto count = flown.touchdown - flown.lift_off + 1;
     const auto hold = flown.grid.steps(flown.options.hold_s);
@@ -135,8 +136,8 @@ std::vector<Hold> holds_before_landing(const Flown& flown) {
     return holds;
 }
 
-/// Marks which of the holds are steps of the landing; returns the index of the first that is not: where that height is
-/// left, the landing begins.
+/// Marks the holds that are steps of the landing; returns the index of the first other one, at whose end landing
+/// begins.
 std::size_t mark_landing_steps(const Flown& flown, std::vector<HeldAltitude>& held) {
     for (std::size_t i = 0; i + 1 < held.size(); ++i) {
         double max_s = 0.0;
@@ -164,11 +165,11 @@ std::vector<Activity> find_activities(const ResampledFlight& grid, const std::ve
             if (end > begin) {
                 Activity activity{{begin, end}, {begin, end}, std::nullopt, std::nullopt};
                 if (before != nullptr) {
-                    activity.ground_before_m = ground_beside(grid, *before, true);
+                    activity.ground_before_m = adjacent_ground_m(grid, *before, true);
                     activity.span.begin -= std::min(reach, before->end - before->begin);
                 }
                 if (!last) {
-                    activity.ground_after_m = ground_beside(grid, rests[r], false);
+                    activity.ground_after_m = adjacent_ground_m(grid, rests[r], false);
                     activity.span.end += std::min(reach, rests[r].end - rests[r].begin);
                 }
                 activities.push_back(activity);
@@ -185,7 +186,7 @@ GroundLevels estimate_ground_levels(const ResampledFlight& grid, const Activity&
                                     const std::optional<double>& planned_ground_m) {
     const auto [lowest_m, highest_m] = std::ranges::minmax(part_of(grid.altitude_m, activity.span));
     if (!activity.ground_before_m && !activity.ground_after_m) {
-        // In the air from the first to the last line: the flight plan's ground, unless the log goes below it.
+        // In the air throughout the log: the flight plan's ground, unless the log is below it.
         const double ground_m = std::min(planned_ground_m.value_or(lowest_m), lowest_m);
         return {ground_m, ground_m};
     }
@@ -229,8 +230,7 @@ SortieEdges find_edges(const ResampledFlight& grid, const Activity& activity, co
     const auto& last_height = holds[mark_landing_steps(flown, edges.held)];
     const double left = options.cruise_fraction * last_height.height_m;
     std::size_t landing_start = std::max(last_height.end, takeoff_end);
-    // A log that begins (or ends) in the air, and not low, begins (or ends) in cruise: that it climbs (or
-    // dives) there is no take-off (or landing).
+    // A log that begins (or ends) in the air, and not low, begins (or ends) in cruise, even if it climbs (or descends).
     if (!edges.lift_off_s && flown.height(lift_off) >= flown.airborne_m()) takeoff_end = lift_off;
     if (!edges.touchdown_s && flown.height(touchdown) >= flown.airborne_m()) landing_start = touchdown;
     if (takeoff_end > lift_off) edges.takeoff_end_s = crossing_s(flown, takeoff_end - 1, reached);

@@ -1,6 +1,5 @@
 #include "flight/sources/derived_tracks.h"
 
-#include "base/parallel.h"
 #include "base/units.h"
 #include "flight/sources/device_sum.h"
 
@@ -24,18 +23,18 @@ using telemetry::MessageTable;
 using telemetry::SenderLog;
 using units::Quantity;
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  // make_track drops it
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  // make_track drops NaN
 
 using Row = std::vector<double>;
 
-/// A track that is made of several fields of one message, row by row; nothing where one is missing.
-struct MadeTrack {
+/// A track that is computed row by row from fields of one message, if it has all of them.
+struct DerivedTrack {
     const char* name;
     const char* message;
     std::vector<const char*> fields;
-    std::optional<Quantity> quantity;  ///< that the first field must have
+    std::optional<Quantity> quantity;  ///< required of the first field
     const char* source;
-    double (*make)(const Row& row);
+    double (*compute)(const Row& row);
 };
 
 struct Position {
@@ -43,8 +42,8 @@ struct Position {
     double longitude_deg = 0.0;
 };
 
-/// The position on WGS 84 of UTM coordinates as Paparazzi logs them: the north has no false origin, so it is negative
-/// in the south. NaN where one of them is NaN or the zone is none of 1 to 60.
+/// WGS 84 position of UTM coordinates of Paparazzi, whose north has no false origin and is negative in the south. NaN
+/// if one of them is NaN or the zone is not 1 to 60.
 Position position_of_utm(double east_m, double north_m, double zone) {
     if (!(zone >= 1.0 && zone <= 60.0) || !std::isfinite(east_m) || !std::isfinite(north_m)) return {unknown, unknown};
     constexpr double false_east_m = 500e3;
@@ -56,7 +55,7 @@ Position position_of_utm(double east_m, double north_m, double zone) {
     return position;
 }
 
-/// 0 east and 0 north says that the aircraft does not know the wind yet.
+/// 0 east and 0 north: the aircraft does not know the wind yet.
 double wind_speed(const Row& east_north) {
     const double speed = std::hypot(east_north[0], east_north[1]);
     return speed > 0.0 ? speed : unknown;
@@ -64,16 +63,16 @@ double wind_speed(const Row& east_north) {
 
 double percent_of_command(const Row& row) { return units::percent_from_pprz(row[0]); }
 
-/// Of MOTOR, whose definition has the field in Hz.
+/// For MOTOR, whose field is in Hz.
 double rpm_of_hertz(const Row& row) { return row[0] * 60.0; }
 
 double speed_of_components(const Row& row) { return std::hypot(row[0], row[1], row[2]); }
 
-const std::vector<MadeTrack>& made_tracks() {
-    static const std::vector<MadeTrack> made{
+const std::vector<DerivedTrack>& derived_tracks() {
+    static const std::vector<DerivedTrack> derived{
         // Rotorcraft before 2018: thrust, without a unit, on Paparazzi's command scale.
         {"throttle_percent", "ROTORCRAFT_FP", {"thrust"}, {}, "ROTORCRAFT_FP.thrust", percent_of_command},
-        // What the motor is commanded, also in manual mode.
+        // Command to the motor, also in manual mode.
         {"throttle_percent", "COMMANDS", {"values"}, {}, commanded_throttle, percent_of_command},
         {"motor_speed_rpm", "MOTOR", {"rpm"}, {}, "MOTOR.rpm", rpm_of_hertz},
         {"ground_speed_m_per_s",
@@ -88,28 +87,28 @@ const std::vector<MadeTrack>& made_tracks() {
          Quantity::metre_per_second,
          "WIND_INFO.east, north",
          wind_speed}};
-    return made;
+    return derived;
 }
 
-void add_made(std::vector<Track>& tracks, const SenderLog& sender, const MadeTrack& made) {
-    const auto* table = sender.table(made.message);
+void add_derived(std::vector<Track>& tracks, const SenderLog& sender, const DerivedTrack& derived) {
+    const auto* table = sender.table(derived.message);
     if (table == nullptr) return;
     std::vector<const Column*> columns;
-    for (const auto* field : made.fields) {
+    for (const auto* field : derived.fields) {
         columns.push_back(table->column(field));
         if (columns.back() == nullptr) return;
     }
-    if (made.quantity && columns.front()->quantity != made.quantity) return;
+    if (derived.quantity && columns.front()->quantity != derived.quantity) return;
     std::vector<double> values(table->time_s.size());
     Row row(columns.size());
     for (std::size_t i = 0; i < values.size(); ++i) {
         for (std::size_t c = 0; c < columns.size(); ++c) row[c] = columns[c]->values[i];
-        values[i] = made.make(row);
+        values[i] = derived.compute(row);
     }
-    tracks.push_back(make_candidate(made.name, made.source, *table, std::move(values), Merge::mean));
+    tracks.push_back(make_candidate(derived.name, derived.source, *table, std::move(values), Merge::mean));
 }
 
-/// Latitude and longitude from the same series, which takes long.
+/// Latitude and longitude from UTM coordinates.
 void add_utm_position(std::vector<Track>& tracks, const SenderLog& sender) {
     const auto* table = sender.table("GPS");
     if (table == nullptr) return;
@@ -120,21 +119,16 @@ void add_utm_position(std::vector<Track>& tracks, const SenderLog& sender) {
     const auto rows = table->time_s.size();
     std::vector<double> latitude_deg(rows);
     std::vector<double> longitude_deg(rows);
-    constexpr std::size_t rows_at_once = 10'000;
-    const auto convert = [&](std::size_t part) {
-        const auto end = std::min((part + 1) * rows_at_once, rows);
-        for (auto i = part * rows_at_once; i < end; ++i) {
-            const auto position = position_of_utm(east->values[i], north->values[i], zone->values[i]);
-            latitude_deg[i] = position.latitude_deg;
-            longitude_deg[i] = position.longitude_deg;
-        }
-    };
-    for_each_in_parallel((rows + rows_at_once - 1) / rows_at_once, convert);
+    for (std::size_t i = 0; i < rows; ++i) {
+        const auto position = position_of_utm(east->values[i], north->values[i], zone->values[i]);
+        latitude_deg[i] = position.latitude_deg;
+        longitude_deg[i] = position.longitude_deg;
+    }
     tracks.push_back(make_candidate("latitude_deg", "GPS.utm", *table, std::move(latitude_deg), Merge::mean));
     tracks.push_back(make_candidate("longitude_deg", "GPS.utm", *table, std::move(longitude_deg), Merge::mean));
 }
 
-/// The first of `fields` that the table has with the given quantity; nullptr if it has none.
+/// The first of `fields` with the given quantity, or nullptr.
 const Column* first_column(const MessageTable& table, std::initializer_list<const char*> fields, Quantity quantity) {
     for (const auto* field : fields) {
         const auto* column = table.column(field);
@@ -170,31 +164,13 @@ void add_products(std::vector<Track>& tracks, const SenderLog& sender) {
     }
 }
 
-/// The last two fields of a 4-field ENERGY, read the other way round.
-void add_exchanged(std::vector<Track>& tracks, const SenderLog& sender) {
-    const auto* table = sender.table("ENERGY");
-    if (table == nullptr || table->columns.size() != 4) return;
-    const auto* energy = table->column("energy");
-    const auto* power = table->column("power");
-    if (energy == nullptr || power == nullptr || table->column("bat") == nullptr || table->column("amp") == nullptr) {
-        return;
-    }
-    constexpr double raw_per_ah = 1000.0;  // the column was read as mAh
-    std::vector<double> watts = energy->values;
-    for (auto& value : watts) value *= raw_per_ah;
-    std::vector<double> ampere_hours = power->values;
-    for (auto& value : ampere_hours) value /= raw_per_ah;
-    tracks.push_back(make_candidate("power_w", energy_read_as_power, *table, std::move(watts), Merge::mean));
-    tracks.push_back(make_candidate("charge_ah", power_read_as_energy, *table, std::move(ampere_hours), Merge::latest));
-}
-
-/// One message that several devices send, told apart by the values of the id fields that it has.
+/// A message that several devices send, identified by the values of its id fields.
 struct DeviceMessage {
     const MessageTable& table;
     std::vector<const Column*> ids;
 };
 
-/// Row by row of one device; the second, third ... report of one time are tracks of their own, not merged.
+/// Adds the rows of one device. The second, third ... report of one time get tracks of their own and are not merged.
 void add_device(std::vector<Track>& tracks, const std::string& id, const Track& as, const MessageTable& table,
                 const std::vector<std::pair<double, double>>& rows) {
     std::vector<MessageTable> reports;
@@ -262,10 +238,9 @@ Track make_candidate(const std::string& name, const std::string& source, const M
     return track;
 }
 
-void add_derived_tracks(std::vector<Track>& tracks, const SenderLog& sender, bool definitions_assumed) {
+void add_derived_tracks(std::vector<Track>& tracks, const SenderLog& sender) {
     add_products(tracks, sender);
-    if (definitions_assumed) add_exchanged(tracks, sender);
-    for (const auto& made : made_tracks()) add_made(tracks, sender, made);
+    for (const auto& derived : derived_tracks()) add_derived(tracks, sender, derived);
     add_utm_position(tracks, sender);
     if (const auto* takeoff = sender.table("TAKEOFF"); takeoff != nullptr && !takeoff->empty()) {
         std::vector<double> ones(takeoff->time_s.size(), 1.0);

@@ -20,19 +20,19 @@
 namespace flightwatt::flight {
 namespace {
 
-constexpr std::size_t alike_reports = 30;
-constexpr double doubtful_missing_fraction = 0.04;  // of the energy
-constexpr double next_to_nothing_fraction = 0.05;   // of the others' median
-constexpr double running_fraction = 0.2;            // of the others' upper quartile
-constexpr double small_load_fraction = 0.25;        // of the energy: electronics
-constexpr double telling_fraction = 0.1;            // of the others' energy, from which a circuit's part is known
-constexpr double alike_fraction = 0.05;             // of its energy, by which a device differs from the others' sum
-constexpr std::size_t max_judged = 32;
+constexpr std::size_t stuck_reports = 30;         // equal ones in a row
+constexpr double suspect_energy_fraction = 0.04;  // of all devices
+constexpr double off_fraction = 0.05;             // of the others' median
+constexpr double motor_on_fraction = 0.2;         // of the others' upper quartile
+constexpr double small_load_fraction = 0.25;      // of the energy: electronics
+constexpr double min_reference_fraction = 0.1;    // of the others' energy, to estimate a circuit's share
+constexpr double same_power_fraction = 0.05;      // difference of a device from the sum of the others
+constexpr std::size_t max_compared_devices = 32;
 
 /// The devices' power on one clock.
 struct DeviceTable {
     std::vector<double> time_s;
-    std::vector<double> step_s;  ///< for which each sample counts; what is longer than a gap does not
+    std::vector<double> step_s;  ///< duration of each sample, at most that of a gap
     std::vector<std::vector<double>> power_w;
 
     double energy_j(const std::vector<double>& watts, double before_j = 0.0) const {
@@ -52,34 +52,34 @@ DeviceTable table_of(const std::vector<Device>& devices) {
     return table;
 }
 
-/// What one device does beside the others, sample by sample.
+/// One device compared with the others, sample by sample.
 struct DeviceComparison {
     const std::vector<double>& own_w;
     std::vector<double> median_w;  ///< of the others
     std::vector<double> sum_w;     ///< of the others
-    std::vector<bool> stands;
+    std::vector<bool> is_stuck;
 };
 
-DeviceComparison beside_others(const DeviceTable& table, std::size_t device, const std::vector<Track>& reported) {
-    DeviceComparison beside{table.power_w[device], {}, {}, std::vector<bool>(table.time_s.size(), false)};
+DeviceComparison compare_with_others(const DeviceTable& table, std::size_t device, const std::vector<Track>& reported) {
+    DeviceComparison compared{table.power_w[device], {}, {}, std::vector<bool>(table.time_s.size(), false)};
     for (std::size_t i = 0; i < table.time_s.size(); ++i) {
         std::vector<double> others;
         for (std::size_t d = 0; d < table.power_w.size(); ++d)
             if (d != device) others.push_back(table.power_w[d][i]);
-        beside.sum_w.push_back(std::reduce(others.begin(), others.end()));
-        beside.median_w.push_back(median(std::move(others)));
+        compared.sum_w.push_back(std::reduce(others.begin(), others.end()));
+        compared.median_w.push_back(median(std::move(others)));
     }
     for (const auto& track : reported) {
-        for (const auto& run : runs_of_equal(track.value, alike_reports)) {
+        for (const auto& run : runs_of_equal(track.value, stuck_reports)) {
             const auto first = std::ranges::lower_bound(table.time_s, track.time_s[run.begin]) - table.time_s.begin();
             const auto last = std::ranges::upper_bound(table.time_s, track.time_s[run.end - 1]) - table.time_s.begin();
-            std::fill(beside.stands.begin() + first, beside.stands.begin() + std::max(first, last), true);
+            std::fill(compared.is_stuck.begin() + first, compared.is_stuck.begin() + std::max(first, last), true);
         }
     }
-    return beside;
+    return compared;
 }
 
-/// What is doubted of one device: from when to when, what it drew, and what it would have drawn with the others.
+/// Suspect samples of one device: their times, its energy, and its expected energy.
 struct SuspectInterval {
     double own_j = 0.0;
     double expected_j = 0.0;
@@ -89,68 +89,69 @@ struct SuspectInterval {
 };
 
 template <typename IsSuspect, typename Expected>
-SuspectInterval suspect_samples(const DeviceTable& table, const DeviceComparison& beside, const IsSuspect& is_suspect,
+SuspectInterval suspect_samples(const DeviceTable& table, const DeviceComparison& compared, const IsSuspect& is_suspect,
                                 const Expected& expected_w) {
-    SuspectInterval doubt;
+    SuspectInterval suspect;
     for (std::size_t i = 0; i < table.time_s.size(); ++i) {
         if (!is_suspect(i)) continue;
-        if (doubt.lasts_s == 0.0) doubt.from_s = table.time_s[i] - table.step_s[i];
-        doubt.to_s = table.time_s[i];
-        doubt.lasts_s += table.step_s[i];
-        doubt.own_j += beside.own_w[i] * table.step_s[i];
-        doubt.expected_j += expected_w(i) * table.step_s[i];
+        if (suspect.lasts_s == 0.0) suspect.from_s = table.time_s[i] - table.step_s[i];
+        suspect.to_s = table.time_s[i];
+        suspect.lasts_s += table.step_s[i];
+        suspect.own_j += compared.own_w[i] * table.step_s[i];
+        suspect.expected_j += expected_w(i) * table.step_s[i];
     }
-    return doubt;
+    return suspect;
 }
 
-/// A motor that stands still, or runs on next to nothing while the others run: it is expected to draw their median.
-SuspectInterval doubt_of_motor(const DeviceTable& table, const DeviceComparison& beside) {
-    auto sorted = beside.median_w;
+/// A motor that is stuck, or almost without power while the others run; expected is their median.
+SuspectInterval check_motor(const DeviceTable& table, const DeviceComparison& compared) {
+    auto sorted = compared.median_w;
     std::ranges::sort(sorted);
-    const double running_w = running_fraction * quantile(sorted, 0.75);
-    const auto others_w = [&](std::size_t i) { return beside.median_w[i]; };
+    const double running_w = motor_on_fraction * quantile(sorted, 0.75);
+    const auto others_w = [&](std::size_t i) { return compared.median_w[i]; };
     const auto idles = [&](std::size_t i) {
-        return others_w(i) > running_w && beside.own_w[i] < next_to_nothing_fraction * others_w(i);
+        return others_w(i) > running_w && compared.own_w[i] < off_fraction * others_w(i);
     };
     return suspect_samples(
-        table, beside, [&](std::size_t i) { return idles(i) || beside.stands[i]; }, others_w);
+        table, compared, [&](std::size_t i) { return idles(i) || compared.is_stuck[i]; }, others_w);
 }
 
-/// A circuit that stands still: it is expected to draw the part of the others' power that it draws where it moves; of
-/// that which hardly does, an equal one.
-SuspectInterval doubt_of_circuit(const DeviceTable& table, const DeviceComparison& beside,
-                                 const std::vector<Track>& reported, double all_j) {
+/// A circuit that is stuck; expected is its share of the others' power at other times, or an equal share if these are
+/// too few.
+SuspectInterval check_circuit(const DeviceTable& table, const DeviceComparison& compared,
+                              const std::vector<Track>& reported, double all_j) {
     const bool is_steady_load = std::ranges::any_of(
         reported, [](const Track& track) { return is_constant(track) && track.value.front() != 0.0; });
-    if (is_steady_load && table.energy_j(beside.own_w) < small_load_fraction * all_j) return {};
-    const auto others_w = [&](std::size_t i) { return beside.sum_w[i]; };
+    if (is_steady_load && table.energy_j(compared.own_w) < small_load_fraction * all_j) return {};
+    const auto others_w = [&](std::size_t i) { return compared.sum_w[i]; };
     const auto moving = suspect_samples(
-        table, beside, [&](std::size_t i) { return !beside.stands[i]; }, others_w);
-    const bool tells = moving.expected_j > telling_fraction * table.energy_j(beside.sum_w);
-    const double part = tells ? moving.own_j / moving.expected_j : 1.0 / static_cast<double>(table.power_w.size() - 1);
+        table, compared, [&](std::size_t i) { return !compared.is_stuck[i]; }, others_w);
+    const bool is_known = moving.expected_j > min_reference_fraction * table.energy_j(compared.sum_w);
+    const double share =
+        is_known ? moving.own_j / moving.expected_j : 1.0 / static_cast<double>(table.power_w.size() - 1);
     return suspect_samples(
-        table, beside, [&](std::size_t i) { return beside.stands[i]; },
-        [&](std::size_t i) { return part * others_w(i); });
+        table, compared, [&](std::size_t i) { return compared.is_stuck[i]; },
+        [&](std::size_t i) { return share * others_w(i); });
 }
 
-/// What is odd of a device's part in the sum: it is taken off, or it is the others' sum.
-std::string odd_part(const DeviceTable& table, const DeviceComparison& beside, double all_j) {
-    const double own_j = table.energy_j(beside.own_w);
-    if (own_j < -doubtful_missing_fraction * std::abs(all_j)) {
-        return fmt::format("reports negative power, {:.0f} % of the sum: a source, or a sensor that is reversed?",
+/// A device that reduces the sum, or is the sum of the others; empty otherwise.
+std::string check_share(const DeviceTable& table, const DeviceComparison& compared, double all_j) {
+    const double own_j = table.energy_j(compared.own_w);
+    if (own_j < -suspect_energy_fraction * std::abs(all_j)) {
+        return fmt::format("reports negative power, {:.0f} % of the sum: is it a source, or is its sensor reversed?",
                            units::percentage(own_j, all_j));
     }
-    std::vector<double> apart_w(beside.sum_w.size());
-    std::ranges::transform(beside.own_w, beside.sum_w, apart_w.begin(),
+    std::vector<double> difference_w(compared.sum_w.size());
+    std::ranges::transform(compared.own_w, compared.sum_w, difference_w.begin(),
                            [](double own_w, double others_w) { return std::abs(own_w - others_w); });
-    const auto is_part = [&](const auto& power_w) { return table.energy_j(power_w) > alike_fraction * own_j; };
-    const bool has_parts = std::ranges::count_if(table.power_w, is_part) > 2;  // itself, and two others
-    if (has_parts && table.energy_j(apart_w) < alike_fraction * own_j)
-        return "reports what all others do together: if it is the pack's, the energy is counted twice";
+    const auto is_part = [&](const auto& power_w) { return table.energy_j(power_w) > same_power_fraction * own_j; };
+    const bool are_parts = std::ranges::count_if(table.power_w, is_part) > 2;  // itself, and two others
+    if (are_parts && table.energy_j(difference_w) < same_power_fraction * own_j)
+        return "reports the sum of all others: if it is the pack, the energy is counted twice";
     return "";
 }
 
-/// Which ids are missing between others: of "node/motor" the motor's, where all differ.
+/// Ids that are missing between others; of "node/motor" those of the motor, if all differ.
 std::string missing_ids(const std::vector<Device>& devices, std::string_view message) {
     std::set<int> ids;
     for (const auto& device : devices) {
@@ -162,37 +163,34 @@ std::string missing_ids(const std::vector<Device>& devices, std::string_view mes
     std::vector<int> missing;
     for (int id = *ids.begin(); id < *ids.rbegin() && missing.size() < ids.size(); ++id)
         if (!ids.contains(id)) missing.push_back(id);
-    if (missing.empty() || missing.size() == ids.size()) return "";  // numbered by other rules
-    return fmt::format("{} {} {} missing between {} and {}: what {} is not in the sum", message,
-                       fmt::join(missing, ", "), missing.size() > 1 ? "are" : "is",
-                       *std::prev(ids.lower_bound(missing.front())), *ids.upper_bound(missing.back()),
-                       missing.size() > 1 ? "they draw" : "it draws");
+    if (missing.empty() || missing.size() == ids.size()) return "";  // numbered otherwise
+    return fmt::format("{} {} {} missing between {} and {}: the sum is without {}", message, fmt::join(missing, ", "),
+                       missing.size() > 1 ? "are" : "is", *std::prev(ids.lower_bound(missing.front())),
+                       *ids.upper_bound(missing.back()), missing.size() > 1 ? "their power" : "its power");
 }
 
-std::string said_of(const SuspectInterval& doubt, std::string_view message, const std::string& id, double all_j) {
-    const bool nothing = doubt.own_j < next_to_nothing_fraction * doubt.expected_j;
-    const auto what = nothing ? fmt::format("next to nothing ({:.2f} W)", doubt.own_j / doubt.lasts_s)
-                              : fmt::format("the same value again and again ({:.2f} W)", doubt.own_j / doubt.lasts_s);
+std::string describe(const SuspectInterval& suspect, std::string_view message, const std::string& id, double all_j) {
+    const bool is_off = suspect.own_j < off_fraction * suspect.expected_j;
     return fmt::format(
-        "{} {} reports {} for {:.0f} s from {:.1f} to {:.1f} s, while the others go on: is it off, or its sensor dead? "
-        "Drawing what they do, it would change the energy by {:+.0f} %",
-        message, id, what, doubt.lasts_s, doubt.from_s, doubt.to_s,
-        units::percentage(doubt.expected_j - doubt.own_j, all_j));
+        "{} {} reports {} ({:.2f} W) for {:.0f} s from {:.1f} to {:.1f} s, unlike the others: is it off, or its sensor "
+        "damaged? With their power the energy would change by {:+.0f} %",
+        message, id, is_off ? "almost no power" : "a constant value", suspect.own_j / suspect.lasts_s, suspect.lasts_s,
+        suspect.from_s, suspect.to_s, units::percentage(suspect.expected_j - suspect.own_j, all_j));
 }
 
 }  // namespace
 
 std::vector<std::string> find_suspect_devices(const FlightSeries& series, std::string_view message) {
-    std::vector<std::string> doubts;
+    std::vector<std::string> findings;
     auto devices = devices_of(series, "power_w", message);
-    if (devices.empty()) return doubts;
-    if (auto missing = missing_ids(devices, message); !missing.empty()) doubts.push_back(std::move(missing));
-    const auto most = devices.front().track.time_s.size();
-    std::erase_if(devices, [&](const Device& device) { return reports_rarely(device, most); });
-    if (devices.size() < 2 || most < alike_reports) return doubts;
-    if (devices.size() > max_judged) {
-        doubts.push_back(fmt::format("{} {} devices: none is judged beside the others", devices.size(), message));
-        return doubts;
+    if (devices.empty()) return findings;
+    if (auto missing = missing_ids(devices, message); !missing.empty()) findings.push_back(std::move(missing));
+    const auto max_reports = devices.front().track.time_s.size();
+    std::erase_if(devices, [&](const Device& device) { return reports_rarely(device, max_reports); });
+    if (devices.size() < 2 || max_reports < stuck_reports) return findings;
+    if (devices.size() > max_compared_devices) {
+        findings.push_back(fmt::format("{} {} devices: too many to compare them", devices.size(), message));
+        return findings;
     }
     const auto currents = devices_of(series, "current_a", message);
     const auto table = table_of(devices);
@@ -202,19 +200,19 @@ std::vector<std::string> find_suspect_devices(const FlightSeries& series, std::s
         std::vector<Track> reported{devices[d].track};
         const auto current = std::ranges::find(currents, devices[d].id, &Device::id);
         if (current != currents.end()) reported.push_back(current->track);
-        const auto beside = beside_others(table, d, reported);
-        const auto doubt =
-            message == "ESC" ? doubt_of_motor(table, beside) : doubt_of_circuit(table, beside, reported, all_j);
-        if (std::abs(doubt.expected_j - doubt.own_j) > doubtful_missing_fraction * std::abs(all_j))
-            doubts.push_back(said_of(doubt, message, devices[d].id, all_j));
-        if (const auto odd = odd_part(table, beside, all_j); !odd.empty())
-            doubts.push_back(fmt::format("{} {} {}", message, devices[d].id, odd));
+        const auto compared = compare_with_others(table, d, reported);
+        const auto suspect =
+            message == "ESC" ? check_motor(table, compared) : check_circuit(table, compared, reported, all_j);
+        if (std::abs(suspect.expected_j - suspect.own_j) > suspect_energy_fraction * std::abs(all_j))
+            findings.push_back(describe(suspect, message, devices[d].id, all_j));
+        if (const auto finding = check_share(table, compared, all_j); !finding.empty())
+            findings.push_back(fmt::format("{} {} {}", message, devices[d].id, finding));
     }
-    return doubts;
+    return findings;
 }
 
 std::string differing_voltages_reason(const FlightSeries& series) {
-    constexpr double max_apart = 1.1;
+    constexpr double max_ratio = 1.1;
     const auto currents = devices_of(series, "current_a", "POWER_DEVICE");
     std::vector<double> voltages;
     for (const auto& device : devices_of(series, "power_w", "POWER_DEVICE")) {
@@ -226,10 +224,9 @@ std::string differing_voltages_reason(const FlightSeries& series) {
     }
     if (voltages.empty()) return "";
     const auto [low, high] = std::ranges::minmax(voltages);
-    if (high <= max_apart * low) return "";
+    if (high <= max_ratio * low) return "";
     return fmt::format(
-        "the circuits of POWER_DEVICE have {:.1f} to {:.1f} V: voltage and current of the pack are not known", low,
-        high);
+        "the circuits of POWER_DEVICE have {:.1f} to {:.1f} V: voltage and current of the pack are unknown", low, high);
 }
 
 }  // namespace flightwatt::flight

@@ -8,13 +8,12 @@
 
 namespace flightwatt::flight {
 
-/// Which of the devices of `message` is not to be believed: one that stands still or reports next to nothing while the
-/// others go on, that is negative, or reports what others do together; and which ids are missing between others. By the
-/// rules of docs/methods.md.
+/// Findings about the devices of `message` (docs/methods.md): a device that is stuck or reports almost nothing while
+/// the others run, one that is negative or reports the sum of the others, and ids that are missing between others.
 std::vector<std::string> find_suspect_devices(const FlightSeries& series, std::string_view message);
 
-/// Why voltage and current of POWER_DEVICE are not the pack's: "its circuits have 5.0 to 12.3 V ...". Empty where their
-/// voltages (energy over charge) lie within 10 %.
+/// Why voltage and current of POWER_DEVICE are not the pack's: "the circuits have 5.0 to 12.3 V ...". Empty if their
+/// voltages (energy over charge) agree within 10 %.
 std::string differing_voltages_reason(const FlightSeries& series);
 
 }  // namespace flightwatt::flight

@@ -14,30 +14,17 @@ constexpr std::string_view summed_over = ", summed over ";
 constexpr double silent_intervals = 5.0;
 constexpr double outside_intervals = 3.0;
 constexpr double near_intervals = 0.9;
-constexpr std::size_t many_reports = 30;
-constexpr double repeated_fraction = 0.05;  // of a device's reports: less is damage
-constexpr double burst_fraction = 0.4;      // of the intervals, that are a fifth of the mean or less
-constexpr double short_interval = 0.2;
-constexpr double min_summed_part = 0.25;  // of the times: with less there is no power record
+constexpr double repeated_fraction = 0.05;    // of a device's reports: less is damage
+constexpr double min_summed_fraction = 0.25;  // of the times: with less there is no power record
 
-bool comes_in_bursts(const Track& track) {
-    if (track.time_s.size() < many_reports) return false;
-    const auto intervals = static_cast<double>(track.time_s.size() - 1);
-    const double mean_s = (track.time_s.back() - track.time_s.front()) / intervals;
-    std::size_t shorter = 0;
-    for (std::size_t i = 1; i < track.time_s.size(); ++i)
-        if (track.time_s[i] - track.time_s[i - 1] <= short_interval * mean_s) ++shorter;
-    return static_cast<double>(shorter) > burst_fraction * intervals;
-}
-
-/// Whether one id stands for several devices: says so, or what might be.
-void judge_ids(const std::vector<Device>& devices, std::string_view message, DeviceSum& sum) {
+/// Detects several devices with one id by their reports of one time.
+void check_ids(const std::vector<Device>& devices, std::string_view message, DeviceSum& sum) {
     for (const auto& device : devices) {
         const auto& track = device.track;
         const auto is_often = [&](std::size_t reports) {
             return static_cast<double>(reports) > repeated_fraction * static_cast<double>(track.time_s.size());
         };
-        std::size_t reports = 0;  // that came beside others of the same time
+        std::size_t reports = 0;  // further ones of a time
         std::size_t differing = 0;
         for (const auto& more : device.repeated) {
             reports += more.time_s.size();
@@ -47,22 +34,19 @@ void judge_ids(const std::vector<Device>& devices, std::string_view message, Dev
         const bool differ = 2 * differing > reports;
         const auto times = device.repeated.size() + 1;
         if (is_often(reports) && (differ || (times > 2 && is_often(device.repeated.back().time_s.size())))) {
-            sum.ambiguity = fmt::format("{} {} reports {} times at one time{}: several devices under one id", message,
+            sum.ambiguity = fmt::format("{} {} reports {} times at one time{}: several devices have this id", message,
                                         device.id, times, differ ? ", and differently" : "");
         } else if (devices.size() == 1 && is_often(reports)) {
             sum.notes.push_back(fmt::format(
-                "{} {} reports up to {} times at one time: doubled lines, or several devices under one id; counted "
+                "{} {} reports up to {} times at one time: repeated lines, or several devices with this id; counted "
                 "once",
                 message, device.id, times));
-        } else if (devices.size() == 1 && comes_in_bursts(track)) {
-            sum.notes.push_back(fmt::format(
-                "{} {} reports in bursts: are these several devices under one id? Taken for one", message, device.id));
         }
     }
 }
 
-/// The device's value at t; std::nullopt where it is silent. Devices report one after the other, so the one before or
-/// after a gap of all is no further away than an interval: it counts.
+/// The device's value at a time; std::nullopt if it is silent. Devices report one after the other, so a report within
+/// an interval before or after a gap of all devices counts.
 std::optional<double> report_at(const Track& track, double median_s, double time_s) {
     const auto after = std::ranges::upper_bound(track.time_s, time_s);
     const bool begun = after != track.time_s.begin();
@@ -78,11 +62,11 @@ std::optional<double> report_at(const Track& track, double median_s, double time
     return track.value[static_cast<std::size_t>(nearest)];
 }
 
-/// Adds a device where it reports, and leaves out the rest.
+/// Adds a device where it reports and drops the other times of the sum.
 void add_device(Track& sum, const Device& device, double clock_s, std::string_view message,
                 std::vector<std::string>& notes) {
     const double median_s = std::max(median_interval_s(device.track.time_s), clock_s);
-    Track both{sum.name, sum.source, sum.device, sum.since_s, {}, {}};
+    Track total{sum.name, sum.source, sum.device, sum.since_s, {}, {}};
     std::optional<double> silent_from_s;
     for (std::size_t i = 0; i < sum.time_s.size(); ++i) {
         const auto more = report_at(device.track, median_s, sum.time_s[i]);
@@ -90,16 +74,16 @@ void add_device(Track& sum, const Device& device, double clock_s, std::string_vi
             if (!silent_from_s) silent_from_s = sum.time_s[i];
             continue;
         }
-        both.time_s.push_back(sum.time_s[i]);
-        both.value.push_back(sum.value[i] + *more);
+        total.time_s.push_back(sum.time_s[i]);
+        total.value.push_back(sum.value[i] + *more);
     }
     if (silent_from_s) {
-        notes.push_back(
-            fmt::format("{} {} is silent at {} of {} times, first at {:.1f} s: the sum over the devices has "
-                        "no value there",
-                        message, device.id, sum.time_s.size() - both.time_s.size(), sum.time_s.size(), *silent_from_s));
+        notes.push_back(fmt::format(
+            "{} {} is silent at {} of {} times, first at {:.1f} s: the sum over the devices has "
+            "no value there",
+            message, device.id, sum.time_s.size() - total.time_s.size(), sum.time_s.size(), *silent_from_s));
     }
-    sum = std::move(both);
+    sum = std::move(total);
 }
 
 }  // namespace
@@ -114,42 +98,42 @@ std::vector<Device> devices_of(const FlightSeries& series, std::string_view name
         const auto known = std::ranges::find(devices, id, &Device::id);
         if (known != devices.end()) {
             known->repeated.push_back(track);
-        } else if (auto sound = within_bounds(track); !sound.empty()) {
-            devices.push_back({id, std::move(sound), {}});
+        } else if (auto valid = within_bounds(track); !valid.empty()) {
+            devices.push_back({id, std::move(valid), {}});
         }
     }
     std::ranges::stable_sort(devices, std::ranges::greater(), [](const Device& d) { return d.track.time_s.size(); });
     return devices;
 }
 
-bool reports_rarely(const Device& device, std::size_t most) {
-    constexpr double hardly_fraction = 0.01;
-    constexpr std::size_t hardly_reports = 3;
-    constexpr std::size_t enough_to_tell = 30;
+bool reports_rarely(const Device& device, std::size_t max_reports) {
+    constexpr double min_fraction = 0.01;
+    constexpr std::size_t min_reports = 3;
+    constexpr std::size_t enough_reports = 30;
     const auto reports = device.track.time_s.size();
-    return static_cast<double>(reports) < hardly_fraction * static_cast<double>(most) ||
-           (reports < hardly_reports && most >= enough_to_tell);
+    return static_cast<double>(reports) < min_fraction * static_cast<double>(max_reports) ||
+           (reports < min_reports && max_reports >= enough_reports);
 }
 
 DeviceSum sum_over_devices(const FlightSeries& series, std::string_view name, std::string_view message) {
     DeviceSum sum;
     auto devices = devices_of(series, name, message);
     if (devices.empty()) return sum;
-    const auto most = devices.front().track.time_s.size();
+    const auto max_reports = devices.front().track.time_s.size();
     std::erase_if(devices, [&](const Device& device) {
-        const bool is_rare = reports_rarely(device, most);
+        const bool is_rare = reports_rarely(device, max_reports);
         if (is_rare) {
-            sum.notes.push_back(fmt::format("{} {} reports only {} times: it is left out of the sum", message,
+            sum.notes.push_back(fmt::format("{} {} reports only {} times: it is excluded from the sum", message,
                                             device.id, device.track.time_s.size()));
         }
         return is_rare;
     });
-    judge_ids(devices, message, sum);
+    check_ids(devices, message, sum);
     if (!sum.ambiguity.empty()) return sum;
     sum.track = devices.front().track;
     const double clock_s = median_interval_s(sum.track.time_s);
     for (std::size_t d = 1; d < devices.size(); ++d) add_device(sum.track, devices[d], clock_s, message, sum.notes);
-    if (static_cast<double>(sum.track.time_s.size()) < min_summed_part * static_cast<double>(most)) {
+    if (static_cast<double>(sum.track.time_s.size()) < min_summed_fraction * static_cast<double>(max_reports)) {
         sum.ambiguity = sum.notes.back();
         sum.track = {};
         return sum;

@@ -1,10 +1,12 @@
 #include "flight/sources/outliers.h"
 
 #include "base/statistics.h"
+#include "flight/checks/runs.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,25 +15,20 @@
 namespace flightwatt::flight {
 namespace {
 
-struct NamedBounds {
-    std::string_view name;
-    PhysicalBounds bounds;
-};
-
-constexpr std::array bounds_by_name{NamedBounds{"altitude_m", {-500.0, 2e4}},
-                                    NamedBounds{"throttle_percent", {-5.0, 105.0}},
-                                    NamedBounds{"voltage_v", {0.0, 500.0}},
-                                    NamedBounds{"current_a", {-2e3, 2e3}},
-                                    NamedBounds{"power_w", {-1e5, 1e5}},
-                                    NamedBounds{"charge_ah", {-1e4, 1e4}},
-                                    NamedBounds{"energy_wh", {-1e5, 1e5}},
-                                    NamedBounds{"ground_speed_m_per_s", {-1.0, 300.0}},
-                                    NamedBounds{"airspeed_m_per_s", {-50.0, 300.0}},
-                                    NamedBounds{"wind_speed_m_per_s", {0.0, 100.0}},
-                                    NamedBounds{"wind_east_m_per_s", {-100.0, 100.0}},
-                                    NamedBounds{"wind_north_m_per_s", {-100.0, 100.0}},
-                                    NamedBounds{"climb_m_per_s", {-300.0, 300.0}},
-                                    NamedBounds{"air_temperature_c", {-80.0, 100.0}}};
+const std::map<std::string_view, PhysicalBounds> bounds_by_name{{"altitude_m", {-500.0, 2e4}},
+                                                                {"throttle_percent", {-5.0, 105.0}},
+                                                                {"voltage_v", {0.0, 500.0}},
+                                                                {"current_a", {-2e3, 2e3}},
+                                                                {"power_w", {-1e5, 1e5}},
+                                                                {"charge_ah", {-1e4, 1e4}},
+                                                                {"energy_wh", {-1e5, 1e5}},
+                                                                {"ground_speed_m_per_s", {-1.0, 300.0}},
+                                                                {"airspeed_m_per_s", {-50.0, 300.0}},
+                                                                {"wind_speed_m_per_s", {0.0, 100.0}},
+                                                                {"wind_east_m_per_s", {-100.0, 100.0}},
+                                                                {"wind_north_m_per_s", {-100.0, 100.0}},
+                                                                {"climb_m_per_s", {-300.0, 300.0}},
+                                                                {"air_temperature_c", {-80.0, 100.0}}};
 
 bool is_within(const PhysicalBounds& bounds, double value) { return value >= bounds.low && value <= bounds.high; }
 
@@ -41,7 +38,7 @@ constexpr double voltage_step = 0.30;
 constexpr double counter_step = 0.01;
 constexpr std::size_t max_dropout = 3;
 constexpr double dropout_throttle_percent = 30.0;
-constexpr double beside_dropout_fraction = 0.25;
+constexpr double running_fraction = 0.25;
 
 /// The largest magnitude that was held for three samples.
 double held_magnitude(const std::vector<double>& values) {
@@ -52,15 +49,57 @@ double held_magnitude(const std::vector<double>& values) {
     return held;
 }
 
-/// The times of all runs [first, last) of one or two samples between two others that are spikes.
-template <typename IsSpike>
-std::vector<double> times_of_runs(const Track& track, const IsSpike& is_spike) {
+bool is_counter(const Track& track) { return track.name == "charge_ah" || track.name == "energy_wh"; }
+
+/// Decides on one sample between its neighbours.
+using IsSpike = std::function<bool(double before, double value, double after)>;
+
+/// Of voltage: more than 30 % from both neighbours, which agree.
+bool is_voltage_spike(double before, double value, double after) {
+    const double step = voltage_step * std::max(std::abs(before), std::abs(after));
+    return std::abs(after - before) <= step && std::abs(value - before) > step && std::abs(value - after) > step;
+}
+
+/// Of a counter: out of order by more than 1 % of its range.
+IsSpike counter_spike(const std::vector<double>& values) {
+    const auto [low, high] = std::ranges::minmax(values);
+    return [step = counter_step * (high - low)](double before, double value, double after) {
+        return after >= before && (value > after + step || value < before - step);
+    };
+}
+
+/// Of power and current: more than three times the held magnitude and more than twice the neighbours.
+IsSpike power_spike(const std::vector<double>& values, double floor) {
+    return [limit = spike_factor * held_magnitude(values) + floor](double before, double value, double after) {
+        const double neighbours = neighbour_factor * std::max(std::abs(before), std::abs(after));
+        return std::abs(value) > limit && std::abs(value) > neighbours;
+    };
+}
+
+IsSpike spike_of(const Track& track) {
+    constexpr double floor_a = 1.0;
+    constexpr double floor_w = 5.0;
+    if (track.name == "voltage_v") return is_voltage_spike;
+    if (is_counter(track)) return counter_spike(track.value);
+    if (track.name == "current_a") return power_spike(track.value, floor_a);
+    if (track.name == "power_w") return power_spike(track.value, floor_w);
+    return {};
+}
+
+/// The times of spikes of electrical tracks: one sample (of counters), or one or two samples, between two others.
+std::vector<double> spike_times(const Track& track) {
+    constexpr std::size_t min_samples = 10;
+    const auto& value = track.value;
+    const std::size_t max_length = is_counter(track) ? 1 : 2;
     std::vector<double> times_s;
-    for (std::size_t i = 1; i + 1 < track.value.size(); ++i) {
-        for (const std::size_t length : {1U, 2U}) {
-            if (i + length >= track.value.size() || !is_spike(i, i + length)) continue;
-            times_s.insert(times_s.end(), track.time_s.begin() + static_cast<std::ptrdiff_t>(i),
-                           track.time_s.begin() + static_cast<std::ptrdiff_t>(i + length));
+    const auto is_spike = spike_of(track);
+    if (value.size() < min_samples || !is_spike) return times_s;
+    for (std::size_t i = 1; i + 1 < value.size(); ++i) {
+        for (std::size_t length = 1; length <= max_length && i + length < value.size(); ++length) {
+            const auto spike = part_of(value, {i, i + length});
+            if (!std::ranges::all_of(spike, [&](double v) { return is_spike(value[i - 1], v, value[i + length]); }))
+                continue;
+            for (std::size_t k = 0; k < length; ++k) times_s.push_back(track.time_s[i + k]);
             i += length - 1;
             break;
         }
@@ -68,58 +107,8 @@ std::vector<double> times_of_runs(const Track& track, const IsSpike& is_spike) {
     return times_s;
 }
 
-bool is_counter(const Track& track) { return track.name == "charge_ah" || track.name == "energy_wh"; }
-
-bool is_electrical(const Track& track) {
-    return is_counter(track) || track.name == "voltage_v" || track.name == "current_a" || track.name == "power_w";
-}
-
-std::vector<double> voltage_spikes(const Track& track) {
-    const auto& value = track.value;
-    return times_of_runs(track, [&](std::size_t first, std::size_t last) {
-        const double before = value[first - 1];
-        const double after = value[last];
-        const double step = voltage_step * std::max(std::abs(before), std::abs(after));
-        if (std::abs(after - before) > step) return false;
-        for (auto i = first; i < last; ++i)
-            if (std::abs(value[i] - before) <= step || std::abs(value[i] - after) <= step) return false;
-        return true;
-    });
-}
-
-std::vector<double> counter_spikes(const Track& track) {
-    const auto& value = track.value;
-    const auto [least, most] = std::ranges::minmax(value);
-    const double step = counter_step * (most - least);
-    return times_of_runs(track, [&](std::size_t first, std::size_t last) {
-        if (last != first + 1 || value[last] < value[first - 1]) return false;
-        return value[first] > value[last] + step || value[first] < value[first - 1] - step;
-    });
-}
-
-/// The times of samples that nothing before and after them explains. Of power and current: one or two samples of more
-/// than three times what was ever held for three samples, and of more than twice their neighbours. Of voltage: one or
-/// two samples that differ from the neighbours, which agree, by more than 30 %. Of counters: a sample that alone is out
-/// of their order by more than 1 % of what was counted. A sample is judged once another follows it.
-std::vector<double> spike_times(const Track& track) {
-    const auto& value = track.value;
-    constexpr std::size_t judged = 10;
-    if (value.size() < judged || !is_electrical(track)) return {};
-    if (track.name == "voltage_v") return voltage_spikes(track);
-    if (is_counter(track)) return counter_spikes(track);
-    const double floor = track.name == "current_a" ? 1.0 : 5.0;  // A or W: below, nothing is far
-    const double limit = spike_factor * held_magnitude(value) + floor;
-    return times_of_runs(track, [&](std::size_t first, std::size_t last) {
-        const double beside = neighbour_factor * std::max(std::abs(value[first - 1]), std::abs(value[last]));
-        for (auto i = first; i < last; ++i)
-            if (std::abs(value[i]) <= limit || std::abs(value[i]) <= beside) return false;
-        return true;
-    });
-}
-
-/// The times of samples of power or current that dropped out: up to three in a row at exactly 0 while the throttle
-/// stands above 30 %, as it does before and after, where there is more than a quarter of the median at such a throttle.
-/// A motor that is cut for so short a time has its throttle closed.
+/// The times of dropouts of power or current: up to three samples at exactly 0 with the throttle above 30 %, between
+/// samples with such a throttle and more than a quarter of its median. A motor that is cut has its throttle closed.
 std::vector<double> dropout_times(const Track& track, const Track& throttle) {
     const auto& value = track.value;
     std::vector<double> times_s;
@@ -129,21 +118,21 @@ std::vector<double> dropout_times(const Track& track, const Track& throttle) {
     for (std::size_t i = 0; i < value.size(); ++i)
         if (percent[i] > dropout_throttle_percent) running.push_back(value[i]);
     if (running.empty()) return times_s;
-    const double beside = beside_dropout_fraction * median_high(std::move(running));
+    const double running_level = running_fraction * median_high(std::move(running));
     const auto runs = [&](std::size_t i) { return percent[i] > dropout_throttle_percent; };
-    const auto is_beside = [&](std::size_t i) { return runs(i) && value[i] > 0.0 && value[i] > beside; };
+    const auto is_running = [&](std::size_t i) { return runs(i) && value[i] > 0.0 && value[i] > running_level; };
     for (std::size_t i = 1; i + 1 < value.size(); ++i) {
-        if (value[i] != 0.0 || !is_beside(i - 1)) continue;
+        if (value[i] != 0.0 || !is_running(i - 1)) continue;
         const auto first = i;
         while (i < value.size() && value[i] == 0.0 && runs(i)) ++i;
-        if (i == value.size() || i - first > max_dropout || !is_beside(i)) continue;
+        if (i == value.size() || i - first > max_dropout || !is_running(i)) continue;
         times_s.insert(times_s.end(), track.time_s.begin() + static_cast<std::ptrdiff_t>(first),
                        track.time_s.begin() + static_cast<std::ptrdiff_t>(i));
     }
     return times_s;
 }
 
-/// Whether all of it lies within its bounds.
+/// Whether all values are within the bounds.
 bool is_plausible(const Track& track) {
     const auto bounds = physical_bounds(track.name);
     return !bounds || std::ranges::all_of(track.value, [&](double value) { return is_within(*bounds, value); });
@@ -152,8 +141,8 @@ bool is_plausible(const Track& track) {
 }  // namespace
 
 std::optional<PhysicalBounds> physical_bounds(std::string_view track_name) {
-    const auto* const found = std::ranges::find(bounds_by_name, track_name, &NamedBounds::name);
-    return found == bounds_by_name.end() ? std::nullopt : std::optional(found->bounds);
+    const auto found = bounds_by_name.find(track_name);
+    return found == bounds_by_name.end() ? std::nullopt : std::optional(found->second);
 }
 
 Track within_bounds(const Track& track) {
@@ -177,35 +166,32 @@ std::size_t erase_times(Track& track, const std::vector<double>& times_s) {
 
 TrackSelection remove_outliers(const Track& candidate, const std::vector<double>& contradicted_s,
                                const Track& throttle) {
-    TrackSelection sound{.logged = &candidate};
+    TrackSelection selection;
     std::vector<std::string> reasons;
-    const auto note = [&](std::size_t samples, const char* reason) {
-        if (samples > 0) reasons.push_back(fmt::format("{} {}", samples, reason));
-    };
-    const auto leave_out = [&](const std::vector<double>& times_s, const char* reason) {
-        if (!times_s.empty()) note(erase_times(sound.own(), times_s), reason);
-    };
     const auto all = candidate.value.size();
-    if (!is_plausible(candidate)) {
-        sound = TrackSelection{.derived = within_bounds(candidate)};
-        if (sound.derived.empty()) {
-            const auto bounds = physical_bounds(candidate.name).value();
-            sound.removal_notes.push_back(fmt::format("{} of {} is mostly beyond {:g} to {:g}", candidate.name,
+    selection.track = within_bounds(candidate);
+    if (selection.track.empty() && all > 0) {
+        const auto bounds = physical_bounds(candidate.name).value();
+        selection.removal_notes.push_back(fmt::format("{} of {} is mostly beyond {:g} to {:g}", candidate.name,
                                                       candidate.source, bounds.low, bounds.high));
-            return sound;
-        }
-        note(all - sound.derived.value.size(), "beyond what can be");
+        return selection;
     }
-    leave_out(contradicted_s, "where power is not voltage times current");
-    leave_out(dropout_times(sound.track(), throttle), "at 0 for up to three samples with the throttle open");
-    leave_out(spike_times(sound.track()),
-              is_counter(candidate) ? "out of the counter's order" : "far beyond the samples beside");
+    if (const auto beyond = all - selection.track.value.size(); beyond > 0)
+        reasons.push_back(fmt::format("{} beyond physical bounds", beyond));
+    const auto remove = [&](const std::vector<double>& times_s, const char* reason) {
+        if (const auto removed = erase_times(selection.track, times_s); removed > 0)
+            reasons.push_back(fmt::format("{} {}", removed, reason));
+    };
+    remove(contradicted_s, "where power is not voltage times current");
+    remove(dropout_times(selection.track, throttle), "at 0 for up to three samples with the throttle open");
+    remove(spike_times(selection.track),
+           is_counter(candidate) ? "out of the counter's order" : "far beyond the neighbouring samples");
     if (!reasons.empty()) {
-        sound.removal_notes.push_back(fmt::format("{} of {} samples of {} ({}) are left out: {}",
-                                                  all - sound.track().value.size(), all, candidate.name,
-                                                  candidate.source, fmt::join(reasons, ", ")));
+        selection.removal_notes.push_back(fmt::format("{} of {} samples of {} ({}) are removed: {}",
+                                                      all - selection.track.value.size(), all, candidate.name,
+                                                      candidate.source, fmt::join(reasons, ", ")));
     }
-    return sound;
+    return selection;
 }
 
 }  // namespace flightwatt::flight

@@ -18,7 +18,7 @@ namespace {
 constexpr double compared_w = 1.0;
 constexpr std::size_t enough_pairs = 10;
 
-/// The first candidate of that name that `accept` takes; nullptr if there is none.
+/// The first candidate of that name that `accept` takes, or nullptr.
 template <typename Accept>
 const Track* find_track(const FlightSeries& series, std::string_view name, const Accept& accept) {
     const auto found =
@@ -38,7 +38,7 @@ const Track* find_product(const FlightSeries& series, std::string_view message) 
     });
 }
 
-/// A track that no message of a log names: a user's CSV.
+/// A track without a message: of a user's CSV.
 const Track* find_plain(const FlightSeries& series, std::string_view name) {
     return find_track(series, name, [](const Track& track) {
         return track.device.empty() && track.source.find('.') == std::string::npos;
@@ -66,32 +66,17 @@ std::vector<PowerPair> pairs_of(const Track& power, const Track& product) {
     return pairs;
 }
 
-/// Those with a product that is more than what rounding and offsets make.
-std::vector<PowerPair> compared_pairs(const Track& power, const Track& product) {
+/// Whether most samples differ from voltage times current: the message has another layout than assumed.
+bool contradicts(const Track& power, const Track& product) {
     auto pairs = pairs_of(power, product);
     std::erase_if(pairs, [](const PowerPair& pair) { return std::abs(pair.product_w) <= compared_w; });
-    return pairs;
-}
-
-/// True if most samples are nowhere near voltage times current: another layout of the message than was assumed.
-bool contradicts(const Track& power, const Track& product) {
-    const auto pairs = compared_pairs(power, product);
     const auto apart = std::ranges::count_if(
         pairs, [](const PowerPair& pair) { return pair.apart_w() > 0.2 * std::abs(pair.product_w); });
     return pairs.size() >= enough_pairs && 2 * apart > std::ssize(pairs);
 }
 
-/// How many samples of `power` are near to voltage times current. Power may be a whole number.
-std::size_t samples_near(const Track& power, const Track& product) {
-    const auto is_near = [](const PowerPair& pair) {
-        return pair.apart_w() <= 0.05 * std::abs(pair.product_w) + compared_w;
-    };
-    return static_cast<std::size_t>(std::ranges::count_if(compared_pairs(power, product), is_near));
-}
-
-/// The times, rising, at which power is not voltage times current although it usually is: more than 10 % and 1 W
-/// apart (ten times the median difference, where that is more). Nothing where most samples differ: that is another
-/// layout, not damage.
+/// The times, rising, at which power differs from voltage times current although it usually does not: by more than 10 %
+/// (or ten times the median difference) and 1 W.
 std::vector<double> inconsistent_times(const Track& power, const Track& product) {
     constexpr double contradicting_part = 0.10;
     const auto pairs = pairs_of(power, product);
@@ -124,55 +109,35 @@ bool measures_something(const Track& power) {
            std::any_of(power.value.begin(), power.value.end(), [](double value) { return value != 0.0; });
 }
 
-/// Takes a copy of a candidate if it measures something, or says why not.
+/// Selects a candidate if it measures something, or notes why not.
 bool take(const FlightSeries& series, const Track& candidate, TrackSelection& choice,
           const std::vector<double>& contradicted_s = {}) {
-    auto sound = remove_outliers(candidate, contradicted_s, dropout_throttle(series, candidate));
-    auto& rejected = choice.rejected_sources;
-    if (measures_something(sound.track())) {
-        choice.derived = std::move(sound.own());
-        choice.removal_notes = std::move(sound.removal_notes);
+    auto cleaned = remove_outliers(candidate, contradicted_s, dropout_throttle(series, candidate));
+    if (measures_something(cleaned.track)) {
+        choice.track = std::move(cleaned.track);
+        choice.removal_notes = std::move(cleaned.removal_notes);
         return true;
     }
-    if (sound.track().empty() && !sound.removal_notes.empty()) {
-        rejected.push_back(std::move(sound.removal_notes.front()));
+    if (cleaned.track.empty() && !cleaned.removal_notes.empty()) {
+        choice.rejected_sources.push_back(std::move(cleaned.removal_notes.front()));
     } else {
-        rejected.push_back(candidate.source +
-                           (candidate.time_s.size() < 2 ? " has no two finite values" : " is 0 throughout"));
+        choice.rejected_sources.push_back(
+            candidate.source + (candidate.time_s.size() < 2 ? " has no two finite values" : " is 0 throughout"));
     }
     return false;
 }
 
-/// The field ENERGY.power, wherever it stands in the message.
-Track energy_power(const FlightSeries& series) {
-    if (energy_and_power_are_swapped(series)) {
-        auto track = *find_source(series, energy_read_as_power);
-        track.source = "ENERGY.power";
-        return track;
-    }
-    const auto* track = find_source(series, "ENERGY.power");
-    return track == nullptr ? Track{} : *track;
-}
-
 }  // namespace
-
-bool energy_and_power_are_swapped(const FlightSeries& series) {
-    const auto* as_read = find_source(series, "ENERGY.power");
-    const auto* other = find_source(series, energy_read_as_power);
-    const auto* product = find_product(series, "ENERGY.");
-    if (as_read == nullptr || other == nullptr || product == nullptr) return false;
-    const auto exchanged = samples_near(*other, *product);
-    return exchanged >= enough_pairs && exchanged > 2 * samples_near(*as_read, *product);
-}
 
 std::vector<double> contradicted_times(const FlightSeries& series, std::string_view source) {
     if (source.find('.') == std::string_view::npos) {
         const auto* power = find_plain(series, "power_w");
         return power == nullptr ? std::vector<double>{} : inconsistent_times(*power, plain_product(series));
     }
-    const auto* product = find_product(series, source.substr(0, source.find('.') + 1));
-    if (product == nullptr || !source.starts_with("ENERGY.")) return {};
-    return inconsistent_times(energy_power(series), *product);
+    const auto* power = find_source(series, "ENERGY.power");
+    const auto* product = find_product(series, "ENERGY.");
+    if (power == nullptr || product == nullptr || !source.starts_with("ENERGY.")) return {};
+    return inconsistent_times(*power, *product);
 }
 
 Track dropout_throttle(const FlightSeries& series, const Track& candidate) {
@@ -186,16 +151,14 @@ Track dropout_throttle(const FlightSeries& series, const Track& candidate) {
 TrackSelection select_power(const FlightSeries& series) {
     TrackSelection choice;
     if (const auto* plain = find_plain(series, "power_w")) {
-        // Believed even where it is 0 throughout.
-        choice = remove_outliers(*plain, contradicted_times(series, plain->source), dropout_throttle(series, *plain));
-        choice.own();
-        return choice;
+        // Accepted even if it is 0 throughout.
+        return remove_outliers(*plain, contradicted_times(series, plain->source), dropout_throttle(series, *plain));
     }
     const auto* product = find_product(series, "ENERGY.");
-    if (const auto power = energy_power(series); !power.source.empty()) {
-        if (product != nullptr && contradicts(power, *product)) {
+    if (const auto* power = find_source(series, "ENERGY.power")) {
+        if (product != nullptr && contradicts(*power, *product)) {
             choice.rejected_sources.emplace_back("ENERGY.power is not voltage times current");
-        } else if (take(series, power, choice, contradicted_times(series, power.source))) {
+        } else if (take(series, *power, choice, contradicted_times(series, power->source))) {
             return choice;
         }
     }

@@ -39,8 +39,8 @@ class LinkTime {
     std::optional<double> last_s_;
 };
 
-/// Time of card frames, whose counter overflows after 119.3 h. An overflow is a time before the last one that is, across
-/// the end of the range, less than an hour later; a damaged time or a clock that was set back is not.
+/// Time of card frames, whose counter overflows after 119.3 h. An overflow is a time before the last one that is,
+/// across the end of the range, less than an hour later; a damaged time or a clock that was set back is not.
 class FrameClock {
   public:
     double time_s(std::uint32_t time_100us) {

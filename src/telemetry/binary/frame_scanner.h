@@ -40,8 +40,9 @@ class FrameScanner {
 
     std::optional<LinkVersion> version() const { return version_ ? version_ : likely_version(); }
 
-    /// Calls on_frame(FoundFrame, Frame) and on_gap(Gap) in the order of the bytes; a gap is reported with the frame that
-    /// follows it, or at the end. Returns the number of processed bytes; pass the others again, with more behind them.
+    /// Calls on_frame(FoundFrame, Frame) and on_gap(Gap) in the order of the bytes; a gap is reported with the frame
+    /// that follows it, or at the end. Returns the number of processed bytes; pass the others again, with more behind
+    /// them.
     template <typename OnFrame, typename OnGap>
     std::size_t scan(std::string_view bytes, InputContinuation behind, OnFrame&& on_frame, OnGap&& on_gap) {
         begin_ = bytes.data();

@@ -82,7 +82,7 @@ TEST_F(FlightOptions, OfSegmentationReachEveryStage) {
     expect_effect("predict --at 200 --remaining 100" + model() + sample(4), "--cruise-fraction 0.6");
     const auto high = run("fit --flight-height 5000" + sample(1));
     EXPECT_EQ(high.code, input_rejected);
-    EXPECT_THAT(high.err, HasSubstr("holds no flight"));
+    EXPECT_THAT(high.err, HasSubstr("has no flight"));
     EXPECT_EQ(run("battery --flight-height 5000 --name x" + sample(1)).code, ok);
     EXPECT_EQ(run("parse --hold-time 0" + sample(1)).code, usage_error);
     EXPECT_EQ(run("batch -o out" + sample(1)).code, ok);
@@ -96,7 +96,7 @@ TEST_F(FlightOptions, ChooseTheAircraft) {
     for (const auto* stage : {"parse", "segment", "fit --name x", "battery --name x"}) {
         const auto refused = run(std::string(stage) + " two.data");
         EXPECT_EQ(refused.code, input_rejected) << stage;
-        EXPECT_THAT(refused.err, HasSubstr("several aircraft flew: 7, 8; choose one with --aircraft ID"));
+        EXPECT_THAT(refused.err, HasSubstr("several aircraft flew: 7, 8; select one with --aircraft ID"));
         EXPECT_EQ(run(std::string(stage) + " two.data --aircraft 8").code, ok) << stage;
     }
     const auto predict = "predict two.data --at 200 --remaining 100" + model();

@@ -56,7 +56,7 @@ TEST(AltitudeRecord, LeavesOutAnEstimatorThatLosesItsFixForAWhile) {
     });
     expect_as_flown(phases);
     ASSERT_EQ(phases.warnings.size(), 1u);
-    EXPECT_THAT(phases.warnings[0], HasSubstr("altitudes were left out: it jumped away and back, first at 2"));
+    EXPECT_THAT(phases.warnings[0], HasSubstr("altitudes are removed, between jumps away and back, first at 2"));
 }
 
 TEST(AltitudeRecord, LeavesOutAnEstimatorThatStandsStillForLonger) {
@@ -79,8 +79,7 @@ TEST(AltitudeRecord, SaysThatAnEdgeLiesInATimeWithoutAltitude) {
         }
         track = kept;
     }
-    EXPECT_THAT(segment(series).warnings,
-                testing::ElementsAre(HasSubstr("s lies somewhere in 36 s without an altitude")));
+    EXPECT_THAT(segment(series).warnings, testing::ElementsAre(HasSubstr("s is uncertain: 36 s without an altitude")));
 }
 
 TEST(AltitudeRecord, GivesEachSideOfAJumpAGroundOfItsOwn) {
@@ -97,7 +96,7 @@ TEST(AltitudeRecord, RefusesAnotherUnitThanMetres) {
     const auto phases = phases_with([&](double, double& altitude_m) { altitude_m *= 100.0; });
     EXPECT_TRUE(phases.sorties.empty());
     ASSERT_EQ(phases.ground_events.size(), 1u);
-    EXPECT_THAT(phases.ground_events[0].what, HasSubstr("another unit than m"));
+    EXPECT_THAT(phases.ground_events[0].what, HasSubstr("its unit is not m"));
     EXPECT_THROW(phases_with([&](double, double& altitude_m) { altitude_m *= 1000.0; }), InputError);
 }
 

@@ -50,7 +50,7 @@ TEST(FlightRejection, WhereAnotherAltitudeSaysThatNothingMoved) {
     gps.source = "GPS.alt";
     for (std::size_t i = 0; i < gps.value.size(); ++i) gps.value[i] = 600.0 + 0.5 * static_cast<double>(i % 5);
     series.tracks.push_back(gps);
-    EXPECT_THAT(why_none(series), HasSubstr("series CSV moves by 74 m, GPS.alt by 2.0 m: an estimator that ran away"));
+    EXPECT_THAT(why_none(series), HasSubstr("series CSV changes by 74 m, GPS.alt by 2.0 m: its estimator diverged"));
     // A third altitude that moves as well confirms the first.
     auto confirmed = series;
     confirmed.tracks.push_back(select_track(series, "altitude_m"));
@@ -69,7 +69,7 @@ TEST(FlightRejection, WhereTheAltitudeChangesFasterThanAircraftClimb) {
     auto columns = columns_of(sortie(100));
     for (auto& altitude_m : columns.altitude_m) altitude_m *= 15.0;
     for (auto& altitude_m : columns.altitude_m) altitude_m += 0.1;
-    EXPECT_THAT(why_none(test::series_of(columns)), HasSubstr("m/s for 30 s: an estimator that ran away"));
+    EXPECT_THAT(why_none(test::series_of(columns)), HasSubstr("m/s for 30 s: its estimator diverged"));
 }
 
 TEST(FlightRejection, WhereItDrivesAtOneHeightAndTheGroundIsNotSeen) {
@@ -111,11 +111,11 @@ TEST(FlightRejection, WhereAnAltitudeAloneIsThatOfAnEstimatorThatSettles) {
     };
     // It begins at one height and runs to another, which it never held.
     const std::vector<test::Point> begins_wrong{{0, 40, 0}, {2, 40, 0}, {9, 0, 0}, {300, 0, 0}};
-    EXPECT_THAT(why_none(alone(begins_wrong, -1.0)), HasSubstr("an estimator that settles"));
+    EXPECT_THAT(why_none(alone(begins_wrong, -1.0)), HasSubstr("its estimator converged"));
     const std::vector<test::Point> wanders{{0, 0, 0}, {40, 0, 0}, {60, 14, 0}, {90, 14, 0}, {110, 0, 0}, {300, 0, 0}};
-    EXPECT_THAT(why_none(alone(wanders, -1.0)), HasSubstr("height of 14 m: an estimator that settles"));
+    EXPECT_THAT(why_none(alone(wanders, -1.0)), HasSubstr("height of 14 m: its estimator converged"));
     EXPECT_EQ(why_none(alone(wanders, 9.0)), "1 sorties");
-    EXPECT_THAT(why_none(alone(sortie(100), 4.5)), HasSubstr("at 4.5 m/s over ground: an estimator that settles"));
+    EXPECT_THAT(why_none(alone(sortie(100), 4.5)), HasSubstr("at 4.5 m/s over ground: its estimator converged"));
     EXPECT_EQ(why_none(alone(sortie(100), -1.0)), "1 sorties");
     EXPECT_EQ(why_none(alone(sortie(100), 12.0)), "1 sorties");
 }
@@ -129,7 +129,7 @@ TEST(FlightRejection, OfWhatMovesAsRoadsDo) {
         columns.ground_speed_m_per_s[i] = 14.0;
         columns.altitude_m[i] += 40.0 * std::abs(std::sin((t - 50.0) / 222.8));
     }
-    EXPECT_THAT(why_none(test::series_of(columns)), HasSubstr("never moves by more than 3 % of the way"));
+    EXPECT_THAT(why_none(test::series_of(columns)), HasSubstr("never changes by more than 3 % of the distance"));
     // What rises up from the ground flies, however slow or low it is.
     for (const double speed_m_per_s : {0.5, 6.0, 14.0, 20.0}) {
         for (const double height : {0.3, 0.4, 1.0}) {
@@ -220,7 +220,7 @@ FlightSeries standing_series(const Stand& stand) {
 }
 
 TEST(FlightRejection, OfWhatStandsByGroundSpeedAndPosition) {
-    const auto stood = HasSubstr("it stood still or was carried");
+    const auto stood = HasSubstr("not moved or carried");
     EXPECT_THAT(why_none(standing_series({})), stood);
     EXPECT_THAT(why_none(standing_series({.speed_m_per_s = 4.9, .extent_m = 80.0})), stood);
     EXPECT_EQ(why_none(standing_series({.speed_m_per_s = 5.1, .extent_m = 80.0})), "1 sorties");
@@ -248,7 +248,7 @@ TEST(FlightRejection, IsWhatClimbsAtFlyingSpeedWhateverTheThrottleSays) {
     };
     const auto flown = phases_at(9.0);
     EXPECT_EQ(flown.sorties.size(), 1U);
-    EXPECT_THAT(flown.warnings, testing::Contains(HasSubstr("says that the motor is off from ")));
+    EXPECT_THAT(flown.warnings, testing::Contains(HasSubstr("the motor is off by ")));
     EXPECT_TRUE(phases_at(6.0).sorties.empty()) << "less than any wing flies at";
 }
 

@@ -17,7 +17,7 @@ using test::columns_of;
 using test::sortie;
 using testing::HasSubstr;
 
-/// A plain flight: 0.4 W on the ground, 30 to 45 W with the motor running; an estimator that settles before.
+/// A plain flight: 0.4 W on the ground, 30 to 45 W with the motor running; its estimator converged before.
 test::SampleColumns measured_flight() {
     std::vector<test::Point> points{{0, 0, 0}, {20, 0, 0}, {35, 50, 0}};
     for (const auto& point : sortie(100, 50.0)) points.push_back(point);
@@ -57,7 +57,7 @@ TEST(MotorRecord, TakesPowerWhereThereIsNoThrottle) {
     const auto phases = segment(test::series_of(columns));
     expect_same_phases(phases, expected);
     EXPECT_EQ(phases.motor_source, "power: idle 0.4 W, running 45.4 W");
-    EXPECT_THAT(phases.warnings, testing::Contains(HasSubstr("no throttle: the motor is taken to run above 4.9 W")));
+    EXPECT_THAT(phases.warnings, testing::Contains(HasSubstr("no throttle: the motor runs above 4.9 W")));
     EXPECT_THAT(phases.ground_events.at(0).what, HasSubstr("power at its idle"));
 }
 
@@ -77,7 +77,8 @@ TEST(MotorRecord, LeavesOutThrottleThatTheMotorDoesNotFollow) {
     }
     const auto phases = segment(test::series_of(columns));
     expect_same_phases(phases, expected);
-    EXPECT_THAT(phases.warnings, testing::Contains(HasSubstr("while the power stays at its idle: they were left out")));
+    EXPECT_THAT(phases.warnings,
+                testing::Contains(HasSubstr("of the throttle are removed: it is open, but the power idle")));
 }
 
 TEST(MotorRecord, TakesAThrottleWithoutPowerForAGlitchUpToTenSeconds) {
@@ -89,7 +90,7 @@ TEST(MotorRecord, TakesAThrottleWithoutPowerForAGlitchUpToTenSeconds) {
         }
         return segment(test::series_of(columns)).warnings;
     };
-    const auto glitch = testing::Contains(HasSubstr("while the power stays at its idle: they were left out"));
+    const auto glitch = testing::Contains(HasSubstr("of the throttle are removed: it is open, but the power idle"));
     EXPECT_THAT(opens_for(10.0), glitch);
     EXPECT_THAT(opens_for(12.0), Not(glitch));
 }
@@ -100,7 +101,7 @@ TEST(MotorRecord, SaysThatNothingTellsOfTheMotor) {
     columns.power_w.assign(columns.time_s.size(), 12.0);
     const auto phases = segment(test::series_of(columns));
     EXPECT_EQ(phases.motor_source, "nothing");
-    EXPECT_THAT(phases.warnings, testing::Contains(HasSubstr("no throttle: segmented by altitude alone")));
+    EXPECT_THAT(phases.warnings, testing::Contains(HasSubstr("no throttle: segmented by altitude only")));
     for (const auto& event : phases.ground_events) {
         EXPECT_THAT(event.what, testing::Not(HasSubstr("motor off"))) << "nobody measured that";
     }
@@ -119,8 +120,8 @@ TEST(MotorRecord, TakesTheMotorsSpeedWhereNeitherThrottleNorPowerTells) {
         const auto phases = segment(test::series_of(without));
         const bool turns = full_rpm > min_running_rpm;
         EXPECT_EQ(phases.motor_source, turns ? "series CSV: full 505 rpm" : "nothing");
-        EXPECT_THAT(phases.warnings, testing::Contains(HasSubstr(turns ? "the motor is taken to run by its speed"
-                                                                       : "segmented by altitude alone")));
+        EXPECT_THAT(phases.warnings,
+                    testing::Contains(HasSubstr(turns ? "the motor runs by its speed" : "segmented by altitude only")));
         if (turns) expect_same_phases(phases, expected);
     }
 }
@@ -135,7 +136,7 @@ TEST(MotorRecord, TakesAThrottleFromZeroToOneForAFraction) {
         expect_same_phases(segment(series), expected);
         EXPECT_EQ(select_track(series, "throttle_percent").value, columns_of_percent(series));
         EXPECT_THAT(warnings_of(series),
-                    testing::Contains(HasSubstr("runs from 0 to 0.9: it is taken for a fraction, 0 to 90 %")));
+                    testing::Contains(HasSubstr("is 0 to 0.9: it is read as a fraction, 0 to 90 %")));
     }
     // On the ground, with the motor off, it is what it says.
     auto columns = measured_flight();
@@ -151,7 +152,7 @@ TEST(MotorRecord, BelievesNoThrottleBeyondFull) {
     for (auto& throttle : columns.throttle_percent) throttle += 213.0;
     const auto phases = segment(test::series_of(columns));
     expect_same_phases(phases, expected);
-    EXPECT_THAT(phases.warnings, testing::Contains(HasSubstr("no throttle: the motor is taken to run above")));
+    EXPECT_THAT(phases.warnings, testing::Contains(HasSubstr("no throttle: the motor runs above")));
 }
 
 /// Two flights, of which the second has a throttle of 0: flown in manual mode.
@@ -173,11 +174,11 @@ TEST(MotorRecord, TakesPowerWhereTheThrottleIsThatOfManualMode) {
     EXPECT_NEAR(phases.sorties[1].start_s() - phases.sorties[0].start_s(), 600.0, 2.0);
     EXPECT_NEAR(phases.sorties[1].end_s() - phases.sorties[0].end_s(), 600.0, 2.0);
     EXPECT_THAT(phases.warnings,
-                testing::Contains(testing::AllOf(HasSubstr("is at idle while the power is that of a running motor ("),
-                                                 HasSubstr("the latter counts there"))));
+                testing::Contains(testing::AllOf(HasSubstr("is idle while the power is that of a running motor ("),
+                                                 HasSubstr("the latter is used there"))));
     // What stands, with power for its electronics, keeps its throttle.
     const auto standing = segment(manual_flight(3.9));
-    EXPECT_THAT(standing.warnings, Not(testing::Contains(HasSubstr("the latter counts there"))));
+    EXPECT_THAT(standing.warnings, Not(testing::Contains(HasSubstr("the latter is used there"))));
 }
 
 TEST(MotorRecord, TakesPowerFromHalfAMinuteOn) {
@@ -189,7 +190,7 @@ TEST(MotorRecord, TakesPowerFromHalfAMinuteOn) {
         }
         return segment(test::series_of(columns)).warnings;
     };
-    const auto counts = testing::Contains(HasSubstr("the latter counts there"));
+    const auto counts = testing::Contains(HasSubstr("the latter is used there"));
     EXPECT_THAT(with_power_for(28.0), Not(counts));
     EXPECT_THAT(with_power_for(33.0), counts);
 }
@@ -206,7 +207,7 @@ TEST(MotorRecord, TakesTheMotorsSpeedWhereTheThrottleIdlesAndPowerTellsNothing) 
         return segment(test::series_of(columns)).warnings;
     };
     const auto counts = testing::Contains(
-        testing::AllOf(HasSubstr("is at idle while the motor turns at"), HasSubstr("the latter counts there")));
+        testing::AllOf(HasSubstr("is idle while the motor turns at"), HasSubstr("the latter is used there")));
     EXPECT_THAT(turning_for(28.0), Not(counts));
     EXPECT_THAT(turning_for(33.0), counts);
 }
@@ -234,7 +235,7 @@ MotorRecord record_of(const std::vector<Section>& sections) {
 }
 
 /// Whether power shows when the motor runs.
-bool is_shown(const std::vector<Section>& sections) { return record_of(sections).sign == MotorIndicator::power; }
+bool is_shown(const std::vector<Section>& sections) { return record_of(sections).indicator == MotorIndicator::power; }
 
 TEST(MotorRecord, TakesPowerOfThreeTimesTheIdleOneAndTwoWattsMore) {
     EXPECT_TRUE(is_shown({{0, 2.0, 20}, {100, 6.1, 60}}));
@@ -273,12 +274,12 @@ TEST(MotorRecord, TakesATenthOfTheWayToRunningForIdleAndAQuarterForFlight) {
     const auto opens_at = [](double power_w) {
         return record_of({{0, 1, 20}, {100, 101, 60, 60}, {0, 1, 20}, {0, power_w, 5, 60}, {0, 1, 20}}).warnings;
     };
-    EXPECT_THAT(opens_at(10.5), testing::ElementsAre(HasSubstr("5 throttles say that the motor runs")));
+    EXPECT_THAT(opens_at(10.5), testing::ElementsAre(HasSubstr("5 samples of the throttle are removed")));
     EXPECT_THAT(opens_at(11.5), testing::IsEmpty());
     const auto flies_at = [](double power_w) {
         return record_of({{0, 1, 20}, {100, 101, 60, 60}, {100, power_w, 40}, {0, 1, 20}}).warnings;
     };
-    EXPECT_THAT(flies_at(26.5), testing::ElementsAre(HasSubstr("the latter counts there")));
+    EXPECT_THAT(flies_at(26.5), testing::ElementsAre(HasSubstr("the latter is used there")));
     EXPECT_THAT(flies_at(25.5), testing::IsEmpty());
 }
 

@@ -78,11 +78,11 @@ TEST(PhysicalBounds, AreKeptByTheChosenTrack) {
     series.tracks.push_back(altitude(heights));
     EXPECT_EQ(select_track(series, "altitude_m").value.size(), 99U);
     EXPECT_EQ(warnings_of(series).at(0),
-              "1 of 100 samples of altitude_m (ESTIMATOR.z) are left out: 1 beyond what can be");
+              "1 of 100 samples of altitude_m (ESTIMATOR.z) are removed: 1 beyond physical bounds");
 }
 
 std::size_t removed(const Track& track, const Track& throttle = {}) {
-    return track.value.size() - remove_outliers(track, {}, throttle).track().value.size();
+    return track.value.size() - remove_outliers(track, {}, throttle).track.value.size();
 }
 
 TEST(Outliers, AreSpikesOfPowerAndCurrent) {

@@ -1,7 +1,5 @@
 #include "flight/sources/power_source.h"
 
-#include "flight/sources/derived_tracks.h"
-
 #include <string>
 #include <vector>
 
@@ -13,30 +11,27 @@ namespace {
 struct Samples {
     int count;
     double power_w;
-    double product_w;       ///< voltage times current
-    double energy_w = 0.0;  ///< the other field, read as power
+    double product_w;  ///< voltage times current
 };
 
-/// A log with the three of them.
+/// A log with both of them.
 FlightSeries series_of(const std::vector<Samples>& samples) {
     FlightSeries series;
     series.tracks = {{.name = "power_w", .source = "ENERGY.power"},
-                     {.name = "power_w", .source = "ENERGY.voltage * ENERGY.current"},
-                     {.name = "power_w", .source = energy_read_as_power}};
-    for (const auto& [count, power_w, product_w, energy_w] : samples) {
+                     {.name = "power_w", .source = "ENERGY.voltage * ENERGY.current"}};
+    for (const auto& [count, power_w, product_w] : samples) {
         for (int i = 0; i < count; ++i) {
             const auto time_s = static_cast<double>(series.tracks[0].time_s.size());
             for (auto& track : series.tracks) track.time_s.push_back(time_s);
             series.tracks[0].value.push_back(power_w);
             series.tracks[1].value.push_back(product_w);
-            series.tracks[2].value.push_back(energy_w);
         }
     }
     return series;
 }
 
 bool takes_power(const std::vector<Samples>& samples) {
-    return select_power(series_of(samples)).track().source == "ENERGY.power";
+    return select_power(series_of(samples)).track.source == "ENERGY.power";
 }
 
 TEST(PowerSource, IsNotAPowerOfWhichMostSamplesAreAFifthAwayFromVoltageTimesCurrent) {
@@ -48,17 +43,6 @@ TEST(PowerSource, IsNotAPowerOfWhichMostSamplesAreAFifthAwayFromVoltageTimesCurr
     EXPECT_FALSE(takes_power({{10, 10.0, 20.0}}));
     EXPECT_TRUE(takes_power({{20, 5.0, 0.9}})) << "below 1 W rounding and offsets rule";
     EXPECT_FALSE(takes_power({{20, 5.0, 1.1}}));
-}
-
-TEST(PowerSource, IsExchangedWhereTheOtherFieldIsNearToVoltageTimesCurrentTwiceAsOften) {
-    const auto is_exchanged = [](const std::vector<Samples>& samples) {
-        return energy_and_power_are_swapped(series_of(samples));
-    };
-    EXPECT_TRUE(is_exchanged({{10, 7.0, 100.0, 105.9}}));
-    EXPECT_FALSE(is_exchanged({{10, 7.0, 100.0, 106.1}})) << "5 % and 1 W";
-    EXPECT_FALSE(is_exchanged({{9, 7.0, 100.0, 100.0}}));
-    EXPECT_TRUE(is_exchanged({{9, 100.0, 100.0, 100.0}, {11, 7.0, 100.0, 100.0}}));
-    EXPECT_FALSE(is_exchanged({{10, 100.0, 100.0, 100.0}, {10, 7.0, 100.0, 100.0}}));
 }
 
 TEST(PowerSource, IsContradictedInSamplesATenthAndAWattAwayFromVoltageTimesCurrent) {
