@@ -22,7 +22,7 @@ Json json_of(const live::LandingPrediction& landing) {
         {"remaining_s", landing.remaining_s},
         {"landing_s", landing.landing_s},
         {"energy_wh", landing.energy_wh},
-        {"interval_95_wh", {landing.energy_low_wh, landing.energy_high_wh}},
+        {"energy_wh_interval_95", {{"low", landing.energy_low_wh}, {"high", landing.energy_high_wh}}},
         {"total_energy_wh", landing.total_energy_wh},
         {"expected_power_w", landing.expected_power_w},
         {"soc_percent", json_of(landing.soc_percent)},
@@ -30,7 +30,7 @@ Json json_of(const live::LandingPrediction& landing) {
         {"voltage_v", json_of(landing.voltage_v)},
         {"fails_in_s", json_of(landing.fails_in_s)},
         {"reserve_in_s", json_of(landing.reserve_in_s)},
-        {"chance_below_reserve", json_of(landing.chance_below_reserve)},
+        {"probability_below_reserve", json_of(landing.chance_below_reserve)},
     };
 }
 
@@ -41,18 +41,19 @@ const char* name_of(live::FlightPhase phase) {
 
 std::string prediction_json(const live::PredictorState& now, std::span<const live::AlarmText> alarms, double start_s) {
     Json json{
+        {"format", 1},
         {"time_s", start_s + now.time_s},
         {"phase", name_of(now.phase)},
         {"landed", now.landed},
         {"began_in_air", now.began_in_air},
-        {"flight_s", now.flight_s},
+        {"flight_time_s", now.flight_s},
         {"energy_wh", json_of(now.energy_wh)},
         {"power_w", json_of(now.power_w)},
         {"voltage_v", json_of(now.voltage_v)},
         {"altitude_m", json_of(now.altitude_m)},
         {"soc_percent", json_of(now.soc_percent)},
         {"landing", now.landing ? json_of(*now.landing) : Json(nullptr)},
-        {"waits_for", now.waits_for},
+        {"no_prediction_reason", now.waits_for},
         {"alarms", Json::array()},
         {"dropped", now.dropped},
     };
@@ -65,11 +66,12 @@ std::string decision_json(const live::PredictorState& now, std::span<const live:
     for (const auto& component : runs)
         if (component.runs) run[std::string(component.name)] = component.quality;
     const Json json{
+        {"format", 1},
         {"time_s", start_s + now.time_s},
         {"run", run},
         {"utility_per_s", now.decision->utility_per_s},
         {"next_in_s", json_of(now.decision->next_in_s)},
-        {"rest_utility_per_s", json_of(now.decision->rest_utility)},
+        {"remaining_utility_per_s", json_of(now.decision->rest_utility)},
         {"keeps_reserve", now.decision->keeps_reserve},
         {"changes", now.decision->changes},
     };

@@ -9,6 +9,7 @@
 #include "batch/write_guard.h"
 #include "cli/output/fit_output.h"
 #include "cli/output/flight_options.h"
+#include "cli/output/json_document.h"
 #include "cli/output/physical_output.h"
 #include "cli/output/stage_options.h"
 #include "cli/screen_table.h"
@@ -131,16 +132,31 @@ void refuse_mix(const cli::StageCall& call, const batch::BatchFlights& flights, 
                     mix));
 }
 
-/// `json` of the model, if there is one, with what became of the logs.
-nlohmann::ordered_json with_logs(nlohmann::ordered_json json, const batch::BatchFlights& flights) {
-    json["logs"] = nlohmann::ordered_json::array();
-    for (const auto& flight : flights) {
-        json["logs"].push_back({{"flight", flight.record.flight},
-                                {"accepted", flight.record.accepted},
-                                {"was_up_to_date", flight.was_up_to_date},
-                                {"error", flight.record.error}});
-    }
-    return json;
+}  // namespace
+
+namespace flightwatt::batch {
+
+Fields<BatchFlight> record_fields(const BatchFlight*) {
+    using R = BatchFlight;
+    return {field("flight", at(&R::record, &FlightRecord::flight), "name of the flight"),
+            field("accepted", at(&R::record, &FlightRecord::accepted), "the log is usable"),
+            field("was_up_to_date", &R::was_up_to_date, "it was not read again"),
+            field("error", at(&R::record, &FlightRecord::error), "reason of a rejected log")};
+}
+
+}  // namespace flightwatt::batch
+
+namespace {
+
+/// JSON of the stage.
+struct BatchOutput {
+    const cli::FitOutput* fit = nullptr;
+    const batch::BatchFlights* logs = nullptr;
+};
+
+Fields<BatchOutput> record_fields(const BatchOutput*) {
+    using R = BatchOutput;
+    return list_fields<R>(embedded_if_any(at(&R::fit)), field("logs", &R::logs, "all logs of the folder"));
 }
 
 /// The table of the flights, or of the first 1000 of them.
@@ -213,7 +229,10 @@ int finish(const cli::StageCall& call, const BatchArguments& arguments, batch::B
                 cli::note(call, fmt::format("nothing was fitted; next: flightwatt fit {} -o MODEL.toml",
                                             cli::shell_quoted(options.out.string())));
             }
-            cli::print(call.json ? cli::json_text(with_logs({}, flights)) : shown);
+            if (call.json)
+                cli::print_json(call, BatchOutput{nullptr, &flights});
+            else
+                cli::print(shown);
             return exit_code(call, totals);
         }
         if (!arguments.flights.mix_aircraft) refuse_mix(call, flights, options.out);
@@ -227,12 +246,14 @@ int finish(const cli::StageCall& call, const BatchArguments& arguments, batch::B
         if (is_known) cli::note(call, "nothing has changed: the model is as it was");
         if (!is_known) write_model(fit, table, options);
         warn_of_model(call, fit.model);
-        auto json = cli::to_json(fit.model);
-        if (physical) json["physical"] = cli::physical_json(*physical);
-        const auto screen = screen_of(call);
-        cli::print(call.json ? cli::json_text(with_logs(std::move(json), flights))
-                             : shown + "\n" + screen_text(table, screen, {"Table I", {}}) +
-                                   (physical ? "\n" + cli::physical_text(*physical, screen) : ""));
+        if (call.json) {
+            const cli::FitOutput output{&fit.model, physical ? &*physical : nullptr};
+            cli::print_json(call, BatchOutput{&output, &flights});
+        } else {
+            const auto screen = screen_of(call);
+            cli::print(shown + "\n" + screen_text(table, screen, {"Table I", {}}) +
+                       (physical ? "\n" + cli::physical_text(*physical, screen) : ""));
+        }
     } catch (const std::exception&) {
         if (!call.json) cli::print(shown);
         throw;
@@ -333,6 +354,11 @@ any end, the same command continues where it stopped, with the same results.)"};
     stage.examples = {"flightwatt batch logs -o my",
                       "flightwatt batch logs -o my --aircraft 5 --since 2020-07-01 --prune"};
     stage.min_inputs = 0;  // or --files-from
+    stage.json_schema = [] {
+        auto schema = cli::document_schema<BatchOutput>();
+        schema["$defs"][batch::catalogue_name] = batch::catalogue_schema();
+        return schema;
+    };
     stage.uses_threads = stage.shows_table = true;
     stage.output_help = "the folder of the results";
     BatchArguments arguments;

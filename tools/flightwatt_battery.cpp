@@ -115,9 +115,8 @@ int identify(const cli::StageCall& call, const BatteryArguments& arguments) {
     if (left_out.empty()) cli::note(call, "a single flight: there is no other one to check the battery with");
     cli::write_result(call, cli::provenance(identified) + to_toml(identified.battery));
     if (call.json) {
-        auto json = cli::to_json(identified, left_out);
-        if (!left_out.empty()) json["folds"] = std::min(records.size(), folds);
-        cli::print(cli::json_text(json));
+        const auto groups = left_out.empty() ? std::nullopt : std::optional(std::min(records.size(), folds));
+        cli::print_json(call, cli::BatteryOutput{&identified, &left_out, groups});
     } else if (call.output) {
         const auto screen = screen_of(call);
         const cli::ScreenTable flights{
@@ -142,6 +141,7 @@ predict it. What was missing from the pack when a flight began is estimated with
 follows another, apparently on the same pack, is linked to it. Each flight's own resistance shows
 the pack's state of health. Flights whose current was computed from throttle are refused.)" +
             std::string(cli::several_flights_text)};
+    stage.json_schema = cli::document_schema<cli::BatteryOutput>;
     stage.examples = {"flightwatt battery my --capacity 2.2 -o pack.toml",
                       "flightwatt battery my/flights/*.csv --cells 3"};
     stage.reads_logs = stage.uses_threads = stage.shows_table = true;

@@ -20,15 +20,6 @@ namespace {
 
 using namespace flightwatt;
 
-std::string ranking_json(const std::vector<mission::MissionSummary>& ranking, bool sampled) {
-    auto list = nlohmann::ordered_json::array();
-    for (const auto& summary : ranking) {
-        list.push_back(cli::to_json(summary));
-        if (sampled && !summary.samples) list.back()["probability_below_reserve"] = nullptr;
-    }
-    return cli::json_text(list);
-}
-
 /// Runs a mission; one that is yet to be planned is planned first.
 mission::MissionSummary simulated_summary(const mission::MissionVariant& mission,
                                           const cli::SamplingArguments& arguments) {
@@ -50,15 +41,17 @@ Form form_of(const cli::StageCall& call) {
 }
 
 std::string ranking_text(const cli::StageCall& call, const std::vector<mission::MissionSummary>& ranking, Form form) {
-    if (form == Form::csv) return cli::comparison_csv(ranking);
-    const auto table = cli::comparison_table(ranking);
+    constexpr int digits = 10;
+    const auto missions = cli::ranked_missions(ranking);
+    if (form == Form::csv) return csv_of(missions, digits);
+    const auto table = table_of(missions);
     if (form == Form::markdown) return to_markdown(table);
     const auto screen = call.output ? cli::Screen() : screen_of(call);
     const auto count = ranking.size();
     return screen_text(table, screen,
                        {fmt::format("{} mission{}, the one with most charge left first", count, count == 1 ? "" : "s"),
-                        {"rank", "mission", "final_soc_percent", "probability_below_reserve", "utility", "energy_wh",
-                         "duration_s", "depleted_at_s", "cut_off_at_s"}});
+                        {"rank", "mission", "final state of charge [%]", "probability below reserve", "utility",
+                         "energy [Wh]", "duration [s]", "empty at [s]", "cut off at [s]"}});
 }
 
 /// Notes and warnings beyond the table.
@@ -102,7 +95,7 @@ int compare_missions(const cli::StageCall& call, const cli::SamplingArguments& a
     }
     const auto ranking = ranked(std::move(summaries));
     cli::write_result(call, ranking_text(call, ranking, form));
-    if (call.json) cli::print(ranking_json(ranking, is_sampled));
+    if (call.json) cli::print_json(call, cli::MissionComparison{cli::ranked_missions(ranking)});
     for (const auto& mission : missions)
         if (!call.json) cli::note_power_model(call, setup_of(mission));
     return explain(call, ranking, is_sampled);
@@ -117,6 +110,7 @@ int flightwatt::stages::compare_stage(int argc, char** argv) {
 lasts longer comes first. A mission without a schedule is planned first, one with an adaptive policy in
 flight. --json lists the summaries in that order. -o FILE.md writes the table as Markdown, -o FILE.csv as CSV
 with all digits.)"};
+    stage.json_schema = cli::document_schema<cli::MissionComparison>;
     stage.examples = {"flightwatt compare missions/paper/*.toml",
                       "flightwatt compare a.toml b.toml --samples 2000 -o ranking.csv"};
     stage.uses_threads = stage.shows_table = true;

@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/overwrite_guard.h"
+#include "cli/output/json_document.h"
 #include "cli/stage.h"
 #include "flight/load_flight.h"
 #include "stages.h"
@@ -24,8 +25,6 @@
 namespace {
 
 using namespace flightwatt;
-
-using Json = nlohmann::ordered_json;
 
 /// A binary log as text, and its content in numbers.
 struct ConvertedLog {
@@ -96,33 +95,58 @@ std::vector<std::string> warnings_of(const ConvertedLog& log, const std::string&
     return warnings;
 }
 
-Json json_of(const std::map<std::uint16_t, std::size_t>& ids) {
-    auto list = Json::array();
-    for (const auto& [number, frames] : ids)
-        list.push_back({{"class", number / 256}, {"id", number % 256}, {"frames", frames}});
-    return list;
+/// Frames of a message by its number.
+struct FrameCount {
+    int message_class = 0;
+    int id = 0;
+    std::size_t frames = 0;
+};
+
+Fields<FrameCount> record_fields(const FrameCount*) {
+    using R = FrameCount;
+    return {field("class", &R::message_class, "class of the message"), field("id", &R::id, "id of the message"),
+            field("frames", &R::frames, "number of frames")};
 }
 
-Json summary(const flight::FlightFile& file, const ConvertedLog& log, const std::vector<std::string>& warnings) {
-    const auto& counts = log.counts;
-    return {{"log", file.path().string()},
-            {"definitions", file.log_file().string()},
-            {"framing", to_string(counts.framing.value())},
-            {"link", to_string(counts.version.value())},
-            {"bytes", counts.bytes},
-            {"frames", counts.frames},
-            {"messages", log.lines},
-            {"unknown", json_of(counts.unknown_ids)},
-            {"other_lengths", json_of(counts.other_length_ids)},
-            {"other_frames", counts.non_message_frames},
-            {"skipped_bytes", counts.skipped_bytes},
-            {"skipped_parts", counts.skipped_runs},
-            {"zero_bytes", counts.padding_bytes},
-            {"untimed", log.untimed},
-            {"senders", log.senders},
-            {"start_s", log.start_s ? Json(*log.start_s) : Json()},
-            {"end_s", log.start_s ? Json(log.end_s) : Json()},
-            {"warnings", warnings}};
+std::vector<FrameCount> frame_counts(const std::map<std::uint16_t, std::size_t>& ids) {
+    std::vector<FrameCount> all;
+    for (const auto& [number, frames] : ids) all.push_back({number / 256, number % 256, frames});
+    return all;
+}
+
+/// JSON of the stage.
+struct ConvertOutput {
+    const flight::FlightFile* file = nullptr;
+    const ConvertedLog* log = nullptr;
+    const std::vector<std::string>* warnings = nullptr;
+};
+
+Fields<ConvertOutput> record_fields(const ConvertOutput*) {
+    using R = ConvertOutput;
+    using L = ConvertedLog;
+    using C = decltype(L::counts);
+    const auto name = [](const auto& value) { return std::string(to_string(value)); };
+    const auto senders = [](const auto& ids) { return std::vector<int>(ids.begin(), ids.end()); };
+    const auto end_s = [](const L& log) { return log.start_s ? std::optional(log.end_s) : std::nullopt; };
+    return {field("log", at(&R::file, &flight::FlightFile::path), "the binary log"),
+            field("definitions", at(&R::file, &flight::FlightFile::log_file), "the `.log` with the messages"),
+            field("framing", at(&R::log, &L::counts, &C::framing, name), "`SD card`, `link` or `XBee`"),
+            field("link", at(&R::log, &L::counts, &C::version, name), "`pprzlink v1` or `pprzlink v2`"),
+            field("bytes", at(&R::log, &L::counts, &C::bytes), "bytes of the log"),
+            field("frames", at(&R::log, &L::counts, &C::frames), "frames with a valid checksum"),
+            field("messages", at(&R::log, &L::lines), "messages written"),
+            field("unknown", at(&R::log, &L::counts, &C::unknown_ids, frame_counts), "undefined messages"),
+            field("length_mismatches", at(&R::log, &L::counts, &C::other_length_ids, frame_counts),
+                  "messages with another length than defined"),
+            field("non_message_frames", at(&R::log, &L::counts, &C::non_message_frames), "as an XBee's status"),
+            field("skipped_bytes", at(&R::log, &L::counts, &C::skipped_bytes), "bytes outside of frames"),
+            field("skipped_runs", at(&R::log, &L::counts, &C::skipped_runs), "runs of such bytes"),
+            field("padding_bytes", at(&R::log, &L::counts, &C::padding_bytes), "zero bytes that pad the log"),
+            field("untimed", at(&R::log, &L::untimed), "messages before the first `TIMESTAMP`, ignored"),
+            field("senders", at(&R::log, &L::senders, senders), "ids of the senders"),
+            field("start_s", at(&R::log, &L::start_s), "first message"),
+            field("end_s", at(&R::log, end_s), "last message"),
+            field("warnings", &R::warnings, "warnings")};
 }
 
 /// NAME.log for NAME.data, if the binary log has a valid one that is not this file already.
@@ -188,7 +212,7 @@ int convert(const cli::StageCall& call, const ConvertArguments& arguments) {
     if (!file.log_error().empty()) warnings.push_back(file.log_error());
     for (const auto& warning : warnings) cli::warn(call, fmt::format("{}: {}", path.string(), warning));
     if (call.json) {
-        cli::print(cli::json_text(summary(file, converted, warnings)));
+        cli::print_json(call, ConvertOutput{&file, &converted, &warnings});
     } else {
         print_summary(call, file, converted);
     }
@@ -202,6 +226,7 @@ int flightwatt::stages::convert_stage(int argc, char** argv) {
         "convert", "LOG",
         R"(Writes a binary log as text, as Paparazzi's sd2log does: the .LOG or .tlm of an SD card, or a capture
 of a serial line, of UDP or of an XBee (also .gz, .bz2, .xz, .zst). With -o NAME.data, NAME.log is
+    stage.json_schema = cli::document_schema<ConvertOutput>;
 written next to it if the log has one. All stages also read the binary log itself, with the same
 results.)"};
     stage.max_inputs = 1;

@@ -88,14 +88,14 @@ int show_difference(const cli::StageCall& call) {
         kind == ComparedKind::missions ? cli::Differences{kind, mission_differences(call)} : compare_models(call, kind);
     const auto screen = screen_of(call);
     if (screen.is_terminal && !call.output && !call.json) {
-        const auto table = difference_table(differences, ".4g");
+        const auto table = difference_table(differences);
         cli::print(screen_text(table, screen,
                                {fmt::format("{} against {}", b, a),
                                 {"part", "quantity", "a", "b", "difference", "low", "high", "differs", "at_s"}}));
     } else {
-        cli::write_result(call, to_csv(difference_table(differences, "")));
+        cli::write_result(call, differences_csv(differences));
     }
-    if (call.json) cli::print(cli::json_text(to_json(differences)));
+    if (call.json) cli::print_json(call, differences);
     if (kind != ComparedKind::missions) note_differences(call, differences.rows);
     return cli::ok;
 }
@@ -112,6 +112,7 @@ rest on narrow the intervals. Differences of missions are exact; if both state t
 duration, energies and final charge are those of 95 of 100 flights drawn for both (basis flights).)"};
     stage.min_inputs = 2;
     stage.max_inputs = 2;
+    stage.json_schema = cli::document_schema<cli::Differences>;
     stage.examples = {"flightwatt diff before.toml after.toml",
                       "flightwatt diff missions/a.toml missions/b.toml -o diff.csv"};
     stage.uses_threads = stage.shows_table = true;

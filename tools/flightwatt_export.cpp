@@ -5,6 +5,7 @@
 #include "base/units.h"
 #include "cli/output/battery_output.h"
 #include "cli/output/flight_options.h"
+#include "cli/output/json_document.h"
 #include "cli/output/mission_output.h"
 #include "cli/output/stage_options.h"
 #include "cli/stage.h"
@@ -178,12 +179,28 @@ ExportRequest read_export_request(const cli::StageCall& call, const ExportArgume
     return request;
 }
 
-/// The result, with notes and facts on it.
+/// The result, and its JSON.
 struct Exported {
     std::string text;
     std::vector<std::string> notes = {};
-    cli::Json facts = nlohmann::ordered_json::object();
+    std::optional<std::size_t> points = {};
+    std::optional<std::size_t> segments = {};
+    std::optional<std::string> clock = {};
+    std::optional<std::size_t> rows = {};
+    std::vector<std::string> inputs = {};
+    std::string format = {};
 };
+
+Fields<Exported> record_fields(const Exported*) {
+    using R = Exported;
+    return {field("inputs", &R::inputs, "files"),
+            field("format", &R::format, "format, as of `--format`"),
+            field("notes", &R::notes, "what is missing or assumed"),
+            field("points", &R::points, "of a track: positions", optional_key{}),
+            field("parts", &R::segments, "of a track: lines", optional_key{}),
+            field("clock", &R::clock, "of a track: origin of the date, `log`, `name` or `none`", optional_key{}),
+            field("rows", &R::rows, "of `csv`: rows", optional_key{})};
+}
 
 Exported export_track(const cli::StageCall& call, const ExportArguments& arguments, const std::string& file,
                       const std::string& format) {
@@ -198,9 +215,9 @@ Exported export_track(const cli::StageCall& call, const ExportArguments& argumen
                   : format == "kml"   ? to_kml(track, colour)
                                       : to_gpx(track, colour);
     constexpr std::array clocks{"log", "name", "none"};
-    result.facts = {{"points", track.points.size()},
-                    {"parts", coloured_segments(track, colour).size()},
-                    {"clock", clocks.at(static_cast<std::size_t>(track.clock))}};
+    result.points = track.points.size();
+    result.segments = coloured_segments(track, colour).size();
+    result.clock = clocks.at(static_cast<std::size_t>(track.clock));
     if (track.clock == exchange::TrackClock::name)
         result.notes.push_back(file + ": no .log contains the date: that of its name is used, as UTC");
     if (track.clock == exchange::TrackClock::none)
@@ -218,14 +235,14 @@ Exported export_columns(const cli::StageCall& call, const ExportArguments& argum
         if (!table.left_out.empty())
             result.notes.push_back(
                 fmt::format("{}: {} holds no numbers in {}", file, *message, short_list(table.left_out)));
-        result.facts = {{"rows", table.rows}};
+        result.rows = table.rows;
         result.text = std::move(table.csv);
         return result;
     }
     options.flight_required = false;
     options.power_required = false;
     result.text = exchange::series_table(cli::load_flight(call, file, options).series);
-    result.facts = {{"rows", std::ranges::count(result.text, '\n') - 1}};
+    result.rows = static_cast<std::size_t>(std::ranges::count(result.text, '\n') - 1);
     return result;
 }
 
@@ -313,13 +330,13 @@ Exported exported(const cli::StageCall& call, const ExportArguments& arguments, 
 
 int export_inputs(const cli::StageCall& call, const ExportArguments& arguments) {
     const auto [format, inputs] = read_export_request(call, arguments);
-    const auto result = exported(call, arguments, inputs, format);
+    auto result = exported(call, arguments, inputs, format);
     cli::write_result(call, result.text);
     for (const auto& note : result.notes) cli::note(call, note);
     if (!call.json) return cli::ok;
-    cli::Json json{{"inputs", call.inputs}, {"format", format}, {"notes", result.notes}};
-    json.update(result.facts);
-    cli::print(cli::json_text(json));
+    result.inputs = call.inputs;
+    result.format = format;
+    cli::print_json(call, result);
     return cli::ok;
 }
 
@@ -333,6 +350,7 @@ int flightwatt::stages::export_stage(int argc, char** argv) {
 autopilots' estimators (px4, inav, paparazzi, paparazzi-map), from a model and a battery or from a mission. Of models,
 missions and the folder OUT of flightwatt batch: tables (latex). The form is that of FILE's ending
 (.geojson, .kml, .gpx, .csv, .json, .h, .params: px4, .tex) or of --format.)"};
+    stage.json_schema = cli::document_schema<Exported>;
     stage.examples = {"flightwatt export flight.data -o flight.kml",
                       "flightwatt export model.toml pack.toml --format px4"};
     stage.reads_logs = stage.uses_threads = true;

@@ -73,10 +73,7 @@ int fit(const cli::StageCall& call, FitStageArguments arguments) {
     cli::write_result(call, to_toml(fitted.model));
     warn_of_model(call, fitted.model);
     if (call.json) {
-        auto json = cli::to_json(fitted.model);
-        cli::add_errors_json(json, fitted.model);
-        if (physical) json["physical"] = cli::physical_json(*physical);
-        cli::print(cli::json_text(json));
+        cli::print_json(call, cli::FitOutput{&fitted.model, physical ? &*physical : nullptr, true});
     } else if (call.output) {
         const auto screen = screen_of(call);
         const cli::ScreenTable shown{fmt::format("{}: Table I of {} flights", fitted.model.name, flights.size()), {}};
@@ -96,6 +93,7 @@ int flightwatt::stages::fit_stage(int argc, char** argv) {
 frequency for all flights, averaged over the flights with weights. The model goes to the standard output
 as TOML; with -o it goes to the file and Table I is shown.)" +
             std::string(cli::several_flights_text)};
+    stage.json_schema = cli::document_schema<cli::FitOutput>;
     stage.examples = {"flightwatt fit my -o model.toml --table table1.tex",
                       "flightwatt fit my --since 2020-07-01 --model-kind physical -o model.toml"};
     stage.reads_logs = stage.uses_threads = stage.shows_table = true;

@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "cli/output/json_document.h"
 #include "cli/output/stage_options.h"
 #include "cli/stage.h"
 #include "stages.h"
@@ -16,6 +17,19 @@
 namespace {
 
 using namespace flightwatt;
+
+/// JSON of the stage.
+struct InitOutput {
+    std::filesystem::path folder;
+    std::vector<std::string> folders;
+    std::filesystem::path commands;
+};
+
+Fields<InitOutput> record_fields(const InitOutput*) {
+    using R = InitOutput;
+    return {field("folder", &R::folder, "the new folder"), field("folders", &R::folders, "folders in it"),
+            field("commands", &R::commands, "file with the commands")};
+}
 
 constexpr std::array<const char*, 3> folders{"logs", "fits", "missions"};
 
@@ -58,8 +72,7 @@ int make_folder(const cli::StageCall& call, const std::optional<double>& capacit
     for (const auto* folder : folders) make_directories(root / folder);
     write_file_atomically(list, list_of_commands(capacity_ah));
     if (call.json) {
-        cli::Json json{{"folder", root.string()}, {"folders", folders}, {"commands", list.string()}};
-        cli::print(cli::json_text(json));
+        cli::print_json(call, InitOutput{root, {folders.begin(), folders.end()}, list});
     } else {
         cli::print(fmt::format(
             "{0}/logs      put each flight's .data and .log here\n"
@@ -79,6 +92,7 @@ int flightwatt::stages::init_stage(int argc, char** argv) {
         R"(Lays out a folder for an aircraft: logs/, fits/, missions/, and a Makefile with the five commands that lead from
 logs to a report. Folders that are there stay; a Makefile that is there is not replaced, and then nothing is
 made.)"};
+    stage.json_schema = cli::document_schema<InitOutput>;
     stage.max_inputs = 1;
     stage.output_help = "write the list of commands to FILE instead of DIR/Makefile";
     stage.examples = {"flightwatt init my --capacity 2.2", "flightwatt init my -o my/commands.mk"};

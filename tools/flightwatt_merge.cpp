@@ -5,7 +5,7 @@
 #include "batch/batch_fit.h"
 #include "batch/merge.h"
 #include "batch/write_guard.h"
-#include "cli/output/records.h"
+#include "cli/output/json_document.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
@@ -23,43 +23,94 @@
 namespace {
 
 using namespace flightwatt;
-using Json = nlohmann::ordered_json;
 
-/// The result as JSON.
-Json json_of(const cli::StageCall& call, const batch::MergePlan& plan, const batch::BatchFlights& flights,
-             const std::vector<batch::DuplicateFlight>& copies) {
-    const auto accepted = std::ranges::count_if(flights, [](const auto& flight) { return flight.record.accepted; });
-    Json json{{"folder", *call.output},
-              {"batches", Json::array()},
-              {"flights", flights.size()},
-              {"accepted", accepted},
-              {"rejected", static_cast<std::ptrdiff_t>(flights.size()) - accepted},
-              {"already_there", std::ranges::count(flights, true, &batch::BatchFlight::was_up_to_date)},
-              {"renamed", Json::array()},
-              {"repeated_logs", plan.duplicate_logs},
-              {"copies", Json::array()}};
-    for (std::size_t i = 0; i < plan.flights_per_batch.size(); ++i)
-        json["batches"].push_back({{"folder", call.inputs[i]}, {"flights", plan.flights_per_batch[i]}});
-    for (std::size_t i = 0; i < flights.size(); ++i) {
-        const auto& [from, before] = plan.sources[i];
-        const auto& name = plan.folder.logs[i].flight;
-        if (before != name) json["renamed"].push_back({{"folder", from}, {"before", before}, {"flight", name}});
-    }
-    for (const auto& [flight, same_as, has_power] : copies)
-        if (has_power) json["copies"].push_back({{"flight", flight}, {"same_as", same_as}});
-    return json;
+struct MergedBatch {
+    std::string folder;
+    std::size_t flights = 0;
+};
+
+Fields<MergedBatch> record_fields(const MergedBatch*) {
+    using R = MergedBatch;
+    return {field("folder", &R::folder, "folder of the batch", column{"batch"}),
+            field("flights", &R::flights, "its flights", column{})};
 }
 
-/// The result as text.
-std::string text_of(const cli::StageCall& call, const Json& json) {
-    auto folders = json["batches"];
-    folders.push_back({{"folder", json["folder"]}, {"flights", json["flights"]}});
-    return screen_text(cli::table_of(folders, {"folder: batch", "flights"}), screen_of(call), {"merged", {}}) +
+struct RenamedFlight {
+    std::string folder;
+    std::string before;
+    std::string flight;
+};
+
+Fields<RenamedFlight> record_fields(const RenamedFlight*) {
+    using R = RenamedFlight;
+    return {field("folder", &R::folder, "folder of the batch"), field("before", &R::before, "name there"),
+            field("flight", &R::flight, "new name")};
+}
+
+struct CopiedFlight {
+    std::string flight;
+    std::string same_as;
+};
+
+Fields<CopiedFlight> record_fields(const CopiedFlight*) {
+    using R = CopiedFlight;
+    return {field("flight", &R::flight, "a duplicate, which is not fitted"),
+            field("same_as", &R::same_as, "the flight that is fitted")};
+}
+
+/// JSON of the stage.
+struct MergeOutput {
+    std::string folder;
+    std::vector<MergedBatch> batches = {};
+    std::size_t flights = 0;
+    std::size_t accepted = 0;
+    std::size_t rejected = 0;
+    std::size_t already_there = 0;
+    std::vector<RenamedFlight> renamed = {};
+    std::size_t repeated_logs = 0;
+    std::vector<CopiedFlight> copies = {};
+};
+
+Fields<MergeOutput> record_fields(const MergeOutput*) {
+    using R = MergeOutput;
+    return {field("folder", &R::folder, "folder of all flights"),
+            field("batches", &R::batches, "the merged batches"),
+            field("flights", &R::flights, "flights of the folder"),
+            field("accepted", &R::accepted, "usable logs"),
+            field("rejected", &R::rejected, "rejected logs"),
+            field("already_there", &R::already_there, "flights whose files were up to date"),
+            field("renamed", &R::renamed, "flights whose name was taken"),
+            field("repeated_logs", &R::repeated_logs, "logs of several batches"),
+            field("copies", &R::copies, "duplicates of other flights")};
+}
+
+MergeOutput merge_output(const cli::StageCall& call, const batch::MergePlan& plan, const batch::BatchFlights& flights,
+                         const std::vector<batch::DuplicateFlight>& copies) {
+    MergeOutput output{.folder = *call.output, .flights = flights.size(), .repeated_logs = plan.duplicate_logs};
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        if (flights[i].record.accepted) ++output.accepted;
+        if (flights[i].was_up_to_date) ++output.already_there;
+        const auto& [from, before] = plan.sources[i];
+        const auto& name = plan.folder.logs[i].flight;
+        if (before != name) output.renamed.push_back({from, before, name});
+    }
+    output.rejected = flights.size() - output.accepted;
+    for (std::size_t i = 0; i < plan.flights_per_batch.size(); ++i)
+        output.batches.push_back({call.inputs[i], plan.flights_per_batch[i]});
+    for (const auto& [flight, same_as, has_power] : copies)
+        if (has_power) output.copies.push_back({flight, same_as});
+    return output;
+}
+
+/// The same as text.
+std::string text_of(const cli::StageCall& call, const MergeOutput& output) {
+    auto folders = output.batches;
+    folders.push_back({output.folder, output.flights});
+    return screen_text(table_of(folders), screen_of(call), {"merged", {}}) +
            fmt::format(
                "{} accepted, {} rejected; {} renamed, {} were there already, {} of logs that were in another "
                "batch too\n",
-               json["accepted"].dump(), json["rejected"].dump(), json["renamed"].size(), json["already_there"].dump(),
-               json["repeated_logs"].dump());
+               output.accepted, output.rejected, output.renamed.size(), output.already_there, output.repeated_logs);
 }
 
 /// Removes a model in the folder: it was fitted to other flights.
@@ -99,8 +150,11 @@ int merge(const cli::StageCall& call, bool prune) {
                                     count, flight, other, count > 1 ? ", ..." : ""));
     }
     write_file_atomically(out / batch::catalogue_name, batch::catalogue_csv(flights), out / batch::temporary_folder);
-    const auto json = json_of(call, plan, flights, copies);
-    cli::print(call.json ? cli::json_text(json) : text_of(call, json));
+    const auto output = merge_output(call, plan, flights, copies);
+    if (call.json)
+        cli::print_json(call, output);
+    else
+        cli::print(text_of(call, output));
     cli::note(call, fmt::format("next: flightwatt fit {} -o MODEL.toml", cli::shell_quoted(out.string())));
     return cli::ok;
 }
@@ -116,6 +170,7 @@ from and in whatever order they were joined. The logs are not read. Files are ha
 file system has them, else copies. A log that is in several folders is taken once; flights of one
 name get the names NAME, NAME_2, ... by the paths of their logs. Nothing is fitted: flightwatt fit does that.
 Nothing in OUT is replaced or removed but what OUT/batch.json lists as a batch's.)"};
+    stage.json_schema = cli::document_schema<MergeOutput>;
     stage.shows_table = true;
     stage.output_help = "the folder of the results";
     stage.examples = {"flightwatt merge part1 part2 -o all", "flightwatt merge part* -o all --prune"};

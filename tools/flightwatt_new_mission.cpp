@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "battery/battery.h"
+#include "cli/output/json_document.h"
 #include "cli/output/mission_output.h"
 #include "cli/stage.h"
 #include "compute/profile_reader.h"
@@ -18,6 +19,20 @@
 namespace {
 
 using namespace flightwatt;
+
+/// JSON of the stage.
+struct NewMissionOutput {
+    std::string mission;
+    std::vector<std::string> components;
+    bool planned = false;
+};
+
+Fields<NewMissionOutput> record_fields(const NewMissionOutput*) {
+    using R = NewMissionOutput;
+    return {field("mission", &R::mission, "name of the mission"),
+            field("components", &R::components, "names of the components"),
+            field("planned", &R::planned, "its schedule is made by `plan`")};
+}
 
 /// A file as a mission in `folder` names it.
 std::string named_from(const std::filesystem::path& folder, const std::filesystem::path& file) {
@@ -80,10 +95,9 @@ int write_new_mission(const cli::StageCall& call, const NewMissionArguments& arg
     cli::write_result(call, text);
     cli::warn_of_setup(call, setup_of(read));
     if (call.json) {
-        cli::Json json{{"mission", fresh.name}, {"components", cli::Json::array()}};
-        for (const auto& component : fresh.components) json["components"].push_back(component.name);
-        json["planned"] = fresh.is_planned;
-        cli::print(cli::json_text(json));
+        NewMissionOutput output{fresh.name, {}, fresh.is_planned};
+        for (const auto& component : fresh.components) output.components.push_back(component.name);
+        cli::print_json(call, output);
     } else if (call.output) {
         cli::note(call, fmt::format("{} is written; next: flightwatt {} {}", file.string(),
                                     fresh.is_planned ? "plan" : "simulate", cli::shell_quoted(file.string())));
@@ -98,6 +112,7 @@ int flightwatt::stages::new_mission_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "new-mission", "--model MODEL.toml --battery PACK.toml [--profile P.csv]...",
         R"(Writes a mission file to begin with, for that aircraft, pack and software. It simulates as it is: each
+    stage.json_schema = cli::document_schema<NewMissionOutput>;
 component runs at the middle of what was profiled, and 20 % of charge are kept in reserve. It contains every other key of a
 mission as a comment, with its meaning and an example. An existing file is not replaced.)"};
     stage.min_inputs = 0;

@@ -1,6 +1,7 @@
 // flightwatt parse: a Paparazzi log to the series CSV of its power samples.
 
 #include "cli/output/flight_options.h"
+#include "cli/output/json_document.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "flight/flight_identity.h"
@@ -15,20 +16,31 @@ namespace {
 
 using namespace flightwatt;
 
-using Json = nlohmann::ordered_json;
+/// JSON of the stage.
+struct ParseOutput {
+    const flight::LoadedFlight* loaded = nullptr;
+    std::string power_source;
+    std::size_t samples = 0;
+    std::optional<double> start_s, end_s, median_interval_s;
+};
 
-Json summary(const flight::LoadedFlight& loaded, const flight::Track& power) {
-    const auto& series = loaded.series;
-    return {{"flight", series.flight},
-            {"aircraft_id", series.aircraft_id},
-            {"aircraft_name", series.aircraft_name},
-            {"power_source", power.source},
-            {"samples", power.time_s.size()},
-            {"start_s", power.empty() ? Json() : Json(power.time_s.front())},
-            {"end_s", power.empty() ? Json() : Json(power.time_s.back())},
-            {"usual_interval_s", power.empty() ? Json() : Json(flight::median_interval_s(power.time_s))},
-            {"sources", loaded.sources},
-            {"warnings", loaded.warnings}};
+Fields<ParseOutput> record_fields(const ParseOutput*) {
+    using R = ParseOutput;
+    using L = flight::LoadedFlight;
+    using S = flight::FlightSeries;
+    const auto sources = [](const L& loaded) {
+        return Keyed<std::string>(loaded.sources.begin(), loaded.sources.end());
+    };
+    return {field("flight", at(&R::loaded, &L::series, &S::flight), "name of the flight"),
+            field("aircraft_id", at(&R::loaded, &L::series, &S::aircraft_id), "id of the aircraft"),
+            field("aircraft_name", at(&R::loaded, &L::series, &S::aircraft_name), "name of the aircraft"),
+            field("power_source", &R::power_source, "message of the power"),
+            field("samples", &R::samples, "power samples"),
+            field("start_s", &R::start_s, "first power sample"),
+            field("end_s", &R::end_s, "last power sample"),
+            field("median_interval_s", &R::median_interval_s, "between power samples"),
+            field("sources", at(&R::loaded, sources), "message of each track"),
+            field("warnings", at(&R::loaded, &L::warnings), "warnings")};
 }
 
 int parse(const cli::StageCall& call, flight::LoadOptions options) {
@@ -45,7 +57,13 @@ int parse(const cli::StageCall& call, flight::LoadOptions options) {
                       rows});
     const auto power = power_track(series);
     if (call.json) {
-        cli::print(cli::json_text(summary(loaded, power)));
+        ParseOutput output{&loaded, power.source, power.time_s.size(), {}, {}, {}};
+        if (!power.empty()) {
+            output.start_s = power.time_s.front();
+            output.end_s = power.time_s.back();
+            output.median_interval_s = flight::median_interval_s(power.time_s);
+        }
+        cli::print_json(call, output);
         return cli::ok;
     }
     const auto samples =
@@ -68,6 +86,7 @@ int flightwatt::stages::parse_stage(int argc, char** argv) {
         R"(Reads a Paparazzi log with its .log, .data or the .LOG of an SD card (also .gz, .bz2, .xz, .zst), and
 writes its data on the flight as a series file (CSV): power, voltage, current, charge, energy, throttle,
 altitude, position, speeds, wind, attitude, mode and block, each at the times when it was logged.
+    stage.json_schema = cli::document_schema<ParseOutput>;
 Any stage reads the series file as it reads the log, with the same results.)"};
     stage.max_inputs = 1;
     stage.examples = {"flightwatt parse flight.data -o flight.csv",

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "cli/output/flight_options.h"
+#include "cli/output/json_document.h"
 #include "cli/output/mission_output.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
@@ -19,6 +20,38 @@ namespace {
 
 using namespace flightwatt;
 
+/// JSON of a mission's path.
+struct PathOutput {
+    std::string mission;
+    double length_m = 0.0;
+    double duration_s = 0.0;
+    double mechanical_energy_wh = 0.0;
+    double mechanical_w = 0.0;
+};
+
+Fields<PathOutput> record_fields(const PathOutput*) {
+    using R = PathOutput;
+    return {field("mission", &R::mission, "name of the mission"),
+            field("length_m", &R::length_m, "of legs and circles over ground"),
+            field("duration_s", &R::duration_s, "duration of the cruise"),
+            field("mechanical_energy_wh", &R::mechanical_energy_wh, "energy of the cruise"),
+            field("mechanical_w", &R::mechanical_w, "mean power of the cruise")};
+}
+
+/// JSON of --path-from.
+struct FlightPathOutput {
+    std::string flight;
+    std::size_t waypoints = 0;
+    double duration_s = 0.0;
+};
+
+Fields<FlightPathOutput> record_fields(const FlightPathOutput*) {
+    using R = FlightPathOutput;
+    return {field("flight", &R::flight, "name of the flight"),
+            field("waypoints", &R::waypoints, "number of the waypoints"),
+            field("duration_s", &R::duration_s, "duration of the cruise")};
+}
+
 constexpr int digits = 10;
 
 void print_summary(const cli::StageCall& call, const mission::MissionSetup& mission, double length_m) {
@@ -30,11 +63,7 @@ void print_summary(const cli::StageCall& call, const mission::MissionSetup& miss
                                     length_m / 1000.0, duration_text(duration_s), energy_wh, mean_power_w(cruise)));
         return;
     }
-    cli::print(cli::json_text({{"mission", mission.name},
-                               {"length_m", length_m},
-                               {"duration_s", duration_s},
-                               {"mechanical_energy_wh", energy_wh},
-                               {"mechanical_w", mean_power_w(cruise)}}));
+    cli::print_json(call, PathOutput{mission.name, length_m, duration_s, energy_wh, mean_power_w(cruise)});
 }
 
 int show_path(const cli::StageCall& call) {
@@ -88,8 +117,7 @@ int take_path(const cli::StageCall& call, flight::LoadOptions options, const std
     }
     write_csv_result(call, csv.text(), {loaded.series.flight + ": where it flew", {}});
     if (call.json) {
-        cli::print(cli::json_text(
-            {{"flight", loaded.series.flight}, {"waypoints", path.waypoints.size()}, {"duration_s", duration_s}}));
+        cli::print_json(call, FlightPathOutput{loaded.series.flight, path.waypoints.size(), duration_s});
     } else {
         cli::note(call, fmt::format("{}: {} waypoints of a cruise of {}, each with how long the way there took: a "
                                     "mission that is to fly them in another wind leaves duration_s out",
@@ -118,6 +146,7 @@ int flightwatt::stages::path_stage(int argc, char** argv) {
 length_m, course_deg, airspeed_m_per_s, climb_m_per_s, load_factor, mechanical_w.
 With --path-from the path of a log's cruise instead, as waypoints for a mission (waypoints = "FILE" in
 [path]): a place every 30 s, with the airspeed on the way there and how long it took.)"};
+    stage.json_schema = cli::document_schema<PathOutput, FlightPathOutput>;
     stage.min_inputs = 0;
     stage.max_inputs = 1;
     stage.examples = {"flightwatt path mission.toml", "flightwatt path --path-from flight.data -o waypoints.csv"};

@@ -24,6 +24,39 @@ namespace {
 
 using namespace flightwatt;
 
+/// JSON of --longest-cruise and --largest-payload.
+struct PlanLimit {
+    const mission::MissionSetup* mission = nullptr;
+    std::string key;
+    const mission::FeasibilityLimit* limit = nullptr;
+    std::optional<double> probability;
+};
+
+Fields<PlanLimit> record_fields(const PlanLimit*) {
+    using R = PlanLimit;
+    using L = mission::FeasibilityLimit;
+    const auto result = [](const std::string& key, const char* description) {
+        const auto value = [key](const R& r) { return r.key == key ? std::optional(r.limit->value) : std::nullopt; };
+        return field(key, value, description, optional_key{});
+    };
+    const auto margin = [](const R& r) {
+        return r.probability ? std::optional(r.limit->margin_percent) : std::nullopt;
+    };
+    return list_fields<R>(
+        field("mission", at(&R::mission, &mission::MissionSetup::name), "name of the mission"),
+        result("longest_cruise_s", "longest feasible cruise"),
+        result("most_circles", "with a path with circles: their largest number"),
+        result("farthest_return_m", "with another path: distance along its legs, out and back"),
+        result("largest_payload_w", "largest constant power of a payload"),
+        field("final_soc_percent", at(&R::limit, &L::final_soc_percent), "at the end"),
+        field("reserve_soc_percent", at(&R::mission, &mission::MissionSetup::reserve_soc_percent), "reserve"),
+        field("probability", &R::probability, "probability to keep the reserve", optional_key{}),
+        field("margin_percent", margin, "above the reserve, for the probability", optional_key{}),
+        embedded_if_any([](const R& r) { return r.limit->sources ? &*r.limit->sources : nullptr; }),
+        field("residual_percent", at(&R::limit, &L::residual_percent), "above reserve and margin"),
+        field("limited_by", at(&R::limit, &L::limited_by), "limiting factor"));
+}
+
 /// A mission file and its text: it may be read several times, and is written again with its schedule.
 struct MissionFile {
     std::filesystem::path path;
@@ -73,9 +106,7 @@ void note_sources(const cli::StageCall& call, const PlanArguments& arguments, co
     const auto report = infeasibility_report(
         problem, plan, [&](double cruise_s) { return file.read_with_cruise(cruise_s); }, arguments.probability);
     if (call.json) {
-        auto json = cli::to_json(plan, problem.setup);
-        json["shortfall"] = cli::to_json(report);
-        cli::print(cli::json_text(json));
+        cli::print_json(call, cli::PlanOutput{&plan, &problem.setup, &report});
     }
     throw NoResultError(fmt::format("{}: {}", problem.setup.name, describe(problem.setup, report)));
 }
@@ -99,7 +130,7 @@ int make_plan(const cli::StageCall& call, const PlanArguments& arguments, const 
     cli::write_result(call, fmt::format("# {}\n", cli::one_line(text)) + planned.text);
     cli::warn_of_lost_comments(call, planned);
     if (call.json) {
-        cli::print(cli::json_text(cli::to_json(plan, problem->setup)));
+        cli::print_json(call, cli::PlanOutput{&plan, &problem->setup});
     } else {
         cli::note(call, text);
         cli::note_power_model(call, problem->setup);
@@ -134,7 +165,7 @@ int print_limit(const cli::StageCall& call, const PlanArguments& arguments, cons
     const auto value = fmt::format("{:.6f} {}\n", most.value, unit);
     cli::write_result(call, in_minutes ? duration_text(most.value) + "\n" : value);
     if (call.json) {
-        cli::print(cli::json_text(json));
+        cli::print_json(call, PlanLimit{&mission, question, &most, probability(call)});
     } else {
         const auto kept = arguments.probability ? fmt::format("reserve {:.4f} % and {:.4f} points of margin",
                                                               mission.reserve_soc_percent, most.margin_percent)
@@ -181,6 +212,7 @@ of any other. The result is the mission with that schedule, for simulate and com
 one that demands least energy. On a battery whose voltage falls with its charge (model = "thevenin"), or with a
 cut-off voltage, the battery is simulated for each candidate schedule.)"};
     stage.max_inputs = 1;
+    stage.json_schema = cli::document_schema<cli::PlanOutput, PlanLimit>;
     stage.examples = {"flightwatt plan mission.toml -o planned.toml",
                       "flightwatt plan mission.toml --longest-cruise --probability 0.95"};
     stage.uses_threads = true;

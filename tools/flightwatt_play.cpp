@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/signal_watch.h"
+#include "cli/output/json_document.h"
 #include "cli/stage.h"
 #include "live/playback.h"
 #include "stages.h"
@@ -71,13 +72,25 @@ class OutputTarget : public live::PlaybackTarget {
     bool has_reader_ = true;
 };
 
-cli::Json json_of(const live::PlaybackReport& report) {
-    cli::Json left_out = nlohmann::ordered_json::object();
-    for (const auto& [reason, lines] : report.left_out) left_out[reason] = lines;
-    return {{"messages", report.messages}, {"left_out", left_out},        {"shortened_gaps", report.shortened_gaps},
-            {"log_s", report.log_s},       {"played_s", report.played_s}, {"latest_s", report.max_delay_s},
-            {"stopped", report.stopped}};
+}  // namespace
+
+namespace flightwatt::live {
+
+Fields<PlaybackReport> record_fields(const PlaybackReport*) {
+    using R = PlaybackReport;
+    const auto skipped = [](const R& r) { return Keyed<std::size_t>(r.left_out.begin(), r.left_out.end()); };
+    return {field("messages", &R::messages, "messages sent"),
+            field("skipped", skipped, "lines that were not sent, by reason"),
+            field("shortened_gaps", &R::shortened_gaps, "gaps of more than ten minutes, played as ten minutes"),
+            field("log_s", &R::log_s, "played time of the log"),
+            field("played_s", &R::played_s, "time that it took"),
+            field("max_delay_s", &R::max_delay_s, "largest delay of a message"),
+            field("stopped", &R::stopped, "ended by a signal")};
 }
+
+}  // namespace flightwatt::live
+
+namespace {
 
 void print_report(const cli::StageCall& call, const PlayArguments& arguments, const live::PlaybackReport& report) {
     for (const auto& [reason, lines] : report.left_out)
@@ -86,7 +99,7 @@ void print_report(const cli::StageCall& call, const PlayArguments& arguments, co
         cli::note(call, fmt::format("{} gap{} of more than {:.0f} s played as so long", report.shortened_gaps,
                                     report.shortened_gaps == 1 ? "" : "s", live::max_played_gap_s));
     }
-    if (call.json) cli::print(cli::json_text(json_of(report)));
+    if (call.json) cli::print_json(call, report);
     const auto text = fmt::format("{} messages, {:.1f} s of the log, played in {:.1f} s{}\n", report.messages,
                                   report.log_s, report.played_s, report.stopped ? ": stopped" : "");
     if (call.output || arguments.to != "-") return cli::write_result(call, text);
@@ -129,6 +142,7 @@ bench for software that runs during a flight. The log is text or binary. Targets
 (Paparazzi's link frames, a datagram each), serial:DEVICE:BAUD (the same on a serial line), ivy:ADDRESS:PORT (a
 replay on an Ivy bus, in the form of Paparazzi's log player), file:NAME.data (a file that grows), - (the standard
 output).)"};
+    stage.json_schema = cli::document_schema<live::PlaybackReport>;
     stage.max_inputs = 1;
     stage.output_help = "write how it was played to FILE instead of the standard output";
     stage.examples = {"flightwatt play flight.data --to udp:127.0.0.1:4242 --speed 10",

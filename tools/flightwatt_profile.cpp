@@ -42,20 +42,42 @@ compute::ProfileNaming naming_of(const ProfileArguments& arguments) {
     return naming;
 }
 
+/// A profile of --check-interpolation.
+struct CheckedProfile {
+    std::string file;
+    std::size_t nodes = 0;
+    compute::LeaveOneOutErrors errors;
+};
+
+Fields<CheckedProfile> record_fields(const CheckedProfile*) {
+    using R = CheckedProfile;
+    return {field("file", &R::file, "file of the profile"), field("nodes", &R::nodes, "its nodes"),
+            field("leave_one_out", &R::errors, "errors of the interpolation")};
+}
+
+/// JSON of --check-interpolation.
+struct CheckOutput {
+    std::vector<CheckedProfile> profiles;
+};
+
+Fields<CheckOutput> record_fields(const CheckOutput*) {
+    return {field("profiles", &CheckOutput::profiles, "profiles")};
+}
+
 int check_interpolation(const cli::StageCall& call, const ProfileArguments& arguments) {
     std::string text;
     const auto screen = call.output ? cli::Screen() : screen_of(call);
-    auto json = nlohmann::ordered_json::array();
+    CheckOutput output;
     for (const auto& file : call.inputs) {
         const auto profile = read_power_profile(file, naming_of(arguments));
         if (const auto negative = negative_power_warning(profile); !negative.empty()) cli::warn(call, negative);
         const auto error = compute::leave_one_out(profile);
         if (!text.empty()) text += "\n";
         text += cli::interpolation_text(file, profile.power_w.size(), error, screen);
-        json.push_back({{"file", file}, {"nodes", profile.power_w.size()}, {"leave_one_out", cli::to_json(error)}});
+        output.profiles.push_back({file, profile.power_w.size(), error});
     }
     cli::write_result(call, text);
-    if (call.json) cli::print(cli::json_text(json));
+    if (call.json) cli::print_json(call, output);
     return cli::ok;
 }
 
@@ -90,7 +112,7 @@ int conclude(const cli::StageCall& call, const compute::ProfileOutcome& outcome,
              const compute::ProfileSpecification& specification) {
     write_profiles(outcome, specification, *call.output);
     if (call.json) {
-        cli::print(cli::json_text(cli::to_json(outcome, specification.above_idle)));
+        cli::print_json(call, cli::ProfileOutput{outcome, specification.above_idle});
     } else {
         cli::print(cli::profile_text(outcome, specification.above_idle, screen_of(call)));
     }
@@ -141,6 +163,7 @@ again while their part of SPEC is the same; remove DIR when a program itself has
 
 Samplers: auto, ina238, ina3221 (either of ina3221-iio, ina3221-hwmon), rapl, power_supply, command, recorded.)"};
     stage.output_help = "the folder of the results";
+    stage.json_schema = cli::document_schema<cli::ProfileOutput, CheckOutput>;
     stage.examples = {"flightwatt profile detector.toml -o profiles",
                       "flightwatt profile --check-interpolation profiles/detector.csv"};
     stage.shows_table = true;

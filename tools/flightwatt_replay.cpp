@@ -60,7 +60,7 @@ int replay(const cli::StageCall& call, const ReplayArguments& arguments) {
     if (replays.replays.empty()) throw NoResultError("no mission could be flown on any flight");
     if (call.output) cli::write_result(call, cli::replay_csv(replays.replays));
     if (call.json)
-        cli::print(cli::json_text(cli::to_json(replays)));
+        cli::print_json(call, replays);
     else
         cli::print(cli::replay_text(replays.replays, screen_of(call)));
     return cli::ok;
@@ -85,6 +85,7 @@ Where no plan keeps the reserve, the schedule of minimum energy is flown, and th
 the utility of hindsight minus that of the schedule; schedules that do not keep the reserve have none. At the
 end replanning in flight is compared with planning beforehand. -o writes the table of schedules as CSV.)" +
             std::string(cli::several_flights_text)};
+    stage.json_schema = cli::document_schema<mission::Replays>;
     stage.examples = {"flightwatt replay my --mission mission.toml",
                       "flightwatt replay my --mission a.toml --mission b.toml -o replays.csv"};
     stage.reads_logs = stage.uses_threads = stage.shows_table = true;

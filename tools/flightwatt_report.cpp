@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "cli/output/json_document.h"
 #include "cli/output/mission_output.h"
 #include "cli/output/stage_options.h"
 #include "cli/stage.h"
@@ -115,9 +116,9 @@ int write_page(const cli::StageCall& call, const ReportArguments& arguments) {
     if (web) write_figure_files(call, arguments, content.sections, *web);
     if (wants_page) cli::write_result(call, page_html(head, content.sections, *web));
     if (!call.json) return cli::ok;
-    cli::Json json{{"title", head.title}};
-    json.update(content.summary);
-    cli::print(cli::json_text(json));
+    auto summary = content.summary;
+    summary["title"] = head.title;
+    cli::print(cli::json_text(cli::json_document(call, summary)));
     return cli::ok;
 }
 
@@ -131,6 +132,7 @@ validation, battery; of several folders each its own) and of missions (software,
 of service, plan). Its figures are Vega-Lite specifications with their data; --figures writes them as files
 for papers: .vl.json, .svg (by node) and .pdf (where rsvg-convert is). The model is the batch's own, with
 the bands that the batch stored.)"};
+    stage.json_schema = [] { return cli::json_schema({report::summary_schema()}); };
     stage.examples = {"flightwatt report my missions/first.toml -o report.html",
                       "flightwatt report my --figures figures --figure-width 3.5in"};
     stage.uses_threads = true;

@@ -3,6 +3,7 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "cli/output/flight_options.h"
+#include "cli/output/json_document.h"
 #include "cli/output/segment_output.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
@@ -29,7 +30,7 @@ struct SegmentedFlights {
     std::string title;
     std::string csv;
     std::string explained;
-    cli::Json json = nlohmann::ordered_json::array();
+    cli::SegmentOutput json;
 };
 
 /// The rows of a CSV behind a first cell with their flight; its header where `csv` has none yet.
@@ -58,7 +59,8 @@ void add_flight(const cli::StageCall& call, const std::string& file, const fligh
         append_rows(flight::phases_csv(series, phases), series.flight, segmented.csv);
     else
         segmented.csv = flight::phases_csv(series, phases);
-    if (call.json) segmented.json.push_back(cli::to_json(series, phases, power, loaded.warnings));
+    if (call.json)
+        segmented.json.flights.push_back(record_json(cli::SegmentedFlight{&series, &phases, &power, &loaded.warnings}));
     if (!segmented.explains) return;
     if (segmented.are_several)
         segmented.explained += (segmented.explained.empty() ? "" : "\n") + segmented.title + "\n";
@@ -109,7 +111,7 @@ int segment_flights(const cli::StageCall& call, flight::LoadOptions options, boo
                            "samples", "gaps", "complete", "start_altitude_m", "end_altitude_m"}});
     }
     if (call.json) {
-        cli::print(cli::json_text(segmented.are_several ? segmented.json : segmented.json.front()));
+        cli::print_json(call, segmented.json);
     } else if (explain) {
         cli::print(segmented.explained);
     }
@@ -125,8 +127,9 @@ int flightwatt::stages::segment_stage(int argc, char** argv) {
 lift-off until the height held is reached, cruise, landing from where that height is left until
 touchdown. TAKEOFF messages, mode and block are shown with each edge for comparison; they are not used.
 A log without measured power is segmented too; its columns of power are then empty. Of several logs, or of
-a FOLDER of logs or of flightwatt batch, each row begins with its flight, and --json is a list. A log that
+a FOLDER of logs or of flightwatt batch, each row begins with its flight. A log that
 cannot be used is named and skipped, and the exit code is then 3.)"};
+    stage.json_schema = cli::document_schema<cli::SegmentOutput>;
     stage.examples = {"flightwatt segment flight.data", "flightwatt segment logs --explain --aircraft 5 -o phases.csv"};
     stage.reads_logs = stage.shows_table = true;
     flight::LoadOptions load;

@@ -63,7 +63,7 @@ int simulate_mission(const cli::StageCall& call, const SimulateArguments& argume
     write_csv_result(call, to_csv(flight.simulation.curve),
                      {summary.mission, {"time_s", "phase", "soc_percent", "power_w"}, rows});
     if (call.json) {
-        cli::print(cli::json_text(cli::to_json(summary)));
+        cli::print_json(call, summary);
     } else {
         cli::note(call, describe(summary));
         cli::note_power_model(call, setup_of(mission));
@@ -85,6 +85,7 @@ delivered_energy_wh, depleted_at_s, cut_off_at_s (null: never), feasible, keeps_
 A mission with [policy] kind = "adaptive" is replanned in flight. --samples draws flights and reports
 their final state of charge; the CSV stays that of the mission as it is stated.)"};
     stage.max_inputs = 1;
+    stage.json_schema = cli::document_schema<mission::MissionSummary>;
     stage.shows_table = true;
     stage.examples = {"flightwatt simulate mission.toml -o soc.csv",
                       "flightwatt simulate mission.toml --samples 2000 --json"};

@@ -5,6 +5,7 @@
 #include "base/duration_text.h"
 #include "base/error.h"
 #include "base/overwrite_guard.h"
+#include "cli/output/json_document.h"
 #include "cli/stage.h"
 #include "mechanical/mechanical_model.h"
 #include "stages.h"
@@ -26,6 +27,25 @@
 namespace {
 
 using namespace flightwatt;
+
+struct WrittenLog {
+    std::string flight;
+    std::size_t bytes = 0;
+};
+
+Fields<WrittenLog> record_fields(const WrittenLog*) {
+    return {field("flight", &WrittenLog::flight, "name of the flight"),
+            field("bytes", &WrittenLog::bytes, "size of the log")};
+}
+
+/// JSON of the stage.
+struct SynthesizeOutput {
+    std::vector<WrittenLog> flights;
+};
+
+Fields<SynthesizeOutput> record_fields(const SynthesizeOutput*) {
+    return {field("flights", &SynthesizeOutput::flights, "logs that were written")};
+}
 
 synthetic::SyntheticFlight make_flight(const flight::PerPhase<mechanical::PhaseModel>& phases,
                                        std::mt19937_64& random) {
@@ -169,7 +189,7 @@ int synthesize(const cli::StageCall& call, SynthesizeArguments arguments) {
     register_logs(call, arguments);
     make_directories(*call.output);
     const auto flights = draw_flights(model, count, seed, arguments.spread);
-    cli::Json written = nlohmann::ordered_json::array();
+    SynthesizeOutput output;
     for (std::size_t i = 0; i < count; ++i) {
         std::mt19937_64 random(seed + 1000 * (i + 1));
         const auto flight = make_flight(flights[i], random);
@@ -181,10 +201,10 @@ int synthesize(const cli::StageCall& call, SynthesizeArguments arguments) {
                 fmt::format("Made by flightwatt synthesize: model {}, flight {} of {}, seed {}{}{}.", model.name, i + 1,
                             count, seed, anomaly_name.empty() ? "" : ", anomaly ", anomaly_name);
             const auto bytes = write_log(call, arguments, scenario_with_anomaly(flight, anomaly), identity, log_seed);
-            written.push_back({{"flight", identity.name}, {"bytes", bytes}});
+            output.flights.push_back({identity.name, bytes});
         }
     }
-    if (call.json) cli::print(cli::json_text({{"flights", written}}));
+    if (call.json) cli::print_json(call, output);
     return cli::ok;
 }
 
@@ -196,6 +216,7 @@ int flightwatt::stages::synthesize_stage(int argc, char** argv) {
         R"(Writes synthetic Paparazzi logs (.log and .data) of flights whose power follows a mechanical model, with
 sensor noise, lost lines, durations and power that vary between flights. The files are marked as
 synthetic. The same seed gives the same files.)"};
+    stage.json_schema = cli::document_schema<SynthesizeOutput>;
     stage.max_inputs = 1;
     stage.output_help = "the folder to write into";
     stage.examples = {"flightwatt synthesize model.toml -o logs --flights 12 --seed 7",

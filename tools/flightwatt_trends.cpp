@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "batch/trend.h"
 #include "cli/output/flight_options.h"
-#include "cli/output/records.h"
+#include "cli/output/json_document.h"
 #include "cli/output/stage_options.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
@@ -25,7 +25,6 @@
 namespace {
 
 using namespace flightwatt;
-using Json = nlohmann::ordered_json;
 
 struct TrendsArguments {
     std::optional<double> capacity_ah;
@@ -53,58 +52,76 @@ std::vector<report::FlightTrendData> read_flights(const cli::StageCall& call, co
         });
 }
 
-Json flight_json(const report::FlightTrendData& flight) {
-    const auto& facts = flight.facts;
-    Json json{{"flight", flight.name},
-              {"aircraft", flight.aircraft},
-              {"date", facts.date},
-              {"in_air_s", facts.in_air_s},
-              {"energy_wh", cli::optional_json(facts.energy_wh)},
-              {"distance_m", cli::optional_json(facts.distance_m)},
-              {"air_distance_m", cli::optional_json(facts.air_distance_m)}};
-    for (const auto& [name, title, of] : report::trend_quantities()) json[name] = cli::optional_json(of(flight));
-    json["resistance_interval_ohm"] =
-        flight.resistance ? Json::array({flight.resistance->interval_ohm.low, flight.resistance->interval_ohm.high})
-                          : Json(nullptr);
-    json["capacity_interval_ah"] =
-        flight.capacity_ah ? Json::array({flight.capacity_interval_ah.low, flight.capacity_interval_ah.high})
-                           : Json(nullptr);
-    json["charge_ah"] = cli::optional_json(flight.charge_ah);
-    return json;
-}
+}  // namespace
 
-std::string flights_csv(const std::vector<report::FlightTrendData>& flights) {
-    std::vector<std::string_view> columns{"flight",    "aircraft",   "date",          "in_air_s",
-                                          "energy_wh", "distance_m", "air_distance_m"};
-    for (const auto& quantity : report::trend_quantities()) columns.emplace_back(quantity.name);
-    columns.insert(
-        columns.end(),
-        {"resistance_interval_ohm/0: resistance_low_ohm", "resistance_interval_ohm/1: resistance_high_ohm",
-         "capacity_interval_ah/0: capacity_low_ah", "capacity_interval_ah/1: capacity_high_ah", "charge_ah"});
-    return cli::csv_of(cli::list_json(flights, flight_json), columns);
-}
+namespace flightwatt::report {
 
-Json trends_json(const std::vector<report::FlightTrendData>& flights,
-                 const std::vector<report::AircraftTrend>& trends) {
-    Json json{{"flights", cli::list_json(flights, flight_json)}, {"trends", Json::array()}};
-    for (const auto& row : trends) {
-        Json item{{"aircraft", row.aircraft}, {"quantity", row.quantity}};
-        const auto& trend = row.answer.trend;
-        item["dated_flights"] = trend ? Json(trend->flights) : Json(nullptr);
-        item["median"] = trend ? Json(trend->median) : Json(nullptr);
-        const bool knows_unit = trend && !row.level_is_guess;
-        item["per_day"] = knows_unit ? Json(trend->per_day) : Json(nullptr);
-        item["per_day_interval"] = knows_unit ? Json::array({trend->low_per_day, trend->high_per_day}) : Json(nullptr);
-        const auto relative = trend ? relative_trend(*trend) : std::nullopt;
-        item["percent_per_day"] = relative ? Json(relative->per_day) : Json(nullptr);
-        item["percent_per_day_interval"] =
-            relative ? Json::array({relative->low_per_day, relative->high_per_day}) : Json(nullptr);
-        item["level_is_guess"] = row.level_is_guess;
-        item["significant"] = trend ? Json(is_significant(*trend)) : Json(nullptr);
-        item["why_not"] = row.answer.no_trend_reason;
-        json["trends"].push_back(std::move(item));
+Fields<FlightTrendData> record_fields(const FlightTrendData*) {
+    using R = FlightTrendData;
+    using S = FlightSummary;
+    const auto capacity = [](const R& r) {
+        return r.capacity_ah ? std::optional(r.capacity_interval_ah) : std::nullopt;
+    };
+    Fields<R> quantities;
+    for (const auto& [key, title, value] : trend_quantities()) {
+        const auto get = [of = value](const R& r) { return of(r); };
+        quantities.push_back(field(key, get, title, csv_column{}));
     }
-    return json;
+    return list_fields<R>(
+        field("flight", &R::name, "name of the flight", csv_column{}),
+        field("aircraft_id", &R::aircraft_id, "id of the aircraft", csv_column{}),
+        field("aircraft_name", &R::aircraft_name, "name of the aircraft", csv_column{}),
+        field("date", at(&R::facts, &S::date), "UTC of the log's clock, or of its name", csv_column{}),
+        field("in_air_s", at(&R::facts, &S::in_air_s), "of all sorties", csv_column{}),
+        field("energy_wh", at(&R::facts, &S::energy_wh), "in the air", csv_column{}),
+        field("distance_m", at(&R::facts, &S::distance_m), "over ground", csv_column{}),
+        field("air_distance_m", at(&R::facts, &S::air_distance_m), "through the air", csv_column{}),
+        std::move(quantities),
+        field("resistance_ohm_interval_95", at(&R::resistance, &battery::FlightResistance::interval_ohm), "",
+              csv_column{}),
+        field("capacity_ah_interval_95", capacity, "without the error of the level", csv_column{}),
+        field("charge_ah", &R::charge_ah, "drawn from the pack", csv_column{}));
+}
+
+Fields<AircraftTrend> record_fields(const AircraftTrend*) {
+    using R = AircraftTrend;
+    using T = batch::Trend;
+    using A = batch::TrendResult;
+    const auto interval = [](const T& trend) { return Interval{trend.low_per_day, trend.high_per_day}; };
+    const auto absolute = [](const R& row) { return row.level_is_guess ? std::nullopt : row.answer.trend; };
+    const auto relative = [](const R& row) {
+        return row.answer.trend ? relative_trend(*row.answer.trend) : std::nullopt;
+    };
+    const auto of = [](auto trend, auto step) {
+        return [=](const R& row) { return record_detail::follow(trend(row), step); };
+    };
+    return {field("aircraft_id", &R::aircraft_id, "id of the aircraft"),
+            field("aircraft_name", &R::aircraft_name, "name of the aircraft"),
+            field("quantity", &R::quantity, "key of `flights[]`"),
+            field("dated_flights", at(&R::answer, &A::trend, &T::flights), "flights of the trend"),
+            field("median", at(&R::answer, &A::trend, &T::median), "of these flights"),
+            field("per_day", of(absolute, &T::per_day), "slope; null if `level_is_guess`"),
+            field("per_day_interval_95", of(absolute, interval)),
+            field("percent_per_day", of(relative, &T::per_day), "slope over the median"),
+            field("percent_per_day_interval_95", of(relative, interval)),
+            field("level_is_guess", &R::level_is_guess, "of a capacity: its level is from the chart"),
+            field("significant", at(&R::answer, &A::trend, batch::is_significant), "the interval excludes 0"),
+            field("no_trend_reason", at(&R::answer, &A::no_trend_reason), "reason without a trend")};
+}
+
+}  // namespace flightwatt::report
+
+namespace {
+
+/// JSON of the stage.
+struct TrendsOutput {
+    const std::vector<report::FlightTrendData>* flights = nullptr;
+    const std::vector<report::AircraftTrend>* trends = nullptr;
+};
+
+Fields<TrendsOutput> record_fields(const TrendsOutput*) {
+    return {field("flights", &TrendsOutput::flights, "flights by aircraft and date"),
+            field("trends", &TrendsOutput::trends, "trends by aircraft and quantity")};
 }
 
 void note_trends(const cli::StageCall& call, const std::vector<report::FlightTrendData>& flights,
@@ -164,12 +181,12 @@ int show_trends(const cli::StageCall& call, const TrendsArguments& arguments) {
     for (const auto& note : add_state_of_health(flights, max_records, arguments.capacity_ah)) cli::note(call, note);
     const auto trends = trends_of(flights);
     const auto screen = screen_of(call);
-    write_csv_result(call, flights_csv(flights),
+    write_csv_result(call, csv_of(flights),
                      {fmt::format("{} flight{}", flights.size(), flights.size() == 1 ? "" : "s"),
                       {"flight", "date", "energy_wh_per_min", "energy_wh_per_km", "cruise_power_w", "resistance_ohm",
                        "capacity_ah", "charge_ah"}});
     if (call.json)
-        cli::print(cli::json_text(trends_json(flights, trends)));
+        cli::print_json(call, TrendsOutput{&flights, &trends});
     else if (call.output || screen.is_terminal)
         cli::print(screen_text(trend_table(trends), screen, {"trends", {"quantity", "verdict", "in 30 days"}}));
     note_trends(call, flights, trends);
@@ -187,6 +204,7 @@ through the air, the mean power of its cruise, the pack's resistance, its capaci
 determine it, and the charge drawn, as CSV; and their trends over the flights' dates, with 95 % intervals, for
 each aircraft. A flight that is in two folders of batch counts once.)" +
             std::string(cli::several_flights_text)};
+    stage.json_schema = cli::document_schema<TrendsOutput>;
     stage.examples = {"flightwatt trends my -o trends.csv",
                       "flightwatt trends season1 season2 --capacity 2.2 --figures figures"};
     stage.reads_logs = stage.uses_threads = stage.shows_table = true;

@@ -76,11 +76,7 @@ int validate_flights(const cli::StageCall& call, const ValidateArguments& argume
     if (const auto rejected = remove_rejected(validated); !rejected.empty()) cli::note(call, rejected);
     const auto screen = call.output ? cli::Screen() : screen_of(call);
     cli::write_result(call, cli::validation_text(validated, at_s.has_value(), screen));
-    if (call.json) {
-        auto json = cli::scores_json(validated);
-        json["folds"] = std::min(flights.size(), folds);
-        cli::print(cli::json_text(json));
-    }
+    if (call.json) cli::print_json(call, cli::ValidationOutput{validated, std::min(flights.size(), folds)});
     return cli::ok;
 }
 
@@ -100,12 +96,13 @@ With --at S: S seconds after its lift-off a flight has measured its energy up to
 the cruise and the landing are predicted, by the models above as before the flight, and by
   in_flight           the cruise level shrunk between model and flight (see flightwatt predict)
   in_flight_constant  the same about the model's mean power
-  in_flight_path      the physical model at this flight's own level, on the airspeed and climb of the
+  in_flight_physical      the physical model at this flight's own level, on the airspeed and climb of the
                       rest as they were flown, as if they had been known
 Errors in percent are parts of the phase's measured energy, the flown part included; none for landing,
 whose power is near zero. Bias is predicted less measured. physical is rejected, and not shown,
 where the mean power predicts better.)" +
             std::string(cli::several_flights_text)};
+    stage.json_schema = cli::document_schema<cli::ValidationOutput>;
     stage.examples = {"flightwatt validate my", "flightwatt validate my --at 120 --json"};
     stage.reads_logs = stage.uses_threads = stage.shows_table = true;
     ValidateArguments arguments;

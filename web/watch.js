@@ -22,7 +22,7 @@
   const rows = {
     now: [
       ["phase", (s) => s.phase + (s.began_in_air ? " (watched from the air on)" : "")],
-      ["in the air", (s) => minutes(s.flight_s)],
+      ["in the air", (s) => minutes(s.flight_time_s)],
       ["energy so far", (s) => number(s.energy_wh, 3, "Wh")],
       ["power", (s) => `${number(s.power_w, 1, "W")}, expected ${number(s.expected_power_w, 1, "W")}`],
       ["voltage", (s) => number(s.voltage_v, 2, "V")],
@@ -30,21 +30,21 @@
       ["state of charge", (s) => `${number(s.battery?.soc_percent, 1, "%")} by charge, ${number(s.battery?.soc_by_voltage_percent, 1, "%")} by voltage`],
     ],
     landing: [
-      ["energy to the landing", (s) => (s.prediction ? s.energyAhead : s.waits_for ? `waits for: ${s.waits_for}` : "\u2013")],
+      ["energy to the landing", (s) => (s.prediction ? s.energyAhead : s.no_prediction_reason ? `no prediction: ${s.no_prediction_reason}` : "\u2013")],
       ["at landing", (s) => s.atLanding],
       ["reserve in", (s) => minutes(s.battery?.reserve_in_s)],
-      ["chance of landing below it", (s) => number(s.battery?.chance_below_reserve == null ? null : 100 * s.battery.chance_below_reserve, 1, "%")],
+      ["probability of landing below it", (s) => number(s.battery?.probability_below_reserve == null ? null : 100 * s.battery.probability_below_reserve, 1, "%")],
       ["turn home", (s) => (!s.turn_home ? "\u2013" : s.turn_home.latest_in_s === null ? "too late to keep the reserve" : s.turn_home.path_can_be_flown ? "home from anywhere on the path" : `within ${minutes(s.turn_home.latest_in_s)}`)],
     ],
     schedule: [
       ["runs now", (s) => runText(s.decision?.run)],
       ["next", (s) => (s.decision?.next ? `${runText(s.decision.next)} in ${number(s.decision.next_in_s, 0, "s")}` : "\u2013")],
-      ["utility to the end", (s) => number(s.decision?.rest_utility_per_s, 3, "a second")],
+      ["utility to the end", (s) => number(s.decision?.remaining_utility_per_s, 3, "a second")],
       ["changes so far", (s) => s.decision?.changes ?? "\u2013"],
     ],
     link: [
       ["messages", (s) => s.messages],
-      ["silent for", (s) => number(s.silent_s, 0, "s")],
+      ["silent for", (s) => number(s.time_since_message_s, 0, "s")],
       ["restarts", (s) => s.restarts],
       ["not used", (s) => Object.entries(s.unusable).map(([reason, count]) => `${count} ${reason}`).join("; ") || "nothing"],
       ["other senders", (s) => Object.entries(s.others).map(([name, count]) => `${name} (${count})`).join(", ") || "none"],
@@ -63,7 +63,7 @@
   function texts(state) {
     const { prediction } = state;
     if (!prediction) return { ...state, atLanding: "\u2013" };
-    const [low, high] = prediction.interval_95_wh;
+    const { low, high } = prediction.remaining_energy_wh_interval_95;
     const energyAhead = `${number(prediction.remaining_energy_wh, 2, "Wh")} (${low.toFixed(2)} to ${number(high, 2, "Wh")})`;
     const { battery } = prediction;
     const landing = (b) => (b.fails_after_s !== null ? `the battery fails in ${minutes(b.fails_after_s)}` : `${number(b.soc_percent, 1, "%")}, ${number(b.voltage_v, 2, "V")}`);
@@ -74,7 +74,7 @@
   function show(state) {
     if (!state) return;
     const known = texts(state);
-    element("title").textContent = state.aircraft ? `Aircraft ${state.aircraft}` : "No aircraft yet";
+    element("title").textContent = state.aircraft_id ? `Aircraft ${state.aircraft_id}` : "No aircraft yet";
     document.title = `${state.phase} \u2013 ${element("title").textContent}`;
     for (const [id, listed] of Object.entries(rows)) listed.forEach(([, text], i) => (element(id).children[2 * i + 1].textContent = text(known)));
     list("alarms", state.alarms.map(({ kind, text }) => `${kind}: ${text}`), "none");

@@ -33,17 +33,16 @@ struct IntactFlight {
     std::string series_csv;  ///< of an accepted log
 };
 
-/// Throws InputError for files that are not as the batch wrote them.
+/// Throws InputError for files that have changed since the batch.
 IntactFlight read_intact(const std::filesystem::path& out, const std::string& flight) {
     const auto file = result_path(out, flight, record_suffix);
     const std::string hint = "run flightwatt batch again";
     auto record = record_from_json(read_file(file));
     if (!record) {
-        throw InputError({file.string()},
-                         "this is no record of a flight as this version wrote it: it was changed, or damaged", hint);
+        throw InputError({file.string()}, "not a flight record of this version: it was changed or damaged", hint);
     }
     if (record->flight != valid_utf8(flight)) {
-        throw InputError({file.string()}, fmt::format("this is the record of {}: it was renamed", record->flight),
+        throw InputError({file.string()}, fmt::format("this is the record of {}: the file was renamed", record->flight),
                          hint);
     }
     record->flight = flight;
@@ -56,14 +55,14 @@ IntactFlight read_intact(const std::filesystem::path& out, const std::string& fl
         std::filesystem::is_regular_file(series, none) && std::filesystem::is_regular_file(phases, none);
     if (are_there) intact.series_csv = read_file(series);
     if (!are_there || intact.record.results != results_fingerprint(intact.series_csv, read_file(phases)))
-        throw InputError({series.string()}, "it or the phases beside it are not as the batch wrote them", hint);
+        throw InputError({series.string()}, "the series or its phases have changed since the batch", hint);
     return intact;
 }
 
-/// Its record, and if they are asked for its series and phases; damaged where its log is gone too.
+/// The record, and on request series and phases; damaged files without their log give a damage_reason.
 StoredFlight read_recorded(const std::filesystem::path& out, const LogFile& listed, bool with_series) {
     const auto& name = listed.flight;
-    // No result is to replace the log either, of which all this was made.
+    // No result may replace the log itself.
     register_input(listed.place);
     if (const auto configuration = telemetry::find_log_file(listed.place)) register_input(*configuration);
     StoredFlight flight;
@@ -82,7 +81,7 @@ StoredFlight read_recorded(const std::filesystem::path& out, const LogFile& list
         flight = {};
         flight.record.flight = name;
         flight.record.log = listed.path;
-        flight.damage_reason = fmt::format("{}: {}, and its log is gone", to_string(error.where()), error.what());
+        flight.damage_reason = fmt::format("{}: {}, and its log is missing", to_string(error.where()), error.what());
     }
     return flight;
 }
@@ -91,7 +90,7 @@ std::vector<StoredFlight> read_stored(const std::filesystem::path& out, bool wit
     const auto folder = out / "flights";
     std::error_code none;
     if (!std::filesystem::exists(out / manifest_name, none)) {
-        throw InputError({out.string()}, "this is no folder of flightwatt batch: there is no batch.json in it",
+        throw InputError({out.string()}, "not a folder of flightwatt batch: it has no batch.json",
                          fmt::format("make it with: flightwatt batch LOGS -o {}", out.string()));
     }
     register_input(out / manifest_name);
@@ -102,7 +101,7 @@ std::vector<StoredFlight> read_stored(const std::filesystem::path& out, bool wit
     for_each_in_parallel(listed.size(),
                          [&](std::size_t i) { flights[i] = read_recorded(out, listed[i], with_series); });
     if (flights.empty()) {
-        throw InputError({folder.string()}, "there is no record of a flight in it",
+        throw InputError({folder.string()}, "it has no flight record",
                          fmt::format("make them with: flightwatt batch LOGS -o {}", out.string()));
     }
     return flights;

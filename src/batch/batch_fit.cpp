@@ -47,7 +47,7 @@ mechanical::ModelFitOptions options_from(const Json& json) {
     return options;
 }
 
-/// To be raised with every change of the fit that changes a model: others are then made anew.
+/// Raised with every change of the fit that changes a model: older models are fitted again.
 constexpr auto fit_number = "fit 3";
 
 constexpr auto copies_key = "copies";
@@ -55,7 +55,6 @@ constexpr auto copies_without_power_key = "copies_without_power";
 
 constexpr std::size_t max_fit_bytes = 16'000'000;  // fit.json has some 100 kB
 
-/// Of a hundred thousand copies no list is there twice.
 Json json_of(const BatchFit& fit) {
     Json copies = Json::array();
     Json without_power = Json::array();
@@ -101,11 +100,11 @@ void read_fit_json(const std::filesystem::path& file, BatchFit& fit) {
     } catch (const UsageError&) {
         throw;
     } catch (const std::exception&) {
-        throw InputError({file.string()}, "this is no fit of a batch that this version writes", again);
+        throw InputError({file.string()}, "not a fit of a batch of this version", again);
     }
 }
 
-/// Of the files of a fit but fit.json, and of its content.
+/// Fingerprint of the files of a fit except fit.json, and of its content.
 std::string seal_of(const std::filesystem::path& out, const Json& json) {
     const OverwriteExemption own;
     Fingerprint seal;
@@ -132,7 +131,7 @@ std::string fit_fingerprint(const BatchFlights& flights, const mechanical::Model
                             const std::string& more) {
     Fingerprint fingerprint;
     const auto add = [&](std::string_view text) {
-        fingerprint.add(fmt::format("{}:", text.size()));  // or two texts could be taken for others
+        fingerprint.add(fmt::format("{}:", text.size()));  // keeps neighbouring texts apart
         fingerprint.add(text);
     };
     add(FLIGHTWATT_VERSION);
@@ -162,7 +161,7 @@ bool is_fit_current(const std::filesystem::path& out, const std::string& made_fr
         json.erase("seal");
         return json.at("made_from").get<std::string>() == made_from && seal == seal_of(out, json);
     } catch (const std::exception&) {
-        return false;  // none, or of another version: it is made anew
+        return false;  // missing, or of another version: the model is fitted again
     }
 }
 
@@ -182,7 +181,7 @@ void write_batch_fit(const BatchFit& fit, const std::filesystem::path& out) {
         phase.spread.reset();
     }
     write_file_atomically(out / model_name, to_toml(plain), out / temporary_folder);
-    auto sealed = Json::parse(text_of(json_of(fit)));  // as it will be read: numbers and names that are no UTF-8
+    auto sealed = Json::parse(text_of(json_of(fit)));  // as it is read: names that are not UTF-8 change
     sealed["seal"] = seal_of(out, sealed);
     write_file_atomically(out / fit_name, text_of(sealed), out / temporary_folder);
 }

@@ -13,28 +13,26 @@
 
 namespace flightwatt::batch {
 
-/// The fit of a batch, with all that is shown of it: nobody has to fit again.
+/// The fit of a batch, with everything that the report shows of it.
 struct BatchFit {
     mechanical::ModelFitOptions options;
-    std::set<std::string> excluded;            ///< flights that were not to be used
-    std::set<std::string> keep;                ///< flights that were used in spite of what spoke against it
-    std::vector<DuplicateFlight> copies = {};  ///< flights that are another one under a second name
+    std::set<std::string> excluded;            ///< flights of --exclude
+    std::set<std::string> keep;                ///< flights of --keep
+    std::vector<DuplicateFlight> copies = {};  ///< duplicates of other flights
     mechanical::MechanicalModel model;         ///< with its errors
     flight::PerPhase<mechanical::CurveBand> bands;
-    std::string input_fingerprint;  ///< see fit_fingerprint; empty: not to be recognised
+    std::string input_fingerprint;  ///< see fit_fingerprint; empty: unknown
 };
 
-/// Of all that a fit is made from: the flights as they are recorded and selected, before copies are looked for, and how
-/// they are fitted. Equal where the same program would come to the same model, of the same flights; empty where that
-/// cannot be told, as fit.json cannot name a flight.
+/// Fingerprint of the recorded and selected flights, before duplicates are excluded, and of the options: equal
+/// fingerprints give equal models. Empty for a flight whose name fit.json cannot hold.
 std::string fit_fingerprint(const BatchFlights& flights, const mechanical::ModelFitOptions& options,
                             const std::string& more);
 
-/// Whether what write_batch_fit wrote into OUT was made from the same, and its files and tables are as they were
-/// written.
+/// Whether the fit in OUT has this fingerprint, and its files and tables are unchanged.
 bool is_fit_current(const std::filesystem::path& out, const std::string& made_from);
 
-/// Fits, analyses the errors and draws the bands. Throws what fit_model throws.
+/// Fits, and computes errors and bands. Throws what fit_model throws.
 BatchFit fit_flights(std::span<const mechanical::FlightSamples> flights, const mechanical::ModelFitOptions& options);
 
 /// Writes OUT/model.toml (the model alone), OUT/model_errors.toml (with its errors) and OUT/fit.json (options
@@ -44,7 +42,7 @@ void write_batch_fit(const BatchFit& fit, const std::filesystem::path& out);
 /// Removes a fit and its tables from OUT. Returns the names of the files that were there.
 std::vector<std::string> remove_batch_fit(const std::filesystem::path& out);
 
-/// What write_batch_fit wrote; std::nullopt where there is no model. Throws InputError where a file is
+/// Reads the files of write_batch_fit; std::nullopt without a model. Throws InputError where a file is
 /// missing, damaged or of a newer format.
 std::optional<BatchFit> read_batch_fit(const std::filesystem::path& out);
 

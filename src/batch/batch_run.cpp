@@ -27,11 +27,11 @@ namespace {
 
 void write_result(const BatchOptions& options, const std::string& flight, const char* ending,
                   const std::string& content) {
-    const OverwriteExemption own;  // its name is no other's: what a batch writes is not kept in mind file by file
+    const OverwriteExemption own;  // its name is unique: no check file by file
     write_file_atomically(result_path(options.out, flight, ending), content, options.out / temporary_folder);
 }
 
-/// Of everything that the result depends on.
+/// Fingerprint of log and options.
 std::string fingerprint_of(const flight::FlightFile& file, const LogFile& log, const BatchOptions& options) {
     const auto& load = options.load;
     const auto& segmentation = load.segmentation;
@@ -61,9 +61,9 @@ bool has_results(const BatchOptions& options, const std::string& flight) {
            std::filesystem::exists(result_path(options.out, flight, phases_suffix));
 }
 
-/// The remembered result of a log, if it is that of this fingerprint and its files are as they were written.
-std::optional<FlightRecord> remembered(const BatchOptions& options, const LogFile& log,
-                                       const std::string& fingerprint) {
+/// The stored result of a log, if it has this fingerprint and its files are unchanged.
+std::optional<FlightRecord> stored_result(const BatchOptions& options, const LogFile& log,
+                                          const std::string& fingerprint) {
     const OverwriteExemption own;
     std::error_code none;
     if (!std::filesystem::is_regular_file(result_path(options.out, log.flight, record_suffix), none))
@@ -75,7 +75,7 @@ std::optional<FlightRecord> remembered(const BatchOptions& options, const LogFil
         }
         return record;
     } catch (const InputError&) {
-        return std::nullopt;  // damaged or of another version: the log is done again
+        return std::nullopt;  // damaged or of another version: the log is read again
     }
 }
 
@@ -100,7 +100,7 @@ FlightRecord do_accepted(const flight::FlightFile& file, const LogFile& log, con
     return record;
 }
 
-/// Writes the record of what became of the log, and leaves it as later runs read it: both report the same.
+/// Writes the record of a log, and changes it to what later runs read.
 void conclude(FlightRecord& record, const LogFile& log, const std::string& fingerprint, const BatchOptions& options) {
     record.flight = log.flight;
     record.log = log.path;
@@ -109,15 +109,15 @@ void conclude(FlightRecord& record, const LogFile& log, const std::string& finge
     write_result(options, log.flight, record_suffix, text);
     constexpr std::string_view replacement_character = "\xEF\xBF\xBD";
     if (text.find(replacement_character) == std::string::npos) return;
-    record = record_from_json(text).value();  // a name that is not UTF-8 is another one in JSON
+    record = record_from_json(text).value();  // a name that is not UTF-8 changes in JSON
     record.flight = log.flight;
 }
 
-/// A log that is there; `fingerprint` is set as soon as it is known. Throws whatever is wrong with the log.
+/// Processes a log that exists; sets `fingerprint` as soon as it is known.
 BatchFlight do_existing(const LogFile& log, const BatchOptions& options, std::string& fingerprint) {
     const flight::FlightFile file(log.path, options.load.max_log_bytes, options.load.messages);
     fingerprint = fingerprint_of(file, log, options);
-    auto record = remembered(options, log, fingerprint);
+    auto record = stored_result(options, log, fingerprint);
     const bool was_up_to_date = record.has_value();
     if (!record) {
         remove_results(options.out, log.flight);
@@ -129,15 +129,15 @@ BatchFlight do_existing(const LogFile& log, const BatchOptions& options, std::st
     return done;
 }
 
-/// What an earlier run left of a log that is gone. Throws InputError where that is not as it was written.
-BatchFlight do_gone(const LogFile& log, const BatchOptions& options) {
+/// The result of an earlier run of a missing log. Throws InputError where its files have changed.
+BatchFlight do_missing(const LogFile& log, const BatchOptions& options) {
     const OverwriteExemption own;
     auto kept = without_samples(read_verified_record(options.out, log.flight), options.min_samples, options.load);
     kept.was_up_to_date = kept.log_is_missing = true;
     return kept;
 }
 
-/// Why a log is rejected, after whatever it threw. Throws on what is no fault of the log.
+/// Reason of a rejected log from the current exception. Rethrows errors of output and usage.
 std::string why_rejected(const LogFile& log, std::string& fingerprint) {
     try {
         throw;
@@ -148,7 +148,7 @@ std::string why_rejected(const LogFile& log, std::string& fingerprint) {
     } catch (const InputError& error) {
         return describe(error);
     } catch (const std::bad_alloc&) {
-        fingerprint.clear();  // with more memory another run may do it
+        fingerprint.clear();  // may succeed with more memory
         return log.path + ": needs more memory than there is";
     } catch (const std::filesystem::filesystem_error& error) {
         fingerprint.clear();
@@ -166,7 +166,7 @@ BatchFlight reject(const LogFile& log, const std::string& why, bool is_of_other_
     rejected.record.is_of_other_aircraft = is_of_other_aircraft;
     rejected.record.flight = log.flight;
     rejected.record.log = log.path;
-    if (!log.problem.empty() || log.is_missing) return rejected;  // there is nothing of it to write, or all to keep
+    if (!log.problem.empty() || log.is_missing) return rejected;  // nothing to write
     remove_results(options.out, log.flight);
     conclude(rejected.record, log, fingerprint, options);
     return rejected;
@@ -179,13 +179,13 @@ BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
     bool is_of_other_aircraft = false;
     try {
         if (!log.problem.empty()) throw InputError({log.path}, log.problem);
-        done = log.is_missing ? do_gone(log, options) : do_existing(log, options, fingerprint);
+        done = log.is_missing ? do_missing(log, options) : do_existing(log, options, fingerprint);
     } catch (const flight::OtherAircraftError& error) {
         is_of_other_aircraft = true;
         why = fmt::format("{}; {}", error.what(), error.hint());
     } catch (...) {
         why = why_rejected(log, fingerprint);
-        if (log.is_missing) why += ", and its log is gone: bring it back, or drop the flight with --prune";
+        if (log.is_missing) why += "; its log is missing: restore it, or drop the flight with --prune";
     }
     if (!why.empty()) done = reject(log, why, is_of_other_aircraft, fingerprint, options);
     done.is_of_this_run = log.is_of_this_run;
@@ -204,7 +204,7 @@ BatchFlight without_samples(FlightRecord record, std::size_t min_samples, const 
         done.selection.flights.push_back(std::move(sortie));
     }
     done.selection.exclusions = std::move(measured.exclusions);
-    release(record.verdicts);
+    release(record.edge_checks);
     release(record.log);
     release(record.current_origin);
     record.phases.shrink_to_fit();
@@ -216,7 +216,7 @@ BatchFlights run_batch(const std::vector<LogFile>& logs, const BatchOptions& opt
     make_directories(options.out / "flights");
     make_directories(options.out / temporary_folder);
     BatchFlights flights(logs.size());
-    std::mutex mutex;  // guards what follows
+    std::mutex mutex;  // guards `done`
     std::size_t done = 0;
     const auto work = [&](std::size_t i) {
         flights[i] = do_log(logs[i], options);
@@ -238,7 +238,7 @@ std::vector<mechanical::MeasuredFlight> read_samples(const BatchFlights& flights
         const auto file = result_path(options.out, flight.record.flight, record_suffix);
         auto record = record_from_json(read_file(file));
         if (!record) throw InputError({file.string()}, "it changed while it was read", "run flightwatt batch again");
-        record->flight = flight.record.flight;  // of a name that is no UTF-8, too
+        record->flight = flight.record.flight;  // also of a name that is not UTF-8
         of_logs[i] = select_for_fit(*record, options.min_samples, options.load).flights;
     });
     std::vector<mechanical::MeasuredFlight> measured;

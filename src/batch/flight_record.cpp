@@ -6,237 +6,177 @@
 #include "flight/selected_track.h"
 #include "mechanical/flight_bins.h"
 
+#include <array>
 #include <cmath>
-#include <concepts>
-#include <cstdint>
-#include <stdexcept>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-namespace flightwatt::batch {
+namespace flightwatt {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-/// T is a Record that is written, or read into.
-template <typename T, typename Record>
-concept Of = std::same_as<std::remove_const_t<T>, Record>;
-
-// The fields of each record: `visit` is called with their keys and with what they hold, for writing and for reading.
-
-void visit_fields(Of<RecordedPhase> auto& phase, const auto& visit) {
-    visit("sortie", phase.sortie);
-    visit("phase", phase.phase);
-    visit("start_s", phase.start_s);
-    visit("end_s", phase.end_s);
-    visit("start_gap_s", phase.start_gap_s);
-    visit("end_gap_s", phase.end_gap_s);
-    visit("complete", phase.complete);
-    visit("samples", phase.statistics.samples);
-    visit("mean_power_w", phase.statistics.mean_power_w);
-    visit("energy_wh", phase.statistics.energy_wh);
-    visit("counter_energy_wh", phase.statistics.counter_energy_wh);
-    visit("gaps", phase.statistics.gaps);
-    visit("longest_gap_s", phase.statistics.max_gap_s);
+/// A phase by its name, or null. Reading throws std::exception for another name.
+template <typename R, typename P>
+Field<R> phase_field(P R::*member, const auto&... changes) {
+    return field("phase", member, "`takeoff`, `cruise` or `landing`", changes...)
+        .reading([member](const Json& json, R& record) {
+            if (!json.is_null()) record.*member = flight::phase_from(json.get<std::string>()).value();
+        });
 }
 
-template <typename Flight, typename Samples, typename Visit>
-void visit_measured_phase(Flight& flight, flight::Phase phase, Samples& samples, const Visit& visit) {
-    visit("duration_s", samples.duration_s);
-    visit("start_s", samples.start_s);
-    visit("edge_samples", samples.edge_samples);
-    visit("energy_wh", flight.energy_wh[phase]);
-    visit("counter_energy_wh", flight.counter_energy_wh[phase]);
-    visit("tau", samples.tau);
-    visit("power_w", samples.power_w);
+}  // namespace
+
+namespace flight {
+
+Fields<PhaseStatistics> record_fields(const PhaseStatistics*) {
+    using R = PhaseStatistics;
+    return {field("samples", &R::samples, "power samples in the phase", csv_column{}),
+            field("mean_power_w", &R::mean_power_w, "energy over duration", csv_column{}),
+            field("energy_wh", &R::energy_wh, "integral of the power, linear between samples", csv_column{}),
+            field("counter_energy_wh", &R::counter_energy_wh, "energy by the autopilot's counter", csv_column{}),
+            field("gaps", &R::gaps, "intervals between samples that exceed three median ones", csv_column{}),
+            field("longest_gap_s", &R::max_gap_s, "the longest interval between samples", csv_column{})};
 }
 
-void visit_fields(Of<RecordedEdgeCheck> auto& check, const auto& visit) {
-    visit("time_s", check.time_s);
-    visit("verdict", check.text);
+Fields<FlightContent> record_fields(const FlightContent*) {
+    using R = FlightContent;
+    return {field("fingerprint", &R::fingerprint), field("has_definitions", &R::has_definitions)};
 }
 
-void visit_fields(Of<mechanical::Exclusion> auto& exclusion, const auto& visit) {
-    visit("flight", exclusion.flight);
-    visit("phase", exclusion.phase);
-    visit("reason", exclusion.reason);
+}  // namespace flight
+
+namespace mechanical {
+
+Fields<Exclusion> record_fields(const Exclusion*) {
+    using R = Exclusion;
+    return {field("flight", &R::flight), phase_field(&R::phase), field("reason", &R::reason)};
 }
 
-void visit_fields(Of<mechanical::FlightBin> auto& bin, const auto& visit) {
-    visit("phase", bin.phase);
-    visit("start_s", bin.start_s);
-    visit("duration_s", bin.duration_s);
-    visit("power_w", bin.power_w);
-    visit("samples", bin.samples);
-    visit("terms", bin.values.values);
-    visit("airspeed_m_per_s", bin.airspeed_m_per_s);
+Fields<FlightBin> record_fields(const FlightBin*) {
+    using R = FlightBin;
+    return {phase_field(&R::phase),
+            field("start_s", &R::start_s),
+            field("duration_s", &R::duration_s),
+            field("power_w", &R::power_w),
+            field("samples", &R::samples),
+            field(
+                "terms", [](const R& bin) { return bin.values.values; }, "means of the terms of the physical model")
+                .reading([](const Json& json, R& bin) { json.get_to(bin.values.values); }),
+            field("airspeed_m_per_s", &R::airspeed_m_per_s)};
 }
 
-void visit_fields(Of<mechanical::BinnedFlight> auto& motion, const auto& visit) {
-    visit("bank_measured", motion.bank_measured);
-    visit("lacks", motion.no_bins_reason);
-    visit("bins", motion.bins);
+Fields<BinnedFlight> record_fields(const BinnedFlight*) {
+    using R = BinnedFlight;
+    return {field("bank_measured", &R::bank_measured), field("lacks", &R::no_bins_reason), field("bins", &R::bins)};
 }
 
-void visit_fields(Of<flight::FlightContent> auto& content, const auto& visit) {
-    visit("fingerprint", content.fingerprint);
-    visit("has_definitions", content.has_definitions);
+Fields<PhaseSamples> record_fields(const PhaseSamples*) {
+    using R = PhaseSamples;
+    return {field("duration_s", &R::duration_s), field("start_s", &R::start_s), field("edge_samples", &R::edge_samples),
+            field("tau", &R::tau), field("power_w", &R::power_w)};
 }
 
-void visit_fields(Of<FlightRecord> auto& record, const auto& visit) {
-    visit("flight", record.flight);
-    visit("log", record.log);
-    visit("fingerprint", record.fingerprint);
-    visit("results", record.results);
-    visit("accepted", record.accepted);
-    visit("error", record.error);
-    visit("is_of_other_aircraft", record.is_of_other_aircraft);
-    visit("aircraft_id", record.aircraft_id);
-    visit("aircraft_name", record.aircraft_name);
-    visit("power_source", record.power_source);
-    visit("current_origin", record.current_origin);
-    visit("phases", record.phases);
-    visit("verdicts", record.verdicts);
-    visit("warnings", record.warnings);
-    visit("power_faults", record.power_faults);
-    visit("lacks_power", record.no_power_reason);
-    visit("why_not_fitted", record.not_fitted_reason);
-    visit("measured", record.measured);
-    visit("content", record.content);
-}
+}  // namespace mechanical
 
-template <typename T>
-concept HasFields = requires(T& record) {
-    visit_fields(record, 0);
+namespace batch {
+namespace {
+
+/// A phase of a sortie as it is fitted.
+struct StoredPhase {
+    mechanical::PhaseSamples samples;
+    std::optional<double> energy_wh;
+    std::optional<double> counter_energy_wh;
 };
 
-/// Writes what it visits into an object.
-struct RecordWriter {
-    Json& json;
-
-    template <typename T>
-    void operator()(const char* key, const T& value) const {
-        json[key] = json_of(value);
-    }
-
-  private:
-    template <typename T>
-    static Json json_of(const T& value) {
-        if constexpr (HasFields<T>) {
-            Json json = Json::object();
-            visit_fields(value, RecordWriter{json});
-            return json;
-        } else {
-            return value;
-        }
-    }
-    template <HasFields T>
-    static Json json_of(const std::vector<T>& records) {
-        Json json = Json::array();
-        for (const auto& record : records) json.push_back(json_of(record));
-        return json;
-    }
-    template <typename T>
-    static Json json_of(const std::optional<T>& value) {
-        return value ? json_of(*value) : Json();
-    }
-    static Json json_of(flight::Phase phase) { return to_string(phase); }
-    static Json json_of(const mechanical::MeasuredFlights& measured) {
-        Json flights = Json::array();
-        for (std::size_t i = 0; i < measured.flights.size(); ++i) {
-            const auto& flight = measured.flights[i];
-            Json phases = Json::object();
-            for (const auto phase : flight::all_phases) {
-                const auto& samples = flight.samples.phases[phase];
-                if (!samples) continue;
-                visit_measured_phase(flight, phase, *samples, RecordWriter{phases[std::string(to_string(phase))]});
-            }
-            flights.push_back({{"flight", flight.samples.flight},
-                               {"sortie", measured.sorties[i]},
-                               {"phases", phases},
-                               {"motion", json_of(flight.motion)}});
-        }
-        return {{"flights", flights}, {"excluded", json_of(measured.exclusions)}};
-    }
+struct StoredPhases {
+    std::optional<StoredPhase> takeoff, cruise, landing;
 };
 
-/// A whole number that the type holds: nlohmann::json would convert any number, and one beyond the type's range has no
-/// defined value. Throws std::out_of_range.
-template <std::integral T>
-T whole(const Json& json) {
-    if (json.is_number_unsigned()) {
-        if (const auto value = json.get<std::uint64_t>(); std::in_range<T>(value)) return static_cast<T>(value);
-    } else if (json.is_number_integer()) {
-        if (const auto value = json.get<std::int64_t>(); std::in_range<T>(value)) return static_cast<T>(value);
-    }
-    throw std::out_of_range("not such a whole number");
+struct StoredSortie {
+    std::string flight;
+    std::size_t sortie = 0;
+    StoredPhases phases;
+    mechanical::BinnedFlight motion;
+};
+
+struct StoredMeasurement {
+    std::vector<StoredSortie> flights;
+    std::vector<mechanical::Exclusion> excluded;
+};
+
+Fields<StoredPhase> record_fields(const StoredPhase*) {
+    using R = StoredPhase;
+    return list_fields<R>(embedded(&R::samples), field("energy_wh", &R::energy_wh),
+                          field("counter_energy_wh", &R::counter_energy_wh));
 }
 
-/// Reads what it visits from an object. Throws what nlohmann::json throws, or std::bad_optional_access for a
-/// phase that there is none of.
-struct RecordReader {
-    const Json& json;
+Fields<StoredPhases> record_fields(const StoredPhases*) {
+    using R = StoredPhases;
+    return {field("takeoff", &R::takeoff, "samples of the take-off", optional_key{}),
+            field("cruise", &R::cruise, "samples of the cruise", optional_key{}),
+            field("landing", &R::landing, "samples of the landing", optional_key{})};
+}
 
-    template <typename T>
-    void operator()(const char* key, T& value) const {
-        read(json.at(key), value);
-    }
+Fields<StoredSortie> record_fields(const StoredSortie*) {
+    using R = StoredSortie;
+    return {field("flight", &R::flight), field("sortie", &R::sortie), field("phases", &R::phases),
+            field("motion", &R::motion)};
+}
 
-  private:
-    template <typename T>
-    static void read(const Json& json, T& value) {
-        if constexpr (HasFields<T>) {
-            visit_fields(value, RecordReader{json});
-        } else if constexpr (std::integral<T> && !std::same_as<T, bool>) {
-            value = whole<T>(json);
-        } else {
-            json.get_to(value);
+Fields<StoredMeasurement> record_fields(const StoredMeasurement*) {
+    using R = StoredMeasurement;
+    return {field("flights", &R::flights), field("excluded", &R::excluded)};
+}
+
+constexpr std::array stored_phases{&StoredPhases::takeoff, &StoredPhases::cruise, &StoredPhases::landing};
+
+StoredMeasurement stored(const mechanical::MeasuredFlights& measured) {
+    StoredMeasurement all{{}, measured.exclusions};
+    for (std::size_t i = 0; i < measured.flights.size(); ++i) {
+        const auto& flight = measured.flights[i];
+        auto& sortie =
+            all.flights.emplace_back(StoredSortie{flight.samples.flight, measured.sorties[i], {}, flight.motion});
+        for (const auto phase : flight::all_phases)
+            if (const auto& samples = flight.samples.phases[phase])
+                sortie.phases.*stored_phases.at(static_cast<std::size_t>(phase)) =
+                    StoredPhase{*samples, flight.energy_wh[phase], flight.counter_energy_wh[phase]};
+    }
+    return all;
+}
+
+mechanical::MeasuredFlights measured_flights(StoredMeasurement all) {
+    mechanical::MeasuredFlights measured;
+    measured.exclusions = std::move(all.excluded);
+    for (auto& sortie : all.flights) {
+        auto& flight = measured.flights.emplace_back();
+        flight.samples.flight = sortie.flight;
+        for (const auto phase : flight::all_phases) {
+            auto& stored = sortie.phases.*stored_phases.at(static_cast<std::size_t>(phase));
+            if (!stored) continue;
+            stored->samples.flight = sortie.flight;
+            flight.samples.phases[phase] = std::move(stored->samples);
+            flight.energy_wh[phase] = stored->energy_wh;
+            flight.counter_energy_wh[phase] = stored->counter_energy_wh;
         }
+        flight.motion = std::move(sortie.motion);
+        flight.motion.flight = sortie.flight;
+        measured.sorties.push_back(sortie.sortie);
     }
-    template <typename T>
-    static void read(const Json& json, std::optional<T>& value) {
-        if (!json.is_null()) read(json, value.emplace());
-    }
-    static void read(const Json& json, flight::Phase& phase) {
-        phase = flight::phase_from(json.get<std::string>()).value();
-    }
-    template <HasFields T>
-    static void read(const Json& json, std::vector<T>& records) {
-        for (const auto& entry : json) read(entry, records.emplace_back());
-    }
-    static void read(const Json& json, mechanical::MeasuredFlights& measured) {
-        for (const auto& entry : json.at("flights")) {
-            auto& flight = measured.flights.emplace_back();
-            flight.samples.flight = entry.at("flight");
-            for (const auto& [name, object] : entry.at("phases").items()) {
-                const auto phase = flight::phase_from(name).value();
-                auto& samples = flight.samples.phases[phase].emplace();
-                samples.flight = flight.samples.flight;
-                visit_measured_phase(flight, phase, samples, RecordReader{object});
-            }
-            read(entry.at("motion"), flight.motion);
-            flight.motion.flight = flight.samples.flight;
-            measured.sorties.push_back(whole<std::size_t>(entry.at("sortie")));
-        }
-        read(json.at("excluded"), measured.exclusions);
-    }
-};
+    return measured;
+}
 
 constexpr std::string_view seal_key = ",\n \"seal\": \"";
 
-/// What a record ends with: the fingerprint of all before. One that was changed or cut is not believed.
+/// End of a record: the fingerprint of all before, by which changed and truncated records are rejected.
 std::string seal_of(std::string_view text) {
     Fingerprint fingerprint;
     fingerprint.add(text);
     return fmt::format("{}{}\"\n}}\n", seal_key, fingerprint.hex());
 }
 
-/// What the best witness of an edge says.
-std::string verdict_text(const flight::EdgeReport& explained) {
+/// The best autopilot event of an edge, and whether it agrees.
+std::string edge_check(const flight::EdgeReport& explained) {
     if (explained.matching_events.empty()) return explained.agreement;
     const auto& best = explained.matching_events.front();
     const bool agrees = std::abs(best.after_s) <= flight::agreement_s;
@@ -244,6 +184,52 @@ std::string verdict_text(const flight::EdgeReport& explained) {
 }
 
 }  // namespace
+
+Fields<RecordedPhase> record_fields(const RecordedPhase*) {
+    using R = RecordedPhase;
+    const auto duration_s = [](const R& phase) { return phase.end_s - phase.start_s; };
+    return list_fields<R>(
+        field("sortie", &R::sortie, "flight of the log, from 1", csv_column{}), phase_field(&R::phase, csv_column{}),
+        field("start_s", &R::start_s, "in the log's time", csv_column{}),
+        field("end_s", &R::end_s, "in the log's time", csv_column{}),
+        field("duration_s", duration_s, "end less start", csv_column{}, not_in_json{}),
+        field("start_gap_s", &R::start_gap_s), field("end_gap_s", &R::end_gap_s), embedded(&R::statistics),
+        field("complete", &R::complete, "false: the log begins or ends in the phase", csv_column{}));
+}
+
+Fields<RecordedEdgeCheck> record_fields(const RecordedEdgeCheck*) {
+    using R = RecordedEdgeCheck;
+    return {field("time_s", &R::time_s), field("verdict", &R::text)};
+}
+
+Fields<FlightRecord> record_fields(const FlightRecord*) {
+    using R = FlightRecord;
+    return {field("flight", &R::flight, "name of the flight", csv_column{}),
+            field("log", &R::log),
+            field("fingerprint", &R::fingerprint),
+            field("results", &R::results),
+            field("accepted", &R::accepted),
+            field("is_of_other_aircraft", &R::is_of_other_aircraft),
+            field("aircraft_id", &R::aircraft_id, "id of the aircraft in the log", csv_column{}),
+            field("aircraft_name", &R::aircraft_name, "name of the aircraft in the log", csv_column{}),
+            field("power_source", &R::power_source, "message of the power", csv_column{}),
+            field("error", &R::error, "reason of a rejected log", csv_column{}),
+            field("current_origin", &R::current_origin),
+            field("phases", &R::phases),
+            field("verdicts", &R::edge_checks),
+            field("warnings", &R::warnings),
+            field("power_faults", &R::power_faults),
+            field("lacks_power", &R::no_power_reason),
+            field("why_not_fitted", &R::not_fitted_reason),
+            field(
+                "measured", [](const R& record) { return stored(record.measured); }, "data of the fit")
+                .reading([](const Json& json, R& record) {
+                    StoredMeasurement all;
+                    read_record(json, all);
+                    record.measured = measured_flights(std::move(all));
+                }),
+            field("content", &R::content)};
+}
 
 FlightRecord record_of(const flight::LoadedFlight& loaded) {
     const auto& series = loaded.series;
@@ -264,7 +250,7 @@ FlightRecord record_of(const flight::LoadedFlight& loaded) {
     const flight::PowerStatistics power(series);
     for (const auto& sortie : phases.sorties) {
         for (const auto& edge : compare_edges_with_events(tracks, sortie)) {
-            record.verdicts.push_back({edge.edge.time_s, verdict_text(edge)});
+            record.edge_checks.push_back({edge.edge.time_s, edge_check(edge)});
         }
         for (const auto& span : sortie.phases) {
             record.phases.push_back({sortie.number, span.phase, span.start.time_s, span.end.time_s, span.start.gap_s,
@@ -275,10 +261,8 @@ FlightRecord record_of(const flight::LoadedFlight& loaded) {
 }
 
 std::string to_json_text(const FlightRecord& record) {
-    Json json;
-    visit_fields(record, RecordWriter{json});
     // File names need not be UTF-8, and a record must never fail for that.
-    auto text = json.dump(1, ' ', false, Json::error_handler_t::replace);
+    auto text = record_json(record).dump(1, ' ', false, Json::error_handler_t::replace);
     text.resize(text.size() - std::string_view("\n}").size());
     return text + seal_of(text);
 }
@@ -289,10 +273,10 @@ std::optional<FlightRecord> record_from_json(const std::string& text) {
         return std::nullopt;
     try {
         FlightRecord record;
-        visit_fields(record, RecordReader{Json::parse(text.substr(0, end) + "}")});
+        read_record(Json::parse(text.substr(0, end) + "}"), record);
         return record;
     } catch (const std::exception&) {
-        return std::nullopt;  // of another version: the log is done again
+        return std::nullopt;  // of another version: the log is read again
     }
 }
 
@@ -317,4 +301,5 @@ mechanical::MeasuredFlights select_for_fit(FlightRecord& record, std::size_t nee
     return measured;
 }
 
-}  // namespace flightwatt::batch
+}  // namespace batch
+}  // namespace flightwatt

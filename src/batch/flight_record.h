@@ -4,15 +4,20 @@
 #include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
 #include "mechanical/measured_flight.h"
+#include "record/record.h"
 
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
+namespace flightwatt::flight {
+Fields<PhaseStatistics> record_fields(const PhaseStatistics*);
+}
+
 namespace flightwatt::batch {
 
-/// One phase of one sortie as the batch remembers it.
+/// One phase of one sortie.
 struct RecordedPhase {
     std::size_t sortie = 1;
     flight::Phase phase = flight::Phase::cruise;
@@ -24,48 +29,50 @@ struct RecordedPhase {
     flight::PhaseStatistics statistics;
 };
 
-/// What the autopilot says of an edge of a phase.
+/// An edge of a phase compared with the autopilot's events.
 struct RecordedEdgeCheck {
     double time_s = 0.0;  ///< of the edge
-    std::string text;     ///< "agrees with TAKEOFF (-0.4 s)", "no witness"
+    std::string text;     ///< "agrees with TAKEOFF (-0.4 s)"
 };
 
-/// What became of one log: enough to go on without reading it again.
+/// Result of one log, which is not read again for a fit or a report.
 struct FlightRecord {
     std::string flight;
     std::string log;          ///< the path it was read from
     std::string fingerprint;  ///< of the log's content, its .log and the options
     std::string results;      ///< fingerprint of the series and phases that were written; empty if rejected
     bool accepted = false;
-    std::string error;                  ///< why it was rejected
-    bool is_of_other_aircraft = false;  ///< rejected for that alone: it was not asked for
+    std::string error;                  ///< reason of a rejected log
+    bool is_of_other_aircraft = false;  ///< rejected as it has no data of --aircraft
     std::string aircraft_id;
     std::string aircraft_name;
     std::string power_source;
     std::string current_origin;  ///< see CurrentOrigin
     std::vector<RecordedPhase> phases;
-    std::vector<RecordedEdgeCheck> verdicts;  ///< of the edges that the log shows
+    std::vector<RecordedEdgeCheck> edge_checks;
     std::vector<std::string> warnings;
-    std::vector<std::string> power_faults;  ///< of its power record: see PowerReport
-    std::string no_power_reason;            ///< why no power was measured; empty if it was
-    std::string not_fitted_reason;          ///< what its folder says: see LogFile
-    mechanical::MeasuredFlights measured;   ///< of every complete phase, however few its samples
-    flight::FlightContent content;          ///< to find it under another name
+    std::vector<std::string> power_faults;  ///< see PowerReport
+    std::string no_power_reason;            ///< empty: power was measured
+    std::string not_fitted_reason;          ///< see LogFile
+    mechanical::MeasuredFlights measured;   ///< of every complete phase
+    flight::FlightContent content;          ///< to find duplicates
 };
+
+Fields<RecordedPhase> record_fields(const RecordedPhase*);
+Fields<FlightRecord> record_fields(const FlightRecord*);
 
 /// The record of a flight that was read and segmented.
 FlightRecord record_of(const flight::LoadedFlight& loaded);
 
-/// The record as JSON with a seal, the fingerprint of its text, and back. Reading gives std::nullopt for what
-/// is no record of this version, or was changed since.
+/// The record as JSON with a seal, the fingerprint of its text, and back; std::nullopt for a record of another version
+/// or one that was changed.
 std::string to_json_text(const FlightRecord& record);
 std::optional<FlightRecord> record_from_json(const std::string& text);
 
-/// Why a batch uses nothing of the flight: its power record, its folder or --exclude; empty if it does.
+/// Why a batch excludes the flight: its power record, its folder or --exclude; empty if it does not.
 std::string exclusion_reason(const FlightRecord& record, const flight::LoadOptions& options);
 
-/// What a fit of a batch takes of a flight. Takes the samples out of the record: of thousands of flights they
-/// are kept until the fit, once.
+/// The samples of a flight for a fit, moved out of the record.
 mechanical::MeasuredFlights select_for_fit(FlightRecord& record, std::size_t needed_samples,
                                            const flight::LoadOptions& options);
 

@@ -1,9 +1,9 @@
 #include "base/csv.h"
 #include "batch/batch_run.h"
+#include "record/record.h"
 
 #include <algorithm>
-#include <set>
-#include <string_view>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -18,7 +18,7 @@ bool is_used(const BatchFlight& flight, const RecordedPhase& phase) {
     });
 }
 
-/// What a sortie's phases add up to.
+/// Sums over a sortie's phases.
 struct SortieRow {
     flight::PerPhase<const RecordedPhase*> phases{};
     double energy_wh = 0.0;
@@ -71,48 +71,43 @@ std::vector<std::string> cells_of(const BatchFlight& flight, const SortieRow& ro
     return cells;
 }
 
-/// The columns of flights.csv: `visit` is called with the name of each, and with what it holds of a phase.
-void visit_columns(const BatchFlight& flight, const RecordedPhase& phase, const auto& visit) {
-    const auto& record = flight.record;
-    const auto& statistics = phase.statistics;
-    const bool has_power = record.no_power_reason.empty();
-    const auto known = [&](auto value) { return has_power ? std::optional(value) : std::nullopt; };
-    visit("flight", record.flight);
-    visit("sortie", phase.sortie);
-    visit("phase", to_string(phase.phase));
-    visit("start_s", phase.start_s);
-    visit("end_s", phase.end_s);
-    visit("duration_s", phase.end_s - phase.start_s);
-    visit("samples", known(statistics.samples));
-    visit("mean_power_w", known(statistics.mean_power_w));
-    visit("energy_wh", known(statistics.energy_wh));
-    visit("counter_energy_wh", statistics.counter_energy_wh);
-    visit("used", is_used(flight, phase));
-    visit("gaps", known(statistics.gaps));
-    visit("longest_gap_s", known(statistics.max_gap_s));
-    visit("complete", phase.complete);
-    visit("aircraft_id", record.aircraft_id);
-    visit("aircraft_name", record.aircraft_name);
-    visit("synthetic", flight::is_synthetic(record.aircraft_name));
-    visit("power_source", record.power_source);
-    visit("power_faults", has_power ? fmt::format("{}", fmt::join(record.power_faults, "; ")) : record.no_power_reason);
-    visit("error", record.error);
-}
-
-/// Of a rejected log there is its name and its error alone.
-void add_rows(const BatchFlight& flight, CsvWriter& csv) {
-    const std::set<std::string_view> of_rejected{"flight", "used", "error"};
-    const auto& record = flight.record;
-    for (const auto& phase : record.accepted ? record.phases : std::vector(1, RecordedPhase{})) {
-        std::vector<std::string> cells;
-        visit_columns(flight, phase, [&](const char* name, const auto& value) {
-            cells.push_back(record.accepted || of_rejected.contains(name) ? csv.cell(value) : std::string());
-        });
-        csv.add_row(cells);
-    }
-}
-
 }  // namespace
+
+/// A row of flights.csv: a phase, or a rejected log without one.
+struct CatalogueRow {
+    const BatchFlight& flight;
+    const RecordedPhase* phase = nullptr;
+
+    bool has_power() const { return flight.record.no_power_reason.empty(); }
+};
+
+Fields<CatalogueRow> record_fields(const CatalogueRow*) {
+    using R = CatalogueRow;
+    auto phase = embedded([](const R& row) { return row.phase; });
+    for (auto& field : phase) {
+        const auto& measured = fields_of<flight::PhaseStatistics>();
+        if (std::ranges::find(measured, field.key, &FieldText::key) == measured.end()) continue;
+        if (field.key == "counter_energy_wh") continue;
+        field.get = [value = field.get](const R& row) { return row.has_power() ? value(row) : Json(); };
+    }
+    const auto used = [](const R& row) { return row.phase != nullptr && is_used(row.flight, *row.phase); };
+    const auto synthetic = [](const R& row) {
+        const auto& record = row.flight.record;
+        return record.accepted ? std::optional(flight::is_synthetic(record.aircraft_name)) : std::nullopt;
+    };
+    const auto faults = [](const R& row) {
+        const auto& record = row.flight.record;
+        return row.has_power() ? fmt::format("{}", fmt::join(record.power_faults, "; ")) : record.no_power_reason;
+    };
+    const auto record = [](const R& row) { return &row.flight.record; };
+    return list_fields<R>(
+        field(
+            "flight", [](const R& row) { return row.flight.record.flight; }, "name of the flight", csv_column{}),
+        std::move(phase), field("used", used, "the phase is part of the fit", csv_column{}),
+        embedded(record, {"flight"}),
+        field("synthetic", synthetic, "`flightwatt synthesize` made the log", csv_column{}),
+        field("power_faults", faults, "faults of the power record, or the reason without power", csv_column{}));
+}
 
 Totals totals_of(const BatchFlights& flights) {
     Totals totals;
@@ -149,16 +144,22 @@ TextTable flights_table(const BatchFlights& flights, std::size_t max_logs) {
 
 TextWriter catalogue_csv(const BatchFlights& flights) {
     return [&flights](const TextSink& sink) {
-        constexpr std::size_t piece_bytes = 65'536;
-        std::vector<std::string_view> columns;
-        visit_columns({}, {}, [&](const char* name, const auto& /*value*/) { columns.emplace_back(name); });
-        CsvWriter csv(columns);
+        constexpr std::size_t chunk_bytes = 65'536;
+        const auto rows_of_flights = [](const std::vector<CatalogueRow>& rows) {
+            return rows_of<CatalogueRow>(rows, &FieldText::csv_column);
+        };
+        auto csv = csv_header(rows_of_flights({}), 0);
         for (const auto& flight : flights) {
-            add_rows(flight, csv);
-            if (csv.text().size() > piece_bytes) sink(csv.take_text());
+            std::vector<CatalogueRow> rows;
+            for (const auto& phase : flight.record.phases) rows.push_back({flight, &phase});
+            if (!flight.record.accepted) rows.push_back({flight});
+            add_csv_rows(rows_of_flights(rows), csv);
+            if (csv.text().size() > chunk_bytes) sink(csv.take_text());
         }
         sink(csv.take_text());
     };
 }
+
+Json catalogue_schema() { return record_schema<CatalogueRow>(); }
 
 }  // namespace flightwatt::batch

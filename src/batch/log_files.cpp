@@ -19,7 +19,7 @@
 namespace flightwatt::batch {
 namespace {
 
-/// .data, and of SD cards .LOG and .tlm, compressed or not. An X.LOG that is XML says what X.tlm holds.
+/// .data, and of SD cards .LOG and .tlm, compressed or not. An X.LOG that is XML defines the messages of X.tlm.
 bool is_log_name(const std::filesystem::path& path) {
     auto name = path.filename().string();
     for (const std::string_view packed : {".gz", ".bz2", ".xz", ".zst"}) {
@@ -32,7 +32,7 @@ bool is_log_name(const std::filesystem::path& path) {
     return is_log && !(name.ends_with(".LOG") && telemetry::begins_as_xml(path));
 }
 
-/// What the nearest not-fitted.txt between the folder that was given and the log says; empty without one.
+/// First line of the nearest not-fitted.txt between the given folder and the log, or empty.
 std::string why_not_fitted(const std::filesystem::path& log, const std::filesystem::path& given) {
     auto inner = log.parent_path().lexically_relative(given);  // "." for the folder itself
     for (; !inner.empty() && inner != "."; inner = inner.parent_path()) {
@@ -42,7 +42,8 @@ std::string why_not_fitted(const std::filesystem::path& log, const std::filesyst
         const auto text = read_file(file);
         auto reason = text.substr(0, text.find_first_of("\r\n"));
         if (reason.empty()) {
-            throw InputError({file.string(), 1}, "is empty", "its first line says why these logs are not fitted");
+            throw InputError({file.string(), 1}, "is empty",
+                             "expected a first line with the reason for not fitting these logs");
         }
         return reason;
     }
@@ -57,7 +58,7 @@ void add_folder(const std::filesystem::path& folder, const std::filesystem::path
     std::filesystem::directory_iterator entry(folder, error);
     while (!error && entry != std::filesystem::directory_iterator()) {
         std::error_code ignored;
-        // What has a log's name and is no file (a link to nowhere) is rejected later, not passed over.
+        // A broken link with a log's name is rejected later.
         if (entry->is_directory(ignored)) {
             if (!entry->is_symlink(ignored)) below.push_back(entry->path());
         } else if (is_log_name(entry->path())) {
@@ -72,7 +73,7 @@ void add_folder(const std::filesystem::path& folder, const std::filesystem::path
 std::vector<LogFile> each_once(std::vector<LogFile> logs) {
     for (auto& log : logs) {
         auto normal = std::filesystem::path(log.path).lexically_normal().string();
-        // Behind a link, LINK/.. is not where LINK stands.
+        // LINK/.. is not the folder of LINK.
         const bool is_same =
             log.path.find("..") == std::string::npos || canonical_path(normal) == canonical_path(log.path);
         if (is_same) log.path = std::move(normal);
@@ -85,14 +86,14 @@ std::vector<LogFile> each_once(std::vector<LogFile> logs) {
     return logs;
 }
 
-/// As it is, or, where the names of its files would be longer than names can be, its beginning and a fingerprint.
+/// The name, or of one that is too long for files its beginning and a fingerprint.
 std::string file_name_of(std::string name) {
-    constexpr std::size_t longest = 255 - std::string_view("_999.record.json").size();
-    constexpr std::size_t kept = 200;
-    if (name.size() <= longest) return name;
+    constexpr std::size_t max_size = 255 - std::string_view("_999.record.json").size();
+    constexpr std::size_t prefix = 200;
+    if (name.size() <= max_size) return name;
     Fingerprint fingerprint;
     fingerprint.add(name);
-    auto size = kept;
+    auto size = prefix;
     while (continues_character(name[size])) --size;  // whole characters
     return name.substr(0, size) + "~" + fingerprint.hex();
 }
@@ -113,7 +114,7 @@ std::string UniqueNames::assign(const std::filesystem::path& log) {
     auto name = file_name_of(telemetry::flight_name(log));
     if (name.empty()) name = "unnamed";
     if (taken_.insert(name).second) return name;
-    // With thousands of one name the search does not begin anew for each.
+    // With thousands of one name the search resumes where it stopped.
     for (auto& use = next_.try_emplace(name, 2).first->second;; ++use) {
         auto free = fmt::format("{}_{}", name, use);
         if (taken_.insert(free).second) return free;
@@ -123,7 +124,7 @@ std::string UniqueNames::assign(const std::filesystem::path& log) {
 std::vector<std::string> parse_path_list(std::string_view text, const std::string& file) {
     if (const auto nul = text.find('\0'); nul != std::string_view::npos) {
         const auto line = static_cast<std::size_t>(std::ranges::count(text.substr(0, nul), '\n')) + 1;
-        throw InputError({file, line}, "holds a NUL, which no path does",
+        throw InputError({file, line}, "contains a NUL",
                          "expected the path of a log in each line, as find -print writes them");
     }
     std::vector<std::string> paths;

@@ -25,7 +25,7 @@ namespace {
 
 using ManifestJson = nlohmann::ordered_json;
 
-/// Names of files need not be UTF-8, as JSON is.
+/// File names need not be UTF-8.
 ManifestJson bytes_json(const std::string& bytes) {
     if (valid_utf8(bytes) == bytes) return bytes;
     return {{"hex", boost::algorithm::hex(bytes)}};
@@ -35,7 +35,7 @@ std::string bytes_from(const ManifestJson& json) {
     return json.is_object() ? boost::algorithm::unhex(json.at("hex").get<std::string>()) : json.get<std::string>();
 }
 
-/// Throws std::exception for what is no flight.
+/// Throws std::exception for an invalid flight.
 LogFile flight_from(const ManifestJson& json) {
     LogFile flight{bytes_from(json.at("log")), bytes_from(json.at("flight")), bytes_from(json.at("why_not_fitted"))};
     flight.place = bytes_from(json.at("place"));
@@ -73,7 +73,7 @@ std::unordered_set<std::string_view> name_logs(std::vector<LogFile>& logs, const
         by_place.emplace(flight.place, &flight);
         by_path.emplace(flight.path, &flight);
     }
-    // The flight of a log at the same place, or of the same path where its own place is gone (moved folders).
+    // The flight of the same log, or of the same path if its own log is missing (moved folders).
     const auto find = [&](const LogFile& log) -> const LogFile* {
         if (const auto same = by_place.find(log.place); same != by_place.end()) return same->second;
         const auto moved = by_path.find(log.path);
@@ -97,7 +97,7 @@ std::unordered_set<std::string_view> name_logs(std::vector<LogFile>& logs, const
     return known;
 }
 
-/// Whether a flight without its log has a result worth keeping; a damaged record may be of one.
+/// Whether a flight without its log has a usable result; a damaged record may be one.
 bool was_usable(const std::filesystem::path& out, const std::string& flight) {
     const OverwriteExemption own;
     const auto file = result_path(out, flight, record_suffix);
@@ -113,11 +113,11 @@ void add_earlier(LogFile flight, const std::filesystem::path& out, bool prune, B
     if (canonical_path(flight.path) != flight.place) flight.path = flight.place;  // run from another folder
     flight.is_of_this_run = false;
     flight.is_missing = !is_there(flight.path);
-    const auto gone = flight.is_missing ? "is gone" : "is not in this batch";
+    const auto state = flight.is_missing ? "is missing" : "is not in this batch";
     if (prune) {
-        plan.dropped.push_back({flight.flight, fmt::format("its log {} {}", flight.path, gone)});
+        plan.dropped.push_back({flight.flight, fmt::format("its log {} {}", flight.path, state)});
     } else if (flight.is_missing && !was_usable(out, flight.flight)) {
-        plan.dropped.push_back({flight.flight, fmt::format("its log {} is gone, and nothing came of it", flight.path)});
+        plan.dropped.push_back({flight.flight, fmt::format("its log {} is missing, no results", flight.path)});
     } else {
         logs.push_back(std::move(flight));
     }
@@ -127,22 +127,22 @@ void refuse_if_in_the_way(const std::filesystem::path& file, bool is_listed) {
     std::error_code none;
     const auto type = std::filesystem::symlink_status(file, none).type();
     using Type = std::filesystem::file_type;
-    // No batch makes links. A folder is not lost: writing over it fails.
+    // A batch makes no links; a folder cannot be overwritten.
     const bool is_foreign = !is_listed && type != Type::not_found && type != Type::none && type != Type::directory;
     if (type != Type::symlink && !is_foreign) return;
     throw UsageError(
-        fmt::format("{} would be replaced, and no batch wrote it (see {}); move it away, or choose another folder "
+        fmt::format("{} is not of a batch (see {}) and would be replaced; move it away, or choose another folder "
                     "with -o",
                     file.string(), manifest_name));
 }
 
-/// What stands in OUT may be another folder's, whose files would be replaced and removed.
+/// Throws UsageError for links in OUT, which would replace or remove files of another folder.
 void refuse_links(const std::filesystem::path& out) {
     for (const auto* name : {manifest_name, temporary_folder}) refuse_if_in_the_way(out / name, true);
     std::error_code unknown;
     const auto flights = std::filesystem::weakly_canonical(out / "flights", unknown);
     if (unknown || flights == std::filesystem::weakly_canonical(out, unknown) / "flights") return;
-    if (!is_there(flights.parent_path() / manifest_name)) return;  // on a larger disk, say
+    if (!is_there(flights.parent_path() / manifest_name)) return;  // a link to a larger disk
     throw UsageError(
         fmt::format("{} leads into another batch, {}, whose flights would be lost; remove that link, or "
                     "choose another folder with -o",
@@ -202,8 +202,7 @@ Manifest read_manifest(const std::filesystem::path& out) {
     } catch (const InputError&) {
         throw;
     } catch (const std::exception&) {
-        throw InputError({file.string()}, "this is no list of what a batch wrote, or it is damaged",
-                         "choose another folder with -o");
+        throw InputError({file.string()}, "not a manifest of a batch, or damaged", "choose another folder with -o");
     }
 }
 
@@ -249,7 +248,7 @@ void refuse_foreign_files(const BatchPlan& plan, const std::filesystem::path& ou
     for (const auto& flight : plan.manifest.flights) {
         for (const auto* ending : result_suffixes) {
             const auto file = result_path(out, flight.flight, ending);
-            check_overwrite(file);  // a log, say
+            check_overwrite(file);
             refuse_if_in_the_way(file, earlier.contains(flight.flight));
         }
     }

@@ -19,17 +19,17 @@
 namespace flightwatt::batch {
 namespace {
 
-/// A flight of one of the batches, as its list has it.
+/// A flight in the list of a batch.
 struct ListedFlight {
     std::filesystem::path from;
     LogFile listed;
 };
 
-/// The flights of one batch. Throws InputError for what is no batch's folder, or of one that was not finished.
+/// The flights of one batch. Throws InputError for a folder without a finished batch.
 std::vector<ListedFlight> flights_of(const std::filesystem::path& batch) {
     std::error_code none;
     if (!std::filesystem::exists(batch / manifest_name, none)) {
-        throw InputError({batch.string()}, "this is no folder of flightwatt batch: there is no batch.json in it",
+        throw InputError({batch.string()}, "not a folder of flightwatt batch: it has no batch.json",
                          "make it with: flightwatt batch LOGS --no-fit -o FOLDER");
     }
     std::vector<ListedFlight> flights;
@@ -39,31 +39,30 @@ std::vector<ListedFlight> flights_of(const std::filesystem::path& batch) {
         if (!std::filesystem::exists(result_path(batch, listed.flight, record_suffix), none)) {
             throw InputError({batch.string()},
                              fmt::format("this batch was not finished: {} has no record", listed.flight),
-                             "run the command that makes it again; it goes on where it stopped");
+                             "run its command again to resume");
         }
         flights.push_back({batch, std::move(listed)});
     }
     return flights;
 }
 
-/// Of what a flight was made from: the log's content and the options.
+/// Fingerprint of the log's content and the options.
 std::string fingerprint_in(const ListedFlight& flight) {
     const OverwriteExemption own;
     return read_verified_record(flight.from, flight.listed.flight).fingerprint;
 }
 
-/// Throws InputError where the log was another one, or was read with other options, in the second batch.
+/// Throws InputError if the log or the options differ in the second batch.
 void require_same(const ListedFlight& one, const ListedFlight& other) {
     if (fingerprint_in(one) == fingerprint_in(other)) return;
     throw InputError(
         {one.listed.place},
-        fmt::format("this log was read differently by the batches {} and {}: it changed meanwhile, or their "
-                    "options differ",
+        fmt::format("the batches {} and {} read this log differently: it has changed, or their options differ",
                     one.from.string(), other.from.string()),
         "run one of them again, with the options of the other");
 }
 
-/// By the paths of their logs, each log once. Returns how many were left out.
+/// Sorts by path and removes repeated logs. Returns their number.
 std::size_t keep_each_once(std::vector<ListedFlight>& flights) {
     std::ranges::stable_sort(flights, {}, [](const ListedFlight& flight) {
         return std::pair(std::filesystem::path(flight.listed.path), std::filesystem::path(flight.listed.place));
@@ -109,7 +108,7 @@ FlightRecord renamed(FlightRecord record, const std::string& name) {
     return record;
 }
 
-/// Whether the flight is there already, with this record.
+/// Whether the flight exists with this record.
 bool is_there(const std::filesystem::path& out, const std::string& name, const std::string& record) {
     try {
         std::error_code none;
@@ -123,7 +122,7 @@ bool is_there(const std::filesystem::path& out, const std::string& name, const s
 }
 
 /// The record last, as a batch does.
-void take_over(const std::filesystem::path& out, const MergedFlight& source, bool is_accepted) {
+void copy_flight(const std::filesystem::path& out, const MergedFlight& source, bool is_accepted) {
     remove_results(out, source.flight);
     for (const auto* ending : {series_suffix, phases_suffix, record_suffix}) {
         if (!is_accepted && ending != std::string_view(record_suffix)) continue;
@@ -132,7 +131,7 @@ void take_over(const std::filesystem::path& out, const MergedFlight& source, boo
     }
 }
 
-void take_over_as(const std::filesystem::path& out, const MergedFlight& source, const std::string& name,
+void copy_renamed(const std::filesystem::path& out, const MergedFlight& source, const std::string& name,
                   FlightRecord& record) {
     std::string series_text;
     std::string phases_text;
@@ -156,17 +155,17 @@ void take_over_as(const std::filesystem::path& out, const MergedFlight& source, 
     write(record_suffix, to_json_text(record));
 }
 
-/// Takes a flight over under that name.
+/// Copies a flight under that name.
 BatchFlight merge_flight(const std::filesystem::path& out, const MergedFlight& source, const std::string& name,
                          std::size_t needed_samples) {
-    const OverwriteExemption own;  // its batches' results, which are no inputs that a result could replace
+    const OverwriteExemption own;  // results of batches, not inputs
     const auto text = read_file(result_path(source.from, source.flight, record_suffix));
     auto record = read_verified_record(source.from, source.flight);
     const bool is_up_to_date = name == source.flight && is_there(out, name, text);
     if (name != source.flight) {
-        take_over_as(out, source, name, record);
+        copy_renamed(out, source, name, record);
     } else if (!is_up_to_date) {
-        take_over(out, source, record.accepted);
+        copy_flight(out, source, record.accepted);
     }
     auto merged = without_samples(std::move(record), needed_samples, {});
     merged.was_up_to_date = is_up_to_date;
@@ -210,7 +209,7 @@ BatchFlights merge_flights(const MergePlan& plan, const std::filesystem::path& o
                            const BatchProgress& progress) {
     make_directories(out / temporary_folder);
     BatchFlights flights(plan.sources.size());
-    std::mutex mutex;  // guards what follows
+    std::mutex mutex;  // guards `done`
     std::size_t done = 0;
     for_each_in_parallel(flights.size(), [&](std::size_t i) {
         flights[i] = merge_flight(out, plan.sources[i], plan.folder.logs[i].flight, needed_samples);

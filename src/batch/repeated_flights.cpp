@@ -9,14 +9,13 @@
 namespace flightwatt::batch {
 namespace {
 
-/// Those that may be another one, or another one it: those to be used first come first.
+/// Candidates for duplicates, the preferred ones first.
 std::vector<const BatchFlight*> candidates_among(const BatchFlights& flights) {
     const auto is_fitted = [](const BatchFlight& flight) { return !flight.selection.flights.empty(); };
     std::vector<const BatchFlight*> candidates;
     candidates.reserve(flights.size());
     for (const auto& flight : flights)
         if (is_fitted(flight) || !flight.record.no_power_reason.empty()) candidates.push_back(&flight);
-    // The one with power is used, of these one that is still there, of these one with its definitions.
     std::ranges::stable_sort(candidates, {}, [&](const BatchFlight* flight) {
         return std::tuple(!is_fitted(*flight), flight->log_is_missing, !flight->record.content.has_definitions);
     });

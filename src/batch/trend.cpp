@@ -17,23 +17,22 @@ namespace {
 constexpr std::size_t max_exact = 50;
 constexpr double tail = (1.0 - confidence_level) / 2.0;
 
-/// The greatest number k such that fewer than k inversions of a random order of n values have a chance of at most
-/// `tail`.
+/// The greatest k such that fewer than k inversions of a random order of n values have a probability of at most `tail`.
 std::size_t rare_inversions(std::size_t n) {
-    std::vector<double> chance{1.0};  // by the number of inversions
+    std::vector<double> probability{1.0};  // by the number of inversions
     for (std::size_t i = 2; i <= n; ++i) {
-        std::vector<double> next(chance.size() + i - 1, 0.0);
-        for (std::size_t k = 0; k < chance.size(); ++k)
-            for (std::size_t more = 0; more < i; ++more) next[k + more] += chance[k] / static_cast<double>(i);
-        chance = std::move(next);
+        std::vector<double> next(probability.size() + i - 1, 0.0);
+        for (std::size_t k = 0; k < probability.size(); ++k)
+            for (std::size_t more = 0; more < i; ++more) next[k + more] += probability[k] / static_cast<double>(i);
+        probability = std::move(next);
     }
     double below = 0.0;
     std::size_t k = 0;
-    while (k < chance.size() && below + chance[k] <= tail) below += chance[k++];
+    while (k < probability.size() && below + probability[k] <= tail) below += probability[k++];
     return k;
 }
 
-/// How many slopes of each end lie outside of the interval.
+/// Number of slopes below the interval, and above it.
 std::size_t outside(std::span<const DatedValue> values, std::size_t pairs) {
     std::map<double, std::size_t> at_one_time;
     for (const auto& value : values) ++at_one_time[value.day];

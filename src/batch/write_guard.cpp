@@ -18,9 +18,9 @@ namespace {
 
 std::string note_at_end;  ///< set before any signal is handled
 
-/// All files are whole, and the kernel releases the rest: not exit(), which would destroy what other threads are using.
+/// _exit(), as exit() would destroy objects that other threads use; all files are complete at any time.
 void end_by_signal(int signal) {
-    ::pollfd standard_error{STDERR_FILENO, POLLOUT, 0};  // one that nobody reads does not keep the program
+    ::pollfd standard_error{STDERR_FILENO, POLLOUT, 0};  // an unread pipe must not block
     if (::poll(&standard_error, 1, 0) > 0) [[maybe_unused]]
         const auto written = ::write(STDERR_FILENO, note_at_end.data(), note_at_end.size());
     constexpr int killed_by_signal = 128;
@@ -49,7 +49,7 @@ FolderLock::~FolderLock() { ::close(folder_); }
 
 void end_at_signals(const std::string& program) {
     const auto* behind_a_progress_bar = ::isatty(STDERR_FILENO) != 0 ? "\n" : "";
-    note_at_end = fmt::format("{}{}: stopped; the same command goes on from there\n", behind_a_progress_bar, program);
+    note_at_end = fmt::format("{}{}: stopped; run the same command to resume\n", behind_a_progress_bar, program);
     for (const int signal : termination_signals()) std::signal(signal, end_by_signal);
 }
 

@@ -3,12 +3,11 @@
 #include <filesystem>
 #include <string>
 
-/// What keeps a folder of results whole: from other runs, and from the program's own end.
+/// Protection of a folder of results against other runs and signals.
 namespace flightwatt::batch {
 
-/// Keeps other runs of batch or profile out of a folder while it lives: two at once would remove each other's
-/// results. Leaves nothing behind, not even when the program is killed. Throws OutputError where another one
-/// holds it, or the folder cannot be opened. File systems without locks are taken as they are.
+/// Locks a folder against other runs of batch or profile (flock; ignored by file systems without locks). Throws
+/// OutputError if another run holds it, or the folder cannot be opened.
 class FolderLock {
   public:
     explicit FolderLock(const std::filesystem::path& folder);
@@ -20,15 +19,14 @@ class FolderLock {
     int folder_ = -1;
 };
 
-/// A folder that is removed at the end if nothing is left in it.
+/// Removes a folder at the end if it is empty.
 struct RemoveIfEmpty {
     std::filesystem::path folder;
     ~RemoveIfEmpty();
 };
 
-/// From now on SIGINT, SIGTERM and SIGHUP end `program` at once, whatever its threads are computing: with a note on the
-/// standard error, and the exit code 128 + the signal, as shells expect. For programs whose files are whole at any
-/// moment. Signals that the program was started to ignore (nohup) stay ignored.
+/// SIGINT, SIGTERM and SIGHUP then end `program` at once with a note on the standard error and exit code 128 + signal.
+/// Signals that are ignored (nohup) stay ignored.
 void end_at_signals(const std::string& program);
 
 }  // namespace flightwatt::batch

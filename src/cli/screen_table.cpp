@@ -4,6 +4,7 @@
 #include "base/duration_text.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "record/record.h"
 
 #include <algorithm>
 #include <array>
@@ -19,39 +20,11 @@
 namespace flightwatt::cli {
 namespace {
 
-struct UnitOfSuffix {
-    std::string_view suffix;
-    std::string_view unit;
-    int decimals;
-};
-
-/// Longer ones before those that they end with.
-constexpr std::array<UnitOfSuffix, 15> units_of_suffixes{{{"_m3_per_s3", "m3/s3", 0},
-                                                          {"_m_per_s2", "m/s2", 2},
-                                                          {"_m_per_s", "m/s", 1},
-                                                          {"_rad_per_s", "rad/s", 4},
-                                                          {"_percent", "%", 1},
-                                                          {"_mah", "mAh", 0},
-                                                          {"_ohm", "ohm", 4},
-                                                          {"_deg", "deg", 1},
-                                                          {"_ah", "Ah", 3},
-                                                          {"_wh", "Wh", 3},
-                                                          {"_w", "W", 2},
-                                                          {"_v", "V", 2},
-                                                          {"_a", "A", 2},
-                                                          {"_m", "m", 1},
-                                                          {"_s", "s", 1}}};
-
-const UnitOfSuffix* unit_of(std::string_view column) {
-    const auto* const found = std::ranges::find_if(
-        units_of_suffixes, [&](const UnitOfSuffix& unit) { return column.ends_with(unit.suffix); });
-    return found == units_of_suffixes.end() ? nullptr : found;
-}
-
 /// Columns of durations are in minutes, in a table for people; so are moments since a mission began.
 bool is_duration(std::string_view column) {
-    constexpr std::array<std::string_view, 7> others{"depleted_at_s", "cut_off_at_s", "planned s", "flown s",
-                                                     "take-off s",    "cruise s",     "landing s"};
+    constexpr std::array<std::string_view, 8> others{"depleted_at_s", "cut_off_at_s", "empty at [s]", "cut off at [s]",
+                                                     "planned s",     "flown s",      "take-off s",   "landing s"};
+    if (column == "cruise s" || column == "duration [s]") return true;
     return (column.starts_with("duration") && column.ends_with("_s")) || std::ranges::count(others, column) > 0;
 }
 
@@ -104,10 +77,10 @@ std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
 struct ShownColumn {
     std::size_t index = 0;
     std::string name;  ///< words of the head
-    std::string unit;  ///< below them; may be empty
+    std::string unit;  ///< below them, or empty
     bool is_text = false;
-    std::size_t least = 0;    ///< characters that it cannot do without
-    std::size_t natural = 0;  ///< characters of its widest cell and head
+    std::size_t min_width = 0;  ///< characters
+    std::size_t natural = 0;    ///< characters of its widest cell and head
     std::size_t width = 0;
 };
 
@@ -122,11 +95,12 @@ ShownColumn shown_column(const TextTable& table, std::size_t index) {
     ShownColumn column;
     column.index = index;
     std::string_view head = table.header[index];
-    if (const auto* unit = unit_of(head); unit != nullptr && head.find(' ') == std::string_view::npos) {
+    if (const auto* unit = unit_of_key(head); unit != nullptr && head.find(' ') == std::string_view::npos) {
         head.remove_suffix(unit->suffix.size());
         if (!is_duration(table.header[index])) column.unit = std::string(unit->unit);
     }
-    if (is_duration(table.header[index]) && head.ends_with(" s")) head.remove_suffix(2);
+    for (const std::string_view seconds : {" s", " [s]"})
+        if (is_duration(table.header[index]) && head.ends_with(seconds)) head.remove_suffix(seconds.size());
     column.name = std::string(head);
     std::ranges::replace(column.name, '_', ' ');
     std::size_t widest = character_count(column.unit);
@@ -139,11 +113,11 @@ ShownColumn shown_column(const TextTable& table, std::size_t index) {
     std::size_t max_word = 0;
     for (const auto& word : words_of(column.name)) max_word = std::max(max_word, character_count(word));
     column.natural = std::max(widest, max_word);
-    column.least = column.is_text ? std::max(std::min(widest, text_wraps_from), max_word) : column.natural;
+    column.min_width = column.is_text ? std::max(std::min(widest, text_wraps_from), max_word) : column.natural;
     return column;
 }
 
-/// Names of the columns in the order of what they matter.
+/// Indices of the columns, the most important first.
 std::vector<std::size_t> by_importance(const TextTable& table, const std::vector<std::string>& first) {
     std::vector<std::size_t> order;
     for (const auto& name : first) {
@@ -161,20 +135,20 @@ bool is_empty_column(const TextTable& table, std::size_t index) {
     return std::ranges::all_of(table.rows, [&](const auto& row) { return row[index].empty() || row[index] == "-"; });
 }
 
-/// The columns for which there is room, each with its width, in the order of the table.
+/// The columns that fit, each with its width, in the order of the table.
 std::vector<ShownColumn> columns_that_fit(const TextTable& table, const Screen& screen, const ScreenTable& options) {
     std::vector<ShownColumn> columns;
     std::size_t used = 0;
     for (const auto index : by_importance(table, options.first)) {
         auto column = shown_column(table, index);
         if (!screen.wide && !table.rows.empty() && is_empty_column(table, index)) continue;
-        const auto needs = column.least + (columns.empty() ? 0 : gap);
+        const auto needs = column.min_width + (columns.empty() ? 0 : gap);
         if (!screen.wide && !columns.empty() && used + needs > screen.columns) continue;
-        column.width = screen.wide ? column.natural : std::min(column.least, screen.columns);
+        column.width = screen.wide ? column.natural : std::min(column.min_width, screen.columns);
         used += needs;
         columns.push_back(std::move(column));
     }
-    for (auto& column : columns) {  // what is left goes to texts, the important ones first
+    for (auto& column : columns) {  // the remaining width goes to texts, the important ones first
         if (screen.wide || !column.is_text || used >= screen.columns) continue;
         const auto more = std::min(column.natural - std::min(column.natural, column.width), screen.columns - used);
         column.width += more;
@@ -210,15 +184,15 @@ std::vector<std::string> head_cells(const std::vector<ShownColumn>& columns) {
     return cells;
 }
 
-/// How many rows stand before and behind those in the middle that are left out.
+/// Numbers of rows shown before and after those left out in the middle.
 struct ShownRows {
     std::size_t before = 0;
     std::size_t after = 0;
 };
 
 ShownRows shown_rows(std::size_t rows, const ScreenTable& options) {
-    if (options.most_rows == 0 || rows <= options.most_rows) return {rows, 0};
-    return {options.most_rows - options.most_rows / 3, options.most_rows / 3};
+    if (options.max_rows == 0 || rows <= options.max_rows) return {rows, 0};
+    return {options.max_rows - options.max_rows / 3, options.max_rows / 3};
 }
 
 /// The names of the columns that are not shown.
@@ -248,7 +222,7 @@ std::string readable_cell(const std::string& cell, std::string_view column) {
     const bool is_place = column.starts_with("latitude") || column.starts_with("longitude");
     constexpr int decimals_of_places = 5;  // a metre
     if (is_place) return fmt::format("{:.{}f}", *number, decimals_of_places);
-    if (const auto* unit = unit_of(column)) return fmt::format("{:.{}f}", *number, unit->decimals);
+    if (const auto* unit = unit_of_key(column)) return fmt::format("{:.{}f}", *number, unit->decimals);
     if (cell.find_first_of(".eE") == std::string::npos) return cell;
     return fmt::format("{:.4g}", *number);
 }

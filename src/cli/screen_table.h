@@ -10,10 +10,10 @@
 #include <string_view>
 #include <vector>
 
-/// Tables as people read them, where the standard output is a terminal; elsewhere they stay whole.
+/// Tables in the width of a terminal; elsewhere they are complete.
 namespace flightwatt::cli {
 
-/// Where a table is shown.
+/// Properties of the standard output.
 struct Screen {
     bool is_terminal = false;
     bool wide = false;  ///< every column, however wide the terminal
@@ -23,26 +23,23 @@ struct Screen {
 /// The standard output of this program, with --wide.
 Screen screen_of(const StageCall& call);
 
-/// What a table is called, and what of it matters most.
+/// Title and important columns of a table.
 struct ScreenTable {
-    std::string title;               ///< what was read; not shown elsewhere than on a terminal
-    std::vector<std::string> first;  ///< columns that are kept before all others, the most important first
-    std::size_t most_rows = 0;       ///< rows in the middle of longer tables are left out; 0: none
+    std::string title;               ///< shown on a terminal
+    std::vector<std::string> first;  ///< important columns, the most important first
+    std::size_t max_rows = 0;        ///< rows in the middle of longer tables are omitted; 0: none
 };
 
-/// The table in the width of the screen: heads of several lines with the unit of a column (from the suffix of its
-/// name) below, long texts on several lines, and below it the names of columns for which there was no room. Elsewhere
-/// than on a terminal: to_text(table).
+/// The table in the width of the screen: heads with units below (by the suffix of the name), long texts on several lines,
+/// and the names of columns that do not fit. Without a terminal: to_text(table).
 std::string screen_text(TextTable table, const Screen& screen, const ScreenTable& options = {});
 
-/// A CSV text with the decimals that people read, by the units of its columns: 28.3 of 28.261000000000003 s. Columns
-/// without a known unit get four digits. Comments are left out; their places are counted in `csv`. Throws InputError
-/// where `csv` is none.
+/// A CSV text with decimals by the units of its columns (28.3 s), or four digits. Throws InputError for invalid CSV.
 TextTable readable_table(std::string_view csv);
 
-/// A result that is a CSV: to --output's file or a pipe as it is, to a terminal as a table.
+/// Writes a CSV: to --output's file or a pipe as it is, to a terminal as a table.
 void write_csv_result(const StageCall& call, std::string_view csv, const ScreenTable& options);
-/// The same of a CSV in pieces.
+/// The same of a CSV in chunks.
 void write_csv_result(const StageCall& call, const TextWriter& write_csv, const ScreenTable& options);
 
 }  // namespace flightwatt::cli

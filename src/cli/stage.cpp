@@ -133,6 +133,7 @@ struct CommonOptions {
     std::optional<std::string> output;
     bool json = false;
     bool json_usage = false;
+    bool json_schema = false;
     bool quiet = false;
     bool help = false;
     bool help_all = false;
@@ -153,6 +154,7 @@ void add_common_options(StageDefinition& stage, CommonOptions& common) {
     options.add("help,h", common.help, "show this help");
     options.add("help-all", common.help_all, "show this help, with expert options");
     options.add("json-usage", common.json_usage, "print inputs and options of this stage as JSON");
+    if (stage.json_schema != nullptr) options.add("json-schema", common.json_schema, "print the JSON schema of --json");
     options.add("version", common.version, "show the version");
 }
 
@@ -182,6 +184,8 @@ bool print_information(const StageDefinition& stage, const CommonOptions& common
         print(help_text(stage, common.help_all));
     else if (common.json_usage)
         print(json_text(usage_json(stage)));
+    else if (common.json_schema)
+        print(json_text(stage.json_schema()));
     else if (common.version)
         print(fmt::format("flightwatt-{} {}\n", stage.name, version_text()));
     else

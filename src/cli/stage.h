@@ -29,9 +29,10 @@ struct StageDefinition {
     Options options = {};
     std::size_t min_inputs = 1;
     std::size_t max_inputs = 1000000;
-    bool reads_logs = false;    ///< its inputs are logs: - is the standard input
-    bool uses_threads = false;  ///< then --jobs is an option
-    bool shows_table = false;   ///< on a terminal: then --wide is an option
+    nlohmann::ordered_json (*json_schema)() = nullptr;  ///< of --json, which --json-schema prints
+    bool reads_logs = false;                            ///< its inputs are logs: - is the standard input
+    bool uses_threads = false;                          ///< then --jobs is an option
+    bool shows_table = false;                           ///< on a terminal: then --wide is an option
     std::string output_help = "write the result to FILE instead of the standard output";
 };
 

@@ -76,7 +76,7 @@ Estimates predict_landing_in_flight(const Fold& fold) {
     const auto fourier = estimates.front().second;
     estimates.emplace_back("in_flight", fourier);
     estimates.emplace_back("in_flight_constant", fourier);
-    estimates.emplace_back("in_flight_path", fourier);
+    estimates.emplace_back("in_flight_physical", fourier);
     return estimates;
 }
 
@@ -98,7 +98,7 @@ Estimates predict_cruise_in_flight(const Fold& fold, const MeasuredFlight& exclu
     update("in_flight_constant", CruisePrior::constant);
     if (fold.all.physical && fold.all.physical->level_sd && !ahead.empty()) {
         const auto rest = predict_remaining_physical(*fold.all.physical, flown, {mean_values(ahead), remaining_s});
-        estimates.emplace_back("in_flight_path", after(known_wh, rest.energy));
+        estimates.emplace_back("in_flight_physical", after(known_wh, rest.energy));
     }
     return estimates;
 }

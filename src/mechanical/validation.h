@@ -42,7 +42,7 @@ void require_distinct(std::span<const MeasuredFlight> flights);
 /// say of the rest of the cruise is added to what was measured until then, and beside them
 ///   in_flight            predict_remaining_cruise by the curve
 ///   in_flight_constant   predict_remaining_cruise by the curve's mean
-///   in_flight_path       predict_posterior_power: the rest's airspeed and climb as flown, as if they had been known
+///   in_flight_physical       predict_posterior_power: the rest's airspeed and climb as flown, as if they had been known
 /// `progress` is told how many of how many folds are done, by one thread at a time.
 /// Throws NoResultError for fewer than 2 flights, and what fit_phase_model throws.
 std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights, const ModelFitOptions& options = {},

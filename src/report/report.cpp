@@ -209,22 +209,51 @@ void add_replay(Draft& page) {
         page.content.sections.push_back(replay_section(replays));
 }
 
-nlohmann::ordered_json summary_json(const Draft& page) {
-    auto figures = nlohmann::ordered_json::array();
-    for (const auto& section : page.content.sections) {
-        for (const auto& figure : section.figures) {
-            figures.push_back({{"id", figure.id}, {"section", section.title}, {"description", figure.description}});
-        }
-    }
-    auto missions = nlohmann::ordered_json::array();
+struct FigureOutput {
+    std::string id, section, description;
+};
+
+Fields<FigureOutput> record_fields(const FigureOutput*) {
+    using R = FigureOutput;
+    return {field("id", &R::id, "file name of the figure"), field("section", &R::section, "section of the page"),
+            field("description", &R::description, "description of the figure")};
+}
+
+/// JSON of the page.
+struct PageOutput {
+    std::string title;
+    std::vector<MissionOutput> missions;
+    std::vector<std::string> aircraft;
+    std::string prediction;
+    std::vector<std::string> warnings, notes;
+    std::vector<FigureOutput> figures;
+};
+
+Fields<PageOutput> record_fields(const PageOutput*) {
+    using R = PageOutput;
+    return {field("title", &R::title, "title of the page"),
+            field("missions", &R::missions, "missions"),
+            field("aircraft", &R::aircraft, "each aircraft with its flights"),
+            field("prediction", &R::prediction, "errors of the models for hold-out flights"),
+            field("warnings", &R::warnings, "warnings of the fit"),
+            field("notes", &R::notes, "missing contents"),
+            field("figures", &R::figures, "figures")};
+}
+
+Json summary_json(const Draft& page) {
+    PageOutput output{.title = {},
+                      .missions = {},
+                      .aircraft = aircraft_lines(page.flights),
+                      .prediction = fmt::format("{}", fmt::join(prediction_lines(page.answers.validated), "; ")),
+                      .warnings = page.answers.warnings,
+                      .notes = page.answers.notes,
+                      .figures = {}};
+    for (const auto& section : page.content.sections)
+        for (const auto& figure : section.figures)
+            output.figures.push_back({figure.id, section.title, figure.description});
     for (std::size_t i = 0; i < page.answers.missions.size(); ++i)
-        missions.push_back(to_json(page.answers.missions[i], page.answers.answers[i]));
-    return {{"missions", missions},
-            {"aircraft", aircraft_lines(page.flights)},
-            {"prediction", fmt::format("{}", fmt::join(prediction_lines(page.answers.validated), "; "))},
-            {"warnings", page.answers.warnings},
-            {"notes", page.answers.notes},
-            {"figures", figures}};
+        output.missions.push_back({&page.answers.missions[i], &page.answers.answers[i]});
+    return record_json(output);
 }
 
 /// Of flights that are left out in turn, as the report has them: the work grows with their square.
@@ -298,5 +327,7 @@ std::string replay_latex(const BatchContent& content, const std::vector<mission:
                          const ReportLog& log) {
     return to_latex(replay_section(replay_on(content, missions, log).replays).tables);
 }
+
+Json summary_schema() { return record_schema<PageOutput>(); }
 
 }  // namespace flightwatt::report

@@ -2,6 +2,7 @@
 
 #include "mechanical/mechanical_model.h"
 #include "mission/mission.h"
+#include "record/record.h"
 #include "report/batch_content.h"
 #include "report/html.h"
 
@@ -13,8 +14,6 @@
 #include <string>
 #include <utility>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 /// Folders of flightwatt batch and missions as the sections of a page, and as LaTeX tables.
 namespace flightwatt::report {
@@ -45,7 +44,7 @@ struct ReportInput {
 struct ReportContent {
     std::vector<std::pair<std::string, std::string>> facts;  ///< "flights" - "3 logs, from out", ...
     std::vector<Section> sections;                           ///< the summary first
-    nlohmann::ordered_json summary;                          ///< missions, aircraft, prediction, warnings, notes
+    Json summary;                                            ///< of --json, with an empty title
 };
 
 /// Throws InputError and UsageError as read_batch_contents, and UsageError for a capacity that flights contradict.
@@ -64,5 +63,8 @@ std::string missions_latex(const std::vector<mission::MissionVariant>& missions)
 /// The missions on the power that the flights measured.
 std::string replay_latex(const BatchContent& content, const std::vector<mission::MissionVariant>& missions,
                          const ReportLog& log);
+
+/// JSON Schema of ReportContent::summary.
+Json summary_schema();
 
 }  // namespace flightwatt::report

@@ -149,6 +149,8 @@ FlightTrendData extract_trend_data(const ReportFlight& flight) {
     FlightTrendData flown;
     flown.name = flight.name;
     flown.aircraft = flight::describe_aircraft(flight.series.aircraft_id, flight.series.aircraft_name);
+    flown.aircraft_id = flight.series.aircraft_id;
+    flown.aircraft_name = flight.series.aircraft_name;
     flown.facts = summarize_flight(flight);
     try {
         flown.records = battery::discharge_records(flight.series).records;
@@ -181,6 +183,10 @@ std::vector<AircraftTrend> trends_of(std::span<const FlightTrendData> flights) {
             const bool is_capacity = std::string_view(name) == "capacity_ah";
             for (const auto& flight : flights) {
                 const auto value = of(flight);
+                if (flight.aircraft == aircraft) {
+                    trend.aircraft_id = flight.aircraft_id;
+                    trend.aircraft_name = flight.aircraft_name;
+                }
                 if (flight.aircraft == aircraft && flight.facts.start_clock_s && value)
                     trend.values.push_back({*flight.facts.start_clock_s / seconds_per_day, *value});
                 trend.level_is_guess = trend.level_is_guess ||

@@ -19,7 +19,9 @@ namespace flightwatt::report {
 /// One flight, with all that may change with age.
 struct FlightTrendData {
     std::string name;
-    std::string aircraft;
+    std::string aircraft;  ///< id and name as text
+    std::string aircraft_id = {};
+    std::string aircraft_name = {};
     FlightSummary facts;
     std::vector<battery::DischargeRecord> records;
     std::string no_record;  ///< why there are none of these
@@ -57,6 +59,8 @@ struct AircraftTrend {
     std::vector<batch::DatedValue> values;  ///< days since 1970
     batch::TrendResult answer;
     bool level_is_guess = false;  ///< the slope is known in percent of the level, not in the quantity's unit
+    std::string aircraft_id = {};
+    std::string aircraft_name = {};
 };
 
 /// Of each aircraft, all quantities.

@@ -31,8 +31,8 @@ TEST(StoredFlights, AreWhatTheBatchLeft) {
     EXPECT_FALSE(stored[2].record.accepted);
     EXPECT_THAT(stored[2].record.error, HasSubstr("rubbish.data"));
     EXPECT_EQ(stored[1].series.current_origin, flight::CurrentOrigin::sensor);
-    ASSERT_EQ(stored[1].record.verdicts.size(), 4U);
-    EXPECT_THAT(stored[1].record.verdicts[0].text, HasSubstr("agrees with TAKEOFF"));
+    ASSERT_EQ(stored[1].record.edge_checks.size(), 4U);
+    EXPECT_THAT(stored[1].record.edge_checks[0].text, HasSubstr("agrees with TAKEOFF"));
     const auto files = test::contents(scratch / "out");
     EXPECT_EQ(to_csv(stored[1].series), files.at("flights/opterra_synthetic_01.series.csv"));
     EXPECT_EQ(phases_csv(stored[1].series, stored[1].phases), files.at("flights/opterra_synthetic_01.phases.csv"));
@@ -43,9 +43,9 @@ TEST(StoredFlights, RefuseWhatIsNoBatchFolder) {
     EXPECT_THAT(test::rejected([&] { read_stored_flights(scratch); }), HasSubstr("no batch.json in it"));
     write_manifest({}, scratch);
     make_directories(scratch / "flights");
-    EXPECT_THAT(test::rejected([&] { read_stored_flights(scratch); }), HasSubstr("no record of a flight"));
+    EXPECT_THAT(test::rejected([&] { read_stored_flights(scratch); }), HasSubstr("flight record"));
     test::write_text(scratch / "flights" / "a.record.json", "{}");
-    EXPECT_THAT(test::rejected([&] { read_stored_flights(scratch); }), HasSubstr("no record of a flight"));
+    EXPECT_THAT(test::rejected([&] { read_stored_flights(scratch); }), HasSubstr("flight record"));
 }
 
 TEST(StoredFlights, AreNotBelievedOnceTheyWereChanged) {
@@ -63,7 +63,7 @@ TEST(StoredFlights, AreNotBelievedOnceTheyWereChanged) {
         const auto stored = read_stored_flights(out);
         ASSERT_EQ(stored.size(), 1U) << ending;
         EXPECT_FALSE(stored[0].record.accepted);
-        EXPECT_THAT(stored[0].damage_reason, HasSubstr("its log is gone"));
+        EXPECT_THAT(stored[0].damage_reason, HasSubstr("its log is missing"));
         std::filesystem::rename(scratch / "away", log);
         EXPECT_THAT(test::rejected([&] { read_stored_flights(out); }), HasSubstr("run flightwatt batch again"));
         write_file_atomically(file, whole);

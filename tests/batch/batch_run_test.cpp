@@ -192,7 +192,7 @@ TEST_F(BatchOfTwo, KeepsTheResultsOfALogThatIsGone) {
     write_text(flights / "opterra_synthetic_01.record.json", changed);
     const auto excluded = batch(in, out);
     EXPECT_FALSE(excluded[0].record.accepted);
-    EXPECT_THAT(excluded[0].record.error, HasSubstr("its log is gone"));
+    EXPECT_THAT(excluded[0].record.error, HasSubstr("its log is missing"));
     EXPECT_EQ(read_file(flights / "opterra_synthetic_01.record.json"), changed);
     EXPECT_EQ(read_file(flights / "opterra_synthetic_01.series.csv"),
               whole.at("flights/opterra_synthetic_01.series.csv"));

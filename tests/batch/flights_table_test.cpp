@@ -51,9 +51,10 @@ BatchFlights both_flights() { return {two_sorties(), rejected_flight()}; }
 TEST(Catalogue, HasARowAPhaseAndARejectedLog) {
     const auto flights = both_flights();
     const auto table = parse_csv(test::text_of(catalogue_csv(flights)), "flights.csv");
-    const std::vector<std::string> first(table.columns.begin(), table.columns.begin() + 11);
+    const std::vector<std::string> first(table.columns.begin(), table.columns.begin() + 14);
     EXPECT_THAT(first, testing::ElementsAre("flight", "sortie", "phase", "start_s", "end_s", "duration_s", "samples",
-                                            "mean_power_w", "energy_wh", "counter_energy_wh", "used"));
+                                            "mean_power_w", "energy_wh", "counter_energy_wh", "gaps", "longest_gap_s",
+                                            "complete", "used"));
     ASSERT_EQ(table.rows.size(), 4U);
     const auto cell = [&](std::size_t row, const char* column) {
         return table.rows[row].cells[column_index(table, column)].text;

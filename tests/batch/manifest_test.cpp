@@ -127,10 +127,10 @@ TEST(BatchPlan, SaysWhatIsDropped) {
     std::filesystem::remove(folder / "in" / "bad.data");
     const auto logs = find_logs({in + "/opterra_synthetic_03.data"});
     EXPECT_THAT(words(plan_batch(logs, out, false).dropped),
-                ElementsAre("bad, its log " + in + "/bad.data is gone, and nothing came of it"));
+                ElementsAre("bad, its log " + in + "/bad.data is missing, no results"));
     EXPECT_THAT(words(plan_batch(logs, out, true).dropped),
-                ElementsAre("bad, its log " + in + "/bad.data is gone",
-                            "opterra_synthetic_01, its log " + in + "/opterra_synthetic_01.data is gone",
+                ElementsAre("bad, its log " + in + "/bad.data is missing",
+                            "opterra_synthetic_01, its log " + in + "/opterra_synthetic_01.data is missing",
                             "opterra_synthetic_02, its log " + in + "/opterra_synthetic_02.data is not in this batch"));
 }
 

@@ -153,7 +153,7 @@ TEST(Merge, RefusesWhatCannotBeJoined) {
     const auto series = one / "flights" / "opterra_synthetic_01.series.csv";
     const auto whole = read_file(series);
     write_file_atomically(series, whole + "1,2\n");
-    EXPECT_THAT(refusal({one}, scratch / "changed"), HasSubstr("not as the batch wrote them"));
+    EXPECT_THAT(refusal({one}, scratch / "changed"), HasSubstr("have changed since the batch"));
     write_file_atomically(series, whole);
     std::filesystem::remove(one / "flights" / "opterra_synthetic_02.record.json");
     EXPECT_THAT(refusal({one}, scratch / "unfinished"), HasSubstr("was not finished: opterra_synthetic_02"));

@@ -142,7 +142,7 @@ TEST_F(Robustness, Case01WatchFollowsACaptureThatBeginsWithinAFrame) {
                                 {"--follow", "cut.bin", "--json", "--log", test::sample(1, ".log").string()}, place));
     }
     const auto has_read_all = [](const std::filesystem::path& place) {
-        return testing::Matches(ContainsRegex("\"silent_s\":[1-9]"))(read_file(place / "stdout"));
+        return testing::Matches(ContainsRegex("\"time_since_message_s\":[1-9]"))(read_file(place / "stdout"));
     };
     for (const auto& [place, watch] : watches) {
         EXPECT_TRUE(test::wait_until([&, &output = place] { return has_read_all(output); }))

@@ -65,7 +65,7 @@ class WatchFlights : public testing::Test {
             const auto lines = said();
             if (!lines.ends_with("}\n")) return false;
             const auto now = last_object(lines);
-            return now.at("silent_s").get<double>() > 0.0 && now.at("time_s").get<double>() >= until_s;
+            return now.at("time_since_message_s").get<double>() > 0.0 && now.at("time_s").get<double>() >= until_s;
         }));
         ::kill(watching, SIGTERM);
         EXPECT_EQ(test::exit_code_of(watching), 0) << read_file(folder / "stderr");

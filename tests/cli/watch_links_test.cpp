@@ -60,7 +60,7 @@ class WatchLinks : public testing::Test {
             const auto last = text.rfind("\n{");
             const auto now = last == std::string::npos ? text : text.substr(last + 1);
             seconds = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
-            return text.ends_with('\n') && Json::parse(now).at("silent_s").get<double>() > 0.0;
+            return text.ends_with('\n') && Json::parse(now).at("time_since_message_s").get<double>() > 0.0;
         })) << until_s;
         EXPECT_GT(seconds, 1U);  // of 464; how many it passes over is a matter of the load
         ::kill(watching, SIGTERM);

@@ -58,8 +58,8 @@ def numbers_of(state):
     prediction = state["prediction"]
     battery = prediction.get("battery")
     landing = battery["at_landing"] if battery else {}
-    low_wh, high_wh = prediction["interval_95_wh"]
-    chance = (state["battery"] or {}).get("chance_below_reserve")
+    low_wh, high_wh = prediction["remaining_energy_wh_interval_95"].values()
+    chance = (state["battery"] or {}).get("probability_below_reserve")
     return [state["energy_wh"], low_wh, high_wh, landing.get("soc_percent"), landing.get("voltage_v"), chance]
 
 
@@ -83,8 +83,9 @@ def compare(example, build, log, model, battery, remaining_s):
     until_s = states[-1]["prediction"]["until_s"]
     predicted = json.loads(run([build / "bin/flightwatt-predict", log, "--model", model, "--remaining", remaining_s,
                                 "--battery", battery, "--at-log-time", until_s, "--json"]))
-    if not all(map(same, lines[-1][2:4], predicted["interval_95_wh"])):
-        sys.exit(f"{log}: {lines[-1]} is not what predict says at {until_s} s: {predicted['interval_95_wh']}")
+    interval = predicted["remaining_energy_wh_interval_95"]
+    if not all(map(same, lines[-1][2:4], interval.values())):
+        sys.exit(f"{log}: {lines[-1]} is not what predict says at {until_s} s: {interval}")
     print(f"{Path(log).name}: {len(lines)} predictions as watch and predict say them")
 
 

@@ -30,23 +30,23 @@ TEST(ReplayProgram, JudgesSchedulesOnRealFlights) {
     ASSERT_EQ(json["replays"].size(), 3U);
     for (const auto& replay : json["replays"]) {
         SCOPED_TRACE(replay["flight"].get<std::string>());
-        EXPECT_EQ(replay["model_saw_flight"], "no");
+        EXPECT_EQ(replay["training_overlap"], "no");
         EXPECT_EQ(replay["model_flights"].size(), 2U);
         EXPECT_NEAR(replay["measured_mechanical_wh"].get<double>(), replay["counter_energy_wh"].get<double>(),
                     0.005 * replay["counter_energy_wh"].get<double>());
-        std::map<std::string, nlohmann::json> by_way;
-        for (const auto& schedule : replay["schedules"]) by_way[schedule["way"]] = schedule;
-        ASSERT_EQ(by_way.size(), 6U);
-        const auto& hindsight = by_way["hindsight"];
+        std::map<std::string, nlohmann::json> by_method;
+        for (const auto& schedule : replay["schedules"]) by_method[schedule["method"]] = schedule;
+        ASSERT_EQ(by_method.size(), 6U);
+        const auto& hindsight = by_method["hindsight"];
         EXPECT_EQ(hindsight["keeps_reserve"].get<bool>(), !replay["bound"].is_null());
-        for (const auto& [way, schedule] : by_way) {
+        for (const auto& [method, schedule] : by_method) {
             EXPECT_NEAR(schedule["mechanical_energy_wh"].get<double>(), replay["measured_mechanical_wh"].get<double>(),
                         1e-9)
-                << way;
+                << method;
             if (!schedule["keeps_reserve"]) continue;
-            ASSERT_TRUE(hindsight["keeps_reserve"]) << way;
-            EXPECT_LE(schedule["utility"].get<double>(), replay["bound"].get<double>() * (1.0 + 1e-9)) << way;
-            EXPECT_GE(schedule["regret"].get<double>(), 0.0) << way;
+            ASSERT_TRUE(hindsight["keeps_reserve"]) << method;
+            EXPECT_LE(schedule["utility"].get<double>(), replay["bound"].get<double>() * (1.0 + 1e-9)) << method;
+            EXPECT_GE(schedule["regret"].get<double>(), 0.0) << method;
         }
     }
     EXPECT_EQ(json["comparisons"].size(), 2U);

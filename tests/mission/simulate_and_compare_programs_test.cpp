@@ -73,9 +73,10 @@ TEST(Simulate, PrintsJson) {
     const auto json = nlohmann::ordered_json::parse(result.out);
     std::vector<std::string> keys;
     for (const auto& [key, value] : json.items()) keys.push_back(key);
-    EXPECT_THAT(keys, testing::ElementsAre("mission", "final_soc_percent", "energy_wh", "mechanical_energy_wh",
-                                           "compute_energy_wh", "delivered_energy_wh", "duration_s", "depleted_at_s",
-                                           "cut_off_at_s", "feasible", "reserve_soc_percent", "keeps_reserve"));
+    EXPECT_THAT(keys,
+                testing::ElementsAre("format", "stage", "mission", "final_soc_percent", "reserve_soc_percent",
+                                     "keeps_reserve", "energy_wh", "mechanical_energy_wh", "compute_energy_wh",
+                                     "delivered_energy_wh", "duration_s", "depleted_at_s", "cut_off_at_s", "feasible"));
     EXPECT_EQ(json["mission"], "m");
     EXPECT_NEAR(json["final_soc_percent"].get<double>(), 75.0, 1e-9);
     EXPECT_EQ(json["compute_energy_wh"], 25.0);
@@ -149,7 +150,7 @@ TEST(Compare, ListsSummariesAsJson) {
     write_mission(folder, "small", small);
     write_mission(folder, "lasting", lasting);
     const auto result = run(folder, "compare", "small.toml lasting.toml --json -o table.txt");
-    const auto json = nlohmann::json::parse(result.out);
+    const auto json = nlohmann::json::parse(result.out)["missions"];
     ASSERT_EQ(json.size(), 2U);
     EXPECT_EQ(json[0]["mission"], "lasting");
     EXPECT_EQ(json[1]["mission"], "small");
@@ -166,7 +167,7 @@ TEST(Compare, RanksWhatCannotBeDeliveredLast) {
     EXPECT_EQ(result.err,
               "flightwatt-compare: warning: weak: the battery cannot deliver 25 W after 0.0 s: its limit U^2 / (4 R) "
               "is 12.5 W\n");
-    const auto json = nlohmann::json::parse(result.out);
+    const auto json = nlohmann::json::parse(result.out)["missions"];
     EXPECT_EQ(json[0]["mission"], "small");
     EXPECT_EQ(json[1]["mission"], "weak");
     EXPECT_TRUE(json[1]["final_soc_percent"].is_null());

@@ -166,7 +166,8 @@ def check_prediction(last, predicted):
     pairs = {
         "energy_wh": (landing["energy_wh"], predicted["remaining_energy_wh"]),
         "total_energy_wh": (landing["total_energy_wh"], predicted["total_energy_wh"]),
-        "interval_95_wh": (landing["interval_95_wh"][1], predicted["interval_95_wh"][1]),
+        "energy_wh_interval_95": (landing["energy_wh_interval_95"]["high"],
+                                  predicted["remaining_energy_wh_interval_95"]["high"]),
         "soc_percent": (landing["soc_percent"], wanted["soc_percent"]),
         "voltage_v": (landing["voltage_v"], wanted["voltage_v"]),
     }

@@ -2,13 +2,137 @@
 
 #include "base/statistics.h"
 #include "base/units.h"
-#include "cli/output/records.h"
+#include "cli/output/json_document.h"
 
-#include <tuple>
+#include <optional>
 
 #include <fmt/format.h>
 
+namespace flightwatt::battery {
+namespace {
+
+std::optional<std::string> optional_text(const std::string& text) {
+    return text.empty() ? std::nullopt : std::optional(text);
+}
+
+}  // namespace
+
+Fields<ResistanceScatter> record_fields(const ResistanceScatter*) {
+    using R = ResistanceScatter;
+    return {field("sd_ohm", &R::sd_ohm, "standard deviation between flights"),
+            field("flights", &R::flights, "flights with a resistance of their own")};
+}
+
+Fields<ResistanceTrend> record_fields(const ResistanceTrend*) {
+    using R = ResistanceTrend;
+    return {field("flights", &R::flights, "flights with a resistance of their own"),
+            field("ohm_per_flight", &R::ohm_per_flight, "change per flight, in the order of the clocks"),
+            field("ohm_per_flight_interval_95", &R::interval_ohm_a_flight, "its interval")};
+}
+
+Fields<IdentifiedFlight> record_fields(const IdentifiedFlight*) {
+    using R = IdentifiedFlight;
+    using Own = FlightResistance;
+    return {field("flight", &R::flight, "name of the flight", column{}),
+            field("resting_voltage_v", &R::resting_voltage_v, "before take-off", column{"at rest V", ".3f"}),
+            field("initial_depletion_ah", &R::initial_depletion_ah, "missing at the start", column{"missing Ah"}),
+            field("initial_depletion_ah_interval_95", &R::initial_charge_interval_ah, "", column{"low Ah|high Ah"}),
+            field("drawn_ah", &R::drawn_ah, "charge drawn in flight", column{"drawn Ah"}),
+            field("resistance_ohm", at(&R::resistance, &Own::value_ohm), "by this flight alone", column{"own ohm"}),
+            field("resistance_ohm_interval_95", at(&R::resistance, &Own::interval_ohm), "", column{"low ohm|high ohm"}),
+            field("samples", &R::samples, "samples of the fit", column{}),
+            field("unused_samples", &R::unused, "samples with a current that is not the motor's", column{"unused"}),
+            field("voltage_rms_mv", at(&R::voltage_rms_v, units::mv_from_v), "residual", column{"fitted mV"}),
+            field("air_temperature_c", &R::air_temperature_c, "mean air temperature", column_if_any("air C")),
+            field("pack_of", at(&R::same_pack_as, optional_text), "earlier flight on the same pack",
+                  column_if_any("pack of")),
+            field("pause_s", at(&R::link, &PackLink::pause_s), "from the end of that flight")};
+}
+
+Fields<LeaveOneOutCheck> record_fields(const LeaveOneOutCheck*) {
+    using R = LeaveOneOutCheck;
+    return {
+        field("flight", &R::flight, "flight that is predicted by the others"),
+        field("initial_depletion_ah", &R::initial_charge_ah, "missing charge as known before take-off"),
+        field("pack_of", at(&R::pack_of, optional_text), "flight that determines it; null: the resting voltage"),
+        field("voltage_rms_mv", at(&R::voltage_rms_v, units::mv_from_v), "error", column_if_any("leave-one-out mV")),
+        field("load_voltage_rms_mv", at(&R::load_rms_v, units::mv_from_v), "error from the first load on",
+              column_if_any("under load mV")),
+        field("best_offset_ah", &R::best_offset_ah, "missing charge that fits the voltage under load best"),
+        field("best_offset_load_voltage_rms_mv", at(&R::best_offset_load_rms_v, units::mv_from_v),
+              "error from the first load on with that charge", column_if_any("best offset mV")),
+        field("extrapolated_percent", &R::extrapolated_percent, "part of its charge that no other flight reached",
+              column_if_any("extrapolated %", ".0f"))};
+}
+
+Fields<BatteryIdentification> record_fields(const BatteryIdentification*) {
+    using R = BatteryIdentification;
+    using Fit = decltype(R::fit);
+    using Errors = decltype(R::errors);
+    using Estimate = std::remove_cvref_t<decltype(*Battery::flight_estimate)>;
+    const auto has_rc = [](const auto& value) {
+        return [value](const R& r) { return r.fit.rc_resistance_ohm > 0.0 ? std::optional(value(r)) : std::nullopt; };
+    };
+    const auto curve = [](auto member) {
+        return at(&R::battery, &Battery::thevenin, &TheveninCircuit::open_circuit, member);
+    };
+    const auto error_v = at(&R::battery, &Battery::intervals, &BatteryIntervals::open_circuit_standard_error_v);
+    return {
+        field("capacity_ah", at(&R::capacity, &Capacity::value_ah), "capacity of the pack"),
+        field("capacity_ah_interval_95", at(&R::capacity, &Capacity::interval_ah), "null: it was given"),
+        field("capacity_from", at(&R::capacity, &Capacity::origin), "origin of the capacity"),
+        field("chemistry", &R::chemistry, "`LiPo`, `NMC` or `high-voltage LiPo`"),
+        field("flight_estimate_ah", at(&R::battery, &Battery::flight_estimate, &Estimate::capacity_ah),
+              "by the flights"),
+        field("flight_estimate_ah_interval_95",
+              at(&R::battery, &Battery::flight_estimate, &Estimate::capacity_interval_ah)),
+        field("cells", &R::cells, "cells in series"),
+        field("resistance_ohm", at(&R::fit, &Fit::resistance_ohm), "series resistance"),
+        field("resistance_ohm_interval_95", at(&R::errors, &Errors::resistance_ohm)),
+        field("resistance_between_flights", at(&R::battery, &Battery::intervals, &BatteryIntervals::resistance_scatter),
+              "scatter of the flights' own resistances; null: of a single flight"),
+        field("rc_resistance_ohm", at(&R::fit, &Fit::rc_resistance_ohm), "resistance of the RC pair"),
+        field("rc_resistance_ohm_interval_95", at(&R::errors, &Errors::rc_resistance_ohm)),
+        field("rc_time_constant_s", has_rc(at(&R::fit, &Fit::rc_time_constant_s)), "null: without an RC pair"),
+        field("rc_time_constant_s_interval_95", has_rc(at(&R::errors, &Errors::rc_time_constant_s))),
+        object<R>("open_circuit", "open-circuit voltage",
+                  {field("soc_percent", curve(&OpenCircuitVoltage::soc_percent), "knots of the curve"),
+                   field("voltage_v", curve(&OpenCircuitVoltage::voltage_v), "at the knots"),
+                   field("standard_error_v", error_v, "at the knots"),
+                   field("known_up_to_percent", &R::observed_max_soc_percent, "highest in the flights"),
+                   field("known_down_to_percent", &R::observed_min_soc_percent, "lowest in the flights"),
+                   field(
+                       "known_down_to_ah", [](const R& r) { return r.fit.knots_ah.back(); },
+                       "the same as charge from the beginning of the curve")}),
+        field("voltage_rms_mv", at(&R::fit, &Fit::rms_v, units::mv_from_v), "residual of all flights"),
+        field("flights", &R::flights, "flights of the fit"),
+        field("resistance_trend", &R::trend, "null: fewer than three flights")};
+}
+
+}  // namespace flightwatt::battery
+
 namespace flightwatt::cli {
+namespace {
+
+/// A flight of an identification and its hold-out check.
+struct CheckedFlight {
+    const battery::IdentifiedFlight* flight = nullptr;
+    const battery::LeaveOneOutCheck* check = nullptr;
+};
+
+Fields<CheckedFlight> record_fields(const CheckedFlight*) {
+    using R = CheckedFlight;
+    return list_fields<R>(embedded(at(&R::flight)), embedded(at(&R::check), {"flight"}));
+}
+
+}  // namespace
+
+Fields<BatteryOutput> record_fields(const BatteryOutput*) {
+    using R = BatteryOutput;
+    return list_fields<R>(embedded(at(&R::identified)),
+                          field("leave_one_out", at(&R::left_out), "each flight predicted by the others"),
+                          field("folds", &R::folds, "groups of flights for the prediction", optional_key{}));
+}
 
 std::string describe(const battery::Capacity& capacity) {
     auto text = fmt::format("capacity {:.3g} Ah ({})", capacity.value_ah, to_string(capacity.origin));
@@ -36,14 +160,14 @@ std::string describe_link(const battery::IdentifiedFlight& flight) {
         "{}: assumed to be flown on the pack of {}, as it begins {:.0f} min after that one ends, {}rests lower as far as "
         "was drawn, and its voltage under load agrees",
         flight.flight, flight.same_pack_as, units::minute_from_second(flight.link->pause_s),
-        flight.link->counter_continues ? "its charge counter goes on, it " : "");
+        flight.link->counter_continues ? "its charge counter continues, it " : "");
 }
 
 std::string describe(const battery::ResistanceTrend& trend) {
     const auto& [low, high] = trend.interval_ohm_a_flight;
     return fmt::format("series resistance over {} flights: {:+.2f} mohm a flight, {:+.2f} to {:+.2f} in 95 %{}",
                        trend.flights, units::mohm_from_ohm(trend.ohm_per_flight), units::mohm_from_ohm(low),
-                       units::mohm_from_ohm(high), low <= 0.0 && high >= 0.0 ? ": no trend is seen" : "");
+                       units::mohm_from_ohm(high), low <= 0.0 && high >= 0.0 ? ": no significant trend" : "");
 }
 
 TextTable pack_table(const battery::Battery& pack) {
@@ -68,18 +192,10 @@ TextTable pack_table(const battery::Battery& pack) {
 
 TextTable flights_table(const battery::BatteryIdentification& identified,
                         const std::vector<battery::LeaveOneOutCheck>& left_out) {
-    const auto json = to_json(identified, left_out);
-    auto flights = json["flights"];
-    for (std::size_t i = 0; i < left_out.size(); ++i) flights[i]["check"] = json["left_out"][i];
-    return table_of(
-        flights,
-        {"flight", "resting_voltage_v .3f: at rest V", "initial_charge_ah .3f: missing Ah",
-         "initial_charge_interval_ah/low .3f: low Ah", "initial_charge_interval_ah/high .3f: high Ah",
-         "drawn_ah .3f: drawn Ah", "resistance_ohm/value .4f: own ohm", "resistance_ohm/low .4f: low ohm",
-         "resistance_ohm/high .4f: high ohm", "samples", "unused_samples: unused", "voltage_rms_mv .1f: fitted mV",
-         "air_temperature_c? .1f: air C", "pack_of?: pack of", "check/voltage_rms_mv? .1f: leave-one-out mV",
-         "check/load_voltage_rms_mv? .1f: under load mV", "check/placed_load_voltage_rms_mv? .1f: placed best mV",
-         "check/beyond_others_percent? .0f: beyond the others %"});
+    std::vector<CheckedFlight> flights;
+    for (std::size_t i = 0; i < identified.flights.size(); ++i)
+        flights.push_back({&identified.flights[i], i < left_out.size() ? &left_out[i] : nullptr});
+    return table_of(flights);
 }
 
 std::vector<std::string> curve_limits(const battery::BatteryIdentification& identified) {
@@ -95,7 +211,7 @@ std::vector<std::string> curve_limits(const battery::BatteryIdentification& iden
             "no flight begins full: the fullest rests at {:.3f} V, {:.1f} % by the usual chart of {} {} cells{}",
             highest_resting_v(identified), identified.observed_max_soc_percent, identified.cells,
             to_string(identified.chemistry),
-            identified.flights.size() == 1 ? "; one flight does not tell both capacity and initial charge" : ""));
+            identified.flights.size() == 1 ? "; one flight does not determine both capacity and initial charge" : ""));
     return limits;
 }
 
@@ -111,80 +227,6 @@ std::string provenance(const battery::BatteryIdentification& identified) {
     text += fmt::format("# Voltages are met within {:.1f} mV RMS; intervals rest on {} blocks of {:.0f} s.\n",
                         units::mv_from_v(identified.fit.rms_v), identified.errors.blocks, identified.errors.block_s);
     return text;
-}
-
-namespace {
-
-Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
-
-Json estimate(double value, const Interval& range) {
-    return Json{{"value", value}, {"low", range.low}, {"high", range.high}};
-}
-
-Json flight_json(const battery::IdentifiedFlight& flight) {
-    const auto& own = flight.resistance;
-    return {{"flight", flight.flight},
-            {"resting_voltage_v", flight.resting_voltage_v},
-            {"initial_charge_ah", flight.initial_depletion_ah},
-            {"initial_charge_interval_ah", interval_json(flight.initial_charge_interval_ah)},
-            {"drawn_ah", flight.drawn_ah},
-            {"pack_of", text_or_null(flight.same_pack_as)},
-            {"pause_s", flight.link ? Json(flight.link->pause_s) : Json()},
-            {"resistance_ohm", own ? estimate(own->value_ohm, own->interval_ohm) : Json()},
-            {"air_temperature_c", optional_json(flight.air_temperature_c)},
-            {"samples", flight.samples},
-            {"unused_samples", flight.unused},
-            {"voltage_rms_mv", units::mv_from_v(flight.voltage_rms_v)}};
-}
-
-Json check_json(const battery::LeaveOneOutCheck& check) {
-    return {{"flight", check.flight},
-            {"initial_charge_ah", check.initial_charge_ah},
-            {"pack_of", text_or_null(check.pack_of)},
-            {"voltage_rms_mv", units::mv_from_v(check.voltage_rms_v)},
-            {"load_voltage_rms_mv", units::mv_from_v(check.load_rms_v)},
-            {"placed_charge_ah", check.best_offset_ah},
-            {"placed_load_voltage_rms_mv", units::mv_from_v(check.best_offset_load_rms_v)},
-            {"beyond_others_percent", check.extrapolated_percent}};
-}
-
-}  // namespace
-
-Json to_json(const battery::BatteryIdentification& identified, const std::vector<battery::LeaveOneOutCheck>& left_out) {
-    const auto& [fit, errors] = std::tie(identified.fit, identified.errors);
-    Json json;
-    json["capacity_ah"] = identified.capacity.value_ah;
-    json["capacity_from"] = to_string(identified.capacity.origin);
-    json["chemistry"] = to_string(identified.chemistry);
-    json["capacity_interval_ah"] = interval_json(identified.capacity.interval_ah);
-    const auto& by_flights = identified.battery.flight_estimate;
-    json["flight_estimate_ah"] =
-        by_flights ? estimate(by_flights->capacity_ah, by_flights->capacity_interval_ah) : Json();
-    json["cells"] = identified.cells;
-    json["resistance_ohm"] = estimate(fit.resistance_ohm, errors.resistance_ohm);
-    const auto& scatter = identified.battery.intervals.resistance_scatter;
-    json["resistance_between_flights"] =
-        scatter ? Json{{"sd_ohm", scatter->sd_ohm}, {"flights", scatter->flights}} : Json();
-    json["rc_resistance_ohm"] = estimate(fit.rc_resistance_ohm, errors.rc_resistance_ohm);
-    json["rc_time_constant_s"] = fit.rc_resistance_ohm > 0.0
-                                     ? estimate(fit.rc_time_constant_s, errors.rc_time_constant_s)
-                                     : Json{{"value", nullptr}, {"low", nullptr}, {"high", nullptr}};
-    const auto& curve = identified.battery.thevenin->open_circuit;
-    json["open_circuit"] = {{"soc_percent", curve.soc_percent},
-                            {"voltage_v", curve.voltage_v},
-                            {"standard_error_v", identified.battery.intervals.open_circuit_standard_error_v},
-                            {"known_up_to_percent", identified.observed_max_soc_percent},
-                            {"known_down_to_percent", identified.observed_min_soc_percent},
-                            {"known_down_to_ah", fit.knots_ah.back()}};
-    json["voltage_rms_mv"] = units::mv_from_v(fit.rms_v);
-    json["flights"] = list_json(identified.flights, flight_json);
-    json["resistance_trend"] = Json();
-    if (const auto& trend = identified.trend) {
-        json["resistance_trend"] = {{"flights", trend->flights},
-                                    {"ohm_a_flight", estimate(trend->ohm_per_flight, trend->interval_ohm_a_flight)}};
-    }
-    json["left_out"] = list_json(left_out, check_json);
-    return json;
 }
 
 }  // namespace flightwatt::cli

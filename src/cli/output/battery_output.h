@@ -3,12 +3,12 @@
 #include "base/text_table.h"
 #include "battery/identification.h"
 #include "battery/identified_battery.h"
-#include "cli/stage.h"
+#include "cli/output/json_document.h"
 
 #include <string>
 #include <vector>
 
-/// What `flightwatt battery` says of an identified battery.
+/// Output of `flightwatt battery`.
 namespace flightwatt::cli {
 
 /// "capacity 4.2 Ah (chart), 3.6 to 5.1 Ah in 95 % if ...".
@@ -17,14 +17,13 @@ std::string describe(const battery::Capacity& capacity);
 /// "using the given capacity of 3.2 Ah; the flights indicate 5.4 Ah (2.45 to 11.5 Ah in 95 %)".
 std::string describe_given_capacity(const battery::Battery& pack);
 
-/// What is doubtful of the number of cells; empty if nothing is.
+/// Warning of an implausible number of cells, or empty.
 std::string cells_warning(const battery::BatteryIdentification& identified);
 
-/// Why a flight is taken for one on the pack of another; empty if it is not.
+/// Why a flight is assigned to the pack of another one, or empty.
 std::string describe_link(const battery::IdentifiedFlight& flight);
 
-/// How the resistance goes on over the flights: "series resistance over 6 flights in time order: +0.4 mohm a flight
-/// ...".
+/// "series resistance over 6 flights: +0.40 mohm per flight, ...".
 std::string describe(const battery::ResistanceTrend& trend);
 
 /// Capacity, voltage and resistances of a battery file with their 95 % intervals.
@@ -34,13 +33,18 @@ TextTable pack_table(const battery::Battery& pack);
 TextTable flights_table(const battery::BatteryIdentification& identified,
                         const std::vector<battery::LeaveOneOutCheck>& left_out);
 
-/// How far flights show the open-circuit voltage, a sentence each for below and above.
+/// Limits of the measured open-circuit curve, a sentence each for below and above.
 std::vector<std::string> curve_limits(const battery::BatteryIdentification& identified);
 
-/// The comment at the head of a battery file: flights, capacity and fit that the numbers rest on.
+/// The comment at the head of a battery file: flights, capacity and fit.
 std::string provenance(const battery::BatteryIdentification& identified);
 
-/// The stage's JSON: units are in the keys, null stands for what is not known.
-Json to_json(const battery::BatteryIdentification& identified, const std::vector<battery::LeaveOneOutCheck>& left_out);
+/// JSON of the stage.
+struct BatteryOutput {
+    const battery::BatteryIdentification* identified = nullptr;
+    const std::vector<battery::LeaveOneOutCheck>* left_out = nullptr;
+    std::optional<std::size_t> folds = std::nullopt;  ///< none of a single flight
+};
+Fields<BatteryOutput> record_fields(const BatteryOutput*);
 
 }  // namespace flightwatt::cli

@@ -2,7 +2,6 @@
 
 #include "base/statistics.h"
 #include "base/units.h"
-#include "cli/output/records.h"
 
 #include <algorithm>
 #include <array>
@@ -23,7 +22,7 @@ namespace {
 using mechanical::Difference;
 using mechanical::Estimate;
 
-/// What a mission comes to is computed, and has no interval of its own.
+/// A computed quantity of two missions, without intervals.
 Difference computed(std::string part, std::string quantity, std::string unit, const std::optional<double>& a,
                     const std::optional<double>& b) {
     const auto estimate = [](const std::optional<double>& value) {
@@ -51,7 +50,7 @@ double soc_at(const mission::SocCurve& curve, double time_s) {
     return std::lerp(before.soc_percent, after->soc_percent, part);
 }
 
-/// Where the states of charge are furthest apart, as long as both fly.
+/// The largest difference of the states of charge during both missions.
 std::optional<Difference> soc_difference(const mission::SocCurve& a, const mission::SocCurve& b) {
     if (a.rows.empty() || b.rows.empty()) return std::nullopt;
     const auto end_s = std::min(a.rows.back().time_s, b.rows.back().time_s);
@@ -69,7 +68,7 @@ std::optional<Difference> soc_difference(const mission::SocCurve& a, const missi
     return row;
 }
 
-/// By how flights differ, where both missions say it: as drawn for both.
+/// Adds the intervals of flights drawn for both missions.
 void add_intervals(const mission::SampledDifference& drawn, std::vector<Difference>& rows) {
     const std::map<std::string_view, const mission::DrawnIntervals*> intervals{
         {"duration_s", &drawn.duration_s},
@@ -87,20 +86,51 @@ void add_intervals(const mission::SampledDifference& drawn, std::vector<Differen
     }
 }
 
-/// "yes", "no", or "-" where nobody can say. A computed difference is one wherever it is more than rounding.
-std::string verdict(const Differences& of, const Difference& row) {
-    if (of.kind != DifferenceKind::missions || row.interval) {
-        const auto significant = is_significant(row);
-        return !significant ? "-" : *significant ? "yes" : "no";
-    }
+/// Whether the difference is significant; of computed missions whether it is more than rounding. std::nullopt: unknown.
+std::optional<bool> differs(DifferenceKind kind, const Difference& row) {
+    if (kind != DifferenceKind::missions || row.interval) return is_significant(row);
     const auto difference = difference_of(row);
-    if (!difference) return "-";  // only one of them has it
+    if (!difference) return std::nullopt;  // only one of them has it
     constexpr double rounding = 1e-9;
-    return std::abs(*difference) > rounding * std::max(std::abs(row.a->value), std::abs(row.b->value)) ? "yes" : "no";
+    return std::abs(*difference) > rounding * std::max(std::abs(row.a->value), std::abs(row.b->value));
 }
 
-std::string basis_of(const Differences& of, const Difference& row) {
-    return of.kind == DifferenceKind::missions && !row.interval ? "computed" : to_string(row.basis);
+/// A quantity of both.
+struct DifferenceOutput {
+    DifferenceKind kind;
+    Difference row;
+};
+
+Fields<DifferenceOutput> record_fields(const DifferenceOutput*) {
+    using R = DifferenceOutput;
+    const auto basis = [](const R& r) {
+        auto name = r.kind == DifferenceKind::missions && !r.row.interval ? "computed" : to_string(r.row.basis);
+        return name.empty() ? std::nullopt : std::optional(name);
+    };
+    return {field("part", at(&R::row, &Difference::part), "the phase, `physical` or `mission`", column{}, csv_column{}),
+            field("quantity", at(&R::row, &Difference::quantity), "name of the quantity", column{}, csv_column{}),
+            field("unit", at(&R::row, &Difference::unit), "unit of the quantity", column{}, csv_column{}),
+            field("a", at(&R::row, &Difference::a, &Estimate::value), "value of A", column{"", ".4g"}, csv_column{}),
+            field("a_interval_95", at(&R::row, &Difference::a, &Estimate::interval), "", column{"a_low|a_high", ".4g"},
+                  csv_column{"a_low|a_high"}),
+            field("b", at(&R::row, &Difference::b, &Estimate::value), "value of B", column{"", ".4g"}, csv_column{}),
+            field("b_interval_95", at(&R::row, &Difference::b, &Estimate::interval), "", column{"b_low|b_high", ".4g"},
+                  csv_column{"b_low|b_high"}),
+            field("difference", at(&R::row, mechanical::difference_of), "B less A", column{"", ".4g"}, csv_column{}),
+            field("difference_interval_95", at(&R::row, &Difference::interval), "", column{"low|high", ".4g"},
+                  csv_column{"low|high"}),
+            field(
+                "differs", [](const R& r) { return differs(r.kind, r.row); }, "the interval excludes 0; null: unknown",
+                column{}, csv_column{}),
+            field("basis", basis, "`noise`, `flights` or `computed`", column{}, csv_column{}),
+            field("at_s", at(&R::row, &Difference::at_s), "of a curve: time of the largest difference",
+                  column{"", ".4g"}, csv_column{})};
+}
+
+std::vector<DifferenceOutput> outputs_of(const Differences& differences) {
+    std::vector<DifferenceOutput> all;
+    for (const auto& row : differences.rows) all.push_back({differences.kind, row});
+    return all;
 }
 
 }  // namespace
@@ -131,61 +161,42 @@ std::vector<Difference> mission_difference(const mission::Simulation& a, const m
     return all;
 }
 
-TextTable difference_table(const Differences& differences, std::string_view form) {
-    auto rows = to_json(differences)["differences"];
-    for (auto& row : rows)
-        if (row["basis"].get_ref<const std::string&>().empty()) row["basis"] = nullptr;
-    return table_of(
-        rows,
-        {"part", "quantity", "unit", "a", "a_interval/0: a_low", "a_interval/1: a_high", "b", "b_interval/0: b_low",
-         "b_interval/1: b_high", "difference", "interval/0: low", "interval/1: high", "differs", "basis", "at_s"},
-        form);
-}
+TextTable difference_table(const Differences& differences) { return table_of(outputs_of(differences)); }
 
-Json to_json(const Differences& differences) {
-    constexpr std::array kinds{"models", "batches", "missions"};
-    const auto interval = [](const std::optional<Interval>& of) {
-        return of ? Json::array({of->low, of->high}) : Json(nullptr);
+std::string differences_csv(const Differences& differences) { return csv_of(outputs_of(differences)); }
+
+Fields<Differences> record_fields(const Differences*) {
+    using R = Differences;
+    const auto kind = [](const R& r) {
+        constexpr std::array kinds{"models", "batches", "missions"};
+        return std::string(kinds.at(static_cast<std::size_t>(r.kind)));
     };
-    Json json{{"kind", kinds.at(static_cast<std::size_t>(differences.kind))},
-              {"shared_flights", differences.shared_flights},
-              {"differences", Json::array()}};
-    for (const auto& row : differences.rows) {
-        Json item{{"part", row.part}, {"quantity", row.quantity}, {"unit", row.unit}};
-        for (const auto& [name, side] : {std::pair("a", &row.a), std::pair("b", &row.b)}) {
-            item[name] = *side ? Json((*side)->value) : Json(nullptr);
-            item[fmt::format("{}_interval", name)] = interval(*side ? (*side)->interval : std::nullopt);
-        }
-        item["difference"] = optional_json(difference_of(row));
-        item["interval"] = interval(row.interval);
-        const auto differs = verdict(differences, row);
-        item["differs"] = differs == "-" ? Json(nullptr) : Json(differs == "yes");
-        item["basis"] = basis_of(differences, row);
-        item["at_s"] = optional_json(row.at_s);
-        json["differences"].push_back(std::move(item));
-    }
-    return json;
+    return {field("kind", kind, "`models`, `batches` or `missions`"),
+            field("shared_flights", &R::shared_flights, "flights of both models"),
+            field(
+                "differences", [](const R& r) { return outputs_of(r); }, "quantities")};
 }
 
 void note_differences(const StageCall& call, const std::vector<Difference>& rows) {
     std::vector<std::string> beyond_noise;
     std::vector<std::string> beyond_flights;
-    std::size_t judged = 0;
+    std::size_t compared = 0;
     for (const auto& row : rows) {
         const auto significant = is_significant(row);
-        if (significant) ++judged;
+        if (significant) ++compared;
         if (!significant.value_or(false)) continue;
         auto& differing = row.basis == mechanical::DifferenceBasis::noise ? beyond_noise : beyond_flights;
         differing.push_back(row.part + " " + row.quantity);
     }
-    if (judged == 0) {
-        note(call, "nothing can be judged: these models hold no intervals; `flightwatt fit --errors` writes them");
+    if (compared == 0) {
+        note(call, "no significance test: the models have no intervals; `flightwatt fit --errors` writes them");
     } else if (beyond_noise.empty() && beyond_flights.empty()) {
-        note(call, fmt::format("none of {} quantities differs by more than its 95 % interval", judged));
+        note(call, fmt::format("none of {} quantities differs by more than its 95 % interval", compared));
     }
     if (!beyond_flights.empty()) {
-        note(call, fmt::format("differ by more than flights of one aircraft do (of {} judged, one in 20 by chance): {}",
-                               judged, fmt::join(beyond_flights, ", ")));
+        note(call,
+             fmt::format("differ by more than flights of one aircraft do (of {} compared, one in 20 by chance): {}",
+                         compared, fmt::join(beyond_flights, ", ")));
     }
     if (!beyond_noise.empty()) {
         note(call, fmt::format("differ by more than the noise of their samples, as other flights of the same "

@@ -1,17 +1,15 @@
 #pragma once
 
-#include "base/text_table.h"
-#include "cli/stage.h"
+#include "cli/output/json_document.h"
 #include "mechanical/model_difference.h"
 #include "mission/sampled_flights.h"
 #include "mission/simulation.h"
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-/// What diff compares and shows.
+/// Output of diff.
 namespace flightwatt::cli {
 
 enum class DifferenceKind { models, batches, missions };
@@ -19,18 +17,20 @@ enum class DifferenceKind { models, batches, missions };
 struct Differences {
     DifferenceKind kind = DifferenceKind::models;
     std::vector<mechanical::Difference> rows = {};
-    std::vector<std::string> shared_flights = {};  ///< that both models rest on
+    std::vector<std::string> shared_flights = {};  ///< of both models
 };
 
-/// Energy of each phase, then the quantities of the whole mission, and where the states of charge are furthest apart.
-/// They are computed and have intervals only as `drawn`.
+/// Energy of each phase, the quantities of the whole mission, and the largest difference of the states of charge.
+/// Intervals are those of `drawn`.
 std::vector<mechanical::Difference> mission_difference(const mission::Simulation& a, const mission::Simulation& b,
                                                        const std::optional<mission::SampledDifference>& drawn);
 
-/// A row a quantity, its numbers of the form that fmt knows by this text; empty: all digits.
-TextTable difference_table(const Differences& differences, std::string_view form);
+/// A row a quantity.
+TextTable difference_table(const Differences& differences);
+std::string differences_csv(const Differences& differences);
 
-Json to_json(const Differences& differences);
+/// JSON of the stage.
+Fields<Differences> record_fields(const Differences*);
 
 /// Notes which quantities of two models differ: by more than flights do, and by more than the noise of their samples.
 void note_differences(const StageCall& call, const std::vector<mechanical::Difference>& rows);

@@ -2,7 +2,8 @@
 
 #include "base/error.h"
 #include "base/statistics.h"
-#include "cli/output/records.h"
+#include "cli/output/mission_output.h"
+#include "cli/output/physical_output.h"
 #include "mechanical/fit_records.h"
 #include "mechanical/mechanical_model.h"
 #include "mechanical/model_fit.h"
@@ -13,47 +14,78 @@
 
 #include <fmt/format.h>
 
+namespace flightwatt::mechanical {
+
+Fields<CoefficientIntervals> record_fields(const CoefficientIntervals*) {
+    using R = CoefficientIntervals;
+    return {field("omega_rad_per_s_interval_95", &R::omega_rad_per_s, "of the angular frequency"),
+            field("a0_w_interval_95", &R::a0_w, "of the constant"),
+            field("cos_w_interval_95", &R::cos_w, "of the cosine coefficients"),
+            field("sin_w_interval_95", &R::sin_w, "of the sine coefficients")};
+}
+
+Fields<FlightContribution> record_fields(const FlightContribution*) {
+    using R = FlightContribution;
+    const auto weights = [](const R& flight) {
+        Keyed<std::optional<double>> all;
+        for (const auto phase : flight::all_phases)
+            all.emplace_back(std::string(to_string(phase)),
+                             flight.phases[phase] ? std::optional(flight.phases[phase]->weight) : std::nullopt);
+        return all;
+    };
+    return {field("flight", &R::flight, "name of the flight"),
+            field("weights", weights, "by phase; null: without this phase")};
+}
+
+Fields<ModelValidation> record_fields(const ModelValidation*) {
+    return {field(
+                "default_model", [](const ModelValidation& r) { return default_model(r); }, "model of missions"),
+            field("scores", &ModelValidation::scores, "hold-out errors")};
+}
+
+Fields<FrequencyRange> record_fields(const FrequencyRange*) {
+    using R = FrequencyRange;
+    return {field("low", &R::low_rad, "lower bound of the search"), field("high", &R::high_rad, "upper bound"),
+            field("at_bound", &R::at_bound, "`none`, `low` or `high`")};
+}
+
+}  // namespace flightwatt::mechanical
+
 namespace flightwatt::cli {
 namespace {
 
-Json intervals_json(const std::vector<Interval>& intervals) {
-    return list_json(intervals, [](const auto& interval) { return interval_json(interval); });
+/// A fitted phase.
+struct PhaseOutput {
+    const mechanical::PhaseModel* fitted = nullptr;
+    std::optional<mechanical::MeanPower> mean_power;
+    std::optional<mechanical::CoefficientIntervals> intervals;  ///< of --errors
+};
+
+Fields<PhaseOutput> record_fields(const PhaseOutput*) {
+    using R = PhaseOutput;
+    using M = mechanical::PhaseModel;
+    using F = decltype(M::fourier);
+    using P = mechanical::MeanPower;
+    const auto rms_w = [](const R& r) { return r.fitted->rms_w.value_or(0.0); };
+    return list_fields<R>(
+        field("duration_s", at(&R::fitted, &M::duration_s), "duration of the phase"),
+        field("omega_rad_per_s", at(&R::fitted, &M::fourier, &F::omega_rad_per_s), "angular frequency"),
+        field("a0_w", at(&R::fitted, &M::fourier, &F::a0_w), "constant"),
+        field("cos_w", at(&R::fitted, &M::fourier, &F::cos_w), "cosine coefficients"),
+        field("sin_w", at(&R::fitted, &M::fourier, &F::sin_w), "sine coefficients"),
+        field("rms_w", rms_w, "residual of the samples"),
+        field("samples", at(&R::fitted, &M::samples), "power samples"),
+        field("flights", at(&R::fitted, &M::flights), "flights with this phase"),
+        field("edge_samples", at(&R::fitted, &M::edge_samples), "samples of the neighbouring phases"),
+        field("open_frequency", at(&R::fitted, &M::open_frequency), "the data do not determine the frequency"),
+        field("not_negative", at(&R::fitted, &M::not_negative), "the curve was limited to 0 W or more"),
+        field("mean_power_w", at(&R::mean_power, &P::mean_w), "mean over the flights", optional_key{}),
+        field("mean_power_w_interval_95", at(&R::mean_power, &P::interval), "null: a single flight"),
+        field("omega_duration_rad", at(&R::fitted, &M::range), "range of the search", optional_key{}),
+        embedded_if_any(&R::intervals));
 }
 
-Json to_json(const mechanical::PhaseModel& phase, const mechanical::PhaseErrors& errors) {
-    const auto intervals = coefficient_intervals(phase);
-    return {{"standard_error",
-             {{"omega_rad_per_s", errors.omega_rad_per_s},
-              {"a0_w", errors.a0_w},
-              {"cos_w", errors.cos_w},
-              {"sin_w", errors.sin_w},
-              {"curve_w", errors.curve_w}}},
-            {"interval_95",
-             {{"omega_rad_per_s", interval_json(intervals.omega_rad_per_s)},
-              {"a0_w", interval_json(intervals.a0_w)},
-              {"cos_w", intervals_json(intervals.cos_w)},
-              {"sin_w", intervals_json(intervals.sin_w)}}},
-            {"frequency_is_given", errors.frequency_is_fixed},
-            {"degrees_of_freedom", errors.degrees_of_freedom},
-            {"r2", errors.r2},
-            {"condition", errors.condition},
-            {"autocorrelation", errors.autocorrelation},
-            {"effective_samples", errors.effective_samples}};
-}
-
-Json to_json(const mechanical::FlightEnvelope& spread) {
-    return {{"low_w", spread.low_w},
-            {"high_w", spread.high_w},
-            {"standard_deviation_w", spread.standard_deviation_w},
-            {"counted_flights", spread.effective_flights}};
-}
-
-Json validation_json(const mechanical::ModelValidation& validation) {
-    return {{"default_model", default_model(validation)},
-            {"scores", list_json(validation.scores, [](const auto& score) { return cli::to_json(score); })}};
-}
-
-/// "off on 4 flights left out of the fit: constant_mean 18.6 %, ...; missions use constant_mean".
+/// "hold-out error of 4 flights: constant_mean 18.6 %, ...; missions use constant_mean".
 std::string describe(const mechanical::ModelValidation& validation, bool has_physical) {
     std::string errors;
     std::size_t flights = 0;
@@ -63,7 +95,7 @@ std::string describe(const mechanical::ModelValidation& validation, bool has_phy
         if (flights > 0 && score.flights != flights) errors += fmt::format(" (on {} of them)", score.flights);
         flights = std::max(flights, score.flights);
     }
-    return fmt::format("off on {} flights left out of the fit: {}; missions use {}{}", flights, errors,
+    return fmt::format("hold-out error of {} flights: {}; missions use {}{}", flights, errors,
                        has_physical ? "physical at a stated airspeed, else " : "", default_model(validation));
 }
 
@@ -96,54 +128,12 @@ std::string table_text(const TextTable& table, const std::filesystem::path& file
     throw UsageError(fmt::format("{}: expected a name that ends in .txt, .csv, .md or .tex", file.string()));
 }
 
-Json to_json(const mechanical::HeldOutScore& score) {
-    return {{"model", score.model},
-            {"flights", score.flights},
-            {"mean_absolute_error_percent", score.mean_absolute_error_percent}};
-}
-
-Json to_json(const mechanical::MechanicalModel& model) {
-    Json json{
-        {"name", model.name}, {"weighting", model.weighting}, {"phases", Json::object()}, {"flights", Json::array()}};
-    for (const auto phase : flight::all_phases) {
-        const auto& fitted = model.phases[phase];
-        auto& entry = json["phases"][std::string(to_string(phase))];
-        entry = {{"duration_s", fitted.duration_s},     {"omega_rad_per_s", fitted.fourier.omega_rad_per_s},
-                 {"a0_w", fitted.fourier.a0_w},         {"cos_w", fitted.fourier.cos_w},
-                 {"sin_w", fitted.fourier.sin_w},       {"rms_w", fitted.rms_w.value_or(0.0)},
-                 {"samples", fitted.samples},           {"flights", fitted.flights},
-                 {"edge_samples", fitted.edge_samples}, {"open_frequency", fitted.open_frequency},
-                 {"not_negative", fitted.not_negative}};
-        if (const auto power = mean_power(model, phase)) {
-            entry["mean_power_w"] = power->mean_w;
-            entry["mean_power_interval_95_w"] = interval_json(power->interval);
-        }
-        if (fitted.range) {
-            entry["omega_duration_rad"] = {{"low", fitted.range->low_rad},
-                                           {"high", fitted.range->high_rad},
-                                           {"at_bound", to_string(fitted.range->at_bound)}};
-        }
-    }
-    for (const auto& flight : model.flights) {
-        Json weights = Json::object();
-        for (const auto phase : flight::all_phases) {
-            const auto& part = flight.phases[phase];
-            weights[std::string(to_string(phase))] = part ? Json(part->weight) : Json();
-        }
-        json["flights"].push_back({{"flight", flight.flight}, {"weights", weights}});
-    }
-    if (model.validation) json["validation"] = validation_json(*model.validation);
-    json["warnings"] = model_warnings(model);
-    json["notes"] = fit_notes(model);
-    return json;
-}
-
 void warn_of_model(const StageCall& call, const mechanical::MechanicalModel& model) {
     for (const auto phase : flight::all_phases) {
         const auto& fitted = model.phases[phase];
         if (!fitted.range || fitted.range->at_bound == mechanical::FrequencyBound::none) continue;
-        warn(call, fmt::format("{}: omega * duration stands at its {} bound, {:.3f} rad: the frequency is not "
-                               "determined by the data, the curve is",
+        warn(call, fmt::format("{}: omega * duration is at its {} bound, {:.3f} rad: the data determine the curve, "
+                               "but not its frequency",
                                to_string(phase), to_string(fitted.range->at_bound),
                                fitted.range->at_bound == mechanical::FrequencyBound::low ? fitted.range->low_rad
                                                                                          : fitted.range->high_rad));
@@ -153,13 +143,27 @@ void warn_of_model(const StageCall& call, const mechanical::MechanicalModel& mod
     if (model.validation) note(call, describe(*model.validation, model.physical.has_value()));
 }
 
-void add_errors_json(Json& json, const mechanical::MechanicalModel& model) {
-    for (const auto phase : flight::all_phases) {
-        auto& entry = json["phases"][std::string(to_string(phase))];
-        const auto& fitted = model.phases[phase];
-        if (fitted.errors) entry["errors"] = to_json(fitted, *fitted.errors);
-        if (fitted.spread) entry["spread"] = to_json(*fitted.spread);
-    }
+Fields<FitOutput> record_fields(const FitOutput*) {
+    using R = FitOutput;
+    using M = mechanical::MechanicalModel;
+    const auto phases = [](const R& r) {
+        Keyed<PhaseOutput> all;
+        for (const auto phase : flight::all_phases) {
+            const auto& fitted = r.model->phases[phase];
+            auto& output = all.emplace_back(std::string(to_string(phase)), PhaseOutput{}).second;
+            output = {&fitted, mean_power(*r.model, phase), std::nullopt};
+            if (r.with_errors && fitted.errors) output.intervals = coefficient_intervals(fitted);
+        }
+        return all;
+    };
+    return {field("name", at(&R::model, &M::name), "name of the model"),
+            field("weighting", at(&R::model, &M::weighting), "`--weights`"),
+            field("phases", phases, "phases of the model"),
+            field("flights", at(&R::model, &M::flights), "flights of the fit"),
+            field("validation", at(&R::model, &M::validation), "hold-out errors, of `--model best`", optional_key{}),
+            field("warnings", at(&R::model, mechanical::model_warnings), "warnings"),
+            field("notes", at(&R::model, mechanical::fit_notes), "remarks on the fit"),
+            field("physical", &R::physical, "physical model, of `--model physical`", optional_key{})};
 }
 
 }  // namespace flightwatt::cli

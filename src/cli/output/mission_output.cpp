@@ -1,10 +1,6 @@
 #include "cli/output/mission_output.h"
 
 #include "base/error.h"
-#include "base/units.h"
-#include "cli/output/fit_output.h"
-#include "cli/output/records.h"
-#include "cli/stage.h"
 #include "mechanical/mechanical_model.h"
 
 #include <algorithm>
@@ -13,39 +9,160 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt::cli {
-namespace {
+namespace flightwatt::mechanical {
 
-void add_to_json(const mission::MonteCarloResult& flights, Json& json) {
-    json["probability_below_reserve"] = flights.probability_below_reserve;
-    json["probability_below_reserve_standard_error"] = flights.probability_below_reserve_standard_error;
-    json["probability_below_reserve_low"] = flights.probability_below_reserve_95.low;
-    json["probability_below_reserve_high"] = flights.probability_below_reserve_95.high;
-    json["probability_below_reserve_outside_measured"] = flights.probability_below_reserve_outside_measured;
-    json["probability_depleted"] = flights.probability_depleted;
-    json["probability_battery_failure"] = flights.probability_battery_failure;
-    json["samples"] = flights.samples;
-    json["seed"] = flights.seed;
-    json["final_soc_mean_percent"] = flights.final_soc_mean_percent;
-    json["final_soc_sd_percent"] = flights.final_soc_sd_percent;
-    auto& quantiles = json["final_soc_quantiles_percent"];
-    for (std::size_t i = 0; i < mission::shown_quantiles_percent.size(); ++i)
-        quantiles[std::to_string(mission::shown_quantiles_percent[i])] = flights.final_soc_quantiles_percent[i];
-    add_sources(flights.sources, json);
+Fields<HeldOutScore> record_fields(const HeldOutScore*) {
+    using R = HeldOutScore;
+    return {field("model", &R::model, "name of the model"),
+            field("flights", &R::flights, "hold-out flights that it predicts"),
+            field("mean_absolute_error_percent", &R::mean_absolute_error_percent, "of the energy of these flights")};
 }
 
-}  // namespace
+}  // namespace flightwatt::mechanical
 
-void add_sources(const mission::UncertaintySources& sources, Json& json) {
-    json["drawn"] = sources.varied;
-    json["not_drawn"] = sources.fixed;
+namespace flightwatt::mission {
+
+Fields<UncertaintySources> record_fields(const UncertaintySources*) {
+    using R = UncertaintySources;
+    return {field("varied", &R::varied, "what differs between the drawn flights"),
+            field("fixed", &R::fixed, "what is the same in all drawn flights")};
+}
+
+Fields<MonteCarloResult> record_fields(const MonteCarloResult*) {
+    using R = MonteCarloResult;
+    const auto quantiles = [](const R& flights) {
+        Keyed<double> all;
+        for (std::size_t i = 0; i < shown_quantiles_percent.size(); ++i)
+            all.emplace_back(std::to_string(shown_quantiles_percent[i]), flights.final_soc_quantiles_percent[i]);
+        return all;
+    };
+    return list_fields<R>(
+        field("probability_below_reserve", &R::probability_below_reserve, "fraction of the flights below the reserve",
+              column_if_any("probability below reserve", ".4f"), csv_column{}),
+        field("probability_below_reserve_interval_95", &R::probability_below_reserve_95, "Wilson's interval"),
+        field("probability_below_reserve_standard_error", &R::probability_below_reserve_standard_error,
+              "standard error of the probability"),
+        field("probability_below_reserve_outside_measured", &R::probability_below_reserve_outside_measured,
+              "part of the probability with more power in a phase than any measured flight"),
+        field("probability_depleted", &R::probability_depleted, "the battery is empty before the end"),
+        field("probability_battery_failure", &R::probability_battery_failure, "empty, cut off or too weak"),
+        field("samples", &R::samples, "number of drawn flights"), field("seed", &R::seed, "seed of the random numbers"),
+        field("final_soc_mean_percent", &R::final_soc_mean_percent, "mean over the flights"),
+        field("final_soc_sd_percent", &R::final_soc_sd_percent, "standard deviation over the flights"),
+        field("final_soc_quantiles_percent", quantiles, "quantiles over the flights: 5, 25, 50, 75 and 95 %"),
+        embedded(&R::sources));
+}
+
+Fields<EstimatedLanding> record_fields(const EstimatedLanding*) {
+    using R = EstimatedLanding;
+    return {field("capacity_ah", &R::capacity_ah, "capacity of the pack by its flights"),
+            field("final_soc_percent", &R::final_soc_percent, "at the end; null: the battery cannot deliver the power"),
+            field("fails_at_s", &R::fails_at_s, "time of the battery's failure; null: never"),
+            field("keeps_reserve", &R::keeps_reserve, "lands with the reserve")};
+}
+
+Fields<AdaptiveDecisions> record_fields(const AdaptiveDecisions*) {
+    using R = AdaptiveDecisions;
+    return {
+        field("decisions", &R::made, "plans made in flight"),
+        field("decisions_without_plan", &R::without_plan, "decisions where no plan kept the reserve"),
+        field("learned_mechanical_factor", &R::mechanical_factor, "mechanical power over the model's, as estimated")};
+}
+
+Fields<MissionSummary> record_fields(const MissionSummary*) {
+    using R = MissionSummary;
+    const auto schedule = [](const R& summary) {
+        return summary.schedule == ScheduleOrigin::given ? std::nullopt : std::optional(to_string(summary.schedule));
+    };
+    return list_fields<R>(
+        field("mission", &R::mission, "name of the mission", csv_column{}),
+        field("schedule", schedule, "origin of the schedule, unless the mission states it", csv_column{},
+              optional_key{}),
+        field("final_soc_percent", &R::final_soc_percent, "at the end; null: the battery cannot deliver the power",
+              column{"final state of charge [%]", ".2f"}, csv_column{}),
+        field("reserve_soc_percent", &R::reserve_soc_percent, "reserve that the mission demands",
+              column{"reserve [%]", ".2f"}, csv_column{}),
+        field("keeps_reserve", &R::keeps_reserve, "the battery lasts, and the reserve is left", csv_column{}),
+        field("energy_wh", &R::energy_wh, "demanded by the whole mission", column{"energy [Wh]"}, csv_column{}),
+        field("mechanical_energy_wh", &R::mechanical_energy_wh, "part of flying", column{"mechanical [Wh]"},
+              csv_column{}),
+        field("compute_energy_wh", &R::compute_energy_wh, "part of the software", column{"computing [Wh]"},
+              csv_column{}),
+        field("delivered_energy_wh", &R::delivered_energy_wh, "until the battery's end", csv_column{}),
+        field("duration_s", &R::duration_s, "duration of the mission", column{"duration [s]"}, csv_column{}),
+        field("depleted_at_s", &R::depleted_at_s, "the battery is empty; null: never", column_if_any("empty at [s]"),
+              csv_column{}),
+        field("cut_off_at_s", &R::cut_off_at_s, "the voltage falls below the cut-off; null: never",
+              column_if_any("cut off at [s]"), csv_column{}),
+        field("feasible", &R::feasible, "the battery lasts"),
+        field("power_model", &R::power_model, "model of the (cruise) power and its error", optional_key{}),
+        field("utility", &R::utility, "mean utility per second", column_if_any("", ".3f"), csv_column{},
+              optional_key{}),
+        embedded_if_any(&R::decisions), embedded_if_any(&R::samples),
+        field("with_capacity_of_flights", &R::by_flights, "with the capacity by the pack's flights, if it differs",
+              optional_key{}));
+}
+
+Fields<InfeasibilityReport> record_fields(const InfeasibilityReport*) {
+    using R = InfeasibilityReport;
+    return {field("short_percent", &R::shortfall_percent, "missing charge with the least energy"),
+            field("short_wh", &R::shortfall_wh, "the same as energy"),
+            field("cut_off_at_s", &R::cut_off_at_s, "the voltage falls below the cut-off; null: never"),
+            field("longest_cruise_s", &R::cruise_s, "longest feasible cruise"),
+            field("min_fixed_surplus_percent", &R::min_fixed_surplus_percent, "surplus with the least fixed quality"),
+            field("largest_reserve_soc_percent", &R::reserve_soc_percent, "largest feasible reserve"),
+            field("smallest_capacity_ah", &R::capacity_ah, "smallest sufficient capacity")};
+}
+
+}  // namespace flightwatt::mission
+
+namespace flightwatt::cli {
+
+Fields<RankedMission> record_fields(const RankedMission*) {
+    using R = RankedMission;
+    const auto title = [](const R& ranked) {
+        const auto origin = to_string(ranked.summary.schedule);
+        return origin.empty() ? ranked.summary.mission : fmt::format("{} ({})", ranked.summary.mission, origin);
+    };
+    return list_fields<R>(
+        field("rank", &R::rank, "1: most charge left", column{}, csv_column{}),
+        field("title", title, "the mission and the origin of its schedule", column{"mission"}, not_in_json{}),
+        embedded(&R::summary));
+}
+
+Fields<MissionComparison> record_fields(const MissionComparison*) {
+    return {field("missions", &MissionComparison::missions, "the mission with most charge left first")};
+}
+
+Fields<PlanOutput> record_fields(const PlanOutput*) {
+    using R = PlanOutput;
+    using P = mission::MissionPlan;
+    using S = mission::MissionSummary;
+    using Setup = mission::MissionSetup;
+    const auto utility = [](const P& plan) { return plan.plan.feasible ? plan.summary.utility : std::nullopt; };
+    const auto bound = [](const P& plan) {
+        return plan.plan.feasible && plan.plan.bound_is_proven ? std::optional(plan.plan.utility_bound) : std::nullopt;
+    };
+    return list_fields<R>(
+        field("mission", at(&R::setup, &Setup::name), "name of the mission"),
+        field("feasible", at(&R::plan, &P::plan, &mission::Plan::feasible), "a schedule lands with the reserve"),
+        field("utility", at(&R::plan, utility), "mean utility per second of the plan"),
+        field("bound", at(&R::plan, bound), "no schedule has a greater utility"),
+        field("final_soc_percent", at(&R::plan, &P::summary, &S::final_soc_percent), "at the end"),
+        field("reserve_soc_percent", at(&R::setup, &Setup::reserve_soc_percent), "reserve"),
+        field("margin_percent", at(&R::plan, &P::margin_percent), "above the reserve, for `--probability`"),
+        field("power_model", at(&R::setup, &Setup::power_model), "model of the (cruise) power", optional_key{}),
+        embedded_if_any([](const R& r) { return r.plan->sources ? &*r.plan->sources : nullptr; }),
+        field("with_capacity_of_flights", at(&R::plan, &P::summary, &S::by_flights),
+              "with the capacity by the pack's flights, if it differs", optional_key{}),
+        field("shortfall", &R::shortfall, "why no plan is feasible", optional_key{}));
 }
 
 void warn_of_lost_comments(const StageCall& call, const mission::PlannedMissionText& written) {
     if (written.lost_comments)
         warn(call,
-             "the mission's comments and order are not in the result: they are kept where [plan], [policy] and "
-             "[[schedule]] are tables of their own, not inline or dotted");
+             "the result lacks the mission's comments and order; to keep them, write [plan], [policy] and [[schedule]] "
+             "as tables of their own, not inline or dotted");
 }
 
 void warn_of_setup(const StageCall& call, const mission::MissionSetup& mission) {
@@ -61,94 +178,10 @@ void note_power_model(const StageCall& call, const mission::MissionSetup& missio
     if (mission.power_model) note(call, fmt::format("{}: {}", mission.name, mission::describe(*mission.power_model)));
 }
 
-Json to_json(const mission::MissionSummary& summary) {
-    Json json;
-    json["mission"] = summary.mission;
-    if (summary.schedule != mission::ScheduleOrigin::given) json["schedule"] = to_string(summary.schedule);
-    json["final_soc_percent"] = optional_json(summary.final_soc_percent);
-    json["energy_wh"] = summary.energy_wh;
-    json["mechanical_energy_wh"] = summary.mechanical_energy_wh;
-    json["compute_energy_wh"] = summary.compute_energy_wh;
-    json["delivered_energy_wh"] = summary.delivered_energy_wh;
-    json["duration_s"] = summary.duration_s;
-    json["depleted_at_s"] = optional_json(summary.depleted_at_s);
-    json["cut_off_at_s"] = optional_json(summary.cut_off_at_s);
-    json["feasible"] = summary.feasible;
-    json["reserve_soc_percent"] = summary.reserve_soc_percent;
-    json["keeps_reserve"] = summary.keeps_reserve;
-    if (summary.power_model) json["power_model"] = to_json(*summary.power_model);
-    if (summary.utility) json["utility"] = *summary.utility;
-    if (const auto& decisions = summary.decisions) {
-        json["decisions"] = decisions->made;
-        json["decisions_without_plan"] = decisions->without_plan;
-        json["learned_mechanical_factor"] = decisions->mechanical_factor;
-    }
-    if (summary.samples) add_to_json(*summary.samples, json);
-    if (summary.by_flights) json[by_flights_key] = to_json(*summary.by_flights);
-    return json;
-}
-
-Json to_json(const mission::EstimatedLanding& landing) {
-    return {{"capacity_ah", landing.capacity_ah},
-            {"final_soc_percent", optional_json(landing.final_soc_percent)},
-            {"fails_at_s", optional_json(landing.fails_at_s)},
-            {"keeps_reserve", landing.keeps_reserve}};
-}
-
-Json ranking_json(const std::vector<mission::MissionSummary>& ranked) {
-    auto records = Json::array();
-    for (const auto& summary : ranked) {
-        auto record = to_json(summary);
-        record["rank"] = records.size() + 1;
-        const auto origin = to_string(summary.schedule);
-        record["title"] = origin.empty() ? summary.mission : fmt::format("{} ({})", summary.mission, origin);
-        if (summary.samples)
-            record["chance_below_percent"] = units::percentage(summary.samples->probability_below_reserve, 1.0);
-        records.push_back(std::move(record));
-    }
-    return records;
-}
-
-TextTable comparison_table(const std::vector<mission::MissionSummary>& ranked) {
-    return table_of(ranking_json(ranked),
-                    {"rank", "title: mission", "final_soc_percent .2f", "energy_wh .3f", "mechanical_energy_wh .3f",
-                     "compute_energy_wh .3f", "duration_s .1f", "depleted_at_s .1f", "cut_off_at_s? .1f",
-                     "utility? .3f", "probability_below_reserve? .4f"});
-}
-
-std::string comparison_csv(const std::vector<mission::MissionSummary>& ranked) {
-    constexpr int digits = 10;
-    return csv_of(ranking_json(ranked),
-                  {"rank", "mission", "schedule", "final_soc_percent", "reserve_soc_percent", "keeps_reserve",
-                   "energy_wh", "mechanical_energy_wh", "compute_energy_wh", "delivered_energy_wh", "duration_s",
-                   "depleted_at_s", "cut_off_at_s", "utility", "probability_below_reserve"},
-                  digits);
-}
-
-Json to_json(const mission::MissionPlan& plan, const mission::MissionSetup& mission) {
-    const bool feasible = plan.plan.feasible;
-    Json json;
-    json["mission"] = mission.name;
-    json["feasible"] = feasible;
-    json["utility"] = feasible ? Json(*plan.summary.utility) : nullptr;
-    json["bound"] = feasible && plan.plan.bound_is_proven ? Json(plan.plan.utility_bound) : nullptr;
-    json["final_soc_percent"] = optional_json(plan.summary.final_soc_percent);
-    json["reserve_soc_percent"] = mission.reserve_soc_percent;
-    json["margin_percent"] = plan.margin_percent;
-    if (mission.power_model) json["power_model"] = to_json(*mission.power_model);
-    if (plan.sources) add_sources(*plan.sources, json);
-    if (plan.summary.by_flights) json[by_flights_key] = to_json(*plan.summary.by_flights);
-    return json;
-}
-
-Json to_json(const mission::InfeasibilityReport& report) {
-    return {{"short_percent", report.shortfall_percent},
-            {"short_wh", report.shortfall_wh},
-            {"cut_off_at_s", optional_json(report.cut_off_at_s)},
-            {"longest_cruise_s", optional_json(report.cruise_s)},
-            {"least_fixed_spare_percent", optional_json(report.min_fixed_surplus_percent)},
-            {"largest_reserve_soc_percent", optional_json(report.reserve_soc_percent)},
-            {"smallest_capacity_ah", optional_json(report.capacity_ah)}};
+std::vector<RankedMission> ranked_missions(const std::vector<mission::MissionSummary>& ranked) {
+    std::vector<RankedMission> missions;
+    for (const auto& summary : ranked) missions.push_back({missions.size() + 1, summary});
+    return missions;
 }
 
 }  // namespace flightwatt::cli

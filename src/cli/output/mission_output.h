@@ -1,10 +1,10 @@
 #pragma once
 
-#include "base/text_table.h"
-#include "cli/stage.h"
+#include "cli/output/json_document.h"
 #include "mission/disturbance.h"
 #include "mission/feasibility_limits.h"
 #include "mission/mission_file.h"
+#include "mission/plan.h"
 #include "mission/sampled_flights.h"
 #include "mission/simulation.h"
 
@@ -12,43 +12,48 @@
 #include <optional>
 #include <vector>
 
-/// What simulate, compare and plan have in common: drawing flights, and their answers as JSON.
+namespace flightwatt::mechanical {
+Fields<HeldOutScore> record_fields(const HeldOutScore*);
+}
+
+namespace flightwatt::mission {
+Fields<UncertaintySources> record_fields(const UncertaintySources*);
+Fields<EstimatedLanding> record_fields(const EstimatedLanding*);
+Fields<MissionSummary> record_fields(const MissionSummary*);
+}  // namespace flightwatt::mission
+
+/// Options and JSON that simulate, compare and plan share.
 namespace flightwatt::cli {
 
-/// Warns of what no drone has: negative power of the model or of a profile, a battery of another unit.
+/// Warns of implausible inputs: negative power of the model or of a profile, a battery of another unit.
 void warn_of_setup(const StageCall& call, const mission::MissionSetup& mission);
 
-/// Which model says the power, where its file knows how it predicts.
+/// Names the power model and its error, where its file has one.
 void note_power_model(const StageCall& call, const mission::MissionSetup& mission);
 
-/// If a mission that was written with another schedule has lost its comments.
+/// Warns of a mission that was written without its comments.
 void warn_of_lost_comments(const StageCall& call, const mission::PlannedMissionText& written);
 
-/// What differs between flights and what does not, as "drawn" and "not_drawn".
-void add_sources(const mission::UncertaintySources& sources, Json& json);
+/// A row of a comparison of missions.
+struct RankedMission {
+    std::size_t rank = 1;
+    mission::MissionSummary summary;
+};
+Fields<RankedMission> record_fields(const RankedMission*);
+std::vector<RankedMission> ranked_missions(const std::vector<mission::MissionSummary>& ranked);
 
-/// The summary as simulate and compare print it; null stands for "never".
-Json to_json(const mission::MissionSummary& summary);
+/// JSON of compare.
+struct MissionComparison {
+    std::vector<RankedMission> missions;
+};
+Fields<MissionComparison> record_fields(const MissionComparison*);
 
-/// The same of missions in their order, with rank, "title" (the name with how the schedule came about) and
-/// "chance_below_percent": what tables of missions show.
-Json ranking_json(const std::vector<mission::MissionSummary>& ranked);
-
-/// A row for each mission; cut-off, utility and the probability to land below the reserve have a column if any mission
-/// has them.
-TextTable comparison_table(const std::vector<mission::MissionSummary>& ranked);
-
-/// rank,mission,schedule,... (docs/formats.md): a row a mission in their order, all columns whatever the missions are.
-std::string comparison_csv(const std::vector<mission::MissionSummary>& ranked);
-
-/// The same landing with the capacity that the flights of the pack indicate.
-Json to_json(const mission::EstimatedLanding& landing);
-inline constexpr auto by_flights_key =
-    "with_capacity_of_flights";  ///< of that, where a mission's capacity contradicts it
-
-/// A plan; null stands for what an infeasible one does not have.
-Json to_json(const mission::MissionPlan& plan, const mission::MissionSetup& mission);
-
-Json to_json(const mission::InfeasibilityReport& report);
+/// JSON of plan.
+struct PlanOutput {
+    const mission::MissionPlan* plan = nullptr;
+    const mission::MissionSetup* setup = nullptr;
+    const mission::InfeasibilityReport* shortfall = nullptr;
+};
+Fields<PlanOutput> record_fields(const PlanOutput*);
 
 }  // namespace flightwatt::cli

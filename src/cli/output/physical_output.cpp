@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "cli/output/records.h"
 #include "cli/terminal.h"
 
 #include <array>
@@ -14,6 +13,22 @@
 
 #include <fmt/format.h>
 
+namespace flightwatt::mechanical {
+
+Fields<TermTrial> record_fields(const TermTrial*) {
+    using R = TermTrial;
+    return {field("term", &R::term, "term of the model", column{"tried"}),
+            field("kept", &R::kept, "the term is part of the model"),
+            field("rms_without_w", &R::rms_before_w, "hold-out error without the term", column{"without W"}),
+            field("rms_with_w", &R::rms_after_w, "hold-out error with the term", column{"with W"}),
+            field(
+                "result", [](const R& trial) { return trial.kept ? "kept" : trial.reason; }, "result", column{"result"},
+                not_in_json{}),
+            field("reason", &R::reason, "reason of a rejected term")};
+}
+
+}  // namespace flightwatt::mechanical
+
 namespace flightwatt::cli {
 namespace {
 
@@ -22,7 +37,7 @@ std::string_view value_of(mechanical::PowerTerm term) {
                                                                                 "1 / airspeed",
                                                                                 "(load factor squared - 1) / airspeed",
                                                                                 "climb rate",
-                                                                                "climb rate below 0, besides",
+                                                                                "climb rate below 0, in addition",
                                                                                 "1"};
     return values.at(static_cast<std::size_t>(term));
 }
@@ -33,29 +48,45 @@ std::optional<double> half_width(const mechanical::PhysicalModel& model, std::si
     return student_t_half_width(model.degrees_of_freedom) * std::sqrt(model.covariance[term][term]);
 }
 
-Json terms_json(const mechanical::PhysicalModel& model) {
-    auto terms = Json::array();
-    for (std::size_t i = 0; i < model.terms.size(); ++i) {
-        const auto term = model.terms[i];
-        terms.push_back({{"term", to_string(term)},
-                         {"coefficient", model.coefficients[term]},
-                         {"half_width_95", optional_json(half_width(model, i))},
-                         {"unit", unit_of(term)}});
+/// A term of a physical model.
+struct TermOutput {
+    mechanical::PowerTerm term;
+    double coefficient = 0.0;
+    std::optional<double> half_width;
+
+    std::optional<Interval> interval() const {
+        return half_width ? std::optional(Interval{coefficient - *half_width, coefficient + *half_width})
+                          : std::nullopt;
     }
+};
+
+Fields<TermOutput> record_fields(const TermOutput*) {
+    using R = TermOutput;
+    const auto times = [](const R& r) { return std::string(value_of(r.term)); };
+    const auto unit = [](const R& r) { return std::string(unit_of(r.term)); };
+    return {field("term", &R::term, "term of the model", column{}),
+            field("times", times, "value of the term", column{}, not_in_json{}),
+            field("coefficient", &R::coefficient, "in `unit`", column{"", ".4g"}),
+            field(
+                "coefficient_interval_95", [](const R& r) { return r.interval(); }, "null: a single flight"),
+            field("half_width_95", &R::half_width, "of the interval", column{"+-", ".2g"}, not_in_json{}),
+            field("unit", unit, "unit of the coefficient", column{})};
+}
+
+std::vector<TermOutput> term_outputs(const mechanical::PhysicalModel& model) {
+    std::vector<TermOutput> terms;
+    for (std::size_t i = 0; i < model.terms.size(); ++i)
+        terms.push_back({model.terms[i], model.coefficients[model.terms[i]], half_width(model, i)});
     return terms;
 }
 
-Json trial_json(const mechanical::TermTrial& trial) {
-    return {{"term", to_string(trial.term)},
-            {"kept", trial.kept},
-            {"rms_without_w", optional_json(trial.rms_before_w)},
-            {"rms_with_w", optional_json(trial.rms_after_w)},
-            {"reason", trial.reason}};
+std::string_view error_basis(const mechanical::PhysicalFit& fit) {
+    return fit.phases_decided ? "mean power of phases" : "bins";
 }
 
-/// How far a flight of an hour may be off at the model's own mean airspeed, level, as a part of its power.
+/// Prediction interval of an hour of level flight at the model's mean airspeed.
 std::string accuracy(const mechanical::PhysicalModel& model) {
-    if (!model.level_sd) return "a single flight does not tell how flights differ: no interval of an unseen one\n";
+    if (!model.level_sd) return "one flight: between-flight variance unknown, no prediction interval\n";
     const mechanical::FlightState level{.airspeed_m_per_s = model.mean_airspeed_m_per_s};
     if (!(level.airspeed_m_per_s > 0.0)) return "";
     constexpr double hour_s = 3600.0;
@@ -70,60 +101,29 @@ std::string accuracy(const mechanical::PhysicalModel& model) {
 
 }  // namespace
 
-TextTable constants_table(const mechanical::PhysicalModel& model) {
-    auto terms = terms_json(model);
-    for (std::size_t i = 0; i < model.terms.size(); ++i) terms[i]["times"] = value_of(model.terms[i]);
-    return table_of(terms, {"term", "times", "coefficient .4g", "half_width_95 .2g: +-", "unit"});
-}
+TextTable constants_table(const mechanical::PhysicalModel& model) { return table_of(term_outputs(model)); }
 
-TextTable trials_table(const mechanical::PhysicalFit& fit) {
-    auto trials = list_json(fit.trials, trial_json);
-    for (auto& trial : trials)
-        if (trial["kept"] == true) trial["reason"] = "kept";
-    return table_of(trials,
-                    {"term: tried", "rms_without_w .2f: without W", "rms_with_w .2f: with W", "reason: result"});
-}
+TextTable trials_table(const mechanical::PhysicalFit& fit) { return table_of(fit.trials); }
 
 std::string physical_text(const mechanical::PhysicalFit& fit, const Screen& screen) {
     const auto& model = fit.model;
     return "Power from the motion through the air\n" + screen_text(constants_table(model), screen) + accuracy(model) +
            fmt::format(
-               "rests on {} flight{}, {} stretches of about {:.0f} s with {} samples, {:.1f} to {:.1f} m/s, climbing "
-               "{:+.1f} to {:+.1f} m/s\n\n",
+               "{} flight{}, {} bins of about {:.0f} s with {} samples, {:.1f} to {:.1f} m/s, climbing {:+.1f} to "
+               "{:+.1f} m/s\n\n",
                model.flights.size(), model.flights.size() == 1 ? "" : "s", model.bins, model.bin_s, model.samples,
                model.airspeed_m_per_s.low, model.airspeed_m_per_s.high, model.climb_m_per_s.low,
                model.climb_m_per_s.high) +
-           fmt::format("RMS error of {} held back, {} in turn:\n",
-                       fit.phases_decided ? "the mean power of phases" : "stretches",
-                       fit.folds_are_flights ? "flights" : "fifths of the flight") +
+           fmt::format("RMS hold-out error of the {}, cross-validated by {}:\n", error_basis(fit),
+                       fit.folds_are_flights ? "flight" : "fifths of the flight") +
            screen_text(trials_table(fit), screen);
-}
-
-Json physical_json(const mechanical::PhysicalFit& fit) {
-    const auto& model = fit.model;
-    return {{"terms", terms_json(model)},
-            {"level_sd", optional_json(model.level_sd)},
-            {"degrees_of_freedom", model.degrees_of_freedom},
-            {"drift_sd_w", model.drift_sd_w},
-            {"correlation_s", model.correlation_s},
-            {"flights", model.flights},
-            {"bins", model.bins},
-            {"bin_s", model.bin_s},
-            {"samples", model.samples},
-            {"airspeed_m_per_s", interval_json(model.airspeed_m_per_s)},
-            {"climb_m_per_s", interval_json(model.climb_m_per_s)},
-            {"mean_airspeed_m_per_s", model.mean_airspeed_m_per_s},
-            {"held_back", fit.phases_decided ? "mean power of phases" : "stretches"},
-            {"trials", list_json(fit.trials, trial_json)}};
 }
 
 void warn_of_physical(const StageCall& call, const mechanical::PhysicalFit& fit) {
     for (const auto& [flight, reason] : fit.skipped)
         warn(call, fmt::format("{} is not in the physical model: {}", flight, reason));
     if (fit.model.level_sd) return;
-    warn(call,
-         "the physical model rests on a single flight: how flights differ is not known, and its predictions have "
-         "no interval; give two flights or more");
+    warn(call, "the physical model is of a single flight: its predictions have no interval; give two flights or more");
 }
 
 void add_best_power(std::span<const mechanical::MeasuredFlight> measured, const mechanical::ModelFitOptions& options,
@@ -138,7 +138,7 @@ mechanical::PhysicalFit fit_motion(const StageCall& call, std::span<const mechan
     motions.reserve(measured.size());
     for (const auto& flight : measured) motions.push_back(flight.motion);
     if (call.has("weights"))
-        note(call, "the weights are those of the curves over time: [physical] finds its own from how flights differ");
+        note(call, "--weights applies to the curves over time; [physical] estimates its own weights");
     auto physical = mechanical::fit_physical_model(motions);
     warn_of_physical(call, physical);
     model.physical = physical.model;
@@ -146,3 +146,29 @@ mechanical::PhysicalFit fit_motion(const StageCall& call, std::span<const mechan
 }
 
 }  // namespace flightwatt::cli
+
+namespace flightwatt::mechanical {
+
+Fields<PhysicalFit> record_fields(const PhysicalFit*) {
+    using R = PhysicalFit;
+    using M = PhysicalModel;
+    const auto range = [](const FlownRange& of) { return Interval{of.low, of.high}; };
+    return {field("terms", at(&R::model, cli::term_outputs), "terms of the model"),
+            field("level_sd", at(&R::model, &M::level_sd), "relative sd between flights; null: a single flight"),
+            field("degrees_of_freedom", at(&R::model, &M::degrees_of_freedom), "of the intervals"),
+            field("drift_sd_w", at(&R::model, &M::drift_sd_w), "standard deviation of the drift within a flight"),
+            field("correlation_s", at(&R::model, &M::correlation_s), "correlation time of the drift"),
+            field("flights", at(&R::model, &M::flights), "flights of the fit"),
+            field("bins", at(&R::model, &M::bins), "number of bins"),
+            field("bin_s", at(&R::model, &M::bin_s), "mean duration of a bin"),
+            field("samples", at(&R::model, &M::samples), "power samples"),
+            field("airspeed_m_per_s", at(&R::model, &M::airspeed_m_per_s, range), "range of the airspeed"),
+            field("climb_m_per_s", at(&R::model, &M::climb_m_per_s, range), "range of the climb rate"),
+            field("mean_airspeed_m_per_s", at(&R::model, &M::mean_airspeed_m_per_s), "mean airspeed"),
+            field(
+                "hold_out", [](const R& fit) { return std::string(cli::error_basis(fit)); },
+                "`mean power of phases`, or `bins` of a single flight"),
+            field("trials", &R::trials, "terms that were tried")};
+}
+
+}  // namespace flightwatt::mechanical

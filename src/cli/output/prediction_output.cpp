@@ -2,12 +2,43 @@
 
 #include "base/duration_text.h"
 #include "base/units.h"
-#include "cli/output/records.h"
 
 #include <array>
 #include <optional>
 
 #include <fmt/format.h>
+
+namespace flightwatt::battery {
+
+Fields<LandingForecast> record_fields(const LandingForecast*) {
+    using R = LandingForecast;
+    return {field("soc_percent", &R::soc_percent, "at the end of the landing"),
+            field("voltage_v", &R::voltage_v, "there, under the power of the landing"),
+            field("endurance_s", &R::endurance_s, "further cruise until the reserve is reached"),
+            field("keeps_reserve", &R::keeps_reserve, "lands with the mission's reserve"),
+            field("fails_after_s", &R::fails_after_s, "from now until the battery fails; null: never")};
+}
+
+}  // namespace flightwatt::battery
+
+namespace flightwatt::mechanical {
+
+Fields<ModelScore> record_fields(const ModelScore*) {
+    using R = ModelScore;
+    const auto coverage = [](const R& score) {
+        return score.coverage_95 ? std::optional(fmt::format("{:.0f} %", units::percentage(*score.coverage_95, 1.0)))
+                                 : std::nullopt;
+    };
+    return {field("flights", &R::flights, "flights that the model predicted", column{}),
+            field("mean_absolute_error_wh", &R::mean_absolute_error_wh, "mean of |error|", column{"mean |error| Wh"}),
+            field("mean_absolute_error_percent", &R::mean_absolute_error_percent, "of the measured energy",
+                  column{"mean |error| %"}),
+            field("bias_wh", &R::bias_wh, "mean of predicted less measured", column{"bias Wh", "+.3f"}),
+            field("coverage_95", &R::coverage_95, "fraction of the flights within the 95 % interval"),
+            field("coverage", coverage, "the same", column{"95 % interval covers"}, not_in_json{})};
+}
+
+}  // namespace flightwatt::mechanical
 
 namespace flightwatt::cli {
 namespace {
@@ -44,26 +75,18 @@ std::string battery_text(const std::optional<BatteryPrediction>& battery) {
         landing_text(battery->worst, battery->limits));
 }
 
-/// Whether the model says what was to be expected so far: by motion only where the flight's was measured.
+/// Whether the power so far is known from the model: of a physical one only with the flight's airspeed.
 bool is_expected(const Prediction& prediction) {
     return !prediction.uses_physical_model || !prediction.flown.motion.bins.empty();
 }
 
-/// What was expected so far, and how the difference moves the rest.
+/// The power expected so far, and the effect of the difference on the remaining energy.
 std::string expectation_text(const Prediction& prediction) {
-    if (!is_expected(prediction)) return "this flight's own level is not known";
+    if (!is_expected(prediction)) return "no measured airspeed to compare with";
     const double gain_percent = units::percentage(prediction.cruise.gain, 1.0);
     return fmt::format("expected {:.2f} W, ", prediction.cruise.expected_w) +
-           (prediction.uses_physical_model ? fmt::format("this flight's own level {:+.1f} %", gain_percent)
-                                           : fmt::format("of the difference {:.0f} % goes on", gain_percent));
-}
-
-Json json_of(const battery::LandingForecast& forecast) {
-    return {{"soc_percent", forecast.soc_percent},
-            {"voltage_v", forecast.voltage_v},
-            {"seconds_left", forecast.endurance_s},
-            {"keeps_reserve", forecast.keeps_reserve},
-            {"fails_after_s", optional_json(forecast.fails_after_s)}};
+           (prediction.uses_physical_model ? fmt::format("this flight {:+.1f} %", gain_percent)
+                                           : fmt::format("{:.0f} % of the difference carried forward", gain_percent));
 }
 
 /// The phases, and the whole flight.
@@ -72,26 +95,25 @@ constexpr std::array<std::optional<flight::Phase>, 4> validated_parts{flight::Ph
 
 std::string name_of(const std::optional<flight::Phase>& part) { return part ? std::string(to_string(*part)) : "total"; }
 
-/// Of each part and model.
-Json score_records(const std::vector<mechanical::ValidatedFlight>& flights) {
-    auto records = Json::array();
-    for (const auto& part : validated_parts) {
-        for (const auto& model : model_names(flights)) {
-            const auto score = score_of(flights, model, part);
-            if (!score) continue;
-            const auto& coverage = score->coverage_95;
-            records.push_back(
-                {{"phase", name_of(part)},
-                 {"model", model},
-                 {"mean_absolute_error_wh", score->mean_absolute_error_wh},
-                 {"mean_absolute_error_percent", optional_json(score->mean_absolute_error_percent)},
-                 {"bias_wh", score->bias_wh},
-                 {"coverage_95", optional_json(coverage)},
-                 {"flights", score->flights},
-                 {"coverage", coverage ? Json(fmt::format("{:.0f} %", units::percentage(*coverage, 1.0))) : Json()}});
-        }
-    }
-    return records;
+/// The score of a model in a phase or in total.
+struct ScoreRow {
+    std::string phase;
+    std::string model;
+    mechanical::ModelScore score;
+};
+
+Fields<ScoreRow> record_fields(const ScoreRow*) {
+    using R = ScoreRow;
+    return list_fields<R>(field("phase", &R::phase, "`takeoff`, `cruise`, `landing` or `total`", column{}),
+                          field("model", &R::model, "name of the model", column{}), embedded(&R::score));
+}
+
+std::vector<ScoreRow> score_rows(const std::vector<mechanical::ValidatedFlight>& flights) {
+    std::vector<ScoreRow> rows;
+    for (const auto& part : validated_parts)
+        for (const auto& model : model_names(flights))
+            if (const auto score = score_of(flights, model, part)) rows.push_back({name_of(part), model, *score});
+    return rows;
 }
 
 std::string comparison(const std::string& part, const std::string& challenger, const mechanical::ModelScore& ours,
@@ -119,35 +141,6 @@ std::string text_of(const Prediction& prediction) {
                duration_text(landing_s), rest.energy_wh, interval.low_wh, interval.high_wh,
                flown.energy_wh + rest.energy_wh) +
            battery_text(battery);
-}
-
-Json json_of(const Prediction& prediction) {
-    const auto& [flown, began_in_air, on_path_s, is_sighted, remaining_s, by_motion, cruise, power_ahead, landing,
-                 landing_s, rest, interval, battery] = prediction;
-    const auto expected_w = is_expected(prediction) ? std::optional(cruise.expected_w) : std::nullopt;
-    const auto gain = is_expected(prediction) ? std::optional(cruise.gain) : std::nullopt;
-    Json json{{"flown_energy_wh", flown.energy_wh},
-              {"remaining_energy_wh", rest.energy_wh},
-              {"interval_95_wh", {interval.low_wh, interval.high_wh}},
-              {"total_energy_wh", flown.energy_wh + rest.energy_wh},
-              {"lift_off_s", optional_json(began_in_air ? std::nullopt : std::optional(flown.lift_off_s))},
-              {"until_s", flown.until_s},
-              {"cruise",
-               {{"remaining_s", remaining_s},
-                {"energy_wh", cruise.energy.energy_wh},
-                {"flown_mean_w", cruise.measured_w},
-                {"expected_mean_w", optional_json(expected_w)},
-                {"remaining_mean_w", cruise.remaining_mean_w},
-                {by_motion ? "own_level" : "gain", optional_json(gain)}}},
-              {"landing", {{"duration_s", landing_s}, {"energy_wh", landing.energy_wh}}}};
-    if (on_path_s) json["cruise"]["path"] = {{"at_s", *on_path_s}, {"by_position", is_sighted}};
-    if (battery) {
-        json["battery"] = {{"initial_soc_percent", battery->initial_soc_percent},
-                           {"soc_now_percent", battery->expected.soc_now_percent},
-                           {"at_landing", json_of(battery->expected)},
-                           {"at_landing_high_energy", json_of(battery->worst)}};
-    }
-    return json;
 }
 
 void warn_of(const StageCall& call, const live::Diagnostics& remarks) {
@@ -181,13 +174,11 @@ TextTable flights_table(const std::vector<mechanical::ValidatedFlight>& flights)
 }
 
 TextTable scores_table(const std::vector<mechanical::ValidatedFlight>& flights) {
-    return table_of(score_records(flights), {"phase", "model", "flights", "mean_absolute_error_wh .3f: mean |error| Wh",
-                                             "mean_absolute_error_percent .1f: mean |error| %", "bias_wh +.3f: bias Wh",
-                                             "coverage: 95 % interval covers"});
+    return table_of(score_rows(flights));
 }
 
-std::string verdict(const std::vector<mechanical::ValidatedFlight>& flights, const std::string& challenger,
-                    const std::string& baseline) {
+std::string comparison_sentences(const std::vector<mechanical::ValidatedFlight>& flights, const std::string& challenger,
+                                 const std::string& baseline) {
     std::string text;
     for (const auto& part : validated_parts) {
         const auto ours = score_of(flights, challenger, part);
@@ -204,26 +195,92 @@ std::string validation_text(const std::vector<mechanical::ValidatedFlight>& flig
     const ScreenTable shown{fmt::format("{} flights, each predicted by the others", flights.size()),
                             {"flight", "phase", "model", "error %", "measured Wh", "predicted Wh", "error Wh"}};
     auto text = screen_text(flights_table(flights), screen, shown) + "\n" +
-                screen_text(scores_table(flights), screen, {"how well they predict", {}}) + "\n" +
-                verdict(flights, "fourier", "constant_mean");
-    if (in_flight) text += verdict(flights, "in_flight", "fourier");
+                screen_text(scores_table(flights), screen, {"prediction errors", {}}) + "\n" +
+                comparison_sentences(flights, "fourier", "constant_mean");
+    if (in_flight) text += comparison_sentences(flights, "in_flight", "fourier");
     constexpr std::size_t few = 20;
     if (flights.size() < few) {
-        text += fmt::format("coverage over {} flights means little: each counts for {:.0f} points\n", flights.size(),
+        text += fmt::format("coverage of {} flights is uncertain: each counts for {:.0f} points\n", flights.size(),
                             units::percentage(1.0, static_cast<double>(flights.size())));
     }
     return text;
 }
 
-Json scores_json(const std::vector<mechanical::ValidatedFlight>& flights) {
-    Json json{{"flights", flights.size()}};
-    for (const auto& part : validated_parts) json[name_of(part)] = Json::object();
-    for (auto record : score_records(flights)) {
-        auto& entry = json[record["phase"].get<std::string>()][record["model"].get<std::string>()];
-        for (const auto* not_of_json : {"phase", "model", "coverage"}) record.erase(not_of_json);
-        entry = std::move(record);
-    }
-    return json;
+Fields<ValidationOutput> record_fields(const ValidationOutput*) {
+    using R = ValidationOutput;
+    const auto of_part = [](const std::optional<flight::Phase>& part) {
+        const auto scores = [part](const R& r) {
+            Keyed<mechanical::ModelScore> all;
+            for (const auto& model : model_names(r.flights))
+                if (const auto score = score_of(r.flights, model, part)) all.emplace_back(model, *score);
+            return all;
+        };
+        return field(name_of(part), scores, "scores by model");
+    };
+    return {field(
+                "flights", [](const R& r) { return r.flights.size(); }, "number of flights"),
+            of_part(flight::Phase::takeoff),
+            of_part(flight::Phase::cruise),
+            of_part(flight::Phase::landing),
+            of_part(std::nullopt),
+            field("folds", &R::folds, "groups of flights that were left out together")};
 }
 
 }  // namespace flightwatt::cli
+
+namespace flightwatt::live {
+
+Fields<BatteryPrediction> record_fields(const BatteryPrediction*) {
+    using R = BatteryPrediction;
+    return {
+        field("initial_soc_percent", &R::initial_soc_percent, "at the beginning of the log"),
+        field(
+            "soc_now_percent", [](const R& r) { return r.expected.soc_now_percent; }, "now"),
+        field("at_landing", &R::expected, "as expected"),
+        field("at_landing_high_energy", &R::worst, "at the high end of the energy and the low end of the capacity")};
+}
+
+Fields<Prediction> record_fields(const Prediction*) {
+    using R = Prediction;
+    using Flown = decltype(R::flown);
+    using Cruise = decltype(R::cruise);
+    using Energy = mechanical::EnergyEstimate;
+    const auto is_expected = [](const R& r) { return cli::is_expected(r); };
+    const auto gain = [is_expected](bool physical) {
+        return [=](const R& r) {
+            return is_expected(r) && r.uses_physical_model == physical ? std::optional(r.cruise.gain) : std::nullopt;
+        };
+    };
+    const auto expected_w = [=](const R& r) {
+        return is_expected(r) ? std::optional(r.cruise.expected_w) : std::nullopt;
+    };
+    const auto interval = [](const R& r) { return Interval{r.interval.low_wh, r.interval.high_wh}; };
+    const auto lift_off_s = [](const R& r) {
+        return r.began_in_air ? std::nullopt : std::optional(r.flown.lift_off_s);
+    };
+    const auto total = [](const R& r) { return r.flown.energy_wh + r.remaining_energy.energy_wh; };
+    const auto by_position = [](const R& r) { return r.on_path_s ? std::optional(r.is_from_position) : std::nullopt; };
+    return {
+        field("flown_energy_wh", at(&R::flown, &Flown::energy_wh), "measured so far"),
+        field("remaining_energy_wh", at(&R::remaining_energy, &Energy::energy_wh), "predicted"),
+        field("remaining_energy_wh_interval_95", interval, "its prediction interval"),
+        field("total_energy_wh", total, "measured and predicted"),
+        field("lift_off_s", lift_off_s, "in the log's time; null: the record begins in the air"),
+        field("until_s", at(&R::flown, &Flown::until_s), "time of the prediction, in the log's time"),
+        object<R>("cruise", "the cruise",
+                  {field("remaining_s", &R::remaining_s, "remaining time"),
+                   field("energy_wh", at(&R::cruise, &Cruise::energy, &Energy::energy_wh), "of that time"),
+                   field("flown_mean_w", at(&R::cruise, &Cruise::measured_w), "measured so far"),
+                   field("expected_mean_w", expected_w, "by the model for the same time"),
+                   field("remaining_mean_w", at(&R::cruise, &Cruise::remaining_mean_w), "predicted"),
+                   field("gain", gain(false), "of the curve: fraction of the difference that is carried forward"),
+                   field("own_level", gain(true), "of the physical model: relative deviation of this flight"),
+                   field("path_at_s", &R::on_path_s, "position in the planned time of the path", optional_key{}),
+                   field("path_by_position", by_position, "from position fixes; else from the time", optional_key{})}),
+        object<R>("landing", "the landing",
+                  {field("duration_s", &R::landing_s, "its duration"),
+                   field("energy_wh", at(&R::landing, &Energy::energy_wh), "its energy")}),
+        field("battery", &R::battery, "with `--battery`", optional_key{})};
+}
+
+}  // namespace flightwatt::live

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cli/output/json_document.h"
 #include "cli/screen_table.h"
 #include "compute/profile_interpolation.h"
 #include "compute/profile_outcome.h"
@@ -9,17 +10,23 @@
 #include <string>
 #include <vector>
 
-/// What flightwatt profile prints.
+namespace flightwatt::compute {
+Fields<LeaveOneOutErrors> record_fields(const LeaveOneOutErrors*);
+}
+
+/// Output of profile.
 namespace flightwatt::cli {
 
-/// What was measured, as tables in the width of the screen. `above_idle`: power over the idle power instead of total
+/// The measured powers as tables. `above_idle`: power over the idle power instead of total
 /// power.
 std::string profile_text(const compute::ProfileOutcome& outcome, bool above_idle, const Screen& screen = {});
 
-/// The same as JSON.
-Json to_json(const compute::ProfileOutcome& outcome, bool above_idle);
-
-Json to_json(const compute::LeaveOneOutErrors& error);
+/// JSON of a measured profile.
+struct ProfileOutput {
+    const compute::ProfileOutcome& outcome;
+    bool above_idle = false;
+};
+Fields<ProfileOutput> record_fields(const ProfileOutput*);
 
 /// The errors of interpolating a profile as a table under its name.
 std::string interpolation_text(const std::string& file, std::size_t nodes, const compute::LeaveOneOutErrors& error,

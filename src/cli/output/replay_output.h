@@ -1,6 +1,6 @@
 #pragma once
 
-#include "base/text_table.h"
+#include "cli/output/json_document.h"
 #include "cli/screen_table.h"
 #include "mission/replay.h"
 
@@ -8,27 +8,32 @@
 #include <string>
 #include <vector>
 
-/// What flightwatt replay shows, and the report of it.
+namespace flightwatt::mission {
+Fields<Comparison> record_fields(const Comparison*);
+Fields<SkippedReplay> record_fields(const SkippedReplay*);
+Fields<Replay> record_fields(const Replay*);
+Fields<Replays> record_fields(const Replays*);
+}  // namespace flightwatt::mission
+
+/// Output of replay, also for the report.
 namespace flightwatt::cli {
 
-/// What each replay rests on: model, durations, energies, gaps. One row a flight and mission.
+/// Data of each replay: model, durations, energies, gaps. One row a flight and mission.
 TextTable replay_basis_table(std::span<const mission::Replay> replays);
 
-/// What came of it: one row a flight, mission and schedule.
+/// Results: one row a flight, mission and schedule.
 TextTable replay_table(std::span<const mission::Replay> replays);
 
-/// On how many flights replanning was better than planning beforehand, a sentence a mission and way of planning.
+/// Replanning compared with planning before the flight, a sentence a mission and baseline.
 std::vector<std::string> replay_sentences(std::span<const mission::Replay> replays);
 
-/// What the power holds and what it does not.
+/// The components of the measured power.
 std::string replay_remark();
 
-/// All of that for people.
+/// All tables and sentences.
 std::string replay_text(std::span<const mission::Replay> replays, const Screen& screen);
 
 /// flight,mission,schedule,... (docs/formats.md), one row a flight, mission and schedule.
 std::string replay_csv(std::span<const mission::Replay> replays);
-
-Json to_json(const mission::Replays& replays);
 
 }  // namespace flightwatt::cli

@@ -1,89 +1,144 @@
 #include "cli/output/segment_output.h"
 
 #include "base/duration_text.h"
-#include "cli/output/records.h"
-#include "cli/stage.h"
+#include "batch/flight_record.h"
 #include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
 #include "flight/selected_track.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
+
+namespace flightwatt::flight {
+
+Fields<PhaseEdge> record_fields(const PhaseEdge*) {
+    using R = PhaseEdge;
+    return {field("altitude_m", &R::altitude_m, "altitude"),
+            field("gap_s", &R::gap_s, "interval between the samples around the edge"),
+            field("throttle_percent", &R::throttle_percent, "throttle"),
+            field("mode", &R::mode, "mode of the autopilot"),
+            field("block", &R::block, "block of the flight plan"),
+            field("takeoff_message_offset_s", &R::takeoff_after_s, "time of the `TAKEOFF` message after the edge")};
+}
+
+Fields<EdgeEvent> record_fields(const EdgeEvent*) {
+    using R = EdgeEvent;
+    return {field("what", &R::what, "event"), field("time_s", &R::time_s, "time of the event"),
+            field("after_s", &R::after_s, "after the edge")};
+}
+
+Fields<EdgeReport> record_fields(const EdgeReport*) {
+    using R = EdgeReport;
+    return {field("edge", &R::kind, "name of the edge"),
+            field(
+                "time_s", [](const R& edge) { return edge.edge.time_s; }, "time of the edge"),
+            field("height_percent", &R::height_percent, "of the flight's height"),
+            field("matching_events", &R::matching_events, "autopilot events that mark the edge"),
+            field("other_events", &R::other_events, "other autopilot events near it"),
+            field("agreement", &R::agreement, "agreement with the events")};
+}
+
+Fields<HeldAltitude> record_fields(const HeldAltitude*) {
+    using R = HeldAltitude;
+    return {field("height_m", &R::height_m, "above the ground"),
+            field(
+                "start_s", [](const R& r) { return r.start_s; }, "start"),
+            field(
+                "end_s", [](const R& r) { return r.end_s; }, "end"),
+            field("of_landing", &R::of_landing, "a step of the landing")};
+}
+
+Fields<GroundEvent> record_fields(const GroundEvent*) {
+    using R = GroundEvent;
+    return {field(
+                "start_s", [](const R& r) { return r.start_s; }, "start"),
+            field(
+                "end_s", [](const R& r) { return r.end_s; }, "end"),
+            field("what", &R::what, "reason why it is not a flight")};
+}
+
+Fields<SampleGap> record_fields(const SampleGap*) {
+    using R = SampleGap;
+    return {field("start_s", &R::start_s, "start"), field("duration_s", &R::duration_s, "duration")};
+}
+
+Fields<IdleCurrent> record_fields(const IdleCurrent*) {
+    using R = IdleCurrent;
+    return {field("mean_a", &R::mean_a, "mean"), field("sd_a", &R::sd_a, "standard deviation"),
+            field("samples", &R::samples, "samples")};
+}
+
+Fields<PowerReport> record_fields(const PowerReport*) {
+    using R = PowerReport;
+    return {field(
+                "current_origin", [](const R& r) { return std::string(to_string(r.origin)); },
+                "measured, or computed from throttle"),
+            field("idle_current", &R::idle, "current on the ground"),
+            field("energy_closure_percent", &R::energy_closure_percent, "integral of power over the counter, less 100"),
+            field("charge_closure_percent", &R::charge_closure_percent, "the same of current and charge"),
+            field("gaps", &R::gaps, "gaps in flight"),
+            field("power_faults", &R::power_faults, "faults")};
+}
+
+}  // namespace flightwatt::flight
 
 namespace flightwatt::cli {
 namespace {
 
-Json to_json(const flight::PhaseEdge& edge) {
-    return {{"altitude_m", edge.altitude_m},
-            {"gap_s", edge.gap_s},
-            {"throttle_percent", optional_json(edge.throttle_percent)},
-            {"mode", optional_json(edge.mode)},
-            {"block", optional_json(edge.block)},
-            {"takeoff_message_after_s", optional_json(edge.takeoff_after_s)}};
+/// A phase with its power.
+struct PhaseSpanOutput {
+    flight::PhaseSpan span;
+    std::optional<flight::PhaseStatistics> statistics;
+};
+
+Fields<PhaseSpanOutput> record_fields(const PhaseSpanOutput*) {
+    using R = PhaseSpanOutput;
+    using P = flight::PhaseSpan;
+    using E = flight::PhaseEdge;
+    return list_fields<R>(field("phase", at(&R::span, &P::phase), "`takeoff`, `cruise` or `landing`"),
+                          field("start_s", at(&R::span, &P::start, &E::time_s), "in the log's time"),
+                          field("end_s", at(&R::span, &P::end, &E::time_s), "in the log's time"),
+                          field("duration_s", at(&R::span, &P::duration_s), "end less start"),
+                          embedded([](const R& r) { return r.statistics ? &*r.statistics : nullptr; }),
+                          field("complete", at(&R::span, &P::complete), "false: the log begins or ends in the phase"),
+                          object<R>("evidence", "data at the edges",
+                                    {field("start", at(&R::span, &P::start), "first edge"),
+                                     field("end", at(&R::span, &P::end), "last edge")}));
 }
 
-Json to_json(const flight::PowerStatistics& power, const flight::PhaseSpan& span) {
-    const auto statistics = power.between(span.start.time_s, span.end.time_s);
-    const auto known = [&](auto value) { return power.has_power() ? Json(value) : Json(); };
-    return {{"phase", to_string(span.phase)},
-            {"start_s", span.start.time_s},
-            {"end_s", span.end.time_s},
-            {"duration_s", span.duration_s()},
-            {"samples", known(statistics.samples)},
-            {"mean_power_w", known(statistics.mean_power_w)},
-            {"energy_wh", known(statistics.energy_wh)},
-            {"counter_energy_wh", optional_json(statistics.counter_energy_wh)},
-            {"gaps", known(statistics.gaps)},
-            {"longest_gap_s", known(statistics.max_gap_s)},
-            {"complete", span.complete},
-            {"evidence", {{"start", to_json(span.start)}, {"end", to_json(span.end)}}}};
+/// A sortie with its phases and edges.
+struct SortieOutput {
+    flight::Sortie sortie;
+    std::vector<PhaseSpanOutput> phases;
+    std::vector<flight::EdgeReport> edges;
+};
+
+Fields<SortieOutput> record_fields(const SortieOutput*) {
+    using R = SortieOutput;
+    using S = flight::Sortie;
+    return {field("ground_altitude_m", at(&R::sortie, &S::ground_altitude_m), "altitude of the ground"),
+            field("height_m", at(&R::sortie, &S::height_m), "height of the cruise above the ground"),
+            field("held_heights", at(&R::sortie, &S::held), "heights that were held"),
+            field("phases", &R::phases, "phases"), field("edges", &R::edges, "edges of the phases")};
 }
 
-Json event_json(const flight::EdgeEvent& event) {
-    return {{"what", event.what}, {"time_s", event.time_s}, {"after_s", event.after_s}};
-}
-
-Json edge_json(const flight::EdgeReport& explained) {
-    return {{"edge", to_string(explained.kind)},
-            {"time_s", explained.edge.time_s},
-            {"height_percent", explained.height_percent},
-            {"witnesses", list_json(explained.matching_events, event_json)},
-            {"nearby", list_json(explained.other_events, event_json)},
-            {"verdict", explained.agreement}};
-}
-
-Json to_json(const flight::SelectedTracks& tracks, const flight::PowerStatistics& power, const flight::Sortie& sortie) {
-    const auto held_json = [](const auto& hold) -> Json {
-        return {{"height_m", hold.height_m},
-                {"start_s", hold.start_s},
-                {"end_s", hold.end_s},
-                {"of_landing", hold.of_landing}};
-    };
-    return {{"ground_altitude_m", sortie.ground_altitude_m},
-            {"height_m", sortie.height_m},
-            {"held_heights", list_json(sortie.held, held_json)},
-            {"phases", list_json(sortie.phases, [&](const auto& span) { return to_json(power, span); })},
-            {"edges", list_json(compare_edges_with_events(tracks, sortie), edge_json)}};
-}
-
-Json to_json(const flight::PowerReport& report) {
-    const auto gap_json = [](const auto& gap) -> Json {
-        return {{"start_s", gap.start_s}, {"duration_s", gap.duration_s}};
-    };
-    Json idle;
-    if (report.idle) {
-        idle = {{"mean_a", report.idle->mean_a}, {"deviation_a", report.idle->sd_a}, {"samples", report.idle->samples}};
+std::vector<SortieOutput> sortie_outputs(const SegmentedFlight& flight) {
+    const flight::SelectedTracks tracks(*flight.series);
+    const flight::PowerStatistics power(*flight.series);
+    std::vector<SortieOutput> all;
+    for (const auto& sortie : flight.phases->sorties) {
+        auto& output = all.emplace_back(SortieOutput{sortie, {}, compare_edges_with_events(tracks, sortie)});
+        for (const auto& span : sortie.phases)
+            output.phases.push_back({span, power.has_power()
+                                               ? std::optional(power.between(span.start.time_s, span.end.time_s))
+                                               : std::nullopt});
     }
-    return {{"current_origin", to_string(report.origin)},
-            {"idle_current", idle},
-            {"energy_closure_percent", optional_json(report.energy_closure_percent)},
-            {"charge_closure_percent", optional_json(report.charge_closure_percent)},
-            {"gaps", list_json(report.gaps, gap_json)},
-            {"power_faults", report.power_faults}};
+    return all;
 }
 
-/// The heights that were held, and why the landing begins where it does, a line each.
+/// The heights that were held, a line each.
 std::string heights_text(const flight::Sortie& sortie) {
     std::string text;
     for (const auto& hold : sortie.held) {
@@ -94,7 +149,7 @@ std::string heights_text(const flight::Sortie& sortie) {
     return text;
 }
 
-/// How far the power record can be trusted, a line each.
+/// Findings on the power record, a line each.
 std::string power_text(const flight::FlightSeries& series, const flight::PowerReport& power) {
     if (power_track(series).empty()) return "power: not measured\n";
     std::string text = fmt::format("power: {}, current {}\n", power_track(series).source, to_string(power.origin));
@@ -114,19 +169,19 @@ std::string power_text(const flight::FlightSeries& series, const flight::PowerRe
     for (const auto& gap : power.gaps) max_s = std::max(max_s, gap.duration_s);
     text += fmt::format("gaps in flight: {}, the longest {:.1f} s\n", power.gaps.size(), max_s);
     for (const auto& fault : power.power_faults) text += fmt::format("power fault: {}\n", fault);
-    for (const auto& warning : power.warnings) text += fmt::format("doubtful: {}\n", warning);
+    for (const auto& warning : power.warnings) text += fmt::format("warning: {}\n", warning);
     return text;
 }
 
 }  // namespace
 
-std::string witness_text(const flight::EdgeReport& edge) {
+std::string events_text(const flight::EdgeReport& edge) {
     std::string text;
     const auto add = [&](const flight::EdgeEvent& event, const char* how) {
         text += fmt::format("{}{}{} at {:.1f} s ({:+.1f} s)", text.empty() ? "" : "; ", how, event.what, event.time_s,
                             event.after_s);
     };
-    for (const auto& witness : edge.matching_events) add(witness, "");
+    for (const auto& event : edge.matching_events) add(event, "");
     for (const auto& event : edge.other_events) add(event, "nearby: ");
     return text.empty() ? "-" : text;
 }
@@ -140,7 +195,7 @@ std::string describe_flight(const flight::FlightSeries& series, const flight::Fl
 
 TextTable edges_table(const flight::FlightSeries& series, const flight::FlightPhases& phases) {
     TextTable table{
-        {"sortie", "edge", "time s", "altitude m", "height %", "throttle %", "gap s", "verdict", "witnesses"}, {}};
+        {"sortie", "edge", "time s", "altitude m", "height %", "throttle %", "gap s", "agreement", "events"}, {}};
     const flight::SelectedTracks tracks(series);
     for (std::size_t s = 0; s < phases.sorties.size(); ++s) {
         for (const auto& explained : compare_edges_with_events(tracks, phases.sorties[s])) {
@@ -148,7 +203,7 @@ TextTable edges_table(const flight::FlightSeries& series, const flight::FlightPh
             table.rows.push_back({fmt::format("{}", s + 1), std::string(to_string(explained.kind)),
                                   fixed(edge.time_s, 1), fixed(edge.altitude_m, 1), fixed(explained.height_percent, 1),
                                   fixed(edge.throttle_percent, 0), fixed(edge.gap_s, 1), explained.agreement,
-                                  witness_text(explained)});
+                                  events_text(explained)});
         }
     }
     return table;
@@ -157,34 +212,38 @@ TextTable edges_table(const flight::FlightSeries& series, const flight::FlightPh
 std::string explanation(const flight::FlightSeries& series, const flight::FlightPhases& phases,
                         const flight::PowerReport& power, const Screen& screen) {
     const ScreenTable shown{describe_flight(series, phases),
-                            {"sortie", "edge", "time s", "verdict", "altitude m", "witnesses"}};
+                            {"sortie", "edge", "time s", "agreement", "altitude m", "events"}};
     std::string text = screen_text(edges_table(series, phases), screen, shown);
     for (const auto& sortie : phases.sorties) text += heights_text(sortie);
     for (const auto& other : phases.ground_events) {
         text += fmt::format("no flight from {:.0f} to {:.0f} s: {}\n", other.start_s, other.end_s, other.what);
     }
-    if (!phases.motor_source.empty()) text += fmt::format("motor told by {}\n", phases.motor_source);
+    if (!phases.motor_source.empty()) text += fmt::format("motor signal: {}\n", phases.motor_source);
     return text + power_text(series, power);
 }
 
-Json to_json(const flight::FlightSeries& series, const flight::FlightPhases& phases, const flight::PowerReport& power,
-             const std::vector<std::string>& warnings) {
-    const flight::SelectedTracks tracks(series);
-    const flight::PowerStatistics statistics(series);
-    const auto sortie_json = [&](const auto& sortie) { return to_json(tracks, statistics, sortie); };
-    const auto other_json = [](const auto& other) -> Json {
-        return {{"start_s", other.start_s}, {"end_s", other.end_s}, {"what", other.what}};
-    };
-    return {{"flight", series.flight},
-            {"aircraft_id", series.aircraft_id},
-            {"aircraft_name", series.aircraft_name},
-            {"synthetic", flight::is_synthetic(series.aircraft_name)},
-            {"power_source", power_track(series).source},
-            {"motor_evidence", phases.motor_source},
-            {"sorties", list_json(phases.sorties, sortie_json)},
-            {"not_flights", list_json(phases.ground_events, other_json)},
-            {"power", to_json(power)},
-            {"warnings", warnings}};
+Fields<SegmentedFlight> record_fields(const SegmentedFlight*) {
+    using R = SegmentedFlight;
+    using S = flight::FlightSeries;
+    using P = flight::FlightPhases;
+    const auto source = [](const S& series) { return power_track(series).source; };
+    return {field("flight", at(&R::series, &S::flight), "name of the flight"),
+            field("aircraft_id", at(&R::series, &S::aircraft_id), "id of the aircraft"),
+            field("aircraft_name", at(&R::series, &S::aircraft_name), "name of the aircraft"),
+            field("synthetic", at(&R::series, &S::aircraft_name, flight::is_synthetic), "made by `synthesize`"),
+            field("power_source", at(&R::series, source), "message of the power"),
+            field("motor_evidence", at(&R::phases, &P::motor_source), "signal of the running motor"),
+            field(
+                "sorties", [](const R& r) { return sortie_outputs(r); }, "flights of the log"),
+            field("rejected_activities", at(&R::phases, &P::ground_events), "the motor ran without a flight"),
+            field("power", &R::power, "the power record"),
+            field("warnings", &R::warnings, "warnings")};
+}
+
+Fields<SegmentOutput> record_fields(const SegmentOutput*) {
+    auto flights = field("flights", &SegmentOutput::flights, "flights of all logs");
+    flights.schema = &JsonType<std::vector<SegmentedFlight>>::schema;
+    return {std::move(flights)};
 }
 
 }  // namespace flightwatt::cli

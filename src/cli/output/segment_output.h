@@ -1,6 +1,6 @@
 #pragma once
 
-#include "base/text_table.h"
+#include "cli/output/json_document.h"
 #include "cli/screen_table.h"
 #include "flight/edge_events.h"
 #include "flight/power_check.h"
@@ -9,25 +9,35 @@
 #include <string>
 #include <vector>
 
-/// What flightwatt segment says of a flight.
+/// Output of segment.
 namespace flightwatt::cli {
 
-/// What the autopilot says of an edge: its witnesses, then events nearby; '-' for nothing.
-std::string witness_text(const flight::EdgeReport& edge);
+/// Autopilot events of an edge: those that mark it, then others nearby; '-' for none.
+std::string events_text(const flight::EdgeReport& edge);
 
-/// The flight, its aircraft and how many sorties it holds: the title of its tables.
+/// Title of a flight's tables: its name, aircraft and number of sorties.
 std::string describe_flight(const flight::FlightSeries& series, const flight::FlightPhases& phases);
 
-/// A row an edge: where it is, what altitude and throttle are there, and what the autopilot says of it.
+/// A row an edge: time, altitude, throttle, autopilot events.
 TextTable edges_table(const flight::FlightSeries& series, const flight::FlightPhases& phases);
 
-/// What `segment --explain` prints: the edges, what is no flight and what was found of the power record.
+/// Output of `segment --explain`: edges, rejected activities and findings on the power record.
 std::string explanation(const flight::FlightSeries& series, const flight::FlightPhases& phases,
                         const flight::PowerReport& power, const Screen& screen);
 
-/// What `segment --json` prints: sorties with phases and edges, what is no flight, the power check and the
-/// warnings. null stands for what is not known.
-Json to_json(const flight::FlightSeries& series, const flight::FlightPhases& phases, const flight::PowerReport& power,
-             const std::vector<std::string>& warnings);
+/// A flight of the JSON.
+struct SegmentedFlight {
+    const flight::FlightSeries* series = nullptr;
+    const flight::FlightPhases* phases = nullptr;
+    const flight::PowerReport* power = nullptr;
+    const std::vector<std::string>* warnings = nullptr;
+};
+Fields<SegmentedFlight> record_fields(const SegmentedFlight*);
+
+/// JSON of the stage.
+struct SegmentOutput {
+    std::vector<Json> flights;  ///< of SegmentedFlight, as their series are not kept
+};
+Fields<SegmentOutput> record_fields(const SegmentOutput*);
 
 }  // namespace flightwatt::cli

@@ -12,6 +12,37 @@
 
 #include <fmt/format.h>
 
+namespace flightwatt::live {
+
+Fields<Alarm> record_fields(const Alarm*) {
+    return {field("kind", &Alarm::kind, "`reserve`, `model`, `silence` or `voltage`"),
+            field("text", &Alarm::text, "text of the alarm")};
+}
+
+Fields<ReturnDeadline> record_fields(const ReturnDeadline*) {
+    using R = ReturnDeadline;
+    return {field("latest_in_s", &R::latest_in_s, "time until the latest return; null: too late"),
+            field("path_can_be_flown", &R::path_can_be_flown, "the path to its end, and the way home from there")};
+}
+
+Fields<LiveBattery> record_fields(const LiveBattery*) {
+    using R = LiveBattery;
+    const auto initial = [](const R& battery) {
+        return battery.soc_percent ? std::optional(battery.initial_soc_percent) : std::nullopt;
+    };
+    return {field("soc_percent", &R::soc_percent, "initial state of charge less the charge drawn"),
+            field("soc_by_voltage_percent", &R::soc_by_voltage_percent, "by the battery model at this voltage"),
+            field("initial_soc_percent", initial, "at the beginning"),
+            field("initial_is_measured", &R::initial_is_from_voltage, "from the voltage at rest"),
+            field("drawn_ah", &R::drawn_ah, "charge drawn since the beginning"),
+            field("voltage_off_v", &R::voltage_residual_v, "measured less model, median of the last minute"),
+            field("reserve_in_s", &R::time_to_reserve_s, "cruise time until the reserve is reached"),
+            field("probability_below_reserve", &R::probability_below_reserve,
+                  "of landing below the reserve, or not at all")};
+}
+
+}  // namespace flightwatt::live
+
 namespace flightwatt::cli {
 namespace {
 
@@ -20,47 +51,52 @@ std::string phase_text(const live::LiveState& state) {
     return state.landed ? "landed" : "ground";
 }
 
-Json run_json(const compute::Configuration& run, const compute::ComputeModel& compute) {
-    auto json = Json::object();
+/// The components that run, with their quality by parameter.
+Keyed<Keyed<double>> run_values(const compute::Configuration& run, const compute::ComputeModel& compute) {
+    Keyed<Keyed<double>> all;
     for (const auto& running : run) {
         const auto& component = compute.components[running.component];
-        auto qos = Json::object();
-        for (std::size_t i = 0; i < running.qos.size(); ++i) qos[component.profile.parameters[i]] = running.qos[i];
-        json[component.name] = std::move(qos);
+        auto& qos = all.emplace_back(component.name, Keyed<double>()).second;
+        for (std::size_t i = 0; i < running.qos.size(); ++i)
+            qos.emplace_back(component.profile.parameters[i], running.qos[i]);
     }
-    return json;
+    return all;
 }
 
-Json battery_json(const live::LiveBattery& battery) {
-    const auto known = [&](double value) { return battery.soc_percent ? std::optional(value) : std::nullopt; };
-    return {{"soc_percent", optional_json(battery.soc_percent)},
-            {"soc_by_voltage_percent", optional_json(battery.soc_by_voltage_percent)},
-            {"initial_soc_percent", optional_json(known(battery.initial_soc_percent))},
-            {"initial_is_measured", battery.initial_is_from_voltage},
-            {"drawn_ah", optional_json(battery.drawn_ah)},
-            {"voltage_off_v", optional_json(battery.voltage_residual_v)},
-            {"reserve_in_s", optional_json(battery.time_to_reserve_s)},
-            {"chance_below_reserve", optional_json(battery.probability_below_reserve)}};
+/// A decision with the names of its components.
+struct DecisionOutput {
+    const live::LiveDecision* decision = nullptr;
+    const compute::ComputeModel* compute = nullptr;
+};
+
+Fields<DecisionOutput> record_fields(const DecisionOutput*) {
+    using R = DecisionOutput;
+    using D = live::LiveDecision;
+    const auto run = [](const R& r) { return run_values(r.decision->run, *r.compute); };
+    const auto next = [](const R& r) {
+        return r.decision->next ? std::optional(run_values(*r.decision->next, *r.compute)) : std::nullopt;
+    };
+    const auto next_in_s = [](const R& r) {
+        return r.decision->next ? std::optional(r.decision->next_in_s) : std::nullopt;
+    };
+    return {
+        field("run", run, "running components with their parameters"),
+        field("utility_per_s", at(&R::decision, &D::utility_per_s), "of these"),
+        field("next", next, "the configuration after it; null: no change"),
+        field("next_in_s", next_in_s, "time until then"),
+        field("remaining_utility_per_s", at(&R::decision, &D::remaining_utility_per_s), "mean to the mission's end"),
+        field("keeps_reserve", at(&R::decision, &D::keeps_reserve), "replanned: some plan keeps the reserve"),
+        field("final_soc_percent", at(&R::decision, &D::final_soc_percent), "replanned: at the mission's end"),
+        field("changes", at(&R::decision, &D::changes), "changes of the configuration so far")};
 }
 
-Json decision_json(const live::LiveDecision& decision, const compute::ComputeModel& compute) {
-    return {{"run", run_json(decision.run, compute)},
-            {"utility_per_s", decision.utility_per_s},
-            {"next", decision.next ? run_json(*decision.next, compute) : Json()},
-            {"next_in_s", decision.next ? Json(decision.next_in_s) : Json()},
-            {"rest_utility_per_s", optional_json(decision.remaining_utility_per_s)},
-            {"keeps_reserve", decision.keeps_reserve},
-            {"final_soc_percent", optional_json(decision.final_soc_percent)},
-            {"changes", decision.changes}};
-}
-
-std::string spare(const std::optional<double>& value, int decimals, const char* unit) {
+std::string with_unit(const std::optional<double>& value, int decimals, const char* unit) {
     return value ? fmt::format("{:.{}f} {}", *value, decimals, unit) : fmt::format("- {}", unit);
 }
 
 /// "34.1 % and 10.92 V (30.2 % at the high end)"
 std::string landing_line(const live::LiveState& state) {
-    if (!state.prediction) return "waits for: " + state.no_prediction_reason;
+    if (!state.prediction) return "no prediction: " + state.no_prediction_reason;
     const auto& prediction = *state.prediction;
     auto text = fmt::format("{:.2f} Wh to the landing ({:.2f} to {:.2f})", prediction.remaining_energy.energy_wh,
                             prediction.interval.low_wh, prediction.interval.high_wh);
@@ -77,8 +113,8 @@ std::string landing_line(const live::LiveState& state) {
 std::string reserve_line(const live::LiveState& state) {
     if (!state.battery || !state.battery->time_to_reserve_s) return "";
     auto text = fmt::format("reserve in {:.1f} min of cruise", *state.battery->time_to_reserve_s / 60.0);
-    if (const auto& chance = state.battery->probability_below_reserve)
-        text += fmt::format(", chance of landing below it {:.1f} %", units::percentage(*chance, 1.0));
+    if (const auto& probability = state.battery->probability_below_reserve)
+        text += fmt::format(", probability of landing below it {:.1f} %", units::percentage(*probability, 1.0));
     if (const auto& turn = state.turn_home) {
         text += !turn->latest_in_s        ? ", too late to turn home with it"
                 : turn->path_can_be_flown ? ", home from anywhere on the path"
@@ -94,15 +130,15 @@ std::string schedule_line(const live::LiveState& state, const compute::ComputeMo
     if (decision.next)
         text += fmt::format(", in {:.0f} s {}", decision.next_in_s, describe(compute, *decision.next, "="));
     if (decision.remaining_utility_per_s)
-        text += fmt::format("; utility {:.4g} a second to the end", *decision.remaining_utility_per_s);
+        text += fmt::format("; utility {:.4g} per second to the end", *decision.remaining_utility_per_s);
     if (!decision.keeps_reserve) text += "; no plan keeps the reserve";
     return text;
 }
 
 std::string charge_text(const live::LiveState& state) {
     if (!state.battery) return "";
-    return fmt::format("{} by charge, {} by voltage", spare(state.battery->soc_percent, 1, "%"),
-                       spare(state.battery->soc_by_voltage_percent, 1, "%"));
+    return fmt::format("{} by charge, {} by voltage", with_unit(state.battery->soc_percent, 1, "%"),
+                       with_unit(state.battery->soc_by_voltage_percent, 1, "%"));
 }
 
 std::string variable_name(std::string text) {
@@ -115,7 +151,13 @@ std::string variable_name(std::string text) {
 
 constexpr auto replace_invalid = Json::error_handler_t::replace;
 
-/// A line in lines of so many columns, broken at blanks; those below are indented as a screen's texts are.
+/// The JSON document of a record in one line.
+template <Record R>
+std::string json_line(const StageCall& call, const R& record) {
+    return json_document(call, record_json(record)).dump(-1, ' ', false, replace_invalid) + "\n";
+}
+
+/// A line broken at blanks into lines of at most `columns` characters; all but the first are indented.
 std::string wrapped(std::string line, std::size_t columns) {
     const std::string indent(10, ' ');
     std::string text;
@@ -135,37 +177,50 @@ std::string without_numbers(std::string text) {
 
 }  // namespace
 
-Json json_of(const live::LiveState& state, const compute::ComputeModel& compute) {
-    Json json{{"time_s", state.time_s},
-              {"aircraft", state.aircraft_id},
-              {"phase", phase_text(state)},
-              {"sortie", state.sortie},
-              {"began_in_air", state.began_in_air},
-              {"lift_off_s", optional_json(state.lift_off_s)},
-              {"flight_s", state.flight_time_s},
-              {"energy_wh", optional_json(state.energy_wh)},
-              {"power_w", optional_json(state.power_w)},
-              {"expected_power_w", optional_json(state.expected_power_w)},
-              {"voltage_v", optional_json(state.voltage_v)},
-              {"current_a", optional_json(state.current_a)},
-              {"altitude_m", optional_json(state.altitude_m)},
-              {"battery", state.battery ? battery_json(*state.battery) : Json()},
-              {"prediction", state.prediction ? json_of(*state.prediction) : Json()},
-              {"waits_for", state.prediction ? Json() : Json(state.no_prediction_reason)},
-              {"turn_home", nullptr},
-              {"decision", state.decision ? decision_json(*state.decision, compute) : Json()},
-              {"alarms", Json::array()},
-              {"warnings", state.warnings},
-              {"messages", state.messages},
-              {"restarts", state.restarts},
-              {"silent_s", state.time_since_message_s},
-              {"others", state.other_senders},
-              {"unusable", state.unusable}};
-    if (const auto& turn = state.turn_home)
-        json["turn_home"] = {{"latest_in_s", optional_json(turn->latest_in_s)},
-                             {"path_can_be_flown", turn->path_can_be_flown}};
-    for (const auto& alarm : state.alarms) json["alarms"].push_back({{"kind", alarm.kind}, {"text", alarm.text}});
-    return json;
+Fields<WatchState> record_fields(const WatchState*) {
+    using R = WatchState;
+    using S = live::LiveState;
+    const auto of = [](const std::string& key, auto S::*member, const char* description = "") {
+        return field(key, at(&R::state, member), description);
+    };
+    const auto reason = [](const R& r) {
+        return r.state->prediction ? std::nullopt : std::optional(r.state->no_prediction_reason);
+    };
+    const auto decision = [](const R& r) {
+        return r.state->decision ? std::optional(DecisionOutput{&*r.state->decision, r.compute}) : std::nullopt;
+    };
+    return {of("time_s", &S::time_s, "time of the latest message"),
+            of("aircraft_id", &S::aircraft_id, "empty: not known yet"),
+            of("aircraft_name", &S::aircraft_name, "by the `.log`"),
+            field("phase", at(&R::state, phase_text), "`ground`, `takeoff`, `cruise`, `landing` or `landed`"),
+            of("sortie", &S::sortie, "number of the flight since the start; 0: none yet"),
+            of("began_in_air", &S::began_in_air, "the telemetry began in flight"),
+            of("lift_off_s", &S::lift_off_s, "of this sortie"),
+            of("flight_time_s", &S::flight_time_s, "time in the air"),
+            of("energy_wh", &S::energy_wh, "since lift-off, or since the first message in the air"),
+            of("power_w", &S::power_w, "measured"),
+            of("expected_power_w", &S::expected_power_w, "predicted from here"),
+            of("voltage_v", &S::voltage_v, "measured"),
+            of("current_a", &S::current_a, "measured"),
+            of("altitude_m", &S::altitude_m, "measured"),
+            of("battery", &S::battery, "the battery"),
+            of("prediction", &S::prediction, "as of `predict`"),
+            field("no_prediction_reason", reason, "null: there is a prediction"),
+            of("turn_home", &S::turn_home, "latest return from a path"),
+            field("decision", decision, "the schedule"),
+            of("alarms", &S::alarms, "active alarms"),
+            of("warnings", &S::warnings, "of battery, record and prediction"),
+            of("messages", &S::messages, "received messages"),
+            of("restarts", &S::restarts, "restarts of the telemetry's clock"),
+            of("time_since_message_s", &S::time_since_message_s, "since the latest message"),
+            of("others", &S::other_senders, "messages of other senders"),
+            of("unusable", &S::unusable, "ignored lines and values by reason")};
+}
+
+Fields<WatchEnd> record_fields(const WatchEnd*) {
+    using R = WatchEnd;
+    return {field("ended", &R::ended, "reason of the end"),
+            field("last_prediction", &R::last_prediction, "the last state with a prediction")};
 }
 
 PageEvent page_event(const live::LiveState& state, const compute::ComputeModel& compute, const live::TimeCurve& ahead) {
@@ -178,7 +233,7 @@ PageEvent page_event(const live::LiveState& state, const compute::ComputeModel& 
                      {"power", optional_json(state.power_w)},
                      {"expected", optional_json(state.expected_power_w)},
                      {"altitude", optional_json(state.altitude_m)}};
-    auto json = json_of(state, compute);
+    auto json = record_json(WatchState{&state, &compute});
     json["ahead"] = {{"time_s", ahead.time_s}, {"soc_percent", ahead.value}};
     json["point"] = point;
     return {json.dump(-1, ' ', false, replace_invalid), point.dump(-1, ' ', false, replace_invalid)};
@@ -186,7 +241,7 @@ PageEvent page_event(const live::LiveState& state, const compute::ComputeModel& 
 
 std::string line_of(const live::LiveState& state, const compute::ComputeModel& compute) {
     auto line = fmt::format("{:.0f} s  {} {:.0f} s  {}  {}", state.time_s, phase_text(state), state.flight_time_s,
-                            spare(state.energy_wh, 3, "Wh"), spare(state.power_w, 1, "W"));
+                            with_unit(state.energy_wh, 3, "Wh"), with_unit(state.power_w, 1, "W"));
     for (const auto& text :
          {charge_text(state), landing_line(state), reserve_line(state), schedule_line(state, compute)})
         if (!text.empty()) line += "  " + text;
@@ -201,9 +256,10 @@ std::vector<std::string> screen_of(const live::LiveState& state, const compute::
                     state.flight_time_s > 0.0 ? fmt::format(", {:.1f} min in the air{}", state.flight_time_s / 60.0,
                                                             state.began_in_air ? " since the first message" : "")
                                               : ""),
-        fmt::format("energy    {}, {} now{}, {}, {}", spare(state.energy_wh, 3, "Wh"), spare(state.power_w, 1, "W"),
+        fmt::format("energy    {}, {} now{}, {}, {}", with_unit(state.energy_wh, 3, "Wh"),
+                    with_unit(state.power_w, 1, "W"),
                     state.expected_power_w ? fmt::format(" ({:.1f} W expected)", *state.expected_power_w) : "",
-                    spare(state.voltage_v, 2, "V"), spare(state.altitude_m, 0, "m"))};
+                    with_unit(state.voltage_v, 2, "V"), with_unit(state.altitude_m, 0, "m"))};
     if (const auto text = charge_text(state); !text.empty()) lines.push_back("charge    " + text);
     lines.push_back("landing   " + landing_line(state));
     if (const auto text = reserve_line(state); !text.empty()) lines.push_back("          " + text);
@@ -218,10 +274,11 @@ live::DecisionCommand::Environment decision_environment(const live::LiveState& s
     const auto& decision = state.decision.value();
     const auto soc =
         state.battery && state.battery->state ? std::optional(state.battery->state->soc_percent) : std::nullopt;
-    live::DecisionCommand::Environment variables{{"FLIGHTWATT_TIME_S", fmt::format("{}", state.time_s)},
-                                                 {"FLIGHTWATT_PHASE", phase_text(state)},
-                                                 {"FLIGHTWATT_SOC_PERCENT", soc ? fmt::format("{:.2f}", *soc) : ""},
-                                                 {"FLIGHTWATT_RUN", run_json(decision.run, compute).dump()}};
+    live::DecisionCommand::Environment variables{
+        {"FLIGHTWATT_TIME_S", fmt::format("{}", state.time_s)},
+        {"FLIGHTWATT_PHASE", phase_text(state)},
+        {"FLIGHTWATT_SOC_PERCENT", soc ? fmt::format("{:.2f}", *soc) : ""},
+        {"FLIGHTWATT_RUN", JsonType<Keyed<Keyed<double>>>::write(run_values(decision.run, compute)).dump()}};
     for (std::size_t c = 0; c < compute.components.size(); ++c) {
         const auto& component = compute.components[c];
         const auto name = "FLIGHTWATT_COMPONENT_" + variable_name(component.name);
@@ -235,19 +292,20 @@ live::DecisionCommand::Environment decision_environment(const live::LiveState& s
 }
 
 std::vector<std::string> WarningThrottle::due(const std::vector<std::string>& now) {
-    std::vector<std::string> to_say;
+    std::vector<std::string> fresh;
     for (const auto& text : now)
-        if (said_.size() < max_kinds && said_.emplace(without_numbers(text), text).second) to_say.push_back(text);
-    return to_say;
+        if (reported_.size() < max_kinds && reported_.emplace(without_numbers(text), text).second)
+            fresh.push_back(text);
+    return fresh;
 }
 
 std::vector<std::string> WarningThrottle::final_updates(const std::vector<std::string>& now) {
-    std::vector<std::string> to_say;
+    std::vector<std::string> fresh;
     for (const auto& text : now) {
-        const auto known = said_.find(without_numbers(text));
-        if (known != said_.end() && std::exchange(known->second, text) != text) to_say.push_back(text);
+        const auto known = reported_.find(without_numbers(text));
+        if (known != reported_.end() && std::exchange(known->second, text) != text) fresh.push_back(text);
     }
-    return to_say;
+    return fresh;
 }
 
 WatchOutput::WatchOutput(const StageCall& call, const compute::ComputeModel& compute) : call_(call), compute_(compute) {
@@ -257,25 +315,23 @@ WatchOutput::WatchOutput(const StageCall& call, const compute::ComputeModel& com
 
 void WatchOutput::print_state(const live::LiveState& state) {
     warnings_ = state.warnings;
-    const auto to_say = said_.due(warnings_);
-    for (const auto& warning : to_say)
+    const auto fresh = throttle_.due(warnings_);
+    for (const auto& warning : fresh)
         if (!columns_) warn(call_, warning);
     if (columns_) {
         draw(state);
     } else if (call_.json) {
-        is_read_ = print_flushed(json_of(state, compute_).dump(-1, ' ', false, replace_invalid) + "\n");
+        is_read_ = print_flushed(json_line(call_, WatchState{&state, &compute_}));
     } else {
         is_read_ = print_flushed(line_of(state, compute_));
     }
 }
 
 void WatchOutput::end(const live::LiveFlight& flight, const std::string& why) {
-    for (const auto& warning : said_.final_updates(warnings_)) warn(call_, warning);
+    for (const auto& warning : throttle_.final_updates(warnings_)) warn(call_, warning);
     const auto& last = flight.last_predicted();
     if (call_.json) {
-        Json json{{"ended", why}, {"last_prediction", nullptr}};
-        if (last) json["last_prediction"] = json_of(*last, compute_);
-        print(json.dump(-1, ' ', false, replace_invalid) + "\n");
+        print(json_line(call_, WatchEnd{why, last ? std::optional(WatchState{&*last, &compute_}) : std::nullopt}));
     } else {
         note(call_, why);
     }
@@ -290,7 +346,7 @@ void WatchOutput::draw(const live::LiveState& state) {
     drawn_ = now;
     auto lines = screen_of(state, compute_);
     for (const auto& warning : state.warnings) lines.push_back("          " + one_line(warning));
-    std::string text = "\x1b[H\x1b[J";  // the whole screen anew
+    std::string text = "\x1b[H\x1b[J";  // clears the screen
     for (const auto& line : lines) text += wrapped(line, *columns_);
     is_read_ = print_flushed(text);
 }

@@ -1,6 +1,5 @@
 #include "base/units.h"
 #include "cli/output/mission_output.h"
-#include "cli/output/records.h"
 #include "cli/output/replay_output.h"
 #include "mechanical/table_one.h"
 #include "mission/mission_summary.h"
@@ -232,13 +231,7 @@ TextTable ranking_table(Missions missions) {
         summaries.push_back(simulated.simulation.summary);
         summaries.back().mission = simulated.title;
     }
-    return cli::table_of(
-        cli::ranking_json(ranked(std::move(summaries))),
-        {"rank", "title: mission", "final_soc_percent .2f: final state of charge [%]",
-         "reserve_soc_percent .2f: reserve [%]", "chance_below_percent .1f: chance of landing below [%]",
-         "utility? .3f", "energy_wh .3f: energy [Wh]", "mechanical_energy_wh .3f: mechanical [Wh]",
-         "compute_energy_wh .3f: computing [Wh]", "duration_s .1f: duration [s]", "depleted_at_s? .1f: empty at [s]",
-         "cut_off_at_s? .1f: cut off at [s]"});
+    return table_of(cli::ranked_missions(ranked(std::move(summaries))));
 }
 
 Section plan_section(Missions missions) {

@@ -16,6 +16,21 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+namespace flightwatt::mission {
+
+Fields<Reach> record_fields(const Reach*) {
+    using R = Reach;
+    const auto of = [](const char* key, ReachUnit unit, const char* description) {
+        const auto value = [unit](const R& r) { return r.unit == unit ? std::optional(r.limit.value) : std::nullopt; };
+        return field(key, value, description, optional_key{});
+    };
+    return {of("longest_cruise_s", ReachUnit::cruise_s, "without a path"),
+            of("most_circles", ReachUnit::circles, "of a path with circles"),
+            of("farthest_return_m", ReachUnit::return_m, "of another path, out and back")};
+}
+
+}  // namespace flightwatt::mission
+
 namespace flightwatt::report {
 namespace {
 
@@ -180,13 +195,6 @@ ReserveStatus verdict_as_modelled(const mission::MissionSummary& summary) {
     return is_likely ? ReserveStatus::keeps : ReserveStatus::may_keep;
 }
 
-nlohmann::ordered_json to_json(const std::optional<mission::Reach>& reach) {
-    if (!reach) return nullptr;
-    if (reach->unit == mission::ReachUnit::circles) return {{"most_circles", reach->limit.value}};
-    if (reach->unit == mission::ReachUnit::return_m) return {{"farthest_return_m", reach->limit.value}};
-    return {{"longest_cruise_s", reach->limit.value}};
-}
-
 }  // namespace
 
 std::vector<SimulatedMission> simulate_for_report(const std::vector<mission::MissionVariant>& missions,
@@ -249,19 +257,30 @@ std::vector<std::string> card_lines(const SimulatedMission& simulated, const Mis
     return lines;
 }
 
-nlohmann::ordered_json to_json(const SimulatedMission& simulated, const MissionAssessment& answer) {
-    const auto& summary = simulated.simulation.summary;
-    const auto of_summary = cli::to_json(summary);
-    cli::Json json{{"mission", simulated.title}};
-    for (const auto* field :
-         {"final_soc_percent", "reserve_soc_percent", "keeps_reserve", "probability_below_reserve", "utility"})
-        json[field] = of_summary.value(field, cli::Json());
-    json["reach"] = to_json(answer.reach);
-    json["reach_with_95_percent"] = to_json(answer.reach_at_95_percent);
-    json["least_capacity_ah"] = cli::optional_json(answer.capacity_ah);
-    json["card"] = card_lines(simulated, answer);
-    if (summary.by_flights) json[cli::by_flights_key] = of_summary[cli::by_flights_key];
-    return json;
+Fields<MissionOutput> record_fields(const MissionOutput*) {
+    using R = MissionOutput;
+    using M = SimulatedMission;
+    using A = MissionAssessment;
+    using S = mission::MissionSummary;
+    const auto of = [](auto member) {
+        return at(&R::simulated, &M::simulation, &mission::Simulation::summary, member);
+    };
+    const auto probability = [](const S& summary) {
+        return summary.samples ? std::optional(summary.samples->probability_below_reserve) : std::nullopt;
+    };
+    const auto card = [](const R& r) { return card_lines(*r.simulated, *r.assessment); };
+    return {field("mission", at(&R::simulated, &M::title), "title of the mission"),
+            field("final_soc_percent", of(&S::final_soc_percent), "null: the battery cannot deliver the power"),
+            field("reserve_soc_percent", of(&S::reserve_soc_percent), "reserve of the mission"),
+            field("keeps_reserve", of(&S::keeps_reserve), "the reserve is left, as modelled"),
+            field("probability_below_reserve", of(probability), "of 1000 flights; null: without variability data"),
+            field("utility", of(&S::utility), "mean utility per second"),
+            field("reach", at(&R::assessment, &A::reach), "largest feasible mission, as modelled"),
+            field("reach_with_95_percent", at(&R::assessment, &A::reach_at_95_percent), "with that probability"),
+            field("min_capacity_ah", at(&R::assessment, &A::capacity_ah), "smallest battery; null: its own suffices"),
+            field("card", card, "text of its card"),
+            field("with_capacity_of_flights", of(&S::by_flights), "with the pack's capacity by flights, if it differs",
+                  optional_key{})};
 }
 
 }  // namespace flightwatt::report

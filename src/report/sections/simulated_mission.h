@@ -2,13 +2,12 @@
 
 #include "mission/feasibility_limits.h"
 #include "mission/simulation.h"
+#include "record/record.h"
 #include "report/html.h"
 
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 namespace flightwatt::report {
 
@@ -62,7 +61,11 @@ ReserveStatus verdict_of(const SimulatedMission& simulated);
 /// power, and where it does not keep its reserve what would mend that.
 std::vector<std::string> card_lines(const SimulatedMission& simulated, const MissionAssessment& answer);
 
-/// The same as JSON, in numbers.
-nlohmann::ordered_json to_json(const SimulatedMission& simulated, const MissionAssessment& answer);
+/// JSON of a mission.
+struct MissionOutput {
+    const SimulatedMission* simulated = nullptr;
+    const MissionAssessment* assessment = nullptr;
+};
+Fields<MissionOutput> record_fields(const MissionOutput*);
 
 }  // namespace flightwatt::report

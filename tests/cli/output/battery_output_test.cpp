@@ -54,12 +54,13 @@ TEST_F(BatteryOutput, SaysWhosePackWasAssumed) {
     EXPECT_THAT(table.rows[1], testing::IsSupersetOf({"synthetic_1", "21.5"}));
     EXPECT_THAT(table.rows[0], testing::Contains("-"));
     EXPECT_THAT(provenance(identified_), HasSubstr("pack of synthetic_1"));
-    const auto json = to_json(identified_, checks_);
+    const auto json = record_json(cli::BatteryOutput{&identified_, &checks_});
     EXPECT_EQ(json["flights"][1]["pack_of"], "synthetic_1");
     EXPECT_EQ(json["flights"][1]["pause_s"], 1380.0);
     EXPECT_TRUE(json["flights"][0]["pack_of"].is_null());
-    EXPECT_EQ(json["left_out"][1]["load_voltage_rms_mv"], 1e3 * checks_[1].load_rms_v);
-    EXPECT_LE(json["left_out"][1]["placed_load_voltage_rms_mv"], json["left_out"][1]["load_voltage_rms_mv"]);
+    EXPECT_EQ(json["leave_one_out"][1]["load_voltage_rms_mv"], 1e3 * checks_[1].load_rms_v);
+    EXPECT_LE(json["leave_one_out"][1]["best_offset_load_voltage_rms_mv"],
+              json["leave_one_out"][1]["load_voltage_rms_mv"]);
     EXPECT_TRUE(json["resistance_trend"].is_null()) << "two flights have none";
 }
 
@@ -73,15 +74,15 @@ TEST_F(BatteryOutput, HasNoRowOfAnAbsentRcPair) {
     identified_.fit.rc_resistance_ohm = 0.0;
     identified_.battery.thevenin->rc_resistance_ohm = 0.0;
     EXPECT_EQ(pack_table(identified_.battery).rows.size(), 3U) << "the capacity, the resistance and how flights differ";
-    EXPECT_TRUE(to_json(identified_, checks_)["rc_time_constant_s"]["value"].is_null());
+    EXPECT_TRUE(record_json(cli::BatteryOutput{&identified_, &checks_})["rc_time_constant_s"].is_null());
 }
 
 TEST_F(BatteryOutput, IsNullInJsonWhereNothingIsKnown) {
-    const auto json = to_json(identified_, checks_);
+    const auto json = record_json(cli::BatteryOutput{&identified_, &checks_});
     EXPECT_EQ(json["capacity_ah"], test::known_pack().capacity_ah);
-    EXPECT_TRUE(json["capacity_interval_ah"].is_null()) << "it was given";
+    EXPECT_TRUE(json["capacity_ah_interval_95"].is_null()) << "it was given";
     EXPECT_EQ(json["flights"].size(), 2U);
-    EXPECT_EQ(json["left_out"][1]["flight"], "synthetic_2");
+    EXPECT_EQ(json["leave_one_out"][1]["flight"], "synthetic_2");
 }
 
 TEST_F(BatteryOutput, ComparesAGivenCapacity) {
@@ -90,7 +91,8 @@ TEST_F(BatteryOutput, ComparesAGivenCapacity) {
     EXPECT_THAT(as_given, testing::AllOf(HasSubstr("using the given capacity of 2.4 Ah; the flights indicate "),
                                          HasSubstr(" Ah in 95 %)")));
     EXPECT_THAT(provenance(identified_), testing::Not(HasSubstr("Warning")));
-    EXPECT_EQ(to_json(identified_, checks_)["flight_estimate_ah"]["value"], pack.flight_estimate->capacity_ah);
+    EXPECT_EQ(record_json(cli::BatteryOutput{&identified_, &checks_})["flight_estimate_ah"],
+              pack.flight_estimate->capacity_ah);
     EXPECT_THAT(pack_table(pack).rows,
                 testing::Not(testing::Contains(testing::Contains("capacity by its flights [Ah]"))));
     pack.capacity_ah = 50.0;
@@ -99,7 +101,7 @@ TEST_F(BatteryOutput, ComparesAGivenCapacity) {
     pack.flight_estimate.reset();
     EXPECT_EQ(describe_given_capacity(pack),
               "using the given capacity of 50 Ah; the flights drew too little to estimate it");
-    EXPECT_TRUE(to_json(identified_, checks_)["flight_estimate_ah"].is_null());
+    EXPECT_TRUE(record_json(cli::BatteryOutput{&identified_, &checks_})["flight_estimate_ah"].is_null());
 }
 
 TEST_F(BatteryOutput, WarnsOfAVoltageThatCellsDoNotHave) {

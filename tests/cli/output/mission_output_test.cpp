@@ -30,33 +30,33 @@ mission::MissionSummary outcome(const std::string& name, std::optional<double> s
 }
 
 TEST(ComparisonTable, HasARowAMission) {
-    const auto table = comparison_table({outcome("a", 5.126), outcome("b", 0.0, 580.345), outcome("c", {})});
+    const auto table = table_of(ranked_missions({outcome("a", 5.126), outcome("b", 0.0, 580.345), outcome("c", {})}));
     EXPECT_EQ(to_csv(table),
-              "rank,mission,final_soc_percent,energy_wh,mechanical_energy_wh,compute_energy_wh,duration_s,"
-              "depleted_at_s\n"
-              "1,a,5.13,10.000,4.000,6.000,688.0,-\n2,b,0.00,10.000,4.000,6.000,688.0,580.3\n"
-              "3,c,-,10.000,4.000,6.000,688.0,-\n");
+              "rank,mission,final state of charge [%],reserve [%],energy [Wh],mechanical [Wh],computing [Wh],"
+              "duration [s],empty at [s]\n"
+              "1,a,5.13,0.00,10.000,4.000,6.000,688.0,-\n2,b,0.00,0.00,10.000,4.000,6.000,688.0,580.3\n"
+              "3,c,-,0.00,10.000,4.000,6.000,688.0,-\n");
 }
 
 TEST(ComparisonTable, HasRareColumnsWhereAMissionHasThem) {
     auto cut_off = outcome("cut off", 40.0);
     cut_off.cut_off_at_s = 500.0;
     cut_off.schedule = mission::ScheduleOrigin::planned;
-    const auto table = comparison_table({outcome("lasts", 2.0), cut_off, outcome("early", 0.0, 100.0)});
-    EXPECT_EQ(table.header.back(), "cut_off_at_s");
+    const auto table = table_of(ranked_missions({outcome("lasts", 2.0), cut_off, outcome("early", 0.0, 100.0)}));
+    EXPECT_EQ(table.header.back(), "cut off at [s]");
     EXPECT_EQ(table.rows[1].back(), "500.0");
     EXPECT_EQ(table.rows[1][1], "cut off (planned)");
     EXPECT_EQ(table.rows[2].back(), "-");
 }
 
 TEST(ComparisonCsv, HasEveryColumnWithItsDigits) {
-    const auto csv = comparison_csv({outcome("a", 100.0 / 3.0)});
+    const auto csv = csv_of(ranked_missions({outcome("a", 100.0 / 3.0)}), 10);
     EXPECT_EQ(csv.substr(csv.find('\n') + 1), "1,a,,33.33333333,0,false,10,4,6,0,688,,,,\n");
 }
 
 TEST(MissionJson, HoldsTheSummaryWithNullForNever) {
     auto summary = simulate(test::paper_mission("phased")).summary;
-    const auto json = to_json(summary);
+    const auto json = record_json(summary);
     EXPECT_EQ(json["mission"], "phased");
     EXPECT_EQ(json["final_soc_percent"], *summary.final_soc_percent);
     EXPECT_EQ(json["energy_wh"], summary.energy_wh);
@@ -65,19 +65,19 @@ TEST(MissionJson, HoldsTheSummaryWithNullForNever) {
     EXPECT_FALSE(json.contains("samples"));
     EXPECT_FALSE(json.contains("power_model")) << "its file does not tell how it predicts";
     summary.power_model = mechanical::HeldOutScore{"physical", 4, 2.7};
-    EXPECT_EQ(to_json(summary)["power_model"],
+    EXPECT_EQ(record_json(summary)["power_model"],
               nlohmann::ordered_json({{"model", "physical"}, {"flights", 4}, {"mean_absolute_error_percent", 2.7}}));
     summary.depleted_at_s = 600.0;
     summary.final_soc_percent.reset();
-    EXPECT_EQ(to_json(summary)["depleted_at_s"], 600.0);
-    EXPECT_TRUE(to_json(summary)["final_soc_percent"].is_null());
+    EXPECT_EQ(record_json(summary)["depleted_at_s"], 600.0);
+    EXPECT_TRUE(record_json(summary)["final_soc_percent"].is_null());
 }
 
 TEST(MissionJson, HoldsTheLandingThatTheFlightsIndicate) {
     auto summary = simulate(test::paper_mission("phased")).summary;
-    EXPECT_FALSE(to_json(summary).contains(by_flights_key));
+    EXPECT_FALSE(record_json(summary).contains("with_capacity_of_flights"));
     summary.by_flights = mission::EstimatedLanding{2.05, 59.7, std::nullopt, true};
-    const auto json = to_json(summary)[by_flights_key];
+    const auto json = record_json(summary)["with_capacity_of_flights"];
     EXPECT_EQ(json["capacity_ah"], 2.05);
     EXPECT_EQ(json["final_soc_percent"], 59.7);
     EXPECT_TRUE(json["fails_at_s"].is_null());
@@ -90,17 +90,17 @@ TEST(MissionJson, HoldsTheChancesOfSampledFlights) {
     summary.samples->samples = 1000;
     summary.samples->probability_below_reserve = 0.25;
     summary.samples->sources.varied = {"cruise power"};
-    const auto json = to_json(summary);
+    const auto json = record_json(summary);
     EXPECT_EQ(json["samples"], 1000);
     EXPECT_EQ(json["probability_below_reserve"], 0.25);
-    EXPECT_EQ(json["drawn"][0], "cruise power");
+    EXPECT_EQ(json["varied"][0], "cruise power");
     EXPECT_EQ(json["final_soc_quantiles_percent"].size(), mission::shown_quantiles_percent.size());
 }
 
 TEST(PlanJson, HoldsUtilityAndProvenBound) {
     const auto problem = test::paper_problem("plan");
     const auto plan = plan_mission(problem);
-    const auto json = to_json(plan, problem.setup);
+    const auto json = record_json(PlanOutput{&plan, &problem.setup});
     EXPECT_TRUE(json["feasible"].get<bool>());
     EXPECT_EQ(json["utility"], *plan.summary.utility);
     EXPECT_GE(json["bound"].get<double>(), json["utility"].get<double>());
@@ -110,7 +110,8 @@ TEST(PlanJson, HoldsUtilityAndProvenBound) {
 TEST(PlanJson, HasNullForWhatAnInfeasiblePlanLacks) {
     auto problem = test::paper_problem("plan");
     problem.setup.reserve_soc_percent = 60.0;
-    const auto json = to_json(plan_mission(problem), problem.setup);
+    const auto plan = plan_mission(problem);
+    const auto json = record_json(PlanOutput{&plan, &problem.setup});
     EXPECT_FALSE(json["feasible"].get<bool>());
     EXPECT_TRUE(json["utility"].is_null());
     EXPECT_TRUE(json["bound"].is_null());
@@ -120,7 +121,7 @@ TEST(InfeasibilityJson, HasNullForMeasuresThatAreNotEnough) {
     mission::InfeasibilityReport report;
     report.shortfall_percent = 2.5;
     report.capacity_ah = 4.0;
-    const auto json = to_json(report);
+    const auto json = record_json(report);
     EXPECT_EQ(json["short_percent"], 2.5);
     EXPECT_EQ(json["smallest_capacity_ah"], 4.0);
     EXPECT_TRUE(json["longest_cruise_s"].is_null());

@@ -61,7 +61,8 @@ TEST(ProfileText, SaysThatNothingCouldBeMeasured) {
 }
 
 TEST(ProfileJson, HoldsReportedAndTotalPower) {
-    const auto json = to_json(outcome(), true);
+    const auto measured = outcome();
+    const auto json = record_json(ProfileOutput{measured, true});
     const auto& node = json["components"][0]["nodes"][0];
     EXPECT_EQ(node["qos"][0], 10.0);
     EXPECT_EQ(node["power_w"], 3.0);

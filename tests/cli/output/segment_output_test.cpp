@@ -33,19 +33,21 @@ TEST(Explanation, GivesTheReasonsOfEveryEdgeAndThePowerRecord) {
 
 TEST(WitnessText, NamesWitnessesBeforeWhatIsNearby) {
     flight::EdgeReport edge;
-    EXPECT_EQ(witness_text(edge), "-");
+    EXPECT_EQ(events_text(edge), "-");
     edge.matching_events.resize(1);
     edge.matching_events[0].what = "TAKEOFF";
     edge.matching_events[0].time_s = 40.0;
     edge.matching_events[0].after_s = -0.4;
     edge.other_events = edge.matching_events;
-    EXPECT_EQ(witness_text(edge), "TAKEOFF at 40.0 s (-0.4 s); nearby: TAKEOFF at 40.0 s (-0.4 s)");
+    EXPECT_EQ(events_text(edge), "TAKEOFF at 40.0 s (-0.4 s); nearby: TAKEOFF at 40.0 s (-0.4 s)");
 }
 
 TEST(SegmentJson, HoldsPhasesEdgesAndThePowerCheck) {
     const auto series = flight::read_flight(test::source_dir() / "logs" / "opterra_synthetic_01.data");
     const auto phases = segment(series);
-    const auto json = to_json(series, phases, check_power_record(series, phases), {"a warning"});
+    const auto power = check_power_record(series, phases);
+    const std::vector<std::string> warnings{"a warning"};
+    const auto json = record_json(SegmentedFlight{&series, &phases, &power, &warnings});
     EXPECT_EQ(json["flight"], "opterra_synthetic_01");
     ASSERT_EQ(json["sorties"].size(), 1U);
     const auto& spans = json["sorties"][0]["phases"];
@@ -56,8 +58,8 @@ TEST(SegmentJson, HoldsPhasesEdgesAndThePowerCheck) {
     EXPECT_EQ(spans[1]["duration_s"], cruise.duration_s());
     EXPECT_EQ(spans[0]["end_s"], spans[1]["start_s"]);
     EXPECT_EQ(json["sorties"][0]["edges"].size(), 4U);
-    ASSERT_EQ(json["not_flights"].size(), 1U);
-    EXPECT_EQ(json["not_flights"][0]["what"], phases.ground_events[0].what);
+    ASSERT_EQ(json["rejected_activities"].size(), 1U);
+    EXPECT_EQ(json["rejected_activities"][0]["what"], phases.ground_events[0].what);
     EXPECT_EQ(json["warnings"][0], "a warning");
     EXPECT_GT(json["power"]["idle_current"]["samples"], 0);
 }

@@ -43,7 +43,9 @@ TEST(WatchOutput, SaysWhatIsKnownAndWhatIsNot) {
     EXPECT_THAT(line, HasSubstr("ALARM silence: nothing was received for 40 s"));
     const auto screen = screen_of(flying(), two_components());
     EXPECT_THAT(screen.back(), HasSubstr("ALARM"));
-    const auto json = json_of(flying(), two_components());
+    const auto state = flying();
+    const auto compute = two_components();
+    const auto json = record_json(WatchState{&state, &compute});
     EXPECT_TRUE(json["prediction"].is_null());
     EXPECT_TRUE(json["power_w"].is_null());
     EXPECT_EQ(json["decision"]["run"]["detection"]["fps"], 5.8);
@@ -61,7 +63,8 @@ TEST(WatchOutput, SaysWhenToTurnHome) {
                 HasSubstr("reserve in 10.0 min of cruise, chance of landing below it 3.1 %, turn home within 1.5 min"));
     state.turn_home = live::ReturnDeadline{};
     EXPECT_THAT(line_of(state, two_components()), HasSubstr("too late to turn home"));
-    EXPECT_TRUE(json_of(state, two_components())["turn_home"]["latest_in_s"].is_null());
+    const auto compute = two_components();
+    EXPECT_TRUE(record_json(WatchState{&state, &compute})["turn_home"]["latest_in_s"].is_null());
 }
 
 TEST(WatchOutput, ACommandFindsTheDecisionInItsEnvironment) {

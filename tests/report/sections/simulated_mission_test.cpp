@@ -86,7 +86,7 @@ TEST(MissionAnswer, KnowsNoChanceWhereNothingSaysHowFlightsDiffer) {
     EXPECT_FALSE(answer.reach_at_95_percent);
     EXPECT_EQ(verdict_of(simulated), ReserveStatus::keeps);
     EXPECT_THAT(card_lines(simulated, answer), Contains(HasSubstr("nobody knows the chance")));
-    EXPECT_TRUE(to_json(simulated, answer)["probability_below_reserve"].is_null());
+    EXPECT_TRUE(record_json(MissionOutput{&simulated, &answer})["probability_below_reserve"].is_null());
 }
 
 /// "computing-only", whose pack of 3.2 Ah is of flights that indicate another capacity.
@@ -116,9 +116,10 @@ TEST(MissionAnswer, IsNotSureOfALandingThatTheFlightsContradict) {
     EXPECT_EQ(verdict_of(fails), ReserveStatus::may_keep);
     const auto answer = assess_mission(fails, reading_of("computing-only"));
     EXPECT_THAT(card_lines(fails, answer).front(), HasSubstr("(the battery fails after "));
-    const auto json = to_json(fails, answer);
+    const auto json = record_json(MissionOutput{&fails, &answer});
     EXPECT_EQ(json["with_capacity_of_flights"]["keeps_reserve"], false);
-    EXPECT_FALSE(to_json(flown("computing-only"), answer).contains("with_capacity_of_flights"));
+    const auto computing = flown("computing-only");
+    EXPECT_FALSE(record_json(MissionOutput{&computing, &answer}).contains("with_capacity_of_flights"));
 }
 
 TEST(MissionAnswer, OffersAPlanWithAMarginWhereOneIsInReach) {
@@ -164,7 +165,7 @@ TEST(MissionAnswer, CountsCirclesOfAPath) {
     const auto answer = assess_mission(simulated, reading);
     ASSERT_TRUE(answer.reach);
     EXPECT_EQ(answer.reach->unit, mission::ReachUnit::circles);
-    EXPECT_TRUE(to_json(simulated, answer)["reach"].contains("most_circles"));
+    EXPECT_TRUE(record_json(MissionOutput{&simulated, &answer})["reach"].contains("most_circles"));
     EXPECT_THAT(card_lines(simulated, answer), Contains(HasSubstr("circles as modelled")));
 }
 
