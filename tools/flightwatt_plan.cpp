@@ -149,23 +149,11 @@ std::string_view beyond(mission::LimitingFactor bound) {
 int print_limit(const cli::StageCall& call, const PlanArguments& arguments, const mission::MissionSetup& mission,
                 const std::string& question, const std::string& unit, const mission::FeasibilityLimit& most) {
     cli::warn_of_setup(call, mission);
-    cli::Json json;
-    json["mission"] = mission.name;
-    json[question] = most.value;
-    json["final_soc_percent"] = most.final_soc_percent;
-    json["reserve_soc_percent"] = mission.reserve_soc_percent;
-    if (const auto chance = arguments.probability) {
-        json["probability"] = *chance;
-        json["margin_percent"] = most.margin_percent;
-        cli::add_sources(*most.sources, json);
-    }
-    json["residual_percent"] = most.residual_percent;
-    json["limited_by"] = to_string(most.limited_by);
     const bool in_minutes = unit == "s" && !call.output && screen_of(call).is_terminal;
     const auto value = fmt::format("{:.6f} {}\n", most.value, unit);
     cli::write_result(call, in_minutes ? duration_text(most.value) + "\n" : value);
     if (call.json) {
-        cli::print_json(call, PlanLimit{&mission, question, &most, probability(call)});
+        cli::print_json(call, PlanLimit{&mission, question, &most, arguments.probability});
     } else {
         const auto kept = arguments.probability ? fmt::format("reserve {:.4f} % and {:.4f} points of margin",
                                                               mission.reserve_soc_percent, most.margin_percent)

@@ -209,7 +209,7 @@ BatchContent read_batch_content(const std::filesystem::path& out) {
             }
             for (const auto& exclusion : selection.exclusions) flight.exclusions.push_back(to_string(exclusion));
             std::move(selection.flights.begin(), selection.flights.end(), std::back_inserter(content.measured));
-            flight.verdicts = record.verdicts;
+            flight.verdicts = record.edge_checks;
             flight.unusable_power = batch::exclusion_reason(record, load);
             if (copy != nullptr) flight.unusable_power = batch::duplicate_reason(*copy);
             flight.series = std::move(series);

@@ -101,9 +101,9 @@ std::string accuracy(const mechanical::PhysicalModel& model) {
 
 }  // namespace
 
-TextTable constants_table(const mechanical::PhysicalModel& model) { return table_of(term_outputs(model)); }
+TextTable constants_table(const mechanical::PhysicalModel& model) { return flightwatt::table_of(term_outputs(model)); }
 
-TextTable trials_table(const mechanical::PhysicalFit& fit) { return table_of(fit.trials); }
+TextTable trials_table(const mechanical::PhysicalFit& fit) { return flightwatt::table_of(fit.trials); }
 
 std::string physical_text(const mechanical::PhysicalFit& fit, const Screen& screen) {
     const auto& model = fit.model;

@@ -174,7 +174,7 @@ TextTable flights_table(const std::vector<mechanical::ValidatedFlight>& flights)
 }
 
 TextTable scores_table(const std::vector<mechanical::ValidatedFlight>& flights) {
-    return table_of(score_rows(flights));
+    return flightwatt::table_of(score_rows(flights));
 }
 
 std::string comparison_sentences(const std::vector<mechanical::ValidatedFlight>& flights, const std::string& challenger,

@@ -105,7 +105,7 @@ std::string sentence(const std::string& mission, ScheduleMethod baseline,
         ++charged;
     }
     const auto count_of = [&](ComparisonOutcome outcome) {
-        return std::ranges::count(comparisons, outcome, &mission::Comparison::verdict);
+        return std::ranges::count(comparisons, outcome, &mission::Comparison::outcome);
     };
     auto text = fmt::format(
         "{}: replanning in flight against {}, on {} flight{}: better on {}, a tie on {}, worse on {}. It keeps the "
@@ -180,9 +180,9 @@ std::vector<ScheduleOutput> all_schedules(Replays replays) {
 
 }  // namespace
 
-TextTable replay_basis_table(Replays replays) { return table_of(std::vector<Replay>(replays.begin(), replays.end())); }
+TextTable replay_basis_table(Replays replays) { return flightwatt::table_of(std::vector<Replay>(replays.begin(), replays.end())); }
 
-TextTable replay_table(Replays replays) { return table_of(all_schedules(replays)); }
+TextTable replay_table(Replays replays) { return flightwatt::table_of(all_schedules(replays)); }
 
 std::vector<std::string> replay_sentences(Replays replays) {
     std::vector<std::string> sentences;
@@ -217,7 +217,7 @@ Fields<Comparison> record_fields(const Comparison*) {
     using R = Comparison;
     return {field("flight", &R::flight, "name of the flight"),
             field(
-                "outcome", [](const R& r) { return std::string(cli::outcome_name(r.verdict)); },
+                "outcome", [](const R& r) { return std::string(cli::outcome_name(r.outcome)); },
                 "of replanning: `better`, `tie` or `worse`"),
             field("replanned_keeps_reserve", &R::replanned_keeps_reserve, "replanning keeps the reserve"),
             field("baseline_keeps_reserve", &R::baseline_keeps_reserve, "the baseline keeps the reserve"),

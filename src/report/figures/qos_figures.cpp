@@ -256,9 +256,8 @@ bool have_same_software(const mission::MissionSetup& a, const mission::MissionSe
 /// The cruise along the same pieces of power, or both by their models' curves.
 bool have_same_path(const mission::MissionSetup& a, const mission::MissionSetup& b) {
     if (!a.cruise_path || !b.cruise_path) return !a.cruise_path && !b.cruise_path;
-    return std::ranges::equal(*a.cruise_path->pieces, *b.cruise_path->pieces, [](const auto& one, const auto& other) {
-        return one.end_s == other.end_s && one.power_w == other.power_w;
-    });
+    return a.cruise_path->pieces->time_s == b.cruise_path->pieces->time_s &&
+           a.cruise_path->pieces->energy_j == b.cruise_path->pieces->energy_j;
 }
 
 bool have_same_map(const mission::MissionSetup& a, const mission::MissionSetup& b) {
