@@ -202,7 +202,7 @@ TEST_F(HostileInput, IsALogOfManySorties) {
     EXPECT_EQ(test::run_shell("flightwatt segment many.data --sortie 3 -o phases.csv", folder).code, 0);
 }
 
-/// Ended by SIGBUS, and the batch with it. When it is cut is left to chance: any moment must do.
+/// The time of the cut is random: a log that is cut at any moment is rejected or read, and the batch goes to its end.
 TEST_F(HostileInputStudy, IsCutWhileABatchReadsIt) {
     const auto log = read_file(folder / "opterra_synthetic_01.data");
     std::filesystem::create_directory(folder / "in");

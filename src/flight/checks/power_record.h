@@ -24,14 +24,12 @@ struct OnBoardCounter {
     double resolution = 0.0;         ///< the decimal place to which its values are rounded
     std::optional<double> closure_percent = {};
     double rounding_percent = 0.0;  ///< part of it that rounding explains
-
-    bool is_beyond(double limit_percent) const {
-        return closure_percent && std::abs(*closure_percent) > limit_percent + rounding_percent;
-    }
 };
 
 /// Above this the throttle counts as open [%].
 inline constexpr double open_throttle_percent = 30.0;
+/// A larger difference of an integral from its counter is a fault [%].
+inline constexpr double max_counter_difference_percent = 10.0;
 
 /// Input of the rules: power and related tracks on the clock of the power samples; empty if not logged.
 struct PowerRecord {

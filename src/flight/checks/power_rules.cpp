@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -33,13 +34,15 @@ constexpr Test in_flight = [](const PowerRecord& r, std::size_t i) { return r.is
 
 /// Basis of a rule's share.
 enum class Share { samples, time, energy, time_or_energy };
-enum class Consequence { warning, fault };
 
-/// A rule for samples has `holds`, a rule for the whole record `when`, and any other one `texts`.
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// A rule for samples has `holds`, a rule for the whole record `when`, and any other one `findings`. The share of the
+/// samples, or the value of a finding, is compared with the limits.
 struct PowerRule {
     const char* text = "";  ///< with the arguments of format_finding()
     bool (*when)(const PowerRecord&) = nullptr;
-    Texts (*texts)(const PowerRecord&) = nullptr;
+    Findings (*findings)(const PowerRecord&) = nullptr;
     Test applies = in_flight;  ///< selects the samples
     Test holds = nullptr;      ///< of these samples it finds runs
     Test continues = always;   ///< compares a sample with the one before it; a run ends where it is false
@@ -51,8 +54,8 @@ struct PowerRule {
     double (*energy_w)(const PowerRecord&, std::size_t) = [](const PowerRecord& r, std::size_t i) {
         return r.power_w[i];
     };
-    double limit = 0.0;  ///< the rule reports a share above it
-    Consequence consequence = Consequence::warning;
+    double warn_above = infinite;
+    double fault_above = infinite;
     bool needs_energy = true;      ///< of a warning: skipped if the energy in flight is not positive (a fault)
     bool unless_previous = false;  ///< skipped if the previous rule has a finding
 };
@@ -103,41 +106,41 @@ constexpr PowerRule rules[] = {
      .applies = [](const PowerRecord& r, std::size_t i) { return r.is_at_rest(i) && r.has_current(); },
      .holds = [](const PowerRecord& r, std::size_t i) { return std::abs(r.current_a[i]) > faulty_rest_a; },
      .min_samples = 10,
-     .limit = 0.10,
-     .consequence = Consequence::fault},
-    {.texts = power_contradicts_product, .consequence = Consequence::fault},
-    {.texts = counters_run_back, .consequence = Consequence::fault},
-    {.texts = counters_contradict, .consequence = Consequence::fault},
+     .fault_above = 0.10},
+    {.findings = counter_return, .fault_above = 0.05},
     {.text = "power is negative on average in flight",
      .when = [](const PowerRecord& r) { return r.power_sum_w < 0.0; },
-     .consequence = Consequence::fault},
-    {.text = "power does not change in flight", .when = is_constant_in_flight, .consequence = Consequence::fault},
-
+     .fault_above = 0.0},
+    {.text = "power does not change in flight", .when = is_constant_in_flight, .fault_above = 0.0},
     {.text = "the current is {rest_a:.2f} A at rest on the ground, {rest_percent:.0f} % of the mean in flight: "
              "electronics, or an offset of the sensor and its counters; --correct-idle-offset removes it",
      .when = is_loaded_at_rest,
+     .warn_above = 0.0,
      .needs_energy = false},
-    {.texts = current_at_rest_drifts, .needs_energy = false},
+    {.findings = rest_current_drift, .warn_above = 0.05, .needs_energy = false},
     {.text = "the voltage of {max_v:.4g} V is that of more than 14 LiPo cells: is its unit V?",
      .when = [](const PowerRecord& r) { return r.max_v > max_pack_v; },
+     .warn_above = 0.0,
      .needs_energy = false},
     {.text = "the voltage of {max_v:.4g} V is less than a LiPo cell's: is its unit V?",
      .when = [](const PowerRecord& r) { return r.max_v < min_pack_v; },
+     .warn_above = 0.0,
      .needs_energy = false},
     {.text = "the voltage falls from {max_v:.4g} to {min_v:.4g} V, too far for a pack: is its sensor damaged?",
      .when = [](const PowerRecord& r) { return has_pack_voltage(r) && r.min_v < min_voltage_part * r.max_v; },
+     .warn_above = 0.0,
      .needs_energy = false},
-    {.texts = counters_differ},
-    {.texts = phases_differ_from_counter},
-    {.texts = power_differs_from_product},
-    {.texts = altitude_has_gaps},
-    {.texts = power_has_gaps},
+    {.findings = counter_difference, .warn_above = 3.0, .fault_above = max_counter_difference_percent},
+    {.findings = phase_difference, .warn_above = 1.0},
+    {.findings = product_difference, .warn_above = 0.05, .fault_above = 0.10},
+    {.findings = altitude_gaps, .warn_above = 0.06},
+    {.findings = power_gaps, .warn_above = 1.0},
     {.text = "power rises or falls for up to 5 samples without the throttle, in {samples} samples in flight: "
              "{percent:.0f} % of the energy",
      .holds = is_brief_change,
      .share = Share::energy,
      .energy_w = [](const PowerRecord& r, std::size_t i) { return r.power_w[i] - r.smooth_w[i]; },
-     .limit = 0.02},
+     .warn_above = 0.02},
     {.text = "power differs from the usual power at the same throttle in {samples} samples in flight: "
              "{less_percent:.0f} % of the energy less, {more_percent:.0f} % more",
      .holds =
@@ -147,23 +150,23 @@ constexpr PowerRule rules[] = {
          },
      .share = Share::energy,
      .energy_w = [](const PowerRecord& r, std::size_t i) { return r.power_w[i] - r.usual_w[i]; },
-     .limit = 0.04},
+     .warn_above = 0.04},
     {.text = "power is stuck at {power_w:.2f} W from {from_s:.1f} to {to_s:.1f} s, {percent:.0f} % of the flight",
      .holds = [](const PowerRecord& r, std::size_t i) { return r.power_w[i] != 0.0 || r.is_open(i); },
      .continues = [](const PowerRecord& r, std::size_t i) { return r.power_w[i] == r.power_w[i - 1]; },
      .min_run = stuck_samples,
      .share = Share::time_or_energy,
-     .limit = 0.04},
+     .warn_above = 0.04},
     {.text = "the current is stuck in {percent:.0f} % of the samples in flight: is its sensor damaged?",
      .holds = [](const PowerRecord& r, std::size_t i) { return r.has_current() && r.current_a[i] > 0.0; },
      .continues = [](const PowerRecord& r, std::size_t i) { return r.current_a[i] == r.current_a[i - 1]; },
      .min_run = stuck_samples,
-     .limit = 0.04},
+     .warn_above = 0.04},
     {.text = "the current is {max_a:.4g} A, its highest, in {percent:.0f} % of the samples in flight: is its sensor "
              "saturated?",
      .holds = [](const PowerRecord& r, std::size_t i) { return r.has_current() && r.current_a[i] == r.max_a; },
      .min_samples = stuck_samples,
-     .limit = 0.05,
+     .warn_above = 0.05,
      .unless_previous = true},
     {.text = "{source} is 0 for {lasts_s:.0f} s in flight without a descent, the longest from {from_s:.0f} s on: "
              "{percent:.0f} % of the flight has no power",
@@ -171,31 +174,34 @@ constexpr PowerRule rules[] = {
                  std::size_t i) { return r.power_w[i] == 0.0 && (r.is_open(i) || !r.has_throttle()); },
      .min_level_s = 5.0,
      .share = Share::time,
-     .limit = 0.02},
+     .warn_above = 0.02},
     {.text = "power is negative in {samples} samples in flight, {percent:.0f} % of the energy",
      .holds = [](const PowerRecord& r, std::size_t i) { return r.power_w[i] < 0.0; },
      .share = Share::energy,
-     .limit = 0.02},
+     .warn_above = 0.02},
     {.text = "no power in {percent:.0f} % of the samples in flight with more than 30 % throttle",
      .applies = [](const PowerRecord& r, std::size_t i) { return r.is_flown(i) && r.is_open(i); },
      .holds = [](const PowerRecord& r, std::size_t i) { return std::abs(r.power_w[i]) <= r.powerless_w; },
-     .limit = 0.15},
+     .warn_above = 0.15},
     {.text = "{energy_wh:.3f} Wh, {percent:.0f} % of the energy in flight, were drawn outside of it with more than "
              "30 % throttle: was it a long run-up, or is the altitude wrong?",
      .applies = [](const PowerRecord& r, std::size_t i) { return !r.is_flown(i); },
      .holds = [](const PowerRecord& r, std::size_t i) { return r.is_open(i); },
      .min_s = 30.0,
      .share = Share::energy,
-     .limit = 0.05},
-    {.texts = climbs_without_power},
+     .warn_above = 0.05},
+    {.findings = powerless_climb, .warn_above = 10.0},
     {.text = "the mean power of {mean_w:.3g} W in flight is less than an aircraft needs: is its unit W?",
-     .when = [](const PowerRecord& r) { return r.energy_j / r.duration_s < min_mean_power_w; }},
+     .when = [](const PowerRecord& r) { return r.energy_j / r.duration_s < min_mean_power_w; },
+     .warn_above = 0.0},
     {.text =
          "power is logged from {power_from_s:.0f} s, altitude from {altitude_from_s:.0f} s: earlier power is missing",
      .when = [](const PowerRecord& r) { return r.time_s.front() - altitude_span(r).first > max_missing_s(r); },
+     .warn_above = 0.0,
      .needs_energy = false},
     {.text = "power is logged to {power_to_s:.0f} s, altitude to {altitude_to_s:.0f} s: later power is missing",
      .when = [](const PowerRecord& r) { return altitude_span(r).second - r.time_s.back() > max_missing_s(r); },
+     .warn_above = 0.0,
      .needs_energy = false},
 };
 
@@ -273,13 +279,14 @@ std::string format_finding(const PowerRule& rule, const PowerRecord& record, con
         fmt::arg("altitude_to_s", altitude_span(record).second));
 }
 
-Texts apply(const PowerRule& rule, const PowerRecord& record) {
-    if (rule.texts != nullptr) return rule.texts(record);
-    if (rule.when != nullptr) return rule.when(record) ? Texts{format_finding(rule, record, {}, 0.0)} : Texts{};
+Findings apply(const PowerRule& rule, const PowerRecord& record) {
+    if (rule.findings != nullptr) return rule.findings(record);
+    if (rule.when != nullptr)
+        return rule.when(record) ? Findings{{1.0, format_finding(rule, record, {}, 1.0)}} : Findings{};
     const auto found = scan(rule, record);
-    const double share = found.samples > 0 ? share_of(rule, found, record) : 0.0;
-    const bool counts = share > rule.limit && found.samples >= rule.min_samples && found.lasts_s >= rule.min_s;
-    return counts ? Texts{format_finding(rule, record, found, share)} : Texts{};
+    if (found.samples == 0 || found.samples < rule.min_samples || found.lasts_s < rule.min_s) return {};
+    const double share = share_of(rule, found, record);
+    return {{share, format_finding(rule, record, found, share)}};
 }
 
 }  // namespace
@@ -287,13 +294,14 @@ Texts apply(const PowerRule& rule, const PowerRecord& record) {
 void apply_power_rules(const PowerRecord& record, PowerReport& report) {
     bool was_reported = false;
     for (const auto& rule : rules) {
-        const bool is_fault = rule.consequence == Consequence::fault;
-        if (!is_fault && rule.needs_energy && !(record.energy_j > 0.0)) continue;
         if (rule.unless_previous && was_reported) continue;
-        const auto texts = apply(rule, record);
-        was_reported = !texts.empty();
-        auto& to = is_fault ? report.power_faults : report.warnings;
-        to.insert(to.end(), texts.begin(), texts.end());
+        was_reported = false;
+        for (const auto& [value, text] : apply(rule, record)) {
+            const bool is_fault = value > rule.fault_above;
+            if (!is_fault && !(value > rule.warn_above && (!rule.needs_energy || record.energy_j > 0.0))) continue;
+            (is_fault ? report.power_faults : report.warnings).push_back(text);
+            was_reported = true;
+        }
     }
 }
 

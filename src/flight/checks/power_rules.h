@@ -11,23 +11,30 @@ namespace flightwatt::flight {
 /// suspect ones (warnings). Thresholds and reasons: docs/methods.md.
 void apply_power_rules(const PowerRecord& record, PowerReport& report);
 
-// Rules of the table that compare more than samples: each returns its findings.
-using Texts = std::vector<std::string>;
+/// A finding, and the value that the table compares with its limits.
+struct Finding {
+    double value;
+    std::string text;
+};
+using Findings = std::vector<Finding>;
 
-/// Median difference of power from voltage times current: above 10 % a fault, above 5 % a warning.
-Texts power_contradicts_product(const PowerRecord& record);
-Texts power_differs_from_product(const PowerRecord& record);
-Texts counters_run_back(const PowerRecord& record);
-/// Integral of power or current against its counter: above 10 % a fault, above 3 % a warning.
-Texts counters_contradict(const PowerRecord& record);
-Texts counters_differ(const PowerRecord& record);
-Texts phases_differ_from_counter(const PowerRecord& record);
-/// Current at rest before a sortie against that after it.
-Texts current_at_rest_drifts(const PowerRecord& record);
-/// Gaps of the altitude, which comes more often than power: no message came, or the clock jumped.
-Texts altitude_has_gaps(const PowerRecord& record);
-Texts power_has_gaps(const PowerRecord& record);
-/// Lift-off and 10 m of height without power: it is logged late, or the aircraft was launched otherwise.
-Texts climbs_without_power(const PowerRecord& record);
+// Rules of the table that compare more than samples.
+
+/// Median relative difference of power from voltage times current.
+Findings product_difference(const PowerRecord& record);
+/// Sum of each counter's falls in flight over that of its rises.
+Findings counter_return(const PowerRecord& record);
+/// Difference of each integral in flight from its counter, beyond rounding [%].
+Findings counter_difference(const PowerRecord& record);
+/// Phases that differ from the energy counter by 2 % of the flight, over their limit.
+Findings phase_difference(const PowerRecord& record);
+/// Difference of the currents at rest before and after each sortie, over the mean in flight.
+Findings rest_current_drift(const PowerRecord& record);
+/// Energy in gaps of the altitude, which comes more often than power: no message came, or the clock jumped.
+Findings altitude_gaps(const PowerRecord& record);
+/// Energy in gaps of the power, over its limit.
+Findings power_gaps(const PowerRecord& record);
+/// Height of a climb from lift-off without power [m]: it is logged late, or the aircraft was launched otherwise.
+Findings powerless_climb(const PowerRecord& record);
 
 }  // namespace flightwatt::flight
