@@ -47,7 +47,7 @@ std::vector<double> read_curve_errors(const TomlTable& table, std::size_t knots)
     auto errors = table.numbers("standard_error_v");
     if (errors.size() != knots || std::ranges::any_of(errors, [](double e) { return e < 0; })) {
         throw InputError(table.where("standard_error_v"),
-                         "standard_error_v is not one number of at least 0 for every knot");
+                         "standard_error_v: expected one number of at least 0 for every knot");
     }
     return errors;
 }
@@ -62,7 +62,7 @@ TheveninCircuit read_circuit(const TomlTable& table, BatteryIntervals& intervals
         circuit.rc_resistance_ohm = number_in(at_least(0.0), table, "rc_resistance_ohm");
     if (circuit.rc_resistance_ohm > 0.0 || table.has("rc_time_constant_s")) {
         circuit.rc_time_constant_s = number_in(between(min_time_constant_s, max_time_constant_s), table,
-                                               "rc_time_constant_s", "what is faster counts as resistance_ohm");
+                                               "rc_time_constant_s", "a faster RC pair is part of resistance_ohm");
     }
     return circuit;
 }
@@ -71,7 +71,7 @@ TheveninCircuit read_circuit(const TomlTable& table, BatteryIntervals& intervals
 Interval read_interval(const TomlTable& table, std::string_view key, double value) {
     const auto ends = table.numbers(key);
     if (ends.size() != 2 || !(ends[0] <= value && value <= ends[1])) {
-        throw InputError(table.where(key), fmt::format("this is no interval around {} = {}", key, value),
+        throw InputError(table.where(key), fmt::format("the interval does not contain {} = {}", key, value),
                          "expected [LOW, HIGH]");
     }
     return {ends[0], ends[1]};
@@ -107,15 +107,14 @@ void read_intervals(const TomlTable& table, Battery& battery) {
 }
 
 void read_between_flights(const TomlTable& table, BatteryIntervals& intervals) {
-    constexpr std::uint64_t fewest = 2;  // one does not differ
     intervals.resistance_scatter = ResistanceScatter{number_in(at_least(0.0), table, "resistance_sd_ohm"),
-                                                     static_cast<std::size_t>(count_in(table, "flights", fewest))};
+                                                     static_cast<std::size_t>(count_in(table, "flights", 2))};
     table.refuse_unknown_keys();
 }
 
 std::string between_flights_lines(const std::optional<ResistanceScatter>& scatter) {
     if (!scatter) return "";
-    return fmt::format("\n# how flights differ\n[between_flights]\nflights = {}\nresistance_sd_ohm = {}\n",
+    return fmt::format("\n# variability between flights\n[between_flights]\nflights = {}\nresistance_sd_ohm = {}\n",
                        scatter->flights, toml_real(scatter->sd_ohm));
 }
 
@@ -269,17 +268,17 @@ std::vector<std::string> battery_warnings(const Battery& battery) {
     std::vector<std::string> warnings;
     const auto full_v = open_circuit_voltage_v(battery, units::percent_per_whole);
     if (full_v < min_v || full_v > max_v) {
-        warnings.push_back(fmt::format("battery: {:.4g} V when full is {}: is its unit V?", full_v,
+        warnings.push_back(fmt::format("battery: {:.4g} V when full is {}: check that the unit is V", full_v,
                                        full_v < min_v ? "less than one cell's" : "more than 14 LiPo cells'"));
     }
     if (battery.capacity_ah < min_ah) {
-        warnings.push_back(fmt::format("battery: {:.4g} Ah is the capacity of no small drone's pack: is its unit Ah?",
+        warnings.push_back(fmt::format("battery: {:.4g} Ah is too small for a drone's pack: check that the unit is Ah",
                                        battery.capacity_ah));
     }
     if (const auto warning = capacity_warning(battery); !warning.empty()) warnings.push_back("battery: " + warning);
     if (const double limit_w = power_limit_w(battery); limit_w < min_limit_w) {
         warnings.push_back(
-            fmt::format("battery: it cannot deliver more than {:.3g} W: is resistance_ohm in ohm?", limit_w));
+            fmt::format("battery: it cannot deliver more than {:.3g} W: check that resistance_ohm is in ohm", limit_w));
     }
     return warnings;
 }

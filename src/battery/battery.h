@@ -21,23 +21,22 @@ struct OpenCircuitVoltage {
     std::vector<double> voltage_v;    ///< positive, never falling
 };
 
-/// What the Thévenin circuit has where the paper's battery has a constant source.
+/// The source of a Thévenin circuit.
 struct TheveninCircuit {
     OpenCircuitVoltage open_circuit;
     double rc_resistance_ohm = 0.0;   ///< 0: no RC pair
-    double rc_time_constant_s = 1.0;  ///< without meaning where there is no RC pair
+    double rc_time_constant_s = 1.0;  ///< without an RC pair not used
 };
 
-/// How the series resistance differs between flights of one pack: by temperature, rest and age. Of a flight to come, a
-/// Student's t with as many degrees of freedom as flights, as what is known beforehand counts as one more
-/// (resistance_scatter_ohm).
+/// Variability of the series resistance between flights of one pack, by temperature, rest and age. A new flight's is a
+/// Student's t with as many degrees of freedom as flights, as the prior counts as one more (resistance_scatter_ohm).
 struct ResistanceScatter {
     double sd_ohm = 0.0;
     std::size_t flights = 0;  ///< two or more
     bool operator==(const ResistanceScatter&) const = default;
 };
 
-/// How well the parameters are known, each where the file says it.
+/// Uncertainty of the parameters, each where the file has it.
 struct BatteryIntervals {
     std::optional<Interval> capacity_ah;
     std::optional<Interval> voltage_v;       ///< of the paper's source
@@ -48,7 +47,7 @@ struct BatteryIntervals {
     std::vector<double> open_circuit_standard_error_v;  ///< one a knot of the curve, or empty
 };
 
-/// What the flights of an identified pack indicate of its capacity, whatever capacity was given.
+/// The capacity that the flights of an identified pack indicate, whatever capacity was given.
 struct FlightEstimate {
     double capacity_ah = 0.0;
     Interval capacity_interval_ah;  ///< 95 %
@@ -69,7 +68,7 @@ struct Battery {
     std::shared_ptr<const FlightEstimate> flight_estimate = nullptr;  ///< of a Thévenin circuit; drawn flights share it
 };
 
-/// What a battery remembers.
+/// The state of a battery.
 struct BatteryState {
     double soc_percent = 100.0;
     double rc_voltage_v = 0.0;  ///< across the RC pair; 0 at rest
@@ -87,8 +86,8 @@ double source_voltage_v(const Battery& battery, const BatteryState& state);
 /// [V] at the load that draws `current_a`.
 double terminal_voltage_v(const Battery& battery, const BatteryState& state, double current_a);
 
-/// The greatest power that a load can draw, U^2 / (4 R) [W] with U before the resistor; infinite if the
-/// resistance is 0, and 0 where there is no voltage left.
+/// The maximum power of a load, U^2 / (4 R) [W] with U before the resistor; infinite without resistance, 0 without
+/// voltage.
 double power_limit_w(const Battery& battery, const BatteryState& state = {});
 
 /// I_int [A] while the load draws `power_w` (Eq. 10): the smaller root of R I^2 - U I + P = 0, in a form that
@@ -96,11 +95,10 @@ double power_limit_w(const Battery& battery, const BatteryState& state = {});
 /// power is above the limit.
 double internal_current_a(const Battery& battery, double power_w, const BatteryState& state = {});
 
-/// The same of as much of the power as the battery can deliver.
+/// The same for the power or the limit, whichever is less.
 double limited_current_a(const Battery& battery, double power_w, const BatteryState& state = {});
 
-/// Reads a battery (docs/formats.md). Throws InputError for keys missing, unknown or of another model, and values
-/// that no battery has.
+/// Reads a battery (docs/formats.md). Throws InputError for missing or unknown keys, and impossible values.
 Battery read_battery(const std::filesystem::path& path);
 Battery battery_from(const TomlTable& table);
 
@@ -111,8 +109,8 @@ std::optional<Battery> estimated_by_flights(const Battery& battery);
 /// "the capacity of 5 Ah contradicts the flights, which indicate ..."; empty where estimated_by_flights has none.
 std::string capacity_warning(const Battery& battery);
 
-/// What no pack of a small drone has, a line each: a full voltage of less than 2.5 V or of more than 14 LiPo cells (60
-/// V), a capacity of less than 0.05 or more than 200 Ah (mAh, mostly), a power limit below 1 W; and capacity_warning.
+/// Implausible values, a line each: a full voltage of less than 2.5 V or of more than 14 LiPo cells (60 V), a capacity of
+/// less than 0.05 Ah, a power limit below 1 W; and capacity_warning.
 std::vector<std::string> battery_warnings(const Battery& battery);
 
 /// The battery as read_battery reads it.

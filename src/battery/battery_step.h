@@ -14,11 +14,11 @@
 
 namespace flightwatt::battery {
 
-/// How many batteries are discharged side by side.
+/// Number of batteries that are discharged side by side.
 inline constexpr int lane_count = 32;
 
-/// A number of each of them. Of fixed size, so that what happens in a lane is the same to the last bit whatever the
-/// others do.
+/// One number for each of them. Of fixed size, so that a lane's result does not depend on the other lanes, to the last
+/// bit.
 using Lanes = Eigen::Array<double, lane_count, 1>;
 
 /// A quantity over a step of time: the parabola through its start, middle and end.
@@ -27,10 +27,10 @@ struct Parabola {
     double middle = 0.0;
     double end = 0.0;
 
-    // At a part p of the step, from 0 to 1, it is start + p (slope + p curvature).
+    // At a fraction p of the step, from 0 to 1, it is start + p (slope + p curvature).
     double curvature() const { return 2.0 * (start - 2.0 * middle + end); }
     double slope() const { return 4.0 * middle - 3.0 * start - end; }
-    double at(double part) const { return start + part * (slope() + part * curvature()); }
+    double at(double fraction) const { return start + fraction * (slope() + fraction * curvature()); }
 
     double minimum() const {
         const double bend = start - 2.0 * middle + end;
@@ -38,7 +38,7 @@ struct Parabola {
         return std::abs(rise) < 2.0 * bend ? middle - rise * rise / (8.0 * bend) : std::min(start, end);
     }
 
-    /// The first part at which it is below 0; infinite if there is none.
+    /// The first fraction of the step at which it is below 0; infinity without one.
     double first_zero_crossing() const {
         if (start < 0.0) return 0.0;
         if (!(middle < 0.0) && !(minimum() < 0.0)) return std::numeric_limits<double>::infinity();
@@ -51,16 +51,16 @@ struct Parabola {
 };
 
 // For a number and for lanes; the other functions are std's and Eigen's.
-inline double at_least(double x, double least) { return std::max(x, least); }
-inline double at_most(double x, double most) { return std::min(x, most); }
+inline double at_least(double x, double min) { return std::max(x, min); }
+inline double at_most(double x, double max) { return std::min(x, max); }
 inline bool is_any_positive(double x) { return x > 0.0; }
 template <typename Derived>
-auto at_least(const Eigen::ArrayBase<Derived>& x, double least) {
-    return x.max(least);
+auto at_least(const Eigen::ArrayBase<Derived>& x, double min) {
+    return x.max(min);
 }
-template <typename Derived>
-auto at_most(const Eigen::ArrayBase<Derived>& x, double most) {
-    return x.min(most);
+template <typename Derived, typename Max>
+auto at_most(const Eigen::ArrayBase<Derived>& x, const Max& max) {
+    return x.min(max);
 }
 template <typename Derived>
 bool is_any_positive(const Eigen::ArrayBase<Derived>& x) {
@@ -71,7 +71,7 @@ bool is_any_positive(const Eigen::ArrayBase<Derived>& x) {
 template <typename Number>
 struct Circuit {
     Number resistance_ohm = Number(0.0);
-    Number percent_per_as = Number(1.0);  ///< what a coulomb takes [points]
+    Number percent_per_as = Number(1.0);  ///< state of charge per coulomb [points]
     Number rc_resistance_ohm = Number(0.0);
     Number rc_time_constant_s = Number(1.0);
 };
@@ -85,7 +85,7 @@ struct CircuitMoment {
     Number current_a = Number(0.0);
     Number source_v = Number(0.0);
     Number terminal_v = Number(0.0);
-    Number spare_v2 = Number(0.0);  ///< below 0 where the power is beyond the limit: U^2 - 4 R P
+    Number spare_v2 = Number(0.0);  ///< U^2 - 4 R P: below 0 beyond the power limit
 };
 
 /// An RC pair over a step, dU/dt = (R I - U) / tau. Of a current that is a parabola the solution is exact, and linear in
@@ -96,7 +96,7 @@ struct RcStep {
         using std::exp;
         decay = exp(-length_s / circuit.rc_time_constant_s);
         const Number c = circuit.rc_time_constant_s / length_s;
-        // What the current holds up, R (I - tau I' + tau^2 I''), and what decays.
+        // The particular solution, R (I - tau I' + tau^2 I''), and the decaying one.
         const auto of_current = [&](const Parabola& current_a) -> Number {
             const Number bent_a = 2.0 * current_a.curvature() * c * c;
             const Number first_a = current_a.start - c * current_a.slope() + bent_a;
@@ -114,7 +114,7 @@ struct RcStep {
     Number of_last_ohm;
 };
 
-/// What a step of some length makes of a circuit's constants.
+/// A circuit's constants for steps of one length.
 template <typename Number>
 struct StepLength {
     StepLength(const Circuit<Number>& circuit, const Number& length_s)
@@ -135,29 +135,27 @@ struct VoltageSegment {
     double slope_v = 0.0;
 };
 
-/// The line of a charge; the outer ones have no end. `knot_v` gives the voltage at a knot.
-template <typename KnotVoltage>
-VoltageSegment find_voltage_segment(const std::vector<double>& knots_percent, const KnotVoltage& knot_v,
-                                    double soc_percent) {
-    constexpr double endless = std::numeric_limits<double>::infinity();
+/// The line at a state of charge; the first and the last line are unbounded.
+inline VoltageSegment find_voltage_segment(const OpenCircuitVoltage& curve, double soc_percent) {
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    const auto& [knots_percent, knots_v] = curve;
     const auto above = std::upper_bound(knots_percent.begin() + 1, knots_percent.end() - 1, soc_percent);
     const auto upper = static_cast<std::size_t>(above - knots_percent.begin());
     const double low_percent = knots_percent[upper - 1];
     const double high_percent = knots_percent[upper];
-    const double slope_v = (knot_v(upper) - knot_v(upper - 1)) / (high_percent - low_percent);
-    return {upper == 1 ? -endless : low_percent, upper + 1 == knots_percent.size() ? endless : high_percent,
-            knot_v(upper - 1) - slope_v * low_percent, slope_v};
+    const double slope_v = (knots_v[upper] - knots_v[upper - 1]) / (high_percent - low_percent);
+    return {upper == 1 ? -infinite : low_percent, upper + 1 == knots_percent.size() ? infinite : high_percent,
+            knots_v[upper - 1] - slope_v * low_percent, slope_v};
 }
 
-/// The open-circuit voltage of charges that follow each other: the line that they are on is remembered.
+/// The open-circuit voltage for a sequence of charges: the last line is cached.
 class VoltageLine {
   public:
     VoltageLine(const OpenCircuitVoltage& curve, double soc_percent) : curve_(&curve) { (*this)(soc_percent); }
 
     double operator()(double soc_percent) {
-        const auto knot_v = [this](std::size_t knot) { return curve_->voltage_v[knot]; };
         if (soc_percent < segment_.low_percent || soc_percent >= segment_.high_percent)
-            segment_ = find_voltage_segment(curve_->soc_percent, knot_v, soc_percent);
+            segment_ = find_voltage_segment(*curve_, soc_percent);
         return segment_.offset_v + segment_.slope_v * std::clamp(soc_percent, 0.0, 100.0);
     }
 
@@ -180,10 +178,10 @@ class CircuitRun {
 
     OpenCircuit& open_circuit() { return open_circuit_; }
 
-    /// The rest of a moment whose charge, RC voltage and power are known (Eq. 10).
+    /// Fills in a moment whose charge, RC voltage and power are known (Eq. 10).
     void complete(Moment& now) {
         using std::sqrt;
-        constexpr double min_v = 1e-300;  // no 0 / 0 of what draws nothing
+        constexpr double min_v = 1e-300;  // no 0 / 0 without power
         now.source_v = at_least(open_circuit_(now.soc_percent) - now.rc_voltage_v, 0.0);
         now.spare_v2 = now.source_v * now.source_v - 4.0 * circuit_.resistance_ohm * now.power_w;
         now.current_a = 2.0 * now.power_w / at_least(now.source_v + sqrt(at_least(now.spare_v2, 0.0)), min_v);
@@ -203,7 +201,7 @@ class CircuitRun {
     }
 
   private:
-    /// Half a step, along which the current rises evenly to the middle.
+    /// Half a step, with a current that is linear up to the middle.
     void advance_half(const StepLength<Number>& length, const Moment& start, const Number& middle_a,
                       Moment& middle) const {
         middle.soc_percent = start.soc_percent - 1.5 * length.percent_per_a * (start.current_a + middle_a);
@@ -228,6 +226,20 @@ class CircuitRun {
     bool has_rc_;
     OpenCircuit open_circuit_;
 };
+
+/// 0 or less where the battery may end within a step: empty, beyond the power limit, or below the cut-off voltage (0:
+/// none). A parabola through three values is at most an eighth of its second difference below their minimum.
+template <typename Number>
+Number end_margin(const CircuitMoment<Number>& start, const CircuitMoment<Number>& middle,
+                  const CircuitMoment<Number>& end, double cutoff_v) {
+    using std::abs;
+    const auto lower_bound = [](const Number& a, const Number& b, const Number& c) -> Number {
+        return at_most(at_most(a, b), c) - 0.125 * abs(a - 2.0 * b + c);
+    };
+    const Number margin = at_most(end.soc_percent, lower_bound(start.spare_v2, middle.spare_v2, end.spare_v2));
+    if (cutoff_v <= 0.0) return margin;
+    return at_most(margin, lower_bound(start.terminal_v, middle.terminal_v, end.terminal_v) - cutoff_v);
+}
 
 /// The circuit of a battery; the paper's has no RC pair.
 inline Circuit<double> circuit_of(const Battery& battery) {

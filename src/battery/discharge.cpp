@@ -3,12 +3,12 @@
 #include "base/units.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <stdexcept>
 
-#include <boost/numeric/odeint/stepper/runge_kutta4.hpp>
+#include <Eigen/Core>
 
 namespace flightwatt::battery {
 namespace {
@@ -16,148 +16,48 @@ namespace {
 constexpr double time_tolerance_s = 1e-10;
 constexpr double full_percent = units::percent_per_whole;
 
-/// The power at the times of a step, which its checks and Runge-Kutta's stages ask for again and again.
-class RememberedPower {
-  public:
-    explicit RememberedPower(const std::function<double(double)>& power_w) : power_w_(power_w) { time_s_.fill(NAN); }
-
-    double at(double time_s) {
-        for (std::size_t i = 0; i < time_s_.size(); ++i)
-            if (time_s_[i] == time_s) return at_time_w_[i];
-        next_ = (next_ + 1) % time_s_.size();
-        time_s_[next_] = time_s;
-        return at_time_w_[next_] = power_w_(time_s);
-    }
-
-  private:
-    static constexpr std::size_t times_of_a_step = 4;  // its start, quarter, middle and end
-    const std::function<double(double)>& power_w_;
-    std::array<double, times_of_a_step> time_s_{};
-    std::array<double, times_of_a_step> at_time_w_{};
-    std::size_t next_ = 0;
+/// The battery at one time of a load.
+struct LoadedState {
+    double time_s = 0.0;
+    double power_w = 0.0;
+    BatteryState state;
 };
 
-/// One step from `time_s` on.
-struct Step {
-    const Battery& battery;
-    RememberedPower& power_w;
-    double time_s;
-    BatteryState from;
-};
-
-/// The state one Runge-Kutta step later.
-BatteryState after(const Step& step, double elapsed_s) {
-    using State = std::array<double, 2>;  // state of charge, voltage of the RC pair
-    const auto& battery = step.battery;
-    const auto rate = [&](const State& x, State& per_s, double time) {
-        const BatteryState state{x[0], x[1]};
-        // The limit is looked for at the step's samples: what lies beyond it is only taken away.
-        const double current_a = limited_current_a(battery, step.power_w.at(time), state);
-        per_s[0] = -units::percentage(current_a, units::coulomb_from_ah(battery.capacity_ah));
-        per_s[1] = 0.0;
-        if (!battery.thevenin) return;
-        const auto& [curve, rc_ohm, tau_s] = *battery.thevenin;
-        per_s[1] = (rc_ohm * current_a - x[1]) / tau_s;
+/// One step of classic Runge-Kutta.
+LoadedState integrate(const Battery& battery, const Load& load, const LoadedState& from, double elapsed_s) {
+    using State = Eigen::Vector2d;  // state of charge, voltage of the RC pair
+    const auto rate = [&](const State& x, double power_w) {
+        const double current_a = limited_current_a(battery, power_w, {x[0], x[1]});
+        State per_s(-units::percentage(current_a, units::coulomb_from_ah(battery.capacity_ah)), 0.0);
+        if (battery.thevenin)
+            per_s[1] = (battery.thevenin->rc_resistance_ohm * current_a - x[1]) / battery.thevenin->rc_time_constant_s;
+        return per_s;
     };
-    boost::numeric::odeint::runge_kutta4<State> stepper;
-    State x{step.from.soc_percent, step.from.rc_voltage_v};
-    stepper.do_step(rate, x, step.time_s, elapsed_s);
-    return {std::min(x[0], full_percent), x[1]};
+    const double middle_w = load.power_w(from.time_s + 0.5 * elapsed_s);
+    const double end_w = load.power_w(from.time_s + elapsed_s);
+    const State start(from.state.soc_percent, from.state.rc_voltage_v);
+    const State k1 = rate(start, from.power_w);
+    const State k2 = rate(start + 0.5 * elapsed_s * k1, middle_w);
+    const State k3 = rate(start + 0.5 * elapsed_s * k2, middle_w);
+    const State k4 = rate(start + elapsed_s * k3, end_w);
+    const State end = start + elapsed_s / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+    return {from.time_s + elapsed_s, end_w, {std::min(end[0], full_percent), end[1]}};
 }
 
-/// A step's states, each integrated once: all that is looked for is looked for at its start, its middle and its end.
-class StepStates {
-  public:
-    StepStates(const Step& step, double length_s) : step_(&step), length_s_(length_s) {}
-
-    const Step& step() const { return *step_; }
-    double length_s() const { return length_s_; }
-
-    BatteryState at(double elapsed_s) {
-        if (elapsed_s == 0.0) return step_->from;
-        if (elapsed_s == length_s_) return kept(end_, elapsed_s);
-        if (elapsed_s == length_s_ / 2.0) return kept(middle_, elapsed_s);
-        return after(*step_, elapsed_s);
+/// The state, with the reason why the discharge ends there, if it does.
+Discharge check_end(const Battery& battery, const LoadedState& at, double cutoff_v) {
+    Discharge checked{at.state};
+    const double limit_w = power_limit_w(battery, at.state);
+    if (at.power_w > limit_w) {
+        checked.undeliverable = Undeliverable{at.time_s, at.power_w, limit_w};
+    } else if (at.state.soc_percent <= 0.0) {
+        checked.soc_percent = 0.0;
+        checked.empty_at_s = at.time_s;
+    } else if (cutoff_v > 0.0 &&
+               terminal_voltage_v(battery, at.state, limited_current_a(battery, at.power_w, at.state)) < cutoff_v) {
+        checked.cut_off_at_s = at.time_s;
     }
-
-  private:
-    const BatteryState& kept(std::optional<BatteryState>& state, double elapsed_s) const {
-        if (!state) state = after(*step_, elapsed_s);
-        return *state;
-    }
-
-    const Step* step_;
-    double length_s_;
-    std::optional<BatteryState> middle_;
-    std::optional<BatteryState> end_;
-};
-
-/// Where in a step something came to hold: not yet at `last_before_s`, at `first_s` it did.
-struct Onset {
-    double last_before_s;
-    double first_s;
-};
-
-/// The onset of `holds` in [0, length_s], if it holds at one of the samples 0, half and all of it.
-template <typename Predicate>
-std::optional<Onset> first_onset(double length_s, const Predicate& holds) {
-    double before_s = 0.0;
-    for (double at_s : {0.0, length_s / 2.0, length_s}) {
-        if (!holds(at_s)) {
-            before_s = at_s;
-            continue;
-        }
-        while (at_s - before_s > time_tolerance_s) {
-            const double middle_s = before_s + (at_s - before_s) / 2.0;
-            if (middle_s <= before_s || middle_s >= at_s) break;  // the doubles are no nearer than this
-            (holds(middle_s) ? at_s : before_s) = middle_s;
-        }
-        return Onset{before_s, at_s};
-    }
-    return std::nullopt;
-}
-
-/// Where the power first goes beyond what the battery can deliver.
-std::optional<Onset> first_excess(StepStates& states) {
-    const auto& step = states.step();
-    const bool limited = step.battery.resistance_ohm > 0.0 || step.battery.thevenin;
-    if (!limited) return std::nullopt;
-    return first_onset(states.length_s(), [&](double elapsed_s) {
-        const auto state = step.battery.thevenin ? states.at(elapsed_s) : step.from;
-        return step.power_w.at(step.time_s + elapsed_s) > power_limit_w(step.battery, state);
-    });
-}
-
-bool is_below_cutoff(StepStates& states, double elapsed_s, double cutoff_v) {
-    const auto& step = states.step();
-    const auto state = states.at(elapsed_s);
-    const double current_a = limited_current_a(step.battery, step.power_w.at(step.time_s + elapsed_s), state);
-    return terminal_voltage_v(step.battery, state, current_a) < cutoff_v;
-}
-
-/// One step, ended by the first of empty, cut-off voltage and power limit.
-Discharge guarded_step(const Step& step, double length_s, double cutoff_v) {
-    std::optional<Undeliverable> undeliverable;
-    StepStates states(step, length_s);
-    if (const auto excess = first_excess(states)) {
-        const double beyond_s = step.time_s + excess->first_s;
-        undeliverable =
-            Undeliverable{beyond_s, step.power_w.at(beyond_s), power_limit_w(step.battery, states.at(excess->first_s))};
-        // At once: nothing else comes before it.
-        if (excess->first_s == 0.0) return {step.from, std::nullopt, std::nullopt, undeliverable};
-        length_s = excess->last_before_s;
-        states = StepStates(step, length_s);
-    }
-    const auto state = states.at(length_s);
-    std::optional<Onset> cut_off;
-    if (cutoff_v > 0.0) cut_off = first_onset(length_s, [&](double s) { return is_below_cutoff(states, s, cutoff_v); });
-    std::optional<Onset> empty;
-    if (state.soc_percent <= 0.0)
-        empty = first_onset(length_s, [&](double s) { return states.at(s).soc_percent <= 0.0; });
-    if (empty && (!cut_off || empty->first_s <= cut_off->first_s))
-        return {{0.0, states.at(empty->first_s).rc_voltage_v}, step.time_s + empty->first_s};
-    if (cut_off) return {states.at(cut_off->first_s), std::nullopt, step.time_s + cut_off->first_s};
-    return {state, std::nullopt, std::nullopt, undeliverable};
+    return checked;
 }
 
 }  // namespace
@@ -175,15 +75,21 @@ Discharge discharge(const Battery& battery, const Load& load, const BatteryState
     const double length_s = load.end_s - load.start_s;
     // A quotient a rounding error above a whole number is that number.
     const auto steps = static_cast<std::uint64_t>(std::max(1.0, std::ceil(length_s / max_step_s * (1.0 - 1e-12))));
-    Discharge result{state};
-    RememberedPower power_w(load.power_w);
-    double time_s = load.start_s;
-    for (std::uint64_t k = 1; k <= steps; ++k) {
-        const double part = static_cast<double>(k) / static_cast<double>(steps);
-        const double next_s = k == steps ? load.end_s : load.start_s + length_s * part;
-        result = guarded_step({battery, power_w, time_s, result}, next_s - time_s, options.cutoff_voltage_v);
-        if (result.ended_at_s() || result.undeliverable) return result;
-        time_s = next_s;
+    LoadedState now{load.start_s, load.power_w(load.start_s), state};
+    auto result = check_end(battery, now, options.cutoff_voltage_v);
+    for (std::uint64_t k = 1; k <= steps && !result.failed_at_s(); ++k) {
+        const double fraction = static_cast<double>(k) / static_cast<double>(steps);
+        const double next_s = k == steps ? load.end_s : load.start_s + length_s * fraction;
+        double after_s = next_s - now.time_s;
+        auto next = integrate(battery, load, now, after_s);
+        result = check_end(battery, next, options.cutoff_voltage_v);
+        for (double before_s = 0.0; result.failed_at_s() && after_s - before_s > time_tolerance_s;) {
+            const double middle_s = std::midpoint(before_s, after_s);
+            const auto middle = check_end(battery, integrate(battery, load, now, middle_s), options.cutoff_voltage_v);
+            if (middle.failed_at_s()) result = middle;
+            (middle.failed_at_s() ? after_s : before_s) = middle_s;
+        }
+        now = {next_s, next.power_w, next.state};
     }
     return result;
 }

@@ -6,23 +6,6 @@
 namespace flightwatt::battery {
 namespace {
 
-using Moments = CircuitMoment<Lanes>;
-
-/// Where something may end within a step. A parabola through three values falls no further below the least of them than
-/// an eighth of its bend.
-LaneMask find_danger(const Moments& start, const Moments& middle, const Moments& end, double cutoff_v) {
-    const auto least = [](const Lanes& a, const Lanes& b, const Lanes& c) -> Lanes {
-        return a.min(b).min(c) - 0.125 * (a - 2.0 * b + c).abs();
-    };
-    Eigen::Array<bool, lane_count, 1> danger =
-        end.soc_percent <= 0.0 || least(start.spare_v2, middle.spare_v2, end.spare_v2) < 0.0;
-    if (cutoff_v > 0.0) danger = danger || least(start.terminal_v, middle.terminal_v, end.terminal_v) < cutoff_v;
-    LaneMask mask;
-    if (!danger.any()) return mask;
-    for (int lane = 0; lane < lane_count; ++lane) mask[static_cast<std::size_t>(lane)] = danger(lane);
-    return mask;
-}
-
 void set_lane(RcStep<Lanes>& lanes, int lane, const RcStep<double>& own) {
     lanes.decay(lane) = own.decay;
     lanes.of_first_ohm(lane) = own.of_first_ohm;
@@ -30,7 +13,7 @@ void set_lane(RcStep<Lanes>& lanes, int lane, const RcStep<double>& own) {
     lanes.of_last_ohm(lane) = own.of_last_ohm;
 }
 
-/// Of circuits of which some may have an RC pair.
+/// Circuits with RC pairs, for which CircuitRun provides.
 Circuit<Lanes> room_for_circuits() {
     Circuit<Lanes> circuit;
     circuit.rc_resistance_ohm = Lanes::Ones();
@@ -39,33 +22,28 @@ Circuit<Lanes> room_for_circuits() {
 
 }  // namespace
 
-LaneVoltages::LaneVoltages(const OpenCircuitVoltage& curve)
-    : knots_percent_(curve.soc_percent), knots_v_(curve.soc_percent.size()) {
+LaneVoltages::LaneVoltages(const OpenCircuitVoltage& curve) {
     for (int lane = 0; lane < lane_count; ++lane) set_lane(lane, curve);
 }
 
 void LaneVoltages::set_lane(int lane, const OpenCircuitVoltage& curve) {
-    for (std::size_t k = 0; k < knots_v_.size(); ++k) knots_v_[k](lane) = curve.voltage_v[k];
-    low_percent_(lane) = std::numeric_limits<double>::infinity();  // no charge is on a known line
+    curves_.at(static_cast<std::size_t>(lane)) = curve;
+    low_percent_(lane) = std::numeric_limits<double>::infinity();  // no cached line
 }
 
 Lanes LaneVoltages::operator()(const Lanes& soc_percent) {
     if (((soc_percent < low_percent_) || (soc_percent >= high_percent_)).any()) {
         for (int lane = 0; lane < lane_count; ++lane) {
             const double soc = soc_percent(lane);
-            if (soc < low_percent_(lane) || soc >= high_percent_(lane)) find_line(lane, soc);
+            if (soc >= low_percent_(lane) && soc < high_percent_(lane)) continue;
+            const auto segment = find_voltage_segment(curves_.at(static_cast<std::size_t>(lane)), soc);
+            low_percent_(lane) = segment.low_percent;
+            high_percent_(lane) = segment.high_percent;
+            offset_v_(lane) = segment.offset_v;
+            slope_v_(lane) = segment.slope_v;
         }
     }
     return offset_v_ + slope_v_ * soc_percent.max(0.0);
-}
-
-void LaneVoltages::find_line(int lane, double soc_percent) {
-    const auto knot_v = [&](std::size_t knot) { return knots_v_[knot](lane); };
-    const auto segment = find_voltage_segment(knots_percent_, knot_v, soc_percent);
-    low_percent_(lane) = segment.low_percent;
-    high_percent_(lane) = segment.high_percent;
-    offset_v_(lane) = segment.offset_v;
-    slope_v_(lane) = segment.slope_v;
 }
 
 DischargeLanes::DischargeLanes(const Battery& battery)
@@ -109,7 +87,11 @@ LaneMask DischargeLanes::step(const Lanes& start_w, const Lanes& middle_w, const
     middle_.power_w = middle_w;
     end.power_w = end_w;
     run_.step(length_, start, middle_, end);
-    return find_danger(start, middle_, end, cutoff_voltage_v);
+    const Eigen::Array<bool, lane_count, 1> may_end = end_margin(start, middle_, end, cutoff_voltage_v) <= 0.0;
+    LaneMask mask;
+    if (!may_end.any()) return mask;
+    for (int lane = 0; lane < lane_count; ++lane) mask[static_cast<std::size_t>(lane)] = may_end(lane);
+    return mask;
 }
 
 }  // namespace flightwatt::battery

@@ -3,15 +3,15 @@
 #include "battery/battery_step.h"
 #include "battery/discharge.h"
 
+#include <array>
 #include <bitset>
-#include <vector>
+#include <cstddef>
 
 namespace flightwatt::battery {
 
 using LaneMask = std::bitset<lane_count>;
 
-/// The open-circuit voltages of lanes, whose charges mostly fall: each remembers the line that it is on. All have the
-/// same knots.
+/// The open-circuit voltages of lanes; each lane's last line is cached. All curves have the same knots.
 class LaneVoltages {
   public:
     explicit LaneVoltages(const OpenCircuitVoltage& curve);
@@ -19,17 +19,14 @@ class LaneVoltages {
     Lanes operator()(const Lanes& soc_percent);
 
   private:
-    void find_line(int lane, double soc_percent);
-
-    std::vector<double> knots_percent_;
-    std::vector<Lanes> knots_v_;  ///< one a knot
+    std::array<OpenCircuitVoltage, lane_count> curves_;
     Lanes low_percent_;
     Lanes high_percent_;
     Lanes offset_v_;
     Lanes slope_v_;
 };
 
-/// Batteries side by side, each from a state of its own, in steps of its own length, as fast_discharge() takes them.
+/// Batteries side by side, each with its own state and step length, in steps of fast_discharge().
 class DischargeLanes {
   public:
     /// Room for batteries whose open-circuit voltages have the knots of this one.
@@ -37,19 +34,18 @@ class DischargeLanes {
     DischargeLanes(const DischargeLanes&) = delete;
     DischargeLanes& operator=(const DischargeLanes&) = delete;
 
-    /// A Thévenin circuit's.
+    /// The battery is a Thévenin circuit.
     void set_battery(int lane, const Battery& battery);
     void set_state(int lane, const BatteryState& state);
-    /// How long the lane's steps are from now on.
+    /// Sets the length of the lane's next steps.
     void set_step(int lane, double length_s);
 
-    /// One step of all, of powers that are never below 0; each starts where the last one ended, or where set_state put it.
-    /// Returns the lanes whose battery may end within it: empty, below the cut-off voltage (0: never), or beyond the
-    /// power limit.
+    /// One step of all lanes, with powers of 0 or more, from the end of the last step or from set_state's. Returns the
+    /// lanes whose battery may end within it (end_margin).
     LaneMask step(const Lanes& start_w, const Lanes& middle_w, const Lanes& end_w, double cutoff_voltage_v);
 
     BatteryState state(int lane) const { return state_of(moments_[now_], lane); }
-    /// As the last step began.
+    /// At the start of the last step.
     BatteryState state_before(int lane) const { return state_of(moments_[1 - now_], lane); }
 
   private:

@@ -36,10 +36,8 @@ void require_channels(const flight::FlightSeries& series, const PackRecord& reco
         throw InputError({series.file}, fmt::format("{}: {}", series.flight, reason), hint);
     };
     if (series.current_origin == flight::CurrentOrigin::throttle) {
-        refuse(
-            "its current was computed from throttle (MILLIAMP_AT_FULL_THROTTLE), not measured: it says "
-            "nothing of the battery",
-            "use flights with a current sensor");
+        refuse("its current was computed from throttle (MILLIAMP_AT_FULL_THROTTLE), not measured",
+               "use flights with a current sensor");
     }
     if (record.voltage_v.empty()) refuse("has no voltage", needed);
     if (record.current_a.empty()) refuse("has no current", needed);
@@ -51,16 +49,16 @@ void require_channels(const flight::FlightSeries& series, const PackRecord& reco
     if (*std::ranges::min_element(record.voltage_v) <= 0.0) refuse("its voltage is not positive throughout", needed);
 }
 
-/// The least difference between two of the values that is none of rounding.
+/// The minimum difference between two of the values, above rounding.
 double min_difference(std::vector<double> values) {
     std::ranges::sort(values);
-    double least = values.back() - values.front();
+    double min = values.back() - values.front();
     constexpr double rounding = 1e-9;
     for (std::size_t i = 1; i < values.size(); ++i) {
         const double difference = values[i] - values[i - 1];
-        if (difference > rounding) least = std::min(least, difference);
+        if (difference > rounding) min = std::min(min, difference);
     }
-    return least;
+    return min;
 }
 
 /// `counter_ah` is the on-board counter's charge, or empty.
@@ -69,7 +67,7 @@ void add_charge(const std::vector<double>& counter_ah, DischargeRecord& record) 
     const bool counted = !counter_ah.empty() && counter_ah.back() > counter_ah.front();
     record.charge_ah = counted ? counter_ah : integrated_charge_ah(record.time_s, record.current_a);
     for (auto& charge : record.charge_ah) charge -= counted ? counter_ah.front() : 0.0;
-    // A counter in whole mAh says little of a single interval, but bridges gaps.
+    // A counter in whole mAh is too coarse for single intervals, but bridges gaps.
     const bool fine = counted && units::coulomb_from_ah(min_difference(counter_ah)) <
                                      fine_counter_a * flight::median_interval_s(time_s);
     const double counted_from_s = fine ? 0.0 : flight::gap_threshold_s(time_s);
@@ -102,8 +100,8 @@ void add_rest(const flight::FlightSeries& series, DischargeRecord& record) {
     std::size_t end = 0;
     while (end < record.current_a.size() && record.current_a[end] < load_a) ++end;
     if (end == 0 || end == record.current_a.size()) {
-        const auto* const reason = end == 0 ? "its log does not begin at rest, so that its initial charge is unknown"
-                                            : "nothing loads the battery";
+        const auto* const reason =
+            end == 0 ? "its log does not begin at rest: its initial charge is unknown" : "nothing loads the battery";
         throw InputError({series.file}, fmt::format("{}: {}", series.flight, reason),
                          "a log that begins before take-off is needed");
     }

@@ -11,7 +11,7 @@
 
 namespace flightwatt::battery {
 
-/// What a log says of the battery that it was flown on. All channels are as long as `time_s`.
+/// Voltage, current and charge of one pack in a log. All channels are as long as `time_s`.
 struct DischargeRecord {
     std::string flight;
     std::vector<double> time_s;
@@ -19,12 +19,12 @@ struct DischargeRecord {
     std::vector<double> current_a;
     std::vector<double> mean_current_a;  ///< from the sample before to this one; the first is its current
     std::vector<double> charge_ah;       ///< drawn since the log began
-    std::vector<bool> used;              ///< false: the record contradicts itself there
+    std::vector<bool> used;              ///< false: the current is not the battery's load
     double resting_voltage_v = 0.0;      ///< before the first load
-    double resting_current_a = 0.0;      ///< what the electronics draw meanwhile
-    double resolution_v = 0.0;           ///< least difference between two voltages
+    double resting_current_a = 0.0;      ///< of the electronics at that time
+    double resolution_v = 0.0;           ///< minimum difference between two voltages
     std::size_t rest_samples = 0;        ///< before the first load
-    // What tells whose pack it was; known of a log, not of every CSV.
+    // To recognise packs; logs have it, some CSV files do not.
     std::optional<double> start_clock_s;      ///< of the first sample, by the clock: Unix time
     std::optional<Interval> counter_ah;       ///< the autopilot's counter, at the first and the last sample
     bool is_other_pack = false;               ///< than the record before it of the same log
@@ -34,14 +34,14 @@ struct DischargeRecord {
 /// The discharges of a log: one, or one a pack where it was changed on the ground.
 struct DischargeRecords {
     std::vector<DischargeRecord> records;  ///< NAME, NAME#2, ...
-    std::vector<std::string> notes;        ///< changes of the pack, counters that began anew, what is not used
+    std::vector<std::string> notes;        ///< changes of the pack, counter resets, records not used
 };
 
-/// Takes the records from a log, cut where the pack was changed (pack_changes.h). Charge, and mean current where it is
-/// fine enough and across gaps, are by the on-board counter, else by the current. The battery rests until the current
-/// first exceeds 15 % of its maximum; its resting voltage and current are the medians of the last 30 s of that. Bursts
-/// of more than 1 A while the throttle idles are not used. Throws InputError, naming the flight, for a voltage or
-/// current that is missing, constant or computed from throttle, and where no record begins at rest.
+/// The records of a log, split where the pack was changed (pack_changes.h). Charge, and mean current where it is fine
+/// enough and across gaps, are by the on-board counter, else by the current. The battery rests until the current first
+/// exceeds 15 % of its maximum; its resting voltage and current are medians of the last 30 s. Bursts above 1 A at idle
+/// throttle are not used. Throws InputError, naming the flight, for a voltage or current that is missing, constant or
+/// computed from throttle, and where no record begins at rest.
 DischargeRecords discharge_records(const flight::SelectedTracks& tracks);
 
 std::ptrdiff_t used_sample_count(const DischargeRecord& record);
@@ -49,8 +49,8 @@ std::ptrdiff_t used_sample_count(const DischargeRecord& record);
 /// Used samples before the first load.
 std::ptrdiff_t rest_sample_count(const DischargeRecord& record);
 
-/// The current [A] that has settled in an RC pair of that time constant at every sample: the solution of
-/// tau dx/dt = I - x from the resting current on, exact for a current that is constant between samples.
+/// The current [A] of an RC pair's resistor with that time constant at every sample: the solution of tau dx/dt = I - x from
+/// the resting current on, exact for a current that is constant between samples.
 std::vector<double> rc_branch_current_a(const DischargeRecord& record, double time_constant_s);
 
 }  // namespace flightwatt::battery

@@ -19,7 +19,7 @@
 namespace flightwatt::battery {
 namespace {
 
-constexpr double unreadable_v = 0.01;  // smaller differences between resting voltages are none
+constexpr double unreadable_v = 0.01;  // smaller differences between resting voltages are not significant
 
 double highest_resting_v(std::span<const DischargeRecord> records) {
     return std::ranges::max_element(records, {}, &DischargeRecord::resting_voltage_v)->resting_voltage_v;
@@ -59,38 +59,30 @@ void widen_by_flights(std::span<const std::optional<FlightResistance>> resistanc
 void add_errors(Chained& chained, bool with_capacities) {
     chained.resistances.clear();
     chained.capacities.clear();
-    for (const auto& wear : estimate_state_of_health(chained.aligned, with_capacities)) {
-        chained.resistances.push_back(wear.resistance);
-        chained.capacities.push_back(wear.capacity);
-    }
     chained.errors = circuit_errors(chained.aligned);
-    widen_by_flights(chained.resistances, chained.aligned.fit.resistance_ohm, chained.errors.resistance_ohm);
-    // A flight of another resistance than the common one lies elsewhere on the curve, and so does the reference.
-    const double scatter_ohm = resistance_scatter_ohm(chained.resistances, chained.aligned.fit.resistance_ohm);
-    const auto moved_ah = [&](std::size_t f) {
-        const auto& own = chained.resistances[f];
-        return own ? scatter_ohm * own->charge_ah_per_ohm : 0.0;
-    };
-    const auto reference = chained.aligned.reference;
     auto& errors_ah = chained.errors.initial_charge_error_ah;
-    for (std::size_t f = 0; f < errors_ah.size(); ++f)
-        if (f != reference) errors_ah[f] = std::hypot(errors_ah[f], moved_ah(f), moved_ah(reference));
-    for (std::size_t f = 0; f < errors_ah.size(); ++f)
-        errors_ah[f] = std::hypot(errors_ah[f], counted_error_ah(chained.aligned.links, f));
+    const auto health = estimate_state_of_health(chained.aligned, with_capacities);
+    for (std::size_t f = 0; f < health.size(); ++f) {
+        chained.resistances.push_back(health[f].resistance);
+        chained.capacities.push_back(health[f].capacity);
+        errors_ah[f] = std::hypot(std::max(errors_ah[f], health[f].initial_charge_error_ah),
+                                  counted_error_ah(chained.aligned.links, f));
+    }
+    widen_by_flights(chained.resistances, chained.aligned.fit.resistance_ohm, chained.errors.resistance_ohm);
 }
 
-/// Whether the voltage under load, by which the record lies where it does, agrees with the link.
+/// Whether the initial charges, which fit the voltage under load, agree with the link.
 bool agrees(const Chained& free, std::size_t later, const PackLink& link) {
     const auto& records = free.aligned.records;
     const double apart_ah = records[later].initial_charge_ah - records[link.earlier].initial_charge_ah - link.charge_ah;
     const double error_ah = std::hypot(free.errors.initial_charge_error_ah[later],
                                        free.errors.initial_charge_error_ah[link.earlier], link.error_ah);
-    constexpr double deviations = 3.0;
-    constexpr double unlike_fraction = 0.05;  // of the charge shown: what no circuit follows
-    return std::abs(apart_ah) < deviations * error_ah + unlike_fraction * free.aligned.fit.knots_ah.back();
+    constexpr double z_score = 3.0;
+    constexpr double model_error_fraction = 0.05;  // of the charge shown
+    return std::abs(apart_ah) < z_score * error_ah + model_error_fraction * free.aligned.fit.knots_ah.back();
 }
 
-/// The circuit with every flight's pack its own; then chained, where that agrees.
+/// The circuit with a pack for every flight; then with chains of flights on one pack, where that agrees.
 Chained chained_fit(std::span<const DischargeRecord> records, int cells, const IdentificationOptions& options,
                     std::span<const double> begin_ah) {
     Chained chained;
@@ -107,7 +99,7 @@ Chained chained_fit(std::span<const DischargeRecord> records, int cells, const I
     return chained;
 }
 
-/// The records' places in the order of their clocks, or as they are given where one has none.
+/// Indices of the records in the order of their clocks, or as given where one has none.
 std::vector<std::size_t> order_in_time(std::span<const AlignedRecord> records) {
     std::vector<std::size_t> order(records.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -155,74 +147,64 @@ std::vector<IdentifiedFlight> identified_flights(const Chained& chained, std::sp
     return flights;
 }
 
-/// All that is told of a battery but what is told of each flight, and what that is told from.
+/// The results common to all flights, with their intermediate fits.
 struct IdentificationResult {
     BatteryIdentification identification;
     Chained chained;
     std::vector<CapacityHypothesis> posterior;
 };
 
-Battery battery_of(const BatteryIdentification& result, const ExtendedCurve& extended, const std::string& name) {
-    const auto& fit = result.fit;
-    Battery battery;
-    battery.name = name;
-    battery.resistance_ohm = fit.resistance_ohm;
-    battery.capacity_ah = result.capacity.value_ah;
-    battery.cells = result.cells;
-    battery.thevenin = TheveninCircuit{extended.curve, fit.rc_resistance_ohm, std::max(0.1, fit.rc_time_constant_s)};
-    battery.intervals.capacity_ah = result.capacity.interval_ah;
-    battery.intervals.resistance_ohm = result.errors.resistance_ohm;
-    battery.intervals.open_circuit_standard_error_v = extended.standard_error_v;
-    if (fit.rc_resistance_ohm > 0.0) {
-        battery.intervals.rc_resistance_ohm = result.errors.rc_resistance_ohm;
-        battery.intervals.rc_time_constant_s = result.errors.rc_time_constant_s;
-    }
-    return battery;
-}
-
 /// `begin_ah`: see fit_circuit_jointly.
 IdentificationResult identify_common(std::span<const DischargeRecord> records, const IdentificationOptions& options,
                                      std::span<const double> begin_ah = {}) {
     if (records.empty()) throw NoResultError("no flight is left to identify a battery from");
     const int cells = options.cells.value_or(lipo_cells(highest_resting_v(records)));
-    IdentificationResult told;
-    told.chained = chained_fit(records, cells, options, begin_ah);
-    told.posterior = capacity_posterior(shown_curve(told.chained), options.capacity_ah);
-    const auto& [identification, chained, posterior] = told;
-    auto& result = told.identification;
-    result.fit = chained.aligned.fit;
-    result.errors = chained.errors;
+    IdentificationResult common;
+    common.chained = chained_fit(records, cells, options, begin_ah);
+    common.posterior = capacity_posterior(shown_curve(common.chained), options.capacity_ah);
+    const auto& [identification, chained, posterior] = common;
+    auto& result = common.identification;
+    const auto& fit = result.fit = chained.aligned.fit;
+    const auto& errors = result.errors = chained.errors;
     result.cells = cells;
     result.cells_are_given = options.cells.has_value();
-    result.capacity = estimate_capacity(result.fit.knots_ah.back(), posterior, options.capacity_ah);
+    result.capacity = estimate_capacity(fit.knots_ah.back(), posterior, options.capacity_ah);
     result.chemistry = most_probable_chemistry(posterior);
     result.curve_start_depletion_ah = estimate_depletion_ah(posterior);
-    const auto extended = extrapolate_curve(result.fit, result.errors.open_circuit_standard_error_v, result.chemistry,
+    const auto extended = extrapolate_curve(fit, errors.open_circuit_standard_error_v, result.chemistry,
                                             result.capacity.value_ah, result.curve_start_depletion_ah);
     result.observed_min_soc_percent = extended.known_down_to_percent;
     result.observed_max_soc_percent = extended.known_up_to_percent;
-    result.battery = battery_of(result, extended, options.name);
-    result.battery.intervals.resistance_scatter = resistance_scatter(chained.resistances, result.fit.resistance_ohm);
-    return told;
+    auto& battery = result.battery;
+    battery.name = options.name;
+    battery.resistance_ohm = fit.resistance_ohm;
+    battery.capacity_ah = result.capacity.value_ah;
+    battery.cells = cells;
+    battery.thevenin = TheveninCircuit{extended.curve, fit.rc_resistance_ohm, std::max(0.1, fit.rc_time_constant_s)};
+    battery.intervals.capacity_ah = result.capacity.interval_ah;
+    battery.intervals.resistance_ohm = errors.resistance_ohm;
+    battery.intervals.open_circuit_standard_error_v = extended.standard_error_v;
+    battery.intervals.resistance_scatter = resistance_scatter(chained.resistances, fit.resistance_ohm);
+    if (fit.rc_resistance_ohm > 0.0) {
+        battery.intervals.rc_resistance_ohm = errors.rc_resistance_ohm;
+        battery.intervals.rc_time_constant_s = errors.rc_time_constant_s;
+    }
+    return common;
 }
 
-/// The capacity that the flights indicate without the one that is given; none where they drew too little.
-std::shared_ptr<const FlightEstimate> flight_estimate(const IdentificationResult& told) {
-    const auto& [identification, chained, posterior] = told;
-    const auto& [fit, capacity] = std::tie(identification.fit, identification.capacity);
+/// The capacity that the flights indicate without a given one; nullptr where they drew too little.
+std::shared_ptr<const FlightEstimate> flight_estimate(const IdentificationResult& common) {
+    const auto& [identification, chained, posterior] = common;
+    const auto& fit = identification.fit;
+    const bool is_given = identification.capacity.origin == CapacityOrigin::given;
     auto estimate = std::make_shared<FlightEstimate>();
-    estimate->flights.reserve(chained.aligned.records.size());
     for (const auto& aligned : chained.aligned.records) estimate->flights.push_back(aligned.record->flight);
-    if (capacity.interval_ah) {
-        estimate->capacity_ah = capacity.value_ah;
-        estimate->capacity_interval_ah = *capacity.interval_ah;
-        return estimate;
-    }
-    const auto free = capacity_posterior(shown_curve(chained), std::nullopt);
     try {
-        const auto free_capacity = estimate_capacity(fit.knots_ah.back(), free, std::nullopt);
-        estimate->capacity_ah = free_capacity.value_ah;
-        estimate->capacity_interval_ah = free_capacity.interval_ah.value();
+        const auto free = is_given ? capacity_posterior(shown_curve(chained), std::nullopt) : posterior;
+        const auto capacity = estimate_capacity(fit.knots_ah.back(), free, std::nullopt);
+        estimate->capacity_ah = capacity.value_ah;
+        estimate->capacity_interval_ah = capacity.interval_ah.value();
+        if (!is_given) return estimate;
         estimate->open_circuit =
             extrapolate_curve(fit, identification.errors.open_circuit_standard_error_v, most_probable_chemistry(free),
                               estimate->capacity_ah, estimate_depletion_ah(free))
@@ -233,15 +215,8 @@ std::shared_ptr<const FlightEstimate> flight_estimate(const IdentificationResult
     }
 }
 
-/// The charge of the fitted curve, which falls, at this voltage; 0 to the last knot.
-double charge_at_voltage_ah(const CircuitFit& fit, double voltage_v) {
-    const std::vector<double> rising_v(fit.open_circuit_v.rbegin(), fit.open_circuit_v.rend());
-    const std::vector<double> charge_ah(fit.knots_ah.rbegin(), fit.knots_ah.rend());
-    return interpolate_clamped(rising_v, charge_ah, voltage_v);
-}
-
-/// Where on the curve a record begins, by its resting voltage: as much below the reference as it rests lower.
-double resting_place_ah(const DischargeRecord& record, const JointCircuitFit& aligned) {
+/// The initial charge of a record by its resting voltage: as far below the reference as it rests lower.
+double resting_charge_ah(const DischargeRecord& record, const JointCircuitFit& aligned) {
     const auto& fit = aligned.fit;
     const auto& [reference, reference_ah, rest_v, own_ohm, log_capacity] = aligned.records[aligned.reference];
     const double resistance_ohm = fit.resistance_ohm + fit.rc_resistance_ohm;
@@ -249,7 +224,10 @@ double resting_place_ah(const DischargeRecord& record, const JointCircuitFit& al
                            resistance_ohm * (reference->resting_current_a - record.resting_current_a);
     if (std::abs(below_v) <= std::max(unreadable_v, record.resolution_v)) return reference_ah;
     const double reference_v = interpolate_clamped(fit.knots_ah, fit.open_circuit_v, reference_ah);
-    return charge_at_voltage_ah(fit, reference_v - below_v);
+    // The inverse of the curve, which falls.
+    const std::vector<double> rising_v(fit.open_circuit_v.rbegin(), fit.open_circuit_v.rend());
+    const std::vector<double> falling_ah(fit.knots_ah.rbegin(), fit.knots_ah.rend());
+    return interpolate_clamped(rising_v, falling_ah, reference_v - below_v);
 }
 
 /// Mean square errors of a predicted voltage.
@@ -274,7 +252,7 @@ PredictedVoltage predict_from_settled(const Battery& battery, const DischargeRec
     return predicted;
 }
 
-/// Before the first load the voltage lies `above_v` above the curve.
+/// Before the first load the voltage is `above_v` above the curve.
 VoltageErrors errors_of(const PredictedVoltage& predicted, const DischargeRecord& record, double above_v) {
     double rest_squares = 0.0;
     double load_squares = 0.0;
@@ -300,7 +278,7 @@ double beyond_percent(const BatteryIdentification& identified, const DischargeRe
 }
 
 /// The initial charge with which the record's voltage under load is met best.
-void add_best_place(const Battery& battery, const DischargeRecord& record, LeaveOneOutCheck& check) {
+void add_best_charge(const Battery& battery, const DischargeRecord& record, LeaveOneOutCheck& check) {
     const auto settled_a = rc_branch_current_a(record, battery.thevenin.value().rc_time_constant_s);
     const auto error_at = [&](double tried_ah) {
         return errors_of(predict_from_settled(battery, record, settled_a, tried_ah), record, 0.0).load_v2;
@@ -309,24 +287,24 @@ void add_best_place(const Battery& battery, const DischargeRecord& record, Leave
     check.best_offset_load_rms_v = std::sqrt(error_at(check.best_offset_ah));
 }
 
-LeaveOneOutCheck checked(const IdentificationResult& told, const DischargeRecord& record, bool chain) {
-    const auto& identified = told.identification;
+LeaveOneOutCheck checked(const IdentificationResult& common, const DischargeRecord& record, bool chain) {
+    const auto& identified = common.identification;
     LeaveOneOutCheck check;
     check.flight = record.flight;
-    const auto& aligned = told.chained.aligned;
-    double place_ah = resting_place_ah(record, aligned);
+    const auto& aligned = common.chained.aligned;
+    double charge_ah = resting_charge_ah(record, aligned);
     if (const auto link = chain ? find_pack_link(record, aligned.records, aligned.fit) : std::nullopt) {
         const auto& earlier = aligned.records[link->earlier];
         check.pack_of = earlier.record->flight;
-        place_ah = earlier.initial_charge_ah + link->charge_ah;
+        charge_ah = earlier.initial_charge_ah + link->charge_ah;
     }
-    check.initial_charge_ah = identified.curve_start_depletion_ah + place_ah;
+    check.initial_charge_ah = identified.curve_start_depletion_ah + charge_ah;
     const auto errors = errors_of(predict_voltage(identified.battery, record, check.initial_charge_ah), record,
                                   identified.fit.common_rest_offset_v);
     check.voltage_rms_v = std::sqrt(errors.all_v2);
     check.load_rms_v = std::sqrt(errors.load_v2);
     check.extrapolated_percent = beyond_percent(identified, record, check.initial_charge_ah);
-    add_best_place(identified.battery, record, check);
+    add_best_charge(identified.battery, record, check);
     return check;
 }
 
@@ -334,11 +312,11 @@ LeaveOneOutCheck checked(const IdentificationResult& told, const DischargeRecord
 
 BatteryIdentification identify_battery(std::span<const DischargeRecord> records, const IdentificationOptions& options) {
     if (options.cells && !records.empty()) require_possible_cells(highest_resting_v(records), *options.cells);
-    const auto told = identify_common(records, options);
-    const auto& [identification, chained, posterior] = told;
+    const auto common = identify_common(records, options);
+    const auto& [identification, chained, posterior] = common;
     auto result = identification;
     result.flights = identified_flights(chained, posterior, result.curve_start_depletion_ah);
-    result.battery.flight_estimate = flight_estimate(told);
+    result.battery.flight_estimate = flight_estimate(common);
     std::vector<std::optional<FlightResistance>> in_order;
     for (const auto f : order_in_time(chained.aligned.records)) in_order.push_back(chained.resistances[f]);
     result.trend = resistance_trend(in_order);
@@ -360,7 +338,7 @@ std::vector<LeaveOneOutCheck> leave_one_out(std::span<const DischargeRecord> rec
     auto of_others = options;
     of_others.cells = all.fit.weights.cells;
     std::vector<LeaveOneOutCheck> checks(records.size());
-    std::mutex mutex;  // guards what follows
+    std::mutex mutex;  // guards `done`
     std::size_t done = 0;
     for_each_in_parallel(folds.size(), [&](std::size_t fold) {
         std::vector<DischargeRecord> others;
@@ -370,8 +348,8 @@ std::vector<LeaveOneOutCheck> leave_one_out(std::span<const DischargeRecord> rec
             others.push_back(records[f]);
             begin_ah.push_back(all.records[f].initial_charge_ah);
         }
-        const auto told = identify_common(others, of_others, begin_ah);
-        for (const auto k : folds[fold]) checks[k] = checked(told, records[k], options.link_packs);
+        const auto common = identify_common(others, of_others, begin_ah);
+        for (const auto k : folds[fold]) checks[k] = checked(common, records[k], options.link_packs);
         if (!progress) return;
         const std::lock_guard lock(mutex);
         progress(++done, folds.size());

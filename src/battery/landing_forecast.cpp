@@ -1,66 +1,44 @@
 #include "battery/landing_forecast.h"
 
 #include "base/error.h"
+#include "base/piecewise_linear.h"
 #include "base/units.h"
 #include "battery/fast_discharge.h"
+
+#include <algorithm>
+#include <numeric>
 
 #include <fmt/format.h>
 
 namespace flightwatt::battery {
 namespace {
 
-/// A day: whoever flies longer charges meanwhile.
-constexpr double max_s = 86400.0;
-constexpr double step_s = 5.0;  // of Runge-Kutta under constant power: a charge and a voltage that hardly bend
-constexpr double quick_step_s = 20.0;
+constexpr double max_s = 86400.0;     // of an endurance
+constexpr double exact_step_s = 5.0;  // of Runge-Kutta under constant power: charge and voltage are nearly linear
+constexpr double fast_step_s = 20.0;
 
-/// When a battery stopped; the end of the stretch if it did not.
-std::optional<double> failed_at_s(const Discharge& discharge) {
-    if (const auto ended = discharge.ended_at_s()) return ended;
-    if (discharge.undeliverable) return discharge.undeliverable->time_s;
-    return std::nullopt;
-}
-
-/// How long a power can be drawn until the battery fails or has only its reserve.
-double compute_endurance_s(const Battery& battery, BatteryState state, double power_w, const LandingLimits& limits) {
-    constexpr double stretch_s = 60.0;
-    constexpr int bisections = 30;
-    const auto after = [&](double time_s) {
-        return discharge_constant_load(battery, state, {power_w, time_s}, limits.cutoff_voltage_v);
-    };
+/// Time until the battery fails or only its reserve is left under a constant power.
+double compute_endurance_s(const Battery& battery, const BatteryState& state, double power_w,
+                           const LandingLimits& limits) {
     if (!(power_w > 0.0) || state.soc_percent <= limits.reserve_soc_percent) return 0.0;
+    constexpr int bisections = 40;
     double low_s = 0.0;
-    double begun_s = 0.0;
-    while (begun_s < max_s) {
-        const auto end = after(stretch_s);
-        const auto failed_s = failed_at_s(end);
-        if (end.soc_percent >= limits.reserve_soc_percent) {
-            if (failed_s) return begun_s + *failed_s;
-            state = end;
-            begun_s += stretch_s;
-            continue;
-        }
-        double high_s = failed_s.value_or(stretch_s);
-        for (int i = 0; i < bisections; ++i) {
-            const double middle_s = 0.5 * (low_s + high_s);
-            (after(middle_s).soc_percent >= limits.reserve_soc_percent ? low_s : high_s) = middle_s;
-        }
-        return begun_s + low_s;
+    // The load cannot draw more energy than a full battery holds.
+    double high_s = std::min(max_s, units::joule_from_wh(full_energy_wh(battery)) / power_w);
+    for (int i = 0; i < bisections; ++i) {
+        const double middle_s = std::midpoint(low_s, high_s);
+        const auto end = discharge_constant_load(battery, state, {power_w, middle_s}, limits.cutoff_voltage_v);
+        const bool is_enough = !end.failed_at_s() && end.soc_percent >= limits.reserve_soc_percent;
+        (is_enough ? low_s : high_s) = middle_s;
     }
-    return max_s;
+    return low_s;
 }
 
 }  // namespace
 
 double resting_soc_percent(const Battery& battery, double voltage_v) {
-    constexpr int bisections = 50;
-    double low = 0.0;
-    double high = units::percent_per_whole;
-    for (int i = 0; i < bisections; ++i) {
-        const double middle = 0.5 * (low + high);
-        (open_circuit_voltage_v(battery, middle) < voltage_v ? low : high) = middle;
-    }
-    return 0.5 * (low + high);
+    const auto& curve = battery.thevenin.value().open_circuit;
+    return interpolate_clamped(curve.voltage_v, curve.soc_percent, voltage_v);
 }
 
 BatteryState state_after(const Battery& battery, const DischargeRecord& flown, double initial_soc_percent) {
@@ -70,8 +48,8 @@ BatteryState state_after(const Battery& battery, const DischargeRecord& flown, d
     state.soc_percent -= units::percentage(drawn_ah, battery.capacity_ah);
     if (state.soc_percent < 0.0) {
         throw NoResultError(
-            fmt::format("{:.3f} Ah were drawn from {:.1f} % of a battery of {:.3f} Ah: is it another one?", drawn_ah,
-                        initial_soc_percent, battery.capacity_ah));
+            fmt::format("{:.3f} Ah were drawn from {:.1f} % of a battery of {:.3f} Ah: check the battery file",
+                        drawn_ah, initial_soc_percent, battery.capacity_ah));
     }
     if (battery.thevenin && battery.thevenin->rc_resistance_ohm > 0.0) {
         state.rc_voltage_v = battery.thevenin->rc_resistance_ohm *
@@ -80,13 +58,12 @@ BatteryState state_after(const Battery& battery, const DischargeRecord& flown, d
     return state;
 }
 
-Discharge discharge_constant_load(const Battery& battery, const BatteryState& from, const ConstantLoad& stretch,
+Discharge discharge_constant_load(const Battery& battery, const BatteryState& from, const ConstantLoad& load,
                                   double cutoff_voltage_v) {
-    const double power_w = stretch.power_w;
-    const Load load{[power_w](double) { return power_w; }, 0.0, stretch.duration_s};
-    if (battery.thevenin && power_w >= 0.0)
-        return fast_discharge(battery, load, from, {quick_step_s, cutoff_voltage_v});
-    return discharge(battery, load, from, {step_s, cutoff_voltage_v});
+    const Load constant{[power_w = load.power_w](double) { return power_w; }, 0.0, load.duration_s};
+    if (battery.thevenin && load.power_w >= 0.0)
+        return fast_discharge(battery, constant, from, {fast_step_s, cutoff_voltage_v});
+    return discharge(battery, constant, from, {exact_step_s, cutoff_voltage_v});
 }
 
 LandingForecast forecast_landing(const Battery& battery, const BatteryState& now, std::span<const ConstantLoad> ahead,
@@ -96,16 +73,16 @@ LandingForecast forecast_landing(const Battery& battery, const BatteryState& now
     BatteryState state = now;
     double flown_s = 0.0;
     double power_w = 0.0;
-    for (const auto& stretch : ahead) {
-        if (stretch.duration_s == 0.0) continue;
-        const auto end = discharge_constant_load(battery, state, stretch, limits.cutoff_voltage_v);
+    for (const auto& load : ahead) {
+        if (load.duration_s == 0.0) continue;
+        const auto end = discharge_constant_load(battery, state, load, limits.cutoff_voltage_v);
         state = end;
-        power_w = stretch.power_w;
-        if (const auto failed_s = failed_at_s(end)) {
+        power_w = load.power_w;
+        if (const auto failed_s = end.failed_at_s()) {
             forecast.fails_after_s = flown_s + *failed_s;
             break;
         }
-        flown_s += stretch.duration_s;
+        flown_s += load.duration_s;
     }
     forecast.soc_percent = state.soc_percent;
     forecast.voltage_v = terminal_voltage_v(battery, state, limited_current_a(battery, power_w, state));

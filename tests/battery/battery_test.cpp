@@ -61,12 +61,14 @@ TEST(BatteryWarnings, TellOfUnitsThatNoPackHas) {
         return warnings.size() == 1 ? warnings.front() : "";
     };
     EXPECT_EQ(said(&Battery::capacity_ah, 0.049),
-              "battery: 0.049 Ah is the capacity of no small drone's pack: is its unit Ah?");
+              "battery: 0.049 Ah is too small for a drone's pack: check that the unit is Ah");
     EXPECT_EQ(said(&Battery::capacity_ah, 0.051), "");
-    EXPECT_EQ(said(&Battery::voltage_v, 111.0), "battery: 111 V when full is more than 14 LiPo cells': is its unit V?");
-    EXPECT_EQ(said(&Battery::voltage_v, 1.11), "battery: 1.11 V when full is less than one cell's: is its unit V?");
+    EXPECT_EQ(said(&Battery::voltage_v, 111.0),
+              "battery: 111 V when full is more than 14 LiPo cells': check that the unit is V");
+    EXPECT_EQ(said(&Battery::voltage_v, 1.11),
+              "battery: 1.11 V when full is less than one cell's: check that the unit is V");
     EXPECT_EQ(said(&Battery::resistance_ohm, 50.0),
-              "battery: it cannot deliver more than 0.616 W: is resistance_ohm in ohm?");
+              "battery: it cannot deliver more than 0.616 W: check that resistance_ohm is in ohm");
 }
 
 TEST(BatteryWarnings, CompareTheCapacityWithTheFlights) {

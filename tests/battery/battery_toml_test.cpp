@@ -75,7 +75,7 @@ TEST(BatteryToml, RefusesWhatNoFlightsIndicate) {
         return rejected([&] { battery_from(parse_toml(with_estimate(lines), "b.toml")); });
     };
     EXPECT_EQ(of("capacity_ah = 1.5\ncapacity_interval_ah = [1.6, 1.9]\n"),
-              "b.toml:16:1: this is no interval around capacity_interval_ah = 1.5; expected [LOW, HIGH]");
+              "b.toml:16:1: the interval does not contain capacity_interval_ah = 1.5; expected [LOW, HIGH]");
     EXPECT_NE(of("capacity_ah = 1.5\n"), "") << "its interval is missing";
     EXPECT_NE(of("capacity_ah = 0\ncapacity_interval_ah = [0, 1.9]\n"), "");
     EXPECT_NE(of("capacity_ah = 1.5\ncapacity_interval_ah = [1.2, 1.9]\nsoc_percent = [0, 100]\n"), "");
@@ -83,7 +83,8 @@ TEST(BatteryToml, RefusesWhatNoFlightsIndicate) {
 }
 
 TEST(BatteryToml, SaysHowFlightsDiffer) {
-    const std::string between = "\n# how flights differ\n[between_flights]\nflights = 2\nresistance_sd_ohm = 0.012\n";
+    const std::string between =
+        "\n# variability between flights\n[between_flights]\nflights = 2\nresistance_sd_ohm = 0.012\n";
     const auto pack = battery_from(parse_toml(pack_toml + between, "b.toml"));
     EXPECT_EQ(pack.intervals.resistance_scatter, (ResistanceScatter{0.012, 2}));
     EXPECT_EQ(to_toml(pack), "format = 1\n" + pack_toml + between);
@@ -112,10 +113,10 @@ TEST(BatteryToml, RefusesWhatIsNoBattery) {
               "b.toml:10:1: the open-circuit voltage is not positive, or falls as charge rises; expected "
               "values in the order of soc_percent, none below the one before");
     EXPECT_EQ(of("25.0", "0.01"),
-              "b.toml:6:1: rc_time_constant_s = 0.01, expected 0.1 to 100000; what is faster "
-              "counts as resistance_ohm");
+              "b.toml:6:1: rc_time_constant_s = 0.01, expected 0.1 to 100000; a faster RC "
+              "pair is part of resistance_ohm");
     EXPECT_EQ(of("[0.07, 0.09]", "[0.09, 0.1]"),
-              "b.toml:15:1: this is no interval around resistance_ohm = 0.08; expected [LOW, HIGH]");
+              "b.toml:15:1: the interval does not contain resistance_ohm = 0.08; expected [LOW, HIGH]");
     EXPECT_NE(of("name = \"pack\"", "voltage_v = 11.1"), "");
     EXPECT_NE(of("[0.2, 0.01, 0.02]", "[0.2, -0.01, 0.02]"), "");
 }

@@ -100,7 +100,7 @@ TEST(DischargeRecord, RefusesByNameAndReason) {
     computed.current_origin = flight::CurrentOrigin::throttle;
     EXPECT_EQ(rejected([&] { test::discharge_record(computed); }),
               "synthetic_7: synthetic_7: its current was computed from throttle (MILLIAMP_AT_FULL_THROTTLE), "
-              "not measured: it says nothing of the battery; use flights with a current sensor");
+              "not measured; use flights with a current sensor");
     EXPECT_EQ(of([](test::SampleColumns& s) { s.voltage_v.clear(); }), "f.data: synthetic_7: has no voltage" + hint);
     EXPECT_EQ(of([](test::SampleColumns& s) { s.current_a.clear(); }), "f.data: synthetic_7: has no current" + hint);
     EXPECT_EQ(of([](test::SampleColumns& s) { std::fill(s.voltage_v.begin(), s.voltage_v.end(), 11.0); }),
@@ -118,7 +118,7 @@ TEST(DischargeRecord, RefusesByNameAndReason) {
                   s.current_a.front() = 8.0;
                   s.power_w.front() = 8.0 * s.voltage_v.front();
               }),
-              "f.data: synthetic_7: its log does not begin at rest, so that its initial charge is unknown; a "
+              "f.data: synthetic_7: its log does not begin at rest: its initial charge is unknown; a "
               "log that begins before take-off is needed");
 }
 

@@ -279,6 +279,13 @@ TEST(Identification, SaysWhereNoRcPairIsSeen) {
     EXPECT_LE(found.errors.resistance_ohm.low, 0.08);
 }
 
+TEST(Identification, GivesAStraightCurveOneSegment) {
+    for (const auto& [curve, knots] : {std::pair{test::PackCurve::straight, 2U}, {test::PackCurve::polymer, 7U}}) {
+        const auto drawn = test::drawn_flights({curve, 3, true, false, 0.0, 0.0}, 31);
+        EXPECT_EQ(identify_battery(drawn.records, {}).fit.knots_ah.size(), knots) << to_string(curve);
+    }
+}
+
 TEST(Identification, GivesBackWhatSynthesizedLogsWereMadeOf) {
     // 12.5 V falling by 1.4 V over 3.2 Ah behind 0.06 ohm, and no RC pair.
     std::vector<DischargeRecord> records;

@@ -20,18 +20,20 @@
 namespace flightwatt::battery {
 namespace {
 
-constexpr int first_segments = 6;
+constexpr int max_segments = 6;
+constexpr double min_segment_samples = 20.0;
+constexpr double straight_cell_v = 0.01;  // a cell; a curve with smaller deviations has one segment
 constexpr int time_constants_tried = 12;
-constexpr double max_record_part = 0.25;  // a slower RC pair resembles the open-circuit voltage
+constexpr double max_record_fraction = 0.25;  // a slower RC pair resembles the open-circuit voltage
 
 constexpr double max_pause_s = 6.0 * units::seconds_per_hour;
 constexpr double counter_error = 0.02;
 constexpr double min_error_ah = 0.005;
-constexpr double counted_ah = 0.01;         // a counter that begins above did not begin anew
+constexpr double counted_ah = 0.01;         // a counter that begins above was not reset
 constexpr double unreadable_cell_v = 0.01;  // a cell; a smaller fall shows nothing
-constexpr double max_deviations = 2.5;      // of a resting voltage
+constexpr double max_z_score = 2.5;         // of a resting voltage
 
-/// From the last sample of one record to the first of another; negative if that one began before.
+/// From the last sample of one record to the first of another; negative if they overlap.
 std::optional<double> pause_s(const DischargeRecord& earlier, const DischargeRecord& later) {
     const double length_s = earlier.time_s.back() - earlier.time_s.front();
     if (earlier.start_clock_s && later.start_clock_s) return *later.start_clock_s - *earlier.start_clock_s - length_s;
@@ -50,34 +52,55 @@ bool is_fallen_as_drawn(const DischargeRecord& later, const AlignedRecord& earli
     const double fallen_v = earlier.record->resting_voltage_v - later.resting_voltage_v;
     const double readable_v = std::max(unreadable_cell_v * fit.weights.cells, later.resolution_v);
     const double reach_v =
-        max_deviations * std::hypot(charged_rest_sd_v * fit.weights.cells, lower_rest_fraction * drawn_v);
+        max_z_score * std::hypot(charged_rest_sd_v * fit.weights.cells, lower_rest_fraction * drawn_v);
     return drawn_v > 2.0 * readable_v && fallen_v > drawn_v / 2.0 && fallen_v < drawn_v + reach_v;
+}
+
+/// Whether all knots are near the straight line between the first and the last one.
+bool is_straight(const CircuitFit& fit) {
+    const auto& curve_v = fit.open_circuit_v;
+    double max_v = 0.0;
+    for (std::size_t k = 0; k < curve_v.size(); ++k) {
+        const double fraction = static_cast<double>(k) / static_cast<double>(curve_v.size() - 1);
+        max_v = std::max(max_v, std::abs(curve_v[k] - std::lerp(curve_v.front(), curve_v.back(), fraction)));
+    }
+    return max_v < straight_cell_v * fit.weights.cells;
 }
 
 bool falls_throughout(const CircuitFit& fit) {
     return std::ranges::adjacent_find(fit.open_circuit_v, std::less<>()) == fit.open_circuit_v.end();
 }
 
-/// What a sample counts for: residuals that follow each other are alike.
-double effective_error_v(const JointCircuitFit& joint) {
-    double product = 0.0;
+/// Sums over all records' residuals.
+struct ResidualSums {
     double squares = 0.0;
+    double products = 0.0;  ///< of neighbours
     double count = 0.0;
+};
+
+ResidualSums residual_sums(const JointCircuitFit& joint) {
+    ResidualSums sums;
     for (std::size_t r = 0; r < joint.records.size(); ++r) {
         const auto residual_v = rows_of(joint, r, linear_only).residual_v;
         const auto n = residual_v.size();
-        if (n > 1) product += residual_v.head(n - 1).dot(residual_v.tail(n - 1));
-        squares += residual_v.squaredNorm();
-        count += static_cast<double>(n);
+        if (n > 1) sums.products += residual_v.head(n - 1).dot(residual_v.tail(n - 1));
+        sums.squares += residual_v.squaredNorm();
+        sums.count += static_cast<double>(n);
     }
-    constexpr double max_alike = 0.99;
-    const double r = squares > 0.0 ? std::clamp(product / squares, 0.0, max_alike) : 0.0;
+    return sums;
+}
+
+/// The standard deviation of one sample as if samples were independent: neighbouring residuals are correlated.
+double effective_error_v(const JointCircuitFit& joint) {
+    const auto [squares, products, count] = residual_sums(joint);
+    constexpr double max_correlation = 0.99;
+    const double r = squares > 0.0 ? std::clamp(products / squares, 0.0, max_correlation) : 0.0;
     constexpr double min_v = 1e-6;
     return std::max(min_v, std::sqrt(squares / count * (1.0 + r) / (1.0 - r)));
 }
 
-/// Where on the curve the last record lies best under load.
-double best_place_ah(JointCircuitFit joint) {
+/// The initial charge with which the last record's voltage under load fits the curve best.
+double best_initial_charge_ah(JointCircuitFit joint) {
     const auto last = joint.records.size() - 1;
     auto& aligned = joint.records[last];
     const auto loaded = used_sample_count(*aligned.record) - rest_sample_count(*aligned.record);
@@ -92,15 +115,15 @@ double best_place_ah(JointCircuitFit joint) {
 /// Searches for the time constant, in which the least squares have several minima: given it and the initial charges,
 /// all else is linear. There is no RC pair where none explains anything.
 void search_time_constant(JointCircuitFit& joint) {
-    double longest_s = 0.0;
+    double max_s = 0.0;
     std::vector<double> intervals_s;
     for (const auto& aligned : joint.records) {
         const auto& time_s = aligned.record->time_s;
-        longest_s = std::max(longest_s, time_s.back() - time_s.front());
+        max_s = std::max(max_s, time_s.back() - time_s.front());
         for (std::size_t i = 1; i < time_s.size(); ++i) intervals_s.push_back(time_s[i] - time_s[i - 1]);
     }
     const double low_s = 2.0 * median(std::move(intervals_s));
-    const double factor = std::max(2.0, max_record_part * longest_s / low_s);
+    const double factor = std::max(2.0, max_record_fraction * max_s / low_s);
     joint.time_constants_s = {low_s, low_s * factor};
     constexpr double explains = 1.0 - 1e-9;
     double least = explains * least_squares(joint, linear_only).objective;
@@ -125,25 +148,7 @@ void search_time_constant(JointCircuitFit& joint) {
     least_squares(joint, linear_only);
 }
 
-double rms_of(const JointCircuitFit& joint) {
-    double squares = 0.0;
-    double count = 0.0;
-    for (std::size_t r = 0; r < joint.records.size(); ++r) {
-        const auto residual_v = rows_of(joint, r, linear_only).residual_v;
-        squares += residual_v.squaredNorm();
-        count += static_cast<double>(residual_v.size());
-    }
-    return std::sqrt(squares / count);
-}
-
-/// The fit with so many segments, from about the right initial charges.
-void fit_segments(JointCircuitFit& joint, int segments) {
-    place_knots(joint, segments);
-    search_time_constant(joint);
-    least_squares(joint, {});
-}
-
-/// The records in the order of how full their packs were.
+/// The records in the order of their packs' initial charge.
 std::vector<std::size_t> fullest_first(std::span<const DischargeRecord> records) {
     std::vector<std::size_t> order(records.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -151,9 +156,9 @@ std::vector<std::size_t> fullest_first(std::span<const DischargeRecord> records)
     return order;
 }
 
-/// Initial charges of records that are laid onto each other one by one, the fullest first.
-std::vector<double> laid_one_by_one(std::span<const DischargeRecord> records, const FitWeights& weights,
-                                    const PackLinks& links) {
+/// Initial charges of records that are aligned one by one, the fullest first.
+std::vector<double> aligned_one_by_one(std::span<const DischargeRecord> records, const FitWeights& weights,
+                                       const PackLinks& links) {
     JointCircuitFit growing;
     growing.fit.weights = weights;
     growing.links.resize(records.size());
@@ -165,11 +170,11 @@ std::vector<double> laid_one_by_one(std::span<const DischargeRecord> records, co
         if (link && records[link->earlier].resting_voltage_v >= records[at].resting_voltage_v) {
             aligned.initial_charge_ah = initial_ah[link->earlier] + link->charge_ah;
         } else if (growing.records.size() > 1) {
-            aligned.initial_charge_ah = best_place_ah(growing);
+            aligned.initial_charge_ah = best_initial_charge_ah(growing);
         }
         initial_ah[at] = aligned.initial_charge_ah;
-        place_knots(growing, first_segments);
-        // The time constant is searched for anew with every doubling: it is known about from then on.
+        place_knots(growing, max_segments);
+        // The time constant is searched for again at every doubling; in between it is known well enough.
         if (std::has_single_bit(growing.records.size())) {
             search_time_constant(growing);
         } else {
@@ -200,9 +205,9 @@ double grid_minimum(const std::function<double(double)>& function, double low, d
         at = low + step * i;
     }
     constexpr int half_the_digits = std::numeric_limits<double>::digits / 2;
-    const auto [place, value] = boost::math::tools::brent_find_minima(function, std::max(low, at - step),
-                                                                      std::min(high, at + step), half_the_digits);
-    return value < least ? place : at;
+    const auto [minimum_at, value] = boost::math::tools::brent_find_minima(function, std::max(low, at - step),
+                                                                           std::min(high, at + step), half_the_digits);
+    return value < least ? minimum_at : at;
 }
 
 std::optional<PackLink> find_pack_link(const DischargeRecord& later, std::span<const AlignedRecord> known,
@@ -238,26 +243,31 @@ JointCircuitFit fit_circuit_jointly(std::span<const DischargeRecord> records, in
     rough.fit.weights.cells = cells;
     rough.fit.weights.fullest_rest_v = records[rough.reference].resting_voltage_v;
     std::vector<double> initial_ah(begin_ah.begin(), begin_ah.end());
-    if (begin_ah.empty()) initial_ah = laid_one_by_one(records, rough.fit.weights, links);
+    if (begin_ah.empty()) initial_ah = aligned_one_by_one(records, rough.fit.weights, links);
     for (std::size_t r = 0; r < records.size(); ++r)
         rough.records.push_back({&records[r], initial_ah[r], 0.0, 0.0, 0.0});
     rough.links = std::move(links);
-    place_knots(rough, first_segments);
+    place_knots(rough, max_segments);
     search_time_constant(rough);
     rough.fit.weights.sample_error_v = effective_error_v(rough);
     least_squares(rough, {});
     rough.fit.weights.sample_error_v = effective_error_v(rough);
-    const int chosen = choose_segment_count(rough);
-    for (int tried = 0; tried < max_segments; ++tried) {
+    double samples = 0.0;
+    for (const auto& aligned : rough.records) samples += static_cast<double>(used_sample_count(*aligned.record));
+    const int first = is_straight(rough.fit) ? 1 : max_segments;
+    // Fewer where the curve would rise.
+    for (int segments = first; segments > 0; --segments) {
+        if (segments > 1 && samples < min_segment_samples * segments) continue;
         auto joint = rough;
-        const int segments =
-            chosen + tried <= max_segments ? chosen + tried : max_segments - tried;  // more, then fewer
-        fit_segments(joint, segments);
+        place_knots(joint, segments);
+        search_time_constant(joint);
+        least_squares(joint, {});
         if (!(joint.fit.resistance_ohm > 0.0))
-            throw NoResultError("the voltage does not fall with the current: no series resistance is seen");
+            throw NoResultError("the voltage does not fall as current rises: no series resistance can be identified");
         if (!falls_throughout(joint.fit)) continue;
         begin_at_zero(joint);
-        joint.fit.rms_v = rms_of(joint);
+        const auto sums = residual_sums(joint);
+        joint.fit.rms_v = std::sqrt(sums.squares / sums.count);
         return joint;
     }
     throw NoResultError("the open-circuit voltage does not fall as charge is drawn");

@@ -22,7 +22,7 @@ namespace {
 constexpr std::array chart_soc_percent{0.0,  5.0,  10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0,
                                        55.0, 60.0, 65.0, 70.0, 75.0, 80.0, 85.0, 90.0, 95.0, 100.0};
 
-/// How probable a chemistry is beforehand (a guess of ours), and its voltage at these states of charge.
+/// Prior probability of a chemistry (our estimate), and its voltage at these states of charge.
 struct Chart {
     double probability;
     std::array<double, chart_soc_percent.size()> cell_v;
@@ -39,16 +39,16 @@ constexpr int capacities_tried = 120;
 constexpr double missing_step = 0.0125;
 constexpr double full_step = 0.005;
 constexpr double max_times_shown = 50.0;
-constexpr double max_missing_part = 0.9;
+constexpr double max_missing_fraction = 0.9;
 constexpr double full_probability = 0.5;
 constexpr double full_sd = 0.03;          // of the capacity
-constexpr double resting_sd_v = 0.02;     // a cell; what it leaves at rest
+constexpr double resting_sd_v = 0.02;     // a cell, at rest
 constexpr Eigen::Index max_compared = 4;  // points of the curve, evenly spread
-constexpr double loaded_sd_v = 0.03;      // a cell; what slow relaxation takes under load throughout
+constexpr double loaded_sd_v = 0.03;      // a cell, of slow relaxation under load
 constexpr double rounding_percent = 0.01;
 constexpr double max_beyond_percent = 10.0;
 
-/// What of the pack is compared with a chart: the rest first, then the curve.
+/// The points that are compared with a chart: the rest first, then the curve.
 struct Compared {
     Eigen::VectorXd charge_ah;
     Eigen::VectorXd cell_v;
@@ -63,11 +63,11 @@ Compared compared(const ObservedOcv& shown) {
     all.charge_ah.resize(points + 1);
     all.charge_ah[0] = shown.resting_charge_ah;
     for (Eigen::Index p = 0; p < points; ++p) {
-        const double part = static_cast<double>(p) / static_cast<double>(points - 1);
-        all.charge_ah[p + 1] = std::lerp(shown.charge_ah.front(), shown.charge_ah.back(), part);
-        const auto place = find_knot_interval(shown.charge_ah, all.charge_ah[p + 1]);
-        between(p, static_cast<Eigen::Index>(place.lower)) = 1.0 - place.fraction;
-        between(p, static_cast<Eigen::Index>(place.lower) + 1) = place.fraction;
+        const double position = static_cast<double>(p) / static_cast<double>(points - 1);
+        all.charge_ah[p + 1] = std::lerp(shown.charge_ah.front(), shown.charge_ah.back(), position);
+        const auto [lower, fraction] = find_knot_interval(shown.charge_ah, all.charge_ah[p + 1]);
+        between(p, static_cast<Eigen::Index>(lower)) = 1.0 - fraction;
+        between(p, static_cast<Eigen::Index>(lower) + 1) = fraction;
     }
     all.cell_v.resize(points + 1);
     all.cell_v << shown.resting_voltage_v / shown.cells,
@@ -81,15 +81,15 @@ Compared compared(const ObservedOcv& shown) {
     return all;
 }
 
-/// What may be missing, as a part of the capacity, and how probable that is beforehand.
-struct MissingPart {
-    double part = 0.0;
+/// A missing fraction of the capacity, with its prior probability.
+struct MissingFraction {
+    double fraction = 0.0;
     double probability = 0.0;
     bool is_full = false;
 };
 
-std::vector<MissingPart> missing_parts() {
-    std::vector<MissingPart> parts;
+std::vector<MissingFraction> missing_fractions() {
+    std::vector<MissingFraction> parts;
     double sum = 0.0;
     for (int i = 0; full_step * i <= 3.0 * full_sd; ++i) {
         const double part = full_step * i;
@@ -98,7 +98,7 @@ std::vector<MissingPart> missing_parts() {
         sum += density;
     }
     for (auto& full : parts) full.probability *= full_probability / sum;
-    const auto cells = static_cast<int>(std::lround(max_missing_part / missing_step));
+    const auto cells = static_cast<int>(std::lround(max_missing_fraction / missing_step));
     for (int i = 0; i < cells; ++i)
         parts.push_back({missing_step * (i + 0.5), (1.0 - full_probability) / cells, false});
     return parts;
@@ -115,7 +115,7 @@ ChartPoint chart_point(Chemistry chemistry, double soc_percent) {
     return {soc_percent, (chart_voltage_v(chemistry, high) - chart_voltage_v(chemistry, low)) / (high - low)};
 }
 
-/// Of how a cell differs from its chart at two points.
+/// Covariance of a cell's deviations from its chart at two points.
 double chart_covariance_v2(const ChartPoint& a, const ChartPoint& b) {
     const double apart = (a.soc_percent - b.soc_percent) / chart_correlation_percent;
     const double variance_v2 = chart_sd_v * chart_sd_v + a.slope_v_per_percent * b.slope_v_per_percent *
@@ -123,7 +123,7 @@ double chart_covariance_v2(const ChartPoint& a, const ChartPoint& b) {
     return variance_v2 * std::exp(-apart * apart / 2.0);
 }
 
-/// The logarithm of the likelihood of a scale; -infinity where more was drawn than there is by so many percent.
+/// The logarithm of a likelihood; -infinity where the charge drawn exceeds the capacity by more than `beyond_percent`.
 double log_likelihood(const Compared& shown, Chemistry chemistry, double capacity_ah, double missing_ah,
                       double beyond_percent) {
     const Eigen::VectorXd soc = (1.0 - (shown.charge_ah.array() + missing_ah) / capacity_ah) * units::percent_per_whole;
@@ -155,7 +155,7 @@ std::vector<double> capacities(const ObservedOcv& shown, std::optional<double> g
     return tried;
 }
 
-/// The value below which that much of the probability lies.
+/// Quantile of (value, weight) pairs; weights sum to 1.
 double weighted_quantile(std::vector<std::pair<double, double>> values, double probability) {
     std::ranges::sort(values);
     double below = 0.0;
@@ -164,15 +164,6 @@ double weighted_quantile(std::vector<std::pair<double, double>> values, double p
         if (below >= probability) return value;
     }
     return values.back().first;
-}
-
-/// The part of a normal distribution that lies below `limit`, both in standard deviations times the root of two from
-/// its mean. Beyond eight of these it is 0 or 1 to more digits than a sum keeps, and most of a posterior lies there.
-double part_below(double limit) {
-    constexpr double certain = 8.0;
-    if (limit > certain) return 1.0;
-    if (limit < -certain) return 0.0;
-    return std::erfc(-limit) / 2.0;
 }
 
 }  // namespace
@@ -191,16 +182,16 @@ double extrapolation_sd_v(Chemistry chemistry, double soc_percent, double known_
 
 std::vector<CapacityHypothesis> capacity_posterior(const ObservedOcv& shown, std::optional<double> given_ah) {
     const auto all = compared(shown);
-    // A capacity that is given holds, though initial charges that are not exact may add up to more.
+    // A given capacity is valid, though inexact initial charges may add up to more.
     const double beyond_percent = given_ah ? max_beyond_percent : rounding_percent;
     std::vector<CapacityHypothesis> posterior;
     double most = -std::numeric_limits<double>::infinity();
-    const auto parts = missing_parts();
-    const auto add = [&](std::size_t chart, double capacity_ah, const MissingPart& missing) {
+    const auto parts = missing_fractions();
+    const auto add = [&](std::size_t chart, double capacity_ah, const MissingFraction& missing) {
         const auto chemistry = static_cast<Chemistry>(chart);
         if (chemistry != Chemistry::high_voltage && all.cell_v[0] > max_charged_cell_v) return;
-        const double missing_ah = missing.part * capacity_ah;
-        // Any part of what the pack held may have been drawn; the grid is one of logarithms.
+        const double missing_ah = missing.fraction * capacity_ah;
+        // The drawn fraction is uniform, on a grid of logarithms.
         const double drawn_fraction = std::min(1.0, shown.charge_ah.back() / (capacity_ah - missing_ah));
         const double logarithm = log_likelihood(all, chemistry, capacity_ah, missing_ah, beyond_percent) +
                                  std::log(charts.at(chart).probability * missing.probability * drawn_fraction);
@@ -257,7 +248,7 @@ Interval depletion_interval_ah(std::span<const CapacityHypothesis> posterior, do
             double sum = 0.0;
             for (const auto& scale : posterior) {
                 const double begins_ah = offset_ah + (scale.is_full && full_is_full ? 0.0 : scale.missing_ah);
-                sum += scale.probability * part_below((missing_ah - begins_ah) / (error_ah * std::numbers::sqrt2));
+                sum += 0.5 * scale.probability * std::erfc((begins_ah - missing_ah) / (error_ah * std::numbers::sqrt2));
             }
             return sum;
         };

@@ -8,10 +8,10 @@
 namespace flightwatt::battery {
 namespace {
 
-constexpr double unknown_log = 10.0;  // beyond a factor e^10 an interval is all there is
+constexpr double unknown_log = 10.0;  // a factor of e^10: not determined
 
-/// How far the parameters move if the curve has twice the segments.
-Eigen::VectorXd moved_by_finer_curve(const JointCircuitFit& joint, const ParameterPlaces& places) {
+/// The change of the parameters with twice the segments: the curve's model error.
+Eigen::VectorXd moved_by_finer_curve(const JointCircuitFit& joint, const ParameterIndices& places) {
     auto finer = joint;
     place_knots(finer, 2 * static_cast<int>(places.knots - 1));
     least_squares(finer, {});
@@ -52,7 +52,11 @@ CircuitErrors circuit_errors(const JointCircuitFit& joint) {
         errors.rc_time_constant_s = {fit.rc_time_constant_s / factor, fit.rc_time_constant_s * factor};
     }
     const Eigen::VectorXd standard_error = half_width / normal_half_width();
-    const Eigen::VectorXd of_knots = standard_error.segment(places.first_knot, places.knots);
+    // The error of a coarse sensor does not average out over slow changes.
+    double resolution_v = 0.0;
+    for (const auto& aligned : records) resolution_v = std::max(resolution_v, aligned.record->resolution_v);
+    const Eigen::VectorXd of_knots =
+        standard_error.segment(places.first_knot, places.knots).cwiseMax(resolution_v / std::sqrt(12.0));
     errors.open_circuit_standard_error_v.assign(of_knots.begin(), of_knots.end());
     // Correlations are the jackknife's.
     const Eigen::MatrixXd unit = found.changes.middleRows(places.first_knot, places.knots).rowwise().normalized();

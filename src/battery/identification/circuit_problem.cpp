@@ -16,17 +16,17 @@ namespace {
 
 constexpr int max_steps = 30;
 constexpr int max_halvings = 6;
-constexpr double shortest_block_s = 15.0;
+constexpr double min_block_s = 15.0;
 constexpr double blocks_of_each = 12.0;
 constexpr double more_blocks_of_one = 18.0;
-constexpr double tied_ah = 0.001;  // the counter counts before a voltage whose slow relaxation no circuit follows
-// Wide, so that they pull at no flight that shows anything: of the common resistance, and of a capacity's logarithm.
+constexpr double tied_ah = 0.001;  // the counter has precedence over the voltage, which relaxes slower than the circuit
+// Weak priors: relative to the common resistance, and of a capacity's logarithm.
 constexpr double own_resistance_sd_fraction = 1.0;
 constexpr double log_capacity_sd = 0.3;
-constexpr double mean_log_capacity_sd = 0.0003;  // of the sum: the curve belongs to the mean flight
+constexpr double mean_log_capacity_sd = 0.0003;  // of the sum: the curve is the mean flight's
 
-ParameterPlaces places_of(const JointCircuitFit& joint, const FreeParameters& free) {
-    ParameterPlaces places;
+ParameterIndices indices_of(const JointCircuitFit& joint, const FreeParameters& free) {
+    ParameterIndices places;
     places.knots = std::ssize(joint.fit.knots_ah);
     Eigen::Index next = places.first_knot + places.knots;
     const auto place = [&](bool is_free) { return is_free ? next++ : Eigen::Index{0}; };
@@ -36,7 +36,7 @@ ParameterPlaces places_of(const JointCircuitFit& joint, const FreeParameters& fr
     places.rc_resistance = place(has_rc);
     places.log_time_constant = place(has_rc && free.time_constant);
     for (std::size_t r = 0; r < joint.records.size(); ++r) {
-        ParameterPlaces::Own own;
+        ParameterIndices::Own own;
         own.rest = place(true);
         own.initial_charge = place(free.initial_charges && r != joint.reference);
         own.resistance = free.own_resistances ? place(true) : places.resistance;
@@ -47,16 +47,17 @@ ParameterPlaces places_of(const JointCircuitFit& joint, const FreeParameters& fr
     return places;
 }
 
-Eigen::VectorXd settled_a(const DischargeRecord& record, double time_constant_s) {
+/// The RC pair's current.
+Eigen::VectorXd branch_current_a(const DischargeRecord& record, double time_constant_s) {
     const auto samples = rc_branch_current_a(record, time_constant_s);
     return Eigen::Map<const Eigen::VectorXd>(samples.data(), std::ssize(samples));
 }
 
-/// Where blocks of a record's time end, counted in used samples.
+/// Ends of the blocks of a record's time, in used samples.
 std::vector<Eigen::Index> block_ends(const DischargeRecord& record, std::size_t records) {
     const double length_s = record.time_s.back() - record.time_s.front();
     const double block_s =
-        std::max(shortest_block_s, length_s / (blocks_of_each + more_blocks_of_one / static_cast<double>(records)));
+        std::max(min_block_s, length_s / (blocks_of_each + more_blocks_of_one / static_cast<double>(records)));
     std::vector<Eigen::Index> ends;
     Eigen::Index row = 0;
     double block = 0.0;
@@ -74,14 +75,14 @@ std::vector<Eigen::Index> block_ends(const DischargeRecord& record, std::size_t 
 /// A sum of parameters, each times its factor.
 using Terms = std::vector<std::pair<Eigen::Index, double>>;
 
-/// Adds that a sum, which is `left` less than expected, has this standard deviation in samples' errors.
-void add_prior(NormalEquations& problem, const Terms& terms, double left, double sd_samples) {
+/// Adds a prior: a sum of parameters is `difference` below its mean, with this standard deviation in samples' errors.
+void add_prior(NormalEquations& problem, const Terms& terms, double difference, double sd_samples) {
     const double weight = 1.0 / (sd_samples * sd_samples);
     for (const auto& [i, factor] : terms) {
         for (const auto& [j, other] : terms) problem.normal(i, j) += weight * factor * other;
-        problem.pull[i] += weight * factor * left;
+        problem.pull[i] += weight * factor * difference;
     }
-    problem.objective += weight * left * left;
+    problem.objective += weight * difference * difference;
 }
 
 void add_circuit_prior(const JointCircuitFit& joint, NormalEquations& problem) {
@@ -127,8 +128,8 @@ void add_records_prior(const JointCircuitFit& joint, const FreeParameters& free,
     add_prior(problem, all_capacities, -sum, mean_log_capacity_sd / error_v);
 }
 
-/// The inverse of the normal matrix times this, each parameter scaled to length 1 first: what nothing determines moves
-/// nothing.
+/// The inverse of the normal matrix times `right`, with parameters scaled to length 1; parameters without information
+/// remain.
 Eigen::MatrixXd solved(const Eigen::MatrixXd& normal, const Eigen::MatrixXd& right) {
     const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().cwiseMax(1e-12).cwiseInverse();
     Eigen::MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
@@ -137,16 +138,16 @@ Eigen::MatrixXd solved(const Eigen::MatrixXd& normal, const Eigen::MatrixXd& rig
     return scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * right);
 }
 
-/// A step, shortened so far as the derivatives hold: to a tenth of the curve, and a factor e of the time constant.
-Eigen::VectorXd limited(Eigen::VectorXd step, const JointCircuitFit& joint, const ParameterPlaces& places) {
-    constexpr double max_curve_part = 0.1;
-    const double max_ah = max_curve_part * (joint.fit.knots_ah.back() - joint.fit.knots_ah.front());
-    double longest = std::max(1.0, std::abs(step[places.log_time_constant]));
-    for (const auto& own : places.own) longest = std::max(longest, std::abs(step[own.initial_charge]) / max_ah);
-    return step / longest;
+/// A step, shortened to the range of the linearisation: a tenth of the curve, and a factor e of the time constant.
+Eigen::VectorXd limited(Eigen::VectorXd step, const JointCircuitFit& joint, const ParameterIndices& places) {
+    constexpr double max_curve_fraction = 0.1;
+    const double max_ah = max_curve_fraction * (joint.fit.knots_ah.back() - joint.fit.knots_ah.front());
+    double excess = std::max(1.0, std::abs(step[places.log_time_constant]));
+    for (const auto& own : places.own) excess = std::max(excess, std::abs(step[own.initial_charge]) / max_ah);
+    return step / excess;
 }
 
-JointCircuitFit moved(JointCircuitFit joint, const ParameterPlaces& places, const Eigen::VectorXd& step) {
+JointCircuitFit moved(JointCircuitFit joint, const ParameterIndices& places, const Eigen::VectorXd& step) {
     auto& fit = joint.fit;
     for (Eigen::Index k = 0; k < places.knots; ++k)
         fit.open_circuit_v[static_cast<std::size_t>(k)] += step[places.first_knot + k];
@@ -154,8 +155,8 @@ JointCircuitFit moved(JointCircuitFit joint, const ParameterPlaces& places, cons
     fit.resistance_ohm += step[places.resistance];
     fit.rc_resistance_ohm = std::max(0.0, fit.rc_resistance_ohm + step[places.rc_resistance]);
     const double moved_s = fit.rc_time_constant_s * std::exp(step[places.log_time_constant]);
-    const auto& [shortest_s, longest_s] = joint.time_constants_s;
-    fit.rc_time_constant_s = fit.rc_resistance_ohm > 0.0 ? std::clamp(moved_s, shortest_s, longest_s) : 0.0;
+    const auto& [min_s, max_s] = joint.time_constants_s;
+    fit.rc_time_constant_s = fit.rc_resistance_ohm > 0.0 ? std::clamp(moved_s, min_s, max_s) : 0.0;
     for (std::size_t r = 0; r < joint.records.size(); ++r) {
         auto& aligned = joint.records[r];
         const auto& own = places.own[r];
@@ -174,10 +175,10 @@ void place_knots(JointCircuitFit& joint, int segments) {
     double high = -low;
     for (const auto& aligned : joint.records) {
         const double scale = std::exp(-aligned.log_capacity);
-        const auto [least, most] = std::ranges::minmax_element(aligned.record->charge_ah);
+        const auto [min, max] = std::ranges::minmax_element(aligned.record->charge_ah);
         // A counter that falls has drifted.
-        low = std::min(low, aligned.initial_charge_ah + scale * std::max(0.0, *least));
-        high = std::max(high, aligned.initial_charge_ah + scale * *most);
+        low = std::min(low, aligned.initial_charge_ah + scale * std::max(0.0, *min));
+        high = std::max(high, aligned.initial_charge_ah + scale * *max);
     }
     auto& fit = joint.fit;
     std::vector<double> knots_ah;
@@ -199,11 +200,11 @@ RecordRows rows_of(const JointCircuitFit& joint, std::size_t record_index, const
     Eigen::VectorXd rc_a = Eigen::VectorXd::Zero(std::ssize(record.time_s));
     Eigen::VectorXd rc_change_a = rc_a;  // by the time constant's logarithm
     if (fit.rc_resistance_ohm > 0.0) {
-        rc_a = settled_a(record, fit.rc_time_constant_s);
+        rc_a = branch_current_a(record, fit.rc_time_constant_s);
         constexpr double log_step = 1e-4;
         if (free.time_constant) {
-            rc_change_a = (settled_a(record, fit.rc_time_constant_s * std::exp(log_step)) -
-                           settled_a(record, fit.rc_time_constant_s * std::exp(-log_step))) /
+            rc_change_a = (branch_current_a(record, fit.rc_time_constant_s * std::exp(log_step)) -
+                           branch_current_a(record, fit.rc_time_constant_s * std::exp(-log_step))) /
                           (2.0 * log_step);
         }
     }
@@ -249,7 +250,7 @@ std::vector<Eigen::Index> NormalEquations::columns_of(std::size_t record) const 
 
 NormalEquations normal_equations(const JointCircuitFit& joint, const FreeParameters& free) {
     NormalEquations problem;
-    problem.places = places_of(joint, free);
+    problem.places = indices_of(joint, free);
     const auto count = problem.places.count;
     problem.normal = Eigen::MatrixXd::Zero(count, count);
     problem.pull = Eigen::VectorXd::Zero(count);
@@ -307,29 +308,23 @@ NormalEquations least_squares(JointCircuitFit& joint, const FreeParameters& free
     return problem;
 }
 
-Eigen::MatrixXd inverse_of(const NormalEquations& problem) {
+ParameterErrors parameter_errors(const NormalEquations& problem, double sample_error_v) {
     Eigen::MatrixXd all_free = Eigen::MatrixXd::Identity(problem.places.count, problem.places.count);
     all_free(0, 0) = 0.0;
-    return solved(problem.normal, all_free);
-}
-
-Eigen::VectorXd change_without(const NormalEquations& problem, const Eigen::MatrixXd& inverse, const RowBlock& block) {
-    const auto columns = problem.columns_of(block.record);
-    const Eigen::MatrixXd across = inverse(Eigen::all, columns);
-    // (N - P)^-1 s with the inverse of N alone, as P has the record's columns only (Woodbury).
-    const Eigen::MatrixXd without = Eigen::MatrixXd::Identity(block.normal.rows(), block.normal.cols()) -
-                                    block.normal * across(columns, Eigen::all);
-    return -across * without.partialPivLu().solve(block.score);
-}
-
-ParameterErrors parameter_errors(const NormalEquations& problem, double sample_error_v) {
-    const auto inverse = inverse_of(problem);
+    const auto inverse = solved(problem.normal, all_free);
     const auto count = static_cast<double>(problem.blocks.size());
     ParameterErrors errors;
     errors.changes.resize(problem.places.count, std::ssize(problem.blocks));
-    for (std::size_t b = 0; b < problem.blocks.size(); ++b)
+    for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
+        // The change without a block, (N - P)^-1 s, from the inverse of N, as P has the record's columns only (Woodbury).
+        const auto& block = problem.blocks[b];
+        const auto columns = problem.columns_of(block.record);
+        const Eigen::MatrixXd across = inverse(Eigen::all, columns);
+        const Eigen::MatrixXd without = Eigen::MatrixXd::Identity(block.normal.rows(), block.normal.cols()) -
+                                        block.normal * across(columns, Eigen::all);
         errors.changes.col(static_cast<Eigen::Index>(b)) =
-            change_without(problem, inverse, problem.blocks[b]) * std::sqrt((count - 1.0) / count);
+            -across * without.partialPivLu().solve(block.score) * std::sqrt((count - 1.0) / count);
+    }
     errors.standard_error =
         errors.changes.rowwise().norm().cwiseMax(inverse.diagonal().cwiseMax(0.0).cwiseSqrt() * sample_error_v);
     return errors;

@@ -13,8 +13,8 @@
 namespace flightwatt::battery {
 namespace {
 
-constexpr double greatest_high_voltage_cell_v = 4.45;
-constexpr double min_part = 0.03;  // of the charge: less tells no capacity
+constexpr double max_high_voltage_cell_v = 4.45;
+constexpr double min_fraction = 0.03;  // of the charge: less does not determine the capacity
 constexpr double flown_fraction = 0.95;
 constexpr double added_step_percent = 5.0;
 
@@ -27,12 +27,12 @@ int lipo_cells(double resting_voltage_v) {
 void require_possible_cells(double resting_voltage_v, int cells) {
     const double cell_v = resting_voltage_v / cells;
     if (cell_v >= min_cell_voltage_v && cell_v <= max_cell_voltage_v) return;
-    const auto fewest = std::max(1, static_cast<int>(std::ceil(resting_voltage_v / max_cell_voltage_v)));
-    const auto most = std::max(fewest, static_cast<int>(resting_voltage_v / min_cell_voltage_v));
+    const auto min_cells = std::max(1, static_cast<int>(std::ceil(resting_voltage_v / max_cell_voltage_v)));
+    const auto max_cells = std::max(min_cells, static_cast<int>(resting_voltage_v / min_cell_voltage_v));
     throw UsageError(fmt::format(
         "--cells {}: the fullest flight rests at {:.3f} V, {:.3f} V a cell, and lithium cells rest at {} to {} V: "
         "expected {} to {} cells",
-        cells, resting_voltage_v, cell_v, min_cell_voltage_v, max_cell_voltage_v, fewest, most));
+        cells, resting_voltage_v, cell_v, min_cell_voltage_v, max_cell_voltage_v, min_cells, max_cells));
 }
 
 std::string cells_warning(double resting_voltage_v, int cells, bool is_given) {
@@ -51,7 +51,7 @@ std::string cells_warning(double resting_voltage_v, int cells, bool is_given) {
             cells, cell_v, chart_voltage_v(Chemistry::lipo, 100.0));
     }
     const double one_less_v = resting_voltage_v / std::max(1, cells - 1);
-    if (is_given || cells == 1 || one_less_v > greatest_high_voltage_cell_v) return "";
+    if (is_given || cells == 1 || one_less_v > max_high_voltage_cell_v) return "";
     return fmt::format(
         "{} cells assumed, at {:.2f} V each; {} full high-voltage cells rest at {:.2f} V each: give --cells", cells,
         cell_v, cells - 1, one_less_v);
@@ -73,9 +73,9 @@ Capacity estimate_capacity(double drawn_ah, std::span<const CapacityHypothesis> 
     constexpr double tail = (1.0 - confidence_level) / 2.0;
     Capacity capacity{capacity_quantile_ah(posterior, 0.5), CapacityOrigin::chart,
                       Interval{capacity_quantile_ah(posterior, tail), capacity_quantile_ah(posterior, 1.0 - tail)}};
-    if (drawn_ah < min_part * capacity.value_ah) {
+    if (drawn_ah < min_fraction * capacity.value_ah) {
         throw NoResultError(fmt::format(
-            "the flights drew {:.3f} Ah: too little to tell the capacity; give it with --capacity", drawn_ah));
+            "the flights drew {:.3f} Ah: too little to determine the capacity; give it with --capacity", drawn_ah));
     }
     if (drawn_ah >= flown_fraction * capacity.value_ah) capacity.origin = CapacityOrigin::measured;
     return capacity;
@@ -94,7 +94,7 @@ ExtendedCurve extrapolate_curve(const CircuitFit& fit, const std::vector<double>
     extended.known_down_to_percent = known_to > same_percent ? known_to : 0.0;
     extended.known_up_to_percent = known_from;
     const int cells = fit.weights.cells;
-    // A knot that the chart adds, parallel to it from one that was flown.
+    // A knot of the chart, parallel to it from a measured one.
     const auto add_knot = [&](double percent, double from_percent, double from_v, double error_v) {
         const double above_v = cells * (chart_voltage_v(chemistry, percent) - chart_voltage_v(chemistry, from_percent));
         soc.push_back(percent);
@@ -106,7 +106,7 @@ ExtendedCurve extrapolate_curve(const CircuitFit& fit, const std::vector<double>
     for (; percent < extended.known_down_to_percent - 0.5; percent += added_step_percent)
         add_knot(percent, known_to, fit.open_circuit_v.back(), standard_error_v.back());
     for (std::size_t i = fit.knots_ah.size(); i-- > 0;) {
-        // Knots beyond a capacity that was given are of no use, but for the last that is.
+        // Of the knots beyond a given capacity only the first is used.
         if (i > 0 && soc_at(fit.knots_ah[i - 1]) <= 0.0) continue;
         soc.push_back(soc_at(fit.knots_ah[i]));
         extended.curve.voltage_v.push_back(fit.open_circuit_v[i]);
@@ -115,7 +115,7 @@ ExtendedCurve extrapolate_curve(const CircuitFit& fit, const std::vector<double>
     for (percent = added_step_percent * std::ceil(known_from / added_step_percent + 0.1);
          missing_ah > 0.0 && percent <= units::percent_per_whole; percent += added_step_percent)
         add_knot(percent, known_from, fit.open_circuit_v.front(), standard_error_v.front());
-    soc.front() = 0.0;  // the last knot, where it is as good as empty
+    soc.front() = 0.0;  // the last knot, nearly empty
     soc.back() = units::percent_per_whole;
     return extended;
 }

@@ -12,12 +12,12 @@
 namespace flightwatt::battery {
 namespace {
 
-constexpr double fresh_step = 0.03;   // of the voltage: more than a pack recovers late
-constexpr double lesser_step = 0.01;  // later, or where the counter begins anew too
+constexpr double early_step = 0.03;  // of the voltage: more than a pack recovers then
+constexpr double late_step = 0.01;   // later, or at a counter reset
 constexpr double recovery_s = 5.0;
-constexpr double settled_s = 15.0;  // after which no pack recovers the lesser step
+constexpr double settled_s = 15.0;  // after which no pack recovers the late step
 constexpr std::size_t compared_samples = 5;
-constexpr double anew_fraction = 0.2;  // a counter below this part of what it was began anew
+constexpr double reset_fraction = 0.2;  // a counter that falls below this fraction was reset
 constexpr double min_counted_ah = 0.005;
 
 /// At rest or not, sample by sample.
@@ -44,7 +44,7 @@ RestMask rests_of(const PackRecord& record) {
     return mask;
 }
 
-/// By what part the resting voltage is higher from sample `at` on than before; 0 where that is not known.
+/// Relative rise of the resting voltage at sample `at`; 0 if not known.
 double step_up(const PackRecord& record, const RestMask& mask, std::size_t at, double from_s) {
     std::vector<double> before;
     std::vector<double> after;
@@ -59,9 +59,9 @@ double step_up(const PackRecord& record, const RestMask& mask, std::size_t at, d
     return (median_high(std::move(after)) - was_v) / was_v;
 }
 
-bool begins_anew(const std::vector<double>& counter_ah, std::size_t at) {
+bool is_reset(const std::vector<double>& counter_ah, std::size_t at) {
     return !counter_ah.empty() && counter_ah[at - 1] > min_counted_ah &&
-           counter_ah[at] < anew_fraction * counter_ah[at - 1];
+           counter_ah[at] < reset_fraction * counter_ah[at - 1];
 }
 
 PackRecord part_of(const PackRecord& whole, std::size_t first, std::size_t last) {
@@ -92,28 +92,26 @@ std::vector<PackRecord> split_at_pack_changes(PackRecord record, std::vector<std
     std::vector<std::size_t> starts{0};
     double missing_ah = 0.0;
     for (std::size_t i = 1; i < record.time_s.size(); ++i) {
-        const bool anew = begins_anew(logged_ah, i);
+        const bool reset = is_reset(logged_ah, i);
         const bool between_loads = mask.resting[i] && mask.since_load_s[i] > 0.0 && i < mask.last_load;
         const double rise = (record.voltage_v[i] - record.voltage_v[i - 1]) / record.voltage_v[i - 1];
-        // The step is seen from all the samples beside it: it lies where two neighbours differ by most of it, and is
-        // not looked for where they do not.
+        // The step is estimated from all samples around it; it is where two neighbours differ by most of it.
         double step = 0.0;
-        if (between_loads && rise > lesser_step / 2.0) {
-            step = step_up(record, mask, i, anew ? 0.0 : settled_s);
-            if (const double early = step_up(record, mask, i, recovery_s); early > fresh_step) step = early;
+        if (between_loads && rise > late_step / 2.0) {
+            step = step_up(record, mask, i, reset ? 0.0 : settled_s);
+            if (const double early = step_up(record, mask, i, recovery_s); early > early_step) step = early;
         }
-        if (rise > step / 2.0 && step > lesser_step) {
+        if (rise > step / 2.0 && step > late_step) {
             notes.push_back(
                 fmt::format("the pack was changed at {:.0f} s: the voltage rises from {:.2f} to {:.2f} V at "
-                            "rest{}; its discharges are told apart",
+                            "rest{}; its discharges are separated",
                             record.time_s[i], record.voltage_v[i - 1], record.voltage_v[i],
-                            anew ? " and the charge counter begins anew" : ""));
+                            reset ? " and the charge counter is reset" : ""));
             starts.push_back(i);
             missing_ah = 0.0;
-        } else if (anew) {
+        } else if (reset) {
             notes.push_back(
-                fmt::format("the charge counter begins anew at {:.0f} s, with the same pack: it goes on from "
-                            "{:.3f} Ah",
+                fmt::format("the charge counter is reset at {:.0f} s, with the same pack: continued from {:.3f} Ah",
                             record.time_s[i], logged_ah[i - 1] + missing_ah));
             missing_ah += logged_ah[i - 1] - logged_ah[i] + drawn_ah[i] - drawn_ah[i - 1];
         }

@@ -10,28 +10,13 @@ namespace flightwatt::battery {
 namespace {
 
 constexpr std::ptrdiff_t enough_blocks = 4;
-constexpr double own_parameters = 3.0;  // of a flight, that blocks of its time must determine
-constexpr double widest_ratio = 0.15;
+constexpr double own_parameters = 3.0;      // of a flight, that blocks of its time must determine
+constexpr double max_relative_error = 0.5;  // of a resistance
+constexpr double max_ratio_error = 0.15;
 
-/// How far an error of a flight's resistance moves its initial charge; none where its samples under load, by current
-/// and charge alone, do not determine the resistance.
-std::optional<double> charge_ah_per_ohm(const JointCircuitFit& worn, std::size_t f) {
-    const auto& record = *worn.records[f].record;
-    const auto knots = std::ssize(worn.fit.knots_ah);
-    const auto loaded = used_sample_count(record) - rest_sample_count(record);
-    const auto columns = rows_of(worn, f, linear_only).columns.bottomRows(loaded).eval();
-    const auto current = columns.col(knots + resistance_column);
-    const auto slope = columns.col(knots + charge_column);
-    const double squares = slope.squaredNorm();
-    const double products = slope.dot(current);
-    constexpr double nearly_one = 1.0 - 1e-6;
-    if (loaded < 2 || products * products >= nearly_one * squares * current.squaredNorm()) return std::nullopt;
-    return -products / squares;
-}
-
-/// The error of a capacity's logarithm by what no model follows: a voltage beside the curve by as much as charged packs
-/// rest beside it, over the voltage that the flight falls by on the curve.
-double unlike_others(const JointCircuitFit& worn, std::size_t f) {
+/// The model error of a capacity's logarithm: the deviation of charged packs' resting voltage from the curve, over the
+/// flight's fall on the curve.
+double log_capacity_error(const JointCircuitFit& worn, std::size_t f) {
     const auto& [record, initial_ah, rest_v, own_ohm, log_capacity] = worn.records[f];
     const auto& fit = worn.fit;
     const auto voltage_v = [&](double at_ah) { return interpolate_extended(fit.knots_ah, fit.open_circuit_v, at_ah); };
@@ -74,22 +59,17 @@ std::optional<ResistanceTrend> resistance_trend(std::span<const std::optional<Fl
         number.push_back(static_cast<double>(i));
         value_ohm.push_back(in_order[i]->value_ohm);
     }
-    constexpr std::size_t min_flights = 3;
-    if (number.size() < min_flights) return std::nullopt;
-    const double middle = mean(number);
-    const double level_ohm = mean(value_ohm);
-    double squares = 0.0;
-    double products = 0.0;
-    for (std::size_t i = 0; i < number.size(); ++i) {
-        squares += std::pow(number[i] - middle, 2);
-        products += (number[i] - middle) * (value_ohm[i] - level_ohm);
-    }
-    ResistanceTrend trend{number.size(), products / squares, {}};
-    double left = 0.0;
-    for (std::size_t i = 0; i < number.size(); ++i)
-        left += std::pow(value_ohm[i] - level_ohm - trend.ohm_per_flight * (number[i] - middle), 2);
+    if (number.size() < 3) return std::nullopt;
+    const auto as_array = [](const std::vector<double>& values) -> Eigen::ArrayXd {
+        return Eigen::Map<const Eigen::ArrayXd>(values.data(), std::ssize(values)) - mean(values);
+    };
+    const auto x = as_array(number);
+    const auto y = as_array(value_ohm);
+    ResistanceTrend trend{number.size(), (x * y).sum() / x.square().sum(), {}};
     const double degrees_of_freedom = static_cast<double>(number.size()) - 2.0;
-    const double half = student_t_half_width(degrees_of_freedom) * std::sqrt(left / degrees_of_freedom / squares);
+    const double residual_ohm2 = (y - trend.ohm_per_flight * x).square().sum();
+    const double half =
+        student_t_half_width(degrees_of_freedom) * std::sqrt(residual_ohm2 / degrees_of_freedom / x.square().sum());
     trend.interval_ohm_a_flight = {trend.ohm_per_flight - half, trend.ohm_per_flight + half};
     return trend;
 }
@@ -102,22 +82,21 @@ std::vector<FlightHealth> estimate_state_of_health(JointCircuitFit joint, bool w
     for (std::size_t f = 0; f < health.size(); ++f) {
         const auto& aligned = joint.records[f];
         const auto& places = problem.places.own[f];
-        const auto moved_ah = charge_ah_per_ohm(joint, f);
         const auto blocks = std::ranges::count(problem.blocks, f, &RowBlock::record);
-        if (blocks < enough_blocks || !moved_ah) continue;
+        if (places.initial_charge != 0) health[f].initial_charge_error_ah = errors[places.initial_charge];
+        if (blocks < enough_blocks) continue;
         FlightResistance found;
         found.value_ohm = aligned.resistance_ohm;
         found.standard_error_ohm = errors[places.resistance];
         found.degrees_of_freedom = std::max(1.0, static_cast<double>(blocks) - own_parameters);
-        found.charge_ah_per_ohm = *moved_ah;
         const double t = student_t_half_width(found.degrees_of_freedom);
         const double half_ohm = t * found.standard_error_ohm;
         found.interval_ohm = {std::max(0.0, found.value_ohm - half_ohm), found.value_ohm + half_ohm};
-        if (std::isfinite(half_ohm) && found.value_ohm > 0.0) health[f].resistance = found;
+        if (found.standard_error_ohm < max_relative_error * found.value_ohm) health[f].resistance = found;
         if (!free.own_capacities) continue;
-        const double half_log = t * std::hypot(errors[places.log_capacity], unlike_others(joint, f));
+        const double half_log = t * std::hypot(errors[places.log_capacity], log_capacity_error(joint, f));
         const double ratio = std::exp(aligned.log_capacity);
-        if (half_log <= std::log1p(widest_ratio))
+        if (half_log <= std::log1p(max_ratio_error))
             health[f].capacity = FlightCapacity{ratio, {ratio * std::exp(-half_log), ratio * std::exp(half_log)}};
     }
     return health;

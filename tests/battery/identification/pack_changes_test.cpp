@@ -164,7 +164,7 @@ TEST(PackChanges, AreNoneWhereTheSamePackFliesAgain) {
         const auto once_ah = test::discharge_columns(test::known_pack(), {}, 11).charge_ah.back();
         EXPECT_NEAR(records[0].charge_ah.back(), 2.0 * once_ah, 0.2 * once_ah);
         if (anew)
-            EXPECT_THAT(notes, ElementsAre(HasSubstr("the charge counter begins anew")));
+            EXPECT_THAT(notes, ElementsAre(HasSubstr("the charge counter is reset")));
         else
             EXPECT_THAT(notes, IsEmpty());
     }

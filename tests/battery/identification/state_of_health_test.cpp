@@ -70,19 +70,6 @@ TEST(StateOfHealth, HasTheResistanceOfTheFlight) {
     }
 }
 
-TEST(StateOfHealth, SaysHowFarItsErrorMovesTheCharge) {
-    const std::vector records{test::discharge_record(test::synthetic_discharge(test::known_pack(), {}, 51)),
-                              test::discharge_record(test::synthetic_discharge(test::known_pack(), {}, 52))};
-    for (const auto& wear : estimate_state_of_health(fit_circuit_jointly(records, 3), false)) {
-        const auto& own = wear.resistance;
-        ASSERT_TRUE(own);
-        // More resistance takes more voltage at 2.5 A; less charge missing, where the curve falls by 0.4 V/Ah, gives
-        // it.
-        EXPECT_LT(own->charge_ah_per_ohm, -2.0);
-        EXPECT_GT(own->charge_ah_per_ohm, -15.0);
-    }
-}
-
 /// The slope over the date, by least squares.
 double slope_of(const std::vector<double>& day, const std::vector<double>& value) {
     const double middle = mean(day);
