@@ -174,7 +174,7 @@ mechanical::MechanicalModel read_model(const cli::StageCall& call, const std::op
     auto model = mechanical::read_mechanical_model(call.inputs.front());
     if (cruise_s) {
         auto& cruise = model.phases[flight::Phase::cruise];
-        cruise.fourier = time_scaled_model(cruise, *cruise_s, mechanical::PhaseTimeScaling::stretched);
+        cruise.fourier = time_scaled_model(cruise, *cruise_s, mechanical::PhaseTimeScaling::scaled);
         cruise.duration_s = *cruise_s;
     }
     require_flyable(model, call.inputs.front());

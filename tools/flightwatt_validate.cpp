@@ -89,7 +89,6 @@ int flightwatt::stages::validate_stage(int argc, char** argv) {
 from their durations alone; then compares with the integral of the power that was measured. Models:
   fourier         the Fourier series of this project
   constant_mean   the other flights' mean power in the phase
-  nearest_flight  the mean power of the one flight whose durations are nearest
   physical        power from the airspeed and climb that were flown, as if they had been known before
                   (flightwatt fit --model-kind physical); where flights measured them
 With --at S: S seconds after its lift-off a flight has measured its energy up to then; the rest of

@@ -17,7 +17,7 @@ std::string c_prefix(const std::string& name);
 
 /// The model as a header for C99 and C++ that needs <math.h> alone and allocates nothing. Functions (PREFIX of
 /// c_prefix): PREFIX_duration_s, PREFIX_power_w and PREFIX_energy_j of a phase and its time, PREFIX_flown_power_w of
-/// another duration (PhaseTimeScaling::stretched), and PREFIX_motion_power_w of a physical model.
+/// another duration (PhaseTimeScaling::scaled), and PREFIX_motion_power_w of a physical model.
 std::string to_c_header(const mechanical::MechanicalModel& model);
 
 }  // namespace flightwatt::exchange

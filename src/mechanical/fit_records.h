@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-/// What is asked of a fit, and what it finds.
+/// Options and results of a fit.
 namespace flightwatt::mechanical {
 
 struct MeanCurve;
@@ -44,27 +44,26 @@ struct PhaseFit {
     double rms_w = 0.0;                ///< of all flights' residuals together
     std::size_t samples = 0;
     double autocorrelation = 0.0;     ///< of neighbouring residuals, 0 to max_autocorrelation
-    double degrees_of_freedom = 1.0;  ///< of the residuals, as if so many were independent; 1 or more
-    /// Frequencies (theta) further off than a step of the scan that fit almost as well (95 %), at most 100: where there
-    /// are any the frequency is open, and constants stand for this curve alone.
+    double degrees_of_freedom = 1.0;  ///< number of independent residuals less coefficients; 1 or more
+    /// Frequencies (theta) more than a step of the scan away that fit almost as well (95 %), at most 100: with any of them
+    /// the frequency is not determined, and the coefficients describe this curve only.
     std::vector<double> rivals_rad = {};
-    bool is_clamped = false;  ///< curves were kept from falling below 0, or below negative power that was measured
+    bool is_clamped = false;  ///< harmonics were reduced (hold_above_floor)
 };
 
-/// So many samples a flight needs at least: one more than its coefficients.
+/// Minimum number of samples of a flight: one more than its coefficients.
 constexpr std::size_t min_samples(int order) { return static_cast<std::size_t>(coefficient_count(order)) + 1; }
 
-/// Where theta may lie: from pi to 120 periods, but not so high that in some flight the highest harmonic would have less
-/// than two samples a period (of the median gap between samples), or that its two columns are so alike on the samples
-/// that noise in one direction of them is more than twice (its variance) what it is on well spread ones.
-/// Throws UsageError for an order that is none, NoResultError if the samples leave nothing of the range.
+/// The range of theta: from pi to 120 periods, and below the frequency at which, in some flight, the highest harmonic has
+/// less than two samples a period (of the median gap), or its two columns are so collinear on the samples that the noise
+/// variance of a coefficient doubles. Throws UsageError for an invalid order, NoResultError for an empty range.
 FrequencyRange admissible_frequencies(std::span<const PhaseSamples> flights, const PhaseFitOptions& options);
 
-/// How much a flight counts in the average of its phase (the w_i of Eqs. 5-7).
+/// The weight of a flight in the average of its phase (the w_i of Eqs. 5-7).
 enum class Weighting {
-    uniform,           ///< every flight the same
-    inverse_variance,  ///< samples / rms^2: flights that scatter little about their curve count more
-    agreement          ///< flights whose curve resembles the others' count more
+    uniform,           ///< equal
+    inverse_variance,  ///< samples / rms^2: flights with small residuals count more
+    agreement          ///< flights whose curve is near the others' count more
 };
 
 /// In the order of Weighting.

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double reach_s = 5.0;        // of a sample
 constexpr double edge_window_s = 2.5;  // to both sides of a bin's edge, for the airspeed there
-constexpr double steepest_turn_deg = 60.0;
+constexpr double max_bank_deg = 60.0;
 
 /// The track's values in [start_s, end_s].
 std::span<const double> values_between(const flight::Track& track, double start_s, double end_s) {
@@ -43,7 +43,7 @@ double mean_of(std::span<const double> values, const Function& function) {
     return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
 }
 
-/// What a sortie's bins are made from.
+/// The tracks of a sortie's bins.
 struct MotionTracks {
     const flight::Track& power;
     const flight::Track& airspeed;
@@ -65,15 +65,15 @@ FlightBin motion_bin(const MotionTracks& tracks, const flight::PhaseSegment& spa
     bin.start_s = span.start_s;
     bin.duration_s = span.end_s - span.start_s;
     const auto speeds = values_between(tracks.airspeed, span.start_s, span.end_s);
-    const double slowest = tracks.min_m_per_s;
+    const double min_m_per_s = tracks.min_m_per_s;
     bin.power_w =
         flight::integrated(tracks.power.time_s, tracks.power.value, span.start_s, span.end_s) / bin.duration_s;
     bin.samples = values_between(tracks.power, span.start_s, span.end_s).size();
     bin.airspeed_m_per_s = mean(speeds);
     bin.values[PowerTerm::drag] = mean_of(speeds, [](double v) { return v * v * v; });
-    bin.values[PowerTerm::induced] = mean_of(speeds, [&](double v) { return 1.0 / std::max(v, slowest); });
+    bin.values[PowerTerm::induced] = mean_of(speeds, [&](double v) { return 1.0 / std::max(v, min_m_per_s); });
     const double tan_squared = mean_of(values_between(tracks.roll, span.start_s, span.end_s), [](double roll_deg) {
-        const double bank_deg = std::min(std::abs(roll_deg), steepest_turn_deg);
+        const double bank_deg = std::min(std::abs(roll_deg), max_bank_deg);
         return std::pow(std::tan(bank_deg / units::degree_per_rad), 2);
     });
     bin.values[PowerTerm::turn] = tan_squared * bin.values[PowerTerm::induced];
@@ -84,15 +84,15 @@ FlightBin motion_bin(const MotionTracks& tracks, const flight::PhaseSegment& spa
     return bin;
 }
 
-/// Why a flight's power cannot be told by its motion; empty if it can.
-std::string why_without_motion(const flight::SelectedTracks& tracks) {
+/// Reason why a flight has no bins; empty without one.
+std::string no_bins_reason(const flight::SelectedTracks& tracks) {
     const auto& firmware = tracks.series().firmware;
-    if (firmware == "rotorcraft") return "a rotorcraft: this model is one of wings, and a hover has no airspeed";
-    if (firmware == "rover") return "a rover: it drives";
+    if (firmware == "rotorcraft") return "a rotorcraft: this model describes fixed wings";
+    if (firmware == "rover") return "a rover: this model describes fixed wings";
     if (tracks["power_w"].empty()) return "its power was not measured";
     if (tracks["altitude_m"].empty()) return "its altitude was not measured";
     if (!tracks["airspeed_m_per_s"].empty()) return "";
-    return "its airspeed was not measured: ground speed is no stand-in, in wind the cubes of both differ";
+    return "its airspeed was not measured; ground speed cannot replace it, as wind changes its cube";
 }
 
 }  // namespace
@@ -106,7 +106,7 @@ std::vector<flight::PhaseSegment> phase_spans(const flight::Sortie& sortie) {
 
 BinnedFlight bin_flight(const flight::SelectedTracks& tracks, const std::vector<flight::PhaseSegment>& spans,
                         double bin_s) {
-    BinnedFlight motion{tracks.series().flight, {}, false, why_without_motion(tracks)};
+    BinnedFlight motion{tracks.series().flight, {}, false, no_bins_reason(tracks)};
     if (!motion.no_bins_reason.empty()) return motion;
     MotionTracks of{tracks["power_w"], tracks["airspeed_m_per_s"], tracks["altitude_m"], tracks["roll_deg"]};
     std::vector<double> speeds;

@@ -14,17 +14,7 @@ namespace {
 
 constexpr double max_log_gap_s = 60.0;
 
-/// What the segmentation looks at.
-flight::FlightSeries tracks_for_segmentation(const flight::FlightSeries& series) {
-    flight::FlightSeries slim = series;
-    std::erase_if(slim.tracks, [](const flight::Track& track) {
-        return track.name != "power_w" && track.name != "altitude_m" && track.name != "throttle_percent" &&
-               track.name != "ground_speed_m_per_s" && track.name != "ground_altitude_m" && track.name != "rover_mode";
-    });
-    return slim;
-}
-
-/// The sortie as it looks from what is known; std::nullopt before its lift-off.
+/// The sortie in the log so far; std::nullopt before its lift-off.
 std::optional<flight::Sortie> sortie_of(const flight::SelectedTracks& known, std::size_t index,
                                         const flight::SegmentationOptions& options) {
     if (known["power_w"].time_s.size() < 2 || known["altitude_m"].empty()) return std::nullopt;
@@ -33,7 +23,7 @@ std::optional<flight::Sortie> sortie_of(const flight::SelectedTracks& known, std
     return std::move(phases.sorties[index]);
 }
 
-/// Of any power sample, whatever source will be chosen later.
+/// Of any power sample of any source.
 double first_sample_s(const flight::FlightSeries& series) {
     double first_s = std::numeric_limits<double>::infinity();
     for (const auto& track : series.tracks) {
@@ -55,21 +45,20 @@ double last_time_s(const flight::FlightSeries& series) {
 
 double log_time_after_lift_off(const flight::FlightSeries& series, double since_s, std::size_t sortie,
                                const flight::SegmentationOptions& options) {
-    constexpr double look_again_s = 5.0;
+    constexpr double retry_s = 5.0;
     constexpr double same_s = 1e-3;
-    const auto slim = tracks_for_segmentation(series);
-    double time_s = first_sample_s(slim) + since_s;
-    const double last_s = last_time_s(slim) + max_log_gap_s;
+    double time_s = first_sample_s(series) + since_s;
+    const double last_s = last_time_s(series) + max_log_gap_s;
     while (time_s <= last_s) {
-        const auto cut = truncate_series(slim, time_s);
+        const auto cut = truncate_series(series, time_s);
         const auto found = sortie_of(flight::SelectedTracks(cut), sortie, options);
         const double due_s =
-            found && !found->phases.empty() ? found->phases.front().start.time_s + since_s : time_s + look_again_s;
+            found && !found->phases.empty() ? found->phases.front().start.time_s + since_s : time_s + retry_s;
         if (due_s <= time_s + same_s) return time_s;
         time_s = due_s;
     }
     throw NoResultError(fmt::format("{}: the log ends at {:.0f} s, before {:.0f} s after a lift-off", series.flight,
-                                    last_time_s(slim), since_s));
+                                    last_time_s(series), since_s));
 }
 
 FlightProgress progress_at(const flight::FlightSeries& series, double until_s, std::size_t sortie_index,
@@ -89,8 +78,8 @@ FlightProgress progress_of(const flight::SelectedTracks& known, const flight::So
         throw NoResultError(
             fmt::format("{}: the log ends at {:.1f} s, before {:.1f} s", series.flight, end_s, until_s));
     }
-    const auto refuse = [&](std::string_view what) {
-        throw NoResultError(fmt::format("{}: at {:.1f} s of the log the aircraft {}", series.flight, until_s, what));
+    const auto refuse = [&](std::string_view reason) {
+        throw NoResultError(fmt::format("{}: at {:.1f} s of the log the aircraft {}", series.flight, until_s, reason));
     };
     if (sortie == nullptr || sortie->phases.empty()) refuse("has not taken off");
     const auto& first = sortie->phases.front();
@@ -101,7 +90,7 @@ FlightProgress progress_of(const flight::SelectedTracks& known, const flight::So
     if (last.phase == flight::Phase::landing && last.complete) refuse("has landed");
     flown.lift_off_s = first.start.time_s;
     flown.cruise_start_s = first.end.time_s;
-    // Whoever still climbs has just reached 90 % of the height so far: that is no cruise yet.
+    // A climbing aircraft has always just reached 90 % of its height so far: that is not a cruise yet.
     if (last.phase == flight::Phase::takeoff || flown.cruise_s() < options.hold_s) {
         refuse(fmt::format("has not held its height for {:.0f} s: expected a moment in cruise", options.hold_s));
     }

@@ -15,15 +15,15 @@ namespace {
 
 constexpr double max_edge_gap = 0.25;  // of the phase
 
-/// Why a phase cannot be fitted, whatever its samples; empty if it can.
-std::string why_excluded(const flight::PhaseSpan& span) {
-    if (!span.complete) return "the log begins or ends inside of it";
+/// Reason to exclude a phase, whatever its samples; empty without one.
+std::string exclusion_reason(const flight::PhaseSpan& span) {
+    if (!span.complete) return "the log begins or ends within it";
     const double gap_s = std::max(span.start.gap_s, span.end.gap_s);
     if (gap_s <= max_edge_gap * span.duration_s()) return "";
-    return fmt::format("its {} lies in a gap of {:.1f} s", span.start.gap_s == gap_s ? "start" : "end", gap_s);
+    return fmt::format("its {} is in a gap of {:.1f} s", span.start.gap_s == gap_s ? "start" : "end", gap_s);
 }
 
-std::string why_too_few(const PhaseSamples& samples, std::size_t needed) {
+std::string too_few_reason(const PhaseSamples& samples, std::size_t needed) {
     if (samples.tau.size() >= needed) return "";
     return fmt::format("{} samples, {} are needed", samples.tau.size(), needed);
 }
@@ -86,12 +86,12 @@ MeasuredFlights extract_flights(const flight::FlightSeries& series, const flight
         for (const auto& span : sortie.phases) {
             const double start_s = span.start.time_s;
             auto samples = samples_of(tracks["power_w"], span, flight.samples.flight);
-            auto why = why_excluded(span);
+            auto reason = exclusion_reason(span);
             const auto statistics = statistics_of_power.between(start_s, span.end.time_s);
-            if (why.empty()) flight.power[span.phase] = power_over(tracks["power_w"], span, statistics);
-            if (why.empty()) why = why_too_few(samples, needed_samples);
-            if (!why.empty()) {
-                measured.exclusions.push_back({flight.samples.flight, span.phase, std::move(why)});
+            if (reason.empty()) flight.power[span.phase] = power_over(tracks["power_w"], span, statistics);
+            if (reason.empty()) reason = too_few_reason(samples, needed_samples);
+            if (!reason.empty()) {
+                measured.exclusions.push_back({flight.samples.flight, span.phase, std::move(reason)});
                 continue;
             }
             flight.energy_wh[span.phase] = statistics.energy_wh;
@@ -118,9 +118,9 @@ void exclude_short_phases(MeasuredFlights& measured, std::size_t needed_samples)
         auto& flight = measured.flights[i];
         for (const auto phase : flight::all_phases) {
             auto& samples = flight.samples.phases[phase];
-            auto why = samples ? why_too_few(*samples, needed_samples) : "";
-            if (why.empty()) continue;
-            kept.exclusions.push_back({flight.samples.flight, phase, std::move(why)});
+            auto reason = samples ? too_few_reason(*samples, needed_samples) : "";
+            if (reason.empty()) continue;
+            kept.exclusions.push_back({flight.samples.flight, phase, std::move(reason)});
             samples.reset();
             flight.energy_wh[phase].reset();
             flight.counter_energy_wh[phase].reset();

@@ -30,23 +30,14 @@ void use_mean_power(MechanicalModel& model, flight::Phase phase) {
 
 void warn_of_negative_power(std::string_view phase, const PhaseModel& fitted, std::vector<std::string>& warnings) {
     const auto points = curve_point_count(fitted.fourier, fitted.duration_s);
-    const double step_s = fitted.duration_s / static_cast<double>(points);
-    double min_w = power_w(fitted.fourier, 0.0);
-    double min_at_s = 0.0;
-    std::size_t below = 0;
-    for (std::size_t i = 0; i <= points; ++i) {
-        const double time_s = static_cast<double>(i) * step_s;
-        const double power = power_w(fitted.fourier, time_s);
-        if (power < 0.0) ++below;
-        if (power >= min_w) continue;
-        min_w = power;
-        min_at_s = time_s;
-    }
-    if (below == 0) return;
+    const auto curve = curve_w(fitted.fourier, fitted.duration_s, points);
+    const auto below = static_cast<double>(std::ranges::count_if(curve, [](double power) { return power < 0.0; }));
+    if (below == 0.0) return;
     warnings.push_back(fmt::format(
-        "{}: the curve falls to {:.3g} W ({:.1f} s after the phase began), below 0 for {:.1f} of {:.1f} s, "
-        "and no drone takes energy back: another order or more flights may mend it",
-        phase, min_w, min_at_s, std::min(static_cast<double>(below) * step_s, fitted.duration_s), fitted.duration_s));
+        "{}: the curve falls to {:.3g} W, and is below 0 for {:.1f} of {:.1f} s: implausible without regeneration; try "
+        "another order or more flights",
+        phase, *std::ranges::min_element(curve), below / static_cast<double>(points) * fitted.duration_s,
+        fitted.duration_s));
 }
 
 }  // namespace
@@ -87,7 +78,7 @@ double energy_j(const FourierModel& model, double time_s) {
 
 FourierModel time_scaled_model(const PhaseModel& phase, double flown_s, PhaseTimeScaling clock) {
     FourierModel flown = phase.fourier;
-    if (clock == PhaseTimeScaling::stretched) flown.omega_rad_per_s *= phase.duration_s / flown_s;
+    if (clock == PhaseTimeScaling::scaled) flown.omega_rad_per_s *= phase.duration_s / flown_s;
     return flown;
 }
 
@@ -142,10 +133,7 @@ double rms_difference_w(const PhaseModel& a, const PhaseModel& b) {
 
 std::vector<std::string> model_warnings(const MechanicalModel& model) {
     std::vector<std::string> warnings;
-    for (const auto phase : flight::all_phases) {
-        const auto& fitted = model.phases[phase];
-        warn_of_negative_power(to_string(phase), fitted, warnings);
-    }
+    for (const auto phase : flight::all_phases) warn_of_negative_power(to_string(phase), model.phases[phase], warnings);
     return warnings;
 }
 
@@ -153,22 +141,18 @@ std::vector<std::string> fit_notes(const MechanicalModel& model) {
     std::vector<std::string> notes;
     for (const auto phase : flight::all_phases) {
         const auto& fitted = model.phases[phase];
-        if (fitted.edge_samples > 0) {
-            notes.push_back(
-                fmt::format("{}: {} sample{} left out at its ends: the power is that of the neighbouring phase",
-                            to_string(phase), fitted.edge_samples, fitted.edge_samples == 1 ? " was" : "s were"));
-        }
-        if (fitted.open_frequency) {
-            notes.push_back(
-                fmt::format("{}: the samples leave the frequency open: the coefficients stand for this curve alone",
-                            to_string(phase)));
-        }
-        if (fitted.not_negative) {
-            notes.push_back(fmt::format(
-                "{}: the curve would fall below 0 W, or below the negative power that was measured, and was "
-                "held above",
-                to_string(phase)));
-        }
+        const auto note = [&](const std::string& text) {
+            notes.push_back(fmt::format("{}: {}", to_string(phase), text));
+        };
+        if (fitted.edge_samples > 0)
+            note(fmt::format("{} sample{} left out at its ends: the power is that of the neighbouring phase",
+                             fitted.edge_samples, fitted.edge_samples == 1 ? " was" : "s were"));
+        if (fitted.open_frequency)
+            note("the samples do not determine the frequency: the coefficients describe this curve only");
+        if (fitted.not_negative)
+            note(
+                "the curve would fall below 0 W, or below the negative power that was measured: its harmonics were "
+                "reduced");
     }
     return notes;
 }

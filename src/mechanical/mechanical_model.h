@@ -27,11 +27,11 @@ double power_w(const FourierModel& model, double time_s);
 /// The integral of f from 0 to `time_s` [J], in closed form.
 double energy_j(const FourierModel& model, double time_s);
 
-/// Which end of its range a frequency stands at.
+/// The end of its range that a frequency has reached.
 enum class FrequencyBound { none, low, high };
 std::string_view to_string(FrequencyBound bound);
 
-/// Where the frequency of a fit was allowed to be, as omega * duration [rad].
+/// The admissible frequencies of a fit, as omega * duration [rad].
 struct FrequencyRange {
     double low_rad = 0.0;   ///< below, the basis becomes collinear
     double high_rad = 0.0;  ///< above, the third harmonic is faster than the samples
@@ -49,9 +49,9 @@ struct CoefficientIntervals {
     std::vector<Interval> sin_w;
 };
 
-/// How well the noise of the samples lets a phase's averaged coefficients be known, about: standard errors of the weighted
-/// mean of these very flights, weights and durations taken as given, at all frequencies that fit (analyse_errors). How
-/// flights differ is another question: see FlightEnvelope.
+/// Standard errors of a phase's averaged coefficients from the noise of the samples, approximate: of the weighted mean of
+/// these flights, with weights and durations given, at all admissible frequencies (analyse_errors). For the differences
+/// between flights see FlightEnvelope.
 struct PhaseErrors {
     double omega_rad_per_s = 0.0;
     double a0_w = 0.0;
@@ -59,28 +59,28 @@ struct PhaseErrors {
     std::vector<double> sin_w;
     double curve_w = 0.0;             ///< root mean square over the phase of the curve's own standard error
     double degrees_of_freedom = 0.0;  ///< of their Student's t
-    /// The errors hold for the frequency as given: the curve is a constant, or (of files of 0.2) it stands at a bound.
+    /// The errors are conditional on the frequency: the curve is a constant, or (in files of 0.2) at a bound.
     bool frequency_is_fixed = false;
     double r2 = 0.0;                 ///< of all samples about their own flights' curves and means
     double condition = 0.0;          ///< of the basis on the samples, columns of length 1; the worst flight's
     double autocorrelation = 0.0;    ///< of neighbouring residuals
-    double effective_samples = 0.0;  ///< independent samples that would tell the mean as well
+    double effective_samples = 0.0;  ///< independent samples with the same information on the mean
 };
 
-/// How the flights' own curves differ over the phase, at evenly spread parts of it from begin to end.
+/// Variability of the flights' own curves over the phase, at evenly spread fractions of it from begin to end.
 struct FlightEnvelope {
     std::vector<double> low_w;                 ///< the least of the flights that count (the paper's grey band)
     std::vector<double> high_w;                ///< the greatest of them
     std::vector<double> standard_deviation_w;  ///< of one flight about the weighted mean
-    double effective_flights = 0.0;            ///< 1 / sum of squared weights: equal flights worth as much
+    double effective_flights = 0.0;            ///< 1 / sum of squared weights
 };
 
-/// How the flights of one phase differ from the model and change meanwhile: what a prediction's interval needs.
+/// Variability of one phase between and within flights, for the interval of a prediction.
 struct VarianceComponents {
-    std::size_t flights = 0;           ///< 2 or more: what the standard deviation between them rests on
+    std::size_t flights = 0;           ///< 2 or more
     double between_flight_sd_w = 0.0;  ///< of the flights' mean powers
     double drift_sd_w = 0.0;           ///< of the power about the curve at the flight's own level
-    double correlation_s = 0.0;        ///< for how long that deviation lasts (exponential correlation)
+    double correlation_s = 0.0;        ///< of that deviation (exponential correlation)
 };
 
 /// A phase's power as one constant.
@@ -95,7 +95,7 @@ struct PhaseModel;
 /// The coefficients' intervals by Student's t, that of the frequency within its range. The phase must have errors.
 CoefficientIntervals coefficient_intervals(const PhaseModel& phase);
 
-/// One phase of the model: the flights' weighted average (Eqs. 5-7) and what it rests on.
+/// One phase of the model: the flights' weighted average (Eqs. 5-7) and its basis.
 struct PhaseModel {
     FourierModel fourier;
     double duration_s = 0.0;      ///< weighted average duration
@@ -103,9 +103,10 @@ struct PhaseModel {
     std::optional<FrequencyRange> range;
     std::size_t samples = 0;
     std::size_t flights = 0;
-    std::size_t edge_samples = 0;  ///< left out at the phase's ends: their power is the neighbouring phase's
-    bool open_frequency = false;   ///< other frequencies fit almost as well: the constants stand for this curve alone
-    bool not_negative = false;     ///< the curve was kept from falling below 0, or below negative power measured
+    std::size_t edge_samples = 0;  ///< excluded at the phase's ends: their power is the neighbouring phase's
+    bool open_frequency = false;   ///< other frequencies fit almost as well: the coefficients describe this curve only
+    bool not_negative =
+        false;  ///< the harmonics were reduced, as the curve fell below 0, or below negative power measured
     std::optional<PhaseErrors> errors = {};     ///< absent unless they were asked for
     std::optional<FlightEnvelope> spread = {};  ///< absent too where a single flight counts
     /// Absent with fewer than 2 flights, or if published without.
@@ -126,14 +127,14 @@ struct FlightContribution {
     flight::PerPhase<std::optional<PhaseContribution>> phases;
 };
 
-/// How one model predicted flights that were left out of the fit.
+/// Errors of one model on hold-out flights.
 struct HeldOutScore {
     std::string model;  ///< as leave_one_out calls it
     std::size_t flights = 0;
     double mean_absolute_error_percent = 0.0;  ///< of the flights' energy
 };
 
-/// How the models of a file predict flights (validation_of).
+/// Cross-validation of the models of a file (validation_of).
 struct ModelValidation {
     bool prefers_curve = false;        ///< to the mean power of each phase, where nothing states an airspeed
     std::vector<HeldOutScore> scores;  ///< without rejected models
@@ -149,31 +150,30 @@ struct MechanicalModel {
     std::string weighting;    ///< "uniform", "inverse-variance", "agreement", "by hand" or "published"
     flight::PerPhase<PhaseModel> phases;
     std::vector<FlightContribution> flights;
-    std::optional<PhysicalModel> physical = {};      ///< power of the motion, beside that of time; absent unless fitted
+    std::optional<PhysicalModel> physical = {};      ///< power by motion; absent unless fitted
     std::optional<ModelValidation> validation = {};  ///< absent in files of fit, and of earlier versions
 };
 
-/// The model with the power that missions use: each phase's mean power, every flight counting the same, if its
-/// validation does not prefer the curve.
+/// The model with the power that missions use: each phase's mean power, of equally weighted flights, if its validation
+/// does not prefer the curve.
 MechanicalModel with_default_power(MechanicalModel model);
 
-/// How a phase flown in another time than the model's is read.
+/// The time scale of a phase with another duration than the model's.
 enum class PhaseTimeScaling {
-    stretched,  ///< the curve is stretched or squeezed to the time flown
-    absolute    ///< the curve runs on in the model's own seconds
+    scaled,   ///< the curve is scaled to the phase's duration
+    absolute  ///< the curve continues in the model's own seconds
 };
 
 /// The curve of `phase` when the phase takes `flown_s` seconds.
 FourierModel time_scaled_model(const PhaseModel& phase, double flown_s, PhaseTimeScaling clock);
 
-/// fits/mechanical/NAME.toml. Reading throws InputError with its place for a missing or unknown key, other
-/// numbers of cosines than sines, a duration or frequency that is not positive, a count that is not whole, a
-/// weight outside [0, 1], or errors and spreads that cannot be.
+/// fits/mechanical/NAME.toml (docs/formats.md). Reading throws InputError with its location for a missing, unknown or
+/// invalid key.
 MechanicalModel read_mechanical_model(const std::filesystem::path& path);
 std::string to_toml(const MechanicalModel& model);
 
-/// How many evenly spread points show every swing of the series over `duration_s`: 16 a period of its highest
-/// harmonic, and at least 1000.
+/// Number of evenly spread points that resolve the series over `duration_s`: 16 a period of its highest harmonic, and at
+/// least 1000.
 std::size_t curve_point_count(const FourierModel& model, double duration_s);
 
 /// f [W] at the middles of `points` equal parts of the phase.
@@ -183,12 +183,11 @@ std::vector<double> curve_w(const FourierModel& model, double duration_s, std::s
 /// curves are compared at equal parts of the phase, whatever the seconds.
 double rms_difference_w(const PhaseModel& a, const PhaseModel& b);
 
-/// What a user should know of a model before it is used, a line each: a phase whose curve falls below 0 W, where a
-/// drone takes no energy back.
+/// Warnings for users, a line each: a phase whose curve falls below 0 W.
 std::vector<std::string> model_warnings(const MechanicalModel& model);
 
-/// How the fit came to its curves where that is not least squares of all samples, a line each: samples that were left
-/// out, a frequency that these leave open, a curve that was held above 0 W.
+/// Deviations of the fit from least squares of all samples, a line each: samples excluded, a frequency that is not
+/// determined, a curve with reduced harmonics.
 std::vector<std::string> fit_notes(const MechanicalModel& model);
 
 }  // namespace flightwatt::mechanical

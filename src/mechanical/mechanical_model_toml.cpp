@@ -23,7 +23,7 @@ void list_sizes(TomlFields& fields, std::string_view key, std::vector<double>& v
                          fmt::format("{} has {} numbers, expected {}: {}", key, values.size(), count, because));
     for (const double value : values)
         if (value < 0.0)
-            throw InputError(fields.source()->where(key), fmt::format("{} holds {}, which is negative", key, value));
+            throw InputError(fields.source()->where(key), fmt::format("{} contains {}, which is negative", key, value));
 }
 
 void list_errors(TomlFields& fields, PhaseErrors& errors, std::size_t order) {
@@ -45,19 +45,14 @@ void list_errors(TomlFields& fields, PhaseErrors& errors, std::size_t order) {
 }
 
 void list_envelope(TomlFields& fields, FlightEnvelope& spread) {
-    fields.line("# how the flights differ, at evenly spread parts of the phase from begin to end");
+    fields.line("# variability of the flights, at evenly spread fractions of the phase from begin to end");
     fields.reals("low_w", spread.low_w);
     fields.reals("high_w", spread.high_w);
     if (const auto* table = fields.source()) {
-        if (spread.low_w.size() < 2 || spread.high_w.size() != spread.low_w.size())
-            throw InputError(table->where("high_w"),
-                             fmt::format("low_w has {} numbers and high_w {}, expected as many of each, two or more",
-                                         spread.low_w.size(), spread.high_w.size()));
-        for (std::size_t i = 0; i < spread.low_w.size(); ++i) {
-            if (spread.high_w[i] >= spread.low_w[i]) continue;
-            throw InputError(table->where("high_w"), fmt::format("number {} of high_w, {}, is below low_w's, {}", i + 1,
-                                                                 spread.high_w[i], spread.low_w[i]));
-        }
+        const auto& [low_w, high_w, sd_w, flights] = spread;
+        if (low_w.size() < 2 || !std::ranges::equal(low_w, high_w, std::less_equal<>()))
+            throw InputError(table->where("high_w"), "high_w does not fit low_w",
+                             "expected two numbers or more in each, none of high_w below that of low_w");
     }
     list_sizes(fields, "standard_deviation_w", spread.standard_deviation_w, spread.low_w.size(),
                "as many as low_w has");
@@ -85,9 +80,9 @@ void list_variance(TomlFields& fields, VarianceComponents& spread) {
     fields.real("correlation_s", spread.correlation_s, more_than(0.0));
 }
 
-/// What earlier versions wrote: a law that was asked for changed predictions, the others served airspeeds that missions
-/// state, which need [physical] now.
-void read_what_was_removed(const TomlTable& phase) {
+/// Keys of earlier versions. A level law changed predictions; the others served airspeeds of missions, which need
+/// [physical] now.
+void read_removed_keys(const TomlTable& phase) {
     if (phase.is_table("level_law"))
         throw InputError(phase.where("level_law"), "a level law: cruises follow no covariate any more",
                          "remove it: the cruise has the flights' average level; or fit by airspeed and climb: "
@@ -118,7 +113,7 @@ void list_phase(TomlFields& fields, PhaseModel& phase) {
     if (fields.has("open_frequency", phase.open_frequency)) fields.flag("open_frequency", phase.open_frequency);
     if (fields.has("not_negative", phase.not_negative)) fields.flag("not_negative", phase.not_negative);
     fields.optional_table("level_spread", phase.level_spread, list_variance);
-    if (table != nullptr) read_what_was_removed(*table);
+    if (table != nullptr) read_removed_keys(*table);
     if (phase.errors) fields.line("");
     const auto list_of_order = [order](TomlFields& of, PhaseErrors& errors) { list_errors(of, errors, order); };
     fields.optional_table("errors", phase.errors, list_of_order, TomlLayout::section);
@@ -190,30 +185,27 @@ void require_term(const TomlTable& table, const std::vector<TermRow>& rows, std:
 
 /// Symmetric, and no combination of the terms with a variance below 0.
 void require_covariance(const PhysicalModel& model, const TomlTable& table) {
-    const auto count = static_cast<Eigen::Index>(model.terms.size());
-    Eigen::MatrixXd correlation(count, count);
+    const auto count = std::ssize(model.terms);
+    Eigen::MatrixXd covariance(count, count);
+    for (Eigen::Index i = 0; i < count; ++i)
+        covariance.row(i) =
+            Eigen::Map<const Eigen::RowVectorXd>(model.covariance[static_cast<std::size_t>(i)].data(), count);
     constexpr double rounding = 1e-6;
-    for (std::size_t i = 0; i < model.terms.size(); ++i) {
-        for (std::size_t j = 0; j < model.terms.size(); ++j) {
-            const double scale = std::sqrt(std::abs(model.covariance[i][i] * model.covariance[j][j]));
-            const double value = model.covariance[i][j];
-            if (std::abs(value - model.covariance[j][i]) > rounding * scale)
-                throw InputError(
-                    table.where("terms"),
-                    fmt::format("the covariance of {} and {} is {}, that of {} and {} is {}", to_string(model.terms[i]),
-                                to_string(model.terms[j]), value, to_string(model.terms[j]), to_string(model.terms[i]),
-                                model.covariance[j][i]),
-                    "a covariance matrix is symmetric");
-            correlation(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
-                scale > 0.0 ? value / scale : (value == 0.0 ? 0.0 : std::copysign(2.0, value));
-        }
-        if (model.covariance[i][i] < 0.0)
-            throw InputError(table.where("terms"), fmt::format("the variance of {} is {}: expected 0 or more",
-                                                               to_string(model.terms[i]), model.covariance[i][i]));
-    }
+    const Eigen::VectorXd sds = covariance.diagonal().cwiseAbs().cwiseSqrt();
+    const Eigen::MatrixXd scale = sds * sds.transpose();
+    if (((covariance - covariance.transpose()).array().abs() > rounding * scale.array()).any())
+        throw InputError(table.where("terms"), "the covariance matrix is not symmetric",
+                         "expected the same covariance of two terms in both rows");
+    for (Eigen::Index i = 0; i < count; ++i)
+        if (covariance(i, i) < 0.0)
+            throw InputError(table.where("terms"),
+                             fmt::format("the variance of {} is {}: expected 0 or more",
+                                         to_string(model.terms[static_cast<std::size_t>(i)]), covariance(i, i)));
+    const Eigen::MatrixXd correlation =
+        (scale.array() > 0.0).select(covariance.array() / scale.array(), 2.0 * covariance.array().sign());
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation, Eigen::EigenvaluesOnly);
     if (solver.eigenvalues().minCoeff() >= -rounding) return;
-    throw InputError(table.where("terms"), "the covariances are larger than the variances let them be");
+    throw InputError(table.where("terms"), "the covariances are larger than the variances allow");
 }
 
 void list_terms(TomlFields& fields, PhysicalModel& model) {
@@ -274,7 +266,7 @@ void list_model(TomlFields& fields, MechanicalModel& model) {
     fields.tables("flights", model.flights, list_flight);
     if (model.validation)
         fields.line(
-            "\n# How far off each model was on flights left out of the fit in turn. Missions use default_model where they\n"
+            "\n# Errors of each model on hold-out flights. Missions use default_model where they\n"
             "# state no airspeed");
     fields.optional_table("validation", model.validation, list_validation, TomlLayout::section);
     if (model.physical)

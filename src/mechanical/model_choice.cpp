@@ -1,4 +1,4 @@
-// Which of the models of a file a mission uses, by flights that were left out of the fit.
+// The choice between the models of a file for missions, by cross-validation.
 
 #include "base/error.h"
 #include "mechanical/physical_fit.h"
@@ -40,7 +40,7 @@ double error_wh(const ValidatedFlight& flight, const std::string& model) {
 
 bool is_curve_better(std::span<const ValidatedFlight> flights, const HeldOutScore& of_curve,
                      const HeldOutScore& of_mean) {
-    if (of_curve.mean_absolute_error_percent > (1.0 - least_gain_of_curve) * of_mean.mean_absolute_error_percent)
+    if (of_curve.mean_absolute_error_percent > (1.0 - min_gain_of_curve) * of_mean.mean_absolute_error_percent)
         return false;
     const auto nearer = std::ranges::count_if(
         flights, [](const auto& flight) { return error_wh(flight, curve) < error_wh(flight, mean_model); });

@@ -25,34 +25,16 @@ Contributions contributions_of(const MechanicalModel& model, flight::Phase phase
     return found;
 }
 
-/// Whether both are of one flight's phase, by what no way to fit it changes: names may be given twice.
+/// Whether both are of one flight's phase, by quantities that no fit option changes: a name may be used twice.
 bool is_of_one_flight(const PhaseContribution& a, const PhaseContribution& b) {
     constexpr double rounding = 1e-6;
     return a.samples == b.samples && std::abs(a.duration_s - b.duration_s) <= rounding * a.duration_s;
 }
 
-/// Of two weighted means of independent values: sum over the shared flights of w_a w_b v, over the root of both sums of
-/// w^2 v. `variance` may be known up to a factor.
-double correlation_of(const Contributions& a, const Contributions& b,
-                      const std::function<double(const PhaseContribution&)>& variance) {
-    const auto own = [&](const Contributions& flights) {
-        double sum = 0.0;
-        for (const auto& [name, flight] : flights) sum += flight.weight * flight.weight * variance(flight);
-        return sum;
-    };
-    double shared = 0.0;
-    for (const auto& [name, flight] : a) {
-        const auto other = b.find(name);
-        if (other == b.end() || !is_of_one_flight(flight, other->second)) continue;
-        shared += flight.weight * other->second.weight * std::sqrt(variance(flight) * variance(other->second));
-    }
-    const auto both = std::sqrt(own(a) * own(b));
-    return both > 0.0 ? std::clamp(shared / both, 0.0, 1.0) : 0.0;
-}
-
-/// Of a flight's coefficients by the noise of its samples, up to a factor that all flights share.
-double noise_variance(const PhaseContribution& flight) {
-    return flight.rms_w * flight.rms_w / static_cast<double>(std::max<std::size_t>(1, flight.samples));
+/// Correlation of two estimates that share flights, of equal weights.
+double correlation_of(std::size_t shared, std::size_t flights_a, std::size_t flights_b) {
+    if (shared == 0) return 0.0;
+    return static_cast<double>(shared) / std::sqrt(static_cast<double>(flights_a * flights_b));
 }
 
 /// `value` with the interval that the flights' own values give their weighted mean; none from fewer than two.
@@ -80,6 +62,7 @@ struct PhasePair {
     Contributions flights_a;
     Contributions flights_b;
     std::string part;
+    double correlation = 0.0;
 };
 
 /// Adds the row, with its interval if both estimates have theirs.
@@ -109,23 +92,21 @@ std::vector<std::optional<Estimate>> coefficients_of(const PhaseModel& phase, st
 }
 
 void add_coefficients(std::vector<Difference>& all, const PhasePair& pair) {
-    const auto correlation = correlation_of(pair.flights_a, pair.flights_b, noise_variance);
     const auto order = std::max(pair.a.fourier.cos_w.size(), pair.b.fourier.cos_w.size());
     const auto a = coefficients_of(pair.a, order);
     const auto b = coefficients_of(pair.b, order);
     for (std::size_t i = 0; i + 1 < a.size(); ++i) {
         auto quantity = fmt::format("{}{}_w", i > 0 && i % 2 == 0 ? 'b' : 'a', (i + 1) / 2);
-        add_row(all, {pair.part, std::move(quantity), "W", a[i], b[i]}, correlation, DifferenceBasis::noise);
+        add_row(all, {pair.part, std::move(quantity), "W", a[i], b[i]}, pair.correlation, DifferenceBasis::noise);
     }
-    add_row(all, {pair.part, "omega_rad_per_s", "rad/s", a.back(), b.back()}, correlation, DifferenceBasis::noise);
+    add_row(all, {pair.part, "omega_rad_per_s", "rad/s", a.back(), b.back()}, pair.correlation, DifferenceBasis::noise);
 }
 
 void add_means(std::vector<Difference>& all, const PhasePair& pair) {
-    const auto correlation = correlation_of(pair.flights_a, pair.flights_b, [](const auto&) { return 1.0; });
     const auto add = [&](const char* quantity, const char* unit, const auto& of_model, const auto& of_flight) {
         const auto a = mean_of_flights(of_model(pair.a), pair.flights_a, of_flight);
         const auto b = mean_of_flights(of_model(pair.b), pair.flights_b, of_flight);
-        add_row(all, {pair.part, quantity, unit, a, b}, correlation, DifferenceBasis::flights);
+        add_row(all, {pair.part, quantity, unit, a, b}, pair.correlation, DifferenceBasis::flights);
     };
     const auto energy = [](const PhaseModel& phase) { return energy_j(phase.fourier, phase.duration_s); };
     add(
@@ -142,7 +123,7 @@ void add_means(std::vector<Difference>& all, const PhasePair& pair) {
         });
 }
 
-/// The curves at equal parts of the phase, where they are furthest apart. Files hold no error of one place of a curve.
+/// The curves at equal parts of the phase, where they are furthest apart; without interval, as files have no error there.
 Difference curve_difference(const PhasePair& pair) {
     const auto points = std::max(curve_point_count(pair.a.fourier, pair.a.duration_s),
                                  curve_point_count(pair.b.fourier, pair.b.duration_s));
@@ -162,22 +143,21 @@ std::optional<Estimate> term_of(const std::optional<PhysicalModel>& model, Power
     if (found == model->terms.end()) return std::nullopt;
     const auto i = static_cast<std::size_t>(found - model->terms.begin());
     const auto value = model->coefficients[term];
-    if (!model->level_sd) return Estimate{value, std::nullopt};  // a single flight's covariance tells too little
+    if (!model->level_sd) return Estimate{value, std::nullopt};  // a single flight has no variability
     return Estimate{value, student_t_interval(value, std::sqrt(model->covariance[i][i]), model->degrees_of_freedom)};
 }
 
-/// `both` are the flights that both models rest on.
+/// `shared` are the flights of both models.
 void add_physical(std::vector<Difference>& all, const std::optional<PhysicalModel>& a,
-                  const std::optional<PhysicalModel>& b, const std::vector<std::string>& both) {
+                  const std::optional<PhysicalModel>& b, const std::vector<std::string>& shared) {
     double correlation = 0.0;
-    if (a && b && !a->flights.empty() && !b->flights.empty()) {
-        const auto rests_on = [](const PhysicalModel& model, const std::string& name) {
+    if (a && b) {
+        const auto is_in = [](const PhysicalModel& model, const std::string& name) {
             return std::ranges::find(model.flights, name) != model.flights.end();
         };
-        const auto shared =
-            std::ranges::count_if(both, [&](const auto& name) { return rests_on(*a, name) && rests_on(*b, name); });
-        correlation =
-            static_cast<double>(shared) / std::sqrt(static_cast<double>(a->flights.size() * b->flights.size()));
+        const auto count =
+            std::ranges::count_if(shared, [&](const auto& name) { return is_in(*a, name) && is_in(*b, name); });
+        correlation = correlation_of(static_cast<std::size_t>(count), a->flights.size(), b->flights.size());
     }
     for (const auto term : all_power_terms) {
         const auto of_a = term_of(a, term);
@@ -193,12 +173,12 @@ void add_physical(std::vector<Difference>& all, const std::optional<PhysicalMode
 std::optional<Interval> interval_of_difference(const Estimate& a, const Estimate& b, double correlation) {
     if (!a.interval || !b.interval) return std::nullopt;
     const auto reach = [&](double of_a, double of_b) {
-        const auto x = std::max(0.0, of_a);  // a mean over frequencies may lie beside its interval
+        const auto x = std::max(0.0, of_a);  // a mean over frequencies may be outside its interval
         const auto y = std::max(0.0, of_b);
         return std::sqrt(std::max(0.0, x * x + y * y - 2.0 * correlation * x * y));
     };
     const auto difference = b.value - a.value;
-    // The same estimate of the same flights: sides that differ would leave a width at correlation 1.
+    // The same estimate of the same flights: an asymmetric interval would leave a width at correlation 1.
     constexpr double rounding = 1e-12;
     const auto is_same =
         a.value == b.value && a.interval->low == b.interval->low && a.interval->high == b.interval->high;
@@ -238,14 +218,20 @@ std::vector<std::string> shared_flights(const MechanicalModel& a, const Mechanic
 
 std::vector<Difference> model_difference(const MechanicalModel& a, const MechanicalModel& b) {
     std::vector<Difference> all;
+    const auto shared = shared_flights(a, b);
     for (const auto phase : flight::all_phases) {
-        const PhasePair pair{a.phases[phase], b.phases[phase], contributions_of(a, phase), contributions_of(b, phase),
-                             std::string(to_string(phase))};
+        PhasePair pair{a.phases[phase], b.phases[phase], contributions_of(a, phase), contributions_of(b, phase),
+                       std::string(to_string(phase))};
+        const auto count = std::ranges::count_if(shared, [&](const std::string& name) {
+            return pair.flights_a.contains(name) && pair.flights_b.contains(name);
+        });
+        pair.correlation =
+            correlation_of(static_cast<std::size_t>(count), pair.flights_a.size(), pair.flights_b.size());
         add_coefficients(all, pair);
         add_means(all, pair);
         all.push_back(curve_difference(pair));
     }
-    add_physical(all, a.physical, b.physical, shared_flights(a, b));
+    add_physical(all, a.physical, b.physical, shared);
     return all;
 }
 

@@ -9,7 +9,7 @@
 
 namespace flightwatt::mechanical {
 
-/// An estimate and, where its file tells, its 95 % interval.
+/// An estimate and, where its file has one, its 95 % interval.
 struct Estimate {
     double value = 0.0;
     std::optional<Interval> interval;
@@ -19,11 +19,11 @@ struct Estimate {
 /// Zou 2007). std::nullopt where one has none.
 std::optional<Interval> interval_of_difference(const Estimate& a, const Estimate& b, double correlation);
 
-/// What a difference's interval is about.
+/// The cause of a difference's interval.
 enum class DifferenceBasis {
-    noise,    ///< of the samples: would these very flights, measured again, give the same coefficient
-    flights,  ///< how flights differ: would other flights of the same aircraft give the same mean
-    none      ///< no interval: the files do not tell
+    noise,    ///< noise of the samples of these flights
+    flights,  ///< variability between flights of the same aircraft
+    none      ///< no interval: the files have none
 };
 std::string to_string(DifferenceBasis basis);
 
@@ -44,11 +44,11 @@ std::optional<double> difference_of(const Difference& difference);
 /// Whether its interval excludes 0; std::nullopt without one.
 std::optional<bool> is_significant(const Difference& difference);
 
-/// The flights that both models rest on: of one name, with phases as long and of as many samples.
+/// The flights of both models: of one name, with phases as long and of as many samples.
 std::vector<std::string> shared_flights(const MechanicalModel& a, const MechanicalModel& b);
 
-/// Phase by phase coefficients, duration, mean power, energy and where the curves are furthest apart; then the terms of
-/// the physical models. Flights that both rest on correlate the estimates, and narrow the interval of the difference
+/// Coefficients, duration, mean power, energy and the maximum difference of the curves of each phase; then the terms of
+/// the physical models. Shared flights correlate the estimates, and narrow the interval of the difference
 /// (docs/methods.md, Two models).
 std::vector<Difference> model_difference(const MechanicalModel& a, const MechanicalModel& b);
 

@@ -13,32 +13,45 @@
 namespace flightwatt::mechanical {
 namespace {
 
-/// So many parts of a phase from its begin to its end, 0 to 1.
-std::vector<double> even_parts(std::size_t points) {
-    std::vector<double> parts(points);
-    for (std::size_t i = 0; i < points; ++i) parts[i] = static_cast<double>(i) / static_cast<double>(points - 1);
-    return parts;
+/// `points` fractions of a phase, from 0 to 1.
+std::vector<double> even_fractions(std::size_t points) {
+    std::vector<double> fractions(points);
+    for (std::size_t i = 0; i < points; ++i) fractions[i] = static_cast<double>(i) / static_cast<double>(points - 1);
+    return fractions;
+}
+
+CurveBand band_of(const PhaseModel& model, const ErrorAnalysis& analysis, const std::vector<double>& taus) {
+    CurveBand band;
+    for (const double tau : taus) {
+        band.time_s.push_back(tau * model.duration_s);
+        const auto [low, high] =
+            student_t_interval(power_w(model.fourier, band.time_s.back()), curve_standard_error_w(analysis, tau),
+                               analysis.errors.degrees_of_freedom);
+        band.low_95_w.push_back(low);
+        band.high_95_w.push_back(high);
+    }
+    return band;
 }
 
 void add_curve(CsvWriter& csv, const ModelFit& fit, flight::Phase phase, const ErrorAnalysis& analysis) {
     const auto& model = fit.model.phases[phase];
     const auto points = curve_point_count(model.fourier, model.duration_s) / 5 + 1;
     const auto spread = compute_envelope(fit.fits[phase], fit.weights[phase], points);
-    const auto taus = even_parts(points);
+    const auto taus = even_fractions(points);
+    const auto band = band_of(model, analysis, taus);
     const double half_width = student_t_half_width(analysis.errors.degrees_of_freedom);
-    const double population_wide = spread ? student_t_half_width(spread->effective_flights - 1.0) : 0.0;
     for (std::size_t i = 0; i < points; ++i) {
-        const double tau = taus[i];
-        const double time_s = tau * model.duration_s;
-        const double power = power_w(model.fourier, time_s);
-        const double error = curve_standard_error_w(analysis, tau);
+        const double power = power_w(model.fourier, band.time_s[i]);
+        const double error = (band.high_95_w[i] - power) / half_width;
         std::array<std::optional<double>, 5> of_flights;
         if (spread) {
-            const double reach = population_wide * population_standard_error_w(*spread, i);
-            of_flights = {spread->low_w[i], spread->high_w[i], spread->standard_deviation_w[i], power - reach,
-                          power + reach};
+            // The mean of all flights like these, of which these are a sample.
+            const double flights = spread->effective_flights;
+            const double sd_w = spread->standard_deviation_w[i];
+            const auto population = student_t_interval(power, sd_w / std::sqrt(flights), flights - 1.0);
+            of_flights = {spread->low_w[i], spread->high_w[i], sd_w, population.low, population.high};
         }
-        csv.add(to_string(phase), tau, time_s, power, error, power - half_width * error, power + half_width * error,
+        csv.add(to_string(phase), taus[i], band.time_s[i], power, error, band.low_95_w[i], band.high_95_w[i],
                 of_flights[0], of_flights[1], of_flights[2], of_flights[3], of_flights[4]);
     }
 }
@@ -51,7 +64,7 @@ std::optional<FlightEnvelope> compute_envelope(const PhaseFit& fit, std::span<co
     if (weights.size() < 2) return std::nullopt;
     FlightEnvelope spread;
     spread.effective_flights = 1.0 / squares;
-    for (const double tau : even_parts(points)) {
+    for (const double tau : even_fractions(points)) {
         std::vector<double> powers;
         for (const auto& flight : fit.flights) powers.push_back(power_w(flight.fourier, tau * flight.duration_s));
         const double mean = std::inner_product(weights.begin(), weights.end(), powers.begin(), 0.0);
@@ -63,10 +76,6 @@ std::optional<FlightEnvelope> compute_envelope(const PhaseFit& fit, std::span<co
         spread.standard_deviation_w.push_back(std::sqrt(square_sum / (1.0 - squares)));
     }
     return spread;
-}
-
-double population_standard_error_w(const FlightEnvelope& spread, std::size_t i) {
-    return spread.standard_deviation_w[i] / std::sqrt(spread.effective_flights);
 }
 
 flight::PerPhase<ErrorAnalysis> analyse_model(ModelFit& fit) {
@@ -83,18 +92,8 @@ flight::PerPhase<CurveBand> curve_bands(const ModelFit& fit, const flight::PerPh
     constexpr std::size_t points = 101;
     flight::PerPhase<CurveBand> bands;
     for (const auto phase : flight::all_phases) {
-        const auto& fitted = fit.model.phases[phase];
-        const auto& analysis = analyses[phase];
         auto& band = bands[phase];
-        const auto taus = even_parts(points);
-        for (const double tau : taus) band.time_s.push_back(fitted.duration_s * tau);
-        for (const double tau : taus) {
-            const auto [low, high] =
-                student_t_interval(power_w(fitted.fourier, tau * fitted.duration_s),
-                                   curve_standard_error_w(analysis, tau), analysis.errors.degrees_of_freedom);
-            band.low_95_w.push_back(low);
-            band.high_95_w.push_back(high);
-        }
+        band = band_of(fit.model.phases[phase], analyses[phase], even_fractions(points));
         if (const auto spread = compute_envelope(fit.fits[phase], fit.weights[phase], points)) {
             band.flights_low_w = spread->low_w;
             band.flights_high_w = spread->high_w;

@@ -34,11 +34,11 @@ std::string described(const ModelFitOptions& options, std::size_t flights) {
                        flights == 1 ? "" : "s", options.phases.order, to_string(options.weighting), FLIGHTWATT_VERSION);
 }
 
-/// Power beyond any aircraft's overflows on the way; a model of that is none.
-void refuse_what_is_no_number(flight::Phase phase, const FourierModel& model) {
+/// Impossibly large power overflows.
+void require_finite(flight::Phase phase, const FourierModel& model) {
     if (coefficients_of(model).allFinite()) return;
-    throw NoResultError(fmt::format("{}: the fit's coefficients are no numbers; is the power of all samples possible?",
-                                    to_string(phase)));
+    throw NoResultError(
+        fmt::format("{}: the fit's coefficients are not finite: check the power of all samples", to_string(phase)));
 }
 
 }  // namespace
@@ -65,15 +65,15 @@ void cache_scans(std::span<FlightSamples> flights, const ModelFitOptions& option
         try {
             range = admissible_frequencies(samples, options.phases);
         } catch (const NoResultError&) {
-            continue;  // as the fits will say
+            continue;  // the fits report it
         }
         for_each_in_parallel(flights.size(), [&](std::size_t i) {
             auto& own = flights[i].phases[phase];
             if (!own) return;
-            ScaledSamples values{own->tau, own->power_w};
-            const double mean_w = mean(values.value);
-            for (double& value : values.value) value -= mean_w;
-            own->scan = std::make_shared<const FlightScan>(scan_flight(values, options.phases.order, *range));
+            auto centred = *own;
+            const double mean_w = mean(own->power_w);
+            for (double& power_w : centred.power_w) power_w -= mean_w;
+            own->scan = std::make_shared<const FrequencyScan>(scan_flight(centred, options.phases.order, *range));
         });
     }
 }
@@ -85,7 +85,7 @@ FittedPhase fit_phase_model(flight::Phase phase, std::span<const PhaseSamples> f
     fitted.weights = flight_weights(fitted.fit, options.weighting);
     fitted.model = average_phase(fitted.fit, fitted.weights);
     for (const auto& samples : flights) fitted.model.edge_samples += samples.edge_samples;
-    refuse_what_is_no_number(phase, fitted.model.fourier);
+    require_finite(phase, fitted.model.fourier);
     fitted.model.level_spread = estimate_variance_components(fitted.model, flights);
     return fitted;
 }

@@ -28,7 +28,7 @@ struct FittedPhase {
 FittedPhase fit_phase_model(flight::Phase phase, std::span<const PhaseSamples> flights,
                             const ModelFitOptions& options = {});
 
-/// A model with what it was made of, flight by flight: what an analysis of its errors needs.
+/// A model with its fits and samples, flight by flight, for the analysis of its errors.
 struct ModelFit {
     MechanicalModel model;
     flight::PerPhase<std::vector<PhaseSamples>> samples;
@@ -39,15 +39,14 @@ struct ModelFit {
 /// The flights that have the phase, in their order, under their flights' names.
 std::vector<PhaseSamples> samples_of_phase(std::span<const FlightSamples> flights, flight::Phase phase);
 
-/// Keeps with the samples what each flight contributes to the scan for the frequency (PhaseSamples::scan), so that fits
-/// to most of these flights need not make it again. A phase that cannot be fitted keeps nothing.
+/// Stores each flight's frequency scan with its samples (PhaseSamples::scan), for fits to most of these flights. Phases
+/// that cannot be fitted have none.
 void cache_scans(std::span<FlightSamples> flights, const ModelFitOptions& options);
 
-/// The mechanical power of a flight from several flights (Eqs. 1-7): each phase is fitted over the flights
-/// that have it and averaged with their weights. A phase's rms_w is that of the samples about their own
-/// flights' curves. Throws NoResultError naming a phase that no flight has, or a flight with too few samples
-/// in a phase (min_samples tells beforehand; such a phase may be excluded), UsageError for a flight given
-/// twice, and what fit_phase throws.
+/// The mechanical power of a flight from several flights (Eqs. 1-7): each phase is fitted over the flights that have it
+/// and averaged with their weights. A phase's rms_w is that of the samples about their own flights' curves. Throws
+/// NoResultError naming a phase that no flight has, or a flight with too few samples in a phase (min_samples), UsageError
+/// for a flight given twice, and as fit_phase.
 ModelFit fit_model(std::span<const FlightSamples> flights, const ModelFitOptions& options = {});
 
 /// The series of the model's order and frequency which is nearest (least squares) to `power_w` at the parts `tau`

@@ -2,69 +2,81 @@
 
 #include "base/error.h"
 #include "base/statistics.h"
-#include "mechanical/physical/student_t.h"
 #include "mechanical/physical/term_choice.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 
 #include <fmt/format.h>
 
 namespace flightwatt::mechanical {
 namespace {
 
-/// How far the power of a flight with these mean terms (over column_scale) is off, for its level and the coefficients,
-/// at each node.
-std::vector<double> node_sds_w(const PowerPosterior& posterior, const ColumnVector& mean, const ColumnVector& terms) {
-    std::vector<double> sds;
-    for (std::size_t i = 0; i < posterior.fits.size(); ++i) {
-        const auto& fit = posterior.fits[i];
-        const double power_w = fit.coefficients.dot(terms);
-        const double level_w = posterior.nodes[i].level_sd * power_w;
-        const double off_w = power_w - mean.dot(terms);
-        sds.push_back(std::sqrt(level_w * level_w + terms.dot(fit.covariance * terms) + off_w * off_w));
+/// Half width of the central part of a mixture of normal distributions with mean 0.
+double mixture_half_width(const std::vector<double>& sds, const std::vector<double>& weights, double probability) {
+    constexpr int bisections = 60;
+    double low = 0.0;
+    double high = 20.0 * *std::ranges::max_element(sds);
+    for (int i = 0; i < bisections; ++i) {
+        const double middle = std::midpoint(low, high);
+        double outside = 0.0;
+        for (std::size_t n = 0; n < sds.size(); ++n)
+            if (sds[n] > 0.0) outside += weights[n] * std::erfc(middle / sds[n] / std::numbers::sqrt2);
+        (outside > 1.0 - probability ? low : high) = middle;
     }
-    return sds;
+    return high;
 }
 
-double weighted_square(const std::vector<double>& values, const std::vector<double>& weights) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < values.size(); ++i) sum += weights[i] * values[i] * values[i];
-    return sum;
+/// Degrees of freedom, 1 to 200, of the Student's t with this ratio of the half widths of 95 % and of 68 %.
+double degrees_of_freedom_of(double ratio, double inner_probability) {
+    constexpr int bisections = 60;
+    double low = 0.0;  // logarithms
+    double high = std::log(200.0);
+    for (int i = 0; i < bisections; ++i) {
+        const double middle = std::exp(std::midpoint(low, high));
+        const bool is_wider = student_t_half_width(middle) / student_t_half_width(middle, inner_probability) > ratio;
+        (is_wider ? low : high) = std::log(middle);
+    }
+    return std::exp(low);
 }
 
-/// The grid's fits as one record: the means of coefficients and squared levels, and one scale and degrees of freedom
-/// which make a Student's t of a typical flight's mixture.
+/// The posterior as one record: means of coefficients and squared level sds, scaled to a Student's t with the posterior's
+/// 68 and 95 % intervals for the power of a typical flight.
 void summarise(PhysicalModel& model, const PowerPosterior& posterior, const TermValues& typical) {
-    const auto scale = column_scale();
-    const auto count = model.terms.size();
     const ColumnVector mean = mean_coefficients(posterior);
-    ColumnVector terms(mean.size());
-    for (std::size_t i = 0; i < count; ++i)
-        terms[static_cast<Eigen::Index>(i)] = typical[model.terms[i]] / scale[static_cast<int>(model.terms[i])];
-    double shrink = 1.0;
-    if (model.flights.size() > 1) {
-        const auto sds_w = node_sds_w(posterior, mean, terms);
-        const auto t = fit_student_t(sds_w, posterior.weights);
-        shrink = t.scale * t.scale / weighted_square(sds_w, posterior.weights);
-        std::vector<double> levels;
-        for (const auto& node : posterior.nodes) levels.push_back(node.level_sd);
-        model.level_sd = std::sqrt(shrink * weighted_square(levels, posterior.weights));
-        model.degrees_of_freedom = t.degrees_of_freedom;
-    }
+    const ColumnVector terms = as_columns(typical)(columns_of(model.terms));
     ColumnMatrix covariance = ColumnMatrix::Zero(mean.size(), mean.size());
+    double level_variance = 0.0;
+    double variance_w2 = 0.0;
+    std::vector<double> sds_w;
     for (std::size_t n = 0; n < posterior.fits.size(); ++n) {
-        const ColumnVector off = posterior.fits[n].coefficients - mean;
-        covariance += shrink * posterior.weights[n] * (posterior.fits[n].covariance + off * off.transpose());
+        const auto& fit = posterior.fits[n];
+        const ColumnVector off = fit.coefficients - mean;
+        const ColumnMatrix own = fit.covariance + off * off.transpose();
+        const double level = posterior.nodes[n].level_sd;
+        const double own_w2 = std::pow(level * fit.coefficients.dot(terms), 2) + terms.dot(own * terms);
+        covariance += posterior.weights[n] * own;
+        level_variance += posterior.weights[n] * level * level;
+        variance_w2 += posterior.weights[n] * own_w2;
+        sds_w.push_back(std::sqrt(own_w2));
     }
-    model.covariance.assign(count, std::vector<double>(count, 0.0));
-    for (std::size_t i = 0; i < count; ++i) {
+    if (model.flights.size() > 1) {
+        constexpr double inner_probability = 0.6827;
+        const double inner_w = mixture_half_width(sds_w, posterior.weights, inner_probability);
+        const double outer_w = mixture_half_width(sds_w, posterior.weights, confidence_level);
+        model.degrees_of_freedom = degrees_of_freedom_of(inner_w > 0.0 ? outer_w / inner_w : 0.0, inner_probability);
+        const double sd_w = outer_w / student_t_half_width(model.degrees_of_freedom);
+        const double scale = variance_w2 > 0.0 ? sd_w * sd_w / variance_w2 : 1.0;
+        covariance *= scale;
+        model.level_sd = std::sqrt(scale * level_variance);
+    }
+    for (std::size_t i = 0; i < model.terms.size(); ++i) {
         const auto row = static_cast<Eigen::Index>(i);
-        const double row_scale = scale[static_cast<int>(model.terms[i])];
-        model.coefficients[model.terms[i]] = mean[row] / row_scale;
-        for (std::size_t j = 0; j < count; ++j)
-            model.covariance[i][j] =
-                covariance(row, static_cast<Eigen::Index>(j)) / row_scale / scale[static_cast<int>(model.terms[j])];
+        model.coefficients[model.terms[i]] = mean[row];
+        auto& cells = model.covariance.emplace_back();
+        for (Eigen::Index column = 0; column < mean.size(); ++column) cells.push_back(covariance(row, column));
     }
     model.correlation_s = posterior.nodes[posterior.likeliest].correlation_s;
     model.drift_sd_w = std::sqrt(posterior.fits[posterior.likeliest].drift_variance_w2);
@@ -82,7 +94,7 @@ void add_value(FlownRange& range, double value, bool first) {
     range.high = first ? value : std::max(range.high, value);
 }
 
-/// What the model rests on.
+/// The flights, bins and ranges of motion that the model rests on.
 void describe_flights(PhysicalModel& model, std::span<const BinnedFlight> flights) {
     std::vector<double> cruise_speeds;
     std::vector<double> cruise_cubes;
@@ -113,17 +125,17 @@ void describe_flights(PhysicalModel& model, std::span<const BinnedFlight> flight
     model.cubic_mean_airspeed_m_per_s = std::cbrt(mean(cruise_cubes));
 }
 
-/// A sum of squares of so many normal numbers differs between flights as their drifts' variances do (2 / v is its
-/// relative variance): at most the independent stretches of drift, less what the coefficients took.
+/// From the differences of drift variances between flights: the relative variance of a variance is 2 / v. At most the
+/// number of independent intervals less the coefficients.
 double drift_degrees_of_freedom(const PhysicalModel& model, const std::vector<double>& variances_w2) {
-    const double stretches =
+    const double intervals =
         static_cast<double>(model.bins) * model.bin_s / std::max(2.0 * model.correlation_s, model.bin_s);
-    const double most = std::max(1.0, stretches - static_cast<double>(model.terms.size()));
-    if (variances_w2.size() < 2 || !(mean(variances_w2) > 0.0)) return most;
+    const double max = std::max(1.0, intervals - static_cast<double>(model.terms.size()));
+    if (variances_w2.size() < 2 || !(mean(variances_w2) > 0.0)) return max;
     const auto flights = static_cast<double>(variances_w2.size());
     const double relative = sample_variance(variances_w2) / std::pow(mean(variances_w2), 2);
-    const double by_chance = 2.0 * flights / most;
-    return std::clamp(2.0 / std::max(relative - by_chance, 2.0 / most), std::min(flights - 1.0, most), most);
+    const double by_chance = 2.0 * flights / max;
+    return std::clamp(2.0 / std::max(relative - by_chance, 2.0 / max), std::min(flights - 1.0, max), max);
 }
 
 PhysicalModel fit_terms(std::span<const BinnedFlight> flights, const PowerRegression& regression,
@@ -133,7 +145,7 @@ PhysicalModel fit_terms(std::span<const BinnedFlight> flights, const PowerRegres
     std::ranges::sort(model.terms);
     describe_flights(model, flights);
     const auto posterior = regression.posterior(columns_of(model.terms));
-    if (!posterior) throw NoResultError("the flights' motion does not determine a power model: it hardly varies");
+    if (!posterior) throw NoResultError("the flights' motion varies too little to determine a power model");
     summarise(model, *posterior, typical_values(flights));
     model.drift_degrees_of_freedom = drift_degrees_of_freedom(model, posterior->drift_variances_w2);
     return model;
@@ -160,19 +172,19 @@ PhysicalFit fit_physical_model(std::span<const BinnedFlight> flights) {
     if (moving.empty()) {
         std::string reasons;
         for (const auto& [flight, reason] : fit.skipped) reasons += fmt::format("; {}: {}", flight, reason);
-        throw NoResultError("no flight tells how its power follows its motion" + reasons);
+        throw NoResultError("no flight has power and motion to fit" + reasons);
     }
     constexpr std::size_t min_bins = 10;
     if (bins < min_bins) {
         throw NoResultError(
-            fmt::format("{} stretches of {:.0f} s with power, airspeed and altitude: a physical model "
+            fmt::format("{} intervals of {:.0f} s with power, airspeed and altitude: a physical model "
                         "needs {} or more",
                         bins, default_bin_s, min_bins));
     }
     const PowerRegression regression(moving);
     auto choice = select_terms(moving, regression);
     if (choice.terms.empty())
-        throw NoResultError("power follows neither the airspeed's cube nor a constant: are power and airspeed sound?");
+        throw NoResultError("power follows neither the airspeed's cube nor a constant: check power and airspeed");
     fit.trials = std::move(choice.trials);
     fit.folds = choice.folds;
     fit.folds_are_flights = moving.size() > 1;

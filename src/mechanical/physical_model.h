@@ -9,21 +9,21 @@
 
 namespace flightwatt::mechanical {
 
-/// How an aircraft on wings moves through the air.
+/// The motion of a fixed-wing aircraft through the air.
 struct FlightState {
     double airspeed_m_per_s = 0.0;
     double climb_m_per_s = 0.0;  ///< below 0 it descends
     double load_factor = 1.0;    ///< lift over weight: 1 / cos(bank) in a level turn
 };
 
-/// What power is a sum of, each a coefficient times a value of the motion.
+/// The terms of the power, each a coefficient times a value of the motion.
 enum class PowerTerm {
     drag,      ///< V^3: form and friction drag
     induced,   ///< 1 / V: the drag of lift in straight flight
     turn,      ///< (n^2 - 1) / V: what a turn adds to it
     climb,     ///< climb rate, both ways: m g / efficiency
-    descent,   ///< climb rate below 0, on top of `climb`: what a descent gives back less
-    constant,  ///< what does not depend on the motion
+    descent,   ///< climb rate below 0, in addition to `climb`: a descent returns less
+    constant,  ///< independent of the motion
 };
 
 inline constexpr std::size_t power_term_count = 6;
@@ -62,17 +62,17 @@ struct FlownRange {
 ///     power(t) = (1 + level) * sum over the terms of coefficient * value  +  drift(t)       [W]
 /// level: of a flight, the same throughout; drift: within a flight, with exponential correlation.
 struct PhysicalModel {
-    std::vector<PowerTerm> terms;                 ///< those that were kept
-    TermValues coefficients;                      ///< 0 for a term that was not
+    std::vector<PowerTerm> terms;                 ///< of the model
+    TermValues coefficients;                      ///< 0 for other terms
     std::vector<std::vector<double>> covariance;  ///< of the coefficients of `terms`, in their order
 
-    /// Standard deviation of a flight's level, as a part of its power; absent from a single flight, which does not tell
-    /// how flights differ. With `degrees_of_freedom` the scale of a Student's t.
+    /// Standard deviation of a flight's level, relative to its power: the scale of a Student's t with
+    /// `degrees_of_freedom`. Absent for a single flight.
     std::optional<double> level_sd;
     double degrees_of_freedom = 0.0;
 
     double drift_sd_w = 0.0;     ///< of means over bin_s
-    double correlation_s = 1.0;  ///< for how long a drift lasts
+    double correlation_s = 1.0;  ///< of the drift
     double drift_degrees_of_freedom = 1.0;
 
     double bin_s = 0.0;  ///< the time over which power and motion were averaged for the fit
@@ -87,8 +87,7 @@ struct PhysicalModel {
     std::optional<double> cubic_mean_airspeed_m_per_s = {};
 };
 
-/// The power of a motion [W], 0 where the terms sum to less: in a steep descent the motor stands, and gives nothing
-/// back. What term_values throws.
+/// The power of a motion [W], 0 where the terms sum to less: the motor does not regenerate energy. Throws as term_values.
 double power_w(const PhysicalModel& model, const FlightState& motion);
 
 /// The sum of the terms [W], which may be below 0: the means over a time of the terms give the mean power.
@@ -113,20 +112,19 @@ double variance_of_mean_w2(const DriftProcess& drift, double duration_s);
 /// Covariance [W^2] of the means over two durations, the second of which follows the first.
 double covariance_of_means_w2(const DriftProcess& drift, double first_s, double second_s);
 
-/// How far the mean power of a flight not seen may be from what the model says, over `duration_s` with these mean
-/// values of the terms: the flight's own level, its drift, and that the coefficients come from few flights
-/// (docs/methods.md, Power from airspeed and climb). std::nullopt for a model of a single flight.
+/// Uncertainty of a new flight's mean power over `duration_s` with these mean values of the terms: level, drift and
+/// coefficients (docs/methods.md, Power from airspeed and climb). std::nullopt for a model of a single flight.
 std::optional<PowerUncertainty> prediction_uncertainty(const PhysicalModel& model, const TermValues& mean_values,
                                                        double duration_s);
 
-/// Whether the model's flights flew so: what lies outside is extrapolated.
+/// Whether the motion is within the range of the model's flights.
 bool is_within_flown_range(const PhysicalModel& model, const FlightState& motion);
 
-/// A term that the fit tried, and what became of it.
+/// A term that the fit tried, and the result.
 struct TermTrial {
     PowerTerm term = PowerTerm::drag;
     bool kept = false;
-    std::optional<double> rms_before_w;  ///< error of what was held back, without the term; absent if it was not tried
+    std::optional<double> rms_before_w;  ///< hold-out error without the term; absent if it was not tried
     std::optional<double> rms_after_w;   ///< and with it
     std::string reason;                  ///< why it was dropped, or could not be tried; empty if it was kept
 };

@@ -12,75 +12,24 @@
 namespace flightwatt::mechanical {
 namespace {
 
-/// What was expected of a cruise, in flight.
-struct Expectation {
-    double flown_w = 0.0;
-    double remaining_w = 0.0;
-    double level_sd_w = 0.0;
-    double weight_square_sum = 1.0;
-    double degrees_of_freedom = 1.0;  ///< of level_sd_w
-    double shape_flown_w = 0.0;       ///< what the curve says beyond `measured_w`, where its shape is not believed
-    double shape_remaining_w = 0.0;
-};
-
-Expectation expect_by_curve(const WeightedPhase& cruise, double flown_s, double remaining_s) {
-    const double duration_s = flown_s + remaining_s;
-    const auto curve = time_scaled_model(cruise.model, duration_s, PhaseTimeScaling::stretched);
-    const double flown_j = energy_j(curve, flown_s);
-    const auto& spread = *cruise.model.level_spread;
-    return {flown_j / flown_s, (energy_j(curve, duration_s) - flown_j) / remaining_s, spread.between_flight_sd_w,
-            cruise.weight_square_sum, static_cast<double>(spread.flights - 1)};
-}
-
-Expectation expect(const WeightedPhase& cruise, const FlightProgress& flown, double remaining_s, CruisePrior source) {
-    const double flown_s = flown.cruise_s();
-    auto expected = expect_by_curve(cruise, flown_s, remaining_s);
-    if (source == CruisePrior::curve) return expected;
-    const double mean_w = (expected.flown_w * flown_s + expected.remaining_w * remaining_s) / (flown_s + remaining_s);
-    expected.shape_flown_w = expected.flown_w - mean_w;
-    expected.shape_remaining_w = expected.remaining_w - mean_w;
-    expected.flown_w = expected.remaining_w = mean_w;
-    return expected;
-}
-
-/// The variances [W^2] of the mean powers x (flown) and y (remaining) less what was expected, by their causes.
-struct Variances {
+/// Variances [W^2] of the mean powers of the flown and the remaining cruise about their expectation.
+struct CruiseVariances {
     double level_w2 = 0.0;
     double flown_drift_w2 = 0.0;
     double remaining_drift_w2 = 0.0;
     double drift_covariance_w2 = 0.0;
+    double flown_w2() const { return level_w2 + flown_drift_w2; }
 };
 
-/// To first order: level and drift are themselves estimated, with relative variances 2 / degrees of freedom,
-/// and the gain changes oppositely with the logarithms of both.
-double variance_of_gain(const Variances& of, double level_degrees_of_freedom, double drift_degrees_of_freedom) {
-    const double flown_w2 = of.level_w2 + of.flown_drift_w2;
-    if (!(flown_w2 > 0.0)) return 0.0;
-    const double change = of.level_w2 * (of.flown_drift_w2 - of.drift_covariance_w2) / (flown_w2 * flown_w2);
-    return change * change * (2.0 / level_degrees_of_freedom + 2.0 / drift_degrees_of_freedom);
+/// Variance of the gain times the flown mean, to first order: the estimates of level and drift have relative variances 2
+/// / degrees of freedom, and the gain changes oppositely with the logarithms of both.
+double gain_variance_w2(const CruiseVariances& of, double degrees_of_freedom) {
+    if (!(of.flown_w2() > 0.0)) return 0.0;
+    const double change_w = of.level_w2 * (of.flown_drift_w2 - of.drift_covariance_w2) / of.flown_w2();
+    return change_w * change_w / of.flown_w2() * 4.0 / degrees_of_freedom;
 }
 
-/// The variance of the error y - gain x, share by share (docs/methods.md, Eq. 20).
-void add_shares(RemainingCruise& rest, const Expectation& expected, const Variances& of,
-                double drift_degrees_of_freedom, double remaining_s) {
-    const double wh2_per_w2 = std::pow(units::wh_from_joule(remaining_s), 2);
-    const double gain = rest.gain;
-    auto& energy = rest.energy;
-    const double average = 1.0 + expected.weight_square_sum;
-    const double kept = 1.0 - gain;
-    const double drift_w2 =
-        std::max(0.0, of.remaining_drift_w2 - 2.0 * gain * of.drift_covariance_w2 + gain * gain * of.flown_drift_w2);
-    const double gain_w2 =
-        (of.level_w2 + of.flown_drift_w2) * variance_of_gain(of, expected.degrees_of_freedom, drift_degrees_of_freedom);
-    const double shape_w = expected.shape_remaining_w - gain * expected.shape_flown_w;
-    add_variance(energy, {average * kept * kept * of.level_w2 * wh2_per_w2, expected.degrees_of_freedom});
-    add_variance(energy, {average * drift_w2 * wh2_per_w2, drift_degrees_of_freedom});
-    add_variance(energy, {shape_w * shape_w * wh2_per_w2, drift_degrees_of_freedom});
-    add_variance(energy,
-                 {average * gain_w2 * wh2_per_w2, std::min(expected.degrees_of_freedom, drift_degrees_of_freedom)});
-}
-
-/// Half the 95 % interval of a phase's mean power, where it is known.
+/// Half width of the 95 % interval of a phase's mean power, where it is known.
 std::optional<double> mean_power_half_width_w(const WeightedPhase& phase, std::size_t flights) {
     const auto& model = phase.model;
     if (flights > 1 && model.level_spread)
@@ -159,7 +108,7 @@ EnergyEstimate energy_of(const ConstantPower& power, double duration_s) {
 
 EnergyEstimate predict_remaining_before_flight(const WeightedPhase& phase, double flown_s, double remaining_s) {
     const double duration_s = flown_s + remaining_s;
-    const auto curve = time_scaled_model(phase.model, duration_s, PhaseTimeScaling::stretched);
+    const auto curve = time_scaled_model(phase.model, duration_s, PhaseTimeScaling::scaled);
     const double rest_j = energy_j(curve, duration_s) - energy_j(curve, flown_s);
     EnergyEstimate estimate{units::wh_from_joule(rest_j), phase.model.level_spread.has_value(), 0.0, 0.0};
     if (!phase.model.level_spread) return estimate;
@@ -170,28 +119,44 @@ EnergyEstimate predict_remaining_before_flight(const WeightedPhase& phase, doubl
 }
 
 RemainingCruise predict_remaining_cruise(const WeightedPhase& cruise, const FlightProgress& flown, double remaining_s,
-                                         CruisePrior source) {
-    if (!cruise.model.level_spread) {
-        throw NoResultError("the model does not say how flights differ: fit two flights or more");
-    }
+                                         CruisePrior prior) {
+    if (!cruise.model.level_spread)
+        throw NoResultError("the model has no variability between flights: fit two flights or more");
     RemainingCruise rest;
     if (remaining_s == 0.0) return rest;
     const double flown_s = flown.cruise_s();
-    const auto expected = expect(cruise, flown, remaining_s, source);
+    const double duration_s = flown_s + remaining_s;
+    const auto curve = time_scaled_model(cruise.model, duration_s, PhaseTimeScaling::scaled);
+    const double flown_j = energy_j(curve, flown_s);
+    const double whole_j = energy_j(curve, duration_s);
+    const double mean_w = whole_j / duration_s;
+    const double curve_flown_w = flown_j / flown_s;
+    const double curve_remaining_w = (whole_j - flown_j) / remaining_s;
+    const bool by_curve = prior == CruisePrior::curve;
     const auto& spread = *cruise.model.level_spread;
     const DriftProcess drift{spread.drift_sd_w, spread.correlation_s};
-    const Variances of{expected.level_sd_w * expected.level_sd_w, variance_of_mean_w2(drift, flown_s),
-                       variance_of_mean_w2(drift, remaining_s), covariance_of_means_w2(drift, flown_s, remaining_s)};
-    const double flown_w2 = of.level_w2 + of.flown_drift_w2;
-    // Flights that are all alike, without any drift: the model is right, whatever is measured.
-    rest.gain = flown_w2 > 0.0 ? std::min((of.level_w2 + of.drift_covariance_w2) / flown_w2, 1.0) : 0.0;
-    rest.expected_w = expected.flown_w;
+    const CruiseVariances of{spread.between_flight_sd_w * spread.between_flight_sd_w,
+                             variance_of_mean_w2(drift, flown_s), variance_of_mean_w2(drift, remaining_s),
+                             covariance_of_means_w2(drift, flown_s, remaining_s)};
+    // Without any variance between and within flights the model holds, whatever is measured.
+    const double gain =
+        of.flown_w2() > 0.0 ? std::min((of.level_w2 + of.drift_covariance_w2) / of.flown_w2(), 1.0) : 0.0;
+    rest.gain = gain;
+    rest.expected_w = by_curve ? curve_flown_w : mean_w;
     rest.measured_w = units::joule_from_wh(flown.cruise_energy_wh) / flown_s;
-    rest.remaining_mean_w = expected.remaining_w + rest.gain * (rest.measured_w - rest.expected_w);
+    rest.remaining_mean_w = (by_curve ? curve_remaining_w : mean_w) + gain * (rest.measured_w - rest.expected_w);
     rest.energy.energy_wh = units::wh_from_joule(rest.remaining_mean_w * remaining_s);
-    // How much a flight drifts differs from flight to flight, so many samples are no more than their flights;
-    // and the curve, their average, takes one.
-    add_shares(rest, expected, of, static_cast<double>(spread.flights - 1), remaining_s);
+    // The error's independent causes (docs/methods.md, Eq. 20). All rest on the flights, less one for their average: the
+    // drift differs between flights, so that more samples of a flight do not count more.
+    const auto freedom = static_cast<double>(spread.flights - 1);
+    const double average = 1.0 + cruise.weight_square_sum;
+    const double drift_w2 =
+        std::max(0.0, of.remaining_drift_w2 - 2.0 * gain * of.drift_covariance_w2 + gain * gain * of.flown_drift_w2);
+    const double shape_w = by_curve ? 0.0 : curve_remaining_w - mean_w - gain * (curve_flown_w - mean_w);
+    const double wh2_per_w2 = std::pow(units::wh_from_joule(remaining_s), 2);
+    for (const double variance_w2 : {average * (1.0 - gain) * (1.0 - gain) * of.level_w2, average * drift_w2,
+                                     shape_w * shape_w, average * gain_variance_w2(of, freedom)})
+        add_variance(rest.energy, {variance_w2 * wh2_per_w2, freedom});
     return rest;
 }
 
@@ -207,7 +172,7 @@ EnergyEstimate predict_physical(const PhysicalModel& model, const TermValues& me
 
 std::vector<RemainingCruise> predict_remaining_physical(const PhysicalModel& model, const FlightProgress& flown,
                                                         std::span<const MotionAhead> ahead) {
-    if (!model.level_sd) throw NoResultError("the physical model does not say how flights differ: fit two or more");
+    if (!model.level_sd) throw NoResultError("the physical model has no variability between flights: fit two or more");
     std::vector<FlightBin> cruise;
     std::ranges::copy_if(flown.motion.bins, std::back_inserter(cruise),
                          [](const FlightBin& bin) { return bin.phase == flight::Phase::cruise; });

@@ -83,6 +83,35 @@ void add_column(TextTable& table, const std::string& name, const std::vector<std
 
 constexpr std::string_view interval_heading = "95 %";
 
+/// The model, next to the published one if there is one.
+TextTable build_table(const MechanicalModel* published, const MechanicalModel& model, TableIntervals intervals) {
+    const auto order = std::max(model_order(model), published ? model_order(*published) : 0);
+    TextTable table;
+    auto names = row_names(order);
+    if (published) names.insert(names.end(), {"duration_s", "curve RMS difference [W]", "a0 difference [%]"});
+    add_column(table, "coefficient", names);
+    for (const auto phase : flight::all_phases) {
+        const auto& is = model.phases[phase];
+        std::string heading(column_names[phase]);
+        auto cells = column_of(is, order);
+        if (published) {
+            const auto& was = published->phases[phase];
+            auto published_cells = column_of(was, order);
+            published_cells.insert(published_cells.end(), {as_printed(was.duration_s), "-", "-"});
+            add_column(table, heading + " published", published_cells);
+            cells.insert(cells.end(), {as_printed(is.duration_s), as_printed(rms_difference_w(was, is)),
+                                       percent_of_change(was.fourier.a0_w, is.fourier.a0_w)});
+            heading += " regenerated";
+        }
+        add_column(table, heading, cells);
+        if (intervals == TableIntervals::absent) continue;
+        auto interval_cells = intervals_of(is, order);
+        interval_cells.resize(cells.size(), "-");
+        add_column(table, fmt::format("{} {}", column_names[phase], interval_heading), interval_cells);
+    }
+    return table;
+}
+
 bool is_interval(std::string_view heading) { return heading.ends_with(interval_heading); }
 
 std::string cell(std::string_view text, std::string_view heading) {
@@ -103,53 +132,15 @@ std::string row_name(std::string_view name) {
     return coefficient ? fmt::format("${}_{{{}}}$", name[0], name.substr(1)) : latex_escaped(name);
 }
 
-/// A heading of two words on two lines: numbers are narrower than "take-off regenerated".
-std::string heading_cell(std::string_view heading) {
-    if (is_interval(heading)) return "";
-    const auto space = heading.rfind(' ');
-    if (space == std::string_view::npos) return latex_escaped(heading);
-    return fmt::format("\\shortstack[r]{{{}\\\\{}}}", latex_escaped(heading.substr(0, space)),
-                       latex_escaped(heading.substr(space + 1)));
-}
-
 }  // namespace
 
 TextTable table_one(const MechanicalModel& model, TableIntervals intervals) {
-    const auto order = model_order(model);
-    TextTable table;
-    add_column(table, "coefficient", row_names(order));
-    for (const auto phase : flight::all_phases) {
-        add_column(table, std::string(column_names[phase]), column_of(model.phases[phase], order));
-        if (intervals == TableIntervals::absent) continue;
-        add_column(table, fmt::format("{} {}", column_names[phase], interval_heading),
-                   intervals_of(model.phases[phase], order));
-    }
-    return table;
+    return build_table(nullptr, model, intervals);
 }
 
 TextTable table_one_comparison(const MechanicalModel& published, const MechanicalModel& regenerated,
                                TableIntervals intervals) {
-    const auto order = std::max(model_order(published), model_order(regenerated));
-    TextTable table;
-    auto names = row_names(order);
-    names.insert(names.end(), {"duration_s", "curve RMS difference [W]", "a0 difference [%]"});
-    add_column(table, "coefficient", names);
-    for (const auto phase : flight::all_phases) {
-        const auto& was = published.phases[phase];
-        const auto& is = regenerated.phases[phase];
-        auto left = column_of(was, order);
-        left.insert(left.end(), {as_printed(was.duration_s), "-", "-"});
-        auto right = column_of(is, order);
-        right.insert(right.end(), {as_printed(is.duration_s), as_printed(rms_difference_w(was, is)),
-                                   percent_of_change(was.fourier.a0_w, is.fourier.a0_w)});
-        add_column(table, fmt::format("{} published", column_names[phase]), left);
-        add_column(table, fmt::format("{} regenerated", column_names[phase]), right);
-        if (intervals == TableIntervals::absent) continue;
-        auto intervals_of_cells = intervals_of(is, order);
-        intervals_of_cells.insert(intervals_of_cells.end(), {"-", "-", "-"});
-        add_column(table, fmt::format("{} {}", column_names[phase], interval_heading), intervals_of_cells);
-    }
-    return table;
+    return build_table(&published, regenerated, intervals);
 }
 
 std::string to_latex(const TextTable& table) {
@@ -158,7 +149,9 @@ std::string to_latex(const TextTable& table) {
     constexpr std::size_t columns_that_fit = 4;
     const bool scaled = table.header.size() > columns_that_fit;
     auto cells = table;
-    std::ranges::transform(table.header, cells.header.begin(), heading_cell);
+    std::ranges::transform(table.header, cells.header.begin(), [](const std::string& heading) {
+        return is_interval(heading) ? "" : latex_escaped(heading);
+    });
     cells.header.front().clear();
     for (auto& row : cells.rows) {
         row.front() = row_name(row.front());

@@ -7,22 +7,22 @@
 
 namespace flightwatt::mechanical {
 
-/// Whether a table has a column beside each phase for the coefficients' 95 % intervals, "LOW to HIGH"; '-' where the
-/// model has no errors, or none for the frequency.
+/// Whether each phase has a column of the coefficients' 95 % intervals, "LOW to HIGH"; '-' where the model has no errors,
+/// or none for the frequency.
 enum class TableIntervals { absent, present };
 
 /// The model as the paper's Table I: rows a0, a1, b1, ... and xi, a column a phase, four significant digits,
 /// coefficients in W. xi is the paper's: the angular frequency on a time axis of 28 units a phase,
-/// omega * duration / 28. '-' stands where a phase has a lower order than another.
+/// omega * duration / 28. '-' where a phase has a lower order than another.
 TextTable table_one(const MechanicalModel& model, TableIntervals intervals = TableIntervals::absent);
 
-/// Both models' Table I, phase by phase side by side, and below it the durations, the RMS difference of the
-/// curves over the phase [W] and by how many percent of the published a0 the regenerated one differs.
+/// Both models' Table I, phase by phase side by side, and below it the durations, the RMS difference of the curves over
+/// the phase [W] and the difference of a0 in percent of the published one.
 TextTable table_one_comparison(const MechanicalModel& published, const MechanicalModel& regenerated,
                                TableIntervals intervals = TableIntervals::absent);
 
 /// Table I as a LaTeX table environment like the paper's: its caption on top, coefficients as $a_0$ ...
-/// $\xi$, numbers in mathematical mode, 95 % intervals in brackets. Needs the package booktabs (a comment says so).
+/// $\xi$, numbers in mathematical mode, 95 % intervals in brackets. A comment names the packages it needs.
 std::string to_latex(const TextTable& table);
 
 }  // namespace flightwatt::mechanical

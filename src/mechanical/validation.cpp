@@ -18,28 +18,18 @@
 namespace flightwatt::mechanical {
 namespace {
 
-/// The flights without those that are left out together.
+/// The flights that are not left out, and the models fitted to them.
 struct Others {
     std::vector<FlightSamples> samples;
     flight::PerPhase<std::vector<PhaseSamples>> phases;
     std::optional<PhysicalModel> physical;
-    flight::PerPhase<std::optional<WeightedPhase>> forecasts;  ///< made where one is asked for
+    flight::PerPhase<std::optional<WeightedPhase>> forecasts;  ///< fitted on first use
 };
 
-/// One phase of the excluded flight, and the others that have this phase.
-struct Fold {
-    flight::Phase phase;
-    const PhaseSamples& flown;
-    const std::vector<PhaseSamples>& others;
-    std::size_t nearest;  ///< among `others`
-    Others& all;
-    const ModelFitOptions& options;
-};
-
-const WeightedPhase& forecast_of_others(const Fold& fold) {
-    auto& forecast = fold.all.forecasts[fold.phase];
+const WeightedPhase& forecast_of_others(Others& others, flight::Phase phase, const ModelFitOptions& options) {
+    auto& forecast = others.forecasts[phase];
     if (!forecast) {
-        const auto fitted = fit_phase_model(fold.phase, fold.others, fold.options);
+        const auto fitted = fit_phase_model(phase, others.phases[phase], options);
         forecast = {fitted.model,
                     std::inner_product(fitted.weights.begin(), fitted.weights.end(), fitted.weights.begin(), 0.0)};
     }
@@ -48,72 +38,57 @@ const WeightedPhase& forecast_of_others(const Fold& fold) {
 
 using Estimates = std::vector<std::pair<std::string, EnergyEstimate>>;
 
-EnergyEstimate after(double known_wh, EnergyEstimate rest) {
-    rest.energy_wh += known_wh;
-    return rest;
-}
-
-/// By the motion that was flown.
-std::optional<EnergyEstimate> physical_estimate(const MeasuredFlight& flight, const Fold& fold) {
-    if (!fold.all.physical || flight.motion.bins.empty()) return std::nullopt;
+/// One phase of a flight that has not taken off, from its duration and motion.
+Estimates predict_phase(const MeasuredFlight& flight, flight::Phase phase, double duration_s, const Others& others,
+                        const WeightedPhase& forecast) {
+    const auto by_mean = energy_of(constant_mean(others.phases[phase]), duration_s);
+    Estimates estimates{{"fourier", predict_before_flight(forecast, duration_s)}, {"constant_mean", by_mean}};
+    if (flight.flown || !others.physical || flight.motion.bins.empty()) return estimates;
     std::vector<FlightBin> bins;
     for (const auto& bin : flight.motion.bins)
-        if (bin.phase == fold.phase) bins.push_back(bin);
-    if (bins.empty()) return energy_of(constant_mean(fold.others), fold.flown.duration_s);
-    return predict_physical(*fold.all.physical, mean_values(bins), fold.flown.duration_s);
-}
-
-Estimates predict_phase(const Fold& fold) {
-    const double duration_s = fold.flown.duration_s;
-    return {{"fourier", predict_before_flight(forecast_of_others(fold), duration_s)},
-            {"constant_mean", energy_of(constant_mean(fold.others), duration_s)},
-            {"nearest_flight", energy_of(single_flight_power(fold.others, fold.nearest), duration_s)}};
-}
-
-/// The landing of a flight in the air: all models that look at the cruise say what the Fourier series says.
-Estimates predict_landing_in_flight(const Fold& fold) {
-    auto estimates = predict_phase(fold);
-    const auto fourier = estimates.front().second;
-    estimates.emplace_back("in_flight", fourier);
-    estimates.emplace_back("in_flight_constant", fourier);
-    estimates.emplace_back("in_flight_physical", fourier);
+        if (bin.phase == phase) bins.push_back(bin);
+    estimates.emplace_back("physical",
+                           bins.empty() ? by_mean : predict_physical(*others.physical, mean_values(bins), duration_s));
     return estimates;
 }
 
-Estimates predict_cruise_in_flight(const Fold& fold, const MeasuredFlight& excluded, double remaining_s) {
-    const auto& flown = *excluded.flown;
-    const auto& ahead = excluded.remaining_cruise;
-    const auto& forecast = forecast_of_others(fold);
-    const double known_wh = flown.cruise_energy_wh;
-    Estimates estimates{
-        {"fourier", after(known_wh, predict_remaining_before_flight(forecast, flown.cruise_s(), remaining_s))},
-        {"constant_mean", after(known_wh, energy_of(constant_mean(fold.others), remaining_s))},
-        {"nearest_flight", after(known_wh, energy_of(single_flight_power(fold.others, fold.nearest), remaining_s))}};
-    if (!forecast.model.level_spread) return estimates;
-    const auto update = [&](const char* name, CruisePrior source) {
-        estimates.emplace_back(name,
-                               after(known_wh, predict_remaining_cruise(forecast, flown, remaining_s, source).energy));
-    };
-    update("in_flight", CruisePrior::curve);
-    update("in_flight_constant", CruisePrior::constant);
-    if (fold.all.physical && fold.all.physical->level_sd && !ahead.empty()) {
-        const auto rest = predict_remaining_physical(*fold.all.physical, flown, {mean_values(ahead), remaining_s});
-        estimates.emplace_back("in_flight_physical", after(known_wh, rest.energy));
+/// The whole cruise of a flight in the air: the energy measured so far and the remaining cruise's.
+Estimates predict_cruise_in_flight(const MeasuredFlight& flight, double remaining_s, const Others& others,
+                                   const WeightedPhase& forecast) {
+    const auto& flown = *flight.flown;
+    Estimates estimates{{"fourier", predict_remaining_before_flight(forecast, flown.cruise_s(), remaining_s)},
+                        {"constant_mean", energy_of(constant_mean(others.phases[flight::Phase::cruise]), remaining_s)}};
+    if (forecast.model.level_spread) {
+        for (const auto& [name, prior] :
+             {std::pair{"in_flight", CruisePrior::curve}, {"in_flight_constant", CruisePrior::constant}})
+            estimates.emplace_back(name, predict_remaining_cruise(forecast, flown, remaining_s, prior).energy);
+        if (others.physical && others.physical->level_sd && !flight.remaining_cruise.empty())
+            estimates.emplace_back(
+                "in_flight_physical",
+                predict_remaining_physical(*others.physical, flown, {mean_values(flight.remaining_cruise), remaining_s})
+                    .energy);
     }
+    for (auto& [name, estimate] : estimates) estimate.energy_wh += flown.cruise_energy_wh;
     return estimates;
 }
 
-Estimates estimates_of(const MeasuredFlight& excluded, const Fold& fold) {
-    if (!excluded.flown) {
-        auto estimates = predict_phase(fold);
-        if (const auto physical = physical_estimate(excluded, fold)) estimates.emplace_back("physical", *physical);
-        return estimates;
-    }
-    if (fold.phase == flight::Phase::takeoff) return {};
-    if (fold.phase == flight::Phase::landing) return predict_landing_in_flight(fold);
-    const double remaining_s = fold.flown.duration_s - excluded.flown->cruise_s();
-    if (remaining_s <= 0.0) return {};
-    return predict_cruise_in_flight(fold, excluded, remaining_s);
+/// Of a phase that other flights have too.
+Estimates estimates_of(const MeasuredFlight& flight, flight::Phase phase, Others& others,
+                       const ModelFitOptions& options) {
+    const double duration_s = flight.samples.phases[phase]->duration_s;
+    if (flight.flown && phase == flight::Phase::takeoff) return {};
+    const double remaining_s = flight.flown ? duration_s - flight.flown->cruise_s() : 0.0;
+    const bool is_flying = flight.flown && phase == flight::Phase::cruise;
+    if (is_flying && remaining_s <= 0.0) return {};
+    const auto& forecast = forecast_of_others(others, phase, options);
+    if (is_flying) return predict_cruise_in_flight(flight, remaining_s, others, forecast);
+    auto estimates = predict_phase(flight, phase, duration_s, others, forecast);
+    // Models that observe the cruise predict the landing by the curve.
+    const auto by_curve = estimates.front().second;
+    if (flight.flown)
+        for (const auto* model : {"in_flight", "in_flight_constant", "in_flight_physical"})
+            estimates.emplace_back(model, by_curve);
+    return estimates;
 }
 
 FlightPrediction& prediction_of(ValidatedFlight& flight, const std::string& model) {
@@ -122,7 +97,7 @@ FlightPrediction& prediction_of(ValidatedFlight& flight, const std::string& mode
     return flight.predictions.emplace_back(FlightPrediction{model, {}});
 }
 
-/// std::nullopt where the flights' motion does not tell their power.
+/// std::nullopt where the flights' motion does not determine their power.
 std::optional<PhysicalModel> physical_model_of(std::span<const BinnedFlight> flights) {
     try {
         return fit_physical_model(flights).model;
@@ -131,7 +106,7 @@ std::optional<PhysicalModel> physical_model_of(std::span<const BinnedFlight> fli
     }
 }
 
-/// `samples` are the flights', with their scans. `excluded` rise.
+/// `samples` are the flights', with their scans. `excluded` are in ascending order.
 Others others_of(std::span<const MeasuredFlight> flights, std::span<const FlightSamples> samples,
                  const std::vector<std::size_t>& excluded) {
     Others others;
@@ -150,17 +125,14 @@ Others others_of(std::span<const MeasuredFlight> flights, std::span<const Flight
 ValidatedFlight validate_flight(const MeasuredFlight& excluded, Others& others, const ModelFitOptions& options) {
     ValidatedFlight flight{excluded.samples.flight, {}, {}, {}};
     for (const auto phase : flight::all_phases) {
-        if (!excluded.samples.phases[phase]) continue;
-        const auto nearest = nearest_flight(others.samples, phase, excluded.samples);
-        if (!nearest) continue;
-        const Fold fold{phase, *excluded.samples.phases[phase], others.phases[phase], *nearest, others, options};
-        for (const auto& [model, estimate] : estimates_of(excluded, fold)) {
+        if (!excluded.samples.phases[phase] || others.phases[phase].empty()) continue;
+        for (const auto& [model, estimate] : estimates_of(excluded, phase, others, options)) {
             prediction_of(flight, model).phases[phase] = estimate;
             flight.measured_wh[phase] = excluded.energy_wh[phase];
             flight.counter_wh[phase] = excluded.counter_energy_wh[phase];
         }
     }
-    // A model that cannot tell the cruise (no airspeed, no spread) only repeats others in the other phases.
+    // A model without a prediction of the cruise (no airspeed, no variability) repeats others in the other phases.
     if (flight.measured_wh[flight::Phase::cruise])
         std::erase_if(flight.predictions,
                       [](const auto& prediction) { return !prediction.phases[flight::Phase::cruise]; });
@@ -179,7 +151,7 @@ void require_distinct(std::span<const MeasuredFlight> flights) {
     std::set<std::string> names;
     for (const auto& flight : flights) {
         if (names.insert(flight.samples.flight).second) continue;
-        throw UsageError(fmt::format("flight '{}' is given twice: it would predict itself", flight.samples.flight));
+        throw UsageError(fmt::format("flight '{}' is given twice", flight.samples.flight));
     }
 }
 
@@ -187,7 +159,7 @@ std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> fligh
                                            const std::function<void(std::size_t, std::size_t)>& progress,
                                            std::size_t max_folds) {
     if (flights.size() < 2) {
-        throw NoResultError(fmt::format("{} flight{}: leaving one out needs 2 or more, and 3 for an interval",
+        throw NoResultError(fmt::format("{} flight{}: cross-validation needs 2 or more, and 3 for an interval",
                                         flights.size(), flights.size() == 1 ? "" : "s"));
     }
     require_distinct(flights);
@@ -196,7 +168,7 @@ std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> fligh
     cache_scans(samples, options);
     const auto folds = make_folds(flights.size(), std::max<std::size_t>(2, max_folds));
     std::vector<ValidatedFlight> validated(flights.size());
-    std::mutex mutex;  // guards what follows
+    std::mutex mutex;  // guards `done`
     std::size_t done = 0;
     for_each_in_parallel(folds.size(), [&](std::size_t fold) {
         auto others = others_of(flights, samples, folds[fold]);

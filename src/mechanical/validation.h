@@ -12,7 +12,7 @@
 
 namespace flightwatt::mechanical {
 
-/// What one model says of a flight that it has not seen.
+/// Prediction of a hold-out flight by one model.
 struct FlightPrediction {
     std::string model;
     flight::PerPhase<std::optional<EnergyEstimate>> phases;
@@ -25,37 +25,35 @@ struct ValidatedFlight {
     std::vector<FlightPrediction> predictions;
 };
 
-/// Of more flights than this, groups are left out together (folds_of).
+/// Of more flights than this, groups are left out together (make_folds).
 inline constexpr std::size_t max_validation_folds = 40;
 
 /// Throws UsageError for a flight that is given twice.
 void require_distinct(std::span<const MeasuredFlight> flights);
 
 /// Excludes each flight in turn (or each of `max_folds` groups), fits the others and predicts the energy of its phases
-/// from their durations alone. A phase that no other flight has is not predicted. Models:
-///   fourier          the model of this project (fit_phase_model)
-///   constant_mean    the mean power of the other flights
-///   nearest_flight   the mean power of the flight with the nearest durations
-///   physical         fit_physical_model of the others at the motion that was flown, as if it had been known; a
-///                    phase without bins as constant_mean; only if the flight and another have bins
-/// Where a flight has `flown`, the take-off is past and not predicted; what the models above (without physical)
-/// say of the rest of the cruise is added to what was measured until then, and beside them
+/// from their durations alone, if another flight has the phase. Models:
+///   fourier         the model of this project (fit_phase_model)
+///   constant_mean   the mean power of the other flights
+///   physical        fit_physical_model of the others at the motion flown, as if it had been known; a phase without bins
+///                   as constant_mean; only if the flight and another have bins
+/// Where a flight has `flown`, its take-off is not predicted, and the first two predict the remaining cruise, as do
 ///   in_flight            predict_remaining_cruise by the curve
 ///   in_flight_constant   predict_remaining_cruise by the curve's mean
-///   in_flight_physical       predict_posterior_power: the rest's airspeed and climb as flown, as if they had been known
-/// `progress` is told how many of how many folds are done, by one thread at a time.
-/// Throws NoResultError for fewer than 2 flights, and what fit_phase_model throws.
+///   in_flight_physical       predict_posterior_power at the remaining motion, as if it had been known
+/// `progress` gets the numbers of done and of all folds, from one thread at a time.
+/// Throws NoResultError for fewer than 2 flights, and as fit_phase_model.
 std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights, const ModelFitOptions& options = {},
                                            const std::function<void(std::size_t, std::size_t)>& progress = {},
                                            std::size_t max_folds = max_validation_folds);
 
-/// How one model did over the flights, in one phase or in the whole.
+/// Errors of one model over the flights, in one phase or in the whole.
 struct ModelScore {
     std::size_t flights = 0;
     double mean_absolute_error_wh = 0.0;
     std::optional<double> mean_absolute_error_percent;  ///< of the measured energy; none for landing
     double bias_wh = 0.0;                               ///< mean of predicted - measured
-    std::optional<double> coverage_95;  ///< part of the flights within the interval; none without intervals
+    std::optional<double> coverage_95;  ///< fraction of the flights within the interval; none without intervals
 };
 
 /// The phase's score, or the whole flight's without a phase: the sum over the phases that were predicted.
@@ -71,21 +69,20 @@ struct PredictedEnergy {
 std::optional<PredictedEnergy> predicted_energy(const ValidatedFlight& flight, const std::string& model,
                                                 std::optional<flight::Phase> phase);
 
-/// Removes from all flights the predictions of the physical model where it knows the flown motion and yet is further off
-/// than the mean power, over the flights that it predicts as a whole. Returns why; empty: it is not removed.
+/// Removes the predictions of the physical model from all flights if its error is greater than the mean power's, over the
+/// flights that it predicts as a whole. Returns the reason; empty: not removed.
 std::string remove_rejected(std::vector<ValidatedFlight>& flights);
 
-/// For a mission to use the curve, its mean error must be less than the mean power's by this part of it, and its error
-/// less in more than half of the flights.
-inline constexpr double least_gain_of_curve = 0.05;
+/// Missions use the curve if its mean error is less than the mean power's by this fraction of it, and its error is less
+/// in more than half of the flights.
+inline constexpr double min_gain_of_curve = 0.05;
 
 /// The scores of the models that missions can use, each over the flights that it predicts as a whole, without those
 /// that remove_rejected removes. std::nullopt where curve or mean power has none.
 std::optional<ModelValidation> validation_of(std::vector<ValidatedFlight> flights);
 
-/// Adds to a fitted model its validation, and the physical model if that is not rejected. Of more than
-/// max_validation_folds flights so many are validated, evenly from all. Adds nothing for fewer than 2 flights or
-/// folds that cannot be fitted.
+/// Adds the validation to a fitted model, and the physical model if it is not rejected. Of more than max_validation_folds
+/// flights that many are validated, evenly from all. Adds nothing for fewer than 2 flights or folds that cannot be fitted.
 void add_best_power(MechanicalModel& model, std::span<const MeasuredFlight> flights, const ModelFitOptions& options,
                     const std::function<void(std::size_t, std::size_t)>& progress = {});
 

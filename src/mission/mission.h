@@ -49,7 +49,7 @@ struct MissionSetup {
     std::string file;
     std::string name;
     std::optional<mechanical::MechanicalModel> mechanical;  ///< none: computing alone
-    mechanical::PhaseTimeScaling phase_clock = mechanical::PhaseTimeScaling::stretched;
+    mechanical::PhaseTimeScaling phase_clock = mechanical::PhaseTimeScaling::scaled;
     /// The cruise's mean power at the stated airspeed, or along its path; the cruise has this level then.
     std::optional<mechanical::ConstantPower> cruise_level = {};
     std::optional<path::CruisePath> cruise_path = {};  ///< source of the cruise's power instead of the model's curve

@@ -60,7 +60,7 @@ void expect_same_curves(const mechanical::MechanicalModel& model) {
     for (const auto phase : flight::all_phases) {
         const auto& of = model.phases[phase];
         EXPECT_EQ(numbers[at++], of.duration_s);
-        const auto flown = time_scaled_model(of, of.duration_s / 2.0, mechanical::PhaseTimeScaling::stretched);
+        const auto flown = time_scaled_model(of, of.duration_s / 2.0, mechanical::PhaseTimeScaling::scaled);
         for (int i = 0; i < points; ++i) {
             const double t = of.duration_s * i / points;
             EXPECT_NEAR(numbers[at++], power_w(of.fourier, t), 1e-6) << prefix << " " << i;

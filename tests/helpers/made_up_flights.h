@@ -29,7 +29,7 @@ inline mechanical::PhaseSamples record(const mechanical::PhaseModel& phase, cons
                                        std::mt19937& random, const std::string& flight = "flight") {
     std::normal_distribution<double> noise(0.0, 1.0);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
-    const auto model = time_scaled_model(phase, recording.duration_s, mechanical::PhaseTimeScaling::stretched);
+    const auto model = time_scaled_model(phase, recording.duration_s, mechanical::PhaseTimeScaling::scaled);
     mechanical::PhaseSamples samples{flight, recording.duration_s, {}, {}};
     for (int i = 0; (i + 0.5) * recording.interval_s <= recording.duration_s; ++i) {
         const double time_s = (i + 0.5) * recording.interval_s;
@@ -67,12 +67,10 @@ inline double theta_rad(const mechanical::PhaseModel& phase) {
 }
 
 /// Power less its mean, as the search for the frequency wants it; unit 1 W.
-inline mechanical::ScaledSamples centred(const mechanical::PhaseSamples& samples) {
-    mechanical::ScaledSamples result{samples.tau, samples.power_w};
-    double mean = 0.0;
-    for (const double power : samples.power_w) mean += power / static_cast<double>(samples.power_w.size());
-    for (double& value : result.value) value -= mean;
-    return result;
+inline mechanical::PhaseSamples centred(mechanical::PhaseSamples samples) {
+    const double mean_w = mean(samples.power_w);
+    for (double& power_w : samples.power_w) power_w -= mean_w;
+    return samples;
 }
 
 }  // namespace flightwatt::test

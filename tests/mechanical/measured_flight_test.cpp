@@ -123,7 +123,7 @@ TEST(MeasuredFlights, ExcludeWhatTheLogCuts) {
     ASSERT_EQ(selection.exclusions.size(), 1U);
     EXPECT_EQ(selection.exclusions[0].flight, "flight");
     EXPECT_EQ(selection.exclusions[0].phase, flight::Phase::landing);
-    EXPECT_EQ(selection.exclusions[0].reason, "the log begins or ends inside of it");
+    EXPECT_EQ(selection.exclusions[0].reason, "the log begins or ends within it");
     ASSERT_EQ(selection.flights.size(), 1U);
     EXPECT_TRUE(selection.flights[0].phases[flight::Phase::cruise].has_value());
     EXPECT_FALSE(selection.flights[0].phases[flight::Phase::landing].has_value());
@@ -138,7 +138,7 @@ TEST(MeasuredFlights, ExcludeWhatBeginsOrEndsInALongGap) {
     const auto selection = select({sortie});
     std::vector<std::string> reasons;
     for (const auto& exclusion : selection.exclusions) reasons.push_back(exclusion.reason);
-    EXPECT_THAT(reasons, ElementsAre("its end lies in a gap of 15.0 s", "its start lies in a gap of 12.0 s"));
+    EXPECT_THAT(reasons, ElementsAre("its end is in a gap of 15.0 s", "its start is in a gap of 12.0 s"));
     ASSERT_EQ(selection.flights.size(), 1U);
     EXPECT_TRUE(selection.flights[0].phases[flight::Phase::takeoff].has_value());
 }

@@ -60,7 +60,7 @@ TEST(RemoveRejected, ComparesOnTheFlightsThatAModelPredicts) {
 }
 
 TEST(RemoveRejected, KeepsBaselines) {
-    std::vector flights{flight_of({{"constant_mean", 1.0}, {"nearest_flight", 40.0}, {"fourier", 2.0}})};
+    std::vector flights{flight_of({{"constant_mean", 1.0}, {"in_flight", 40.0}, {"fourier", 2.0}})};
     EXPECT_THAT(remove_rejected(flights), IsEmpty());
 }
 
@@ -82,9 +82,8 @@ TEST(ValidationOf, PrefersTheCurveOnlyWhereItIsBetterByFivePercentAndInMostFligh
 
 TEST(ValidationOf, HasTheScoresOfWhatMissionsCanUse) {
     const auto validation =
-        validation_of(
-            {flight_of({{"fourier", 3.0}, {"constant_mean", 4.0}, {"nearest_flight", 1.0}, {"physical", 2.0}}),
-             flight_of({{"fourier", 5.0}, {"constant_mean", -6.0}})})
+        validation_of({flight_of({{"fourier", 3.0}, {"constant_mean", 4.0}, {"in_flight", 1.0}, {"physical", 2.0}}),
+                       flight_of({{"fourier", 5.0}, {"constant_mean", -6.0}})})
             .value();
     EXPECT_THAT(models_of(validation), ElementsAre("constant_mean", "fourier", "physical"));
     EXPECT_EQ(validation.scores[0].flights, 2U);

@@ -166,7 +166,7 @@ TEST(TableOneLatex, ScalesATableThatIsWiderThanAPage) {
     EXPECT_THAT(wide,
                 testing::StartsWith("% needs \\usepackage{graphicx}\n% needs \\usepackage{booktabs}\n\\begin{table}"));
     EXPECT_THAT(wide, testing::HasSubstr("\\resizebox{\\linewidth}{!}{%\n\\begin{tabular}{lrrrr}"));
-    EXPECT_THAT(wide, testing::HasSubstr(" & \\shortstack[r]{a\\\\published} & "));
+    EXPECT_THAT(wide, testing::HasSubstr(" & a published & "));
     EXPECT_THAT(wide, testing::EndsWith("\\end{tabular}}\n\\end{table}\n"));
 }
 
@@ -189,7 +189,6 @@ TEST(FlightEnvelope, OfEqualWeightsIsTheUsualStandardDeviation) {
         EXPECT_DOUBLE_EQ(spread->low_w[i], 20.0);
         EXPECT_DOUBLE_EQ(spread->high_w[i], 30.0);
         EXPECT_NEAR(spread->standard_deviation_w[i], standard_deviation_w, 1e-12);
-        EXPECT_NEAR(population_standard_error_w(*spread, i), standard_deviation_w / 2.0, 1e-12);
     }
     EXPECT_DOUBLE_EQ(spread->effective_flights, 4.0);
 }

@@ -120,7 +120,7 @@ TEST(PhysicalFit, KeepsNoTermThatStretchesSpeakAgainst) {
     for (unsigned seed = 301; seed <= 340; ++seed) {
         const auto fit = fit_physical_model(made_up_motions(3, 15, {.level_sd = 0.1, .drift_sd_w = 6.0}, seed));
         for (const auto& trial : fit.trials) {
-            if (trial.reason != "predicts whole phases better, but stretches of them worse") continue;
+            if (trial.reason != "predicts whole phases better, but bins worse") continue;
             ++dropped;
             EXPECT_LT(*trial.rms_after_w, *trial.rms_before_w) << to_string(trial.term);
         }
@@ -142,7 +142,7 @@ TEST(PhysicalFit, HasNoIntervalFromASingleFlight) {
     EXPECT_FALSE(fit.phases_decided);
     EXPECT_EQ(fit.folds, 5u);
     EXPECT_TRUE(trial_of(fit, "climb").kept);
-    EXPECT_THAT(trial_of(fit, "constant").reason, testing::HasSubstr("1 flight cannot tell them apart"));
+    EXPECT_THAT(trial_of(fit, "constant").reason, testing::HasSubstr("1 flight cannot distinguish them"));
 }
 
 TEST(PhysicalFit, RefusesFlightsThatDoNotTell) {

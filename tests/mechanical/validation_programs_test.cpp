@@ -42,7 +42,7 @@ std::string real_flights() {
 TEST(Validate, PrintsEveryModelOfEveryPart) {
     const auto result = run(test::scratch_dir(), "validate" + samples());
     EXPECT_EQ(result.code, 0) << result.err;
-    EXPECT_THAT(result.out, HasSubstr("opterra_synthetic_06  total    nearest_flight"));
+    EXPECT_THAT(result.out, HasSubstr("opterra_synthetic_06  total    constant_mean"));
     EXPECT_THAT(result.out, HasSubstr("cruise: fourier does not beat constant_mean: "));
     EXPECT_THAT(result.out, HasSubstr("coverage over 6 flights means little"));
 }
@@ -53,7 +53,7 @@ TEST(Validate, PrintsJson) {
     const auto json = Json::parse(result.out);
     EXPECT_EQ(json["flights"], 6);
     for (const auto* part : {"takeoff", "cruise", "landing", "total"}) {
-        for (const auto* model : {"fourier", "constant_mean", "nearest_flight"}) {
+        for (const auto* model : {"fourier", "constant_mean"}) {
             const auto& score = json.at(part).at(model);
             EXPECT_GT(score.at("mean_absolute_error_wh"), 0.0);
             EXPECT_EQ(score.at("mean_absolute_error_percent").is_null(), std::string(part) == "landing");

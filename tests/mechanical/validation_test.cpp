@@ -37,7 +37,7 @@ TEST(Validation, PredictsFlightsThatAreAllAlikeExactly) {
     });
     EXPECT_THAT(done, ElementsAre(1U, 2U, 3U));
     ASSERT_EQ(validated.size(), 3u);
-    EXPECT_THAT(model_names(validated), ElementsAre("fourier", "constant_mean", "nearest_flight"));
+    EXPECT_THAT(model_names(validated), ElementsAre("fourier", "constant_mean"));
     for (const auto& model : model_names(validated)) {
         const auto score = score_of(validated, model, std::nullopt).value();
         EXPECT_EQ(score.flights, 3u);
@@ -54,7 +54,7 @@ TEST(Validation, LeavesTheFlightOut) {
     const std::vector flights{measured("a", published_model().phases, random),
                               measured("b", published_model().phases, random), measured("c", stray, random)};
     const auto validated = leave_one_out(flights);
-    for (const auto* model : {"fourier", "constant_mean", "nearest_flight"}) {
+    for (const auto* model : {"fourier", "constant_mean"}) {
         const auto energy = predicted_energy(validated[2], model, flight::Phase::cruise).value();
         EXPECT_NEAR(energy.estimate.energy_wh - energy.measured_wh, -10.0 * 600.0 / 3600.0, 0.05) << model;
     }
@@ -228,7 +228,7 @@ TEST(PredictedEnergy, OfTheWholeIsTheSumOfWhatWasMeasured) {
     EXPECT_DOUBLE_EQ(energy.measured_wh, 4.25);
     EXPECT_DOUBLE_EQ(energy.estimate.energy_wh, 4.4);
     EXPECT_DOUBLE_EQ(energy.estimate.variance_wh2, 0.09 + 0.16);
-    EXPECT_FALSE(predicted_energy(flight, "nearest_flight", std::nullopt));
+    EXPECT_FALSE(predicted_energy(flight, "another", std::nullopt));
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ TEST(MissionFile, HasDefaults) {
     const auto mission = scheduled(text, mission_folder() / "flight.toml");
     EXPECT_EQ(mission.setup.name, "flight");
     EXPECT_EQ(mission.setup.duration_s.values, (std::array{28.0, 600.0, 60.0}));
-    EXPECT_EQ(mission.setup.phase_clock, mechanical::PhaseTimeScaling::stretched);
+    EXPECT_EQ(mission.setup.phase_clock, mechanical::PhaseTimeScaling::scaled);
     EXPECT_EQ(mission.setup.initial_soc_percent, 100.0);
     ASSERT_EQ(mission.schedule.size(), 3U);
     EXPECT_TRUE(mission.schedule[1].run.empty());

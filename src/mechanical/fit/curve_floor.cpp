@@ -5,78 +5,32 @@
 #include "mechanical/fit/phase_fit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <vector>
 
-#include <Eigen/Cholesky>
-
 namespace flightwatt::mechanical {
 namespace {
 
-/// Negative power lasts this part of the phase, or it is noise: so long noise lasts at most (frequency_posterior.h).
-constexpr double part_of_negative_power = 0.2;
-
 constexpr double between_points = 1e-3;  ///< of a curve's range
 
-/// 0, or the least mean power over a part of the phase that is below 0 by more than chance (95 %).
+/// 0, or the lowest mean power over a fifth of the phase that is negative by more than chance (95 %): shorter negative
+/// power is noise.
 double min_power_w(const PhaseSamples& samples) {
-    const auto sorted = sort_by_time({samples.tau, samples.power_w, samples.flight});
     constexpr std::size_t min_samples = 3;
+    std::array<std::vector<double>, 5> fifths_w;
+    for (std::size_t i = 0; i < samples.tau.size(); ++i)
+        fifths_w.at(std::min<std::size_t>(4, static_cast<std::size_t>(5.0 * samples.tau[i])))
+            .push_back(samples.power_w[i]);
     double min_w = 0.0;
-    double sum = 0.0;
-    double squares = 0.0;
-    std::size_t first = 0;
-    for (std::size_t last = 0; last < sorted.tau.size(); ++last) {
-        sum += sorted.value[last];
-        squares += sorted.value[last] * sorted.value[last];
-        // The shortest stretch that ends here and is long enough.
-        while (sorted.tau[last] - sorted.tau[first + (first < last ? 1 : 0)] >= part_of_negative_power) {
-            sum -= sorted.value[first];
-            squares -= sorted.value[first] * sorted.value[first];
-            ++first;
-        }
-        const std::size_t count = last - first + 1;
-        if (sorted.tau[last] - sorted.tau[first] < part_of_negative_power || count < min_samples) continue;
-        const auto size = static_cast<double>(count);
-        const double mean_w = sum / size;
-        if (mean_w >= 0.0) continue;
-        const double sd_w = std::sqrt(std::max(0.0, squares / size - mean_w * mean_w) * size / (size - 1.0));
-        min_w = std::min(min_w, mean_w + student_t_half_width(size - 1.0) * sd_w / std::sqrt(size));
+    for (const auto& power_w : fifths_w) {
+        if (power_w.size() < min_samples) continue;
+        const auto size = static_cast<double>(power_w.size());
+        min_w =
+            std::min(min_w, mean(power_w) + student_t_half_width(size - 1.0) * sample_sd(power_w) / std::sqrt(size));
     }
     return min_w;
-}
-
-/// Bends a curve up where it falls below its floor, with ever more weight on these places and on the mean power, which
-/// stays; what is left of it after that is taken by smaller harmonics.
-void lift_above(const Eigen::MatrixXd& basis, Eigen::VectorXd& coefficients, double floor_w) {
-    constexpr int max_rounds = 12;
-    constexpr double weight_of_mean = 1e3;
-    const auto points = static_cast<double>(basis.rows());
-    const Eigen::VectorXd found = basis * coefficients;
-    // A little higher, for what lies between the points.
-    floor_w += between_points * (found.maxCoeff() - found.minCoeff());
-    const double mean_w = std::max(found.mean(), floor_w);
-    const Eigen::VectorXd wanted = found.cwiseMax(floor_w);
-    const Eigen::RowVectorXd mean_row = basis.colwise().mean();
-    Eigen::VectorXd weights = Eigen::VectorXd::Ones(basis.rows());
-    for (int round = 0; round < max_rounds && (basis * coefficients).minCoeff() < floor_w; ++round) {
-        const Eigen::VectorXd curve = basis * coefficients;
-        for (Eigen::Index i = 0; i < curve.size(); ++i)
-            if (curve(i) < floor_w) weights(i) *= 3.0;
-        const double of_mean = weight_of_mean * weights.sum();
-        Eigen::MatrixXd normal = basis.transpose() * weights.asDiagonal() * basis;
-        normal += of_mean * mean_row.transpose() * mean_row;
-        normal.diagonal().tail(coefficients.size() - 1).array() += 1e-6 * points;
-        coefficients = normal.ldlt().solve(basis.transpose() * weights.cwiseProduct(wanted) +
-                                           of_mean * mean_w * mean_row.transpose());
-    }
-    coefficients(0) += mean_w - mean_row.dot(coefficients);
-    const double min_w = (basis * coefficients).minCoeff();
-    if (min_w >= floor_w) return;
-    const double kept = (mean_w - floor_w) / (mean_w - min_w);
-    coefficients *= kept;
-    coefficients(0) += (1.0 - kept) * mean_w;
 }
 
 /// The curve's basis at the middles of equal parts of the phase that show every swing.
@@ -98,8 +52,13 @@ void hold_above_floor(std::span<const PhaseSamples> flights, PhaseFit& fit) {
         const auto basis = fine_basis(flight, fit.theta_rad);
         const double floor_w = min_power_w(flights[i]);
         Eigen::VectorXd coefficients = coefficients_of(flight.fourier);
-        if ((basis * coefficients).minCoeff() < floor_w) {
-            lift_above(basis, coefficients, floor_w);
+        const Eigen::VectorXd curve = basis * coefficients;
+        if (curve.minCoeff() < floor_w) {
+            // A little higher than the floor, for what is between the points.
+            const double lowest_w = floor_w + between_points * (curve.maxCoeff() - curve.minCoeff());
+            const double mean_w = std::max(curve.mean(), lowest_w);
+            coefficients *= (mean_w - lowest_w) / (curve.mean() - curve.minCoeff());
+            coefficients(0) += mean_w - (basis * coefficients).mean();
             flight.fourier = series_of(coefficients, flight.fourier.omega_rad_per_s);
             const auto order = static_cast<int>(flight.fourier.cos_w.size());
             const Eigen::VectorXd residuals =

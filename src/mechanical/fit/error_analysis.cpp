@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -23,52 +24,48 @@ struct CurveAtFrequency {
     Eigen::VectorXd coefficients_w;  ///< a0, a1, b1, ...
     Eigen::MatrixXd covariance_w2;
     double square_sum_w2 = 0.0;
-    double reach = 0.0;  ///< how far it may be off, in its standard errors
+    double reach = 0.0;  ///< half width of its admissible errors, in standard errors
 };
 
-/// The mean curve that was found, and the curves at all frequencies that the samples allow.
+/// The mean curve, and the curves at all admissible frequencies.
 struct MeanCurve {
     double theta_rad = 0.0;
     Eigen::VectorXd coefficients_w;
-    std::vector<CurveAtFrequency> allowed;
+    std::vector<CurveAtFrequency> admissible;
     double half_width = 0.0;  ///< of a 95 % interval, in standard errors
 };
 
 namespace {
 
-double square_sum_about_mean(const PhaseSamples& samples) {
-    const auto power_w = as_vector(samples.power_w);
-    return (power_w.array() - power_w.mean()).square().sum();
-}
-
 void describe_fit(PhaseErrors& errors, std::span<const PhaseSamples> flights, const PhaseFit& fit) {
-    double left = 0.0;
-    double about_means = 0.0;
+    double residual_w2 = 0.0;
+    double about_means_w2 = 0.0;
     for (std::size_t i = 0; i < flights.size(); ++i) {
-        left += std::pow(fit.flights[i].rms_w, 2) * static_cast<double>(fit.flights[i].samples);
-        about_means += square_sum_about_mean(flights[i]);
+        residual_w2 += std::pow(fit.flights[i].rms_w, 2) * static_cast<double>(fit.flights[i].samples);
+        const auto power_w = as_vector(flights[i].power_w);
+        about_means_w2 += (power_w.array() - power_w.mean()).square().sum();
         const int order = static_cast<int>(fit.flights[i].fourier.cos_w.size());
         errors.condition =
             std::max(errors.condition, basis_condition(fourier_basis(flights[i].tau, order, fit.theta_rad)));
     }
-    errors.r2 = about_means > 0.0 ? 1.0 - left / about_means : 1.0;
+    errors.r2 = about_means_w2 > 0.0 ? 1.0 - residual_w2 / about_means_w2 : 1.0;
     errors.frequency_is_fixed = fit.flights.front().fourier.cos_w.empty() || is_constant(flights);
 }
 
-/// What the frequencies are tried on.
-struct NoisySamples {
-    std::vector<ScaledSamples> flights;
-    std::vector<double> weights;
-    double inflation = 1.0;  ///< of variances, because neighbouring samples are alike
+/// The flights with their weights in the mean curve.
+struct WeightedFlights {
+    std::span<const PhaseSamples> flights;
+    std::span<const double> weights;
+    double inflation = 1.0;  ///< of variances, because neighbouring samples are correlated
 };
 
 /// std::nullopt where the samples do not determine the series.
-std::optional<CurveAtFrequency> curve_at(const NoisySamples& samples, Eigen::Index size, double theta_rad) {
+std::optional<CurveAtFrequency> curve_at(const WeightedFlights& samples, Eigen::Index size, double theta_rad) {
     CurveAtFrequency curve{theta_rad, Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size)};
     for (std::size_t i = 0; i < samples.flights.size(); ++i) {
         const auto& flight = samples.flights[i];
         const auto basis = fourier_basis(flight.tau, static_cast<int>(size - 1) / 2, theta_rad);
-        const auto fit = solve_least_squares(basis, as_vector(flight.value));
+        const auto fit = solve_least_squares(basis, as_vector(flight.power_w));
         if (!fit) return std::nullopt;
         const double variance_w2 =
             samples.inflation * fit->residual_square_sum / static_cast<double>(basis.rows() - size);
@@ -79,8 +76,8 @@ std::optional<CurveAtFrequency> curve_at(const NoisySamples& samples, Eigen::Ind
     return curve;
 }
 
-/// The one found first, then others within its interval as if all were linear, the range's low end, where coefficients
-/// are known least, and the rivals.
+/// The fitted frequency first, then others within its linearised interval, the range's low end, where coefficients are
+/// known least, and the rivals.
 std::vector<double> frequencies_to_try(const PhaseFit& fit, double standard_error_rad, double half_width) {
     constexpr int to_each_side = 6;
     std::vector<double> tried{fit.theta_rad, fit.range.low_rad};
@@ -92,51 +89,35 @@ std::vector<double> frequencies_to_try(const PhaseFit& fit, double standard_erro
     return tried;
 }
 
-/// All that are not worse than the best by as much as an F test allows.
-std::vector<CurveAtFrequency> allowed_curves(const NoisySamples& samples, Eigen::Index size, const PhaseFit& fit,
-                                             const std::vector<double>& tried, double half_width) {
+/// The curves that an F test against the best one does not reject.
+std::vector<CurveAtFrequency> admissible_curves(const WeightedFlights& samples, Eigen::Index size, const PhaseFit& fit,
+                                                const std::vector<double>& tried, double half_width) {
     std::vector<std::optional<CurveAtFrequency>> curves(tried.size());
     for_each_in_parallel(tried.size(), [&](std::size_t i) { curves[i] = curve_at(samples, size, tried[i]); });
-    std::vector<CurveAtFrequency> allowed;
+    std::vector<CurveAtFrequency> admissible;
     for (auto& curve : curves) {
         if (!curve) continue;
-        const double least_w2 = allowed.empty() ? curve->square_sum_w2 : allowed.front().square_sum_w2;
-        const double ratio = least_w2 > 0.0 ? curve->square_sum_w2 / least_w2 : 1.0;
-        const double left = half_width * half_width - fit.degrees_of_freedom * (ratio - 1.0);
-        if (left < 0.0) continue;
-        curve->reach = std::sqrt(left);
-        allowed.push_back(*std::move(curve));
+        const double min_w2 = admissible.empty() ? curve->square_sum_w2 : admissible.front().square_sum_w2;
+        const double ratio = min_w2 > 0.0 ? curve->square_sum_w2 / min_w2 : 1.0;
+        const double remaining = half_width * half_width - fit.degrees_of_freedom * (ratio - 1.0);
+        if (remaining < 0.0) continue;
+        curve->reach = std::sqrt(remaining);
+        admissible.push_back(*std::move(curve));
     }
-    return allowed;
+    return admissible;
 }
 
-/// The standard error of a linear function of the coefficients, row(theta) c: that of the widest interval.
+/// The standard error of a linear function of the coefficients, row(theta) c, from its widest interval.
 template <typename Row>
 double standard_error(const MeanCurve& curve, const Row& row) {
     const double found = row(curve.theta_rad).dot(curve.coefficients_w);
     double furthest = 0.0;
-    for (const auto& at : curve.allowed) {
+    for (const auto& at : curve.admissible) {
         const Eigen::VectorXd factors = row(at.theta_rad);
         const double half = at.reach * std::sqrt(std::max(0.0, factors.dot(at.covariance_w2 * factors)));
         furthest = std::max(furthest, std::abs(factors.dot(at.coefficients_w) - found) + half);
     }
     return furthest / curve.half_width;
-}
-
-double frequency_standard_error_rad(const MeanCurve& curve, double linear_rad) {
-    double furthest_rad = linear_rad * curve.half_width;
-    for (const auto& at : curve.allowed)
-        furthest_rad = std::max(furthest_rad, std::abs(at.theta_rad - curve.theta_rad));
-    return furthest_rad / curve.half_width;
-}
-
-void fill_coefficients(PhaseErrors& errors, const MeanCurve& curve) {
-    const auto size = curve.coefficients_w.size();
-    for (Eigen::Index k = 0; k < size; ++k) {
-        const double error_w =
-            standard_error(curve, [&](double) { return Eigen::VectorXd(Eigen::VectorXd::Unit(size, k)); });
-        (k == 0 ? errors.a0_w : k % 2 == 1 ? errors.cos_w.emplace_back() : errors.sin_w.emplace_back()) = error_w;
-    }
 }
 
 }  // namespace
@@ -148,31 +129,35 @@ ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseF
     describe_fit(errors, flights, fit);
     errors.autocorrelation = fit.autocorrelation;
     errors.degrees_of_freedom = fit.degrees_of_freedom;
-    NoisySamples samples{{}, {weights.begin(), weights.end()}};
+    WeightedFlights samples{flights, weights};
     samples.inflation = (1.0 + fit.autocorrelation) / (1.0 - fit.autocorrelation);
     errors.effective_samples = static_cast<double>(fit.samples) / samples.inflation;
     const auto size = coefficients_of(fit.flights.front().fourier).size();
     MeanCurve curve{fit.theta_rad, Eigen::VectorXd::Zero(size), {}, student_t_half_width(errors.degrees_of_freedom)};
     double duration_s = 0.0;
     for (std::size_t i = 0; i < flights.size(); ++i) {
-        samples.flights.push_back({flights[i].tau, flights[i].power_w, flights[i].flight, flights[i].scan});
         curve.coefficients_w += weights[i] * coefficients_of(fit.flights[i].fourier);
         duration_s += weights[i] * flights[i].duration_s;
     }
     std::vector<double> tried{fit.theta_rad};
     double linear_rad = 0.0;
     if (!errors.frequency_is_fixed) {
-        const auto found = fit_at_frequency(samples.flights, static_cast<int>(size - 1) / 2, fit.theta_rad);
-        double square_sum_w2 = 0.0;
-        for (const double part : found.square_sum) square_sum_w2 += part;
-        const double information = frequency_information(samples.flights, found);
+        const auto found = fit_at_frequency(flights, static_cast<int>(size - 1) / 2, fit.theta_rad);
+        const double square_sum_w2 = std::accumulate(found.square_sum.begin(), found.square_sum.end(), 0.0);
+        const double information = frequency_information(flights, found);
         if (information > 0.0) linear_rad = std::sqrt(square_sum_w2 / fit.degrees_of_freedom / information);
         tried = frequencies_to_try(fit, linear_rad, curve.half_width);
     }
-    curve.allowed = allowed_curves(samples, size, fit, tried, curve.half_width);
-    fill_coefficients(errors, curve);
-    if (!errors.frequency_is_fixed)
-        errors.omega_rad_per_s = frequency_standard_error_rad(curve, linear_rad) / duration_s;
+    curve.admissible = admissible_curves(samples, size, fit, tried, curve.half_width);
+    for (Eigen::Index k = 0; k < size; ++k) {
+        const double error_w =
+            standard_error(curve, [&](double) { return Eigen::VectorXd(Eigen::VectorXd::Unit(size, k)); });
+        (k == 0 ? errors.a0_w : k % 2 == 1 ? errors.cos_w.emplace_back() : errors.sin_w.emplace_back()) = error_w;
+    }
+    double half_width_rad = linear_rad * curve.half_width;
+    for (const auto& at : curve.admissible)
+        half_width_rad = std::max(half_width_rad, std::abs(at.theta_rad - curve.theta_rad));
+    if (!errors.frequency_is_fixed) errors.omega_rad_per_s = half_width_rad / curve.half_width / duration_s;
     analysis.curve = std::make_shared<const MeanCurve>(std::move(curve));
     constexpr int points = 41;
     double variance_w2 = 0.0;

@@ -13,31 +13,24 @@ namespace {
 constexpr double block_s = 30.0;
 constexpr std::size_t min_blocks = 10;  // of the shortest flight
 
-/// One flight's deviation from the model's curve at the flight's own level, in blocks; empty blocks (gaps in
-/// the telemetry) are absent.
-std::vector<std::optional<double>> block_deviations_w(const PhaseModel& model, const PhaseSamples& flight,
-                                                      std::size_t blocks) {
-    const auto curve = time_scaled_model(model, flight.duration_s, PhaseTimeScaling::stretched);
-    std::vector<double> sum(blocks, 0.0);
-    std::vector<std::size_t> samples(blocks, 0);
+/// One flight's deviation from the model's curve at the flight's own level, in blocks; NaN without samples (gaps in the
+/// telemetry).
+std::vector<double> block_deviations_w(const PhaseModel& model, const PhaseSamples& flight, std::size_t blocks) {
+    const auto curve = time_scaled_model(model, flight.duration_s, PhaseTimeScaling::scaled);
+    std::vector<double> deviations_w(blocks, 0.0);
+    std::vector<double> samples(blocks, 0.0);
     for (std::size_t i = 0; i < flight.tau.size(); ++i) {
         const auto block = std::min(static_cast<std::size_t>(flight.tau[i] * static_cast<double>(blocks)), blocks - 1);
-        sum[block] += flight.power_w[i] - power_w(curve, flight.tau[i] * flight.duration_s);
-        ++samples[block];
+        deviations_w[block] += flight.power_w[i] - power_w(curve, flight.tau[i] * flight.duration_s);
+        samples[block] += 1.0;
     }
-    double total = 0.0;
-    std::size_t filled = 0;
+    std::vector<double> filled_w;
     for (std::size_t b = 0; b < blocks; ++b) {
-        if (samples[b] == 0) continue;
-        sum[b] /= static_cast<double>(samples[b]);
-        total += sum[b];
-        ++filled;
+        deviations_w[b] /= samples[b];
+        if (samples[b] > 0.0) filled_w.push_back(deviations_w[b]);
     }
-    std::vector<std::optional<double>> deviations(blocks);
-    for (std::size_t b = 0; b < blocks; ++b) {
-        if (samples[b] > 0) deviations[b] = sum[b] - total / static_cast<double>(filled);
-    }
-    return deviations;
+    for (double& deviation_w : deviations_w) deviation_w -= mean(filled_w);
+    return deviations_w;
 }
 
 /// Sums over all flights' blocks.
@@ -50,18 +43,18 @@ struct BlockSums {
     std::size_t flights = 0;
 };
 
-void add_blocks(BlockSums& sums, const std::vector<std::optional<double>>& deviations) {
+void add_blocks(BlockSums& sums, const std::vector<double>& deviations) {
     std::array<double, 2> half_sum{};
     std::array<std::size_t, 2> half_blocks{};
     for (std::size_t b = 0; b < deviations.size(); ++b) {
-        if (!deviations[b]) continue;
-        sums.square += *deviations[b] * *deviations[b];
+        if (std::isnan(deviations[b])) continue;
+        sums.square += deviations[b] * deviations[b];
         ++sums.blocks;
         const std::size_t half = 2 * b < deviations.size() ? 0 : 1;
-        half_sum[half] += *deviations[b];
+        half_sum[half] += deviations[b];
         ++half_blocks[half];
-        if (b == 0 || !deviations[b - 1]) continue;
-        sums.product += *deviations[b] * *deviations[b - 1];
+        if (b == 0 || std::isnan(deviations[b - 1])) continue;
+        sums.product += deviations[b] * deviations[b - 1];
         ++sums.neighbours;
     }
     if (half_blocks[0] == 0 || half_blocks[1] == 0) return;
@@ -71,9 +64,8 @@ void add_blocks(BlockSums& sums, const std::vector<std::optional<double>>& devia
     ++sums.flights;
 }
 
-/// The correlation time at which means over neighbouring blocks, less their mean over a phase, have that
-/// correlation, found by bisection (it rises with the time), from a tenth of a block, where neighbours are
-/// nearly independent, to the duration of a phase, beyond which no flight can tell.
+/// The correlation time at which means over neighbouring blocks, less their mean over a phase, have that correlation. By
+/// bisection, from a tenth of a block, where neighbours are nearly independent, to the duration of a phase.
 double correlation_time_s(double correlation_of_means, double length_s, double duration_s) {
     double low_s = 0.1 * length_s;
     double high_s = duration_s;
@@ -88,9 +80,8 @@ double correlation_time_s(double correlation_of_means, double length_s, double d
     return 0.5 * (low_s + high_s);
 }
 
-/// The drift that the blocks show: its means over blocks, less their mean over a phase, have the correlation
-/// of neighbours and the variance that were found, or a larger variance if the halves of the phases differ by
-/// more than that explains, as they do where a flight's power rises or falls throughout.
+/// The drift whose means over blocks, less their mean over a phase, have the correlation and the variance of the blocks,
+/// or the larger variance of the phases' halves, which power that rises or falls throughout has.
 DriftProcess drift_of(const BlockSums& sums, double length_s, double duration_s) {
     if (!(sums.square > 0.0) || sums.neighbours == 0 || sums.flights < 2) return {0.0, length_s};
     const double variance = sums.square / static_cast<double>(sums.blocks);
@@ -104,35 +95,20 @@ DriftProcess drift_of(const BlockSums& sums, double length_s, double duration_s)
     return {std::sqrt(std::max(by_blocks, by_halves)), unit.correlation_s};
 }
 
-std::vector<double> mean_powers_w(std::span<const PhaseSamples> flights) {
-    std::vector<double> powers_w;
-    for (const auto& flight : flights) powers_w.push_back(mean_power_w(flight));
-    return powers_w;
-}
-
-/// With the flights' standard deviation times `factor`, where there are two or more.
-ConstantPower with_spread(double mean_w, const std::vector<double>& powers_w, double factor) {
-    ConstantPower power{mean_w, std::nullopt, 0.0};
-    if (powers_w.size() < 2) return power;
-    power.sd_w = sample_sd(powers_w) * factor;
-    power.degrees_of_freedom = static_cast<double>(powers_w.size() - 1);
-    return power;
-}
-
 }  // namespace
 
 std::optional<VarianceComponents> estimate_variance_components(const PhaseModel& model,
                                                                std::span<const PhaseSamples> flights) {
     if (flights.size() < 2) return std::nullopt;
     std::vector<double> levels_w;
-    double shortest_s = flights.front().duration_s;
+    double min_s = flights.front().duration_s;
     double sum_s = 0.0;
     for (const auto& flight : flights) {
         levels_w.push_back(mean_power_w(flight));
-        shortest_s = std::min(shortest_s, flight.duration_s);
+        min_s = std::min(min_s, flight.duration_s);
         sum_s += flight.duration_s;
     }
-    const double length_s = std::min(block_s, shortest_s / static_cast<double>(min_blocks));
+    const double length_s = std::min(block_s, min_s / static_cast<double>(min_blocks));
     BlockSums sums;
     for (const auto& flight : flights) {
         const auto blocks = static_cast<std::size_t>(std::floor(flight.duration_s / length_s));
@@ -143,37 +119,14 @@ std::optional<VarianceComponents> estimate_variance_components(const PhaseModel&
 }
 
 ConstantPower constant_mean(std::span<const PhaseSamples> flights) {
-    const auto powers_w = mean_powers_w(flights);
-    return with_spread(mean(powers_w), powers_w, std::sqrt(1.0 + 1.0 / static_cast<double>(flights.size())));
-}
-
-ConstantPower single_flight_power(std::span<const PhaseSamples> flights, std::size_t index) {
-    const auto powers_w = mean_powers_w(flights);
-    return with_spread(powers_w[index], powers_w, std::sqrt(2.0));
-}
-
-std::optional<std::size_t> nearest_flight(std::span<const FlightSamples> flights, flight::Phase phase,
-                                          const FlightSamples& other) {
-    std::optional<std::size_t> nearest;
-    double least = 0.0;
-    std::size_t index = 0;
-    for (const auto& flight : flights) {
-        if (!flight.phases[phase]) continue;
-        double square_sum = 0.0;
-        int common = 0;
-        for (const auto p : flight::all_phases) {
-            if (!flight.phases[p] || !other.phases[p]) continue;
-            square_sum += std::pow(std::log(other.phases[p]->duration_s / flight.phases[p]->duration_s), 2);
-            ++common;
-        }
-        const double distance = square_sum / common;
-        if (common > 0 && (!nearest || distance < least)) {
-            nearest = index;
-            least = distance;
-        }
-        ++index;
-    }
-    return nearest;
+    std::vector<double> powers_w;
+    for (const auto& flight : flights) powers_w.push_back(mean_power_w(flight));
+    ConstantPower power{mean(powers_w), std::nullopt, 0.0};
+    if (powers_w.size() < 2) return power;
+    const auto count = static_cast<double>(powers_w.size());
+    power.sd_w = sample_sd(powers_w) * std::sqrt(1.0 + 1.0 / count);
+    power.degrees_of_freedom = count - 1.0;
+    return power;
 }
 
 }  // namespace flightwatt::mechanical

@@ -10,10 +10,10 @@
 namespace flightwatt::mechanical {
 namespace {
 
-/// No flight is taken to be more than this many times as exact as the least exact one.
+/// Maximum ratio of the flights' precisions.
 constexpr double max_times_exact = 1e3;
 
-/// Curves that differ by less than this part of their size are equal.
+/// Curves with a smaller relative difference are equal.
 constexpr double equal_level = 1e-9;
 
 std::vector<double> normalised(std::vector<double> weights) {
@@ -34,7 +34,7 @@ std::vector<double> by_variance(const PhaseFit& fit) {
     return normalised(std::move(weights));
 }
 
-/// How far each flight's curve is from the mean of the others, squared and averaged over the phase [W^2].
+/// Mean square distance of each flight's curve from the mean of the others over the phase [W^2].
 std::vector<double> disagreements(const PhaseFit& fit) {
     const auto& first = fit.flights.front();
     const auto points = curve_point_count(first.fourier, first.duration_s);
@@ -62,11 +62,11 @@ std::vector<double> by_agreement(const PhaseFit& fit) {
     std::vector<double> equal(count, 1.0 / static_cast<double>(count));
     if (count <= 2) return equal;
     const auto distances = disagreements(fit);
-    double usual = median(distances);
-    if (usual == 0.0) usual = mean(distances);
-    if (usual == 0.0) return equal;
+    double typical = median(distances);
+    if (typical == 0.0) typical = mean(distances);
+    if (typical == 0.0) return equal;
     std::vector<double> weights(distances.size());
-    std::ranges::transform(distances, weights.begin(), [&](double distance) { return usual / (distance + usual); });
+    std::ranges::transform(distances, weights.begin(), [&](double distance) { return typical / (distance + typical); });
     return normalised(std::move(weights));
 }
 

@@ -4,9 +4,10 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numbers>
-#include <numeric>
 
+#include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <unsupported/Eigen/FFT>
@@ -26,7 +27,7 @@ struct SpreadGrid {
     double width = 0.0;  ///< the Gaussian is exp(-angle^2 / (4 width))
 };
 
-SpreadGrid spread(const ScaledSamples& samples, double step_rad, std::size_t count) {
+SpreadGrid spread(const PhaseSamples& samples, double step_rad, std::size_t count) {
     // Modes run from -count to count; twice as many cells keep the Gaussian's images apart.
     const std::size_t cells = std::bit_ceil(std::max<std::size_t>(4 * count, 4 * reach));
     const double modes = 2.0 * static_cast<double>(count);
@@ -47,20 +48,19 @@ SpreadGrid spread(const ScaledSamples& samples, double step_rad, std::size_t cou
         const double rest = angle - static_cast<double>(nearest) * cell;
         const double ratio = std::exp(rest * cell / (2.0 * grid.width));
         double factor = std::exp(-rest * rest / (4.0 * grid.width)) * std::pow(ratio, 1.0 - static_cast<double>(reach));
-        const Complex sample(1.0, samples.value[i]);
+        const Complex sample(1.0, samples.power_w[i]);
         for (std::size_t k = 0; k < fixed_factor.size(); ++k) {
-            const std::size_t place = (nearest + cells + k - (reach - 1)) & (cells - 1);
-            grid.cells[place] += sample * (factor * fixed_factor[k]);
+            grid.cells[(nearest + cells + k - (reach - 1)) & (cells - 1)] += sample * (factor * fixed_factor[k]);
             factor *= ratio;
         }
     }
     return grid;
 }
 
-/// A pivot below this part of its diagonal is rounding: the sums are good to 11 digits.
-constexpr double smallest_pivot = 1e-9;
+/// A pivot below this fraction of its diagonal is rounding: the sums are good to 11 digits.
+constexpr double min_pivot = 1e-9;
 
-constexpr std::size_t max_columns = 2 * max_order + 1;
+constexpr int max_columns = coefficient_count(max_order);
 
 /// The inner product of two columns of the basis: column 0 is cos(0), 2n - 1 is cos(n .), 2n is sin(n .).
 double inner_product(const TrigonometricSums& sums, std::size_t stride, std::size_t a, std::size_t b) {
@@ -123,11 +123,11 @@ double basis_condition(Eigen::MatrixXd basis) {
     return singular(0) / singular(singular.size() - 1);
 }
 
-FourierResidual fourier_residual(const ScaledSamples& samples, double theta_rad, const Eigen::VectorXd& coefficients) {
+FourierResidual fourier_residual(const PhaseSamples& samples, double theta_rad, const Eigen::VectorXd& coefficients) {
     const int order = static_cast<int>(coefficients.size() - 1) / 2;
     FourierResidual result;
     result.by_coefficients = fourier_basis(samples.tau, order, theta_rad);
-    result.residual = result.by_coefficients * coefficients - as_vector(samples.value);
+    result.residual = result.by_coefficients * coefficients - as_vector(samples.power_w);
     // d/dtheta of a cos(n theta tau) + b sin(n theta tau) is n tau (b cos - a sin).
     Eigen::VectorXd turned = Eigen::VectorXd::Zero(coefficients.size());
     for (Eigen::Index n = 1; n <= order; ++n) {
@@ -158,7 +158,7 @@ std::optional<LinearFit> solve_least_squares(const Eigen::MatrixXd& matrix, cons
     return fit;
 }
 
-TrigonometricSums sum_directly(const ScaledSamples& samples, double step_rad, std::size_t count) {
+TrigonometricSums sum_directly(const PhaseSamples& samples, double step_rad, std::size_t count) {
     TrigonometricSums sums{std::vector<Complex>(count), std::vector<Complex>(count)};
     for (std::size_t i = 0; i < samples.tau.size(); ++i) {
         const double angle = step_rad * samples.tau[i];
@@ -166,14 +166,14 @@ TrigonometricSums sum_directly(const ScaledSamples& samples, double step_rad, st
         Complex power(1.0, 0.0);
         for (std::size_t m = 0; m < count; ++m) {
             sums.weight[m] += power;
-            sums.value[m] += samples.value[i] * power;
+            sums.value[m] += samples.power_w[i] * power;
             power *= turn;
         }
     }
     return sums;
 }
 
-TrigonometricSums sum_by_fft(const ScaledSamples& samples, double step_rad, std::size_t count) {
+TrigonometricSums sum_by_fft(const PhaseSamples& samples, double step_rad, std::size_t count) {
     const SpreadGrid grid = spread(samples, step_rad, count);
     const std::size_t cells = grid.cells.size();
     std::vector<Complex> modes;
@@ -195,42 +195,32 @@ TrigonometricSums sum_by_fft(const ScaledSamples& samples, double step_rad, std:
 }
 
 double explained_square_sum(const TrigonometricSums& sums, std::size_t stride, int order) {
-    const auto columns = 2 * static_cast<std::size_t>(order) + 1;
-    // L D L^T of the Gram matrix, row by row, with the right-hand side carried along: the sum explained is
-    // sum z_j^2 / d_j with L z = rhs.
-    std::array<std::array<double, max_columns>, max_columns> lower;
-    std::array<double, max_columns> inverse_pivot{};
-    std::array<double, max_columns> z{};
-    double explained = 0.0;
-    for (std::size_t row = 0; row < columns; ++row) {
-        auto& scaled = lower[row];  // L_row,k d_k until its turn
-        for (std::size_t column = 0; column < row; ++column) {
-            double entry = inner_product(sums, stride, row, column);
-            for (std::size_t k = 0; k < column; ++k) entry -= scaled[k] * lower[column][k];
-            scaled[column] = entry;
-        }
-        const double diagonal = inner_product(sums, stride, row, row);
-        const auto& rhs = sums.value[(row + 1) / 2 * stride];
-        double pivot = diagonal;
-        z[row] = row > 0 && row % 2 == 0 ? rhs.imag() : rhs.real();
-        for (std::size_t k = 0; k < row; ++k) {
-            const double factor = scaled[k] * inverse_pivot[k];
-            pivot -= scaled[k] * factor;
-            z[row] -= factor * z[k];
-            scaled[k] = factor;
-        }
-        inverse_pivot[row] = pivot > smallest_pivot * diagonal ? 1.0 / pivot : 0.0;
-        explained += z[row] * z[row] * inverse_pivot[row];
+    using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, max_columns, max_columns>;
+    using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, max_columns, 1>;
+    const Eigen::Index columns = coefficient_count(order);
+    Matrix gram(columns, columns);
+    Vector right(columns);
+    for (Eigen::Index row = 0; row < columns; ++row) {
+        const auto& value = sums.value[static_cast<std::size_t>(row + 1) / 2 * stride];
+        right(row) = row > 0 && row % 2 == 0 ? value.imag() : value.real();
+        for (Eigen::Index column = 0; column <= row; ++column)
+            gram(row, column) = gram(column, row) =
+                inner_product(sums, stride, static_cast<std::size_t>(row), static_cast<std::size_t>(column));
     }
-    return explained;
+    // With columns of length 1: the sum explained is that of z_j^2 / d_j with L z = P right.
+    const Vector scale = gram.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
+    const Eigen::LDLT<Matrix> factor(scale.asDiagonal() * gram * scale.asDiagonal());
+    Vector z = factor.transpositionsP() * scale.cwiseProduct(right);
+    factor.matrixL().solveInPlace(z);
+    const auto pivots = factor.vectorD().array();
+    return (pivots > min_pivot).select(z.array().square() / pivots, 0.0).sum();
 }
 
-double projected_square_sum(std::span<const ScaledSamples> flights, int order, double theta_rad) {
+double projected_square_sum(std::span<const PhaseSamples> flights, int order, double theta_rad) {
     double sum = 0.0;
     for (const auto& flight : flights) {
         const auto sums = sum_directly(flight, theta_rad, 2 * static_cast<std::size_t>(order) + 1);
-        const auto& value = flight.value;
-        const double total = std::inner_product(value.begin(), value.end(), value.begin(), 0.0);
+        const double total = as_vector(flight.power_w).squaredNorm();
         sum += std::max(0.0, total - explained_square_sum(sums, 1, order));
     }
     return sum;

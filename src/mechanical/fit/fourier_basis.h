@@ -11,7 +11,7 @@
 
 #include <Eigen/Core>
 
-/// The Fourier series of Eq. 1 as linear algebra. Its coefficients stand in the order a0, a1, b1, a2, b2, ...;
+/// The Fourier series of Eq. 1 as linear algebra. Coefficients are in the order a0, a1, b1, a2, b2, ...;
 /// theta = omega * duration [rad].
 namespace flightwatt::mechanical {
 
@@ -29,16 +29,16 @@ Eigen::MatrixXd fourier_basis(std::span<const double> tau, int order, double the
 /// amplified in the coefficients.
 double basis_condition(Eigen::MatrixXd basis);
 
-/// A flight's residuals f(tau) - value and their derivatives.
+/// A flight's residuals f(tau) - power and their derivatives.
 struct FourierResidual {
     Eigen::VectorXd residual;         ///< one a sample
     Eigen::VectorXd by_theta;         ///< d residual / d theta
     Eigen::MatrixXd by_coefficients;  ///< d residual / d coefficients: the basis
 };
 
-FourierResidual fourier_residual(const ScaledSamples& samples, double theta_rad, const Eigen::VectorXd& coefficients);
+FourierResidual fourier_residual(const PhaseSamples& samples, double theta_rad, const Eigen::VectorXd& coefficients);
 
-/// A linear least-squares solution with what follows from it.
+/// A linear least-squares solution.
 struct LinearFit {
     Eigen::VectorXd coefficients;
     double residual_square_sum = 0.0;
@@ -50,7 +50,7 @@ struct LinearFit {
 std::optional<LinearFit> solve_least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& values);
 
 /// Sums over one flight's samples at the frequencies 0, step, 2 step, ... [rad per unit of tau]:
-///     weight[m] = sum exp(i m step tau)         value[m] = sum value exp(i m step tau)
+///     weight[m] = sum exp(i m step tau)         value[m] = sum power exp(i m step tau)
 /// Every inner product of Fourier columns is made of them, since products of cosines are cosines of sums.
 struct TrigonometricSums {
     std::vector<std::complex<double>> weight;
@@ -58,20 +58,20 @@ struct TrigonometricSums {
 };
 
 /// The sums for m = 0 .. count - 1, sample by sample: samples x count operations, exact to rounding.
-TrigonometricSums sum_directly(const ScaledSamples& samples, double step_rad, std::size_t count);
+TrigonometricSums sum_directly(const PhaseSamples& samples, double step_rad, std::size_t count);
 
 /// The same, all at once: the samples are spread on a fine grid with a Gaussian, transformed by FFT, and the
 /// Gaussian divided out (Greengard and Lee, SIAM Review 46, 2004). Relative to the sum of absolute values the
 /// error is below 1e-11.
-TrigonometricSums sum_by_fft(const ScaledSamples& samples, double step_rad, std::size_t count);
+TrigonometricSums sum_by_fft(const PhaseSamples& samples, double step_rad, std::size_t count);
 
-/// By how much the best series of that order at theta = stride * step lowers the sum of squares of the values
-/// that `sums` were made of. Needs the sums up to m = 2 * order * stride. Directions of the basis that the
-/// normal equations cannot tell from rounding do not count: near-collinear bases give less, never nonsense.
+/// The sum of squares that the best series of that order at theta = stride * step explains. Needs the sums up to
+/// m = 2 * order * stride. Directions of the basis within rounding of the normal equations do not count: near-collinear
+/// bases explain less.
 double explained_square_sum(const TrigonometricSums& sums, std::size_t stride, int order);
 
 /// The flights' common residual sum of squares at one frequency, each flight with its own best coefficients
 /// (variable projection); exact sums, normal equations.
-double projected_square_sum(std::span<const ScaledSamples> flights, int order, double theta_rad);
+double projected_square_sum(std::span<const PhaseSamples> flights, int order, double theta_rad);
 
 }  // namespace flightwatt::mechanical

@@ -13,34 +13,33 @@
 
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/tools/minima.hpp>
-#include <ceres/tiny_solver.h>
 #include <fmt/format.h>
 
 namespace flightwatt::mechanical {
 namespace {
 
-/// How far the highest harmonic may turn between two thetas of the scan: half of it, seen from the middle of
-/// the phase, costs at most 2 % of a harmonic's power.
+/// Phase of the highest harmonic between two thetas of the scan: half of it, from the middle of the phase, costs at most
+/// 2 % of a harmonic's power.
 constexpr double turn_between_rad = 1.0;
 
-/// So many minima of the scan are refined, at most, before the lowest is chosen. One that explains less than
-/// this part of the best explanation cannot make it up within a step.
+/// Minima of the scan that are refined. One that explains less than this fraction of the best explanation cannot become
+/// the best within a step.
 constexpr std::size_t refined_minima = 8;
-constexpr double hopeful_fraction = 0.95;
+constexpr double candidate_fraction = 0.95;
 
-/// Chance of taking noise for a harmonic.
+/// Probability of a harmonic that is noise.
 constexpr double harmonic_significance = 1e-3;
 
-/// A harmonic with less than this part of the power that the series explains may be done without.
+/// A harmonic with less than this fraction of the power that the series explains is negligible.
 constexpr double negligible_fraction = 0.02;
 
-/// At a multiple that explains less than this, before it is refined, there is no need to look closer.
-constexpr double promising_fraction = 0.5;
+/// A multiple that explains less than this before refinement is not refined.
+constexpr double unrefined_fraction = 0.5;
 
-/// Below this part of the values' own sum of squares a residual is rounding.
-constexpr double rounding_level = 1e-12;
+/// Below this fraction of the values' own sum of squares a residual is rounding.
+constexpr double rounding_level = 1e-9;
 
-/// Bits of theta that the refinement finds; a minimum cannot be placed better than half of a double's.
+/// Bits of theta that Brent's method finds: at a minimum, half of a double's.
 constexpr int refined_bits = 24;
 
 struct Candidate {
@@ -48,20 +47,19 @@ struct Candidate {
     double square_sum = std::numeric_limits<double>::infinity();
 };
 
-double own_square_sum(std::span<const ScaledSamples> flights) {
+double own_square_sum(std::span<const PhaseSamples> flights) {
     double sum = 0.0;
-    for (const auto& flight : flights)
-        sum = std::inner_product(flight.value.begin(), flight.value.end(), flight.value.begin(), sum);
+    for (const auto& flight : flights) sum += as_vector(flight.power_w).squaredNorm();
     return sum;
 }
 
-Candidate refined(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range, double theta_rad,
+Candidate refined(std::span<const PhaseSamples> flights, int order, const FrequencyRange& range, double theta_rad,
                   double reach_rad) {
     const double low = std::max(range.low_rad, theta_rad - reach_rad);
     const double high = std::min(range.high_rad, theta_rad + reach_rad);
     const auto square_sum = [&](double theta) { return projected_square_sum(flights, order, theta); };
-    const auto [place, value] = boost::math::tools::brent_find_minima(square_sum, low, high, refined_bits);
-    return {place, value};
+    const auto [at_rad, value] = boost::math::tools::brent_find_minima(square_sum, low, high, refined_bits);
+    return {at_rad, value};
 }
 
 /// The scan's local minima, its ends included, lowest first.
@@ -71,7 +69,7 @@ std::vector<Candidate> minima(const FrequencyScan& scan) {
     for (std::size_t i = 0; i < sums.size(); ++i) {
         const bool falls = i == 0 || sums[i] <= sums[i - 1];
         const bool rises = i + 1 == sums.size() || sums[i] < sums[i + 1];
-        if (falls && rises) found.push_back({scan.theta_rad[i], sums[i]});
+        if (falls && rises) found.push_back({scan.grid.theta_rad(i), sums[i]});
     }
     std::ranges::sort(found, {}, &Candidate::square_sum);
     return found;
@@ -85,72 +83,53 @@ Eigen::VectorXd projected_slope(const FourierResidual& at) {
     return at.by_theta - at.by_coefficients * followed->coefficients;
 }
 
-/// All flights' residuals over theta, in the form that Ceres's TinySolver asks for.
-struct ProjectedResiduals {
-    using Scalar = double;
-    enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = 1 };
-
-    std::span<const ScaledSamples> flights;
-    int order = 0;
-    FrequencyRange range;
-
-    int NumResiduals() const {
-        std::size_t count = 0;
-        for (const auto& flight : flights) count += flight.tau.size();
-        return static_cast<int>(count);
-    }
-
-    JointFit fit_at(double theta_rad) const {
-        return fit_at_frequency(flights, order, std::clamp(theta_rad, range.low_rad, range.high_rad));
-    }
-
-    bool operator()(const double* theta_rad, double* residual, double* by_theta) const {
-        const auto fit = fit_at(*theta_rad);
-        Eigen::Index row = 0;
-        for (std::size_t i = 0; i < flights.size(); ++i) {
-            const auto at = fourier_residual(flights[i], fit.theta_rad, fit.coefficients[i]);
-            const auto count = at.residual.size();
-            Eigen::Map<Eigen::VectorXd>(residual + row, count) = at.residual;
-            if (by_theta != nullptr) Eigen::Map<Eigen::VectorXd>(by_theta + row, count) = projected_slope(at);
-            row += count;
-        }
-        return true;
-    }
+/// Gradient of half the common sum of squares over theta, and its Gauss-Newton curvature.
+struct ThetaDerivatives {
+    double gradient = 0.0;
+    double curvature = 0.0;
 };
+
+ThetaDerivatives theta_derivatives(std::span<const PhaseSamples> flights, const JointFit& fit) {
+    ThetaDerivatives derivatives;
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        const auto at = fourier_residual(flights[i], fit.theta_rad, fit.coefficients[i]);
+        const auto slope = projected_slope(at);
+        derivatives.gradient += slope.dot(at.residual);
+        derivatives.curvature += slope.squaredNorm();
+    }
+    return derivatives;
+}
+
+double total_square_sum(const JointFit& fit) {
+    return std::accumulate(fit.square_sum.begin(), fit.square_sum.end(), 0.0);
+}
 
 }  // namespace
 
 ScanGrid scan_grid(const FrequencyRange& range, int order) {
     const double step_rad = range.high_rad / std::ceil(range.high_rad * order / turn_between_rad);
-    return {step_rad, static_cast<std::size_t>(std::ceil(range.low_rad / step_rad)),
+    return {order, step_rad, static_cast<std::size_t>(std::ceil(range.low_rad / step_rad)),
             static_cast<std::size_t>(std::round(range.high_rad / step_rad))};
 }
 
-FlightScan scan_flight(const ScaledSamples& samples, int order, const FrequencyRange& range) {
-    const auto [step_rad, first, last] = scan_grid(range, order);
-    if (const auto* known = samples.scan.get(); known && known->order == order && known->step_rad == step_rad &&
-                                                known->first == first && known->square_sum.size() == last - first + 1) {
-        auto scan = *known;
-        for (double& sum : scan.square_sum) sum *= samples.scan_unit * samples.scan_unit;
-        return scan;
-    }
-    FlightScan scan{order, step_rad, first, {}};
-    scan.square_sum.assign(last - first + 1, own_square_sum(std::span(&samples, 1)));
-    const auto sums = sum_by_fft(samples, step_rad, 2 * static_cast<std::size_t>(order) * last + 1);
+FrequencyScan scan_flight(const PhaseSamples& samples, int order, const FrequencyRange& range) {
+    const auto grid = scan_grid(range, order);
+    if (samples.scan && samples.scan->grid == grid) return *samples.scan;
+    FrequencyScan scan{grid, std::vector<double>(grid.size(), own_square_sum(std::span(&samples, 1)))};
+    const auto sums = sum_by_fft(samples, grid.step_rad, 2 * static_cast<std::size_t>(order) * grid.last + 1);
     for (std::size_t i = 0; i < scan.square_sum.size(); ++i)
-        scan.square_sum[i] -= explained_square_sum(sums, first + i, order);
+        scan.square_sum[i] -= explained_square_sum(sums, grid.first + i, order);
     return scan;
 }
 
-FrequencyScan scan_frequencies(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range) {
-    const auto [step_rad, first, last] = scan_grid(range, order);
-    FrequencyScan scan{{}, std::vector<double>(last - first + 1, 0.0), step_rad};
-    for (auto i = first; i <= last; ++i) scan.theta_rad.push_back(static_cast<double>(i) * step_rad);
+FrequencyScan scan_frequencies(std::span<const PhaseSamples> flights, int order, const FrequencyRange& range) {
+    const auto grid = scan_grid(range, order);
+    FrequencyScan scan{grid, std::vector<double>(grid.size(), 0.0)};
     // A block at a time, because those of thousands of flights would fill the memory.
     constexpr std::size_t block = 64;
     for (std::size_t begin = 0; begin < flights.size(); begin += block) {
         const auto some = flights.subspan(begin, std::min(block, flights.size() - begin));
-        std::vector<FlightScan> made(some.size());
+        std::vector<FrequencyScan> made(some.size());
         for_each_in_parallel(some.size(), [&](std::size_t i) { made[i] = scan_flight(some[i], order, range); });
         for (const auto& flight : made)
             for (std::size_t i = 0; i < scan.square_sum.size(); ++i) scan.square_sum[i] += flight.square_sum[i];
@@ -158,21 +137,21 @@ FrequencyScan scan_frequencies(std::span<const ScaledSamples> flights, int order
     return scan;
 }
 
-double find_frequency(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
+double find_frequency(std::span<const PhaseSamples> flights, int order, const FrequencyRange& range,
                       const FrequencyScan& scan) {
     auto candidates = minima(scan);
     candidates.resize(std::min(candidates.size(), refined_minima));
     const double total = own_square_sum(flights);
     Candidate best;
     for (const auto& candidate : candidates) {
-        if (total - candidate.square_sum < hopeful_fraction * (total - best.square_sum)) break;
-        const auto fine = refined(flights, order, range, candidate.theta_rad, scan.step_rad);
+        if (total - candidate.square_sum < candidate_fraction * (total - best.square_sum)) break;
+        const auto fine = refined(flights, order, range, candidate.theta_rad, scan.grid.step_rad);
         if (fine.square_sum < best.square_sum) best = fine;
     }
     return resolve_subharmonic(flights, order, range, best.theta_rad);
 }
 
-double resolve_subharmonic(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
+double resolve_subharmonic(std::span<const PhaseSamples> flights, int order, const FrequencyRange& range,
                            double theta_rad) {
     const double total = own_square_sum(flights);
     const double rounding = std::max(rounding_level * total, std::numeric_limits<double>::min());
@@ -187,7 +166,7 @@ double resolve_subharmonic(std::span<const ScaledSamples> flights, int order, co
         const double reach_rad = turn_between_rad / order * multiple;
         if (multiple * theta_rad + reach_rad > range.high_rad) continue;
         const double unrefined = projected_square_sum(flights, order, multiple * theta_rad);
-        if (total - unrefined < promising_fraction * (total - best)) continue;
+        if (total - unrefined < unrefined_fraction * (total - best)) continue;
         const auto simpler = refined(flights, order, range, multiple * theta_rad, reach_rad);
         const bool slope = std::abs(simpler.theta_rad - multiple * theta_rad) > 0.9 * reach_rad;
         if (slope) continue;  // the least is where the search ended, not a minimum
@@ -204,11 +183,11 @@ double resolve_subharmonic(std::span<const ScaledSamples> flights, int order, co
     return theta_rad;
 }
 
-JointFit fit_at_frequency(std::span<const ScaledSamples> flights, int order, double theta_rad) {
+JointFit fit_at_frequency(std::span<const PhaseSamples> flights, int order, double theta_rad) {
     JointFit result;
     result.theta_rad = theta_rad;
     for (const auto& flight : flights) {
-        auto fit = solve_least_squares(fourier_basis(flight.tau, order, theta_rad), as_vector(flight.value));
+        auto fit = solve_least_squares(fourier_basis(flight.tau, order, theta_rad), as_vector(flight.power_w));
         if (!fit)
             throw NoResultError(
                 fmt::format("flight '{}': the times of its {} samples do not determine a series of "
@@ -220,23 +199,28 @@ JointFit fit_at_frequency(std::span<const ScaledSamples> flights, int order, dou
     return result;
 }
 
-double frequency_information(std::span<const ScaledSamples> flights, const JointFit& fit) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < flights.size(); ++i)
-        sum += projected_slope(fourier_residual(flights[i], fit.theta_rad, fit.coefficients[i])).squaredNorm();
-    return sum;
+double frequency_information(std::span<const PhaseSamples> flights, const JointFit& fit) {
+    return theta_derivatives(flights, fit).curvature;
 }
 
-JointFit refine_jointly(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
+JointFit refine_jointly(std::span<const PhaseSamples> flights, int order, const FrequencyRange& range,
                         double start_rad) {
-    const ProjectedResiduals residuals{flights, order, range};
-    ceres::TinySolver<ProjectedResiduals> solver;
-    solver.options.max_num_iterations = 100;
-    solver.options.parameter_tolerance = 1e-11;  // relative; far below the frequency's error
-    solver.options.gradient_tolerance = solver.options.function_tolerance = solver.options.cost_threshold = 0.0;
-    Eigen::Matrix<double, 1, 1> theta_rad(start_rad);
-    solver.Solve(residuals, &theta_rad);
-    return residuals.fit_at(theta_rad[0]);
+    constexpr int max_steps = 30;
+    constexpr double tolerance = 1e-11;  // relative; far below the frequency's error
+    auto fit = fit_at_frequency(flights, order, std::clamp(start_rad, range.low_rad, range.high_rad));
+    double fraction = 1.0;  // of a Gauss-Newton step
+    for (int i = 0; i < max_steps; ++i) {
+        const auto [gradient, curvature] = theta_derivatives(flights, fit);
+        if (!(curvature > 0.0)) break;
+        const double next_rad =
+            std::clamp(fit.theta_rad - fraction * gradient / curvature, range.low_rad, range.high_rad);
+        if (std::abs(next_rad - fit.theta_rad) <= tolerance * fit.theta_rad) break;
+        auto next = fit_at_frequency(flights, order, next_rad);
+        const bool improves = total_square_sum(next) < total_square_sum(fit);
+        fraction = improves ? 1.0 : 0.5 * fraction;
+        if (improves) fit = std::move(next);
+    }
+    return fit;
 }
 
 }  // namespace flightwatt::mechanical

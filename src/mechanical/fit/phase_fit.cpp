@@ -16,16 +16,15 @@
 namespace flightwatt::mechanical {
 namespace {
 
-/// The fewer periods a phase has, the more alike its harmonics are, and noise in the coefficients grows: at order 3 the
-/// basis's condition is 1 at 2 pi, 38 at the paper's landing (3.63), 108 at pi, but 2500 at 2 rad and 230000 at 1 rad.
+/// With fewer periods a phase's harmonics become collinear, and noise in the coefficients grows: at order 3 the basis's
+/// condition is 1 at 2 pi, 38 at the paper's landing (3.63), 108 at pi, but 2500 at 2 rad and 230000 at 1 rad.
 constexpr double min_theta_rad = std::numbers::pi;
-/// 120 in ten minutes are 5 s each: nothing that an aircraft does over and over in cruise is faster.
+/// 120 in ten minutes are 5 s each: no periodic manoeuvre of a cruise is faster.
 constexpr double max_periods = 120.0;
 constexpr double max_autocorrelation = 0.99;  ///< such noise lasts for 200 samples
-constexpr double bound_tolerance = 1e-6;      ///< nearer to an end than this part of it is standing at it
-/// The likeness of a harmonic's columns up to which their worse direction is told with at least half the information.
-constexpr double max_alike = 0.5;
-constexpr double constant_level = 1e-12;  ///< power that varies less than this part of its size is constant
+constexpr double bound_tolerance = 1e-6;      ///< relative distance of a bound
+/// The collinearity of a harmonic's columns up to which the samples determine both with half the information or more.
+constexpr double max_collinearity = 0.5;
 
 void check_options(const PhaseFitOptions& options) {
     if (options.order < 0 || options.order > max_order) {
@@ -55,40 +54,21 @@ void check_samples(flight::Phase phase, const PhaseSamples& samples) {
     }
 }
 
-struct Scaling {
-    std::vector<ScaledSamples> flights;
-    std::vector<double> mean_w;  ///< a flight
-    double unit_w = 1.0;
+/// Power less its flight's mean; 0 where it varies by no more than rounding.
+struct CentredFlights {
+    std::vector<PhaseSamples> flights;
+    std::vector<double> mean_w;
 };
 
-Scaling scaled(std::span<const PhaseSamples> flights) {
-    Scaling scaling;
-    double square_sum = 0.0;
-    double largest = 0.0;
-    double count = 0.0;
-    for (const auto& flight : flights) {
-        ScaledSamples samples{flight.tau, flight.power_w, flight.flight};
-        const double mean_w = mean(flight.power_w);
-        for (double& value : samples.value) {
-            largest = std::max(largest, std::abs(value));
-            value -= mean_w;
-            square_sum += value * value;
-        }
-        count += static_cast<double>(flight.tau.size());
-        scaling.flights.push_back(std::move(samples));
-        scaling.mean_w.push_back(mean_w);
+CentredFlights centred_flights(std::span<const PhaseSamples> flights) {
+    CentredFlights centred{{flights.begin(), flights.end()}, {}};
+    const bool constant = is_constant(flights);
+    for (auto& flight : centred.flights) {
+        centred.mean_w.push_back(mean(flight.power_w));
+        for (double& power_w : flight.power_w) power_w = constant ? 0.0 : power_w - centred.mean_w.back();
+        if (constant) flight.scan.reset();
     }
-    const double deviation_w = std::sqrt(square_sum / count);
-    const bool varies = deviation_w > constant_level * largest;
-    if (varies) scaling.unit_w = deviation_w;
-    for (auto& flight : scaling.flights)
-        for (double& value : flight.value) value = varies ? value / deviation_w : 0.0;
-    if (!varies) return scaling;
-    for (std::size_t i = 0; i < flights.size(); ++i) {
-        scaling.flights[i].scan = flights[i].scan;
-        scaling.flights[i].scan_unit = 1.0 / deviation_w;
-    }
-    return scaling;
+    return centred;
 }
 
 FrequencyBound bound_reached(const FrequencyRange& range, double theta_rad) {
@@ -98,22 +78,15 @@ FrequencyBound bound_reached(const FrequencyRange& range, double theta_rad) {
     return FrequencyBound::none;
 }
 
-JointFit least_squares(const Scaling& scaling, int order, const FrequencyRange& range, const FrequencyScan* scan) {
-    if (scan)
-        return refine_jointly(scaling.flights, order, range, find_frequency(scaling.flights, order, range, *scan));
-    return fit_at_frequency(scaling.flights, order, std::clamp(units::rad_per_turn, range.low_rad, range.high_rad));
-}
-
-/// The correlation of neighbouring residuals, and so how many are as good as independent. White noise would show a
-/// correlation of - coefficients / samples, because the curves follow it. One standard error is added: few samples
-/// hardly show whether noise lasts.
-void describe_noise(PhaseFit& fit, const Scaling& scaling, const JointFit& joint) {
+/// The correlation of neighbouring residuals, and the number of independent ones. White noise has a correlation of -
+/// coefficients / samples, because the curves follow it. One standard error is added, as few samples poorly determine it.
+void describe_noise(PhaseFit& fit, std::span<const PhaseSamples> centred, const JointFit& joint) {
     double squares = 0.0;
     double products = 0.0;  // of neighbours
     double samples = 0.0;
     double coefficients = 0.0;
-    for (std::size_t i = 0; i < scaling.flights.size(); ++i) {
-        const auto sorted = sort_by_time(scaling.flights[i]);
+    for (std::size_t i = 0; i < centred.size(); ++i) {
+        const auto sorted = sort_by_time(centred[i]);
         const auto residual = fourier_residual(sorted, joint.theta_rad, joint.coefficients[i]).residual;
         squares += residual.squaredNorm();
         products += residual.head(residual.size() - 1).dot(residual.tail(residual.size() - 1));
@@ -127,61 +100,59 @@ void describe_noise(PhaseFit& fit, const Scaling& scaling, const JointFit& joint
     fit.degrees_of_freedom = std::max(1.0, freedom * (1.0 - fit.autocorrelation) / (1.0 + fit.autocorrelation));
 }
 
-/// Frequencies at which the highest harmonic turns by more than the scan's step otherwise and which the samples allow by
-/// an F test (95 %), the best first.
+/// Frequencies more than a step of the scan away that an F test (95 %) does not reject, the best first.
 std::vector<double> rival_frequencies(const PhaseFit& fit, const JointFit& joint, const FrequencyScan& scan) {
-    constexpr std::size_t most = 100;
-    const double least = std::accumulate(joint.square_sum.begin(), joint.square_sum.end(), 0.0);
+    constexpr std::size_t max_rivals = 100;
+    const double min_square_sum = std::accumulate(joint.square_sum.begin(), joint.square_sum.end(), 0.0);
     const double max_square_sum =
-        least * (1.0 + std::pow(student_t_half_width(fit.degrees_of_freedom), 2) / fit.degrees_of_freedom);
+        min_square_sum * (1.0 + std::pow(student_t_half_width(fit.degrees_of_freedom), 2) / fit.degrees_of_freedom);
     std::vector<std::pair<double, double>> found;  // sum of squares, frequency
-    for (std::size_t i = 0; i < scan.theta_rad.size(); ++i)
-        if (std::abs(scan.theta_rad[i] - joint.theta_rad) > scan.step_rad && scan.square_sum[i] < max_square_sum)
-            found.emplace_back(scan.square_sum[i], scan.theta_rad[i]);
+    for (std::size_t i = 0; i < scan.square_sum.size(); ++i) {
+        const double theta_rad = scan.grid.theta_rad(i);
+        if (std::abs(theta_rad - joint.theta_rad) > scan.grid.step_rad && scan.square_sum[i] < max_square_sum)
+            found.emplace_back(scan.square_sum[i], theta_rad);
+    }
     std::ranges::sort(found);
-    found.resize(std::min(found.size(), most));
+    found.resize(std::min(found.size(), max_rivals));
     std::vector<double> rivals(found.size());
     std::ranges::transform(found, rivals.begin(), &std::pair<double, double>::second);
     return rivals;
 }
 
-PhaseFit result_of(std::span<const PhaseSamples> flights, const Scaling& scaling, const JointFit& joint,
-                   const FrequencyRange& range) {
+PhaseFit result_of(const CentredFlights& centred, const JointFit& joint, const FrequencyRange& range) {
     PhaseFit fit;
     fit.theta_rad = joint.theta_rad;
     fit.range = range;
     const bool has_frequency = joint.coefficients.front().size() > 1;
     if (has_frequency) fit.range.at_bound = bound_reached(range, joint.theta_rad);
     double square_sum = 0.0;
-    for (std::size_t i = 0; i < flights.size(); ++i) {
-        FlightCurve curve;
-        curve.flight = flights[i].flight;
-        curve.duration_s = flights[i].duration_s;
-        curve.samples = flights[i].tau.size();
-        curve.fourier = series_of(scaling.unit_w * joint.coefficients[i], joint.theta_rad / curve.duration_s);
-        curve.fourier.a0_w += scaling.mean_w[i];
-        curve.rms_w = scaling.unit_w * std::sqrt(joint.square_sum[i] / static_cast<double>(curve.samples));
+    for (std::size_t i = 0; i < centred.flights.size(); ++i) {
+        const auto& flight = centred.flights[i];
+        FlightCurve curve{flight.flight, flight.duration_s, {}, 0.0, flight.tau.size()};
+        curve.fourier = series_of(joint.coefficients[i], joint.theta_rad / curve.duration_s);
+        curve.fourier.a0_w += centred.mean_w[i];
+        curve.rms_w = std::sqrt(joint.square_sum[i] / static_cast<double>(curve.samples));
         square_sum += joint.square_sum[i];
         fit.samples += curve.samples;
         fit.flights.push_back(std::move(curve));
     }
-    fit.rms_w = scaling.unit_w * std::sqrt(square_sum / static_cast<double>(fit.samples));
+    fit.rms_w = std::sqrt(square_sum / static_cast<double>(fit.samples));
     return fit;
 }
 
-/// How alike the two columns of the highest harmonic are on the samples, 0 to 1: at 1 one vanishes, or both are one.
-double likeness(const std::vector<double>& tau, int order, double theta_rad) {
+/// Collinearity of the two columns of the highest harmonic on the samples, 0 to 1.
+double collinearity(const std::vector<double>& tau, int order, double theta_rad) {
     std::complex<double> sum = 0.0;
     for (const double at : tau) sum += std::polar(1.0, 2.0 * order * theta_rad * at);
     return std::abs(sum) / static_cast<double>(tau.size());
 }
 
-/// The highest frequency, from `high_rad` down, at which the samples tell the highest harmonic's amplitude and phase:
-/// evenly spread ones do not at half their own frequency, whatever happens between them.
-double told_frequency(const std::vector<double>& tau, int order, double low_rad, double high_rad) {
-    const double step_rad = std::numbers::pi / (16.0 * std::max(1, order));  // a sixteenth of the likeness's peak
+/// The highest frequency, from `high_rad` down, at which the samples determine amplitude and phase of the highest
+/// harmonic: evenly spread samples do not at half their own frequency.
+double determined_frequency(const std::vector<double>& tau, int order, double low_rad, double high_rad) {
+    const double step_rad = std::numbers::pi / (16.0 * std::max(1, order));  // a sixteenth of the collinearity's peak
     double theta_rad = high_rad;
-    while (theta_rad > low_rad && likeness(tau, order, theta_rad) > max_alike) theta_rad -= step_rad;
+    while (theta_rad > low_rad && collinearity(tau, order, theta_rad) > max_collinearity) theta_rad -= step_rad;
     return theta_rad;
 }
 
@@ -192,7 +163,7 @@ FrequencyRange admissible_frequencies(std::span<const PhaseSamples> flights, con
     FrequencyRange range{min_theta_rad, units::rad_from_turns(max_periods)};
     for (const auto& flight : flights) {
         const double gap = median_gap(flight.tau);
-        // A constant needs no frequency: it is content with what a first order needs.
+        // A constant has no frequency: the limit of a first order is enough.
         const double nyquist = gap > 0.0 ? std::numbers::pi / (std::max(1, options.order) * gap) : 0.0;
         if (nyquist <= range.low_rad) {
             throw NoResultError(
@@ -201,9 +172,10 @@ FrequencyRange admissible_frequencies(std::span<const PhaseSamples> flights, con
                             flight.flight, flight.tau.size(), gap, options.order));
         }
         range.high_rad = std::min(range.high_rad, nyquist);
-        // Nothing is told even of the lowest: then the range stays what the gap allows.
-        const double told = told_frequency(flight.tau, std::max(1, options.order), range.low_rad, range.high_rad);
-        if (told > range.low_rad) range.high_rad = told;
+        // If not even the lowest is determined, the gap alone limits the range.
+        const double determined_rad =
+            determined_frequency(flight.tau, std::max(1, options.order), range.low_rad, range.high_rad);
+        if (determined_rad > range.low_rad) range.high_rad = determined_rad;
     }
     return range;
 }
@@ -220,14 +192,20 @@ PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights, c
                         flight.flight, flight.tau.size(), to_string(phase), options.order, min_samples(options.order),
                         to_string(phase)));
     }
-    const auto scaling = scaled(flights);
+    const auto centred = centred_flights(flights);
+    const int order = options.order;
     try {
         const auto range = admissible_frequencies(flights, options);
         std::optional<FrequencyScan> scan;
-        if (options.order > 0) scan = scan_frequencies(scaling.flights, options.order, range);
-        const auto joint = least_squares(scaling, options.order, range, scan ? &*scan : nullptr);
-        auto fit = result_of(flights, scaling, joint, range);
-        describe_noise(fit, scaling, joint);
+        double theta_rad = std::clamp(units::rad_per_turn, range.low_rad, range.high_rad);
+        if (order > 0) {
+            scan = scan_frequencies(centred.flights, order, range);
+            theta_rad = find_frequency(centred.flights, order, range, *scan);
+        }
+        const auto joint = scan ? refine_jointly(centred.flights, order, range, theta_rad)
+                                : fit_at_frequency(centred.flights, order, theta_rad);
+        auto fit = result_of(centred, joint, range);
+        describe_noise(fit, centred.flights, joint);
         if (scan) fit.rivals_rad = rival_frequencies(fit, joint, *scan);
         hold_above_floor(flights, fit);
         return fit;

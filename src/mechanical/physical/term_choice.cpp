@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -14,53 +13,48 @@ namespace {
 constexpr std::size_t max_folds = 10;
 constexpr std::size_t blocks_of_single_flight = 5;
 
-/// The level and the drift that the choice works with: about right is enough to compare terms.
+/// Level sd and drift correlation of the cross-validation: rough values are enough to compare terms.
 constexpr double working_level_sd = level_prior_scale;
 constexpr double working_correlation_s = 2.0 * default_bin_s;
 
-/// Means over a whole phase of a flight that is held back.
-struct HeldPhase {
+/// Means over a whole phase of a hold-out flight.
+struct HoldOutPhase {
     ColumnVector columns = ColumnVector::Zero(column_count);
     double power_w = 0.0;
 };
 
-/// What is held back at once.
+/// The flights, or the block of a single flight, that are left out together.
 struct TermFold {
-    std::vector<NormalEquations> flights;  ///< their drift taken out
-    NormalEquations plain;                 ///< of all bins as they are
-    std::vector<HeldPhase> phases;         ///< empty where bins decide
+    std::vector<NormalEquations> flights;  ///< with the drift's correlation
+    NormalEquations uncorrelated;          ///< of all bins
+    std::vector<HoldOutPhase> phases;      ///< not used where bins decide
 };
 
 struct Folds {
     std::vector<TermFold> folds;
-    double level_sd = working_level_sd;
     bool bank_measured = true;
-    bool phases_decide = false;
+    bool phases_decide = true;
     std::size_t flights = 0;
     const PowerRegression* regression = nullptr;  ///< of all flights
 };
 
-void add_to(NormalEquations& sum, const NormalEquations& other) {
-    sum.products += other.products;
-    sum.responses += other.responses;
-    sum.square += other.square;
-    sum.bins += other.bins;
-}
-
 void add_bins(TermFold& fold, std::span<const FlightBin> bins) {
     fold.flights.push_back(accumulate_normal_equations(bins, working_correlation_s));
-    add_to(fold.plain, accumulate_normal_equations(bins, 0.0));
+    const auto sums = accumulate_normal_equations(bins, 0.0);
+    fold.uncorrelated.products += sums.products;
+    fold.uncorrelated.responses += sums.responses;
+    fold.uncorrelated.square += sums.square;
+    fold.uncorrelated.bins += sums.bins;
 }
 
-std::vector<HeldPhase> phases_of(std::span<const FlightBin> bins) {
-    const auto scale = column_scale();
-    std::vector<HeldPhase> phases;
+std::vector<HoldOutPhase> phases_of(std::span<const FlightBin> bins) {
+    std::vector<HoldOutPhase> phases;
     for (const auto phase : flight::all_phases) {
-        HeldPhase sum;
+        HoldOutPhase sum;
         double duration_s = 0.0;
         for (const auto& bin : bins) {
             if (bin.phase != phase) continue;
-            sum.columns += bin.duration_s * column_values(bin, scale);
+            sum.columns += bin.duration_s * as_columns(bin.values);
             sum.power_w += bin.duration_s * bin.power_w;
             duration_s += bin.duration_s;
         }
@@ -69,22 +63,22 @@ std::vector<HeldPhase> phases_of(std::span<const FlightBin> bins) {
     return phases;
 }
 
-Folds folds_of_single(const BinnedFlight& flight) {
+Folds folds_of(std::span<const BinnedFlight> flights, const PowerRegression& regression) {
     Folds made;
-    made.level_sd = 0.0;
-    const std::span<const FlightBin> bins(flight.bins);
-    made.folds.resize(std::min(blocks_of_single_flight, bins.size()));
-    for (std::size_t i = 0; i < made.folds.size(); ++i) {
-        const auto first = bins.size() * i / made.folds.size();
-        const auto last = bins.size() * (i + 1) / made.folds.size();
-        add_bins(made.folds[i], bins.subspan(first, last - first));
+    made.regression = &regression;
+    made.flights = flights.size();
+    made.bank_measured = std::ranges::all_of(flights, &BinnedFlight::bank_measured);
+    if (flights.size() == 1) {
+        const std::span bins(flights.front().bins);
+        made.phases_decide = false;
+        made.folds.resize(std::min(blocks_of_single_flight, bins.size()));
+        for (std::size_t i = 0; i < made.folds.size(); ++i) {
+            const auto first = bins.size() * i / made.folds.size();
+            const auto last = bins.size() * (i + 1) / made.folds.size();
+            add_bins(made.folds[i], bins.subspan(first, last - first));
+        }
+        return made;
     }
-    return made;
-}
-
-Folds folds_of_several(std::span<const BinnedFlight> flights) {
-    Folds made;
-    made.phases_decide = true;
     made.folds.resize(std::min(max_folds, flights.size()));
     for (std::size_t i = 0; i < flights.size(); ++i) {
         auto& fold = made.folds[i % made.folds.size()];
@@ -96,120 +90,79 @@ Folds folds_of_several(std::span<const BinnedFlight> flights) {
     return made;
 }
 
-Folds folds_of(std::span<const BinnedFlight> flights) {
-    auto made = flights.size() == 1 ? folds_of_single(flights.front()) : folds_of_several(flights);
-    made.flights = flights.size();
-    made.bank_measured = std::ranges::all_of(flights, &BinnedFlight::bank_measured);
-    return made;
-}
-
-/// A model that whole phases choose has no more terms than each of its fits rests on phases.
-std::size_t most_terms(const Folds& of) {
+/// Where whole phases decide, a model has no more terms than each of its fits has phases.
+std::size_t max_terms(const Folds& of) {
     if (!of.phases_decide) return power_term_count;
     std::size_t all = 0;
-    std::size_t most = 0;
+    std::size_t max = 0;
     for (const auto& fold : of.folds) {
         all += fold.phases.size();
-        most = std::max(most, fold.phases.size());
+        max = std::max(max, fold.phases.size());
     }
-    return all - most;
+    return all - max;
 }
 
-struct SquareErrors {
-    std::vector<double> sums;  ///< one a fold
-    double mean = 0.0;
+/// Square errors of predictions, summed over each fold.
+struct HoldOutError {
+    Eigen::ArrayXd bins_w2;
+    Eigen::ArrayXd deciding_w2;  ///< of the mean powers of whole phases, or of bins where these decide
+    double deciding = 0.0;       ///< number of phases or bins
+    double rms_w() const { return std::sqrt(deciding_w2.sum() / deciding); }
 };
-
-/// How well columns predict what was held back.
-struct HeldBackError {
-    SquareErrors bins;
-    SquareErrors phases;  ///< of mean powers; those of the bins where bins decide
-    double rms_w() const { return std::sqrt(phases.mean); }
-};
-
-SquareErrors square_errors(std::vector<double> sums, std::size_t count) {
-    const double sum = std::accumulate(sums.begin(), sums.end(), 0.0);
-    return {std::move(sums), sum / static_cast<double>(count)};
-}
-
-double bin_square(const NormalEquations& plain, const std::vector<int>& columns, const ColumnVector& c) {
-    const ColumnVector fitted = plain.products(columns, columns) * c;
-    const ColumnVector responses = plain.responses(columns);
-    return std::max(plain.square - 2.0 * c.dot(responses) + c.dot(fitted), 0.0);
-}
-
-/// As a phase's energy is predicted: not below 0.
-double phase_square(std::span<const HeldPhase> phases, const std::vector<int>& columns, const ColumnVector& c) {
-    double sum = 0.0;
-    for (const auto& phase : phases) {
-        const ColumnVector values = phase.columns(columns);
-        sum += std::pow(std::max(c.dot(values), 0.0) - phase.power_w, 2);
-    }
-    return sum;
-}
 
 /// std::nullopt where a fit is not determined.
-std::optional<HeldBackError> held_back_error(const Folds& of, const std::vector<int>& columns) {
-    std::vector<double> bin_sums;
-    std::vector<double> phase_sums;
-    bin_sums.reserve(of.folds.size());
-    phase_sums.reserve(of.folds.size());
-    std::size_t bins = 0;
-    std::size_t phases = 0;
-    for (std::size_t out = 0; out < of.folds.size(); ++out) {
+std::optional<HoldOutError> hold_out_error(const Folds& of, const std::vector<int>& columns) {
+    const auto count = std::ssize(of.folds);
+    HoldOutError error{Eigen::ArrayXd::Zero(count), Eigen::ArrayXd::Zero(count)};
+    for (Eigen::Index out = 0; out < count; ++out) {
         std::vector<NormalEquations> others;
-        for (std::size_t i = 0; i < of.folds.size(); ++i)
-            if (i != out) others.insert(others.end(), of.folds[i].flights.begin(), of.folds[i].flights.end());
+        for (Eigen::Index i = 0; i < count; ++i) {
+            const auto& flights = of.folds[static_cast<std::size_t>(i)].flights;
+            if (i != out) others.insert(others.end(), flights.begin(), flights.end());
+        }
         if (others.empty()) return std::nullopt;
-        const auto fit = fit_gls(others, columns, of.level_sd);
+        const auto fit = fit_gls(others, columns, of.flights == 1 ? 0.0 : working_level_sd);
         if (!fit) return std::nullopt;
-        const auto& fold = of.folds[out];
-        bin_sums.push_back(bin_square(fold.plain, columns, fit->coefficients));
-        phase_sums.push_back(phase_square(fold.phases, columns, fit->coefficients));
-        bins += fold.plain.bins;
-        phases += fold.phases.size();
+        const auto& fold = of.folds[static_cast<std::size_t>(out)];
+        error.bins_w2[out] = std::max(fold.uncorrelated.select(columns).square_about(fit->coefficients), 0.0);
+        error.deciding += static_cast<double>(of.phases_decide ? fold.phases.size() : fold.uncorrelated.bins);
+        if (!of.phases_decide) continue;
+        for (const auto& phase : fold.phases) {
+            const double power_w = fit->coefficients.dot(phase.columns(columns));
+            error.deciding_w2[out] += std::pow(std::max(power_w, 0.0) - phase.power_w, 2);
+        }
     }
-    HeldBackError error{square_errors(std::move(bin_sums), bins), {}};
-    error.phases = of.phases_decide ? square_errors(std::move(phase_sums), phases) : error.bins;
+    if (!of.phases_decide) error.deciding_w2 = error.bins_w2;
     return error;
 }
 
-/// Terms that every motion has much alike: between few flights they cannot be told apart.
-bool is_of_level(PowerTerm term) {
+/// Terms that are similar in all motions: few flights cannot distinguish them.
+bool is_level_term(PowerTerm term) {
     return term == PowerTerm::drag || term == PowerTerm::induced || term == PowerTerm::constant;
 }
 
-bool has(const std::vector<PowerTerm>& terms, PowerTerm term) { return std::ranges::find(terms, term) != terms.end(); }
-
-/// Why a term cannot be tried beside others; empty if it can.
-std::string why_untried(const Folds& of, const std::vector<PowerTerm>& terms, PowerTerm term) {
+/// Reason not to try a term with others; empty without one.
+std::string not_tried_reason(const Folds& of, const std::vector<PowerTerm>& terms, PowerTerm term) {
     if (term == PowerTerm::turn && !of.bank_measured) return "not tried: the bank was not measured in all flights";
-    if (term == PowerTerm::descent && !has(terms, PowerTerm::climb)) return "not tried without the climb";
-    if (terms.size() >= most_terms(of))
-        return fmt::format("not tried: as many terms as the {} whole phases of a fit determine", most_terms(of));
-    const auto levels = std::ranges::count_if(terms, is_of_level);
-    if (is_of_level(term) && levels > 0 &&
-        static_cast<std::size_t>(levels) + 1 > std::max<std::size_t>(1, of.flights - 1))
-        return fmt::format("not tried beside {}: {} flight{} cannot tell them apart",
-                           fmt::join(
-                               [&] {
-                                   std::vector<std::string_view> names;
-                                   for (const auto other : terms)
-                                       if (is_of_level(other)) names.push_back(to_string(other));
-                                   return names;
-                               }(),
-                               " and "),
-                           of.flights, of.flights == 1 ? "" : "s");
-    return "";
+    if (term == PowerTerm::descent && std::ranges::find(terms, PowerTerm::climb) == terms.end())
+        return "not tried without the climb";
+    if (terms.size() >= max_terms(of))
+        return fmt::format("not tried: as many terms as the {} whole phases of a fit determine", max_terms(of));
+    std::vector<std::string_view> level_terms;
+    for (const auto other : terms)
+        if (is_level_term(other)) level_terms.push_back(to_string(other));
+    if (!is_level_term(term) || level_terms.empty() || level_terms.size() + 1 < of.flights) return "";
+    return fmt::format("not tried with {}: {} flight{} cannot distinguish them", fmt::join(level_terms, " and "),
+                       of.flights, of.flights == 1 ? "" : "s");
 }
 
-std::vector<PowerTerm> with(std::vector<PowerTerm> terms, PowerTerm term) {
+std::vector<PowerTerm> with_term(std::vector<PowerTerm> terms, PowerTerm term) {
     terms.push_back(term);
     std::ranges::sort(terms);
     return terms;
 }
 
-/// Whether the fit of all flights is one that physics lets be.
+/// Whether the fit of all flights is physically possible.
 bool is_possible(const Folds& of, const std::vector<PowerTerm>& terms) {
     const auto posterior = of.regression->posterior(columns_of(terms));
     return posterior && are_physical(terms, mean_coefficients(*posterior));
@@ -217,52 +170,43 @@ bool is_possible(const Folds& of, const std::vector<PowerTerm>& terms) {
 
 struct Candidate {
     PowerTerm term = PowerTerm::drag;
-    HeldBackError error;
+    HoldOutError error;
 };
 
 /// By min_mse_reduction, and in more than half of the flights; of two in one. Of a single flight's fifths only one may
 /// hold a climb: there the sum alone counts.
-bool is_less(const Folds& of, const SquareErrors& now, const SquareErrors& before) {
-    if (now.mean > (1.0 - min_mse_reduction) * before.mean) return false;
-    std::size_t won = 0;
-    for (std::size_t i = 0; i < now.sums.size(); ++i)
-        if (now.sums[i] < before.sums[i]) ++won;
-    const auto folds = now.sums.size();
-    return of.flights == 1 || 2 * won > folds || (folds == 2 && won == 1);
+bool is_less(const Folds& of, const Eigen::ArrayXd& now_w2, const Eigen::ArrayXd& before_w2) {
+    if (now_w2.sum() > (1.0 - min_mse_reduction) * before_w2.sum()) return false;
+    const auto improved = (now_w2 < before_w2).count();
+    return of.flights == 1 || 2 * improved > now_w2.size() || (now_w2.size() == 2 && improved == 1);
 }
 
-/// Why a term that was tried is not kept; empty if it may be. Whole phases decide, as it is their energy that is
-/// predicted; but no term may describe the course of the power worse. This rule was found with four real flights in
-/// view, whose take-offs need a descent term (docs/validation.md, Airspeed and climb): they prove little of it.
-std::string why_dropped(const Folds& of, const HeldBackError& now, const HeldBackError& before) {
-    if (!is_less(of, now.phases, before.phases)) return "does not predict what was held back";
-    if (now.bins.mean > before.bins.mean) return "predicts whole phases better, but stretches of them worse";
-    return "";
-}
-
-/// Tries a term beside those that were chosen, and says in the trial what came of it.
-std::optional<Candidate> tried(const Folds& of, const std::vector<PowerTerm>& terms, const HeldBackError& before,
-                               TermTrial& trial) {
-    const auto term = trial.term;
+/// Tries a term with those that were chosen, and puts the result into the trial. Whole phases decide, as their energy is
+/// predicted, but bins must not be predicted worse. This rule was found on four real flights, whose take-offs need a
+/// descent term (docs/validation.md, Airspeed and climb): they are no independent evidence for it.
+std::optional<Candidate> try_term(const Folds& of, const std::vector<PowerTerm>& terms, const HoldOutError& before,
+                                  TermTrial& trial) {
     trial.rms_before_w.reset();
     trial.rms_after_w.reset();
-    trial.reason = why_untried(of, terms, term);
+    trial.reason = not_tried_reason(of, terms, trial.term);
     if (!trial.reason.empty()) return std::nullopt;
-    const auto more = with(terms, term);
-    const auto error = held_back_error(of, columns_of(more));
+    const auto more = with_term(terms, trial.term);
+    const auto error = hold_out_error(of, columns_of(more));
     if (!error) {
         trial.reason = "not tried: these flights do not determine it";
         return std::nullopt;
     }
     trial.rms_before_w = before.rms_w();
     trial.rms_after_w = error->rms_w();
-    trial.reason = why_dropped(of, *error, before);
-    if (!trial.reason.empty()) return std::nullopt;
-    if (!is_possible(of, more)) {
-        trial.reason = "would take a coefficient that physics does not let be";
-        return std::nullopt;
+    if (!is_less(of, error->deciding_w2, before.deciding_w2)) {
+        trial.reason = "does not improve predictions";
+    } else if (error->bins_w2.sum() > before.bins_w2.sum()) {
+        trial.reason = "predicts whole phases better, but bins worse";
+    } else if (!is_possible(of, more)) {
+        trial.reason = "would have a physically impossible coefficient";
     }
-    return Candidate{term, *error};
+    if (!trial.reason.empty()) return std::nullopt;
+    return Candidate{trial.term, *error};
 }
 
 /// The drag, or a constant where these flights' power does not follow it. Bins decide: whole phases differ by their
@@ -270,9 +214,9 @@ std::optional<Candidate> tried(const Folds& of, const std::vector<PowerTerm>& te
 std::optional<Candidate> first_term(const Folds& of) {
     std::optional<Candidate> first;
     for (const auto term : {PowerTerm::drag, PowerTerm::constant}) {
-        auto error = held_back_error(of, columns_of({term}));
+        auto error = hold_out_error(of, columns_of({term}));
         if (!error || !is_possible(of, {term})) continue;
-        if (!first || is_less(of, error->bins, first->error.bins)) first = Candidate{term, std::move(*error)};
+        if (!first || is_less(of, error->bins_w2, first->error.bins_w2)) first = Candidate{term, std::move(*error)};
     }
     return first;
 }
@@ -290,35 +234,26 @@ bool are_physical(const std::vector<PowerTerm>& terms, const ColumnVector& coeff
 }
 
 TermSelection select_terms(std::span<const BinnedFlight> flights, const PowerRegression& regression) {
-    auto of = folds_of(flights);
-    of.regression = &regression;
-    TermSelection choice;
-    choice.folds = of.folds.size();
-    choice.phases_decided = of.phases_decide;
+    const auto of = folds_of(flights, regression);
+    TermSelection choice{{}, {}, of.folds.size(), of.phases_decide};
     for (const auto term : all_power_terms) choice.trials.push_back({term, false, {}, {}, ""});
-    const auto first = first_term(of);
-    if (!first) return choice;
-    choice.terms = {first->term};
-    auto error = first->error;
-    choice.trials[static_cast<std::size_t>(first->term)].kept = true;
-    choice.trials[static_cast<std::size_t>(first->term)].rms_after_w = error.rms_w();
-    for (bool grown = true; grown;) {
-        std::optional<Candidate> best;
-        for (const auto term : all_power_terms) {
-            auto& trial = choice.trials[static_cast<std::size_t>(term)];
+    const auto trial_of = [&](PowerTerm term) -> TermTrial& { return choice.trials[static_cast<std::size_t>(term)]; };
+    auto best = first_term(of);
+    if (best) trial_of(best->term).rms_after_w = best->error.rms_w();
+    while (best) {
+        const auto chosen = *std::move(best);
+        best.reset();
+        trial_of(chosen.term).kept = true;
+        trial_of(chosen.term).reason.clear();
+        choice.terms = with_term(std::move(choice.terms), chosen.term);
+        for (auto& trial : choice.trials) {
             if (trial.kept) continue;
-            auto candidate = tried(of, choice.terms, error, trial);
+            auto candidate = try_term(of, choice.terms, chosen.error, trial);
             if (!candidate) continue;
             trial.reason = "another term in its place predicts better";
-            if (!best || candidate->error.phases.mean < best->error.phases.mean) best = std::move(candidate);
+            if (!best || candidate->error.deciding_w2.sum() < best->error.deciding_w2.sum())
+                best = std::move(candidate);
         }
-        grown = best.has_value();
-        if (!grown) continue;
-        auto& trial = choice.trials[static_cast<std::size_t>(best->term)];
-        trial.kept = true;
-        trial.reason.clear();
-        choice.terms = with(choice.terms, best->term);
-        error = best->error;
     }
     return choice;
 }

@@ -8,7 +8,7 @@
 
 namespace flightwatt::mechanical {
 
-/// So much less must the mean square error of what was held back be for a term to be kept.
+/// Minimum relative reduction of the cross-validated mean square error to keep a term.
 inline constexpr double min_mse_reduction = 0.05;
 
 struct TermSelection {
@@ -18,10 +18,10 @@ struct TermSelection {
     bool phases_decided = false;  ///< not the bins
 };
 
-/// Which terms predict what was held back (see fit_physical_model). `flights` have bins; `regression` is theirs.
+/// The terms that predict hold-out flights (see fit_physical_model). `flights` have bins; `regression` is theirs.
 TermSelection select_terms(std::span<const BinnedFlight> flights, const PowerRegression& regression);
 
-/// Whether physics lets these coefficients be, in the order of `terms`.
+/// Whether these coefficients are physically possible, in the order of `terms`.
 bool are_physical(const std::vector<PowerTerm>& terms, const ColumnVector& coefficients);
 
 }  // namespace flightwatt::mechanical

@@ -14,22 +14,21 @@
 
 namespace flightwatt::mechanical {
 
-/// How a table of a file is written.
+/// The layout of a table that is written.
 enum class TomlLayout {
     inline_table,  ///< key = { a = 1.0, b = 2.0 }
-    dotted_keys,   ///< key.a = 1.0, a line each
     section        ///< [path.key] and a line each
 };
 
-/// The keys of one table that is read or written. A record names each of its fields once, with one of these calls: they
-/// set the field while reading, and only look at it while writing. Reading throws InputError with its place.
+/// The keys of one table that is read or written. A record names each of its fields once, with one of these calls, which
+/// assigns the field while reading, and writes it otherwise. Reading throws InputError with its location.
 class TomlFields {
   public:
     explicit TomlFields(const TomlTable& table) : table_(&table) {}
     /// Writes the table of that path, "cruise.errors"; empty: the whole file.
     explicit TomlFields(std::string path) : path_(std::move(path)) {}
 
-    /// What is read; nullptr while writing.
+    /// The table that is read; nullptr while writing.
     const TomlTable* source() const { return table_; }
     /// While writing: a line as it is.
     void line(std::string_view text) {
@@ -80,8 +79,6 @@ class TomlFields {
         list(fields, record);
         if (layout == TomlLayout::section) line(fmt::format("[{}]\n{}", fields.path_, fields.lines()));
         if (layout == TomlLayout::inline_table) write(key, fmt::format("{{ {} }}", fmt::join(fields.lines_, ", ")));
-        if (layout != TomlLayout::dotted_keys) return;
-        for (const auto& of_table : fields.lines_) line(fmt::format("{}.{}", key, of_table));
     }
     template <typename Record, typename List>
     void optional_table(std::string_view key, std::optional<Record>& record, const List& list,

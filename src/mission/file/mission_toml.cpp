@@ -41,12 +41,12 @@ void find_power_model(const TomlTable& root, MissionSetup& mission) {
 
 mechanical::PhaseTimeScaling read_clock(const TomlTable& root, bool has_mechanical) {
     const auto name = root.optional_string("phase_clock");
-    if (!name) return mechanical::PhaseTimeScaling::stretched;
+    if (!name) return mechanical::PhaseTimeScaling::scaled;
     if (!has_mechanical) {
         throw InputError(root.where("phase_clock"), "phase_clock has no meaning with mechanical = \"none\"",
                          "leave it out");
     }
-    if (*name == "stretch") return mechanical::PhaseTimeScaling::stretched;
+    if (*name == "stretch") return mechanical::PhaseTimeScaling::scaled;
     if (*name == "absolute") return mechanical::PhaseTimeScaling::absolute;
     throw InputError(root.where("phase_clock"), fmt::format("there is no phase_clock '{}'", *name),
                      "it is \"stretch\" or \"absolute\"");

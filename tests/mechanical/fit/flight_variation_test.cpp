@@ -117,30 +117,6 @@ TEST(Baselines, ConstantMeanIsThatOfTheFlights) {
 TEST(Baselines, OneFlightHasNoInterval) {
     const std::vector flights{three_samples(20.0, 600.0)};
     EXPECT_FALSE(interval_95(energy_of(constant_mean(flights), 100.0)).has_value());
-    EXPECT_FALSE(interval_95(energy_of(single_flight_power(flights, 0), 100.0)).has_value());
-}
-
-TEST(Baselines, OneFlightForAnotherIsTwiceAsUncertain) {
-    const std::vector flights{three_samples(20.0, 600.0), three_samples(22.0, 60.0)};
-    EXPECT_DOUBLE_EQ(single_flight_power(flights, 1).mean_w, 22.0);
-    EXPECT_NEAR(single_flight_power(flights, 1).sd_w.value(), 2.0, 1e-12);
-}
-
-TEST(Baselines, NearestFlightIsByTheDurationsOfCommonPhases) {
-    std::vector<FlightSamples> flights(3);
-    flights[0].phases[flight::Phase::takeoff] = three_samples(1.0, 28.0);
-    flights[0].phases[flight::Phase::cruise] = three_samples(1.0, 1200.0);
-    flights[1].phases[flight::Phase::cruise] = three_samples(1.0, 630.0);
-    FlightSamples other;
-    other.phases[flight::Phase::takeoff] = three_samples(1.0, 28.0);
-    other.phases[flight::Phase::cruise] = three_samples(1.0, 600.0);
-    EXPECT_EQ(nearest_flight(flights, flight::Phase::cruise, other), 1u);
-    other.phases[flight::Phase::cruise] = three_samples(1.0, 1100.0);
-    EXPECT_EQ(nearest_flight(flights, flight::Phase::cruise, other), 0u);
-    EXPECT_EQ(nearest_flight(flights, flight::Phase::takeoff, other), 0u);
-    FlightSamples landing_only;
-    landing_only.phases[flight::Phase::landing] = three_samples(1.0, 60.0);
-    EXPECT_FALSE(nearest_flight(flights, flight::Phase::landing, landing_only).has_value());
 }
 
 }  // namespace

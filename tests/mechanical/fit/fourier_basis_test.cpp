@@ -62,7 +62,7 @@ TEST(FourierResidual, IsCurveMinusSamples) {
     coefficients << f.a0_w, f.cos_w[0], f.sin_w[0], f.cos_w[1], f.sin_w[1], f.cos_w[2], f.sin_w[2];
     EXPECT_EQ(coefficients_of(f), coefficients);
     EXPECT_EQ(series_of(coefficients, f.omega_rad_per_s).sin_w, f.sin_w);
-    const auto result = fourier_residual({samples.tau, samples.power_w}, test::theta_rad(phase), coefficients);
+    const auto result = fourier_residual(samples, test::theta_rad(phase), coefficients);
     EXPECT_LT(result.residual.cwiseAbs().maxCoeff(), 1e-12);
 }
 
@@ -152,20 +152,20 @@ TEST(LeastSquares, RefusesWhatTheValuesDoNotDetermine) {
     EXPECT_FALSE(solve_least_squares(Eigen::MatrixXd::Zero(3, 1), Eigen::VectorXd::Ones(3)));
 }
 
-ScaledSamples scattered_samples(std::size_t count, unsigned seed) {
+PhaseSamples scattered_samples(std::size_t count, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> tau(0.0, 1.0);
     std::normal_distribution<double> value(0.0, 1.0);
-    ScaledSamples samples{{0.0, 1.0}, {0.5, -2.0}};  // both ends of the phase
+    PhaseSamples samples{"", 1.0, {0.0, 1.0}, {0.5, -2.0}};  // both ends of the phase
     for (std::size_t i = 2; i < count; ++i) {
         samples.tau.push_back(tau(random));
-        samples.value.push_back(value(random));
+        samples.power_w.push_back(value(random));
     }
     return samples;
 }
 
 TEST(TrigonometricSums, DirectSumsAreTheSums) {
-    const ScaledSamples samples{{0.0, 0.25, 0.9}, {1.0, -2.0, 0.5}};
+    const PhaseSamples samples{"", 1.0, {0.0, 0.25, 0.9}, {1.0, -2.0, 0.5}};
     const auto sums = sum_directly(samples, 1.7, 9);
     for (std::size_t m = 0; m < 9; ++m) {
         std::complex<double> weight = 0.0;
@@ -173,7 +173,7 @@ TEST(TrigonometricSums, DirectSumsAreTheSums) {
         for (std::size_t i = 0; i < 3; ++i) {
             const auto turned = std::polar(1.0, static_cast<double>(m) * 1.7 * samples.tau[i]);
             weight += turned;
-            value += samples.value[i] * turned;
+            value += samples.power_w[i] * turned;
         }
         EXPECT_LT(std::abs(sums.weight[m] - weight), 1e-13);
         EXPECT_LT(std::abs(sums.value[m] - value), 1e-13);
@@ -197,14 +197,14 @@ TEST(TrigonometricSums, FftSumsAreTheDirectSums) {
     }
 }
 
-double square_sum_by_qr(const ScaledSamples& samples, int order, double theta_rad) {
+double square_sum_by_qr(const PhaseSamples& samples, int order, double theta_rad) {
     const auto values =
-        Eigen::Map<const Eigen::VectorXd>(samples.value.data(), static_cast<Eigen::Index>(samples.value.size()));
+        Eigen::Map<const Eigen::VectorXd>(samples.power_w.data(), static_cast<Eigen::Index>(samples.power_w.size()));
     return solve_least_squares(fourier_basis(samples.tau, order, theta_rad), values)->residual_square_sum;
 }
 
 TEST(ProjectedFit, LeavesWhatQrLeaves) {
-    std::vector<ScaledSamples> flights;
+    std::vector<PhaseSamples> flights;
     for (const auto& samples : test::record_flights(flight::Phase::cruise, 3, 0.5, 1))
         flights.push_back(test::centred(samples));
     for (int order = 1; order <= 5; ++order) {
@@ -228,12 +228,12 @@ TEST(ProjectedFit, AStrideIsAMultipleOfTheStep) {
 
 TEST(ProjectedFit, CollinearColumnsExplainNothingTwice) {
     // All samples at three times: of seven columns at most three are independent.
-    ScaledSamples samples;
+    PhaseSamples samples;
     double total = 0.0;
     for (int i = 0; i < 30; ++i) {
         samples.tau.push_back(0.5 * (i % 3));
-        samples.value.push_back(i % 3 == 0 ? 1.0 : -0.5);
-        total += samples.value.back() * samples.value.back();
+        samples.power_w.push_back(i % 3 == 0 ? 1.0 : -0.5);
+        total += samples.power_w.back() * samples.power_w.back();
     }
     const auto sums = sum_directly(samples, 4.0, 7);
     EXPECT_NEAR(explained_square_sum(sums, 1, 3), total, 1e-6 * total);

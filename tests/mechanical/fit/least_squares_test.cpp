@@ -15,12 +15,12 @@
 namespace flightwatt::mechanical {
 namespace {
 
-std::vector<ScaledSamples> one_flight(const PhaseModel& phase, double noise_w, unsigned seed) {
+std::vector<PhaseSamples> one_flight(const PhaseModel& phase, double noise_w, unsigned seed) {
     std::mt19937 random(seed);
     return {test::centred(test::record(phase, {phase.duration_s, 0.1, noise_w, 0.0}, random))};
 }
 
-double found_frequency(std::span<const ScaledSamples> flights, const FrequencyRange& range) {
+double found_frequency(std::span<const PhaseSamples> flights, const FrequencyRange& range) {
     return find_frequency(flights, 3, range, scan_frequencies(flights, 3, range));
 }
 
@@ -28,12 +28,12 @@ TEST(FrequencyScan, CoversTheRangeAndAgreesWithTheExactSums) {
     const auto flights = one_flight(test::cruise_of(4.2, {2.0, 0.6, 0.3}, {1.0, -0.2, 0.4}), 1.0, 1);
     const FrequencyRange range{std::numbers::pi, 200.0};
     const auto scan = scan_frequencies(flights, 3, range);
-    EXPECT_LE(scan.step_rad * 3.0, 1.0);
-    EXPECT_LT(scan.theta_rad.front() - range.low_rad, scan.step_rad);
-    EXPECT_NEAR(scan.theta_rad.back(), range.high_rad, 1e-9);
-    for (std::size_t i = 0; i < scan.theta_rad.size(); i += 7) {
-        const double exact = projected_square_sum(flights, 3, scan.theta_rad[i]);
-        EXPECT_NEAR(scan.square_sum[i], exact, 1e-8 * exact) << scan.theta_rad[i];
+    EXPECT_LE(scan.grid.step_rad * 3.0, 1.0);
+    EXPECT_LT(scan.grid.theta_rad(0) - range.low_rad, scan.grid.step_rad);
+    EXPECT_NEAR(scan.grid.theta_rad(scan.grid.size() - 1), range.high_rad, 1e-9);
+    for (std::size_t i = 0; i < scan.grid.size(); i += 7) {
+        const double exact = projected_square_sum(flights, 3, scan.grid.theta_rad(i));
+        EXPECT_NEAR(scan.square_sum[i], exact, 1e-8 * exact) << scan.grid.theta_rad(i);
     }
 }
 
@@ -88,7 +88,7 @@ TEST(FrequencyScan, KeepsTheTrendOfAShortTakeOff) {
     // Few samples do not tell 2 theta from theta by significance alone.
     int doubled = 0;
     for (unsigned seed = 1; seed <= 50; ++seed) {
-        std::vector<ScaledSamples> flights;
+        std::vector<PhaseSamples> flights;
         for (const auto& samples : test::record_flights(flight::Phase::takeoff, 6, 0.5, seed)) {
             flights.push_back(test::centred(samples));
         }
@@ -100,7 +100,7 @@ TEST(FrequencyScan, KeepsTheTrendOfAShortTakeOff) {
 const FrequencyRange wide{std::numbers::pi, 500.0};
 
 TEST(JointRefinement, StandsAtAMinimum) {
-    std::vector<ScaledSamples> flights;
+    std::vector<PhaseSamples> flights;
     for (const auto& samples : test::record_flights(flight::Phase::cruise, 4, 0.5, 1))
         flights.push_back(test::centred(samples));
     const auto fit = refine_jointly(flights, 3, wide, 5.0);
@@ -137,10 +137,10 @@ TEST(JointRefinement, FromOnePeriodTheFasterFrequenciesAreMissed) {
 }
 
 TEST(JointRefinement, RefusesTimesThatDetermineNothing) {
-    ScaledSamples samples;
+    PhaseSamples samples;
     for (int i = 0; i < 30; ++i) {
         samples.tau.push_back(0.5 * (i % 3));
-        samples.value.push_back(i % 2 == 0 ? 1.0 : -1.0);
+        samples.power_w.push_back(i % 2 == 0 ? 1.0 : -1.0);
     }
     EXPECT_THROW(refine_jointly(std::vector{samples}, 3, wide, 5.0), NoResultError);
 }

@@ -35,7 +35,7 @@ double least_deviation_rad(const PhaseModel& phase, const PhaseSamples& samples,
         coefficients(static_cast<Eigen::Index>(2 * n + 1)) = phase.fourier.cos_w[n];
         coefficients(static_cast<Eigen::Index>(2 * n + 2)) = phase.fourier.sin_w[n];
     }
-    const auto at = fourier_residual({samples.tau, samples.power_w}, test::theta_rad(phase), coefficients);
+    const auto at = fourier_residual(samples, test::theta_rad(phase), coefficients);
     return noise_w / std::sqrt(solve_least_squares(at.by_coefficients, at.by_theta)->residual_square_sum);
 }
 

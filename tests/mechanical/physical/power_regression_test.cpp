@@ -39,8 +39,7 @@ DenseData dense_data(const std::vector<BinnedFlight>& flights, const std::vector
     for (const auto& flight : flights) {
         for (const auto& bin : flight.bins) {
             for (std::size_t i = 0; i < terms.size(); ++i)
-                data.columns(row, static_cast<Eigen::Index>(i)) =
-                    bin.values[terms[i]] / column_scale()[static_cast<int>(terms[i])];
+                data.columns(row, static_cast<Eigen::Index>(i)) = bin.values[terms[i]];
             data.power_w[row++] = bin.power_w;
         }
         data.starts.push_back(row);
