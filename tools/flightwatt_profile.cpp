@@ -8,7 +8,6 @@
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "compute/power_sampler.h"
-#include "compute/profile_interpolation.h"
 #include "compute/profile_reader.h"
 #include "compute/profile_specification.h"
 #include "compute/profiler.h"
@@ -142,8 +141,8 @@ int profile_components(const cli::StageCall& call, const ProfileArguments& argum
         return conclude(call, profile(specification, options), specification);
     } catch (const compute::Interrupted& interrupted) {
         cli::note(call, fmt::format("stopped by {} after {} of {} runs; the same command continues from there",
-                                    signal_name(interrupted.signal()), runs.done, runs.all));
-        return killed_by_signal + interrupted.signal();
+                                    signal_name(interrupted.signal), runs.done, runs.all));
+        return killed_by_signal + interrupted.signal;
     }
 }
 

@@ -1,9 +1,11 @@
 #include "compute/compute_model.h"
 
 #include "base/piecewise_linear.h"
+#include "base/units.h"
 #include "compute/qos_range.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <stdexcept>
 
@@ -19,29 +21,7 @@ std::vector<double> axis_of(const std::vector<ProfileNode>& nodes, std::size_t p
     return {axis.begin(), axis.end()};
 }
 
-void refuse_duplicates(const std::vector<std::string>& parameters, const std::vector<ProfileNode>& sorted) {
-    for (std::size_t i = 1; i < sorted.size(); ++i) {
-        if (sorted[i].qos != sorted[i - 1].qos) continue;
-        const auto what =
-            parameters.empty() ? "a profile without parameters" : format_qos(parameters, sorted[i].qos, " = ", ", ");
-        throw InputError(sorted[i].where,
-                         fmt::format("{} has a second node, the first is in line {}", what, sorted[i - 1].where.line),
-                         "keep one row for each configuration");
-    }
-}
-
-/// The node that stands at `index` in row-major order.
-std::vector<double> grid_point(const std::vector<std::vector<double>>& axes, std::size_t index) {
-    std::vector<double> point(axes.size());
-    for (std::size_t i = axes.size(); i-- > 0;) {
-        point[i] = axes[i][index % axes[i].size()];
-        index /= axes[i].size();
-    }
-    return point;
-}
-
-/// `sorted` must be the grid, point for point; the first difference is a node that is missing. Walking the
-/// nodes rather than the grid keeps a mistaken file of n rows from asking for n^d points.
+/// `sorted` must be the grid. Iterates over nodes: the grid of a wrong file of n rows may have n^d points.
 void require_full_grid(const PowerProfile& profile, const std::vector<ProfileNode>& sorted) {
     std::vector<std::size_t> counts;
     double grid_size = 1.0;
@@ -50,22 +30,28 @@ void require_full_grid(const PowerProfile& profile, const std::vector<ProfileNod
         grid_size *= static_cast<double>(axis.size());
     }
     std::size_t k = 0;
-    while (k < sorted.size() && sorted[k].qos == grid_point(profile.axes, k)) ++k;
+    while (k < sorted.size() && static_cast<double>(k) < grid_size && sorted[k].qos == grid_point(profile.axes, k)) ++k;
+    const auto text_of = [&](const auto& qos) { return format_qos(profile.parameters, qos, " = ", ", "); };
+    if (k > 0 && k < sorted.size() && sorted[k].qos == sorted[k - 1].qos) {
+        const auto node = profile.parameters.empty() ? "a profile without parameters" : text_of(sorted[k].qos);
+        throw InputError(sorted[k].where,
+                         fmt::format("{} has a second node, the first is in line {}", node, sorted[k - 1].where.line),
+                         "keep one row for each configuration");
+    }
     if (static_cast<double>(k) >= grid_size) return;
-    throw InputError({profile.file},
-                     fmt::format("the grid is incomplete: there is no node at {}",
-                                 format_qos(profile.parameters, grid_point(profile.axes, k), " = ", ", ")),
-                     fmt::format("profile every combination of the values, here {} nodes", fmt::join(counts, " x ")));
+    throw InputError(
+        {profile.file},
+        fmt::format("the grid is incomplete: there is no node at {}", text_of(grid_point(profile.axes, k))),
+        fmt::format("profile every combination of the values, here {} nodes", fmt::join(counts, " x ")));
 }
 
 }  // namespace
 
 PowerProfile make_power_profile(const std::string& file, const std::vector<std::string>& parameters,
                                 std::vector<ProfileNode> nodes) {
-    if (nodes.empty()) throw InputError({file}, "has no nodes, expected at least one profiled configuration");
-    // Lexicographic order of the QoS is the grid's order; stable, so that the second of two equals is blamed.
+    if (nodes.empty()) throw InputError({file}, "has no nodes, expected at min_at one profiled configuration");
+    // Lexicographic order of the QoS is the grid's order; stable, so that an error names the second of two equals.
     std::ranges::stable_sort(nodes, {}, &ProfileNode::qos);
-    refuse_duplicates(parameters, nodes);
     PowerProfile profile{file, parameters, {}, {}};
     for (std::size_t i = 0; i < parameters.size(); ++i) profile.axes.push_back(axis_of(nodes, i));
     require_full_grid(profile, nodes);
@@ -79,14 +65,12 @@ PowerProfile make_power_profile(const std::string& file, const std::vector<std::
 
 std::string negative_power_warning(const PowerProfile& profile) {
     if (profile.power_w.empty()) return "";
-    const auto least = std::ranges::min_element(profile.power_w);
-    if (*least >= 0.0) return "";
-    const auto node = grid_point(profile.axes, static_cast<std::size_t>(least - profile.power_w.begin()));
+    const auto min_at = std::ranges::min_element(profile.power_w);
+    if (*min_at >= 0.0) return "";
+    const auto node = grid_point(profile.axes, static_cast<std::size_t>(min_at - profile.power_w.begin()));
     const auto at = profile.parameters.empty() ? "" : " at " + format_qos(profile.parameters, node, " = ", ", ");
-    return fmt::format(
-        "{}: {:.3g} W{}: software that gives power back does not exist; within the noise of the profile "
-        "it is 0",
-        profile.file, *least, at);
+    return fmt::format("{}: {:.3g} W{}: software does not return power; within the noise of the profile it is 0",
+                       profile.file, *min_at, at);
 }
 
 void require_in_range(const PowerProfile& profile, std::size_t parameter, double value, const Location& where) {
@@ -121,6 +105,38 @@ double power_w(const PowerProfile& profile, const std::vector<double>& qos) {
         if (weight > 0.0) power += weight * profile.power_w[index];
     }
     return power;
+}
+
+LeaveOneOutErrors leave_one_out(const PowerProfile& profile) {
+    LeaveOneOutErrors errors;
+    double squares = 0.0;
+    for (std::size_t k = 0; k < profile.power_w.size(); ++k) {
+        double sum_w = 0.0;
+        int ways = 0;
+        std::size_t stride = 1;
+        for (std::size_t i = profile.axes.size(); i-- > 0;) {
+            const auto& axis = profile.axes[i];
+            const auto at = k / stride % axis.size();
+            if (at > 0 && at + 1 < axis.size()) {
+                const double fraction = (axis[at] - axis[at - 1]) / (axis[at + 1] - axis[at - 1]);
+                sum_w += std::lerp(profile.power_w[k - stride], profile.power_w[k + stride], fraction);
+                ++ways;
+            }
+            stride *= axis.size();
+        }
+        if (ways == 0) continue;
+        const double error_w = std::abs(sum_w / ways - profile.power_w[k]);
+        ++errors.nodes;
+        errors.mean_absolute_w += error_w;
+        errors.mean_absolute_percent += units::percentage(error_w, std::abs(profile.power_w[k]));
+        errors.largest_w = std::max(errors.largest_w, error_w);
+        squares += error_w * error_w;
+    }
+    const auto count = static_cast<double>(std::max<std::size_t>(errors.nodes, 1));
+    errors.mean_absolute_w /= count;
+    errors.mean_absolute_percent /= count;
+    errors.rms_w = std::sqrt(squares / count);
+    return errors;
 }
 
 double power_w(const ComputeModel& model, const Configuration& configuration) {

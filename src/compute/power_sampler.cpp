@@ -12,7 +12,7 @@
 namespace flightwatt::compute {
 namespace {
 
-/// In the order of SamplerKind; the last one is another name for two of the others, and is not advertised.
+/// In the order of SamplerKind; error messages do not list the last one, which means two of the others.
 const std::vector<std::string_view> kind_names{"auto",         "ina238",  "ina3221-iio", "ina3221-hwmon", "rapl",
                                                "power_supply", "command", "recorded",    "ina3221"};
 
@@ -31,7 +31,7 @@ SamplerKind kind_of(const TomlTable& table) {
         near.empty() ? fmt::format("there are {}", fmt::join(names, ", ")) : fmt::format("did you mean '{}'?", near));
 }
 
-/// A setting of another kind of sampler would do nothing.
+/// Refuses a key that has no effect with this kind.
 void refuse_foreign_key(const TomlTable& table, std::string_view key, SamplerKind kind, SamplerKind its_kind) {
     if (!table.has(key) || kind == its_kind) return;
     throw InputError(table.where(key), fmt::format("{} belongs to the sampler '{}', not to '{}'", key,
@@ -82,7 +82,6 @@ struct Sensor {
 
     std::vector<std::string> names() const {
         std::vector<std::string> all;
-        all.reserve(rails.size());
         for (const auto& rail : rails) all.push_back(rail.name);
         return all;
     }
@@ -116,19 +115,10 @@ PowerSampler sampler_of(const Sensor& sensor, const std::vector<std::string>& wa
         double power_w = 0.0;
         for (const auto& rail : chosen) power_w += rail.read(before);
         if (std::isnan(power_w)) return {};
-        // Stamped with the middle of the time that the reading took.
+        // The time stamp is the middle of the reading.
         return {{before + (std::chrono::steady_clock::now() - before) / 2, power_w}};
     };
     return sampler;
-}
-
-std::vector<std::string> lines_of(const std::vector<Sensor>& sensors) {
-    std::vector<std::string> lines;
-    for (const auto& sensor : sensors) {
-        if (sensor.names().empty()) continue;
-        lines.push_back(fmt::format("{}: {}", to_string(sensor.kind), fmt::join(sensor.names(), ", ")));
-    }
-    return lines;
 }
 
 }  // namespace
@@ -140,13 +130,15 @@ PowerSampler open_sampler(const SamplerSettings& settings) {
     const auto sysfs = std::filesystem::is_directory(inner, none) ? inner : settings.sysfs;
     const auto sensors = probe(sysfs);
     for (const auto& sensor : sensors) {
-        if (!sensor.is_asked_for(settings.kind) || sensor.names().empty()) continue;
+        if (!sensor.is_asked_for(settings.kind) || sensor.rails.empty()) continue;
         auto sampler = sampler_of(sensor, settings.rails);
-        sampler.found = lines_of(sensors);
+        for (const auto& found : sensors)
+            if (!found.rails.empty())
+                sampler.found.push_back(fmt::format("{}: {}", to_string(found.kind), fmt::join(found.names(), ", ")));
         return sampler;
     }
     throw NoResultError(fmt::format(
-        "there is no {} below {} that can be read; looked for INA238 and INA3221 (bus/i2c/drivers/ina*, bus/iio, "
+        "there is no {} below {} that can be read; searched for INA238 and INA3221 (bus/i2c/drivers/ina*, bus/iio, "
         "class/hwmon), RAPL (class/powercap, often for root alone) and class/power_supply; a [sampler] of "
         "kind \"command\" reads any other meter",
         settings.kind == SamplerKind::automatic ? "power sensor"

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-/// What profiling measures.
+/// Results of profiling.
 namespace flightwatt::compute {
 
 /// Samples of power with time stamps of their own, rising.
@@ -38,35 +38,31 @@ struct PowerEstimate {
     std::size_t repeats = 0;
 };
 
-/// What became of a run. Only `ok` has power.
+/// Result of a run. Only `ok` has power.
 enum class RunStatus { failed, ended_early, timed_out, not_started, no_samples, ok };
 
 std::string_view to_string(RunStatus status);
 
-/// A signal asked the program to end. Nothing of the run is left.
-class Interrupted : public std::runtime_error {
-  public:
-    explicit Interrupted(int signal) : std::runtime_error("interrupted by a signal"), signal_(signal) {}
-    int signal() const { return signal_; }
-
-  private:
-    int signal_;
+/// A signal ended the program; the processes of the run have ended.
+struct Interrupted : std::runtime_error {
+    explicit Interrupted(int by) : std::runtime_error("interrupted by a signal"), signal(by) {}
+    int signal;
 };
 
 inline constexpr const char* runs_name = "runs.csv";
 inline constexpr const char* idle_component = "idle";
 
-/// One run of one configuration: to be done, or done.
+/// One run of one configuration, planned or done.
 struct ProfileRun {
     std::string component;             ///< or idle_component
     std::size_t index = 0;             ///< of the component in its specification
     std::size_t node = 0;              ///< of its configurations
     std::string configuration;         ///< "fps=4 key_bits=32"
     std::size_t repeat = 1;            ///< from 1
-    std::string fingerprint;           ///< of all that its result depends on in the specification
+    std::string fingerprint;           ///< of all settings that its result depends on
     std::string layer1;                ///< its file, relative to the results
-    bool is_done = false;              ///< of the rest only what follows here is set by running
-    bool is_from_earlier_run = false;  ///< by an earlier call
+    bool is_done = false;              ///< running sets the members from here on
+    bool is_from_earlier_run = false;  ///< an earlier call ran it
     RunStatus status = RunStatus::failed;
     std::string note;
     PowerTrace trace;

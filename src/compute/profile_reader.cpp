@@ -6,7 +6,6 @@
 #include "compute/powprofiler/powprofiler.h"
 
 #include <algorithm>
-#include <numeric>
 #include <set>
 #include <string_view>
 
@@ -18,7 +17,7 @@ namespace {
 constexpr std::string_view power_column = "power_w";
 constexpr std::string_view ignored_column = "_";
 constexpr std::string_view error_column = "standard_error_w";
-/// What may follow power_w in a profile of ours: on what it rests.
+/// Columns that may follow power_w in a CSV of `flightwatt profile`.
 constexpr std::string_view evidence_columns[] = {
     error_column, "total_power_w", "above_idle_power_w", "duration_s", "energy_j", "samples", "repeats", "source"};
 
@@ -26,8 +25,7 @@ void refuse_bad_names(const std::vector<std::string>& parameters, const Location
     std::set<std::string_view> seen;
     for (const auto& name : parameters) {
         if (name.empty() || name.find_first_of(" \t") != std::string::npos) {
-            throw InputError(where, fmt::format("'{}' is no parameter's name", name),
-                             "names are not empty and hold no blanks");
+            throw InputError(where, fmt::format("'{}' is not a parameter's name", name), "use a name without blanks");
         }
         if (!seen.insert(name).second) {
             throw InputError(where, fmt::format("two columns are named '{}'", name));
@@ -35,7 +33,6 @@ void refuse_bad_names(const std::vector<std::string>& parameters, const Location
     }
 }
 
-/// The names given must be as many as the file has parameters.
 void require_names(const ProfileNaming& naming, std::size_t count, const std::string& file) {
     const auto where = naming.where.file.empty() ? Location{file} : naming.where;
     if (naming.parameters.size() != count) {
@@ -47,21 +44,30 @@ void require_names(const ProfileNaming& naming, std::size_t count, const std::st
     refuse_bad_names(naming.parameters, where);
 }
 
-/// Rows from `first_row` on as nodes, their parameters in the order of `parameter_columns`.
-std::vector<ProfileNode> nodes_of(const CsvTable& table, std::size_t first_row,
-                                  const std::vector<std::size_t>& parameter_columns, std::size_t power) {
+/// Which columns of a CSV a profile has.
+struct ProfileColumns {
+    std::vector<std::string> parameters;
+    std::vector<std::size_t> parameter_columns;
+    std::size_t power = 0;
+    std::optional<std::size_t> standard_error = {};
+};
+
+PowerProfile profile_of(const CsvTable& table, std::size_t first_row, const ProfileColumns& columns) {
     std::vector<ProfileNode> nodes;
     for (std::size_t i = first_row; i < table.rows.size(); ++i) {
         const auto& row = table.rows[i];
-        ProfileNode node{{}, cell_number(table, row, power), {table.file, row.line}, {}};
-        for (const auto column : parameter_columns) node.qos.push_back(cell_number(table, row, column));
+        ProfileNode node{{}, cell_number(table, row, columns.power), {table.file, row.line}, {}};
+        for (const auto column : columns.parameter_columns) node.qos.push_back(cell_number(table, row, column));
+        // A single sample has no error.
+        if (columns.standard_error && !row.cells[*columns.standard_error].text.empty())
+            node.standard_error_w = cell_number(table, row, *columns.standard_error);
         nodes.push_back(std::move(node));
     }
-    return nodes;
+    return make_power_profile(table.file, columns.parameters, std::move(nodes));
 }
 
-/// How many columns stand before power_w; those after it must be evidence.
-std::size_t parameter_count(const CsvTable& table) {
+/// By the names of a header: parameters, power_w and then evidence.
+ProfileColumns columns_of_header(const CsvTable& table) {
     const auto& header = table.rows.front();
     const auto power = std::ranges::find(header.cells, power_column, &CsvTable::Cell::text);
     if (power == header.cells.end()) {
@@ -69,78 +75,49 @@ std::size_t parameter_count(const CsvTable& table) {
                          fmt::format("the last column is '{}', expected '{}'", header.cells.back().text, power_column),
                          "a profile's columns are its parameters and then power_w");
     }
-    for (auto cell = power + 1; cell != header.cells.end(); ++cell) {
-        if (std::ranges::find(evidence_columns, cell->text) != std::end(evidence_columns)) continue;
-        throw InputError({table.file, header.line, cell->column},
-                         fmt::format("the column '{}' follows {}", cell->text, power_column),
-                         "parameters stand before it, after it only what `flightwatt profile` writes there");
+    ProfileColumns columns;
+    columns.power = static_cast<std::size_t>(power - header.cells.begin());
+    for (std::size_t i = 0; i < header.cells.size(); ++i) {
+        const auto& [name, column] = header.cells[i];
+        if (i < columns.power) {
+            columns.parameters.push_back(name);
+            columns.parameter_columns.push_back(i);
+        } else if (name == error_column) {
+            columns.standard_error = i;
+        } else if (i > columns.power && std::ranges::find(evidence_columns, name) == std::end(evidence_columns)) {
+            throw InputError({table.file, header.line, column},
+                             fmt::format("the column '{}' follows {}", name, power_column),
+                             "parameters come before it, after it only the columns that `flightwatt profile` writes");
+        }
     }
-    return static_cast<std::size_t>(power - header.cells.begin());
+    refuse_bad_names(columns.parameters, {table.file, header.line});
+    return columns;
 }
 
-std::optional<std::size_t> place_of(const CsvTable& table, std::string_view column) {
-    const auto found = std::ranges::find(table.columns, column);
-    if (found == table.columns.end()) return std::nullopt;
-    return static_cast<std::size_t>(found - table.columns.begin());
-}
-
-PowerProfile profile_with_header(CsvTable table, const ProfileNaming& naming) {
-    const auto header = table.rows.front();
-    if (!naming.parameters.empty()) {
-        throw InputError(naming.where, fmt::format("{} names its parameters itself", table.file),
-                         "leave `parameters` out");
-    }
-    if (header.cells.front().text == "time_s") {
-        throw InputError({table.file, header.line, header.cells.front().column},
-                         "is a recording of power over time (layer 1), expected a profile of configurations",
-                         "take layer 2, which `flightwatt profile` writes as DIR/COMPONENT.csv");
-    }
-    const auto count = parameter_count(table);
-    table.rows.erase(table.rows.begin());
-    for (const auto& cell : header.cells) table.columns.push_back(cell.text);
-    std::vector<std::size_t> columns(count);
-    std::iota(columns.begin(), columns.end(), std::size_t{0});
-    const std::vector<std::string> parameters(table.columns.begin(),
-                                              table.columns.begin() + static_cast<std::ptrdiff_t>(count));
-    refuse_bad_names(parameters, {table.file, header.line});
-    auto nodes = nodes_of(table, 0, columns, count);
-    const auto error = place_of(table, error_column);
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-        const auto& row = table.rows[i];
-        // Of a single sample there is no error.
-        if (error && !row.cells[*error].text.empty()) nodes[i].standard_error_w = cell_number(table, row, *error);
-    }
-    return make_power_profile(table.file, parameters, std::move(nodes));
-}
-
-PowerProfile profile_without_header(CsvTable table, const ProfileNaming& naming) {
-    const auto& file = table.file;
+/// By the names that the user gives to each column.
+ProfileColumns columns_of_names(const CsvTable& table, const ProfileNaming& naming) {
     const auto width = table.rows.front().cells.size();
     if (naming.columns.size() != width) {
         throw InputError(naming.where,
-                         fmt::format("{} columns are named, {} has {}", naming.columns.size(), file, width),
-                         "name each column, one power_w, those to pass over _");
+                         fmt::format("{} columns are named, {} has {}", naming.columns.size(), table.file, width),
+                         "name each column, one power_w, ignored ones _");
     }
-    table.columns = naming.columns;
-    std::vector<std::string> parameters;
-    std::vector<std::size_t> columns;
-    std::vector<std::size_t> power;
+    ProfileColumns columns;
     for (std::size_t i = 0; i < width; ++i) {
-        if (naming.columns[i] == power_column) power.push_back(i);
-        if (naming.columns[i] == power_column || naming.columns[i] == ignored_column) continue;
-        parameters.push_back(naming.columns[i]);
-        columns.push_back(i);
+        const auto& name = naming.columns[i];
+        if (name == power_column) columns.power = i;
+        if (name == power_column || name == ignored_column) continue;
+        columns.parameters.push_back(name);
+        columns.parameter_columns.push_back(i);
     }
-    if (power.size() != 1) {
-        throw InputError(naming.where, fmt::format("{} columns are named power_w, expected one", power.size()));
-    }
-    refuse_bad_names(parameters, naming.where);
-    return make_power_profile(file, parameters, nodes_of(table, 0, columns, power.front()));
+    if (const auto count = std::ranges::count(naming.columns, power_column); count != 1)
+        throw InputError(naming.where, fmt::format("{} columns are named power_w, expected one", count));
+    refuse_bad_names(columns.parameters, naming.where);
+    return columns;
 }
 
 PowerProfile profile_of_combinations(const std::filesystem::path& path, const ProfileNaming& naming) {
     const auto config = read_powprofiler_config(path);
-    require_recordings(config, path);
     require_names(naming, config.combinations.front().qos.size(), path.string());
     std::vector<ProfileNode> nodes;
     for (const auto& combination : config.combinations) {
@@ -156,7 +133,7 @@ PowerProfile profile_of_powprofiler(const CsvTable& table, const PowprofilerColu
     if (columns.parameters.empty()) {
         return make_power_profile(table.file, {}, {{{}, mean(layer1_power_w(table)), {table.file}}});
     }
-    return make_power_profile(table.file, naming.parameters, nodes_of(table, 1, columns.parameters, columns.power));
+    return profile_of(table, 1, {naming.parameters, columns.parameters, columns.power});
 }
 
 }  // namespace
@@ -172,7 +149,7 @@ PowerProfile read_power_profile(const std::filesystem::path& path, const Profile
         }
         return profile_of_combinations(path, naming);
     }
-    // Read without header, whatever it has: the first row then tells which format this is.
+    // Read without header: the first row determines the format.
     auto table = read_csv(path, CsvHeader::absent);
     const auto flags = powprofiler_columns(table);
     const auto first_line = table.rows.front().line;
@@ -184,14 +161,24 @@ PowerProfile read_power_profile(const std::filesystem::path& path, const Profile
             throw InputError(naming.where, fmt::format("{} has a header", table.file),
                              "`columns` name those of a file without one; leave them out");
         }
-        return profile_without_header(std::move(table), naming);
+        return profile_of(table, 0, columns_of_names(table, naming));
     }
     if (flags) return profile_of_powprofiler(table, *flags, naming);
     if (numbers) {
         throw InputError({table.file, first_line}, "begins with numbers and not with a header",
                          "name the columns with `columns`, for example [\"fps\", \"power_w\"]");
     }
-    return profile_with_header(std::move(table), naming);
+    if (!naming.parameters.empty()) {
+        throw InputError(naming.where, fmt::format("{} has names of its parameters", table.file),
+                         "leave `parameters` out");
+    }
+    if (cells.front().text == "time_s") {
+        throw InputError({table.file, first_line, cells.front().column},
+                         "is a recording of power over time (layer 1), expected a profile of configurations",
+                         "use layer 2, which `flightwatt profile` writes as DIR/COMPONENT.csv");
+    }
+    for (const auto& cell : cells) table.columns.push_back(cell.text);
+    return profile_of(table, 1, columns_of_header(table));
 }
 
 }  // namespace flightwatt::compute

@@ -9,23 +9,23 @@
 
 namespace flightwatt::compute {
 
-/// The names that a user gives to a profile that has none of its own. At most one of the two lists is filled.
+/// Names for a profile without a header of names. At most one of the two lists is filled.
 struct ProfileNaming {
-    /// Of powprofiler's flags 200, 201, ..., or of the values of a .cfg, in order.
+    /// Of powprofiler's flags 200, 201, ..., or of the values of a .cfg.
     std::vector<std::string> parameters;
-    /// Of the columns of a file without header; one is "power_w", and "_" passes a column over.
+    /// Of the columns of a file without header; one is "power_w", "_" skips a column.
     std::vector<std::string> columns;
     Location where;  ///< of the names, for messages
 };
 
 /// Reads a profile in any of the formats:
-///   - our own CSV: a header of the parameters' names and then power_w, '#' begins a comment line; on what it
-///     rests may follow, as `flightwatt profile` writes it: standard_error_w is kept
+///   - CSV of `flightwatt profile`: a header of the parameters, power_w and further columns, of which standard_error_w
+///     is read; '#' begins a comment line
 ///   - powprofiler layer 2: a header of flags (powprofiler.h), names from `naming.parameters`
 ///   - a CSV without header (powprofiler's and gnuplot's), names from `naming.columns`
 ///   - powprofiler layer 1, the recording of one configuration: constant power, its mean
 ///   - powprofiler .cfg with [combinations]: each node is the mean of a layer 1 file
-/// Throws InputError for a file that is none of these, names that do not fit, and what make_power_profile refuses.
+/// Throws InputError for another format, names that do not fit, and as make_power_profile.
 PowerProfile read_power_profile(const std::filesystem::path& path, const ProfileNaming& naming = {});
 
 }  // namespace flightwatt::compute

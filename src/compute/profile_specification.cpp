@@ -14,7 +14,7 @@
 namespace flightwatt::compute {
 namespace {
 
-/// A component as it is written, before its ranges are multiplied out.
+/// A component before its ranges are multiplied out.
 struct WrittenComponent {
     std::string name;
     std::vector<std::string> command;
@@ -30,7 +30,7 @@ void refuse_bad_name(const std::string& name, std::string_view also, const Locat
         return std::isalnum(static_cast<unsigned char>(c)) != 0 || also.find(c) != std::string_view::npos;
     };
     if (!name.empty() && std::ranges::all_of(name, is_good) && name.front() != '.') return;
-    throw InputError(where, fmt::format("'{}' is no name for a file and a column", name),
+    throw InputError(where, fmt::format("'{}' cannot be the name of a file and a column", name),
                      fmt::format("use letters, digits and {}", also));
 }
 
@@ -59,10 +59,8 @@ std::vector<double> values_from(const TomlTable& ranges, const std::string& name
         return range.numbers("values");
     }
     const double from = range.number("from");
-    const double to = range.number("to");
-    const double step = range.number("step");
-    if (step <= 0.0) throw InputError(range.where("step"), fmt::format("step = {} is not positive", step));
-    if (to < from) throw InputError(range.where("to"), fmt::format("to = {} is less than from = {}", to, from));
+    const double to = number_in(at_least(from), range, "to");
+    const double step = number_in(more_than(0.0), range, "step");
     if ((to - from) / step > static_cast<double>(max_configurations)) {
         throw InputError(range.where("step"), fmt::format("step = {} makes too many values", step));
     }
@@ -77,7 +75,7 @@ std::vector<QosRange> ranges_from(const TomlTable& component) {
         const auto where = table->where(name);
         refuse_bad_name(name, "_", where);
         if (name == "component") {
-            throw InputError(where, "a parameter is called 'component', which stands for the component's name");
+            throw InputError(where, "a parameter is called 'component', the placeholder of the component's name");
         }
         QosRange range{name, values_from(*table, name)};
         if (range.values.empty()) throw InputError(where, fmt::format("{} has no values", name));

@@ -11,18 +11,18 @@
 
 namespace flightwatt::compute {
 
-/// One point of a component's ranges, and what is to be run there.
+/// One point of a component's ranges, with the commands to run there.
 struct ProfiledConfiguration {
     std::vector<double> qos;                         ///< one value a parameter
     std::vector<std::vector<std::string>> commands;  ///< run at the same time; no shell
     std::filesystem::path recording;                 ///< of power, instead of running
 };
 
-/// How long a configuration is watched.
+/// Duration of a run.
 struct ProfileTiming {
     std::optional<double> duration_s;  ///< after the warm-up; none: until the commands end by themselves
     double warm_up_s = 0.0;            ///< the samples of this time are discarded
-    double timeout_s = 600.0;          ///< of commands that should end by themselves
+    double timeout_s = 600.0;          ///< of commands without duration_s
 };
 
 /// A component, or several that run at the same time.
@@ -33,27 +33,25 @@ struct ProfiledComponent {
     ProfileTiming timing;
 };
 
-/// What is to be profiled, and how.
+/// Components to profile, and how.
 struct ProfileSpecification {
     std::string file;
     std::vector<ProfiledComponent> components;
     std::size_t repeats = 1;
     std::uint64_t seed = 1;   ///< of the order of the runs
-    double idle_s = 10.0;     ///< how long the idle computer is watched; 0: not at all
-    bool above_idle = false;  ///< whether profiles hold what comes on top of idle
+    double idle_s = 10.0;     ///< of the idle computer; 0: not measured
+    bool above_idle = false;  ///< profiles contain power above idle
     SamplerSettings sampler;
 };
 
-/// Reads a specification (docs/formats.md); paths in it are relative to it. A .cfg is powprofiler's, either of its
-/// kinds ([components] to run, [combinations] of recordings). Anything else is TOML. Throws InputError with file,
-/// line and column.
+/// Reads a specification (docs/formats.md): TOML, or a .cfg of powprofiler with [combinations]. Paths are relative to
+/// the file. Throws InputError with file, line and column.
 ProfileSpecification read_profile_specification(const std::filesystem::path& path);
 
-/// The same from TOML text; `path` for messages and what is relative to it.
+/// The same from TOML text of the file `path`.
 ProfileSpecification parse_profile_specification(std::string_view text, const std::filesystem::path& path);
 
-/// The same from powprofiler's .cfg. Parameters have no names there: they are called qos_1, qos_2, ...;
-/// `directory` and h are passed over, frequency is the sampling's.
+/// The same from a .cfg, whose parameters have no names: qos_1, qos_2, ...
 ProfileSpecification read_powprofiler_specification(const std::filesystem::path& path);
 
 }  // namespace flightwatt::compute

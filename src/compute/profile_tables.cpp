@@ -15,16 +15,14 @@ std::string comments_of(const ComponentEstimate& component, const ProfileOutcome
                                    specification.file, outcome.sampler);
     if (specification.above_idle) {
         text += fmt::format(
-            "# power_w is what comes on top of the idle computer, which draws {:.5g} W "
-            "(idle.csv, a component of its own)\n",
+            "# power_w is the power above that of the idle computer, {:.5g} W (idle.csv, a component of its own)\n",
             outcome.idle->power_w);
     } else if (outcome.idle) {
         text += fmt::format(
-            "# power_w is the whole computer's, the {:.5g} W of the idle one among it: in a "
-            "mission with several components only one should be so\n",
+            "# power_w includes the idle computer, {:.5g} W: in a mission, at most one component may include it\n",
             outcome.idle->power_w);
     } else {
-        text += "# power_w is what the sampler saw, the idle computer's among it; that was not measured\n";
+        text += "# power_w includes the idle computer, whose power was not measured\n";
     }
     for (const auto& run : component.failures) {
         text += fmt::format("# {} repeat {} {}: {}\n", run.configuration, run.repeat, to_string(run.status), run.note);

@@ -29,7 +29,7 @@ ComponentRun execute(const ProfileRun& run, const ProfileSpecification& specific
         configuration = component.configurations[run.node];
         timing = component.timing;
     } else if (!is_recorded) {
-        timing.duration_s = specification.idle_s;  // a recording of it counts as long as it is
+        timing.duration_s = specification.idle_s;  // a recording counts as a whole
     }
     if (!is_recorded) return run_component(configuration.commands, timing, frame);
     const auto interval_s = settings.interval_is_given ? std::optional(settings.interval_s) : std::nullopt;
@@ -52,11 +52,11 @@ void do_run(ProfileRun& run, const ProfileSpecification& specification, const Pr
     write_layer1(run, options.folder);
 }
 
-/// A meter takes its time to start, which is none of the first run's. Throws NoResultError for one that says nothing.
+/// Waits for the first reading of a program. Throws NoResultError after 30 s.
 void await_meter(PowerSampler& sampler, const ProfilerOptions& options) {
     using Clock = std::chrono::steady_clock;
     constexpr std::chrono::seconds patience(30);
-    if (sampler.file() < 0) return;  // a sensor, which answers when asked
+    if (sampler.file() < 0) return;  // a sensor
     for (const auto end = Clock::now() + patience; Clock::now() < end;) {
         pollfd files[2] = {{options.signal_fd, POLLIN, 0}, {sampler.file(), POLLIN, 0}};
         ::poll(files, 2, 100);
@@ -86,7 +86,7 @@ PowerEstimate idle_of(const std::vector<ProfileRun>& runs) {
     throw NoResultError(fmt::format("no idle power: {} {}", to_string(idle.status), idle.note));
 }
 
-/// Layer 2 from the runs, without configurations that failed.
+/// Layer 2 of the runs, without failed configurations.
 ComponentEstimate estimate_component(const ProfiledComponent& component, std::size_t index,
                                      const std::vector<ProfileRun>& runs) {
     ComponentEstimate estimate{component.name, component.parameters, {}, {}};

@@ -14,14 +14,13 @@ struct ProfilerOptions {
     int signal_fd = -1;            ///< as in RunContext
     std::function<int()> caught;
     std::function<void(const PowerSampler&)> on_sampler_opened;  ///< called before the first run
-    /// Called after each run with how many are done.
+    /// Called after each run with the number of finished runs.
     std::function<void(const ProfileRun&, std::size_t done, std::size_t all)> progress;
 };
 
-/// Profiles: runs what is not done yet, one run after the other, keeping runs.csv and layer 1 in the folder up to
-/// date after each. Throws UsageError for a folder with files of others, Interrupted (the folder then tells how far it
-/// came), NoResultError where there is no sampler or the idle computer could not be measured, InputError of the
-/// sampler's files.
+/// Runs what is not done yet, one run after the other; runs.csv and layer 1 are written after each. Throws UsageError
+/// for a folder with files of other programs, Interrupted (a later call resumes), NoResultError without a sampler or
+/// idle power, InputError of the sampler's files.
 ProfileOutcome profile(const ProfileSpecification& specification, const ProfilerOptions& options);
 
 }  // namespace flightwatt::compute

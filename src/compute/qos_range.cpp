@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -23,29 +24,25 @@ std::vector<double> linear_range(double from, double to, double step) {
     return values;
 }
 
-std::vector<double> geometric_range(double from, double to, double factor) {
-    std::vector<double> values;
-    double value = from;
-    while (value <= to) {
-        values.push_back(rounded(value));
-        value = value > 0.0 ? value * factor : factor;
+std::vector<double> grid_point(const std::vector<std::vector<double>>& axes, std::size_t index) {
+    std::vector<double> point(axes.size());
+    for (std::size_t i = axes.size(); i-- > 0;) {
+        point[i] = axes[i][index % axes[i].size()];
+        index /= axes[i].size();
     }
-    return values;
+    return point;
 }
 
 QosPoints cartesian_product(const std::vector<QosRange>& ranges) {
-    QosPoints combinations{{}};
+    std::vector<std::vector<double>> axes;
+    std::size_t count = 1;
     for (const auto& range : ranges) {
-        QosPoints longer;
-        for (const auto& combination : combinations) {
-            for (const double value : range.values) {
-                longer.push_back(combination);
-                longer.back().push_back(value);
-            }
-        }
-        combinations = std::move(longer);
+        axes.push_back(range.values);
+        count *= range.values.size();
     }
-    return combinations;
+    QosPoints points;
+    for (std::size_t i = 0; i < count; ++i) points.push_back(grid_point(axes, i));
+    return points;
 }
 
 std::string format_qos(const std::vector<std::string>& parameters, const std::vector<double>& qos,
@@ -59,15 +56,9 @@ std::string format_qos(const std::vector<std::string>& parameters, const std::ve
 
 std::string substitute_qos(const std::string& text, const std::vector<std::string>& parameters,
                            const std::vector<double>& qos) {
-    std::string result = text;
-    for (std::size_t i = 0; i < parameters.size(); ++i) {
-        const auto placeholder = "{" + parameters[i] + "}";
-        const auto value = fmt::format("{}", qos[i]);
-        for (auto at = result.find(placeholder); at != std::string::npos;
-             at = result.find(placeholder, at + value.size())) {
-            result.replace(at, placeholder.size(), value);
-        }
-    }
+    auto result = text;
+    for (std::size_t i = 0; i < parameters.size(); ++i)
+        boost::algorithm::replace_all(result, "{" + parameters[i] + "}", fmt::format("{}", qos[i]));
     return result;
 }
 

@@ -7,7 +7,7 @@
 
 namespace flightwatt::compute {
 
-/// More are a mistake in a range: they would take weeks to profile.
+/// Limit of a component: more would take weeks to profile.
 inline constexpr std::size_t max_configurations = 100000;
 
 /// Configurations of a component: one value a parameter each.
@@ -19,12 +19,12 @@ struct QosRange {
     std::vector<double> values;  ///< rising
 };
 
-/// from, from + step, ... up to `to`, which is among them if it is a whole number of steps away. `step` > 0
-/// and `to` >= `from`. Rounded to 12 digits, so that 0.1 + 0.2 is spelled 0.3 on a command line.
+/// from, from + step, ... up to `to`, included if it is a whole number of steps away; `step` > 0, `to` >= `from`.
+/// Rounded to 12 digits, so that 0.1 + 0.2 is 0.3 on a command line.
 std::vector<double> linear_range(double from, double to, double step);
 
-/// powprofiler's pow(factor): from, from * factor, ... up to `to`; 0 is followed by the factor. `factor` > 1.
-std::vector<double> geometric_range(double from, double to, double factor);
+/// The node `index` of a grid, the last axis running fastest.
+std::vector<double> grid_point(const std::vector<std::vector<double>>& axes, std::size_t index);
 
 /// Every combination of the values, the last parameter running fastest; one empty combination of no ranges.
 QosPoints cartesian_product(const std::vector<QosRange>& ranges);
@@ -33,7 +33,7 @@ QosPoints cartesian_product(const std::vector<QosRange>& ranges);
 std::string format_qos(const std::vector<std::string>& parameters, const std::vector<double>& qos,
                        std::string_view equals = "=", std::string_view between = " ");
 
-/// `text` with every {name} of a parameter replaced by its value; other braces stay (they may be a shell's).
+/// `text` with every {name} of a parameter replaced by its value; other braces are kept (they may be a shell's).
 std::string substitute_qos(const std::string& text, const std::vector<std::string>& parameters,
                            const std::vector<double>& qos);
 

@@ -142,7 +142,7 @@ TEST(PowerProfile, IsWarnedOfWhereItsPowerIsNegative) {
     EXPECT_EQ(negative_power_warning(line()), "");
     const auto below = make_power_profile("below.csv", {"fps"}, {{{5.0}, -0.2, {}}, {{10.0}, 24.0, {}}});
     EXPECT_EQ(negative_power_warning(below),
-              "below.csv: -0.2 W at fps = 5: software that gives power back does not exist; within the noise of the "
+              "below.csv: -0.2 W at fps = 5: software does not return power; within the noise of the "
               "profile it is 0");
 }
 
@@ -165,6 +165,52 @@ TEST(Describe, NamesWhatRuns) {
     EXPECT_EQ(describe(model, {{0, {10.0}}, {1, {240.0}}}), "detection fps 10, encryption key_bits 240");
     EXPECT_EQ(describe(model, {{0, {5.8}}}, "="), "detection fps=5.8");
     EXPECT_EQ(describe(model, {}), "nothing");
+}
+
+TEST(GridInterpolation, LeavesOutBetweenNeighbours) {
+    const auto profile = make_power_profile("p", {"x"}, {{{0}, 1.0, {}}, {{1}, 5.0, {}}, {{4}, 9.0, {}}});
+    const auto error = leave_one_out(profile);
+    EXPECT_EQ(error.nodes, 1U);
+    EXPECT_DOUBLE_EQ(error.mean_absolute_w, 2.0);
+    EXPECT_DOUBLE_EQ(error.mean_absolute_percent, 40.0);
+}
+
+PowerProfile real_grid() {
+    ProfileNaming naming;
+    naming.columns = {"first", "second", "power_w"};
+    return read_power_profile(test::shared_dir() / "powprofiler" / "tx2_two_component_power.csv", naming);
+}
+
+/// The eight recordings as their config4.cfg joins them; it names them without the prefix they are kept with.
+PowerProfile real_recordings() {
+    const auto folder = test::scratch_dir();
+    for (const auto& entry : std::filesystem::directory_iterator(test::shared_dir() / "powprofiler")) {
+        const auto name = entry.path().filename().string();
+        if (name.starts_with("tracking_")) std::filesystem::copy(entry.path(), folder / name.substr(9));
+    }
+    ProfileNaming naming;
+    naming.parameters = {"yolo_fps", "nfold_fps"};
+    return read_power_profile(folder / "config4.cfg", naming);
+}
+
+TEST(GridInterpolation, OfTheRealProfiles) {
+    FLIGHTWATT_NEEDS_SHARED();
+    for (const auto& profile : {real_grid(), real_recordings()}) {
+        const auto error = leave_one_out(profile);
+        EXPECT_EQ(error.nodes, profile.power_w.size() == 25 ? 21U : 4U);
+        EXPECT_LT(error.mean_absolute_percent, 4.0);
+    }
+}
+
+TEST(LeaveOneOut, SummarizesTheNodesThatHaveNeighbours) {
+    const auto error = leave_one_out(
+        make_power_profile("p", {"x"}, {{{0}, 10.0, {}}, {{1}, 10.0, {}}, {{2}, 12.0, {}}, {{3}, 8.0, {}}}));
+    EXPECT_EQ(error.nodes, 2U);  // errors of 1 and -3 W
+    EXPECT_DOUBLE_EQ(error.mean_absolute_w, 2.0);
+    EXPECT_DOUBLE_EQ(error.mean_absolute_percent, 17.5);
+    EXPECT_DOUBLE_EQ(error.rms_w, std::sqrt(5.0));
+    EXPECT_DOUBLE_EQ(error.largest_w, 3.0);
+    EXPECT_EQ(leave_one_out(make_power_profile("p", {"x"}, {{{0}, 1.0, {}}})).rms_w, 0.0);
 }
 
 }  // namespace

@@ -190,7 +190,7 @@ TEST_F(SensorTree, NoSensorAndBrokenSensors) {
     const auto sampler = open_sampler(settings());
     put("class/power_supply/BAT0/power_now", "broken");
     EXPECT_EQ(test::rejected([&] { sampler.read(); }, root),
-              "class/power_supply/BAT0/power_now:1: the sensor says 'broken', expected a number");
+              "class/power_supply/BAT0/power_now:1: the sensor shows 'broken', expected a number");
 }
 
 /// Reads until there are `count` readings, at most for a minute.

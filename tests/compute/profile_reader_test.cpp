@@ -27,7 +27,7 @@ TEST(ProfileReader, RefusesPowerOverTime) {
     const auto file = write_text(test::scratch_dir() / "load.csv", "time_s,power_w\n0,5\n0.1,5.2\n");
     EXPECT_EQ(rejected([&] { read_power_profile(file); }, file.parent_path()),
               "load.csv:1:1: is a recording of power over time (layer 1), expected a profile of "
-              "configurations; take layer 2, which `flightwatt profile` writes as DIR/COMPONENT.csv");
+              "configurations; use layer 2, which `flightwatt profile` writes as DIR/COMPONENT.csv");
 }
 
 TEST(ProfileReader, ReadsPowprofilerLayerTwo) {
@@ -61,8 +61,8 @@ TEST(ProfileReader, ReadsFilesWithoutHeader) {
                       read_power_profile(file, columns({"fps", "power_w"}));
                   },
                   file.parent_path()),
-              "mission.toml:7:1: 2 columns are named, p.csv has 4; name each column, one power_w, those to "
-              "pass over _");
+              "mission.toml:7:1: 2 columns are named, p.csv has 4; name each column, one power_w, ignored "
+              "ones _");
     EXPECT_EQ(rejected([&] {
                   read_power_profile(file, columns({"fps", "bits", "_", "_"}));
               }),
@@ -70,7 +70,7 @@ TEST(ProfileReader, ReadsFilesWithoutHeader) {
     EXPECT_EQ(rejected([&] {
                   read_power_profile(file, columns({"fps", "", "power_w", "_"}));
               }),
-              "mission.toml:7:1: '' is no parameter's name; names are not empty and hold no blanks");
+              "mission.toml:7:1: '' is not a parameter's name; use a name without blanks");
 }
 
 TEST(ProfileReader, TakesTheMeanOfALayerOneAsConstantPower) {
@@ -109,8 +109,8 @@ TEST(ProfileReader, KeepsTheEvidenceBehindPower) {
     EXPECT_EQ(profile.power_w, (std::vector<double>{2.0, 4.0}));
     EXPECT_EQ(profile.standard_error_w, (std::vector<double>{0.1, 0.3}));
     EXPECT_EQ(rejected([&] { read_power_profile(write_text(folder / "q.csv", "fps,power_w,key\n1,2,3\n")); }, folder),
-              "q.csv:1:13: the column 'key' follows power_w; parameters stand before it, after it only what "
-              "`flightwatt profile` writes there");
+              "q.csv:1:13: the column 'key' follows power_w; parameters come before it, after it only the "
+              "columns that `flightwatt profile` writes");
 }
 
 TEST(ProfileReader, RefusesWhatIsNoProfile) {
@@ -129,7 +129,7 @@ TEST(ProfileReader, RefusesWhatIsNoProfile) {
     EXPECT_EQ(of("fps,power_w\n1,2\n1,3\n"),
               "p.csv:3: fps = 1 has a second node, the first is in line 2; keep one row for each configuration");
     EXPECT_EQ(of("fps,power_w\n1,2\n", parameters({"rate"})),
-              "mission.toml:7:1: p.csv names its parameters itself; leave `parameters` out");
+              "mission.toml:7:1: p.csv has names of its parameters; leave `parameters` out");
     EXPECT_EQ(of("fps,power_w\n1,2\n", {{"a"}, {"b"}, asked}),
               "mission.toml:7:1: both `parameters` and `columns` are given, expected one of them");
     EXPECT_EQ(of(""), "p.csv: is empty, expected a CSV table");

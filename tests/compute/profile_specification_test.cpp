@@ -82,7 +82,7 @@ TEST(ProfileSpecification, EachErrorHasItsPlace) {
     EXPECT_EQ(of("[components.a]\ncommand = []\n"),
               "p.toml:2:1: an empty command, expected a program and its arguments");
     EXPECT_EQ(of("[components.'a/b']\ncommand = ['a']\n"),
-              "p.toml:1:13: 'a/b' is no name for a file and a column; use letters, digits and _-+.");
+              "p.toml:1:13: 'a/b' cannot be the name of a file and a column; use letters, digits and _-+.");
     EXPECT_EQ(of("[components.idle]\ncommand = ['a']\n"),
               "p.toml:1:13: a component is called 'idle', as a file of the results is");
     const auto qos = [&](const std::string& text) {
@@ -90,8 +90,8 @@ TEST(ProfileSpecification, EachErrorHasItsPlace) {
     };
     EXPECT_EQ(qos("x = []"), "p.toml:3:9: x has no values");
     EXPECT_EQ(qos("x = [1, 1]"), "p.toml:3:9: x has a value twice");
-    EXPECT_EQ(qos("x = { from = 1, to = 2, step = 0 }"), "p.toml:3:33: step = 0 is not positive");
-    EXPECT_EQ(qos("x = { from = 1, to = 0, step = 1 }"), "p.toml:3:25: to = 0 is less than from = 1");
+    EXPECT_EQ(qos("x = { from = 1, to = 2, step = 0 }"), "p.toml:3:33: step = 0, expected more than 0");
+    EXPECT_EQ(qos("x = { from = 1, to = 0, step = 1 }"), "p.toml:3:25: to = 0, expected 1 or more");
     EXPECT_EQ(qos("x = { from = 1, to = 2 }"), "p.toml:3:13: has no key 'step'");
     EXPECT_EQ(qos("x = [1], y = [1]"),
               "p.toml:2:1: the command of a does not use its parameter y; write {y} where its value belongs");
@@ -102,26 +102,19 @@ TEST(ProfileSpecification, EachErrorHasItsPlace) {
                 HasSubstr("p.toml:2:1: several configurations have the recording x.csv; name the file by"));
 }
 
-TEST(PowprofilerSpecification, RunsTwoRanges) {
+TEST(PowprofilerSpecification, HasRecordings) {
     const auto folder = test::scratch_dir();
+    write_text(folder / "x.csv", "");
     const auto spec = read_profile_specification(
-        write_text(folder / "c.cfg",
-                   "[settings]\nfrequency = 20\n[components]\n[component.mult]\nsrc = /bin/mult\nruntime = 500\n"
-                   "range = 256, 1024, pow(2)\nfixed = -v\nrange = 20, 40, 10\n"));
+        write_text(folder / "c.cfg", "[settings]\nfrequency = 20\n[combinations]\nx.csv=1,2\n"));
     EXPECT_EQ(spec.sampler.interval_s, 0.05);
     ASSERT_EQ(spec.components.size(), 1U);
+    EXPECT_EQ(spec.components[0].name, "c");
     EXPECT_EQ(spec.components[0].parameters, (Words{"qos_1", "qos_2"}));
-    EXPECT_EQ(spec.components[0].timing.duration_s, 0.5);
-    ASSERT_EQ(spec.components[0].configurations.size(), 9U);
-    EXPECT_EQ(spec.components[0].configurations[5].commands[0], (Words{"/bin/mult", "512", "-v", "40"}));
-    const auto shell =
-        read_profile_specification(write_text(folder / "s.cfg", "[component.a]\nsrc = echo\nfixed = 'a b' > f\n"));
-    EXPECT_EQ(shell.components[0].configurations[0].commands[0], (Words{"/bin/sh", "-c", "echo 'a b' > f"}));
-    EXPECT_EQ(rejected([&] { read_profile_specification(write_text(folder / "e.cfg", "[settings]\n")); }, folder),
-              "e.cfg: has neither [component.NAME] nor [combinations]");
-    EXPECT_EQ(rejected([&] { read_profile_specification(write_text(folder / "e.cfg", "[combinations]\nx.csv=1\n")); },
+    EXPECT_EQ(spec.components[0].configurations[0].recording, folder / "x.csv");
+    EXPECT_EQ(rejected([&] { read_profile_specification(write_text(folder / "e.cfg", "[combinations]\ny.csv=1\n")); },
                        folder),
-              "e.cfg:2: the recording x.csv does not exist");
+              "e.cfg:2: the recording y.csv does not exist");
 }
 
 }  // namespace

@@ -56,11 +56,11 @@ TEST(NumberOr, SaysWhatIsUnknown) {
 TEST(LayerTwo, SaysOfWhatItsPowerConsists) {
     const auto made = outcome();
     const auto above = layer2_csv(made.components[0], made, specification(true));
-    EXPECT_THAT(above, HasSubstr("on top of the idle computer, which draws 2 W"));
+    EXPECT_THAT(above, HasSubstr("above that of the idle computer, 2 W"));
     EXPECT_THAT(above, HasSubstr("\n1,3.000000,0.500000,5.000000,3.000000,4.000000,12.000000,40,2\n"));
     EXPECT_THAT(above, EndsWith("\n2,5.000000,,7.000000,5.000000,4.000000,20.000000,40,2\n"));
     const auto whole = layer2_csv(made.components[0], made, specification(false));
-    EXPECT_THAT(whole, HasSubstr("the 2 W of the idle one among it"));
+    EXPECT_THAT(whole, HasSubstr("includes the idle computer, 2 W"));
     EXPECT_THAT(whole, HasSubstr("\n1,5.000000,0.300000,5.000000,3.000000,4.000000,20.000000,40,2\n"));
 }
 

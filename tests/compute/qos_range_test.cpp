@@ -21,12 +21,6 @@ TEST(EvenlySpaced, IsSpelledWithoutRoundingErrors) {
     EXPECT_EQ(linear_range(0.0, 1.0, 0.1).size(), 11U);
 }
 
-TEST(Multiplied, EndsAtOrBelowTheLimit) {
-    EXPECT_EQ(geometric_range(32.0, 448.0, 2.0), (Values{32, 64, 128, 256}));
-    EXPECT_EQ(geometric_range(1.0, 8.0, 2.0), (Values{1, 2, 4, 8}));
-    EXPECT_EQ(geometric_range(0.0, 9.0, 3.0), (Values{0, 3, 9})) << "0 is followed by the factor";
-}
-
 TEST(CombinationsOf, RunTheLastParameterFastest) {
     EXPECT_EQ(cartesian_product({{"fps", {5, 10}}, {"bits", {32, 64, 128}}}),
               (std::vector<Values>{{5, 32}, {5, 64}, {5, 128}, {10, 32}, {10, 64}, {10, 128}}));

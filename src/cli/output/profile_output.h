@@ -2,7 +2,7 @@
 
 #include "cli/output/json_document.h"
 #include "cli/screen_table.h"
-#include "compute/profile_interpolation.h"
+#include "compute/compute_model.h"
 #include "compute/profile_outcome.h"
 #include "compute/profile_tables.h"
 

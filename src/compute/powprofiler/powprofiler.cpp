@@ -3,16 +3,12 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/number.h"
-#include "base/units.h"
 #include "compute/profile_specification.h"
 
-#include <algorithm>
-#include <cmath>
-#include <iterator>
 #include <map>
-#include <sstream>
 #include <string_view>
 
+#include <boost/algorithm/string/split.hpp>
 #include <fmt/format.h>
 
 namespace flightwatt::compute {
@@ -24,20 +20,19 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-double number_in(std::string_view text, const Location& where) {
-    if (const auto value = parse_number(trimmed(text))) return *value;
-    throw InputError(where, fmt::format("'{}' is not a finite number", trimmed(text)),
-                     "write decimals with a point, values apart with a comma");
-}
-
 std::vector<double> numbers_in(std::string_view text, const Location& where) {
+    std::vector<std::string> cells;
+    boost::algorithm::split(cells, text, [](char c) { return c == ','; });
     std::vector<double> values;
-    while (true) {
-        const auto comma = text.find(',');
-        values.push_back(number_in(text.substr(0, comma), where));
-        if (comma == std::string_view::npos) return values;
-        text.remove_prefix(comma + 1);
+    for (const auto& cell : cells) {
+        const auto value = parse_number(trimmed(cell));
+        if (!value) {
+            throw InputError(where, fmt::format("'{}' is not a finite number", trimmed(cell)),
+                             "write decimals with a point, values apart with a comma");
+        }
+        values.push_back(*value);
     }
+    return values;
 }
 
 struct Property {
@@ -45,9 +40,9 @@ struct Property {
     std::string_view value;
 };
 
-/// Of a combination at the last '=': values hold none, file names may. Elsewhere it is the other way round.
-Property property_of(std::string_view line, bool is_combination, const Location& where) {
-    const auto equals = is_combination ? line.rfind('=') : line.find('=');
+/// Split at the last '=': names of files may contain one, values do not.
+Property property_of(std::string_view line, const Location& where) {
+    const auto equals = line.rfind('=');
     if (equals == std::string_view::npos) {
         throw InputError(where, fmt::format("'{}' is neither [section] nor name=value", line));
     }
@@ -55,12 +50,8 @@ Property property_of(std::string_view line, bool is_combination, const Location&
 }
 
 void read_setting(const Property& property, const Location& where, PowprofilerConfig& config) {
-    if (property.name == "h" || property.name == "directory") return;
-    if (property.name != "frequency") {
-        throw InputError(where, fmt::format("unknown setting '{}'", property.name),
-                         "known are frequency, h and directory");
-    }
-    config.sampling_hz = number_in(property.value, where);
+    if (property.name != "frequency") return;
+    config.sampling_hz = numbers_in(property.value, where).front();
     if (config.sampling_hz <= 0.0) {
         throw InputError(where, fmt::format("frequency = {} Hz is not positive", config.sampling_hz));
     }
@@ -81,63 +72,6 @@ void read_combination(const Property& property, const Location& where, const std
     config.combinations.push_back({folder / property.name, std::move(values), where});
 }
 
-/// "min, max, step" or "min, max, pow(n)".
-std::vector<double> range_of(std::string_view text, const Location& where) {
-    const auto last = text.rfind(',');
-    const auto bounds = numbers_in(text.substr(0, last), where);
-    if (last == std::string_view::npos || bounds.size() != 2) {
-        throw InputError(where, fmt::format("range = {}, expected min, max, step", text));
-    }
-    auto step = trimmed(text.substr(last + 1));
-    const bool power = step.starts_with("pow(") && step.ends_with(")");
-    if (power) step = step.substr(4, step.size() - 5);
-    const double by = number_in(step, where);
-    if (bounds[0] < 0.0 || bounds[1] < bounds[0] || by <= (power ? 1.0 : 0.0)) {
-        throw InputError(where, fmt::format("range = {} is empty or endless", text),
-                         "min is 0 or more, max not less, step more than 0, n of pow(n) more than 1");
-    }
-    const double first = power && bounds[0] <= 0.0 ? 1.0 : bounds[0];
-    const double steps = power ? std::log(bounds[1] / first) / std::log(by) : (bounds[1] - first) / by;
-    if (!(steps <= static_cast<double>(max_configurations))) {
-        throw InputError(where, fmt::format("range = {} makes too many values", text));
-    }
-    return power ? geometric_range(bounds[0], bounds[1], by) : linear_range(bounds[0], bounds[1], by);
-}
-
-void read_component(const Property& property, const Location& where, PowprofilerComponent& component) {
-    if (property.name == "src") {
-        component.source = property.value;
-    } else if (property.name == "fixed") {
-        if (property.value.empty()) throw InputError(where, "fixed = nothing, expected an argument");
-        component.arguments += " " + std::string(property.value);
-    } else if (property.name == "range") {
-        component.ranges.push_back(
-            {fmt::format("qos_{}", component.ranges.size() + 1), range_of(property.value, where)});
-        component.arguments += " {" + component.ranges.back().name + "}";
-    } else if (property.name == "runtime") {
-        component.runtime_s = units::second_from_millisecond(number_in(property.value, where));
-        if (*component.runtime_s <= 0.0) throw InputError(where, "runtime is not positive", "it counts ms");
-    } else {
-        throw InputError(where, fmt::format("unknown property '{}' of a component", property.name),
-                         "known are src, range, fixed and runtime");
-    }
-}
-
-constexpr std::string_view component_section = "[component.";  // what its name follows
-
-std::string_view begin_section(std::string_view line, const Location& where, PowprofilerConfig& config) {
-    if (line == "[settings]" || line == "[components]" || line == "[combinations]") return line;
-    const auto name = line.size() > component_section.size() + 1 && line.starts_with(component_section)
-                          ? trimmed(line.substr(component_section.size(), line.size() - component_section.size() - 1))
-                          : std::string_view();
-    if (name.empty()) {
-        throw InputError(where, fmt::format("unknown section {}", line),
-                         "known are [settings], [components], [component.NAME] and [combinations]");
-    }
-    config.components.push_back({std::string(name), "", "", {}, {}, where});
-    return component_section;
-}
-
 }  // namespace
 
 PowprofilerConfig read_powprofiler_config(const std::filesystem::path& path) {
@@ -152,31 +86,18 @@ PowprofilerConfig read_powprofiler_config(const std::filesystem::path& path) {
         ++where.line;
         if (line.empty()) continue;
         if (line.front() == '[' && line.back() == ']') {
-            section = begin_section(line, where, config);
-        } else if (section == component_section) {
-            read_component(property_of(line, false, where), where, config.components.back());
+            section = line;
         } else if (section == "[settings]") {
-            read_setting(property_of(line, false, where), where, config);
+            read_setting(property_of(line, where), where, config);
         } else if (section == "[combinations]") {
-            read_combination(property_of(line, true, where), where, path.parent_path(), config);
-        } else if (section.empty()) {
-            throw InputError(where, fmt::format("'{}' stands before any [section]", line));
-        } else {
-            throw InputError(where, fmt::format("'{}' stands in {}, before any [component.NAME]", line, section));
+            read_combination(property_of(line, where), where, path.parent_path(), config);
+        } else if (!section.starts_with("[component")) {
+            throw InputError(where, fmt::format("'{}' is outside of [settings] and [combinations]", line));
         }
     }
-    for (const auto& component : config.components) {
-        if (component.source.empty()) {
-            throw InputError(component.where, fmt::format("{} has no src, its program", component.name));
-        }
-    }
-    return config;
-}
-
-void require_recordings(const PowprofilerConfig& config, const std::filesystem::path& path) {
     if (config.combinations.empty()) {
         throw InputError({path.string()}, "has no [combinations], lines of file.csv=value,value",
-                         "[components] say how to profile, not what came out");
+                         "write what powprofiler runs by [components] as TOML, [components.NAME]");
     }
     for (const auto& combination : config.combinations) {
         const auto error = open_error(combination.recording);
@@ -185,85 +106,28 @@ void require_recordings(const PowprofilerConfig& config, const std::filesystem::
             error == std::errc::no_such_file_or_directory ? "does not exist" : "cannot be read: " + error.message();
         throw InputError(combination.where, fmt::format("the recording {} {}", combination.recording.string(), reason));
     }
+    return config;
 }
 
-namespace {
-
-/// powprofiler hands the words, joined by blanks, to a shell. Where none of them needs one they are run
-/// directly, so that a program that is missing is told from one that fails.
-std::vector<std::string> shell_words(const std::string& line) {
-    const auto is_plain = [](char c) {
-        return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
-               std::string_view(" _./,:+@%=-").find(c) != std::string_view::npos;
-    };
-    if (!std::ranges::all_of(line, is_plain)) return {"/bin/sh", "-c", line};
-    std::istringstream words(line);
-    return {std::istream_iterator<std::string>(words), {}};
-}
-
-ProfiledComponent profiled(const PowprofilerComponent& written) {
-    ProfiledComponent component{written.name, {}, {}, {}};
-    component.timing.duration_s = written.runtime_s;
-    double count = 1.0;
-    for (const auto& range : written.ranges) {
-        count *= static_cast<double>(range.values.size());
-        component.parameters.push_back(range.name);
-    }
-    if (count > static_cast<double>(max_configurations)) {
-        throw InputError(written.where, fmt::format("{} has {} configurations", written.name, count),
-                         "profile fewer values");
-    }
-    for (const auto& qos : cartesian_product(written.ranges)) {
-        const auto line = substitute_qos(written.source + written.arguments, component.parameters, qos);
-        component.configurations.push_back({qos, {shell_words(line)}, {}});
-    }
-    return component;
-}
-
-ProfiledComponent profiled_combinations(const PowprofilerConfig& config, const std::filesystem::path& path) {
-    auto name = std::filesystem::path(config.combinations_name).stem().string();
-    if (name.empty()) name = path.stem().string();
-    require_recordings(config, path);
-    ProfiledComponent component{name, {}, {}, {}};
+ProfileSpecification read_powprofiler_specification(const std::filesystem::path& path) {
+    const auto config = read_powprofiler_config(path);
+    ProfileSpecification specification;
+    specification.file = path.string();
+    specification.idle_s = 0.0;
+    specification.sampler.kind = SamplerKind::recorded;
+    specification.sampler.folder = path.parent_path();
+    specification.sampler.where = {path.string()};
+    specification.sampler.interval_s = 1.0 / config.sampling_hz;
+    specification.sampler.interval_is_given = true;
+    const auto name = std::filesystem::path(config.combinations_name).stem().string();
+    ProfiledComponent component{name.empty() ? path.stem().string() : name, {}, {}, {}};
     for (std::size_t i = 1; i <= config.combinations.front().qos.size(); ++i) {
         component.parameters.push_back(fmt::format("qos_{}", i));
     }
     for (const auto& combination : config.combinations) {
         component.configurations.push_back({combination.qos, {}, combination.recording});
     }
-    return component;
-}
-
-}  // namespace
-
-ProfileSpecification read_powprofiler_specification(const std::filesystem::path& path) {
-    const auto config = read_powprofiler_config(path);
-    ProfileSpecification specification;
-    specification.file = path.string();
-    specification.sampler.folder = path.parent_path();
-    specification.sampler.where = {path.string()};
-    specification.sampler.interval_s = 1.0 / config.sampling_hz;
-    specification.sampler.interval_is_given = true;
-    if (!config.combinations.empty()) {
-        if (!config.components.empty()) {
-            throw InputError(config.components.front().where, "the file has [combinations] and components to run",
-                             "keep them in two files");
-        }
-        specification.sampler.kind = SamplerKind::recorded;
-        specification.idle_s = 0.0;
-        specification.components.push_back(profiled_combinations(config, path));
-        return specification;
-    }
-    for (const auto& component : config.components) {
-        const auto& others = specification.components;
-        if (std::ranges::find(others, component.name, &ProfiledComponent::name) != others.end()) {
-            throw InputError(component.where, fmt::format("a second component '{}'", component.name));
-        }
-        specification.components.push_back(profiled(component));
-    }
-    if (specification.components.empty()) {
-        throw InputError({path.string()}, "has neither [component.NAME] nor [combinations]");
-    }
+    specification.components.push_back(std::move(component));
     return specification;
 }
 
@@ -316,7 +180,7 @@ std::optional<PowprofilerColumns> powprofiler_columns(const CsvTable& table) {
         for (const auto flag : flags) {
             if (flag != 0 && !column_of.emplace(flag, column).second) {
                 throw InputError({table.file, header.line, cell.column},
-                                 fmt::format("the flag {} stands over two columns", flag));
+                                 fmt::format("the flag {} heads two columns", flag));
             }
         }
     }

@@ -23,8 +23,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int cannot_execute = 127;                       // what a shell exits with then
-constexpr std::chrono::milliseconds kill_patience(5000);  // after SIGKILL only the kernel can delay an end
+constexpr int cannot_execute = 127;                       // exit code of a shell then
+constexpr std::chrono::milliseconds kill_patience(5000);  // after SIGKILL, only the kernel can delay the end
 
 OutputError process_error(int error) {
     return OutputError(fmt::format("cannot start a process: {}", std::strerror(error)));
@@ -41,12 +41,12 @@ Pipe make_pipe() {
     return {ends[0], ends[1]};
 }
 
-/// In a forked process: becomes the command. Writes errno to `failure` if that fails; else it is closed.
+/// Executes the command in a forked process. Writes errno to `failure` on an error; else it is closed.
 [[noreturn]] void become(const std::vector<std::string>& words, const SupervisionOptions& options, int failure,
                          ::pid_t parent) {
-    ::setpgid(0, 0);  // Ctrl-C on the terminal is the profiler's to answer
+    ::setpgid(0, 0);  // Ctrl-C on the terminal goes to the profiler only
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != parent) ::_exit(0);  // it has died before the line above
+    if (::getppid() != parent) ::_exit(0);  // the parent has died before the line above
     const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
     ::dup2(nothing, STDIN_FILENO);
     ::dup2(options.output >= 0 ? options.output : nothing, STDOUT_FILENO);
@@ -63,8 +63,8 @@ Pipe make_pipe() {
     ::_exit(cannot_execute);
 }
 
-/// Whether a process of the group is left; those that have ended are reaped.
-bool lives(::pid_t group) {
+/// Whether a process of the group is alive; reaps those that have ended.
+bool is_alive(::pid_t group) {
     while (::waitpid(-group, nullptr, WNOHANG) > 0) {
     }
     return ::kill(-group, 0) == 0;
@@ -85,7 +85,7 @@ std::string to_string(const FinishedCommand& ended) {
 SupervisedProcesses::SupervisedProcesses(const SupervisionOptions& options)
     : kill_timeout_(options.kill_timeout), poll_fd_(::epoll_create1(EPOLL_CLOEXEC)) {
     if (poll_fd_ < 0) throw process_error(errno);
-    ::prctl(PR_SET_CHILD_SUBREAPER, 1);  // what a command leaves behind is reaped here, also where no init does
+    ::prctl(PR_SET_CHILD_SUBREAPER, 1);  // reaps orphans also where no init does
 }
 
 SupervisedProcesses::SupervisedProcesses(const std::vector<std::vector<std::string>>& commands,
@@ -108,7 +108,7 @@ void SupervisedProcesses::start(const std::vector<std::string>& words, const Sup
     ::close(failure.writes);
     int start_error = 0;
     if (child > 0) {
-        ::setpgid(child, child);  // here too: it may be signalled before it runs
+        ::setpgid(child, child);  // here too: a signal may come before it runs
         while (::read(failure.reads, &start_error, sizeof start_error) < 0 && errno == EINTR) {
         }
     }
@@ -140,7 +140,7 @@ ShutdownReport SupervisedProcesses::end() {
     ShutdownReport report;
     ended();
     report.left_processes = std::ranges::any_of(
-        commands_, [](const Command& command) { return command.process < 0 && lives(command.group); });
+        commands_, [](const Command& command) { return command.process < 0 && is_alive(command.group); });
     signal_all(SIGTERM);
     if (!wait_for_end(kill_timeout_)) {
         report.killed = true;
@@ -155,7 +155,7 @@ ShutdownReport SupervisedProcesses::end() {
 
 bool SupervisedProcesses::any_lives() const {
     bool any = false;
-    for (const auto& command : commands_) any = lives(command.group) || any;  // reaps of all
+    for (const auto& command : commands_) any = is_alive(command.group) || any;  // reaps of all
     return any;
 }
 

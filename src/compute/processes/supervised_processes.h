@@ -9,44 +9,43 @@
 namespace flightwatt::compute {
 
 struct SupervisionOptions {
-    int output = -1;  ///< an open file for what the commands print
-    int errors = -1;  ///< and for what they say
+    int output = -1;  ///< file descriptor for standard output; -1: /dev/null
+    int errors = -1;  ///< for standard error
     std::chrono::milliseconds kill_timeout{2000};
 };
 
-/// What was found when the commands were ended.
+/// Result of ending the commands.
 struct ShutdownReport {
-    bool left_processes = false;  ///< a command had ended and left processes of its group
+    bool left_processes = false;  ///< a command had ended, processes of its group had not
     bool killed = false;          ///< SIGTERM was not enough
 };
 
 /// A command that has ended, or that could not be started.
 struct FinishedCommand {
     int start_error = 0;  ///< errno, if it could not be started
-    int wait_status = 0;  ///< as waitpid() gives it
+    int wait_status = 0;  ///< of waitpid()
     std::chrono::steady_clock::time_point time;
 };
 
 /// "exit code 3", "killed by SIGSEGV", "cannot be started: No such file or directory".
 std::string to_string(const FinishedCommand& ended);
 
-/// Commands (no shell) that run at the same time, each in a process group of its own. When this object goes, all
-/// processes of these groups are ended: SIGTERM first, SIGKILL after the patience. Where the program itself is killed,
-/// the commands are. To be used by programs of one thread. Throws OutputError if the system has no more processes or
-/// files.
+/// Commands (no shell) that run at the same time, each in its own process group. The destructor ends all processes of
+/// these groups by SIGTERM, after kill_timeout by SIGKILL. If the program is killed, the commands are. For programs of
+/// one thread. Throws OutputError without free processes or file descriptors.
 class SupervisedProcesses {
   public:
-    /// Waits until each command is executed, or is among those that ended() reports as not started.
+    /// Waits until each command is executed; ended() reports those that cannot be started.
     SupervisedProcesses(const std::vector<std::vector<std::string>>& commands, const SupervisionOptions& options);
     ~SupervisedProcesses();
     SupervisedProcesses(const SupervisedProcesses&) = delete;
     SupervisedProcesses& operator=(const SupervisedProcesses&) = delete;
 
-    /// A file that poll() finds readable when a command has ended.
+    /// Readable (poll()) when a command has ended.
     int poll_fd() const { return poll_fd_; }
     /// The commands that have ended since the last call.
     std::vector<FinishedCommand> ended();
-    /// Ends everything that still runs and waits for that.
+    /// Ends all processes of the groups and waits for their end.
     ShutdownReport end();
 
   private:

@@ -27,7 +27,7 @@ Clock::duration ticks(double time_s) {
     return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(time_s));
 }
 
-/// The file that takes what the commands print, gone again if they printed nothing.
+/// Output file of the commands, removed if empty.
 class OutputFile {
   public:
     explicit OutputFile(const std::filesystem::path& path) : path_(path) {
@@ -53,11 +53,12 @@ class OutputFile {
     int file_ = -1;
 };
 
+/// Samples power until the run is over.
 class Watch {
   public:
     Watch(Clock::time_point start, SupervisedProcesses* processes, const ProfileTiming& timing, const RunContext& frame)
         : processes_(processes), timing_(timing), frame_(frame), start_(start), next_(start_) {
-        frame_.sampler->read();  // what came before the start is not of this run
+        frame_.sampler->read();  // discards earlier readings
     }
 
     ComponentRun run() {
@@ -103,9 +104,9 @@ class Watch {
     }
 
     void take_readings() {
-        // A sensor is asked on a fixed grid of times; moments that were missed are not caught up.
-        const bool asks = frame_.sampler->file() < 0;
-        if (asks && Clock::now() < next_) return;
+        // A sensor is polled on a fixed time grid; missed points are skipped.
+        const bool is_polled = frame_.sampler->file() < 0;
+        if (is_polled && Clock::now() < next_) return;
         while (next_ <= Clock::now()) next_ += ticks(frame_.interval_s);
         for (const auto& reading : frame_.sampler->read()) {
             const double time_s = seconds(reading.time - start_);
@@ -116,7 +117,7 @@ class Watch {
     }
 
     void finish() {
-        take_ends();  // on a busy machine starting may take longer than the run
+        take_ends();  // on a busy machine, starting may take longer than the run
         if (run_.status == RunStatus::not_started) return;
         run_.duration_s = std::max(0.0, seconds(end() - start_) - timing_.warm_up_s);
         const bool ended_first = over_at_ && *over_at_ < limit();
@@ -131,14 +132,14 @@ class Watch {
         } else {
             run_.status = run_.trace.time_s.empty() ? RunStatus::no_samples : RunStatus::ok;
         }
-        if (run_.status == RunStatus::no_samples) run_.note = "over before there was a sample";
+        if (run_.status == RunStatus::no_samples) run_.note = "ended before the first sample";
     }
 
     SupervisedProcesses* processes_;
     const ProfileTiming& timing_;
     const RunContext& frame_;
     Clock::time_point start_;
-    Clock::time_point next_;                    ///< when the sensor is asked
+    Clock::time_point next_;                    ///< when the sensor is polled
     std::optional<Clock::time_point> over_at_;  ///< when the first command ended
     ComponentRun run_;
 };
@@ -147,7 +148,7 @@ void note(ComponentRun& run, const std::string& text) { run.note += (run.note.em
 
 void note_ending(const ShutdownReport& report, bool ended_by_itself, ComponentRun& run) {
     if (ended_by_itself && report.left_processes) note(run, "left processes behind, ended");
-    if (report.killed) note(run, "did not answer SIGTERM, killed");
+    if (report.killed) note(run, "did not end by SIGTERM, killed");
 }
 
 }  // namespace
@@ -163,7 +164,7 @@ ComponentRun run_component(const std::vector<std::vector<std::string>>& commands
     if (commands.empty()) return Watch(Clock::now(), nullptr, timing, frame).run();
     const OutputFile output(frame.output);
     const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(ticks(frame.kill_timeout_s));
-    const auto start = Clock::now();  // before, or a late start of ours would make theirs look short
+    const auto start = Clock::now();  // before starting the commands: a delay does not shorten their run
     SupervisedProcesses processes(commands, {output.file(), output.file(), patience});
     auto run = Watch(start, &processes, timing, frame).run();
     const bool by_itself = run.status != RunStatus::timed_out && (run.status != RunStatus::ok || !timing.duration_s);
@@ -183,10 +184,10 @@ ComponentRun run_of_recording(const PowerTrace& recording, const ProfileTiming& 
     }
     run.status = run.trace.time_s.empty() ? RunStatus::no_samples : RunStatus::ok;
     if (run.status == RunStatus::no_samples) {
-        run.note = "the recording is over before the warm-up is";
+        run.note = "the recording ends within the warm-up";
         return run;
     }
-    // Each sample stands for an interval, also the first.
+    // Each sample counts for an interval, also the first.
     const double mean_s = run.trace.time_s.size() > 1 ? jitter_of({run.trace}).mean_s : interval_s;
     run.duration_s = run.trace.time_s.back() - run.trace.time_s.front() + mean_s;
     if (timing.duration_s && run.duration_s + mean_s < *timing.duration_s) {

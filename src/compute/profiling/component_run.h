@@ -9,33 +9,32 @@
 
 namespace flightwatt::compute {
 
-/// The power of a configuration while it ran once.
+/// Power of one run of a configuration.
 struct ComponentRun {
     RunStatus status = RunStatus::failed;
-    std::string note;         ///< "exit code 3", "left 2 processes behind, ended"
+    std::string note;         ///< "exit code 3"
     PowerTrace trace;         ///< time since the start of the commands, from the end of the warm-up on
     double duration_s = 0.0;  ///< from the end of the warm-up to the end of the run
 };
 
-/// How a run is done.
+/// Sampler, output and signals of a run.
 struct RunContext {
     PowerSampler* sampler = nullptr;
-    double interval_s = 0.1;               ///< between questions to a sensor
-    std::filesystem::path output;          ///< what the commands print and say goes there; removed if nothing does
-    int signals = -1;                      ///< a file that is readable once the program is to end (SignalWatch)
-    std::function<int()> received_signal;  ///< the signal then
+    double interval_s = 0.1;               ///< of polling a sensor
+    std::filesystem::path output;          ///< of the commands; removed if empty
+    int signals = -1;                      ///< readable after a signal to end (SignalWatch)
+    std::function<int()> received_signal;  ///< the signal
     double kill_timeout_s = 2.0;           ///< between SIGTERM and SIGKILL
 };
 
-/// Runs the commands, samples power until the duration is over, or without one until the first of them ends,
-/// and ends everything that is left of them, whatever it did. A command that fails is no error of this
-/// function: the status tells. No commands: the idle computer, for the duration. Throws Interrupted, and what
-/// the sampler throws; nothing runs on then either.
+/// Runs the commands and samples power for the duration, or until the first of them ends; then ends their processes. No
+/// commands: the idle computer. The status reports commands that fail. Throws Interrupted, and as the sampler; the
+/// processes are then ended too.
 ComponentRun run_component(const std::vector<std::vector<std::string>>& commands, const ProfileTiming& timing,
                            const RunContext& frame);
 
-/// The same from a recording: the samples after the warm-up, of the duration if there is one. Each sample
-/// stands for the mean interval, a single one for `interval_s`.
+/// The same from a recording: its samples after the warm-up, within the duration. Each sample counts for the mean
+/// interval, a single one for `interval_s`.
 ComponentRun run_of_recording(const PowerTrace& recording, const ProfileTiming& timing, double interval_s);
 
 }  // namespace flightwatt::compute

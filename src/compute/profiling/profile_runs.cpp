@@ -21,8 +21,7 @@
 namespace flightwatt::compute {
 namespace {
 
-/// Of everything in the specification that decides what a run measures; not of programs' files, nor of the
-/// order of the runs.
+/// Of the settings and recordings that a run's result depends on; not of programs' files or the order of the runs.
 std::string fingerprint_of(const SamplerSettings& sampler, const ProfileTiming& timing,
                            const ProfiledConfiguration& configuration) {
     Fingerprint fingerprint;
@@ -55,37 +54,17 @@ ProfileRun idle_run(const ProfileSpecification& specification) {
     return run;
 }
 
-std::string key_of(const std::string& component, const std::string& configuration, const std::string& repeat) {
-    return fmt::format("{}\n{}\n{}", component, configuration, repeat);
-}
-
-/// What an earlier call said of a run, by column.
-using Record = std::map<std::string, std::string>;
-
-std::map<std::string, Record> read_records(const std::filesystem::path& folder) {
-    std::map<std::string, Record> records;
-    std::error_code none;
-    if (!std::filesystem::exists(folder / runs_name, none)) return records;
-    const auto table = read_csv(folder / runs_name);
-    for (const auto& row : table.rows) {
-        Record record;
-        for (std::size_t i = 0; i < row.cells.size(); ++i) record[table.columns[i]] = row.cells[i].text;
-        records[key_of(record["component"], record["configuration"], record["repeat"])] = record;
+/// Sets the result of a run from its layer 1, unless that is missing or damaged.
+void restore(ProfileRun& run, const std::filesystem::path& folder, double duration_s, const std::string& note) {
+    try {
+        run.trace = read_power_trace(folder / run.layer1, std::nullopt);
+    } catch (const InputError&) {
+        return;
     }
-    return records;
-}
-
-/// Whether the run could be taken over from its record and its layer 1.
-bool recall(ProfileRun& run, Record& record, const std::filesystem::path& folder) {
-    const auto duration_s = parse_number(record["duration_s"]);
-    if (record["fingerprint"] != run.fingerprint || record["status"] != to_string(RunStatus::ok) || !duration_s) {
-        return false;
-    }
-    run.trace = read_power_trace(folder / run.layer1, std::nullopt);
-    run.estimate = estimate_run(run.trace, *duration_s);
+    run.estimate = estimate_run(run.trace, duration_s);
     run.status = RunStatus::ok;
-    run.note = record["note"];
-    return true;
+    run.note = note;
+    run.is_done = run.is_from_earlier_run = true;
 }
 
 void add_row(CsvWriter& csv, const ProfileRun& run) {
@@ -138,13 +117,11 @@ void check_result_files(const ProfileSpecification& specification, const std::ve
         register_output(file);
         std::error_code none;
         if (!std::filesystem::exists(file, none) || read_file(file).starts_with(beginning)) return;
-        throw UsageError(
-            fmt::format("{} would be replaced, and no profile wrote it; move it away, or choose another "
-                        "folder with -o",
-                        file.string()));
+        throw UsageError(fmt::format(
+            "{} exists and is not of a profile; move it away, or choose another folder with -o", file.string()));
     };
     claim(runs_name, "component,configuration,repeat,");
-    // As write_profiles begins its files.
+    // The first lines of write_profiles.
     claim("idle.csv", "# Power of the idle computer");
     for (const auto& component : specification.components) {
         claim(component.name + ".csv", fmt::format("# Power of {}, profiled by flightwatt", component.name));
@@ -154,20 +131,24 @@ void check_result_files(const ProfileSpecification& specification, const std::ve
 
 void load_completed_runs(std::vector<ProfileRun>& runs, const std::filesystem::path& folder) {
     const OverwriteExemption own;
-    std::map<std::string, Record> records;
+    std::error_code none;
+    if (!std::filesystem::exists(folder / runs_name, none)) return;
     try {
-        records = read_records(folder);
-    } catch (const InputError&) {
-        return;  // of another program, or damaged: everything is done anew
-    }
-    for (auto& run : runs) {
-        const auto found = records.find(key_of(run.component, run.configuration, std::to_string(run.repeat)));
-        if (found == records.end()) continue;
-        try {
-            run.is_done = run.is_from_earlier_run = recall(run, found->second, folder);
-        } catch (const InputError&) {
-            run.trace = {};  // its layer 1 is gone or damaged
+        const auto table = read_csv(folder / runs_name);
+        const auto layer1 = column_index(table, "layer1");
+        const auto fingerprint = column_index(table, "fingerprint");
+        const auto duration = column_index(table, "duration_s");
+        const auto note = column_index(table, "note");
+        std::map<std::string_view, const CsvTable::Row*> rows;
+        for (const auto& row : table.rows) rows[row.cells[layer1].text] = &row;
+        for (auto& run : runs) {
+            const auto found = rows.find(run.layer1);
+            if (found == rows.end() || found->second->cells[fingerprint].text != run.fingerprint) continue;
+            const auto duration_s = parse_number(found->second->cells[duration].text);
+            if (duration_s) restore(run, folder, *duration_s, found->second->cells[note].text);
         }
+    } catch (const InputError&) {
+        return;  // of another program, or damaged: all runs are done again
     }
 }
 
@@ -189,7 +170,7 @@ void write_runs(const std::vector<ProfileRun>& runs, const std::filesystem::path
                    "fingerprint"});
     for (const auto& run : runs)
         if (run.is_done) add_row(csv, run);
-    const OverwriteExemption own;  // after each run anew
+    const OverwriteExemption own;  // rewritten after each run
     write_file_atomically(folder / runs_name, csv.text());
 }
 

@@ -16,7 +16,7 @@ std::vector<double> intervals_of(const PowerTrace& run) {
     return intervals_s;
 }
 
-/// 1 + 2 sum rho: how many samples of the series count as one independent one; at least 1.
+/// 1 + 2 sum rho: correlated samples for one independent sample; at least 1.
 double correlation_time(const std::vector<double>& deviations) {
     const auto covariance = [&](std::size_t lag) {
         double sum = 0.0;
@@ -38,13 +38,8 @@ double standard_error_of(const std::vector<double>& values) {
     if (values.size() < 2) return std::numeric_limits<double>::quiet_NaN();
     const double average = mean(values);
     std::vector<double> deviations;
-    double squares = 0.0;
-    for (const double value : values) {
-        deviations.push_back(value - average);
-        squares += deviations.back() * deviations.back();
-    }
-    const auto n = static_cast<double>(values.size());
-    return std::sqrt(squares / (n - 1.0) / n * correlation_time(deviations));
+    for (const double value : values) deviations.push_back(value - average);
+    return std::sqrt(sample_variance(values) / static_cast<double>(values.size()) * correlation_time(deviations));
 }
 
 }  // namespace
@@ -64,9 +59,7 @@ SamplingJitter jitter_of(const std::vector<PowerTrace>& runs) {
 
 PowerEstimate estimate_run(const PowerTrace& run, double duration_s) {
     auto weights = intervals_of(run);
-    auto sorted = weights;
-    std::ranges::sort(sorted);
-    weights.insert(weights.begin(), sorted.empty() ? 1.0 : sorted[sorted.size() / 2]);
+    weights.insert(weights.begin(), weights.empty() ? 1.0 : median_high(weights));
     const double power_w = std::inner_product(weights.begin(), weights.end(), run.power_w.begin(), 0.0) /
                            std::accumulate(weights.begin(), weights.end(), 0.0);
     return {power_w, standard_error_of(run.power_w), duration_s, power_w * duration_s, run.power_w.size(), 1};
@@ -76,18 +69,18 @@ PowerEstimate combine_repeats(const std::vector<PowerEstimate>& repeats) {
     const auto count = static_cast<double>(repeats.size());
     PowerEstimate all;
     double own_squares = 0.0;
+    std::vector<double> means_w;
     for (const auto& repeat : repeats) {
+        means_w.push_back(repeat.power_w);
         all.power_w += repeat.power_w / count;
         all.duration_s += repeat.duration_s / count;
         all.samples += repeat.samples;
         own_squares += repeat.standard_error_w * repeat.standard_error_w;
     }
-    double squares = 0.0;
-    for (const auto& repeat : repeats) squares += (repeat.power_w - all.power_w) * (repeat.power_w - all.power_w);
-    const double between = repeats.size() < 2 ? 0.0 : std::sqrt(squares / (count - 1.0) / count);
     all.standard_error_w = std::sqrt(own_squares) / count;
-    // fmax: of repeats that are single samples only the spread between them is known.
-    if (repeats.size() > 1) all.standard_error_w = std::fmax(between, all.standard_error_w);
+    // fmax: repeats of single samples have only the error between them.
+    if (repeats.size() > 1)
+        all.standard_error_w = std::fmax(sample_sd(means_w) / std::sqrt(count), all.standard_error_w);
     all.energy_j = all.power_w * all.duration_s;
     all.repeats = repeats.size();
     return all;

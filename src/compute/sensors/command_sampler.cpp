@@ -34,7 +34,7 @@ class CommandSampler {
         take_output(readings);
         const auto ended = running_ ? running_->ended() : std::vector<FinishedCommand>();
         if (!ended.empty()) {
-            take_output(readings);  // what it printed before it ended
+            take_output(readings);  // its last output
             require_success(ended.front());
             stop();
         }
@@ -56,7 +56,7 @@ class CommandSampler {
         started_ = Clock::now();
         lines_ = 0;
         pending_.clear();
-        constexpr std::chrono::milliseconds patience(500);  // it has nothing to put in order
+        constexpr std::chrono::milliseconds patience(500);  // no cleanup to wait for
         running_.emplace(std::vector<std::vector<std::string>>{command_},
                          SupervisionOptions{ends[1], STDERR_FILENO, patience});
         ::close(ends[1]);
@@ -84,9 +84,9 @@ class CommandSampler {
             if (count <= 0) return;
             pending_.append(buffer.data(), static_cast<std::size_t>(count));
             take_lines(readings);
-            constexpr std::size_t longest_number = 4096;
-            if (pending_.size() <= longest_number) continue;
-            throw InputError({name(), lines_ + 1}, "the sampler prints no lines, expected watts, a number a line");
+            constexpr std::size_t max_line = 4096;
+            if (pending_.size() <= max_line) continue;
+            throw InputError({name(), lines_ + 1}, "the sampler prints no line ends, expected watts, a number a line");
         }
     }
 
@@ -111,7 +111,7 @@ class CommandSampler {
     std::optional<SupervisedProcesses> running_;
     int output_ = -1;
     Clock::time_point started_;
-    std::string pending_;    ///< the beginning of a line
+    std::string pending_;    ///< an incomplete line
     std::size_t lines_ = 0;  ///< since the start
 };
 

@@ -19,9 +19,9 @@
 namespace flightwatt::compute {
 namespace {
 
-/// The input of the whole module: TX2, Xavier NX, Orin NX and Nano; Nano; Nano under newer kernels.
+/// Input of the whole module: TX2, Xavier NX, Orin NX and Nano; Nano; Nano under newer kernels.
 constexpr std::string_view total_rails[] = {"VDD_IN", "POM_5V_IN", "5V_IN"};
-/// Behind another rail that is measured too: AGX Orin's is made from VIN_SYS_5V0; NC is not connected.
+/// Fed by another measured rail (AGX Orin: VIN_SYS_5V0), or not connected.
 constexpr std::string_view derived_rails[] = {"VDDQ_VDD2_1V8AO", "NC"};
 /// "package-0": a processor, whose parts (core, uncore) have counters of their own; psys contains it.
 constexpr std::string_view package = "package";
@@ -32,7 +32,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int channels = 3;  // of an INA3221
 
-/// The first line without its end; std::nullopt if it cannot be read.
+/// The first line; std::nullopt if it cannot be read.
 std::optional<std::string> sysfs_text(const path& file) {
     constexpr std::size_t max_line = 256;
     std::ifstream stream(file);
@@ -52,7 +52,7 @@ double require_sysfs_number(const path& file) {
     const auto text = sysfs_text(file);
     if (!text) throw InputError({file.string()}, "the sensor cannot be read");
     if (const auto value = parse_number(*text)) return *value;
-    throw InputError({file.string(), 1}, fmt::format("the sensor says '{}', expected a number", *text));
+    throw InputError({file.string(), 1}, fmt::format("the sensor shows '{}', expected a number", *text));
 }
 
 /// The entries whose names begin with `prefix`, sorted; none if there is no such folder.
@@ -66,7 +66,7 @@ std::vector<path> sysfs_entries(const path& folder, std::string_view prefix = ""
     return found;
 }
 
-/// Takes a folder that exists, once: sysfs shows the same device at several places.
+/// Adds a folder that exists, once: sysfs has the same device under several paths.
 void add_device(std::vector<path>& devices, const path& folder) {
     std::error_code none;
     const auto is_same = [&](const path& device) { return std::filesystem::equivalent(device, folder, none); };
@@ -74,7 +74,7 @@ void add_device(std::vector<path>& devices, const path& folder) {
     devices.push_back(folder);
 }
 
-/// The units that a driver counts in.
+/// Units of a driver.
 struct RailUnits {
     double (*watt)(double);
     double (*volt)(double);
@@ -94,37 +94,25 @@ void add_rail(const std::string& name, const path& power, const path& voltage, c
     }
 }
 
-void add_iio_channels(const path& folder, std::vector<PowerRail>& rails) {
-    for (int i = 0; i < channels; ++i) {
-        const auto name = sysfs_text(folder / fmt::format("rail_name_{}", i))
-                              .value_or(fmt::format("{}.{}", folder.filename().string(), i));
-        add_rail(name, folder / fmt::format("in_power{}_input", i), folder / fmt::format("in_voltage{}_input", i),
-                 folder / fmt::format("in_current{}_input", i), milli_units, rails);
-    }
-}
-
-void add_hwmon_channels(const path& folder, std::vector<PowerRail>& rails) {
-    for (int i = 1; i <= channels; ++i) {
-        if (sysfs_number(folder / fmt::format("in{}_enable", i)) == 0.0) continue;
-        const auto label = sysfs_text(folder / fmt::format("in{}_label", i))
-                               .value_or(fmt::format("{}.{}", folder.filename().string(), i));
-        add_rail(label, {}, folder / fmt::format("in{}_input", i), folder / fmt::format("curr{}_input", i), milli_units,
-                 rails);
-    }
-}
-
-/// The folders of a chip's hwmon driver.
-std::vector<path> hwmon_devices(const path& sysfs, std::string_view chip_name) {
+/// Devices of the I2C drivers `chip`, by the names of their folders below `inner`.
+std::vector<path> driver_devices(const path& sysfs, std::string_view chip, const path& inner, std::string_view prefix) {
     std::vector<path> devices;
-    for (const auto& driver : sysfs_entries(sysfs / "bus/i2c/drivers", chip_name)) {
-        for (const auto& chip : sysfs_entries(driver)) {
-            for (const auto& device : sysfs_entries(chip / "hwmon", "hwmon")) add_device(devices, device);
-        }
-    }
-    for (const auto& device : sysfs_entries(sysfs / "class/hwmon", "hwmon")) {
-        if (sysfs_text(device / "name").value_or("").starts_with(chip_name)) add_device(devices, device);
-    }
+    for (const auto& driver : sysfs_entries(sysfs / "bus/i2c/drivers", chip))
+        for (const auto& bound : sysfs_entries(driver))
+            for (const auto& device : sysfs_entries(bound / inner, prefix)) add_device(devices, device);
     return devices;
+}
+
+std::vector<path> hwmon_devices(const path& sysfs, std::string_view chip) {
+    auto devices = driver_devices(sysfs, chip, "hwmon", "hwmon");
+    for (const auto& device : sysfs_entries(sysfs / "class/hwmon", "hwmon"))
+        if (sysfs_text(device / "name").value_or("").starts_with(chip)) add_device(devices, device);
+    return devices;
+}
+
+/// A channel's label, or the device and the channel's number.
+std::string channel_name(const path& label, int channel) {
+    return sysfs_text(label).value_or(fmt::format("{}.{}", label.parent_path().filename().string(), channel));
 }
 
 }  // namespace
@@ -152,24 +140,29 @@ std::vector<std::size_t> rails_of_total(const std::vector<std::string>& names, c
 }
 
 std::vector<PowerRail> iio_rails(const path& sysfs) {
-    std::vector<path> devices;
-    for (const auto& driver : sysfs_entries(sysfs / "bus/i2c/drivers", "ina3221")) {
-        for (const auto& chip : sysfs_entries(driver)) {
-            for (const auto& device : sysfs_entries(chip, "iio")) add_device(devices, device);
-        }
-    }
+    auto devices = driver_devices(sysfs, "ina3221", "", "iio");
     for (const auto& device : sysfs_entries(sysfs / "bus/iio/devices", "iio:device")) {
         const auto name = sysfs_text(device / "name").value_or("");
         if (name.starts_with("ina3221") || sysfs_text(device / "rail_name_0")) add_device(devices, device);
     }
     std::vector<PowerRail> rails;
-    for (const auto& folder : devices) add_iio_channels(folder, rails);
+    for (const auto& device : devices)
+        for (int i = 0; i < channels; ++i)
+            add_rail(channel_name(device / fmt::format("rail_name_{}", i), i),
+                     device / fmt::format("in_power{}_input", i), device / fmt::format("in_voltage{}_input", i),
+                     device / fmt::format("in_current{}_input", i), milli_units, rails);
     return rails;
 }
 
 std::vector<PowerRail> hwmon_rails(const path& sysfs) {
     std::vector<PowerRail> rails;
-    for (const auto& folder : hwmon_devices(sysfs, "ina3221")) add_hwmon_channels(folder, rails);
+    for (const auto& device : hwmon_devices(sysfs, "ina3221")) {
+        for (int i = 1; i <= channels; ++i) {
+            if (sysfs_number(device / fmt::format("in{}_enable", i)) == 0.0) continue;
+            add_rail(channel_name(device / fmt::format("in{}_label", i), i), {}, device / fmt::format("in{}_input", i),
+                     device / fmt::format("curr{}_input", i), milli_units, rails);
+        }
+    }
     return rails;
 }
 

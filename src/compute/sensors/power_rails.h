@@ -9,40 +9,36 @@
 
 namespace flightwatt::compute {
 
-/// A supply line of a board, or a part of its processor. `read` gives its power [W] at a time (now); of a counter of
-/// energy the mean power since the last call, NaN at the first. It throws InputError naming the file.
+/// A supply line of a board, or a part of its processor. `read` returns the power [W] now; of an energy counter the
+/// mean power since the last call, NaN at the first. Throws InputError naming the file.
 struct PowerRail {
     std::string name;    ///< the board's or the driver's name for it, "VDD_IN", "package-0"
     std::string source;  ///< the files
     std::function<double(std::chrono::steady_clock::time_point)> read;
 };
 
-/// Which of the rails (by name) add up to the power of the board: those `wanted`; else the one that is known
-/// to carry everything (VDD_IN, POM_5V_IN, ...); else the processor's packages; else all but those that are fed by
-/// another rail. Returns indices. Throws NoResultError for one wanted that is not there, listing those that are.
+/// Indices of the rails whose sum is the power of the board: those `wanted`; else the total (VDD_IN, POM_5V_IN, ...);
+/// else the processor's packages; else all that no other rail feeds. Throws NoResultError for a missing one.
 std::vector<std::size_t> rails_of_total(const std::vector<std::string>& names, const std::vector<std::string>& wanted);
 
-/// TI INA3221 through NVIDIA's IIO driver (Jetson Nano, TX2, Xavier under L4T up to 32):
-/// bus/i2c/drivers/ina3221x/1-0040/iio:device0 (or iio_device) and bus/iio/devices/iio:device0, with
-/// rail_name_0, in_power0_input [mW], else in_voltage0_input [mV] times in_current0_input [mA].
+/// TI INA3221 by NVIDIA's IIO driver (Jetson Nano, TX2, Xavier; L4T up to 32): bus/i2c/drivers/ina3221x and
+/// bus/iio/devices, with rail_name_0, in_power0_input [mW], else in_voltage0_input [mV] times in_current0_input [mA].
 std::vector<PowerRail> iio_rails(const std::filesystem::path& sysfs);
 
-/// TI INA3221 through the kernel's hwmon driver (Orin, Xavier under L4T from 34; Documentation/hwmon/ina3221):
-/// class/hwmon/hwmon3 whose name is ina3221, and bus/i2c/drivers/ina3221/1-0040/hwmon/hwmon3, with in1_label, in1_input
-/// [mV] times curr1_input [mA]; channels with in1_enable 0 are passed over.
+/// TI INA3221 by the kernel's hwmon driver (Orin, Xavier; L4T from 34; Documentation/hwmon/ina3221): in1_label,
+/// in1_input [mV] times curr1_input [mA]; channels with in1_enable 0 are skipped.
 std::vector<PowerRail> hwmon_rails(const std::filesystem::path& sysfs);
 
-/// TI INA238 through the kernel's hwmon driver (Jetson Thor, where it measures the input; Documentation/hwmon/ina238):
-/// class/hwmon/hwmon2 whose name is ina238, and bus/i2c/drivers/ina238/2-0044/hwmon/hwmon2, with power1_input [uW],
-/// else in1_input [mV] times curr1_input [mA]; in0 is the shunt's voltage.
+/// TI INA238 by the kernel's hwmon driver (input of Jetson Thor; Documentation/hwmon/ina238): power1_input [uW], else
+/// in1_input [mV] times curr1_input [mA]; in0 is the shunt.
 std::vector<PowerRail> ina238_rails(const std::filesystem::path& sysfs);
 
-/// Batteries and supplies: class/power_supply/BAT0 with power_now [uW], else voltage_now [uV] times
-/// current_now [uA]. Those whose status is Charging or Full do not show the load, and are passed over.
+/// class/power_supply/BAT0: power_now [uW], else voltage_now [uV] times current_now [uA]. Those whose status is
+/// Charging or Full do not measure the load and are skipped.
 std::vector<PowerRail> power_supply_rails(const std::filesystem::path& sysfs);
 
-/// The counters of energy that can be read below class/powercap (Intel and AMD RAPL through the kernel's powercap
-/// driver): intel-rapl:0 and below. They begin at 0 again at max_energy_range_uj.
+/// Energy counters of Intel and AMD RAPL below class/powercap, intel-rapl:0 and below. They wrap at
+/// max_energy_range_uj.
 std::vector<PowerRail> rapl_rails(const std::filesystem::path& sysfs);
 
 }  // namespace flightwatt::compute

@@ -18,13 +18,13 @@
 namespace flightwatt::compute {
 namespace {
 
-/// Name, power now, average. What is no power either has another unit ("RAM 2448/7850MB") or no slash.
+/// Name, power now, average. Other values have another unit ("RAM 2448/7850MB") or no slash.
 const std::regex& rail_pattern() {
     static const std::regex pattern(R"((\w+) (\d+)(?:mW)?/\d+(?:mW)?(?=\s|$))");
     return pattern;
 }
 
-/// The date that newer versions begin a line with, in seconds of the epoch.
+/// Date at the beginning of a line of newer versions, in seconds of the epoch.
 std::optional<double> date_s(const std::string& line) {
     std::tm date{};
     std::istringstream text(line);
@@ -42,15 +42,15 @@ double total_w(const std::string& line, const Location& where) {
     double total_mw = 0.0;
     for (const auto rail : rails_of_total(names, {})) total_mw += power_mw[rail];
     if (!names.empty()) return units::watt_from_milliwatt(total_mw);
-    throw InputError(where, "has no rail with its power, 'VDD_IN 4936mW/4936mW'", "keep tegrastats' lines whole");
+    throw InputError(where, "has no rail with its power, 'VDD_IN 4936mW/4936mW'", "keep complete lines of tegrastats");
 }
 
-/// A line has a rail with power now and on average, "VDD_IN 4936mW/4936mW" or, from older boards,
-/// "POM_5V_IN 2545/2600".
+/// Whether a line has a rail with power now and average, "VDD_IN 4936mW/4936mW", or "POM_5V_IN 2545/2600" (older
+/// boards).
 bool is_tegrastats(const std::string& line) { return std::regex_search(line, rail_pattern()); }
 
-/// The rail that carries everything, or the sum of those that add up (rails_of_total). Times are those of the date
-/// column, "11-21-2022 13:41:31", from the first line on, whole seconds; with `interval_s`, lines are that apart.
+/// Sum of rails_of_total(). Times since the first line by the dates, "11-21-2022 13:41:31", which are whole seconds; or
+/// with steps of `interval_s`.
 PowerTrace trace_of_tegrastats(const std::string& text, const std::string& file, std::optional<double> interval_s) {
     PowerTrace trace;
     std::optional<double> first_date_s;
@@ -69,7 +69,7 @@ PowerTrace trace_of_tegrastats(const std::string& text, const std::string& file,
         const double time_s =
             interval_s ? static_cast<double>(trace.time_s.size()) * *interval_s : *now_s - *first_date_s;
         if (!trace.time_s.empty() && time_s <= trace.time_s.back()) {
-            throw InputError(where, "its date is not after the line before",
+            throw InputError(where, "date is not after that of the previous line",
                              "dates count whole seconds: give the sampler's interval_s");
         }
         trace.add(time_s, total_w(line, where));
@@ -85,7 +85,7 @@ PowerTrace trace_of_csv(const CsvTable& table) {
         const double time_s = cell_number(table, row, time);
         if (!trace.time_s.empty() && time_s <= trace.time_s.back()) {
             throw InputError({table.file, row.line}, fmt::format("time_s = {} follows {}", time_s, trace.time_s.back()),
-                             "the time stamps of a recording rise");
+                             "sort the recording by time");
         }
         trace.add(time_s, cell_number(table, row, power));
     }
@@ -103,7 +103,7 @@ PowerTrace trace_of_layer1(const CsvTable& table, std::optional<double> interval
     return trace;
 }
 
-/// The first line that is no comment.
+/// The first line that is not a comment.
 std::string first_line(const std::string& text) {
     std::istringstream lines(text);
     std::string line;
@@ -118,13 +118,13 @@ PowerTrace read_power_trace(const std::filesystem::path& path, std::optional<dou
     const auto text = read_file(path);
     const auto file = path.string();
     const auto first = first_line(text);
-    // tegrastats knows no header, and its lines no comma at their places.
+    // tegrastats has no header and no commas.
     if (is_tegrastats(first)) return trace_of_tegrastats(text, file, interval_s);
     if (first.find("time_s") != std::string::npos) return trace_of_csv(parse_csv(text, file));
     const auto table = parse_csv(text, file, CsvHeader::absent);
     if (powprofiler_columns(table)) return trace_of_layer1(table, interval_s);
     throw InputError({file, table.rows.front().line},
-                     "is no recording of power: neither time_s,power_w nor 100,... nor tegrastats");
+                     "is not a recording of power: neither time_s,power_w nor 100,... nor tegrastats");
 }
 
 std::string to_csv(const PowerTrace& trace, const std::vector<std::string>& comments) {

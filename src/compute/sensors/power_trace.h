@@ -10,14 +10,14 @@
 namespace flightwatt::compute {
 
 /// Reads a recording of power:
-///   - a CSV with a header that has time_s and power_w (other columns are passed over)
-///   - what tegrastats printed: the board's total (VDD_IN, POM_5V_IN, ...) or, where it has none, the sum of
-///     its rails; times from its date column, or `interval_s` apart
-///   - a powprofiler layer 1 (flags 100, ...), `interval_s` apart
-/// Throws InputError for a file that is none of these, times that do not rise, or a missing interval.
+///   - CSV with columns time_s and power_w
+///   - output of tegrastats: the board's total (VDD_IN, POM_5V_IN, ...) or the sum of its rails; times from the date,
+///     or in steps of `interval_s`
+///   - powprofiler layer 1 (flags 100, ...), in steps of `interval_s`
+/// Throws InputError for another format, times that do not rise, or a missing interval.
 PowerTrace read_power_trace(const std::filesystem::path& path, std::optional<double> interval_s);
 
-/// "time_s,power_w" and a row a sample, after `comments` ('#' before each).
+/// CSV of time_s and power_w, after `comments`.
 std::string to_csv(const PowerTrace& trace, const std::vector<std::string>& comments);
 
 }  // namespace flightwatt::compute

@@ -2,7 +2,6 @@
 
 #include "cli/output/profile_output.h"
 
-#include "compute/profile_interpolation.h"
 #include "compute/profile_reader.h"
 #include "helpers/test_paths.h"
 

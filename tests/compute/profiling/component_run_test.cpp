@@ -78,7 +78,7 @@ TEST_F(MisbehavingComponent, HangsAndIgnoresSigterm) {
     patience_s = 0.2;
     const auto done = run("trap '' TERM; FOREVER; FOREVER", {std::nullopt, 0.0, 2.0});
     EXPECT_EQ(done.status, RunStatus::timed_out);
-    EXPECT_THAT(done.note, HasSubstr("did not answer SIGTERM, killed"));
+    EXPECT_THAT(done.note, HasSubstr("did not end by SIGTERM, killed"));
     expect_nothing_left();
 }
 

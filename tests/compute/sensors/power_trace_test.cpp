@@ -26,11 +26,11 @@ TEST_F(Recording, Csv) {
     const auto trace = read("# meter\nvoltage_v,time_s,power_w\n5,0,1.5\n5,0.25,2\n");
     EXPECT_EQ(trace.time_s, (Values{0.0, 0.25}));
     EXPECT_EQ(trace.power_w, (Values{1.5, 2.0}));
-    EXPECT_EQ(refused("time_s,power_w\n1,2\n1,3\n"), "r:3: time_s = 1 follows 1; the time stamps of a recording rise");
+    EXPECT_EQ(refused("time_s,power_w\n1,2\n1,3\n"), "r:3: time_s = 1 follows 1; sort the recording by time");
     EXPECT_EQ(refused("time_s,power_w\n"), "r: has a header and no samples");
     EXPECT_EQ(refused("time_s,power_mw\n1,2\n"), "r:1: has no column 'power_w'; its columns are time_s, power_mw");
     EXPECT_EQ(refused("a,b\n1,2\n"),
-              "r:1: is no recording of power: neither time_s,power_w nor 100,... nor tegrastats");
+              "r:1: is not a recording of power: neither time_s,power_w nor 100,... nor tegrastats");
 }
 
 TEST_F(Recording, TegrastatsOfOrin) {
@@ -43,7 +43,7 @@ TEST_F(Recording, TegrastatsOfOrin) {
     EXPECT_EQ(read(lines).power_w, (Values{4.936, 5.054}));
     EXPECT_EQ(read(lines, 0.5).time_s, (Values{0.0, 0.5}));
     EXPECT_EQ(refused("11-21-2022 13:41:59 VDD_IN 1mW/1mW\n11-21-2022 13:41:59 VDD_IN 1mW/1mW\n"),
-              "r:2: its date is not after the line before; dates count whole seconds: give the sampler's "
+              "r:2: date is not after that of the previous line; dates count whole seconds: give the sampler's "
               "interval_s");
 }
 
@@ -60,7 +60,7 @@ TEST_F(Recording, TegrastatsOfNanoAndXavier) {
         "SYS5V 1481/1481\n";
     EXPECT_DOUBLE_EQ(read(xavier, 1.0).power_w.front(), 3.807);
     EXPECT_EQ(rejected([&] { read(nano + "Segmentation fault\n", 1.0); }, folder),
-              "r:2: has no rail with its power, 'VDD_IN 4936mW/4936mW'; keep tegrastats' lines whole");
+              "r:2: has no rail with its power, 'VDD_IN 4936mW/4936mW'; keep complete lines of tegrastats");
 }
 
 TEST_F(Recording, PowprofilerLayerOne) {
