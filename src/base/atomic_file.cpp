@@ -36,7 +36,7 @@ bool write_all(int file, std::string_view content) {
 constexpr std::string_view unfinished_prefix = ".flightwatt-";
 constexpr std::size_t unfinished_digits = 16;
 
-/// What a result of that name goes to.
+/// Target of a result of that name.
 struct Destination {
     std::filesystem::path file;              ///< behind all links
     bool is_special = false;                 ///< a device or a pipe, which cannot be replaced
@@ -47,7 +47,7 @@ Destination destination_of(const std::filesystem::path& path) {
     Destination destination{path};
     constexpr int max_links = 40;  // as the kernel
     for (int links = 0;; ++links) {
-        // What the system links to an open file (-o /dev/stdout) has a name that means nothing.
+        // A link of the system to an open file (-o /dev/stdout) has no usable name.
         destination.is_special = destination.is_special || destination.file.string().starts_with("/proc/");
         std::error_code none;
         const auto next = std::filesystem::read_symlink(destination.file, none);
@@ -83,7 +83,7 @@ int open_unfinished(const std::filesystem::path& folder, std::filesystem::path& 
     return -1;
 }
 
-/// Who may do what with the file that is replaced holds for the new one too.
+/// Copies permissions and owner of the replaced file.
 bool keep_permissions(int file, const struct stat& before) {
     if (::fchown(file, before.st_uid, before.st_gid) != 0 &&
         ::fchown(file, static_cast<uid_t>(-1), before.st_gid) != 0) {
@@ -147,10 +147,10 @@ void write_file_atomically(const std::filesystem::path& path, const TextWriter& 
     check_overwrite(path);
     // Without the right to write it a file is not replaced either, though its folder would allow that.
     if (destination.before && ::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0) fail(path, errno);
-    auto beside = destination.file.parent_path();
-    if (beside.empty()) beside = ".";
+    auto folder = destination.file.parent_path();
+    if (folder.empty()) folder = ".";
     if (temporary_folder.empty() || !replace(path, destination, write, temporary_folder)) {
-        if (!replace(path, destination, write, beside)) fail(path, ENOENT);
+        if (!replace(path, destination, write, folder)) fail(path, ENOENT);
     }
     mark_written(path);
 }

@@ -8,20 +8,19 @@
 
 namespace flightwatt {
 
-/// Writes `content` to a file beside `path` (or in `temporary_folder`, a folder of the same file system) and renames it
-/// over `path`, so that a reader (or a crash) sees the old content or the new one, never a part. Where `path` is a
-/// symbolic link, what it points to is written. A file that is replaced keeps its permissions, and its owner where that
-/// is allowed; a new one follows the umask. Devices and pipes are written directly. Throws OutputError naming the path
-/// and the cause, and UsageError where that would lose what the command has read or written (overwrite_guard.h).
+/// Writes `content` to a file in the folder of `path` (or in `temporary_folder` of the same file system) and renames it
+/// to `path`: a reader, or a crash, finds the old content or the new one. Through a symbolic link, its target is
+/// written. A replaced file keeps its permissions and, where allowed, its owner. Devices and pipes are written
+/// directly. Throws OutputError with path and cause, and UsageError as check_overwrite().
 void write_file_atomically(const std::filesystem::path& path, std::string_view content,
                            const std::filesystem::path& temporary_folder = {});
 
-/// Takes the next piece of a text.
+/// Receives the next chunk of a text.
 using TextSink = std::function<void(std::string_view)>;
-/// Hands a text to a sink piece by piece, so that it need not lie in memory as a whole.
+/// Passes a text to a sink in chunks, so that it is never in memory as a whole.
 using TextWriter = std::function<void(const TextSink&)>;
 
-/// The same of a text in pieces. `write` may be called twice.
+/// The same for a text in chunks. `write` may be called twice.
 void write_file_atomically(const std::filesystem::path& path, const TextWriter& write,
                            const std::filesystem::path& temporary_folder = {});
 

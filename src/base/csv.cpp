@@ -132,7 +132,7 @@ std::size_t column_index(const CsvTable& table, std::string_view name) {
                          "its columns are " + short_list(table.columns));
     }
     if (std::ranges::count(table.columns, name) > 1) {
-        throw InputError({table.file, 1}, fmt::format("column '{}' stands there twice", name), "keep one of them");
+        throw InputError({table.file, 1}, fmt::format("duplicate column '{}'", name), "keep one of them");
     }
     return static_cast<std::size_t>(found - table.columns.begin());
 }

@@ -36,7 +36,7 @@ enum class CsvHeader { present, absent };
 CsvTable read_csv(const std::filesystem::path& path, CsvHeader header = CsvHeader::present);
 CsvTable parse_csv(std::string_view text, const std::string& file, CsvHeader header = CsvHeader::present);
 
-/// A row where it stands in the text that it is of.
+/// A row as views into the text.
 struct CsvRowView {
     struct Cell {
         std::string_view text;  ///< valid until the next row
@@ -76,7 +76,7 @@ class CsvWriter {
         add_row({cell(cells)...});
     }
     const std::string& text() const { return text_; }
-    /// What was written since the last call, for texts too large to hold.
+    /// Text since the last call, for texts too large to hold.
     std::string take_text() { return std::exchange(text_, {}); }
 
     void add_row(const std::vector<std::string>& cells);

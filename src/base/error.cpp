@@ -19,7 +19,7 @@ std::string to_string(const Location& where) {
 
 std::string truncated(std::string_view text) {
     constexpr std::size_t most = 2000;
-    constexpr std::size_t tail = 400;  // errors end with what was expected
+    constexpr std::size_t tail = 400;  // errors end with the expected value
     if (text.size() <= most) return std::string(text);
     auto head_end = most - tail;
     auto tail_begin = text.size() - tail;

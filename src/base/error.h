@@ -18,13 +18,13 @@ struct Location {
 /// "file:line:column", without the parts that are unknown.
 std::string to_string(const Location& where);
 
-/// `text`, without its middle if it has more than 2000 bytes: what an error quotes may come from any file.
+/// `text`, without its middle if it has more than 2000 bytes, for quotes from files in errors.
 std::string truncated(std::string_view text);
 
 /// "a, b, c", and of more than a dozen "... and 34 more".
 std::string short_list(const std::vector<std::string>& names);
 
-/// An input that cannot be used (exit code 3). The message says what was found and expected; the hint how to mend it.
+/// An input that cannot be used (exit code 3). The message states what was found and expected, the hint how to fix it.
 /// Both are clipped.
 class InputError : public std::runtime_error {
   public:

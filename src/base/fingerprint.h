@@ -6,7 +6,7 @@
 
 namespace flightwatt {
 
-/// A 64-bit FNV-1a hash, eight bytes at a time: tells changed content from unchanged. Not for security.
+/// A 64-bit FNV-1a hash, eight bytes at a time: detects changed content. Not for security.
 class Fingerprint {
   public:
     void add(std::string_view content);

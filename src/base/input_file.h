@@ -8,8 +8,7 @@
 
 namespace flightwatt {
 
-/// What a file that is read whole may hold: no mission, model, profile or record comes near it, and an endless
-/// one (/dev/zero, a pipe that never ends) is refused before it fills the memory.
+/// Size limit of a file that is read as a whole; it refuses endless files (/dev/zero, a pipe) before memory is full.
 inline constexpr std::size_t max_file_bytes = 128'000'000;
 
 /// A file that is open for reading, or a pipe that the program was started with (/dev/fd/63). Throws InputError where
@@ -35,20 +34,20 @@ class InputFile {
     std::size_t size_ = 0;
 };
 
-/// The whole file. Throws InputError where it is missing, a folder, unreadable, cut while it is
-/// read, or holds more than `max_bytes`; `hint` says what to do about that.
+/// The whole file. Throws InputError where it is missing, a folder, unreadable, truncated while it is read, or larger
+/// than `max_bytes`, with `hint` on the latter.
 std::string read_file(const std::filesystem::path& path, std::size_t max_bytes = max_file_bytes,
                       std::string_view hint = "is it the file that was meant?");
 
 /// Why a file cannot be opened for reading; no error where it can be. A pipe is not opened.
 std::error_code open_error(const std::filesystem::path& path);
 
-/// The folder of the running program; empty where the system does not tell.
+/// The folder of the running program; empty if unknown.
 std::filesystem::path executable_folder();
 
-/// A folder of files that come with the programs: what the environment variable `variable` says, or
-/// ../share/flightwatt/NAME beside the folder of the running program, installed or not. Throws InputError
-/// "`what` are not there" where it is absent.
+/// A folder of files that come with the programs: that of the environment variable `variable`, or
+/// ../share/flightwatt/NAME from the folder of the running program. Throws InputError "`what` are not there" where it
+/// is absent.
 std::filesystem::path data_folder(const std::string& name, const char* variable, const std::string& what);
 
 }  // namespace flightwatt

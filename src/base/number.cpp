@@ -10,10 +10,10 @@ constexpr std::int64_t hundred_millionths_per_whole = 100'000'000;
 /// value * 10^8 where that is a whole number of at most 15 digits: no other number reads back from fewer digits.
 std::optional<std::int64_t> as_hundred_millionths(double value) {
     constexpr double scale = 1e8;
-    constexpr double most = 1e7;    // 15 digits
-    constexpr double least = 1e-4;  // what is less is written with an exponent
-    if (!(value < most) || value < least) return std::nullopt;
-    // NOLINTNEXTLINE(bugprone-incorrect-roundings): quicker than llround, and what is rounded wrong is not equal below
+    constexpr double most = 1e7;          // 15 digits
+    constexpr double min_decimal = 1e-4;  // smaller numbers have an exponent
+    if (!(value < most) || value < min_decimal) return std::nullopt;
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings): faster than llround; a wrong result is not equal below
     const auto whole = static_cast<std::int64_t>(value * scale + 0.5);
     if (static_cast<double>(whole) / scale != value) return std::nullopt;
     return whole;

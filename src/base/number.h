@@ -57,7 +57,7 @@ inline constexpr std::size_t number_buffer_size = 48;
 /// ends. `to` has room for `number_buffer_size` characters. Quick for short decimals, as logs are made of.
 char* write_number(char* to, double value);
 
-/// The same with std::nullopt for what is no number.
+/// The same with std::nullopt for other texts.
 inline std::optional<double> parse_number(std::string_view text) {
     const double number = number_or_nan(text);
     return std::isnan(number) ? std::nullopt : std::optional(number);

@@ -18,7 +18,7 @@
 namespace flightwatt {
 namespace {
 
-/// Device, inode and time of birth: an inode's number is given to another file once its own is gone.
+/// Device, inode and time of birth: an inode's number is given to another file after the file is deleted.
 using FileId = std::tuple<std::uint32_t, std::uint32_t, std::uint64_t, std::int64_t, std::uint32_t>;
 
 /// Of a regular file, behind all links.
@@ -38,7 +38,7 @@ std::uint64_t fingerprint_of(const FileId& id) {
 }
 
 struct FileUse {
-    std::mutex mutex;                            ///< guards what follows
+    std::mutex mutex;                            ///< of the members below
     std::unordered_set<std::uint64_t> inputs{};  ///< their fingerprints: of an archive, names would take room
     std::map<FileId, std::string> declared;      ///< files that exist, with their option
     std::map<FileId, std::string> written;

@@ -3,9 +3,8 @@
 #include <filesystem>
 #include <string>
 
-/// Which files this command reads and which it writes, so that no result replaces what it was made from, by whatever
-/// name or link. Nothing is watched until enable_overwrite_guard() is called, as every stage does. For any number of
-/// threads.
+/// Registers the files that a command reads and writes, so that no result replaces an input or another result, by any
+/// name or link. Active after enable_overwrite_guard(), which every stage calls. Thread-safe.
 namespace flightwatt {
 
 void enable_overwrite_guard();
@@ -14,7 +13,7 @@ void enable_overwrite_guard();
 void register_input(const std::filesystem::path& path);
 
 /// A file that the command is going to write: known early, it is refused before anything is written. `option` is
-/// what the user named it with ("--output"); empty if by none. Throws UsageError where the file has been read, or is
+/// that of the file ("--output"); may be empty. Throws UsageError where the file has been read, or is
 /// another result's too.
 void register_output(const std::filesystem::path& path, const std::string& option = {});
 
@@ -24,8 +23,8 @@ void check_overwrite(const std::filesystem::path& path);
 /// After a file was written.
 void mark_written(const std::filesystem::path& path);
 
-/// While it lives, what this thread reads is its program's own record of an earlier run, which is no input, and what it
-/// writes may be written again, by whoever made sure that nothing else goes there.
+/// RAII: this thread reads records of an earlier run of the program, which are not inputs, and may rewrite its own
+/// files.
 class OverwriteExemption {
   public:
     OverwriteExemption();

@@ -45,7 +45,7 @@ struct AtWork {
 
 void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work, std::size_t max_threads) {
     std::atomic<std::size_t> next = 0;
-    std::mutex mutex;  // guards what follows
+    std::mutex mutex;  // of the variables below
     std::size_t failed = count;
     std::exception_ptr failure;
     const auto work_on = [&](bool is_shared) {

@@ -3,10 +3,10 @@
 #include <cstddef>
 #include <span>
 
-/// Straight lines between knots, which ascend and are two or more unless it says otherwise.
+/// Straight lines between knots, which are ascending and, unless noted, at least two.
 namespace flightwatt {
 
-/// Where x lies among knots: between `lower` and the next one, `fraction` of the way.
+/// Position of x among knots: between `lower` and the next one, at `fraction` of the interval.
 struct KnotInterval {
     std::size_t lower = 0;
     double fraction = 0.0;

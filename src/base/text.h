@@ -14,13 +14,13 @@ struct Utf8Character {
 };
 
 /// The character that a text begins with, which is not empty. Bytes that begin a character and do not complete it are
-/// one U+FFFD; so is each other byte that is none.
+/// one U+FFFD; so is each other invalid byte.
 Utf8Character first_character(std::string_view text);
 
-/// The text with U+FFFD for what is not UTF-8.
+/// The text with U+FFFD for invalid UTF-8.
 std::string valid_utf8(std::string_view text);
 
-/// Whether a character that began before goes on with this byte.
+/// Whether the byte continues a character.
 inline bool continues_character(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; }
 
 /// How many characters a text has.
@@ -37,7 +37,7 @@ std::string toml_strings(const std::vector<std::string>& texts);
 /// A key as people write it: quoted only if it has to be.
 std::string toml_key(const std::string& name);
 
-/// "{ a = 1, b = 2 }" of "a = 1" and "b = 2"; "{}" of none.
+/// "{ a = 1, b = 2 }" of "a = 1" and "b = 2"; "{}" for an empty list.
 std::string toml_inline_table(const std::vector<std::string>& pairs);
 
 }  // namespace flightwatt

@@ -39,7 +39,7 @@ TextTable without_controls(TextTable table) {
     return table;
 }
 
-/// How LaTeX spells an ASCII character that it would read otherwise; empty for those that stand for themselves. '[' and
+/// How LaTeX spells an ASCII character that it would read otherwise; empty for those without a special meaning. '[' and
 /// '*' behind the end of a row would be that command's.
 std::string_view latex_of(char c) {
     static const std::map<char, std::string_view> spelt{{'\\', "\\textbackslash{}"},

@@ -13,32 +13,32 @@ struct TextTable {
     std::vector<std::vector<std::string>> rows;  ///< each as long as the header
 };
 
-/// A table with what stands above it, and what a text refers to it by ("tab:flights").
+/// A table with its caption, and its label in LaTeX ("tab:flights").
 struct CaptionedTable {
     TextTable table;
     std::string caption;
     std::string label;
 };
 
-/// A number with so many decimals, for a cell; '-' for what is not known.
+/// A number with `decimals` decimals, for a cell; '-' if unknown.
 std::string fixed(const std::optional<double>& number, int decimals);
 
 /// Rows of cells, each of which may have several lines, in columns padded to their widest line (counted in code points)
-/// and two blanks apart; those of `right` stand to the right.
+/// and two blanks apart; those of `right` are right-aligned.
 std::string aligned_text(const std::vector<std::vector<std::string>>& rows, const std::vector<bool>& right);
 
-/// The table as aligned_text, without controls; a column whose cells are all numbers, or '-', stands to the right.
+/// The table as aligned_text, without controls; columns of numbers, or '-', are right-aligned.
 std::string to_text(TextTable table);
 std::string to_markdown(TextTable table);
 std::string to_csv(const TextTable& table);
 
-/// Text in which TeX's own characters stand for themselves. What is neither ASCII nor Latin becomes '?'.
+/// Text with TeX's special characters escaped; characters beyond ASCII and Latin become '?'.
 std::string latex_escaped(std::string_view text);
 
 /// A number as mathematical mode takes it: 1.5 \times 10^{-5} for "1.5e-05".
 std::string latex_number(std::string_view number);
 
-/// What surrounds the cells of a LaTeX table.
+/// Environment of a LaTeX table.
 struct LatexFrame {
     std::string needs;  ///< comment: the packages
     std::string caption;
@@ -50,7 +50,7 @@ struct LatexFrame {
 /// A table environment whose caption and cells are TeX already.
 std::string latex_table(const LatexFrame& frame, const TextTable& cells);
 
-/// A table environment with the rules of the package booktabs; a comment says what packages it needs. Columns that are
+/// A table environment with the rules of the package booktabs; a comment lists the packages it needs. Columns that are
 /// all numbers, or '-', stand to the right. A table that is wider than a page's text is scaled to it.
 std::string to_latex(const TextTable& table, std::string_view caption, std::string_view label);
 

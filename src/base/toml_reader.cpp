@@ -56,7 +56,7 @@ constexpr std::size_t deepest_nesting = 50;
 /// A file in memory takes up to some hundred times its size. A mission or model has some 10 kB.
 constexpr std::size_t max_toml_bytes = 8'000'000;
 
-/// How deep keys, arrays and tables nest, told from dots and brackets outside of strings and comments.
+/// Nesting depth of keys, arrays and tables, by dots and brackets outside of strings and comments.
 class NestingCounter {
   public:
     explicit NestingCounter(std::string_view text) : text_(text) {}

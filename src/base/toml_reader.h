@@ -45,13 +45,13 @@ class TomlTable {
     bool is_number(std::string_view key) const;
     bool is_table(std::string_view key) const;
 
-    /// Throws InputError at the first key that nobody asked for, with the nearest key that somebody did.
+    /// Throws InputError at the first key that was not read, with the nearest one that was.
     void refuse_unknown_keys() const;
-    /// The same before any was asked for, so that a misspelt key is not taken for a missing one.
+    /// The same before any key is read, so that a misspelt key is not reported as missing.
     void refuse_keys_except(std::initializer_list<std::string_view> known) const;
 
     const std::string& file() const { return file_; }
-    /// Where this table, or one of its keys, stands.
+    /// Location of this table, or of one of its keys.
     Location where() const;
     Location where(std::string_view key) const;
 
@@ -119,17 +119,17 @@ std::uint64_t count_in_or(const TomlTable& table, std::string_view key, std::uin
 /// Version of the file formats that FlightWatt writes, and the newest that it reads.
 inline constexpr int format_version = 1;
 
-/// The line of TOML that says so: "format = 1\n".
+/// Its line of TOML, "format = 1\n".
 std::string format_line();
 
 /// The files of ours that are easily taken for one another.
 enum class FileKind { mechanical_model, battery, mission };
 
-/// Throws InputError where the keys of the file are those of another kind, with what it is and what was expected.
+/// Throws InputError where the keys of the file are those of another kind.
 void require_kind(const TomlTable& root, FileKind expected);
 
 /// Checks `format` of a file of ours, which may be absent (files of version 0.1 have none). Throws InputError
-/// for a format that is newer than this program, or is none.
+/// for a newer or invalid format.
 void require_known_format(const TomlTable& root);
 
 }  // namespace flightwatt

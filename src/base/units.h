@@ -45,9 +45,8 @@ constexpr double volt_from_microvolt(double voltage_uv) { return voltage_uv * mi
 constexpr double ampere_from_milliampere(double current_ma) { return current_ma * milli; }
 constexpr double ampere_from_microampere(double current_ua) { return current_ua * micro; }
 constexpr double joule_from_microjoule(double energy_uj) { return energy_uj * micro; }
-constexpr double second_from_millisecond(double time_ms) { return time_ms * milli; }
 
-/// What a declared unit measures; the base unit of each is the suffix used in names.
+/// Quantity of a declared unit; the base unit of each is the suffix used in names.
 enum class Quantity {
     volt,
     ampere,
@@ -69,7 +68,7 @@ struct Unit {
 
 /// Reads a unit as Paparazzi message definitions write it: "V", "1e-1V", "decivolt", "mAh", "cm/s", "pprz",
 /// "1e7deg" (ten millionths of a degree).
-/// std::nullopt if it is none of the quantities above.
+/// std::nullopt for other quantities.
 std::optional<Unit> parse_unit(std::string_view text);
 
 }  // namespace flightwatt::units
