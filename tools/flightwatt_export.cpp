@@ -15,7 +15,6 @@
 #include "exchange/model_text.h"
 #include "mission/mission_file.h"
 #include "mission/prepared_mission.h"
-#include "report/batch_content.h"
 #include "report/report.h"
 #include "stages.h"
 
@@ -292,27 +291,25 @@ Exported export_latex(const cli::StageCall& call, const ExportArguments& argumen
         const auto pack = battery::read_battery(file);
         return {to_latex(cli::pack_table(pack), fmt::format("Battery {}", pack.name), "tab:battery")};
     }
-    std::optional<report::BatchContent> content;
-    std::vector<mission::MissionVariant> missions;
-    missions.reserve(inputs.size());
+    report::ReportInput request;
+    request.capacity_ah = arguments.capacity_ah;
+    request.with_replay = arguments.with_replay;
     for (const auto& input : inputs) {
         if (input.kind == ExportKind::batch)
-            content = report::read_batch_content(input.file);
+            request.outs.emplace_back(input.file);
         else
-            missions.push_back(mission::read_mission(input.file, {true, std::nullopt}));
+            request.missions.push_back(mission::read_mission(input.file, {true, std::nullopt}));
     }
-    if (arguments.with_replay && (!content || missions.empty()))
-        throw UsageError(
-            "--replay flies missions on a batch's flights: give a folder of flightwatt batch and missions");
-    if (arguments.capacity_ah && !content)
-        throw UsageError("--capacity is that of the battery of flights: give a folder of flightwatt batch");
-    const report::ReportLog log{[&](const std::string& text) { cli::warn(call, text); },
-                                [&](const std::string& text) { cli::note(call, text); }};
-    std::vector<std::string> parts;
-    if (content) parts.push_back(batch_latex(*content, missions, arguments.capacity_ah, log));
-    if (!missions.empty()) parts.push_back(report::missions_latex(missions));
-    if (arguments.with_replay) parts.push_back(replay_latex(*content, missions, log));
-    return {fmt::format("{}", fmt::join(parts, "\n"))};
+    if (request.with_replay && (request.outs.empty() || request.missions.empty()))
+        throw UsageError("--replay needs a folder of flightwatt batch and missions");
+    if (arguments.capacity_ah && request.outs.empty())
+        throw UsageError("--capacity is that of the flights' battery: add a folder of flightwatt batch");
+    const auto content = make_report(request, {[&](const std::string& text) { cli::warn(call, text); }});
+    Exported result;
+    for (const auto& section : content.sections)
+        if (!section.latex.empty()) result.text += (result.text.empty() ? "" : "\n") + section.latex;
+    for (const auto& note : content.summary.at("notes")) result.notes.push_back(note.get<std::string>());
+    return result;
 }
 
 Exported exported(const cli::StageCall& call, const ExportArguments& arguments, const std::vector<ExportInput>& inputs,

@@ -89,7 +89,6 @@ void write_figure_files(const cli::StageCall& call, const ReportArguments& argum
 
 report::ReportLog log_of(const cli::StageCall& call) {
     return {[&](const std::string& text) { cli::warn(call, text); },
-            [&](const std::string& text) { cli::note(call, text); },
             [](const std::string& unit) -> report::Progress {
                 const auto bar = std::make_shared<cli::ProgressBar>(unit);
                 return [bar](std::size_t done, std::size_t all) { bar->show(done, all); };

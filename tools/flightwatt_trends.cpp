@@ -46,8 +46,8 @@ std::vector<report::FlightTrendData> read_flights(const cli::StageCall& call, co
             flight.series = std::move(loaded.series);
             flight.phases = std::move(loaded.phases);
             auto flown = extract_trend_data(flight);
-            if (!flown.no_record.empty())
-                cli::note(call, fmt::format("no resistance and no capacity of {}: {}", file, flown.no_record));
+            if (!flown.no_record_reason.empty())
+                cli::note(call, fmt::format("no resistance and no capacity of {}: {}", file, flown.no_record_reason));
             return std::vector{std::move(flown)};
         });
 }
@@ -188,7 +188,7 @@ int show_trends(const cli::StageCall& call, const TrendsArguments& arguments) {
     if (call.json)
         cli::print_json(call, TrendsOutput{&flights, &trends});
     else if (call.output || screen.is_terminal)
-        cli::print(screen_text(trend_table(trends), screen, {"trends", {"quantity", "verdict", "in 30 days"}}));
+        cli::print(screen_text(trend_table(trends), screen, {"trends", {"quantity", "trend", "in 30 days"}}));
     note_trends(call, flights, trends);
     if (web) write_figure_files(call, *arguments.figures, trends, *web);
     return cli::ok;

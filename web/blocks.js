@@ -1,4 +1,4 @@
-// What compressed_block() and packed_tables() (src/report/blocks) put away, as it was.
+// Inverse of compressed_block() and packed_tables() (src/report/sections/blocks.cpp).
 async function inflated(block) {
   if (typeof DecompressionStream === "undefined")
     throw new Error(

@@ -1,29 +1,29 @@
-// Fits a figure into a width [px]: panels that stand side by side go below each other where they would get too narrow,
-// every panel that says `width` gets what there is (squares stay squares), and names beside and legends above get less.
-// Shared by the page and by render.mjs.
+// Fits a figure into a width [px]: panels side by side are stacked where they would be too narrow, every panel with `width`
+// gets the available width (squares remain squares), and names at the side and legends are limited. Used by the page and
+// by render.mjs.
 function fitWidth(spec, width) {
-  const leastPanel = 165;
+  const minPanel = 165;
   const legendColumn = 205;
   const asked = spec.usermeta?.margin_px || 62; // y axis with its names and title
-  const beside = Math.min(asked, Math.max(62, 0.3 * width));
+  const margin = Math.min(asked, Math.max(62, 0.3 * width));
   const fitNames = (part) => {
     if (Array.isArray(part)) return part.map(fitNames);
     if (part === null || typeof part !== "object") return part;
     const fitted = Object.fromEntries(Object.entries(part).map(([key, value]) => [key, fitNames(value)]));
     if (fitted.legend?.columns) fitted.legend.columns = Math.max(1, Math.min(fitted.legend.columns, Math.floor(width / legendColumn)));
-    // A name above a panel has the panel's width, one beside something less.
-    const room = fitted.baseline === "alphabetic" ? Math.max(leastPanel, 0.22 * width) : 0.22 * width;
+    // A name above a panel has the panel's width, one at its side less.
+    const room = fitted.baseline === "alphabetic" ? Math.max(minPanel, 0.22 * width) : 0.22 * width;
     if (fitted.type === "text" && fitted.limit) fitted.limit = Math.min(fitted.limit, room);
-    if (fitted.axis?.labelLimit) fitted.axis.labelLimit = Math.min(fitted.axis.labelLimit, beside - 20);
+    if (fitted.axis?.labelLimit) fitted.axis.labelLimit = Math.min(fitted.axis.labelLimit, margin - 20);
     return fitted;
   };
   const fit = (part, room) => {
     if (part.concat) {
-      const columns = Math.max(1, Math.min(part.columns || part.concat.length, Math.floor(room / (leastPanel + beside))));
+      const columns = Math.max(1, Math.min(part.columns || part.concat.length, Math.floor(room / (minPanel + margin))));
       return { ...part, columns, concat: part.concat.map((panel) => fit(panel, room / columns)) };
     }
     if (part.vconcat) return { ...part, vconcat: part.vconcat.map((panel) => fit(panel, room)) };
-    const wide = Math.max(120, Math.floor(room - beside));
+    const wide = Math.max(120, Math.floor(room - margin));
     if (part.width !== undefined && part.width === part.height) {
       const side = Math.min(wide, part.width);
       return { ...part, width: side, height: side };

@@ -1,4 +1,4 @@
-// Draws the report's figures when they come into view, in the reader's light or dark, and sorts its tables.
+// Draws the report's figures when they come into view, in the light or dark scheme, and sorts its tables.
 (() => {
   const theme = JSON.parse(document.getElementById("theme").textContent);
   const dark = window.matchMedia("(prefers-color-scheme: dark)");
@@ -36,7 +36,7 @@
     }
   }
 
-  // The legend's entries as buttons that hide and show a series, seen when they have the focus: for the keyboard.
+  // Buttons for the legend's entries, visible with the focus: they hide and show a series by the keyboard.
   function addSwitches(element, spec, view) {
     element.parentElement.querySelector(".series")?.remove();
     const parameter = spec.params?.find(({ bind }) => bind === "legend");
@@ -79,7 +79,7 @@
   const adopt = (part) => {
     for (const element of part.querySelectorAll("[data-spec]")) {
       figures.push(element);
-      inView.observe(element); // those in closed <details> have no box: not in view
+      inView.observe(element); // figures in closed <details> have no box and are not in view
     }
   };
   adopt(document);
@@ -99,7 +99,7 @@
     for (const element of figures) if (shown(element) && !views.has(element)) draw(element);
   });
 
-  // Keyboard: + and - zoom the time axis of the figure that has the focus, the arrows move it, 0 shows all.
+  // Keyboard: + and - zoom the time axis of the focused figure, arrows move it, 0 shows all.
   const steps = {
     "+": (low, high) => [low + (high - low) / 4, high - (high - low) / 4],
     "-": (low, high) => [low - (high - low) / 2, high + (high - low) / 2],
@@ -145,13 +145,13 @@
     });
   }
 
-  // A table without room for all its columns leaves the minor ones out and names them; a click shows all.
-  const leaveOut = (table, columns) => {
+  // A table without room for all its columns hides those on the right and names them; a click shows all.
+  const listHidden = (table, columns) => {
     const box = table.parentElement;
     const names = columns.map((column) => table.tHead.rows[0].cells[column].textContent);
     const note = document.createElement("p");
-    note.className = "left-out soft";
-    note.textContent = `Left out for want of room: ${names.join(", ")}. `;
+    note.className = "hidden-columns soft";
+    note.textContent = `Hidden columns: ${names.join(", ")}. `;
     const button = document.createElement("button");
     button.type = "button";
     button.textContent = "Show all";
@@ -165,25 +165,23 @@
   };
   function fitColumns(table) {
     const box = table.parentElement;
-    if (box.clientWidth === 0) return; // in a flight that is closed
-    if (box.nextElementSibling?.classList.contains("left-out")) box.nextElementSibling.remove();
+    if (box.clientWidth === 0) return; // in a closed flight
+    if (box.nextElementSibling?.classList.contains("hidden-columns")) box.nextElementSibling.remove();
     const rows = [...table.rows];
     for (const row of rows) for (const cell of row.cells) cell.classList.remove("hidden");
     if (box.dataset.all) return;
-    const heads = [...table.tHead.rows[0].cells];
-    const minor = (table.dataset.minor ?? "").split("|").map((name) => heads.findIndex((head) => head.textContent === name)).filter((column) => column > 0);
-    const others = heads.map((_, column) => column).filter((column) => column > 1 && !minor.includes(column)).reverse();
+    const columns = [...table.tHead.rows[0].cells].map((_, column) => column).slice(1).reverse();
     const out = [];
-    for (const column of [...minor, ...others]) {
+    for (const column of columns) {
       if (box.scrollWidth <= box.clientWidth) break;
       for (const row of rows) row.cells[column].classList.add("hidden");
       out.push(column);
     }
-    if (out.length > 0) leaveOut(table, out.sort((a, b) => a - b));
+    if (out.length > 0) listHidden(table, out.sort((a, b) => a - b));
   }
   const fitTables = (part = document) => part.querySelectorAll(".scroll > table").forEach(fitColumns);
 
-  // What a flight's part holds may wait in a compressed block.
+  // A flight's part may be a compressed block.
   const unfold = async (details) => {
     const block = details.querySelector(":scope > script.block");
     if (!block) return true;

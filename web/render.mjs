@@ -8,18 +8,18 @@ const width = Number(asked);
 const here = path.dirname(new URL(import.meta.url).pathname);
 const script = (name) => readFile(path.join(here, name), "utf8");
 const fitWidth = vm.runInThisContext(`(${await script("fit_width.js")})`);
-// The files that the page holds too: what is installed draws both.
+// The same files as in the page.
 for (const library of ["vega", "vega-lite"]) vm.runInThisContext(await script(`node_modules/${library}/build/${library}.min.js`));
 const { vega, vegaLite } = globalThis;
 
-/** Without the transparent points that carry the page's tooltips: on paper they are weight alone. */
+/** Without the transparent points of the page's tooltips, which only enlarge the file. */
 function still(part) {
   if (Array.isArray(part)) return part.map(still);
   if (part === null || typeof part !== "object") return part;
   return Object.fromEntries(Object.entries(part).filter(([key, value]) => !(key === "point" && value?.opacity === 0)).map(([key, value]) => [key, still(value)]));
 }
 
-const logger = vega.logger(vega.Error); // warnings are of layers' legends, and of mice that are not here
+const logger = vega.logger(vega.Error); // warnings are about legends of layers and about missing pointers
 async function render(spec, room) {
   const view = new vega.View(vega.parse(vegaLite.compile(still(fitWidth(spec, room)), { logger }).spec), { renderer: "none", logger });
   const svg = await view.toSVG();
@@ -29,7 +29,7 @@ async function render(spec, room) {
 
 for (const name of names) {
   const spec = JSON.parse(await readFile(path.join(folder, `${name}.vl.json`), "utf8"));
-  // What stands beside the panels is known once it is drawn: what is too wide gets less room.
+  // The width of axes and legends is known after drawing: a figure that is too wide is drawn again with less room.
   let room = width;
   let drawn = await render(spec, room);
   for (let trial = 0; trial < 10 && drawn.wide > width; ++trial) {

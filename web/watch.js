@@ -1,8 +1,8 @@
-// The page of `flightwatt watch --serve`: what is known of a flight in the air, from the server's events. Charts are
-// drawn by Vega-Lite where it is there; everything else needs nothing.
+// The page of `flightwatt watch --serve`: the state of a flight in the air, from the server's events. Charts need
+// Vega-Lite, all else no library.
 (() => {
   const element = (id) => document.getElementById(id);
-  const most = 4000; // points that a chart holds; of more, every second of the older ones goes
+  const maxPoints = 4000; // of a chart; beyond, every second of the older ones is removed
   const dark = window.matchMedia("(prefers-color-scheme: dark)");
   const theme = JSON.parse(element("theme").textContent || "{}");
   let points = [];
@@ -12,16 +12,16 @@
 
   const number = (value, digits, unit) => (value === null || value === undefined ? "\u2013" : `${value.toFixed(digits)} ${unit}`);
   const minutes = (seconds) => number(seconds === null || seconds === undefined ? null : seconds / 60, 1, "min");
-  const runText = (what) => {
-    if (!what) return "\u2013";
-    const names = Object.entries(what).map(([name, qos]) => [name, ...Object.entries(qos).map(([key, value]) => `${key}=${value}`)].join(" "));
+  const runText = (run) => {
+    if (!run) return "\u2013";
+    const names = Object.entries(run).map(([name, qos]) => [name, ...Object.entries(qos).map(([key, value]) => `${key}=${value}`)].join(" "));
     return names.join(", ") || "nothing";
   };
 
   // The rows of the tables: name, text of the state.
   const rows = {
     now: [
-      ["phase", (s) => s.phase + (s.began_in_air ? " (watched from the air on)" : "")],
+      ["phase", (s) => s.phase + (s.began_in_air ? " (telemetry starts in flight)" : "")],
       ["in the air", (s) => minutes(s.flight_time_s)],
       ["energy so far", (s) => number(s.energy_wh, 3, "Wh")],
       ["power", (s) => `${number(s.power_w, 1, "W")}, expected ${number(s.expected_power_w, 1, "W")}`],
@@ -84,16 +84,16 @@
   }
 
   function add(point) {
-    if (points.length && point.t < points[points.length - 1].t) points = []; // another clock
+    if (points.length && point.t < points[points.length - 1].t) points = []; // a clock reset
     points.push(point);
-    if (points.length > most) points = points.filter((_, i) => i % 2 === 0 || i > (most * 3) / 4);
+    if (points.length > maxPoints) points = points.filter((_, i) => i % 2 === 0 || i > (maxPoints * 3) / 4);
   }
 
   // --- charts ---
   const series = (key, of) => points.filter((point) => point[key] !== null && point[key] !== undefined).map((point) => ({ t: point.t, value: point[key], of }));
   const charts = {
     charge: { title: "State of charge [%]", values: () => [...series("soc", "flown, by charge"), ...series("soc_by_voltage", "flown, by voltage"), ...ahead] },
-    power: { title: "Power [W]", values: () => [...series("power", "measured"), ...series("expected", "expected of the rest")] },
+    power: { title: "Power [W]", values: () => [...series("power", "measured"), ...series("expected", "expected")] },
     altitude: { title: "Altitude [m]", values: () => series("altitude", "altitude") },
   };
   const phases = () => {
@@ -115,7 +115,7 @@
     resolve: { legend: { color: "independent" } },
   });
 
-  // A chart is begun with its first values: Vega has no scale for none.
+  // A chart is created with its first values: Vega has no scale without values.
   async function begin(id, values, spans) {
     const box = element(id);
     if (!box || typeof vegaEmbed === "undefined" || box.dataset.begun) return;
@@ -158,7 +158,7 @@
     element("page").dataset.time = state.time_s;
     drawSoon();
   });
-  events.addEventListener("error", () => (element("connection").textContent = "Nothing is heard of flightwatt watch: this page asks again every second."));
+  events.addEventListener("error", () => (element("connection").textContent = "No connection to flightwatt watch: retrying every second."));
 
   dark.addEventListener("change", () => {
     drawn = {};

@@ -26,61 +26,16 @@
 namespace flightwatt::report {
 namespace {
 
-using Names = std::vector<std::string>;
-
-bool are_distinct(const Names& names) {
-    return std::set<std::string>(names.begin(), names.end()).size() == names.size();
-}
-
-/// The folders' own names where they tell them apart, else their paths as given.
-Names names_of_folders(std::span<const std::filesystem::path> outs) {
-    Names names;
-    Names paths;
+/// The folders' names, or their paths where names are equal.
+std::vector<std::string> folder_names(std::span<const std::filesystem::path> outs) {
+    std::vector<std::string> names;
+    std::vector<std::string> paths;
     for (const auto& out : outs) {
-        const auto path = out.lexically_normal();
+        const auto path = (out / "").lexically_normal().parent_path();
         paths.push_back(path.string());
-        names.push_back((path.has_filename() ? path : path.parent_path()).filename().string());
+        names.push_back(path.filename().string());
     }
-    return are_distinct(names) ? names : paths;
-}
-
-void refuse_one_folder_twice(std::span<const std::filesystem::path> outs) {
-    for (std::size_t i = 0; i < outs.size(); ++i) {
-        for (std::size_t j = 0; j < i; ++j) {
-            std::error_code error;
-            if (std::filesystem::equivalent(outs[i], outs[j], error))
-                throw UsageError(fmt::format("the folder {} is given twice{}", outs[j].string(),
-                                             outs[i] == outs[j] ? "" : ", also as " + outs[i].string()));
-        }
-    }
-}
-
-/// Marks flights that an earlier folder holds too; says which.
-Names share_flights(std::vector<BatchContent>& batches) {
-    std::unordered_map<std::uint64_t, ReportFlight*> known;  // by what they hold
-    std::vector<const ReportFlight*> places;
-    Names shared;
-    for (auto& batch : batches) {
-        for (auto& flight : batch.flights) {
-            flight.folders = {batch.folder};
-            if (!flight.rejected.empty()) continue;
-            const auto fingerprint = flight::content_of(flight.series).fingerprint;
-            const auto same = known.find(fingerprint);
-            if (same == known.end() || same->second->batch == flight.batch) {
-                places.push_back(&flight);
-                if (fingerprint != 0) known.emplace(fingerprint, &flight);
-                continue;
-            }
-            auto& first = *same->second;
-            flight.is_shown_elsewhere = true;
-            first.folders.push_back(flight.name == first.name ? batch.folder
-                                                              : fmt::format("{} as {}", batch.folder, flight.name));
-        }
-    }
-    for (const auto* flight : places)
-        if (flight->folders.size() > 1)
-            shared.push_back(fmt::format("{} ({})", flight->name, fmt::join(flight->folders, ", ")));
-    return shared;
+    return std::set<std::string>(names.begin(), names.end()).size() == names.size() ? names : paths;
 }
 
 void rename(BatchContent& batch, ReportFlight& flight) {
@@ -94,46 +49,26 @@ void rename(BatchContent& batch, ReportFlight& flight) {
     flight.name = flight.series.flight = renamed;
 }
 
-/// Renames flights of one name that are not one flight; says which.
-Names rename_namesakes(std::vector<BatchContent>& batches) {
-    std::map<std::string, std::size_t> shown;
-    for (const auto& batch : batches)
-        for (const auto& flight : batch.flights)
-            if (!flight.is_shown_elsewhere) ++shown[flight.name];
-    std::erase_if(shown, [](const auto& named) { return named.second < 2; });
-    for (auto& batch : batches)
-        for (auto& flight : batch.flights)
-            if (!flight.is_shown_elsewhere && shown.contains(flight.name)) rename(batch, flight);
-    Names names;
-    for (const auto& [name, times] : shown) names.push_back(name);
-    return names;
-}
-
-std::string aircraft_of(const BatchContent& batch) {
-    std::set<std::string> aircraft;
-    for (const auto& flight : batch.flights)
-        if (flight.rejected.empty())
-            aircraft.insert(flight::describe_aircraft(flight.series.aircraft_id, flight.series.aircraft_name));
-    return fmt::format("{}", fmt::join(aircraft, " and "));
-}
-
-std::string options_of(const BatchContent& batch) {
-    if (!batch.fit) return "";
-    const auto& options = batch.fit->options;
-    return fmt::format("order {}, weights: {}", options.phases.order, to_string(options.weighting));
-}
-
-/// "order 3, weights: agreement (FOLDER)": the text `of` each folder, where these differ. Empty texts do not count.
-Names differing(const std::vector<BatchContent>& batches, std::string (*of)(const BatchContent&)) {
-    std::set<std::string> all;
-    Names named;
-    for (const auto& batch : batches) {
-        const auto text = of(batch);
-        if (text.empty()) continue;
-        all.insert(text);
-        named.push_back(fmt::format("{} ({})", text, batch.folder));
+/// Marks flights that an earlier folder has too, and renames other flights with a name of an earlier folder.
+void merge_flights(std::vector<BatchContent>& batches) {
+    std::unordered_map<std::uint64_t, ReportFlight*> known;  // by fingerprint of the content
+    std::set<std::string> names;
+    for (auto& batch : batches) {
+        for (auto& flight : batch.flights) {
+            flight.folders = {batch.folder};
+            const auto fingerprint = flight.rejected.empty() ? flight::content_of(flight.series).fingerprint : 0;
+            const auto same = known.find(fingerprint);
+            if (same != known.end() && same->second->batch != flight.batch) {
+                auto& first = *same->second;
+                flight.is_shown_elsewhere = true;
+                first.folders.push_back(flight.name == first.name ? batch.folder
+                                                                  : fmt::format("{} as {}", batch.folder, flight.name));
+                continue;
+            }
+            if (fingerprint != 0) known.emplace(fingerprint, &flight);
+            if (!names.insert(flight.name).second) rename(batch, flight);
+        }
     }
-    return all.size() > 1 ? named : Names();
 }
 
 std::optional<double> start_clock_s(const ReportFlight& flight) {
@@ -148,9 +83,9 @@ std::string date_of(const std::optional<double>& clock_s) {
     return clock_s ? fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(static_cast<std::time_t>(*clock_s))) : "";
 }
 
-using Place = boost::geometry::model::point<double, 2, boost::geometry::cs::geographic<boost::geometry::degree>>;
+using Position = boost::geometry::model::point<double, 2, boost::geometry::cs::geographic<boost::geometry::degree>>;
 
-/// Over ground between two times, from the track's metres or else its degrees; none where it has neither.
+/// Distance over ground between two times, by positions in metres or degrees.
 std::optional<double> flown_m(const flight::FlightSeries& series, double start_s, double end_s) {
     const bool in_metres = !select_track(series, "east_m").empty();
     const auto east = select_track(series, in_metres ? "east_m" : "longitude_deg");
@@ -160,8 +95,8 @@ std::optional<double> flown_m(const flight::FlightSeries& series, double start_s
     for (std::size_t i = 1; i < east.time_s.size(); ++i) {
         if (east.time_s[i - 1] < start_s || east.time_s[i] > end_s) continue;
         length_m += in_metres ? std::hypot(east.value[i] - east.value[i - 1], north[i] - north[i - 1])
-                              : boost::geometry::distance(Place(east.value[i - 1], north[i - 1]),
-                                                          Place(east.value[i], north[i]));
+                              : boost::geometry::distance(Position(east.value[i - 1], north[i - 1]),
+                                                          Position(east.value[i], north[i]));
     }
     return length_m;
 }
@@ -175,7 +110,7 @@ std::optional<double> max_m(const flight::Track& altitude, double start_s, doubl
     return max_m - value_at(altitude, start_s);
 }
 
-/// The sum where both are known.
+/// Sum, if both are known.
 void add(std::optional<double>& sum, const std::optional<double>& more) {
     if (!more) sum.reset();
     if (sum) *sum += *more;
@@ -209,7 +144,7 @@ BatchContent read_batch_content(const std::filesystem::path& out) {
             }
             for (const auto& exclusion : selection.exclusions) flight.exclusions.push_back(to_string(exclusion));
             std::move(selection.flights.begin(), selection.flights.end(), std::back_inserter(content.measured));
-            flight.verdicts = record.edge_checks;
+            flight.edge_checks = record.edge_checks;
             flight.unusable_power = batch::exclusion_reason(record, load);
             if (copy != nullptr) flight.unusable_power = batch::duplicate_reason(*copy);
             flight.series = std::move(series);
@@ -217,7 +152,6 @@ BatchContent read_batch_content(const std::filesystem::path& out) {
         }
         content.flights.push_back(std::move(flight));
     }
-    // Readers look at the first ones first.
     std::ranges::stable_sort(content.flights, {}, [](const auto& flight) { return !flight.unusable_power.empty(); });
     return content;
 }
@@ -244,31 +178,19 @@ std::string aircraft_mix(const BatchContent& content) {
     return content.fit ? "" : describe_mixed_aircraft(flown);
 }
 
-BatchContents read_batch_contents(std::span<const std::filesystem::path> outs) {
-    refuse_one_folder_twice(outs);
-    BatchContents contents;
-    for (const auto& out : outs) contents.batches.push_back(read_batch_content(out));
-    if (outs.size() < 2) return contents;
-    auto& [batches, notes] = contents;
-    const auto names = names_of_folders(outs);
-    for (std::size_t i = 0; i < batches.size(); ++i) {
-        batches[i].folder = names[i];
-        for (auto& flight : batches[i].flights) flight.batch = i;
+std::vector<BatchContent> read_batch_contents(std::span<const std::filesystem::path> outs) {
+    const auto names = folder_names(outs);
+    std::set<std::filesystem::path> seen;
+    std::vector<BatchContent> batches;
+    for (std::size_t b = 0; b < outs.size(); ++b) {
+        if (!seen.insert(std::filesystem::weakly_canonical(outs[b] / "")).second)
+            throw UsageError(fmt::format("the folder {} is given twice", outs[b].string()));
+        batches.push_back(read_batch_content(outs[b]));
+        batches.back().folder = outs.size() > 1 ? names[b] : "";
+        for (auto& flight : batches.back().flights) flight.batch = b;
     }
-    if (const auto shared = share_flights(batches); !shared.empty())
-        notes.push_back(fmt::format("In several folders, and shown once: {}.", fmt::join(shared, "; ")));
-    if (const auto namesakes = rename_namesakes(batches); !namesakes.empty())
-        notes.push_back(
-            fmt::format("Flights of one name in several folders, which are not the same flight, have their "
-                        "folder behind their name: {}.",
-                        fmt::join(namesakes, ", ")));
-    if (const auto aircraft = differing(batches, aircraft_of); !aircraft.empty())
-        notes.push_back(fmt::format("The folders are of different aircraft, each with its own model: {}.",
-                                    fmt::join(aircraft, ", ")));
-    if (const auto options = differing(batches, options_of); !options.empty())
-        notes.push_back(
-            fmt::format("The folders' models were fitted with different options: {}.", fmt::join(options, "; ")));
-    return contents;
+    if (outs.size() > 1) merge_flights(batches);
+    return batches;
 }
 
 std::vector<ReportFlight> take_shown_flights(std::vector<BatchContent>& batches) {

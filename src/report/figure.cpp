@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include <boost/algorithm/string/replace.hpp>
@@ -17,7 +16,7 @@
 namespace flightwatt::report {
 namespace {
 
-/// The nearest number of so many decimals; never -0.
+/// The nearest number with `decimals` decimals; never -0.
 double rounded(double number, int decimals) {
     const double scale = std::pow(10.0, decimals);
     return std::round(number * scale) / scale + 0.0;
@@ -42,26 +41,14 @@ std::vector<PublishedCell> read_cells(const std::filesystem::path& path) {
     };
     std::vector<PublishedCell> cells;
     for (const auto& row : table.rows) {
-        cells.push_back({number(row, "fps_low"), number(row, "fps_high"), number(row, "key_bits_low"),
-                         number(row, "key_bits_high"), number(row, "soc_percent")});
+        cells.push_back({std::midpoint(number(row, "fps_low"), number(row, "fps_high")),
+                         std::midpoint(number(row, "key_bits_low"), number(row, "key_bits_high")),
+                         number(row, "soc_percent")});
     }
     return cells;
 }
 
 }  // namespace
-
-int decimals_for(std::span<const double> values, double steps, int least) {
-    double lowest = std::numeric_limits<double>::infinity();
-    double highest = -lowest;
-    for (const double value : values) {
-        if (!std::isfinite(value)) continue;
-        lowest = std::min(lowest, value);
-        highest = std::max(highest, value);
-    }
-    constexpr int most = 9;  // what rounds itself has no digits behind
-    if (!(highest > lowest)) return std::max(least, 3);
-    return std::clamp(static_cast<int>(std::ceil(-std::log10((highest - lowest) / steps))), least, most);
-}
 
 VegaJson figure_template(std::string_view name) { return VegaJson::parse(web_templates().at(name)); }
 
@@ -142,9 +129,9 @@ std::vector<std::size_t> downsample_m4(const std::vector<double>& time_s, const 
     for (auto first = rows.begin(); first != rows.end();) {
         const auto end =
             std::find_if(first, rows.end(), [&](std::size_t i) { return column_of(i) != column_of(*first); });
-        const auto [least, greatest] =
+        const auto [min_at, max_at] =
             std::minmax_element(first, end, [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
-        std::vector<std::size_t> chosen{*first, *least, *greatest, *std::prev(end)};
+        std::vector<std::size_t> chosen{*first, *min_at, *max_at, *std::prev(end)};
         std::ranges::sort(chosen);
         std::ranges::unique_copy(chosen, std::back_inserter(kept));
         first = end;

@@ -7,7 +7,6 @@
 #include <map>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace flightwatt::report {
 namespace {
@@ -18,18 +17,18 @@ bool is_number_or_dash(std::string_view cell) {
     return cell == "-" || parse_number(cell).has_value();
 }
 
-/// The class attribute of each column's cells.
+/// Class attributes of the columns' cells.
 std::vector<std::string> column_classes(const TextTable& table) {
     constexpr std::size_t short_text = 18;
     constexpr std::size_t long_text = 28;
     std::vector<std::string> classes(table.header.size());
     for (std::size_t c = 0; c < classes.size(); ++c) {
         if (std::ranges::all_of(table.rows, [c](const auto& row) { return is_number_or_dash(row[c]); })) continue;
-        std::size_t longest = 0;
-        for (const auto& row : table.rows) longest = std::max(longest, row[c].size());
-        classes[c] = longest <= short_text ? " class=\"text short\""
-                     : longest > long_text ? " class=\"text long\""
-                                           : " class=\"text\"";
+        std::size_t max_length = 0;
+        for (const auto& row : table.rows) max_length = std::max(max_length, row[c].size());
+        classes[c] = max_length <= short_text ? " class=\"text short\""
+                     : max_length > long_text ? " class=\"text long\""
+                                              : " class=\"text\"";
     }
     return classes;
 }
@@ -50,15 +49,12 @@ std::string html_escaped(std::string_view text) {
     return html;
 }
 
-std::string table_html(const TextTable& table, const HtmlTableOptions& options) {
+std::string table_html(const TextTable& table, std::string_view caption, const HtmlTableOptions& options) {
     const auto classes = column_classes(table);
     auto html = fmt::format(
         "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\"><table{1} "
-        "aria-label=\"{0}\"{2}>\n<thead><tr>",
-        html_escaped(options.caption), options.sortable ? " class=\"sortable\"" : "",
-        options.minor.empty()
-            ? ""
-            : fmt::format(" data-minor=\"{}\"", html_escaped(fmt::format("{}", fmt::join(options.minor, "|")))));
+        "aria-label=\"{0}\">\n<thead><tr>",
+        html_escaped(caption), options.sortable ? " class=\"sortable\"" : "");
     for (std::size_t c = 0; c < table.header.size(); ++c) {
         html += fmt::format("<th scope=\"col\"{}>{}</th>", classes[c], html_escaped(table.header[c]));
     }
@@ -77,10 +73,8 @@ std::string table_html(const TextTable& table, const HtmlTableOptions& options) 
     return html + "</tbody></table></div>\n";
 }
 
-std::string figure_html(const Figure& figure) { return figure_html(figure, figure.spec); }
-
 std::string figure_html(const Figure& figure, const VegaJson& spec) {
-    // What has parameters zooms: by the keyboard too.
+    // A figure with parameters zooms, by the keyboard too.
     const auto* keys = figure.spec.contains("params") ? " data-zoom=\"zoom_time_s\" data-scale=\"x\"" : "";
     return fmt::format(
         "<figure>\n<div class=\"figure\" tabindex=\"0\" role=\"group\" aria-label=\"{0}\" "
@@ -92,25 +86,29 @@ std::string figure_html(const Figure& figure, const VegaJson& spec) {
 }
 
 void add_figure(Section& section, Figure figure) {
-    section.html += figure_html(figure);
+    section.html += figure_html(figure, figure.spec);
     section.figures.push_back(std::move(figure));
 }
 
-void add_table(Section& section, CaptionedTable table, bool sortable) {
-    section.html += table_html(table.table, {table.caption, sortable});
-    section.tables.push_back(std::move(table));
+void add_table(Section& section, const CaptionedTable& table, const HtmlTableOptions& options) {
+    section.html += table_html(table.table, table.caption, options);
+    if (table.label.empty() || table.table.rows.empty()) return;
+    section.latex += (section.latex.empty() ? "" : "\n") + to_latex(table.table, table.caption, table.label);
 }
+
+std::string heading(std::string_view text) { return fmt::format("<h3>{}</h3>\n", html_escaped(text)); }
 
 std::string paragraph(std::string_view text, std::string_view css_class) {
-    if (css_class.empty()) return fmt::format("<p>{}</p>\n", html_escaped(text));
-    return fmt::format("<p class=\"{}\">{}</p>\n", css_class, html_escaped(text));
+    return fmt::format("<p{}>{}</p>\n", css_class.empty() ? "" : fmt::format(" class=\"{}\"", css_class),
+                       html_escaped(text));
 }
 
-std::string list_html(const std::vector<std::string>& lines) {
+std::string list_html(const std::vector<std::string>& lines, std::string_view css_class) {
     if (lines.empty()) return "";
     std::string html = "<ul>\n";
     for (const auto& line : lines) html += fmt::format("<li>{}</li>\n", html_escaped(line));
-    return html + "</ul>\n";
+    html += "</ul>\n";
+    return css_class.empty() ? html : fmt::format("<div class=\"{}\">{}</div>\n", css_class, html);
 }
 
 }  // namespace flightwatt::report

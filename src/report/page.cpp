@@ -22,7 +22,7 @@
 namespace flightwatt::report {
 namespace {
 
-/// A script's text cannot end its element: inside of strings and regular expressions "<\/" is "</".
+/// Escapes "</script": in strings and regular expressions, "<\/" is "</".
 std::string inline_script(const std::string& text) {
     return "<script>" + boost::replace_all_copy(text, "</script", "<\\/script") + "</script>\n";
 }
@@ -40,51 +40,47 @@ std::string filled_page(std::string_view name, const std::map<std::string_view, 
     return html;
 }
 
-std::vector<std::filesystem::path> library_paths(const std::filesystem::path& folder) {
-    std::vector<std::filesystem::path> paths;
-    for (const auto* library : {"vega", "vega-lite", "vega-embed"})
-        paths.push_back(folder / "node_modules" / library / "build" / (std::string(library) + ".min.js"));
-    return paths;
-}
-
-/// The first that is not there.
-std::optional<std::filesystem::path> missing_library(const std::filesystem::path& folder) {
-    for (const auto& path : library_paths(folder)) {
-        if (open_error(path)) return path;
+/// Style, theme, scripts and, unless one is missing, libraries. Throws InputError for a missing one if
+/// `needs_libraries`.
+WebFiles read_files(const std::filesystem::path& folder, std::initializer_list<const char*> scripts,
+                    bool needs_libraries) {
+    WebFiles files{folder, read_file(folder / "page.css"), read_file(folder / "theme.json"), "", ""};
+    for (const std::string library : {"vega", "vega-lite", "vega-embed"}) {
+        const auto path = folder / "node_modules" / library / "build" / (library + ".min.js");
+        if (!open_error(path)) {
+            files.libraries += read_file(path) + "\n";
+            continue;
+        }
+        if (needs_libraries)
+            throw InputError({path.string()}, "this library of the report's figures is missing",
+                             "run scripts/install_dependencies with access to the npm registry");
+        files.libraries.clear();
+        break;
     }
-    return std::nullopt;
-}
-
-/// Style, theme and, where they are all there, libraries.
-WebFiles read_drawing_files(const std::filesystem::path& folder) {
-    WebFiles files;
-    files.folder = folder;
-    files.style = read_file(folder / "page.css");
-    files.theme = read_file(folder / "theme.json");
-    if (missing_library(folder)) return files;
-    for (const auto& path : library_paths(folder)) files.libraries += read_file(path) + "\n";
+    for (const auto* script : scripts) files.script += read_file(folder / script);
     return files;
 }
 
-/// Runs a program of the PATH with its output on our standard error; false if it is not there. Throws OutputError where
-/// it fails.
-bool ran(std::vector<std::string> command) {
+/// Runs a program of the PATH with its output on standard error; false if it is not installed. Throws OutputError if it
+/// fails.
+bool run_program(std::vector<std::string> command) {
     namespace bp = boost::process;
-    constexpr int not_there = 127;
+    constexpr int not_installed = 127;
     const auto program = command.front();
     command.insert(command.begin(), {"-c", R"(command -v "$0" > /dev/null || exit 127; exec "$0" "$@")"});
     std::error_code error;
     const int code = bp::system("/bin/sh", bp::args(command), bp::std_out > stderr, error);
     if (error) throw OutputError(fmt::format("cannot run {}: {}", program, error.message()));
-    if (code != 0 && code != not_there) throw OutputError(fmt::format("{} failed with exit code {}", program, code));
+    if (code != 0 && code != not_installed)
+        throw OutputError(fmt::format("{} failed with exit code {}", program, code));
     return code == 0;
 }
 
-/// In CSS pixels of 1/96 inch, which are Vega's.
+/// Vega uses CSS pixels of 1/96 inch.
 constexpr double px_per_pt = 96.0 / 72.0;
 constexpr double default_width_px = 720.0;
 
-/// The theme with all type at 8 points: figures of a column are not scaled any more.
+/// The theme with all type at 8 points, for figures that are not scaled.
 VegaJson in_type_of_papers(const VegaJson& theme) {
     constexpr double type_pt = 8.0;
     auto values = theme.flatten();
@@ -93,7 +89,7 @@ VegaJson in_type_of_papers(const VegaJson& theme) {
     return values.unflatten();
 }
 
-/// The specification with the light theme in it: a file that any Vega-Lite draws.
+/// The specification with the light theme, for any Vega-Lite.
 std::string standalone(const Figure& figure, const VegaJson& light_theme) {
     auto spec = figure.spec;
     spec["config"] = light_theme;
@@ -105,20 +101,10 @@ std::string standalone(const Figure& figure, const VegaJson& light_theme) {
 std::filesystem::path web_folder() { return data_folder("web", "FLIGHTWATT_WEB", "the report's web files"); }
 
 WebFiles read_web_files(const std::filesystem::path& folder) {
-    if (const auto missing = missing_library(folder)) {
-        throw InputError({missing->string()}, "the report's figures need this library, and it is not there",
-                         "run scripts/install_dependencies with the npm registry at hand");
-    }
-    auto files = read_drawing_files(folder);
-    for (const auto* script : {"fit_width.js", "blocks.js", "page.js"}) files.script += read_file(folder / script);
-    return files;
+    return read_files(folder, {"fit_width.js", "blocks.js", "page.js"}, true);
 }
 
-WebFiles read_live_web_files(const std::filesystem::path& folder) {
-    auto files = read_drawing_files(folder);
-    files.script = read_file(folder / "watch.js");
-    return files;
-}
+WebFiles read_live_web_files(const std::filesystem::path& folder) { return read_files(folder, {"watch.js"}, false); }
 
 std::string page_html(const PageHead& head, const std::vector<Section>& sections, const WebFiles& web) {
     std::string contents;
@@ -150,9 +136,7 @@ std::string live_page_html(const WebFiles& web) {
         charts += fmt::format(
             "<figure><div class=\"figure\" id=\"{0}\" role=\"img\" aria-label=\"{0} over time\"></div></figure>\n", id);
     if (web.libraries.empty())
-        charts = paragraph(
-            "There are no charts: the libraries that draw them are not installed (scripts/install_dependencies).",
-            "warning");
+        charts = paragraph("No charts: their libraries are not installed (scripts/install_dependencies).", "warning");
     return filled_page("watch", {{"version", FLIGHTWATT_VERSION},
                                  {"style", web.style},
                                  {"charts", charts},
@@ -177,14 +161,14 @@ FigureFiles write_figures(const std::vector<Section>& sections, const WebFiles& 
                                     fmt::format("{}", width_px)};
     for (const auto* figure : figures) {
         write_file_atomically(folder / (figure->id + ".vl.json"), standalone(*figure, theme));
-        render.push_back(figure->id);  // these alone: the folder may hold others' figures
+        render.push_back(figure->id);  // only these: the folder may contain others
     }
-    files.has_svg = ran(render);
+    files.has_svg = run_program(render);
     files.has_pdf = files.has_svg;
     for (const auto* figure : figures) {
         if (!files.has_pdf) break;
         const auto file = (folder / figure->id).string();
-        files.has_pdf = ran({"rsvg-convert", "--format", "pdf", "--output", file + ".pdf", file + ".svg"});
+        files.has_pdf = run_program({"rsvg-convert", "--format", "pdf", "--output", file + ".pdf", file + ".svg"});
     }
     return files;
 }

@@ -10,7 +10,7 @@
 
 namespace flightwatt::report {
 
-/// What the page is made of besides its contents.
+/// Styles and scripts of a page.
 struct WebFiles {
     std::filesystem::path folder;
     std::string style;
@@ -19,45 +19,43 @@ struct WebFiles {
     std::string script;     ///< the page's own
 };
 
-/// The folder web/ of these programs: ../share/flightwatt/web beside the folder of the running program, or
-/// what FLIGHTWATT_WEB says. Throws InputError where it is absent.
+/// The folder web/: ../share/flightwatt/web from the running program's folder, or $FLIGHTWATT_WEB. Throws InputError
+/// where it is absent.
 std::filesystem::path web_folder();
 
-/// Throws InputError where a file is missing, saying how to install the libraries.
+/// Throws InputError for a missing file, with how to install the libraries.
 WebFiles read_web_files(const std::filesystem::path& folder);
 
-/// What stands around the sections.
+/// Title, and the facts at the end of a page.
 struct PageHead {
     std::string title;
-    std::vector<std::pair<std::string, std::string>> facts;  ///< at the end: "computed" - "2026-01-01 12:00 UTC", ...
+    std::vector<std::pair<std::string, std::string>> facts;  ///< "computed" - "2026-01-01 12:00 UTC", ...
 };
 
-/// One HTML file that needs nothing else: styles, scripts, figures and their data are in it, and its policy
-/// forbids it every request.
+/// A self-contained HTML file with styles, scripts, figures and data; its policy refuses all requests.
 std::string page_html(const PageHead& head, const std::vector<Section>& sections, const WebFiles& web);
 
-/// The same for the page of a flight in the air; without libraries where they are not installed.
+/// Files of the live page; without libraries where they are not installed.
 WebFiles read_live_web_files(const std::filesystem::path& folder);
 
-/// The page of a flight in the air, which listens to its server's events (docs/live.md) and asks nothing else. Without
-/// the libraries that draw it shows the same without charts, and says so.
+/// The page of a flight in the air, which listens to its server's events (docs/live.md). Without the libraries it has
+/// no charts.
 std::string live_page_html(const WebFiles& web);
 
-/// Which files were made of every figure, beside its specification.
+/// Kinds of files that were written for each figure.
 struct FigureFiles {
     std::size_t figures = 0;
     bool has_svg = false;
     bool has_pdf = false;
 };
 
-/// Writes every figure's specification to FOLDER/ID.vl.json, renders them to ID.svg with node, and to ID.pdf with
-/// rsvg-convert; what of both programs is not there makes no files. With `width_pt` (points of 1/72 inch) they are so
-/// wide, and their type is set at 8 points. Throws OutputError where the folder cannot be written or a program that is
-/// there fails.
+/// Writes FOLDER/ID.vl.json of every figure, ID.svg by node and ID.pdf by rsvg-convert, where these programs are
+/// installed. `width_pt` is the width in points (1/72 inch), with type of 8 points. Throws OutputError where the folder
+/// cannot be written or a program fails.
 FigureFiles write_figures(const std::vector<Section>& sections, const WebFiles& web,
                           const std::filesystem::path& folder, const std::optional<double>& width_pt = std::nullopt);
 
-/// "3.5in", "89mm", "9cm" or "252pt" in points. Throws UsageError for what is none, or not from 1.5 to 20 inches.
+/// "3.5in", "89mm", "9cm" or "252pt" in points. Throws UsageError for another text, or not 1.5 to 20 inches.
 double parse_figure_width_pt(const std::string& text);
 
 }  // namespace flightwatt::report

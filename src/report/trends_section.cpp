@@ -6,6 +6,7 @@
 #include "flight/flight_identity.h"
 
 #include <algorithm>
+#include <set>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -35,25 +36,22 @@ constexpr std::array<TrendQuantity, 6> quantities{{
     {"capacity_ah", "pack [Ah]", [](const FlightTrendData& f) { return f.capacity_ah; }},
 }};
 
-std::vector<std::string> aircraft_names(std::span<const FlightTrendData> flights) {
-    std::vector<std::string> names;
-    names.reserve(flights.size());
-    for (const auto& flight : flights) names.push_back(flight.aircraft);
-    std::ranges::sort(names);
-    names.erase(std::unique(names.begin(), names.end()), names.end());
+std::set<std::string> aircraft_names(std::span<const FlightTrendData> flights) {
+    std::set<std::string> names;
+    for (const auto& flight : flights) names.insert(flight.aircraft);
     return names;
 }
 
-/// Of one aircraft's flights; what is not known of them and why, or empty.
-std::string add_wear_of(std::span<FlightTrendData* const> flown, std::size_t most,
-                        const std::optional<double>& capacity_ah) {
-    if (flown.empty()) return "";
-    constexpr auto single = "no capacity of a single flight: it is told by how flights differ";
-    if (flown.size() > most)
-        return fmt::format("no resistance and no capacity of {} flights, expected {} at most", flown.size(), most);
+/// Of one aircraft's flights; returns the reasons for missing values.
+std::string add_health_of(std::span<FlightTrendData* const> flights, std::size_t max_flights,
+                          const std::optional<double>& capacity_ah) {
+    if (flights.empty()) return "";
+    if (flights.size() > max_flights)
+        return fmt::format("no resistance and no capacity of {} flights, expected at most {}", flights.size(),
+                           max_flights);
     std::vector<battery::DischargeRecord> records;
-    records.reserve(flown.size());
-    for (const auto* flight : flown) records.push_back(flight->records.front());
+    records.reserve(flights.size());
+    for (const auto* flight : flights) records.push_back(flight->records.front());
     battery::BatteryIdentification identified;
     try {
         identified =
@@ -62,28 +60,27 @@ std::string add_wear_of(std::span<FlightTrendData* const> flown, std::size_t mos
         return fmt::format("no resistances and no capacities: {}", error.what());
     }
     const bool is_guess = identified.capacity.origin == battery::CapacityOrigin::chart;
-    std::size_t without = 0;
-    for (std::size_t i = 0; i < flown.size(); ++i) {
-        flown[i]->resistance = identified.flights.at(i).resistance;
+    std::size_t unknown = 0;
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        auto& flight = *flights[i];
+        flight.resistance = identified.flights.at(i).resistance;
         const auto& capacity = identified.flights.at(i).capacity;
         if (!capacity) {
-            ++without;
+            ++unknown;
             continue;
         }
         const double mean_ah = identified.capacity.value_ah;
-        flown[i]->capacity_ah = mean_ah * capacity->ratio;
-        flown[i]->capacity_level_is_guess = is_guess;
-        flown[i]->capacity_interval_ah = {mean_ah * capacity->ratio_interval.low,
-                                          mean_ah * capacity->ratio_interval.high};
+        flight.capacity_ah = mean_ah * capacity->ratio;
+        flight.capacity_level_is_guess = is_guess;
+        flight.capacity_interval_ah = {mean_ah * capacity->ratio_interval.low, mean_ah * capacity->ratio_interval.high};
     }
-    if (without == 0) {
-        return is_guess ? "the level of the capacities is a guess after the usual charts of lithium cells: their "
-                          "trend is in percent of it; give the pack's capacity with --capacity"
-                        : "";
-    }
-    if (flown.size() == 1) return single;
-    return fmt::format("no capacity of {} of {} flights: what they draw does not tell it within 15 %", without,
-                       flown.size());
+    if (flights.size() == 1) return unknown > 0 ? "a single flight does not determine a capacity" : "";
+    if (unknown > 0)
+        return fmt::format("no capacity of {} of {} flights: their charge does not determine it within 15 %", unknown,
+                           flights.size());
+    return is_guess ? "the mean capacity is a guess from charts of lithium cells, trends are in percent of it; give it "
+                      "with --capacity"
+                    : "";
 }
 
 constexpr double ms_per_day = 86400.0 * 1000.0;
@@ -94,7 +91,7 @@ std::string title_of(const AircraftTrend& trend) {
     return trend.level_is_guess ? title + ", level a guess" : title;
 }
 
-/// Of its panel: flights as points, the slope as a line through their middle, and beside it the ends of its interval.
+/// Flights as points, the slope as a line through their middle, with the ends of its interval.
 VegaJson trend_panel(const AircraftTrend& trend) {
     FigureData flights({"date", "value"});
     flights.round_to({0, 6});
@@ -103,27 +100,24 @@ VegaJson trend_panel(const AircraftTrend& trend) {
         flights.add({day * ms_per_day, value});
         days.push_back(day);
     }
-    const auto& told = *trend.answer.trend;
+    const auto& slope = *trend.answer.trend;
     const double middle_day = median(days);
     const auto range = std::ranges::minmax(days);
-    std::vector<double> from_middle;
-    for (const auto& [day, value] : trend.values) from_middle.push_back(value - told.per_day * (day - middle_day));
-    const double middle = median(std::move(from_middle));
+    std::vector<double> offsets;
+    for (const auto& [day, value] : trend.values) offsets.push_back(value - slope.per_day * (day - middle_day));
+    const double middle = median(std::move(offsets));
     FigureData slopes({"date", "value"}, {"slope"});
     slopes.round_to({0, 6});
-    const auto add_line = [&](double per_day, std::string_view name) {
+    for (const auto& [per_day, name] : std::initializer_list<std::pair<double, std::string_view>>{
+             {slope.per_day, "median slope"}, {slope.low_per_day, "low, 95 %"}, {slope.high_per_day, "high, 95 %"}})
         for (const double day : {range.min, range.max})
             slopes.add({day * ms_per_day, middle + per_day * (day - middle_day)}, {name});
-    };
-    add_line(told.per_day, "median slope");
-    add_line(told.low_per_day, "low, 95 %");
-    add_line(told.high_per_day, "high, 95 %");
     return {{"flights", flights.json()}, {"slopes", slopes.json()}, {"title", title_of(trend)}};
 }
 
-/// Of one aircraft, the quantities whose trend is told.
+/// The known trends of one aircraft.
 Figure trend_figure(std::span<const AircraftTrend> trends, const std::string& aircraft, const std::string& id) {
-    auto description = "How " + aircraft + " and its pack go over the dates of flights.";
+    auto description = "Trends of " + aircraft + " and its pack over the dates of flights.";
     auto panels = VegaJson::array();
     for (const auto& trend : trends) {
         if (trend.aircraft != aircraft || !trend.answer.trend) continue;
@@ -133,12 +127,10 @@ Figure trend_figure(std::span<const AircraftTrend> trends, const std::string& ai
                         trend.answer.trend->median, slope, unit, low, unit, high, unit, trend_direction(trend));
         panels.push_back(trend_panel(trend));
     }
-    return new_figure(
-        "trends", id,
-        "Energy by time, and by distance over ground and through the air; the mean power of cruises; "
-        "resistance and capacity of the pack. Each point is a flight; the line has the median of the slopes between all pairs of flights, "
-        "the dashed ones the ends of its 95 % interval.",
-        description, {{"panels", panels}});
+    return new_figure("trends", id,
+                      "A point is a flight; the line has the median of the slopes between all pairs of flights, the "
+                      "dashed lines the ends of its 95 % interval.",
+                      description, {{"panels", panels}});
 }
 
 }  // namespace
@@ -155,20 +147,20 @@ FlightTrendData extract_trend_data(const ReportFlight& flight) {
     try {
         flown.records = battery::discharge_records(flight.series).records;
     } catch (const InputError& error) {
-        flown.no_record = error.what();
+        flown.no_record_reason = error.what();
     }
     for (const auto& record : flown.records) flown.charge_ah = flown.charge_ah.value_or(0.0) + record.charge_ah.back();
     return flown;
 }
 
-std::vector<std::string> add_state_of_health(std::vector<FlightTrendData>& flights, std::size_t most,
+std::vector<std::string> add_state_of_health(std::vector<FlightTrendData>& flights, std::size_t max_flights,
                                              std::optional<double> capacity_ah) {
     std::vector<std::string> notes;
     for (const auto& aircraft : aircraft_names(flights)) {
         std::vector<FlightTrendData*> flown;
         for (auto& flight : flights)
             if (flight.aircraft == aircraft && !flight.records.empty()) flown.push_back(&flight);
-        const auto note = add_wear_of(flown, most, capacity_ah);
+        const auto note = add_health_of(flown, max_flights, capacity_ah);
         if (!note.empty()) notes.push_back(fmt::format("{}: {}", aircraft, note));
     }
     return notes;
@@ -193,7 +185,7 @@ std::vector<AircraftTrend> trends_of(std::span<const FlightTrendData> flights) {
                                        (is_capacity && flight.aircraft == aircraft && flight.capacity_level_is_guess);
             }
             trend.answer = estimate_trend(trend.values);
-            if (trend.values.empty()) trend.answer.no_trend_reason = "of no flight with a date is it known";
+            if (trend.values.empty()) trend.answer.no_trend_reason = "no dated flight has this quantity";
             trends.push_back(std::move(trend));
         }
     }
@@ -201,22 +193,22 @@ std::vector<AircraftTrend> trends_of(std::span<const FlightTrendData> flights) {
 }
 
 std::string trend_direction(const AircraftTrend& trend) {
-    const auto& told = trend.answer.trend;
-    if (!told) return "none: " + trend.answer.no_trend_reason;
-    if (!is_significant(*told)) return "none to be seen";
-    return told->per_day > 0.0 ? "rises" : "falls";
+    const auto& slope = trend.answer.trend;
+    if (!slope) return "unknown: " + trend.answer.no_trend_reason;
+    if (!is_significant(*slope)) return "not significant";
+    return slope->per_day > 0.0 ? "rises" : "falls";
 }
 
 ShownSlope shown_slope(const AircraftTrend& trend) {
-    const auto& told = trend.answer.trend.value();
-    const auto relative = trend.level_is_guess ? relative_trend(told) : std::nullopt;
-    const auto shown = relative.value_or(told);
-    return {trend_days * shown.per_day, trend_days * shown.low_per_day, trend_days * shown.high_per_day,
-            relative ? " %" : ""};
+    constexpr double days = 30.0;
+    const auto& slope = trend.answer.trend.value();
+    const auto relative = trend.level_is_guess ? relative_trend(slope) : std::nullopt;
+    const auto shown = relative.value_or(slope);
+    return {days * shown.per_day, days * shown.low_per_day, days * shown.high_per_day, relative ? " %" : ""};
 }
 
 TextTable trend_table(std::span<const AircraftTrend> trends) {
-    TextTable table{{"aircraft", "quantity", "flights", "median", "in 30 days", "low", "high", "verdict"}, {}};
+    TextTable table{{"aircraft", "quantity", "flights", "median", "in 30 days", "low", "high", "trend"}, {}};
     for (const auto& row : trends) {
         std::vector<std::string> cells{row.aircraft, row.quantity};
         if (const auto& trend = row.answer.trend) {
@@ -234,20 +226,19 @@ TextTable trend_table(std::span<const AircraftTrend> trends) {
 }
 
 std::optional<Section> trends_section(std::span<const AircraftTrend> trends) {
-    std::vector<std::string> aircraft;
+    std::set<std::string> aircraft;
     for (const auto& trend : trends)
-        if (trend.answer.trend && std::ranges::find(aircraft, trend.aircraft) == aircraft.end())
-            aircraft.push_back(trend.aircraft);
+        if (trend.answer.trend) aircraft.insert(trend.aircraft);
     if (aircraft.empty()) return std::nullopt;
     Section section{"trends", "Trends"};
     section.html += paragraph(
-        "How aircraft and packs go over the dates of their flights. A trend is told by an interval without 0; one in 20 "
-        "shows by chance, and wind, season and the pack that was flown go into it like age.");
+        "Aircraft and packs over the dates of their flights. A trend is significant if its interval excludes 0; one in "
+        "20 is by chance. Wind, season and different packs have effects too.");
     for (const auto& name : aircraft) {
-        if (aircraft.size() > 1) section.html += "<h3>" + html_escaped(name) + "</h3>\n";
+        if (aircraft.size() > 1) section.html += heading(name);
         add_figure(section, trend_figure(trends, name, fmt::format("trends-{}", section.figures.size() + 1)));
     }
-    section.html += table_html(trend_table(trends), {"Trends over the dates of flights", true, {}});
+    add_table(section, {trend_table(trends), "Trends over the dates of flights", "tab:trends"}, {.sortable = true});
     return section;
 }
 

@@ -56,7 +56,7 @@ TEST(ExportLatex, IsCompiledByLatex) {
     EXPECT_THAT(read_file(folder / "flights.tex"), HasSubstr("\\label{tab:validation}"));
     EXPECT_THAT(read_file(folder / "published.tex"), HasSubstr("$a_{0}$ & $29.97$ & $27.22$ & $27.21$"));
     EXPECT_THAT(read_file(folder / "missions.tex"), HasSubstr("\\label{tab:plans}"));
-    for (const auto* label : {"predictions", "identified-battery", "battery-flights"})
+    for (const auto* label : {"identified-battery", "battery-flights"})
         EXPECT_THAT(read_file(folder / "flights.tex"), HasSubstr(std::string("\\label{tab:") + label + "}"));
     expect_compiled({"flights", "published", "wing", "pack", "errors", "missions"}, folder);
 }

@@ -5,7 +5,6 @@
 #include "base/error.h"
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
-#include "report/sections/sections.h"
 
 #include <gtest/gtest.h>
 
@@ -29,10 +28,7 @@ TEST(BatchContent, HoldsTheFlightsAndTheFitThatTheBatchStored) {
         EXPECT_EQ(flight.exclusions.empty(), flight.name != "opterra_synthetic_02") << flight.name;
         EXPECT_EQ(flight.phases.sorties.size(), flight.name == "broken" ? 0U : 1U) << flight.name;
     }
-    const auto model = model_of(*content.fit, std::nullopt);
-    EXPECT_FALSE(model.bands[flight::Phase::cruise].time_s.empty());
-    ASSERT_TRUE(model.table_one);
-    EXPECT_EQ(model.table_one->header.size(), 7U) << "three phases, each with its intervals";
+    EXPECT_FALSE(content.fit->bands[flight::Phase::cruise].time_s.empty());
 }
 
 TEST(BatchContent, HasNoFitWhereTheBatchCouldNotFit) {
@@ -69,12 +65,10 @@ std::vector<std::filesystem::path> batches_of(const std::vector<std::string>& nu
 }
 
 TEST(BatchContents, ShowsAFlightOfTwoFoldersOnce) {
-    auto [batches, notes] = read_batch_contents(batches_of({"12", "23"}));
+    auto batches = read_batch_contents(batches_of({"12", "23"}));
     ASSERT_EQ(batches.size(), 2U);
     EXPECT_EQ(batches[0].measured.size(), 2U);
     EXPECT_EQ(batches[1].measured.size(), 2U) << "each model is that of all its flights";
-    ASSERT_EQ(notes.size(), 1U) << notes.back();
-    EXPECT_EQ(notes.front(), "In several folders, and shown once: opterra_synthetic_02 (a, b).");
     const auto flights = take_shown_flights(batches);
     ASSERT_EQ(flights.size(), 3U);
     EXPECT_EQ(flights[0].folders, std::vector<std::string>{"a"});
@@ -85,29 +79,23 @@ TEST(BatchContents, ShowsAFlightOfTwoFoldersOnce) {
 
 TEST(BatchContents, OfOneFolderAreAsTheyAre) {
     const auto outs = batches_of({"12"});
-    const auto [batches, notes] = read_batch_contents(outs);
-    EXPECT_TRUE(notes.empty());
+    const auto batches = read_batch_contents(outs);
     EXPECT_TRUE(batches.front().folder.empty());
     EXPECT_TRUE(batches.front().flights.front().folders.empty());
     EXPECT_THROW(read_batch_contents(std::vector{outs.front(), outs.front() / ""}), UsageError);
 }
 
-TEST(BatchContents, TellNamesakesApart) {
+TEST(BatchContents, RenameAnotherFlightOfTheSameName) {
     const auto outs = batches_of({"1"});
     const auto folder = outs[0].parent_path();
     const auto log = (test::source_dir() / "logs/opterra_synthetic_02").string();
     for (const auto* ending : {".data", ".log"})
         std::filesystem::copy_file(log + ending, folder / (std::string("opterra_synthetic_01") + ending));
     ASSERT_EQ(test::run_shell("flightwatt batch opterra_synthetic_01.data --order 2 -o namesake", folder).code, 0);
-    const auto [batches, notes] = read_batch_contents(std::vector{outs[0], folder / "namesake"});
-    EXPECT_EQ(batches[0].flights.front().name, "opterra_synthetic_01 (a)");
+    const auto batches = read_batch_contents(std::vector{outs[0], folder / "namesake"});
+    EXPECT_EQ(batches[0].flights.front().name, "opterra_synthetic_01");
     EXPECT_EQ(batches[1].flights.front().name, "opterra_synthetic_01 (namesake)");
     EXPECT_EQ(batches[1].measured.front().samples.flight, "opterra_synthetic_01 (namesake)");
-    ASSERT_EQ(notes.size(), 2U);
-    EXPECT_NE(notes[0].find("have their folder behind their name: opterra_synthetic_01."), std::string::npos);
-    EXPECT_EQ(notes[1],
-              "The folders' models were fitted with different options: order 3, weights: agreement (a); order 2, "
-              "weights: agreement (namesake).");
 }
 
 flight::Track track(const std::string& name, std::vector<double> time_s, std::vector<double> value) {

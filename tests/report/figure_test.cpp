@@ -39,15 +39,6 @@ TEST(FigureData, RoundsToTheDecimalsOfItsColumns) {
     EXPECT_EQ(data.csv(), "time_s,power_w,curve\n1234.57,0,measured\n0.3,36.7,measured\n,1e+20,model");
 }
 
-TEST(DecimalsFor, TellTheExtentApart) {
-    EXPECT_EQ(decimals_for(std::vector{20.0, 120.0}, 500.0, 0), 1) << "steps of 0.2";
-    EXPECT_EQ(decimals_for(std::vector{0.0, 2.0, std::nan("")}, 500.0, 1), 3) << "steps of 0.004";
-    EXPECT_EQ(decimals_for(std::vector{0.0, 1e5}, 500.0, 1), 1) << "no fewer than asked for";
-    EXPECT_EQ(decimals_for(std::vector{3.0, 3.0}, 500.0, 1), 3) << "a level line";
-    EXPECT_EQ(decimals_for(std::vector<double>{}, 500.0, 1), 3);
-    EXPECT_EQ(decimals_for(std::vector{0.0, 1e-300}, 500.0, 1), 9);
-}
-
 TEST(Filled, ReplacesFieldsAndLeavesOutLayersWithoutData) {
     const auto part = VegaJson::parse(R"({"title": "{{name}}", "step": 1, "more": "{{unknown}}",
                                           "layer": [{"data": "{{rows}}"}, {"data": "{{nothing}}"}, {"mark": "line"}]})");

@@ -13,7 +13,7 @@ TEST(Escaped, LeavesNoMarkup) {
 TEST(TableHtml, PutsTextsToTheLeftAndLinksTheFirstCell) {
     const TextTable table{{"flight", "energy [Wh]", "closure [%]", "state"},
                           {{"<a>", "5.0", "+0.1", "all"}, {"b", "-", "-0.2", "in part"}}};
-    const auto html = table_html(table, {"Flights", true, {"flight-1", ""}});
+    const auto html = table_html(table, "Flights", {true, {"flight-1", ""}});
     EXPECT_NE(html.find("<table class=\"sortable\""), std::string::npos);
     EXPECT_NE(html.find("<td class=\"text short\"><a href=\"#flight-1\">&lt;a&gt;</a></td>"), std::string::npos);
     EXPECT_NE(html.find("<td class=\"text short\">b</td>"), std::string::npos);
@@ -28,10 +28,21 @@ TEST(FigureHtml, TellsWhatTheFigureSays) {
     figure.caption = "A & B";
     figure.description = "27 W \"on average\"";
     figure.spec = {{"description", "</script>"}};
-    const auto html = figure_html(figure);
+    const auto html = figure_html(figure, figure.spec);
     EXPECT_NE(html.find("aria-label=\"27 W &quot;on average&quot;\""), std::string::npos);
     EXPECT_NE(html.find("<figcaption>A &amp; B</figcaption>"), std::string::npos);
     EXPECT_NE(html.find("\\u003c/script>"), std::string::npos);
+}
+
+TEST(AddTable, PutsTablesWithALabelIntoLatex) {
+    Section section{"s", "S"};
+    add_table(section, {{{"a"}, {{"1"}}}, "One", "tab:one"});
+    add_table(section, {{{"a"}, {{"2"}}}, "Page only", ""});
+    add_table(section, {{{"a"}, {}}, "No rows", "tab:none"});
+    add_table(section, {{{"a"}, {{"3"}}}, "Three", "tab:three"});
+    EXPECT_EQ(section.latex,
+              to_latex({{{{"a"}, {{"1"}}}, "One", "tab:one"}, {{{"a"}, {{"3"}}}, "Three", "tab:three"}}));
+    EXPECT_NE(section.html.find("aria-label=\"Page only\""), std::string::npos);
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ test("charts move while a flight is played, and the page outlives its server", a
   serverIsDown = true; // the browser itself notes requests that fail
   first.kill("SIGTERM");
   await first.ended;
-  await eventually("the page says so", async () => /Nothing is heard/.test(await page.locator("#connection").innerText()));
+  await eventually("the page reports it", async () => /No connection/.test(await page.locator("#connection").innerText()));
   watch();
   await eventually("the page is back", async () => (await page.locator("#connection").innerText()) === "");
   serverIsDown = false;

@@ -60,7 +60,7 @@ TEST(LivePage, SaysThatItHasNoChartsWhereTheLibrariesAreMissing) {
     EXPECT_EQ(web.libraries, "");
     EXPECT_EQ(web.script, "{}\n");
     const auto html = live_page_html(web);
-    EXPECT_THAT(html, HasSubstr("There are no charts"));
+    EXPECT_THAT(html, HasSubstr("No charts"));
     EXPECT_THAT(html, Not(HasSubstr("id=\"charge\"")));
     EXPECT_THAT(html, HasSubstr("id=\"alarms\""));
 }
@@ -93,7 +93,7 @@ Section section_with(const std::string& id) {
     Figure figure;
     figure.id = id;
     figure.spec = {{"mark", "line"}};
-    return {"s", "S", "", {figure}};
+    return {"s", "S", "", "", {figure}};
 }
 
 /// Neither node nor rsvg-convert is found while it lives.

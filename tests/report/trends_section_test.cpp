@@ -157,7 +157,7 @@ TEST(PackWear, SaysWhatIsNotKnown) {
         flight.records.resize(1);
     }
     EXPECT_EQ(add_state_of_health(flights, 1),
-              std::vector<std::string>{"7 Wing: no resistance and no capacity of 2 flights, expected 1 at most"});
+              std::vector<std::string>{"7 Wing: no resistance and no capacity of 2 flights, expected at most 1"});
 }
 
 }  // namespace

@@ -10,23 +10,20 @@
 #include <string>
 #include <vector>
 
-/// The figures of missions: software, schedules, plans and quality of service.
+/// Figures of missions: software, schedules, plans and quality of service.
 
 namespace flightwatt::report {
 
-/// The profiled power of every component over its first parameter, a panel a component; one line for each
-/// value of the other parameters together. Points are what was profiled, with
-/// 95 % intervals where standard errors are known. A component without parameters is a single point. The model has
-/// a component.
+/// Profiled power of every component over its first parameter, a panel a component, a line for each value of the
+/// others; with 95 % intervals where standard errors are known. `compute` is not empty.
 Figure profile_figure(const compute::ComputeModel& compute, const std::string& id);
 
-/// State of charge over time, a line a mission, as the paper's Fig. 3, with the phases of the first mission
-/// marked where all have the same; the digitised curves as points beside missions of their names; and below,
-/// on the same time axis, a strip a mission with the power of what it runs. `missions` is not empty.
+/// State of charge over time as the paper's Fig. 3, with common phases and the digitised curves of missions of their
+/// names; below, the schedules, coloured by power. `missions` is not empty.
 Figure schedule_figure(std::span<const SimulatedMission> missions, const PublishedFigures& published,
                        const std::string& id);
 
-/// A schedule's utility beside what it leaves in the battery.
+/// Utility and final state of charge of a schedule.
 struct UtilityPoint {
     std::string mission;
     double soc_percent = 0.0;
@@ -34,11 +31,10 @@ struct UtilityPoint {
     bool planned = false;
 };
 
-/// Utility over final state of charge, a point a mission, with the planned one's reserve and proven bound.
+/// Utility over final state of charge, a point a mission, with the planned one's reserve and proven bound; not empty.
 Figure utility_figure(const SimulatedMission& planned, const std::vector<UtilityPoint>& points, const std::string& id);
 
-/// When a component of a mission runs with which quality of service, in seconds since the mission began: equal
-/// neighbours are one.
+/// Time since the start of the mission in which a component runs with one quality of service.
 struct RunInterval : flight::TimeInterval {
     std::size_t component = 0;
     std::vector<double> qos;
@@ -46,10 +42,10 @@ struct RunInterval : flight::TimeInterval {
 
 std::vector<RunInterval> run_intervals(const mission::Mission& mission);
 
-/// "fps 32, key_bits 448", or "on" of a component without parameters.
+/// "fps 32, key_bits 448", or "on" without parameters.
 std::string describe_qos(const compute::Component& component, const std::vector<double>& qos);
 
-/// What runs when as a Gantt strip, a row a component.
+/// A schedule as a Gantt chart, a row a component.
 Figure strip_figure(const SimulatedMission& planned, const std::string& id);
 
 /// A parameter of a component: an axis of the map.
@@ -57,32 +53,29 @@ struct QosAxis {
     std::size_t component = 0;
     std::size_t parameter = 0;
     std::string name;           ///< "detection fps"
-    std::vector<double> nodes;  ///< profiled values and thirds between them, rising
+    std::vector<double> nodes;  ///< profiled values and thirds between them
 };
 
-/// State of charge [%] at the end of a mission that runs one configuration throughout, over two qualities of
-/// service (the paper's Fig. 4).
+/// Final state of charge [%] of one configuration throughout, over two parameters (the paper's Fig. 4).
 struct QosMap {
     QosAxis x;
     QosAxis y;
-    std::vector<double> soc_percent;  ///< at the nodes, x runs fastest; NaN where it cannot be delivered
-    std::string others;               ///< what the further parameters stood at; empty without any
+    std::vector<double> soc_percent;  ///< at the nodes, x runs fastest; NaN where the battery fails
+    std::string others;               ///< values of further parameters; may be empty
     double at(std::size_t i, std::size_t j) const { return soc_percent[j * x.nodes.size() + i]; }
 };
 
-/// The map of a mission's model, battery and durations, whatever its schedule says; its first two parameters
-/// are the axes, further ones stand at their greatest value. std::nullopt with fewer than two parameters.
+/// The map of a mission's model, battery and durations over its first two parameters; others have their maximum.
+/// std::nullopt with fewer than two parameters.
 std::optional<QosMap> qos_map(const mission::MissionSetup& mission);
 
-/// Whether two missions have the same mechanical model, the same profiled components, and the same map over quality of
-/// service: flight, components and battery.
-bool have_same_model(const mission::MissionSetup& a, const mission::MissionSetup& b);
-bool have_same_software(const mission::MissionSetup& a, const mission::MissionSetup& b);
-bool have_same_map(const mission::MissionSetup& a, const mission::MissionSetup& b);
+/// Equal for missions with the same mechanical model, profiled components, or map (flight, components and battery).
+std::string model_key(const mission::MissionSetup& mission);
+std::string software_key(const mission::MissionSetup& mission);
+std::string map_key(const mission::MissionSetup& mission);
 
-/// The map as the paper's Fig. 4: a cell is the mean of its four corners, and the configurations that the
-/// missions run are marked. `published` are digitised cells of the same axes, drawn as points of their own
-/// colour on the same scale: one that agrees is hardly seen.
+/// The map as the paper's Fig. 4: a cell is the mean of its corners; the missions' configurations are marked.
+/// `published` are digitised cells of the same axes, drawn as points of the same colour scale.
 Figure qos_map_figure(const QosMap& map, std::span<const SimulatedMission> missions,
                       const std::vector<PublishedCell>& published, const std::string& id);
 

@@ -13,12 +13,6 @@
 namespace flightwatt::report {
 namespace {
 
-constexpr std::size_t curve_points = 101;
-
-double time_at(std::size_t i, double duration_s) {
-    return duration_s * static_cast<double>(i) / static_cast<double>(curve_points - 1);
-}
-
 VegaJson area_rows(const std::vector<double>& time_s, const std::vector<double>& low_w,
                    const std::vector<double>& high_w) {
     if (low_w.empty()) return nullptr;
@@ -29,8 +23,9 @@ VegaJson area_rows(const std::vector<double>& time_s, const std::vector<double>&
 
 VegaJson model_rows(const mechanical::PhaseModel& phase) {
     FigureData data({"time_s", "power_w"});
-    for (std::size_t i = 0; i < curve_points; ++i) {
-        const double time_s = time_at(i, phase.duration_s);
+    constexpr int intervals = 100;
+    for (int i = 0; i <= intervals; ++i) {
+        const double time_s = phase.duration_s * i / intervals;
         data.add({time_s, power_w(phase.fourier, time_s)});
     }
     return data.json();
@@ -43,7 +38,7 @@ VegaJson published_rows(const PublishedCurve& curve) {
     return data.json();
 }
 
-/// Root mean square of published less model, over the points within the phase.
+/// RMS difference of published and model, over the points within the phase.
 double rms_w(const mechanical::PhaseModel& phase, const PublishedCurve& curve) {
     double squares = 0.0;
     std::size_t count = 0;
@@ -53,20 +48,6 @@ double rms_w(const mechanical::PhaseModel& phase, const PublishedCurve& curve) {
         ++count;
     }
     return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(count, 1)));
-}
-
-std::string model_described(const mechanical::MechanicalModel& model) {
-    std::string text = fmt::format("Mechanical power model {} over each phase.", model.name);
-    for (const auto phase : flight::all_phases) {
-        const auto& fitted = model.phases[phase];
-        std::vector<double> curve_w;
-        for (std::size_t i = 0; i < curve_points; ++i)
-            curve_w.push_back(power_w(fitted.fourier, time_at(i, fitted.duration_s)));
-        const auto [least, greatest] = std::ranges::minmax_element(curve_w);
-        text += fmt::format(" {}: {:.1f} to {:.1f} W over {:.0f} s.", phase_word(phase), *least, *greatest,
-                            fitted.duration_s);
-    }
-    return text;
 }
 
 std::string model_caption(const mechanical::MechanicalModel& model, const PublishedFigures& published) {
@@ -93,20 +74,9 @@ FigureData error_rows(std::span<const mechanical::ValidatedFlight> flights) {
     return data;
 }
 
-std::string errors_described(std::span<const mechanical::ValidatedFlight> flights) {
-    std::string text =
-        fmt::format("Error of the predicted energy of {} flights, each predicted by the others.", flights.size());
-    for (const auto& model : model_names(flights)) {
-        const auto score = score_of(flights, model, std::nullopt);
-        if (!score) continue;
-        text += fmt::format(" {}: {:.3f} Wh on average.", model, score->mean_absolute_error_wh);
-    }
-    return text;
-}
-
 constexpr int points_of_line = 41;
 
-FigureData stretch_rows(std::span<const mechanical::BinnedFlight> flights) {
+FigureData bin_rows(std::span<const mechanical::BinnedFlight> flights) {
     FigureData data({"airspeed_m_per_s", "power_w", "climb_m_per_s", "start_s"}, {"flight"});
     for (const auto& flight : flights) {
         for (const auto& bin : flight.bins) {
@@ -117,7 +87,7 @@ FigureData stretch_rows(std::span<const mechanical::BinnedFlight> flights) {
     return data;
 }
 
-/// The climbs that are drawn: level, and half of what was flown to both sides.
+/// Drawn climb rates: 0, and half of the flown extremes.
 std::vector<double> drawn_climbs(const mechanical::PhysicalModel& model) {
     std::vector<double> climbs{0.0};
     if (model.climb_m_per_s.low < 0.0) climbs.insert(climbs.begin(), 0.5 * model.climb_m_per_s.low);
@@ -136,18 +106,6 @@ FigureData line_rows(const mechanical::PhysicalModel& model) {
         }
     }
     return data;
-}
-
-std::string motion_described(const mechanical::PhysicalModel& model) {
-    std::string text = fmt::format("Power over airspeed of {} stretches of {} flights, and the model.", model.bins,
-                                   model.flights.size());
-    for (const double climb : drawn_climbs(model)) {
-        const auto& range = model.airspeed_m_per_s;
-        text += fmt::format(" Climbing {:+.1f} m/s: {:.1f} W at {:.1f} m/s, {:.1f} W at {:.1f} m/s.", climb,
-                            power_w(model, {std::max(range.low, 0.1), climb}), range.low,
-                            power_w(model, {range.high, climb}), range.high);
-    }
-    return text;
 }
 
 }  // namespace
@@ -169,30 +127,33 @@ Figure model_figure(const mechanical::MechanicalModel& model, const flight::PerP
                           {"model", model_rows(model.phases[phase])},
                           {"published", published_rows(published.power[phase])}});
     }
-    return new_figure("model", id, model_caption(model, published), model_described(model), {{"panels", panels}});
+    return new_figure("model", id, model_caption(model, published),
+                      fmt::format("Mechanical power model {} over each phase.", model.name), {{"panels", panels}});
 }
 
 Figure validation_figure(std::span<const mechanical::ValidatedFlight> flights, const std::string& id) {
     return new_figure("validation", id,
-                      "Energy of the whole flight, predicted from its durations by the other flights, less measured. "
-                      "A ring is a flight.",
-                      errors_described(flights), {{"errors", error_rows(flights).json()}});
+                      "Predicted less measured energy of the whole flight; the prediction is from its durations by the "
+                      "other flights. A ring is a flight.",
+                      fmt::format("Error of the predicted energy of {} flights by leave-one-out.", flights.size()),
+                      {{"errors", error_rows(flights).json()}});
 }
 
 Figure physical_figure(const mechanical::PhysicalModel& model, std::span<const mechanical::BinnedFlight> flights,
                        const std::string& id) {
-    return new_figure("physical", id,
-                      "Power over airspeed. A ring is a stretch of a flight of about 30 s; lines are the model in "
-                      "level flight, climbing and descending. The colour is the climb.",
-                      motion_described(model),
-                      {{"stretches", stretch_rows(flights).json()}, {"lines", line_rows(model).json()}});
+    return new_figure(
+        "physical", id,
+        "Power over airspeed. A ring is a bin of about 30 s of a flight; lines are the model in level flight, "
+        "climb and descent. The colour is the climb rate.",
+        fmt::format("Power over airspeed of {} bins of {} flights, and the model.", model.bins, model.flights.size()),
+        {{"bins", bin_rows(flights).json()}, {"lines", line_rows(model).json()}});
 }
 
 namespace {
 
 constexpr std::size_t battery_columns = 130;  // of a panel
 
-/// A curve as a screen shows it, broken where the record is not used.
+/// A downsampled curve, broken where the record is not used.
 void add_curve(FigureData& data, const battery::DischargeRecord& record, const std::vector<double>& voltage_v,
                std::string_view name) {
     for (const auto i : downsample_m4(record.time_s, voltage_v, battery_columns)) {
@@ -215,10 +176,10 @@ FigureData knot_rows(const battery::BatteryIdentification& identified) {
     FigureData data({"soc_percent", "voltage_v", "low_v", "high_v"}, {"origin"});
     for (std::size_t i = 0; i < curve.soc_percent.size(); ++i) {
         const double reach_v = errors_v.empty() ? std::nan("") : normal_half_width() * errors_v[i];
-        // Knots are rounded to their state of charge: the last one that was flown belongs to the flights.
-        const bool flown = curve.soc_percent[i] >= identified.observed_min_soc_percent - 1e-6;
+        // The last observed knot, whose state of charge is rounded, is from flights.
+        const bool is_observed = curve.soc_percent[i] >= identified.observed_min_soc_percent - 1e-6;
         data.add({curve.soc_percent[i], curve.voltage_v[i], curve.voltage_v[i] - reach_v, curve.voltage_v[i] + reach_v},
-                 {flown ? "from flights" : "after the chart"});
+                 {is_observed ? "from flights" : "by the chart"});
     }
     return data;
 }
@@ -238,8 +199,8 @@ Figure voltage_figure(const battery::BatteryIdentification& identified,
     }
     return new_figure(
         "voltage", id,
-        "The model's voltage follows from the measured current and the charge that was missing at the start. "
-        "Both are broken where the record contradicts itself: a current that the motor did not draw.",
+        "The modelled voltage is from the measured current and the charge missing at the start. Both curves are broken "
+        "where the current contradicts the motor's state.",
         description, {{"panels", panels}});
 }
 
@@ -248,16 +209,16 @@ Figure open_circuit_figure(const battery::BatteryIdentification& identified, con
     std::string caption = "Open-circuit voltage with the 95 % intervals of its knots.";
     if (identified.observed_min_soc_percent > 0.0) {
         caption += fmt::format(
-            " Below {:.0f} % no flight shows it: there it continues in parallel to the usual chart of {} {} cells, "
-            "less certain the further down.",
+            " Below {:.0f} %, the range of the flights, it is parallel to the chart of {} {} cells, with growing "
+            "uncertainty.",
             identified.observed_min_soc_percent, identified.cells, to_string(identified.chemistry));
     }
-    auto figure = new_figure(
-        "open_circuit", id, caption,
-        fmt::format("Open-circuit voltage over state of charge: {:.2f} V empty, {:.2f} V full, flown down to "
-                    "{:.0f} %.",
-                    curve.voltage_v.front(), curve.voltage_v.back(), identified.observed_min_soc_percent),
-        {{"knots", knot_rows(identified).json()}});
+    auto figure =
+        new_figure("open_circuit", id, caption,
+                   fmt::format("Open-circuit voltage over state of charge: {:.2f} V empty, {:.2f} V full, observed "
+                               "down to {:.0f} %.",
+                               curve.voltage_v.front(), curve.voltage_v.back(), identified.observed_min_soc_percent),
+                   {{"knots", knot_rows(identified).json()}});
     // The first layer is the intervals.
     if (identified.battery.intervals.open_circuit_standard_error_v.empty()) figure.spec["layer"].erase(0);
     return figure;

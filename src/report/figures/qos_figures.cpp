@@ -1,5 +1,6 @@
 #include "base/statistics.h"
 #include "base/text.h"
+#include "compute/qos_range.h"
 #include "mission/schedule.h"
 #include "mission/simulation.h"
 #include "report/figures/mission_figures.h"
@@ -38,8 +39,8 @@ std::vector<QosAxis> axes_of(const compute::ComputeModel& compute) {
     return axes;
 }
 
-/// Everything at its greatest quality.
-compute::Configuration greatest(const compute::ComputeModel& compute) {
+/// All parameters at their maximum.
+compute::Configuration max_configuration(const compute::ComputeModel& compute) {
     compute::Configuration run;
     for (std::size_t c = 0; c < compute.components.size(); ++c) {
         compute::RunningComponent running{c, {}};
@@ -72,7 +73,7 @@ VegaJson cell_rows(const QosMap& map) {
     return data.json();
 }
 
-/// The configurations that the missions run with both components on, and who runs them.
+/// Configurations with both components on, and the missions that run them.
 std::map<std::pair<double, double>, std::string> configurations(const QosMap& map,
                                                                 std::span<const SimulatedMission> missions) {
     std::map<std::pair<double, double>, std::string> marked;
@@ -85,9 +86,9 @@ std::map<std::pair<double, double>, std::string> configurations(const QosMap& ma
                 if (running.component == map.y.component) y = running.qos[map.y.parameter];
             }
             if (!x || !y) continue;
-            auto& who = marked[{*x, *y}];
-            if (who.ends_with(mission.title)) continue;
-            who += (who.empty() ? "" : ", ") + mission.title;
+            auto& titles = marked[{*x, *y}];
+            if (titles.ends_with(mission.title)) continue;
+            titles += (titles.empty() ? "" : ", ") + mission.title;
         }
     }
     return marked;
@@ -95,40 +96,37 @@ std::map<std::pair<double, double>, std::string> configurations(const QosMap& ma
 
 VegaJson marker_rows(const QosMap& map, std::span<const SimulatedMission> missions) {
     FigureData data({"x", "y"}, {"missions"});
-    for (const auto& [place, who] : configurations(map, missions)) data.add({place.first, place.second}, {who});
+    for (const auto& [point, titles] : configurations(map, missions)) data.add({point.first, point.second}, {titles});
     return data.json();
 }
 
 VegaJson published_rows(const std::vector<PublishedCell>& cells) {
     FigureData data({"x", "y", "soc_percent"});
-    for (const auto& cell : cells) {
-        data.add({std::midpoint(cell.fps_low, cell.fps_high), std::midpoint(cell.key_bits_low, cell.key_bits_high),
-                  cell.soc_percent});
-    }
+    for (const auto& cell : cells) data.add({cell.fps, cell.key_bits, cell.soc_percent});
     return data.json();
 }
 
-/// The least and the greatest of what can be delivered; both 0 if nothing can.
+/// Range of the finite values; both 0 without any.
 std::pair<double, double> range_of(const QosMap& map) {
     std::vector<double> known;
     std::ranges::copy_if(map.soc_percent, std::back_inserter(known), [](double soc) { return std::isfinite(soc); });
     if (known.empty()) return {0.0, 0.0};
-    const auto [least, greatest] = std::ranges::minmax_element(known);
-    return {*least, *greatest};
+    const auto [min_percent, max_percent] = std::ranges::minmax_element(known);
+    return {*min_percent, *max_percent};
 }
 
-/// Of the published cells that are cells of the map; std::nullopt if one is not.
+/// RMS difference from the published cells; std::nullopt if one is not a cell of the map.
 std::optional<double> rms_to_published(const QosMap& map, const std::vector<PublishedCell>& cells) {
-    const auto index = [](const std::vector<double>& nodes, double low) -> std::optional<std::size_t> {
-        for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
-            if (std::abs(nodes[i] - low) < 0.02 * (nodes.back() - nodes.front())) return i;
-        }
+    const auto index = [](const std::vector<double>& nodes, double middle) -> std::optional<std::size_t> {
+        const double tolerance = 0.02 * (nodes.back() - nodes.front());
+        for (std::size_t i = 0; i + 1 < nodes.size(); ++i)
+            if (std::abs(std::midpoint(nodes[i], nodes[i + 1]) - middle) < tolerance) return i;
         return std::nullopt;
     };
     double squares = 0.0;
     for (const auto& cell : cells) {
-        const auto i = index(map.x.nodes, cell.fps_low);
-        const auto j = index(map.y.nodes, cell.key_bits_low);
+        const auto i = index(map.x.nodes, cell.fps);
+        const auto j = index(map.y.nodes, cell.key_bits);
         if (!i || !j) return std::nullopt;
         squares += std::pow(cell_soc(map, *i, *j) - cell.soc_percent, 2);
     }
@@ -136,17 +134,7 @@ std::optional<double> rms_to_published(const QosMap& map, const std::vector<Publ
     return std::sqrt(squares / static_cast<double>(cells.size()));
 }
 
-/// Every node's QoS: the last parameter runs fastest, as in PowerProfile.
-std::vector<double> qos_of_node(const compute::PowerProfile& profile, std::size_t node) {
-    std::vector<double> qos(profile.axes.size());
-    for (std::size_t p = profile.axes.size(); p-- > 0;) {
-        qos[p] = profile.axes[p][node % profile.axes[p].size()];
-        node /= profile.axes[p].size();
-    }
-    return qos;
-}
-
-/// The line that a node belongs to: its parameters but the first.
+/// The parameters but the first.
 std::string line_name(const compute::PowerProfile& profile, const std::vector<double>& qos) {
     std::vector<std::string> parts;
     for (std::size_t p = 1; p < qos.size(); ++p) {
@@ -158,7 +146,7 @@ std::string line_name(const compute::PowerProfile& profile, const std::vector<do
 FigureData node_rows(const compute::PowerProfile& profile) {
     FigureData data({"qos", "power_w", "error_w", "low_w", "high_w"}, {"line"});
     for (std::size_t node = 0; node < profile.power_w.size(); ++node) {
-        const auto qos = qos_of_node(profile, node);
+        const auto qos = compute::grid_point(profile.axes, node);
         const double power_w = profile.power_w[node];
         const double error_w = profile.standard_error_w.empty() ? std::nan("") : profile.standard_error_w[node];
         const double reach_w = normal_half_width() * error_w;
@@ -168,7 +156,7 @@ FigureData node_rows(const compute::PowerProfile& profile) {
     return data;
 }
 
-/// The template's panel without what the profile does not have.
+/// The template's panel, with further parameters and errors only if the profile has them.
 VegaJson panel_of(const compute::Component& component, VegaJson panel) {
     const auto& profile = component.profile;
     auto& nodes = panel["layer"][0];
@@ -187,31 +175,16 @@ VegaJson panel_of(const compute::Component& component, VegaJson panel) {
         {{"nodes", node_rows(profile).json()}, {"parameter", parameter}, {"component", valid_utf8(component.name)}});
 }
 
-std::string profile_described(const compute::ComputeModel& compute) {
-    std::string text = "Profiled power of the software on board.";
-    for (const auto& [name, profile] : compute.components) {
-        const auto [least, greatest] = std::ranges::minmax_element(profile.power_w);
-        text += fmt::format(" {}: {:.2f} to {:.2f} W in {} configurations.", name, *least, *greatest,
-                            profile.power_w.size());
-    }
-    return text;
-}
-
 std::string profile_caption(const compute::ComputeModel& compute) {
     const auto any = [&](const auto& holds) {
         return std::ranges::any_of(compute.components,
                                    [&](const compute::Component& component) { return holds(component.profile); });
     };
-    std::string text = "Points were profiled, lines are interpolated between them, and nothing is extrapolated.";
-    if (any([](const auto& profile) { return !profile.standard_error_w.empty(); })) {
-        text += " Bars are 95 % intervals, of the standard errors that the profile has.";
-    }
-    if (any([](const auto& profile) { return profile.standard_error_w.empty(); })) {
-        text += " A component without bars has a profile without standard errors.";
-    }
-    return text +
-           " The powers of the components that run add up; a component that runs on top of another is "
-           "profiled as what it adds.";
+    std::string text = "Points were profiled; lines are interpolated.";
+    if (any([](const auto& profile) { return !profile.standard_error_w.empty(); })) text += " Bars are 95 % intervals.";
+    if (any([](const auto& profile) { return profile.standard_error_w.empty(); }))
+        text += " Profiles without bars are without standard errors.";
+    return text + " In a mission, the powers of the running components add up.";
 }
 
 }  // namespace
@@ -220,12 +193,12 @@ std::optional<QosMap> qos_map(const mission::MissionSetup& mission) {
     const auto axes = axes_of(mission.compute);
     if (axes.size() < 2) return std::nullopt;
     QosMap map{axes[0], axes[1], {}, ""};
-    auto run = greatest(mission.compute);
+    auto run = max_configuration(mission.compute);
     for (std::size_t a = 2; a < axes.size(); ++a) {
         map.others += fmt::format("{}{} {:g}", map.others.empty() ? "" : ", ", axes[a].name, axes[a].nodes.back());
     }
     mission::SimulationOptions steps;
-    steps.integration_s = 1.0;  // constant or smooth power: the error is far below a hundredth of a percent
+    steps.integration_s = 1.0;  // power is constant or smooth: error below 0.01 %
     for (const auto phase : flight::all_phases) steps.output_s = std::max(steps.output_s, mission.duration_s[phase]);
     for (const double y : map.y.nodes) {
         run[map.y.component].qos[map.y.parameter] = y;
@@ -238,51 +211,40 @@ std::optional<QosMap> qos_map(const mission::MissionSetup& mission) {
     return map;
 }
 
-bool have_same_model(const mission::MissionSetup& a, const mission::MissionSetup& b) {
-    const auto text = [](const mission::MissionSetup& mission) {
-        return mission.mechanical ? to_toml(*mission.mechanical) : std::string();
-    };
-    return text(a) == text(b);
+std::string model_key(const mission::MissionSetup& mission) {
+    return mission.mechanical ? to_toml(*mission.mechanical) : std::string();
 }
 
-bool have_same_software(const mission::MissionSetup& a, const mission::MissionSetup& b) {
-    return std::ranges::equal(
-        a.compute.components, b.compute.components, [](const compute::Component& one, const compute::Component& other) {
-            return one.name == other.name && one.profile.parameters == other.profile.parameters &&
-                   one.profile.axes == other.profile.axes && one.profile.power_w == other.profile.power_w;
-        });
+std::string software_key(const mission::MissionSetup& mission) {
+    std::string key;
+    for (const auto& [name, profile] : mission.compute.components)
+        key += fmt::format("{} {} {} {}\n", name, profile.parameters, profile.axes, profile.power_w);
+    return key;
 }
 
-/// The cruise along the same pieces of power, or both by their models' curves.
-bool have_same_path(const mission::MissionSetup& a, const mission::MissionSetup& b) {
-    if (!a.cruise_path || !b.cruise_path) return !a.cruise_path && !b.cruise_path;
-    return a.cruise_path->pieces->time_s == b.cruise_path->pieces->time_s &&
-           a.cruise_path->pieces->energy_j == b.cruise_path->pieces->energy_j;
-}
-
-bool have_same_map(const mission::MissionSetup& a, const mission::MissionSetup& b) {
-    const auto nameless = [](battery::Battery battery) {
-        battery.name.clear();
-        return to_toml(battery);
-    };
-    return a.duration_s.values == b.duration_s.values && a.initial_soc_percent == b.initial_soc_percent &&
-           nameless(a.battery) == nameless(b.battery) && have_same_software(a, b) && a.phase_clock == b.phase_clock &&
-           have_same_model(a, b) && have_same_path(a, b);
+std::string map_key(const mission::MissionSetup& mission) {
+    auto battery = mission.battery;
+    battery.name.clear();
+    auto key = fmt::format("{} {} {}\n", mission.duration_s.values, mission.initial_soc_percent,
+                           static_cast<int>(mission.phase_clock)) +
+               to_toml(battery) + software_key(mission) + model_key(mission);
+    if (const auto& cruise = mission.cruise_path)
+        key += fmt::format("{} {}
+", cruise->pieces->time_s, cruise->pieces->energy_j);
+    return key;
 }
 
 Figure qos_map_figure(const QosMap& map, std::span<const SimulatedMission> missions,
                       const std::vector<PublishedCell>& published, const std::string& id) {
-    const auto [least, greatest] = range_of(map);
+    const auto [min_percent, max_percent] = range_of(map);
     std::string caption =
-        "State of charge at the end if one configuration ran throughout. A cell is the mean of its corners; "
-        "diamonds are the configurations that the missions run.";
+        "Final state of charge if one configuration runs throughout. A cell is the mean of its corners; diamonds are "
+        "the configurations of the missions.";
     if (!map.others.empty()) caption += fmt::format(" With {}.", map.others);
     const auto rms = rms_to_published(map, published);
     if (rms) {
-        caption += fmt::format(
-            " Discs: the paper's Fig. 4, digitised, on the same colours: one that agrees is seen by its rim "
-            "alone. RMS difference over {} cells {:.2f} points.",
-            published.size(), *rms);
+        caption += fmt::format(" Discs: the paper's Fig. 4, digitised. RMS difference over {} cells {:.2f} points.",
+                               published.size(), *rms);
     }
     const auto x = valid_utf8(map.x.name);
     const auto y = valid_utf8(map.y.name);
@@ -290,7 +252,7 @@ Figure qos_map_figure(const QosMap& map, std::span<const SimulatedMission> missi
         "quality", id, caption,
         fmt::format("Final state of charge over {} and {}: from {:.1f} % to {:.1f} % where one configuration runs "
                     "throughout.",
-                    map.x.name, map.y.name, least, greatest),
+                    map.x.name, map.y.name, min_percent, max_percent),
         {{"x", x},
          {"x_from", x + " from"},
          {"x_domain", {map.x.nodes.front(), map.x.nodes.back()}},
@@ -303,7 +265,8 @@ Figure qos_map_figure(const QosMap& map, std::span<const SimulatedMission> missi
 }
 
 Figure profile_figure(const compute::ComputeModel& compute, const std::string& id) {
-    auto figure = new_figure("profile", id, profile_caption(compute), profile_described(compute));
+    auto figure = new_figure("profile", id, profile_caption(compute),
+                             "Profiled power of on-board software over its quality of service.");
     auto panels = VegaJson::array();
     for (const auto& component : compute.components) panels.push_back(panel_of(component, figure.spec["concat"][0]));
     figure.spec["concat"] = panels;

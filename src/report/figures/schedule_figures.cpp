@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -14,91 +15,68 @@ namespace {
 using Missions = std::span<const SimulatedMission>;
 
 VegaJson curve_rows(Missions missions) {
-    FigureData data({"time_s", "soc_percent", "power_w", "mission_number"}, {"phase"});
-    for (std::size_t m = 0; m < missions.size(); ++m) {
-        for (const auto& row : missions[m].simulation.curve.rows) {
-            data.add({row.time_s, row.soc_percent, row.power_w, static_cast<double>(m)}, {phase_word(row.phase)});
-        }
-    }
+    FigureData data({"time_s", "soc_percent", "power_w"}, {"mission", "phase"});
+    for (const auto& mission : missions)
+        for (const auto& row : mission.simulation.curve.rows)
+            data.add({row.time_s, row.soc_percent, row.power_w}, {mission.title, phase_word(row.phase)});
     return data.json();
-}
-
-/// The missions' titles, once: rows of curves have only their numbers.
-FigureData title_rows(Missions missions) {
-    FigureData data({"mission_number"}, {"mission"});
-    for (std::size_t m = 0; m < missions.size(); ++m) {
-        data.add({static_cast<double>(m)}, {missions[m].title});
-    }
-    return data;
-}
-
-VegaJson title_list(Missions missions) {
-    auto titles = VegaJson::array();
-    for (const auto& mission : missions) titles.push_back(mission.title);
-    return titles;
-}
-
-/// Dashes tell apart what colours may not: of missions that share a colour, and in print.
-VegaJson dashes_of(Missions missions) {
-    const VegaJson patterns{{1, 0}, {7, 3}, {2, 2}, {9, 2, 2, 2}, {4, 1}};
-    auto range = VegaJson::array();
-    for (std::size_t m = 0; m < missions.size(); ++m) range.push_back(patterns[m % patterns.size()]);
-    return range;
 }
 
 VegaJson published_rows(Missions missions, const PublishedFigures& published) {
-    FigureData data({"time_s", "soc_percent", "mission_number"});
-    for (std::size_t m = 0; m < missions.size(); ++m) {
-        const auto found = published.soc.find(missions[m].mission.setup.name);
+    FigureData data({"time_s", "soc_percent"}, {"mission"});
+    for (const auto& mission : missions) {
+        const auto found = published.soc.find(mission.mission.setup.name);
         if (found == published.soc.end()) continue;
         const auto& [time_s, soc_percent] = found->second;
-        for (std::size_t i = 0; i < time_s.size(); ++i) data.add({time_s[i], soc_percent[i], static_cast<double>(m)});
+        for (std::size_t i = 0; i < time_s.size(); ++i) data.add({time_s[i], soc_percent[i]}, {mission.title});
     }
     return data.empty() ? VegaJson() : data.json();
 }
 
-/// Where 5 to 95 % of the flights that were drawn are.
+/// Range of 5 to 95 % of the drawn flights.
 VegaJson band_rows(Missions missions) {
-    FigureData data({"time_s", "p05_percent", "p95_percent", "mission_number"});
-    for (std::size_t m = 0; m < missions.size(); ++m) {
-        const auto& samples = missions[m].simulation.summary.samples;
+    FigureData data({"time_s", "p05_percent", "p95_percent"}, {"mission"});
+    for (const auto& mission : missions) {
+        const auto& samples = mission.simulation.summary.samples;
         if (!samples) continue;
         for (const auto& band : samples->bands)
-            data.add({band.time_s, band.p05_percent, band.p95_percent, static_cast<double>(m)});
+            data.add({band.time_s, band.p05_percent, band.p95_percent}, {mission.title});
     }
     return data.empty() ? VegaJson() : data.json();
 }
 
-/// The reserves that the missions ask for, each once.
+/// The missions' reserves, each once.
 VegaJson reserve_rows(Missions missions) {
+    std::set<double> reserves;
+    for (const auto& mission : missions) reserves.insert(mission.simulation.summary.reserve_soc_percent);
+    reserves.erase(0.0);
     FigureData data({"reserve_percent"});
-    std::vector<double> drawn;
-    for (const auto& simulated : missions) {
-        const double reserve_percent = simulated.simulation.summary.reserve_soc_percent;
-        if (reserve_percent <= 0.0 || std::ranges::count(drawn, reserve_percent) > 0) continue;
-        drawn.push_back(reserve_percent);
-        data.add({reserve_percent});
-    }
+    for (const double reserve_percent : reserves) data.add({reserve_percent});
     return data.empty() ? VegaJson() : data.json();
 }
 
-/// The phases, where all missions have the same.
-VegaJson phase_rows(Missions missions) {
-    const auto& durations_s = missions.front().mission.setup.duration_s;
-    const bool all_alike = std::ranges::all_of(
-        missions, [&](const auto& other) { return other.mission.setup.duration_s.values == durations_s.values; });
-    if (!all_alike) return nullptr;
+VegaJson phase_rows(const mission::Mission& mission) {
     FigureData data({"start_s", "end_s", "middle_s"}, {"word"});
-    const auto timeline = mission::timeline_of(durations_s);
+    const auto timeline = mission::timeline_of(mission.setup.duration_s);
     for (const auto phase : flight::all_phases) {
-        const double start_s = timeline.start_s[phase];
-        const double end_s = timeline.end_s[phase];
-        data.add({start_s, end_s, std::midpoint(start_s, end_s)}, {phase_word(phase)});
+        if (mission.setup.duration_s[phase] <= 0.0) continue;
+        data.add({timeline.start_s[phase], timeline.end_s[phase],
+                  std::midpoint(timeline.start_s[phase], timeline.end_s[phase])},
+                 {phase_word(phase)});
     }
     return data.json();
 }
 
-/// A bar a segment: when a mission runs which configuration.
+/// The phases, if all missions have the same.
+VegaJson common_phase_rows(Missions missions) {
+    const auto& first = missions.front().mission;
+    const bool are_equal = std::ranges::all_of(missions, [&](const auto& other) {
+        return other.mission.setup.duration_s.values == first.setup.duration_s.values;
+    });
+    return are_equal ? phase_rows(first) : VegaJson();
+}
+
+/// A bar for each segment of a schedule.
 VegaJson strip_rows(Missions missions) {
     FigureData data({"start_s", "end_s", "compute_w"}, {"mission", "phase", "runs"});
     for (const auto& simulated : missions) {
@@ -113,38 +91,31 @@ VegaJson strip_rows(Missions missions) {
     return data.json();
 }
 
-std::string schedules_described(Missions missions) {
-    std::string text = "State of charge over the mission.";
-    for (const auto& mission : missions) {
-        text += fmt::format(" {}.", describe(mission.simulation.summary));
-    }
-    return text;
-}
-
 }  // namespace
 
 Figure schedule_figure(Missions missions, const PublishedFigures& published, const std::string& id) {
     double end_s = 0.0;
+    auto titles = VegaJson::array();
     auto shown = VegaJson::array();
+    std::string description = "State of charge over the mission.";
     for (const auto& mission : missions) {
         end_s = std::max(end_s, mission.simulation.summary.duration_s);
+        titles.push_back(mission.title);
         shown.push_back({{"mission", mission.title}});
+        description += fmt::format(" {}.", describe(mission.simulation.summary));
     }
     const auto bands = band_rows(missions);
     const auto reserves = reserve_rows(missions);
     const auto points = published_rows(missions, published);
-    std::string caption =
-        "A click on the legend hides a mission. Below: what each schedule runs when, coloured by its power.";
-    if (!bands.is_null()) caption += " Shaded: 5 to 95 % of the flights drawn.";
-    if (!reserves.is_null()) caption += " Level dashes: the reserve.";
+    std::string caption = "A click on the legend hides a mission. Below: the schedules, coloured by their power.";
+    if (!bands.is_null()) caption += " Shaded: 5 to 95 % of the drawn flights.";
+    if (!reserves.is_null()) caption += " Dashed horizontal lines: the reserve.";
     if (!points.is_null()) caption += " Points: the paper's Fig. 3, digitised.";
-    return new_figure("schedule", id, caption, schedules_described(missions),
+    return new_figure("schedule", id, caption, description,
                       {{"end_s", end_s},
-                       {"missions", title_list(missions)},
+                       {"missions", titles},
                        {"shown", shown},
-                       {"titles", title_rows(missions).csv()},
-                       {"dashes", dashes_of(missions)},
-                       {"phases", phase_rows(missions)},
+                       {"phases", common_phase_rows(missions)},
                        {"bands", bands},
                        {"reserves", reserves},
                        {"curves", curve_rows(missions)},
@@ -156,7 +127,7 @@ namespace {
 
 VegaJson point_rows(const std::vector<UtilityPoint>& points) {
     FigureData data({"soc_percent", "utility"}, {"mission", "kind"});
-    for (const bool planned : {true, false}) {  // a planned one stands behind a given one that is as good
+    for (const bool planned : {true, false}) {  // a planned one is drawn below an equal given one
         for (const auto& point : points) {
             if (point.planned != planned) continue;
             data.add({point.soc_percent, point.utility}, {point.mission, planned ? "planned" : "given"});
@@ -165,38 +136,34 @@ VegaJson point_rows(const std::vector<UtilityPoint>& points) {
     return data.json();
 }
 
-/// Points that a reader cannot tell apart share a name.
-std::vector<UtilityPoint> named_together(const std::vector<UtilityPoint>& points) {
-    constexpr double near_fraction = 0.02;  // of what the points span
-    const auto span_of = [&](double UtilityPoint::*value) {
-        const auto [low, high] = std::ranges::minmax_element(
-            points, [&](const UtilityPoint& a, const UtilityPoint& b) { return a.*value < b.*value; });
-        return (*high).*value - (*low).*value;
-    };
-    const double soc_span = span_of(&UtilityPoint::soc_percent);
-    const double utility_span = span_of(&UtilityPoint::utility);
-    std::vector<UtilityPoint> together;
+/// Points within 2 % of the range get a common name.
+std::vector<UtilityPoint> merge_neighbours(const std::vector<UtilityPoint>& points) {
+    constexpr double near_fraction = 0.02;
+    const auto [min_soc, max_soc] = std::ranges::minmax(points, {}, &UtilityPoint::soc_percent);
+    const auto [min_utility, max_utility] = std::ranges::minmax(points, {}, &UtilityPoint::utility);
+    const double near_percent = near_fraction * (max_soc.soc_percent - min_soc.soc_percent);
+    const double near_utility = near_fraction * (max_utility.utility - min_utility.utility);
+    std::vector<UtilityPoint> merged;
     for (const auto& point : points) {
-        const auto twin = std::ranges::find_if(together, [&](const UtilityPoint& other) {
-            return std::abs(other.soc_percent - point.soc_percent) <= near_fraction * soc_span &&
-                   std::abs(other.utility - point.utility) <= near_fraction * utility_span;
+        const auto twin = std::ranges::find_if(merged, [&](const UtilityPoint& other) {
+            return std::abs(other.soc_percent - point.soc_percent) <= near_percent &&
+                   std::abs(other.utility - point.utility) <= near_utility;
         });
-        if (twin == together.end()) {
-            together.push_back(point);
-        } else {
+        if (twin == merged.end())
+            merged.push_back(point);
+        else
             twin->mission += ", " + point.mission;
-        }
     }
-    return together;
+    return merged;
 }
 
-/// Names to the right of their points, at the figure's right end to the left.
+/// Names to the right of their points, at the right end of the figure to the left.
 VegaJson name_rows(const std::vector<UtilityPoint>& points) {
     FigureData data({"soc_percent", "utility"}, {"mission", "side"});
     constexpr double right_end = 0.65;
     double max_percent = 0.0;
     for (const auto& point : points) max_percent = std::max(max_percent, point.soc_percent);
-    for (const auto& point : named_together(points)) {
+    for (const auto& point : merge_neighbours(points)) {
         data.add({point.soc_percent, point.utility},
                  {point.mission, point.soc_percent > right_end * max_percent ? "left" : "right"});
     }
@@ -210,17 +177,6 @@ VegaJson bar_rows(const mission::Mission& mission) {
         data.add({running.start_s, running.end_s, std::midpoint(running.start_s, running.end_s),
                   power_w(component.profile, running.qos), running.end_s - running.start_s},
                  {component.name, describe_qos(component, running.qos)});
-    }
-    return data.json();
-}
-
-VegaJson phase_rows(const mission::Mission& mission) {
-    FigureData data({"begin_s", "middle_s"}, {"phase"});
-    const auto timeline = mission::timeline_of(mission.setup.duration_s);
-    for (const auto phase : flight::all_phases) {
-        if (mission.setup.duration_s[phase] <= 0.0) continue;
-        data.add({timeline.start_s[phase], timeline.start_s[phase] + mission.setup.duration_s[phase] / 2.0},
-                 {phase_word(phase)});
     }
     return data.json();
 }
@@ -257,36 +213,35 @@ Figure utility_figure(const SimulatedMission& planned, const std::vector<Utility
     for (const auto& point : points) {
         description += fmt::format(" {}: {:.4g} at {:.2f} %.", point.mission, point.utility, point.soc_percent);
     }
-    auto figure =
-        new_figure("utility", id,
-                   "The utility of the schedules, by that of the planned mission, over what they leave. To the left "
-                   "of the reserve a schedule spends what was to be kept; above the bound there is none that keeps it. "
-                   "What runs after the battery's end counts nothing.",
-                   description,
-                   {{"reserve", planned.simulation.summary.reserve_soc_percent},
-                    {"bound", planned.planned->bound},
-                    {"points", point_rows(points)},
-                    {"names", name_rows(points)}});
+    auto figure = new_figure(
+        "utility", id,
+        "Utility of the schedules, by that of the planned mission, over final state of charge. Schedules to the "
+        "left of the reserve do not keep it; none that keeps it exceeds the bound. Software has no utility after "
+        "the battery's end.",
+        description,
+        {{"reserve", planned.simulation.summary.reserve_soc_percent},
+         {"bound", planned.planned->bound},
+         {"points", point_rows(points)},
+         {"names", name_rows(points)}});
     if (!planned.planned->feasible) figure.spec["layer"].erase(1);  // the bound
     return figure;
 }
 
 Figure strip_figure(const SimulatedMission& planned, const std::string& id) {
     const auto& mission = planned.mission;
-    auto description = fmt::format("What {} runs when.", planned.title);
+    auto description = fmt::format("Schedule of {}.", planned.title);
     for (const auto& running : run_intervals(mission)) {
         const auto& component = mission.setup.compute.components[running.component];
         description += fmt::format(" {} {} from {:.0f} to {:.0f} s.", component.name,
                                    describe_qos(component, running.qos), running.start_s, running.end_s);
     }
-    constexpr double min_part = 0.13;  // of the time: a shorter bar has no room for its words
+    constexpr double min_fraction = 0.13;  // of the time: a shorter bar has no room for text
     const double duration_s = mission::timeline_of(mission.setup.duration_s).duration_s;
-    return new_figure("strip", id, "What runs when, coloured by its power; a component without a bar is off.",
-                      description,
+    return new_figure("strip", id, "The schedule, coloured by power; a component without a bar is off.", description,
                       {{"bars", bar_rows(mission)},
                        {"phases", phase_rows(mission)},
                        {"duration_s", duration_s},
-                       {"has_room", fmt::format("datum.long_s > {}", min_part * duration_s)}});
+                       {"has_room", fmt::format("datum.long_s > {}", min_fraction * duration_s)}});
 }
 
 }  // namespace flightwatt::report

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <atomic>
 #include <iterator>
+#include <regex>
 #include <set>
 
 #include <fmt/format.h>
@@ -21,10 +22,6 @@ namespace flightwatt::report {
 namespace {
 
 std::string folders_of(const ReportFlight& flight) { return fmt::format("{}", fmt::join(flight.folders, ", ")); }
-
-bool are_of_folders(std::span<const ReportFlight> flights) {
-    return std::ranges::any_of(flights, [](const auto& flight) { return !flight.folders.empty(); });
-}
 
 std::vector<std::string> cells_of(const ReportFlight& flight, std::size_t sortie) {
     const auto& phases = flight.phases.sorties[sortie].phases;
@@ -40,91 +37,90 @@ std::vector<std::string> cells_of(const ReportFlight& flight, std::size_t sortie
     const auto facts = summarize_flight(flight, sortie);
     const auto& counter_wh = whole.counter_energy_wh;
     const bool has_closure = facts.energy_wh && counter_wh && *counter_wh > 0.0;
-    // Few flights have several sorties: no column for them.
-    std::vector<std::string> cells{
-        flight.phases.sorties.size() > 1 ? fmt::format("{}, sortie {}", flight.name, sortie + 1) : flight.name,
-        flight::describe_aircraft(flight.series.aircraft_id, flight.series.aircraft_name),
-        facts.date.empty() ? "-" : facts.date, facts.distance_m ? fixed(*facts.distance_m / 1000.0, 2) : "-",
-        fixed(facts.height_m, 0)};
-    cells.insert(cells.end(), durations.values.begin(), durations.values.end());
-    cells.insert(cells.end(), means.values.begin(), means.values.end());
-    cells.insert(
-        cells.end(),
-        {fixed(facts.energy_wh, 3), fixed(counter_wh, 3),
-         has_closure ? fmt::format("{:+.2f}", units::percentage(*facts.energy_wh - *counter_wh, *counter_wh)) : "-",
-         power.has_power() ? fmt::format("{}", whole.gaps) : "-", fmt::format("{}", flight.warnings.size()),
-         std::string(fitted_part(flight))});
-    return cells;
+    using enum flight::Phase;
+    return {flight.phases.sorties.size() > 1 ? fmt::format("{}, sortie {}", flight.name, sortie + 1) : flight.name,
+            folders_of(flight),
+            flight::describe_aircraft(flight.series.aircraft_id, flight.series.aircraft_name),
+            facts.date.empty() ? "-" : facts.date,
+            fixed(facts.energy_wh, 3),
+            means[cruise],
+            durations[cruise],
+            fmt::format("{}", flight.warnings.size()),
+            std::string(fitted_part(flight)),
+            facts.distance_m ? fixed(*facts.distance_m / 1000.0, 2) : "-",
+            fixed(facts.height_m, 0),
+            durations[takeoff],
+            durations[landing],
+            means[takeoff],
+            means[landing],
+            fixed(counter_wh, 3),
+            has_closure ? fmt::format("{:+.2f}", units::percentage(*facts.energy_wh - *counter_wh, *counter_wh)) : "-",
+            power.has_power() ? fmt::format("{}", whole.gaps) : "-"};
 }
 
-/// "flight-20_07_03__12_17_45": what of a flight's name may stand in names of files and in links, each once.
+/// "flight-20_07_03__12_17_45": unique names of files and anchors.
 std::vector<std::string> flight_ids(std::span<const ReportFlight> flights) {
-    constexpr std::size_t longest = 60;
+    constexpr std::size_t max_chars = 60;
+    static const std::regex other_chars("[^0-9A-Za-z_]+");
     std::vector<std::string> ids;
     std::set<std::string> taken;
-    ids.reserve(flights.size());
     for (const auto& flight : flights) {
-        std::string id;
-        for (const char c : flight.name.substr(0, longest)) {
-            const bool is_plain =
-                (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-            if (is_plain || (!id.empty() && id.back() != '-')) id += is_plain ? c : '-';
-        }
-        if (id.empty() || !taken.insert(id).second) id += fmt::format("-{}", ids.size() + 1);
-        ids.push_back("flight-" + id);
+        auto id = "flight-" + std::regex_replace(flight.name.substr(0, max_chars), other_chars, "-");
+        if (!taken.insert(id).second) id += fmt::format("-{}", ids.size() + 1);
+        ids.push_back(std::move(id));
     }
     return ids;
 }
 
-std::string flights_table_html(std::span<const ReportFlight> flights, const std::vector<std::string>& ids) {
-    HtmlTableOptions options{"Flights: durations, mean power, energy, closure, gaps and warnings", true};
-    options.minor = {"sortie",      "gaps",          "counter [Wh]",      "closure [%]", "fitted",
-                     "height [m]",  "distance [km]", "take\u2011off [W]", "landing [W]", "take\u2011off [s]",
-                     "landing [s]", "date",          "aircraft",          "warnings"};
-    for (std::size_t f = 0; f < flights.size(); ++f) {
-        if (!flights[f].rejected.empty()) continue;
-        options.links.insert(options.links.end(), flights[f].phases.sorties.size(), ids[f]);
-    }
-    return table_html(flights_table(flights), options);
-}
-
-/// Every reason once, with the flights that it holds for, in their order.
-TextTable excluded_table(std::span<const ReportFlight> flights) {
-    TextTable table{{"flights", "excluded", "reason"}, {}};
-    const auto add = [&](const std::string& flight, const std::string& what, const std::string& reason) {
-        const auto same =
-            std::ranges::find_if(table.rows, [&](const auto& row) { return row[1] == what && row[2] == reason; });
-        if (same == table.rows.end()) {
-            table.rows.push_back({flight, what, reason});
-        } else {
-            same->front() += ", " + flight;
-        }
-    };
-    for (const auto& flight : flights) {
-        if (!flight.rejected.empty()) add(flight.name, "rejected", flight.rejected);
-        for (const auto& reason : flight.exclusions) {
-            const auto name = flight.name + ": ";
-            add(flight.name, "from the model", reason.starts_with(name) ? reason.substr(name.size()) : reason);
-        }
-    }
+TextTable flights_table(std::span<const ReportFlight> flights) {
+    // The most important columns first: narrow screens hide those on the right.
+    TextTable table{{"flight", "folder", "aircraft", "date", "energy [Wh]", "cruise [W]", "cruise [s]", "warnings",
+                     "fitted", "distance [km]", "height [m]", "take\u2011off [s]", "landing [s]", "take\u2011off [W]",
+                     "landing [W]", "counter [Wh]", "closure [%]", "gaps"},
+                    {}};
+    std::vector<std::vector<std::vector<std::string>>> rows(flights.size());
+    for_each_in_parallel(flights.size(), [&](std::size_t f) {
+        if (!flights[f].rejected.empty()) return;
+        for (std::size_t s = 0; s < flights[f].phases.sorties.size(); ++s) rows[f].push_back(cells_of(flights[f], s));
+    });
+    for (auto& of_flight : rows) std::ranges::move(of_flight, std::back_inserter(table.rows));
+    if (std::ranges::any_of(flights, [](const auto& flight) { return !flight.folders.empty(); })) return table;
+    table.header.erase(table.header.begin() + 1);
+    for (auto& row : table.rows) row.erase(row.begin() + 1);
     return table;
 }
 
-constexpr auto excluded_caption = "What was excluded, and why";
-
-std::string excluded_html(std::span<const ReportFlight> flights) {
-    const auto table = excluded_table(flights);
-    if (table.rows.empty()) return paragraph("Nothing was excluded.");
-    return "<h3>Excluded, and why</h3>\n" + table_html(table, {excluded_caption, false, {}});
+void add_flights_table(Section& section, std::span<const ReportFlight> flights, const std::vector<std::string>& ids) {
+    HtmlTableOptions options{.sortable = true};
+    for (std::size_t f = 0; f < flights.size(); ++f)
+        if (flights[f].rejected.empty())
+            options.links.insert(options.links.end(), flights[f].phases.sorties.size(), ids[f]);
+    add_table(section, {flights_table(flights), "Flights", "tab:flights"}, options);
 }
 
-/// The edges of a flight's phases with what was seen there and what the autopilot says of them.
+void add_excluded(Section& section, std::span<const ReportFlight> flights) {
+    std::vector<Exclusion> exclusions;
+    for (const auto& flight : flights) {
+        if (!flight.rejected.empty()) exclusions.push_back({flight.name, "rejected", flight.rejected});
+        const auto name = flight.name + ": ";
+        for (const auto& reason : flight.exclusions)
+            exclusions.push_back(
+                {flight.name, "from the model", reason.starts_with(name) ? reason.substr(name.size()) : reason});
+    }
+    if (exclusions.empty()) {
+        section.html += paragraph("Nothing was excluded.");
+        return;
+    }
+    section.html += heading("Excluded");
+    add_table(section, {exclusions_table(exclusions), "Excluded flights and phases", "tab:excluded"});
+}
+
+/// Edges of a flight's phases with their evidence.
 std::string edges_html(const ReportFlight& flight) {
     TextTable table{{"edge", "time [s]", "evidence", "the autopilot"}, {}};
-    for (const auto& edge : edges_of(flight)) {
-        table.rows.push_back({edge.name, fixed(edge.time_s, 1), edge.evidence, edge.verdict});
-    }
-    return table_html(table, {"Where the phases end, and what was seen there", false, {}});
+    for (const auto& edge : edges_of(flight))
+        table.rows.push_back({edge.name, fixed(edge.time_s, 1), edge.evidence, edge.agreement});
+    return table_html(table, "Edges of the phases");
 }
 
 /// "20 Faulty, 2020-07-03 12:17, 23 min 55 s in the air, 19.52 km, up to 118 m".
@@ -139,122 +135,104 @@ std::string summary_of(const ReportFlight& flight) {
     return text;
 }
 
-/// So many flights stand in the page as they are: text to search, and tables without JavaScript. More are opened one by
-/// one, and are compressed until then.
+/// More flights are compressed until they are opened; others can be searched, and their tables need no JavaScript.
 constexpr std::size_t max_plain_flights = 20;
 
-struct PartOptions {
+struct FlightPart {
     std::string id;
     bool is_open = false;
-    bool compressed = false;
+    bool is_compressed = false;
 };
 
-/// A figure whose tables are packed where all is compressed.
-void add_to_part(Section& part, Figure figure, const PartOptions& options) {
-    part.html += options.compressed ? figure_html(figure, packed_tables(figure.spec)) : figure_html(figure);
-    part.figures.push_back(std::move(figure));
+/// Contents of a flight below its summary.
+Section contents_of(const ReportFlight& flight, const mechanical::MechanicalModel* model, const FlightPart& part) {
+    Section section;
+    const auto add = [&](Figure figure) {
+        section.html += figure_html(figure, part.is_compressed ? packed_tables(figure.spec) : figure.spec);
+        section.figures.push_back(std::move(figure));
+    };
+    section.html += paragraph("From " + flight.log, "soft") + list_html(flight.warnings, "warning");
+    const bool has_power = !power_track(flight.series).empty();
+    if (has_power) add(flight_figure(flight, model, part.id + "-power"));
+    section.html += edges_html(flight);
+    if (!has_power) return section;
+    if (auto track = track_figure(flight, part.id + "-track")) add(std::move(*track));
+    return section;
 }
 
-/// What is seen of an open flight, below its summary.
-Section inside_of(const ReportFlight& flight, const std::optional<mechanical::MechanicalModel>& model,
-                  const PredictedFlight* predicted, const PartOptions& options) {
-    Section part;
-    part.html += paragraph("From " + flight.log, "soft");
-    if (!flight.warnings.empty()) part.html += "<div class=\"warning\">" + list_html(flight.warnings) + "</div>\n";
-    if (power_track(flight.series).empty()) {
-        part.html += edges_html(flight);
-    } else {
-        add_to_part(part, flight_figure(flight, model, options.id + "-power"), options);
-        part.html += edges_html(flight);
-        if (auto track = track_figure(flight, options.id + "-track")) add_to_part(part, std::move(*track), options);
-    }
-    if (predicted != nullptr)
-        add_to_part(part, in_flight_figure(flight.name, *predicted, options.id + "-predicted"), options);
-    return part;
+Section flight_section(const ReportFlight& flight, const mechanical::MechanicalModel* model, const FlightPart& part) {
+    auto section = contents_of(flight, model, part);
+    if (part.is_compressed)
+        section.html = "<script type=\"text/plain\" class=\"block\">" + compressed_block(section.html) + "</script>\n";
+    section.html = fmt::format(
+        "<details class=\"flight\" id=\"{}\"{}><summary>{} <span>{}</span></summary>\n{}</details>\n", part.id,
+        part.is_open ? " open" : "", html_escaped(flight.name), html_escaped(summary_of(flight)), section.html);
+    return section;
 }
 
-Section flight_part(const ReportFlight& flight, const std::optional<mechanical::MechanicalModel>& model,
-                    const PredictedFlight* predicted, const PartOptions& options) {
-    auto part = inside_of(flight, model, predicted, options);
-    if (options.compressed)
-        part.html = "<script type=\"text/plain\" class=\"block\">" + compressed_block(part.html) + "</script>\n";
-    part.html = fmt::format(
-        "<details class=\"flight\" id=\"{}\"{}><summary>{} <span>{}</span></summary>\n{}</details>\n", options.id,
-        options.is_open ? " open" : "", html_escaped(flight.name), html_escaped(summary_of(flight)), part.html);
-    return part;
-}
-
-/// The parts of the flights that were not rejected; the first one is open.
-std::vector<Section> flight_parts(std::span<const ReportFlight> flights,
-                                  std::span<const std::optional<mechanical::MechanicalModel>> models,
-                                  const std::map<std::string, PredictedFlight>& predicted,
-                                  const std::vector<std::string>& ids, const Progress& progress) {
-    std::vector<Section> parts(flights.size());
-    const auto is_shown = [](const ReportFlight& flight) { return flight.rejected.empty(); };
-    const auto first = static_cast<std::size_t>(std::ranges::find_if(flights, is_shown) - flights.begin());
+/// The accepted flights; the first one is open.
+std::vector<Section> flight_sections(std::span<const ReportFlight> flights, std::span<const BatchContent> batches,
+                                     const std::vector<std::string>& ids, const Progress& progress) {
+    std::vector<Section> sections(flights.size());
+    const auto first = static_cast<std::size_t>(
+        std::ranges::find_if(flights, [](const auto& flight) { return flight.rejected.empty(); }) - flights.begin());
     const bool are_many = flights.size() > max_plain_flights;
     std::atomic<std::size_t> done = 0;
-    const std::optional<mechanical::MechanicalModel> no_model;
     for_each_in_parallel(flights.size(), [&](std::size_t f) {
         if (progress) progress(done++, flights.size());
-        if (!is_shown(flights[f])) return;
-        const auto found = predicted.find(flights[f].name);
-        const auto batch = flights[f].batch;
-        const auto& model = batch < models.size() ? models[batch] : no_model;
-        parts[f] = flight_part(flights[f], model, found == predicted.end() ? nullptr : &found->second,
-                               {ids[f], f == first, are_many && f != first});
+        if (!flights[f].rejected.empty()) return;
+        const auto* batch = flights[f].batch < batches.size() ? &batches[flights[f].batch] : nullptr;
+        const auto* model = batch != nullptr && batch->fit ? &batch->fit->model : nullptr;
+        sections[f] = flight_section(flights[f], model, {ids[f], f == first, are_many && f != first});
     });
-    return parts;
+    return sections;
 }
 
 }  // namespace
 
-TextTable flights_table(std::span<const ReportFlight> flights) {
-    TextTable table{{"flight", "aircraft", "date", "distance [km]", "height [m]", "take\u2011off [s]", "cruise [s]",
-                     "landing [s]", "take\u2011off [W]", "cruise [W]", "landing [W]", "energy [Wh]", "counter [Wh]",
-                     "closure [%]", "gaps", "warnings", "fitted"},
-                    {}};
-    const bool has_folders = are_of_folders(flights);
-    if (has_folders) table.header.insert(table.header.begin() + 1, "folder");
-    std::vector<std::vector<std::vector<std::string>>> rows(flights.size());
-    for_each_in_parallel(flights.size(), [&](std::size_t f) {
-        if (!flights[f].rejected.empty()) return;
-        for (std::size_t s = 0; s < flights[f].phases.sorties.size(); ++s) {
-            rows[f].push_back(cells_of(flights[f], s));
-            if (has_folders) rows[f].back().insert(rows[f].back().begin() + 1, folders_of(flights[f]));
+TextTable exclusions_table(std::span<const Exclusion> exclusions) {
+    constexpr std::size_t max_names = 10;
+    std::vector<std::vector<const Exclusion*>> groups;
+    for (const auto& exclusion : exclusions) {
+        const auto same = std::ranges::find_if(groups, [&](const auto& group) {
+            return group.front()->from == exclusion.from && group.front()->reason == exclusion.reason;
+        });
+        (same == groups.end() ? groups.emplace_back() : *same).push_back(&exclusion);
+    }
+    TextTable table{{"flights", "number", "excluded", "reason"}, {}};
+    for (const auto& group : groups) {
+        std::vector<std::string> names;
+        for (const auto* exclusion : group) names.push_back(exclusion->flight);
+        if (names.size() > max_names) {
+            names.resize(max_names);
+            names.push_back(fmt::format("{} more", group.size() - max_names));
         }
-    });
-    for (auto& of_flight : rows) std::ranges::move(of_flight, std::back_inserter(table.rows));
+        table.rows.push_back({fmt::format("{}", fmt::join(names, ", ")), fmt::format("{}", group.size()),
+                              group.front()->from, group.front()->reason});
+    }
     return table;
 }
 
-std::vector<CaptionedTable> flights_tables(std::span<const ReportFlight> flights) {
-    return {{flights_table(flights), "Flights", "tab:flights"},
-            {excluded_table(flights), excluded_caption, "tab:excluded"}};
-}
-
-Section flights_section(std::span<const ReportFlight> flights,
-                        std::span<const std::optional<mechanical::MechanicalModel>> models,
-                        const std::map<std::string, PredictedFlight>& predicted, const Progress& progress) {
+Section flights_section(std::span<const ReportFlight> flights, std::span<const BatchContent> batches,
+                        const Progress& progress) {
     Section section{"flights", "Flights"};
     const auto rejected =
         std::ranges::count_if(flights, [](const ReportFlight& flight) { return !flight.rejected.empty(); });
-    section.html += paragraph(
-        fmt::format("{} logs, {} of them rejected. Distance is over ground, height above the ground at lift-off, "
-                    "dates are UTC. Durations, mean power and energy are those of "
-                    "the power samples between lift-off and touchdown; counter is the autopilot's "
-                    "own energy counter over the same time, closure how much the integral lies "
-                    "above it. A click on a column sorts.",
-                    flights.size(), rejected));
+    section.html += paragraph(fmt::format(
+        "{} logs, {} of them rejected. Distance is over ground, height above the ground at lift-off, dates are UTC. "
+        "Durations, mean power and energy are those of the power samples between lift-off and touchdown; counter is "
+        "the autopilot's energy counter over the same time, closure the difference of the integral from it. A click on "
+        "a column sorts.",
+        flights.size(), rejected));
     const auto ids = flight_ids(flights);
-    section.html += flights_table_html(flights, ids);
-    section.html += excluded_html(flights);
-    section.html += "<h3>Each flight</h3>\n";
+    add_flights_table(section, flights, ids);
+    add_excluded(section, flights);
+    section.html += heading("Each flight");
     if (flights.size() > max_plain_flights)
         section.html +=
             "<noscript><p class=\"warning\">The flights below are compressed: they open with JavaScript "
             "only.</p></noscript>\n";
-    for (auto& part : flight_parts(flights, models, predicted, ids, progress)) {
+    for (auto& part : flight_sections(flights, batches, ids, progress)) {
         section.html += part.html;
         std::ranges::move(part.figures, std::back_inserter(section.figures));
     }

@@ -34,23 +34,22 @@ Fields<Reach> record_fields(const Reach*) {
 namespace flightwatt::report {
 namespace {
 
-/// Flights drawn a mission: the chance of landing below the reserve then has a standard error of 1.6 percent points at
-/// most. A policy plans the rest of each anew in every slot, some thousand times the work: 3.5 points.
+/// Drawn flights: the standard error of a probability is at most 1.6 percent points, or 3.5 of a policy, which replans
+/// each flight in every slot (a thousand times the work).
 constexpr std::size_t flights_drawn = 1000;
 constexpr std::size_t flights_drawn_of_policy = 200;
-/// Of the band over time.
+/// Points of the band over time.
 constexpr std::size_t band_times = 61;
 
-/// Flies a mission, planned first where it is yet to be, or in flight where a policy does; flights are drawn
-/// where something says how they differ. The answer is the same at every run.
-SimulatedMission fly_for_report(const mission::MissionVariant& mission, const mission::SimulationOptions& steps) {
+/// Plans a mission without a schedule, simulates it, and draws flights if uncertainties are known. Deterministic.
+SimulatedMission simulate_one(const mission::MissionVariant& mission, const mission::SimulationOptions& steps) {
     SimulatedMission simulated;
     mission::PreparedMission prepared;
-    std::optional<mission::MissionSummary> summary;  // of a plan, as finely simulated as it was made
+    std::optional<mission::MissionSummary> summary;  // of a plan, with its time steps
     const auto* problem = std::get_if<mission::PlanningProblem>(&mission);
     if (problem != nullptr && !problem->adaptive) {
         const auto plan = plan_mission(*problem);
-        simulated.planned = PlannedSchedule{plan.plan.feasible, plan.plan.utility_bound, plan.margin_percent};
+        simulated.planned = PlannedSchedule{plan.plan.feasible, plan.plan.utility_bound};
         prepared = {problem->setup, plan.mission.schedule, std::nullopt, mission::ScheduleOrigin::planned};
         summary = summary_with_origin(plan);
     } else {
@@ -69,20 +68,20 @@ SimulatedMission fly_for_report(const mission::MissionVariant& mission, const mi
     return simulated;
 }
 
-/// None where the question has no answer; `why` then says why not.
-template <typename Question>
-auto ask(const Question& question, std::string* why = nullptr) -> std::optional<decltype(question())> {
+/// The result of `compute`, or std::nullopt and the reason.
+template <typename Compute>
+auto try_compute(const Compute& compute, std::string* reason = nullptr) -> std::optional<decltype(compute())> {
     try {
-        return question();
+        return compute();
     } catch (const NoResultError& error) {
-        if (why != nullptr) *why = error.what();
+        if (reason != nullptr) *reason = error.what();
     } catch (const InputError&) {
-        if (why != nullptr) *why = "its schedule does not say what runs in a longer cruise";
+        if (reason != nullptr) *reason = "its schedule ends with the planned cruise";
     }
     return std::nullopt;
 }
 
-std::string in_words(const mission::Reach& reach) {
+std::string describe_reach(const mission::Reach& reach) {
     if (reach.unit == mission::ReachUnit::circles) return fmt::format("{:.0f} circles", reach.limit.value);
     if (reach.unit == mission::ReachUnit::return_m)
         return fmt::format("{:.2f} km out and back", reach.limit.value / 1000.0);
@@ -102,42 +101,36 @@ std::string modelled_landing(const mission::MissionSummary& summary) {
     return fmt::format("Lands with {:.1f} %", *summary.final_soc_percent);
 }
 
-std::string landing_line(const SimulatedMission& simulated) {
-    const auto& summary = simulated.simulation.summary;
+std::string landing_line(const mission::MissionSummary& summary) {
     const auto landing = modelled_landing(summary);
     return summary.by_flights ? fmt::format("{} ({})", landing, describe(*summary.by_flights, 1)) : landing;
 }
 
-std::string reserve_line(const SimulatedMission& simulated) {
-    const auto& summary = simulated.simulation.summary;
-    const bool asks = summary.reserve_soc_percent > 0.0;  // else it is enough that the battery lasts
+std::string reserve_line(const mission::MissionSummary& summary) {
+    const bool has_reserve = summary.reserve_soc_percent > 0.0;  // else the battery has to last
     const auto reserve = fmt::format("its reserve of {:.3g} %", summary.reserve_soc_percent);
-    if (!summary.samples) {
-        const auto modelled = summary.keeps_reserve ? (asks ? "Keeps " + reserve : std::string("The battery lasts"))
-                                                    : (asks ? "Does not keep " + reserve : "The battery does not last");
-        return modelled + " as modelled; nothing says how flights differ, so nobody knows the chance";
-    }
+    const auto kept = has_reserve ? "Keeps " + reserve : "The battery lasts";
+    const auto missed = has_reserve ? "Does not keep " + reserve : "The battery does not last";
+    if (!summary.samples)
+        return (summary.keeps_reserve ? kept : missed) + " as modelled; no uncertainty is known, and so no probability";
     const auto& samples = *summary.samples;
     const auto& below = samples.probability_below_reserve_95;
-    return fmt::format("{} with a chance of {:.1f} % ({} flights drawn: 95 % interval {:.1f} to {:.1f})",
-                       asks ? "Keeps " + reserve : "The battery lasts",
+    return fmt::format("{} with a probability of {:.1f} % ({} flights drawn: 95 % interval {:.1f} to {:.1f})", kept,
                        units::percentage(1.0 - samples.probability_below_reserve, 1.0), samples.samples,
                        units::percentage(1.0 - below.high, 1.0), units::percentage(1.0 - below.low, 1.0));
 }
 
-std::string now_flown(const SimulatedMission& simulated, const mission::Reach& reach) {
-    if (reach.unit != mission::ReachUnit::cruise_s) return "";
-    return fmt::format(" (now {})", duration_text(simulated.mission.setup.duration_s[flight::Phase::cruise]));
-}
-
 std::string reach_line(const SimulatedMission& simulated, const MissionAssessment& answer) {
-    if (!answer.reach) return "How long it could fly is not known: " + answer.no_reach;
-    auto line = fmt::format("At most {}{} as modelled", in_words(*answer.reach), now_flown(simulated, *answer.reach));
+    if (!answer.reach) return "Reach unknown: " + answer.no_reach_reason;
+    auto line = fmt::format("At most {}", describe_reach(*answer.reach));
+    if (answer.reach->unit == mission::ReachUnit::cruise_s)
+        line += fmt::format(" (now {})", duration_text(simulated.mission.setup.duration_s[flight::Phase::cruise]));
+    line += " as modelled";
     if (answer.reach_at_95_percent)
-        line += fmt::format(", {} with a chance of {:.0f} %{}", in_words(*answer.reach_at_95_percent),
+        line += fmt::format(", {} with a probability of {:.0f} %{}", describe_reach(*answer.reach_at_95_percent),
                             units::percentage(reach_probability, 1.0),
                             answer.cruise_differs_now ? " if that is stated" : "");
-    if (answer.is_unplanned) line += ", with as little software as it may run";
+    if (answer.is_unplanned) line += ", with the minimum of software";
     return line;
 }
 
@@ -145,51 +138,45 @@ std::string utility_line(const SimulatedMission& simulated) {
     const auto& summary = simulated.simulation.summary;
     auto line = fmt::format("Utility {:.4g}", *summary.utility);
     if (simulated.planned && simulated.planned->feasible)
-        line += fmt::format(", of at most {:.4g} that any schedule could have", simulated.planned->bound);
+        line += fmt::format(", of at most {:.4g} for any schedule", simulated.planned->bound);
     return line;
 }
 
-std::string as_sentence(std::string text) {
-    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
-    return text;
-}
-
-/// Whether less of what the mission flies would keep the reserve.
+/// Whether a shorter flight keeps the reserve.
 bool shorter_helps(const SimulatedMission& simulated, const mission::Reach& reach) {
     return reach.unit != mission::ReachUnit::cruise_s ||
            reach.limit.value < simulated.mission.setup.duration_s[flight::Phase::cruise];
 }
 
-/// "fly 24 min of cruise at most". Such a length has to be stated: where nothing states that of the mission, flights
-/// differ in it, and a longer one on average may land as well.
+/// "fly 24 min of cruise at most". Without a stated duration the flights' durations vary, so it has to be stated.
 std::string shorter_way(const SimulatedMission& simulated, const MissionAssessment& answer,
                         const mission::Reach& reach) {
-    if (!answer.cruise_differs_now) return fmt::format("fly {} at most", in_words(reach));
+    if (!answer.cruise_differs_now) return fmt::format("fly {} at most", describe_reach(reach));
     const double now_s = simulated.mission.setup.duration_s[flight::Phase::cruise];
     return "fly " + mission::describe_stated_cruise(reach.limit.value, now_s);
 }
 
-/// What would make the mission keep its reserve; empty where nothing is known that would.
+/// Ways to keep the reserve; empty without any.
 std::string remedy_line(const SimulatedMission& simulated, const MissionAssessment& answer) {
     const auto& reach = answer.reach_at_95_percent ? answer.reach_at_95_percent : answer.reach;
     const double capacity_ah = simulated.mission.setup.battery.capacity_ah;
     std::vector<std::string> ways;
     const bool shorter = reach && shorter_helps(simulated, *reach);
-    // Beyond what the least software reaches, no plan does.
+    // A plan does not reach further than the minimum of software.
     const bool is_in_reach = answer.reach_at_95_percent && (!shorter || reach->unit != mission::ReachUnit::cruise_s);
     if (simulated.planned && is_in_reach) ways.emplace_back("plan it with --probability 0.95");
     if (shorter) ways.push_back(shorter_way(simulated, answer, *reach));
     if (answer.capacity_ah)
-        ways.push_back(fmt::format("take a battery of {:.2f} Ah (it has {:.4g})", *answer.capacity_ah, capacity_ah));
+        ways.push_back(fmt::format("use a battery of {:.2f} Ah (now {:.4g})", *answer.capacity_ah, capacity_ah));
     if (ways.empty()) return "";
     const auto aim = answer.reach_at_95_percent
-                         ? fmt::format("For a chance of {:.0f} %", units::percentage(reach_probability, 1.0))
+                         ? fmt::format("For a probability of {:.0f} %", units::percentage(reach_probability, 1.0))
                          : std::string("To keep it");
     return fmt::format("{}: {}", aim, fmt::join(ways, ", or "));
 }
 
-/// By the capacity that the mission has.
-ReserveStatus verdict_as_modelled(const mission::MissionSummary& summary) {
+/// With the mission's capacity.
+ReserveStatus modelled_status(const mission::MissionSummary& summary) {
     if (!summary.keeps_reserve) return ReserveStatus::fails;
     const bool is_likely = !summary.samples || summary.samples->probability_below_reserve <= 1.0 - reach_probability;
     return is_likely ? ReserveStatus::keeps : ReserveStatus::may_keep;
@@ -209,7 +196,7 @@ std::vector<SimulatedMission> simulate_for_report(const std::vector<mission::Mis
         steps.output_s = mission::timeline_of(setup.duration_s).duration_s / rows;
         auto title = valid_utf8(setup.name);
         if (const int times = ++seen[title]; times > 1) title += fmt::format(" ({})", times);
-        simulated.push_back(fly_for_report(mission, steps));
+        simulated.push_back(simulate_one(mission, steps));
         simulated.back().title = std::move(title);
     }
     return simulated;
@@ -217,42 +204,44 @@ std::vector<SimulatedMission> simulate_for_report(const std::vector<mission::Mis
 
 MissionAssessment assess_mission(const SimulatedMission& simulated, const mission::MissionLoader& mission_of) {
     MissionAssessment answer;
-    const auto mission = ask([&] { return mission_of({.allow_unplanned = true}); });
+    const auto mission = try_compute([&] { return mission_of({.allow_unplanned = true}); });
     if (!mission) {
-        answer.no_reach = "its file cannot be read again";
+        answer.no_reach_reason = "its file cannot be read again";
         return answer;
     }
     answer.is_unplanned = std::holds_alternative<mission::PlanningProblem>(*mission);
-    answer.reach = ask([&] { return find_reach(mission_of); }, &answer.no_reach);
-    const bool knows_chance = simulated.simulation.summary.samples.has_value();
-    if (answer.reach && knows_chance)
-        answer.reach_at_95_percent = ask([&] { return find_reach(mission_of, reach_probability); });
+    answer.reach = try_compute([&] { return find_reach(mission_of); }, &answer.no_reach_reason);
+    if (answer.reach && simulated.simulation.summary.samples)
+        answer.reach_at_95_percent = try_compute([&] { return find_reach(mission_of, reach_probability); });
     answer.cruise_differs_now = answer.reach_at_95_percent &&
                                 answer.reach_at_95_percent->unit == mission::ReachUnit::cruise_s &&
                                 mission::cruise_duration_varies(setup_of(*mission));
-    if (verdict_as_modelled(simulated.simulation.summary) == ReserveStatus::keeps) return answer;
-    const auto chance = answer.reach_at_95_percent ? std::optional(reach_probability) : std::nullopt;
-    const auto capacity_ah = ask([&] { return min_capacity_ah(*mission, chance); }).value_or(std::nullopt);
-    // Of the least software, which may land with the pack as it is where what was planned may not.
+    if (modelled_status(simulated.simulation.summary) == ReserveStatus::keeps) return answer;
+    const auto probability = answer.reach_at_95_percent ? std::optional(reach_probability) : std::nullopt;
+    const auto capacity_ah = try_compute([&] { return min_capacity_ah(*mission, probability); }).value_or(std::nullopt);
+    // It is that of the minimum of software, which the present pack may suffice for.
     if (capacity_ah && *capacity_ah > simulated.mission.setup.battery.capacity_ah) answer.capacity_ah = capacity_ah;
     return answer;
 }
 
-ReserveStatus verdict_of(const SimulatedMission& simulated) {
+ReserveStatus reserve_status(const SimulatedMission& simulated) {
     const auto& summary = simulated.simulation.summary;
-    const auto verdict = verdict_as_modelled(summary);
+    const auto status = modelled_status(summary);
     const bool keeps_by_flights = !summary.by_flights || summary.by_flights->keeps_reserve;
-    return verdict == ReserveStatus::keeps && !keeps_by_flights ? ReserveStatus::may_keep : verdict;
+    return status == ReserveStatus::keeps && !keeps_by_flights ? ReserveStatus::may_keep : status;
 }
 
 std::vector<std::string> card_lines(const SimulatedMission& simulated, const MissionAssessment& answer) {
-    std::vector<std::string> lines{landing_line(simulated), reserve_line(simulated), reach_line(simulated, answer)};
+    std::vector<std::string> lines{landing_line(simulated.simulation.summary),
+                                   reserve_line(simulated.simulation.summary), reach_line(simulated, answer)};
     if (auto warning = capacity_warning(simulated.mission.setup.battery); !warning.empty())
         lines.insert(lines.begin() + 1, "Warning: " + warning);
     if (simulated.simulation.summary.utility) lines.push_back(utility_line(simulated));
-    if (const auto& model = simulated.mission.setup.power_model)
-        lines.push_back(as_sentence(mission::describe(*model)));
-    if (verdict_as_modelled(simulated.simulation.summary) == ReserveStatus::keeps) return lines;
+    if (const auto& model = simulated.mission.setup.power_model) {
+        lines.push_back(mission::describe(*model));
+        lines.back().front() = static_cast<char>(std::toupper(static_cast<unsigned char>(lines.back().front())));
+    }
+    if (modelled_status(simulated.simulation.summary) == ReserveStatus::keeps) return lines;
     if (auto remedy = remedy_line(simulated, answer); !remedy.empty()) lines.push_back(std::move(remedy));
     return lines;
 }

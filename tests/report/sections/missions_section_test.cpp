@@ -40,8 +40,8 @@ TEST(QosMap, IsThePapersGridAndEndsWhereTheMissionsEnd) {
 
 TEST(QosMap, NeedsTwoParameters) {
     EXPECT_FALSE(qos_map(paper_mission("mechanical-only").setup));
-    EXPECT_TRUE(have_same_map(paper_mission("phased").setup, paper_mission("adaptive").setup));
-    EXPECT_FALSE(have_same_map(paper_mission("phased").setup, paper_mission("computing-only").setup));
+    EXPECT_EQ(map_key(paper_mission("phased").setup), map_key(paper_mission("adaptive").setup));
+    EXPECT_NE(map_key(paper_mission("phased").setup), map_key(paper_mission("computing-only").setup));
 }
 
 TEST(MissionSections, HaveEachModelAndSoftwareOnce) {

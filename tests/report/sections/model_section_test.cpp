@@ -34,7 +34,7 @@ TEST(ValidationSection, ShowsScoresAndWarnsOfFewFlights) {
     ASSERT_EQ(section.figures.size(), 1U);
     EXPECT_EQ(section.figures[0].id, "validation-errors");
     EXPECT_THAT(section.html, HasSubstr("constant_mean"));
-    EXPECT_THAT(section.html, HasSubstr("Coverage over 4 flights means little: each counts for 25 points."));
+    EXPECT_THAT(section.html, HasSubstr("Coverage of 4 flights is coarse: each counts for 25 percent."));
 }
 
 std::vector<mechanical::MeasuredFlight> measured_motions(std::size_t count) {
@@ -54,16 +54,14 @@ TEST(PhysicalSection, ShowsConstantsTrialsAndFigure) {
     EXPECT_THAT(section->html, HasSubstr("half the 95 % interval"));
     EXPECT_THAT(section->html, HasSubstr("kept"));
     ASSERT_EQ(section->figures.size(), 1u);
-    EXPECT_THAT(section->figures.front().description, HasSubstr("160 stretches of 4 flights"));
+    EXPECT_THAT(section->figures.front().description, HasSubstr("160 bins of 4 flights"));
     EXPECT_EQ(section->figures.front().spec["layer"].size(), 2u);
 }
 
 TEST(PhysicalSection, KeepsItsTables) {
-    const auto tables = physical_section(measured_motions(4)).value().tables;
-    ASSERT_EQ(tables.size(), 2U);
-    EXPECT_EQ(tables[0].label, "tab:physical");
-    EXPECT_FALSE(tables[0].table.rows.empty());
-    EXPECT_FALSE(tables[1].table.rows.empty());
+    const auto latex = physical_section(measured_motions(4)).value().latex;
+    EXPECT_THAT(latex, HasSubstr("\\label{tab:physical}"));
+    EXPECT_THAT(latex, HasSubstr("\\label{tab:physical-terms}"));
     EXPECT_FALSE(physical_section({}));
 }
 

@@ -70,22 +70,22 @@ TEST(MissionAnswer, IsWhatPlanSaysOfTheLongestCruise) {
 
 TEST(MissionAnswer, SaysWhatWouldKeepTheReserve) {
     const auto simulated = flown("invariant-32fps-448bit");
-    EXPECT_EQ(verdict_of(simulated), ReserveStatus::fails);
+    EXPECT_EQ(reserve_status(simulated), ReserveStatus::fails);
     const auto answer = assess_mission(simulated, reading_of("invariant-32fps-448bit"));
     ASSERT_TRUE(answer.capacity_ah);
     EXPECT_GT(*answer.capacity_ah, simulated.mission.setup.battery.capacity_ah);
     const auto lines = card_lines(simulated, answer);
     EXPECT_THAT(lines.front(), StartsWith("Runs empty after 9 min"));
-    EXPECT_THAT(lines.back(), StartsWith("For a chance of 95 %: fly 7 min"));
-    EXPECT_THAT(lines.back(), HasSubstr("or take a battery of"));
+    EXPECT_THAT(lines.back(), StartsWith("For a probability of 95 %: fly 7 min"));
+    EXPECT_THAT(lines.back(), HasSubstr("or use a battery of"));
 }
 
 TEST(MissionAnswer, KnowsNoChanceWhereNothingSaysHowFlightsDiffer) {
     const auto simulated = flown("computing-only");
     const auto answer = assess_mission(simulated, reading_of("computing-only"));
     EXPECT_FALSE(answer.reach_at_95_percent);
-    EXPECT_EQ(verdict_of(simulated), ReserveStatus::keeps);
-    EXPECT_THAT(card_lines(simulated, answer), Contains(HasSubstr("nobody knows the chance")));
+    EXPECT_EQ(reserve_status(simulated), ReserveStatus::keeps);
+    EXPECT_THAT(card_lines(simulated, answer), Contains(HasSubstr("and so no probability")));
     EXPECT_TRUE(record_json(MissionOutput{&simulated, &answer})["probability_below_reserve"].is_null());
 }
 
@@ -111,9 +111,9 @@ TEST(MissionAnswer, WarnsOfACapacityThatContradictsTheFlights) {
 
 TEST(MissionAnswer, IsNotSureOfALandingThatTheFlightsContradict) {
     const auto simulated = simulate_for_report({on_pack_of_flights(6.4)}).front();
-    EXPECT_EQ(verdict_of(simulated), ReserveStatus::keeps) << "with their capacity too";
+    EXPECT_EQ(reserve_status(simulated), ReserveStatus::keeps) << "with their capacity too";
     const auto fails = simulate_for_report({on_pack_of_flights(0.8)}).front();
-    EXPECT_EQ(verdict_of(fails), ReserveStatus::may_keep);
+    EXPECT_EQ(reserve_status(fails), ReserveStatus::may_keep);
     const auto answer = assess_mission(fails, reading_of("computing-only"));
     EXPECT_THAT(card_lines(fails, answer).front(), HasSubstr("(the battery fails after "));
     const auto json = record_json(MissionOutput{&fails, &answer});
@@ -132,7 +132,7 @@ TEST(MissionAnswer, OffersAPlanWithAMarginWhereOneIsInReach) {
     };
     const auto last_line = [](const mission::MissionLoader& reading) {
         const auto simulated = simulate_for_report({reading({.allow_unplanned = true})}).front();
-        EXPECT_EQ(verdict_of(simulated), ReserveStatus::may_keep);
+        EXPECT_EQ(reserve_status(simulated), ReserveStatus::may_keep);
         const auto answer = assess_mission(simulated, reading);
         EXPECT_TRUE(answer.is_unplanned);
         return card_lines(simulated, answer).back();
@@ -152,7 +152,7 @@ TEST(MissionAnswer, SaysThatALengthHasToBeStatedWhereFlightsDifferInIt) {
     const auto lines = card_lines(simulated, answer);
     EXPECT_THAT(lines.back(), HasSubstr("fly a stated cruise of at most 9 min 34 s (duration_s = { cruise = 57"));
     EXPECT_THAT(lines.back(), HasSubstr("of the model's flights differ from flight to flight)"));
-    EXPECT_THAT(lines, Contains(HasSubstr("with a chance of 95 % if that is stated")));
+    EXPECT_THAT(lines, Contains(HasSubstr("with a probability of 95 % if that is stated")));
 }
 
 TEST(MissionAnswer, CountsCirclesOfAPath) {

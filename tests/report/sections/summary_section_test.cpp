@@ -51,7 +51,7 @@ TEST(SummarySection, WarnsOfFlightsAndOfWhatIsMissing) {
     EXPECT_THAT(html, Not(HasSubstr("class=\"cards\""))) << "no missions";
 }
 
-TEST(PredictionLine, HasTheBestModelFirst) {
+TEST(PredictionLines, HaveTheBestModelFirst) {
     const auto predicted = [](const std::string& model, double wh) {
         mechanical::FlightPrediction prediction{model, {}};
         prediction.phases[flight::Phase::cruise] = mechanical::EnergyEstimate{wh};
@@ -59,11 +59,11 @@ TEST(PredictionLine, HasTheBestModelFirst) {
     };
     mechanical::ValidatedFlight flight{"f", {}, {}, {predicted("fourier", 12.0), predicted("physical", 10.5)}};
     flight.measured_wh[flight::Phase::cruise] = 10.0;
-    EXPECT_EQ(
-        prediction_line(std::vector{flight}),
-        "The energy of a flight that is not in the fit is off by 5.0 % (physical, airspeed known), 20.0 % (fourier), on "
-        "average over 1 flight left out in turn");
-    EXPECT_EQ(prediction_line({}), "");
+    const std::vector<ValidatedBatch> batches{{"", {flight}, true}, {"b", {flight}, false}, {"c", {}, false}};
+    const std::string errors =
+        "Mean error of the energy of a flight that is not in the fit: 5.0 % (physical, airspeed known), 20.0 % "
+        "(fourier); over 1 flight, each left out in turn";
+    EXPECT_THAT(prediction_lines(batches), ElementsAre(errors + " (SYNTHETIC flights)", "b: " + errors));
 }
 
 }  // namespace
