@@ -229,8 +229,7 @@ std::string map_key(const mission::MissionSetup& mission) {
                            static_cast<int>(mission.phase_clock)) +
                to_toml(battery) + software_key(mission) + model_key(mission);
     if (const auto& cruise = mission.cruise_path)
-        key += fmt::format("{} {}
-", cruise->pieces->time_s, cruise->pieces->energy_j);
+        key += fmt::format("{} {}\n", cruise->pieces->time_s, cruise->pieces->energy_j);
     return key;
 }
 
