@@ -242,7 +242,7 @@ int finish(const cli::StageCall& call, const BatchArguments& arguments, batch::B
         fit.excluded = options.load.excluded;
         fit.keep = options.load.keep;
         fit.input_fingerprint = made_from;
-        const auto table = cli::table_of(fit.model, published);
+        const auto table = cli::model_table(fit.model, published);
         if (is_known) cli::note(call, "nothing has changed: the model is as it was");
         if (!is_known) write_model(fit, table, options);
         warn_of_model(call, fit.model);

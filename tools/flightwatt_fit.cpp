@@ -60,7 +60,7 @@ int fit(const cli::StageCall& call, FitStageArguments arguments) {
     flight::PerPhase<mechanical::ErrorAnalysis> analyses;
     if (arguments.with_errors || arguments.with_intervals || curves_file) analyses = mechanical::analyse_model(fitted);
 
-    const auto table = cli::table_of(
+    const auto table = cli::model_table(
         fitted.model, published,
         arguments.with_intervals ? mechanical::TableIntervals::present : mechanical::TableIntervals::absent);
     std::optional<mechanical::PhysicalFit> physical;

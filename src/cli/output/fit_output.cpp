@@ -101,7 +101,7 @@ std::string describe(const mechanical::ModelValidation& validation, bool has_phy
 
 }  // namespace
 
-TextTable table_of(const mechanical::MechanicalModel& model,
+TextTable model_table(const mechanical::MechanicalModel& model,
                    const std::optional<mechanical::MechanicalModel>& published, mechanical::TableIntervals intervals) {
     return published ? table_one_comparison(*published, model, intervals) : table_one(model, intervals);
 }

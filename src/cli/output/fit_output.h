@@ -15,7 +15,7 @@
 namespace flightwatt::cli {
 
 /// Table I of a model, with a published one for comparison.
-TextTable table_of(const mechanical::MechanicalModel& model,
+TextTable model_table(const mechanical::MechanicalModel& model,
                    const std::optional<mechanical::MechanicalModel>& published,
                    mechanical::TableIntervals intervals = mechanical::TableIntervals::absent);
 

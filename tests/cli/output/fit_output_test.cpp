@@ -32,8 +32,8 @@ TEST(TableText, RefusesAnotherEnding) {
 
 TEST(TableOf, StandsBesideAPublishedModelWhereThereIsOne) {
     const auto model = test::published_model();
-    const auto alone = table_of(model, std::nullopt);
-    const auto beside = table_of(model, model);
+    const auto alone = model_table(model, std::nullopt);
+    const auto beside = model_table(model, model);
     EXPECT_EQ(alone.header.size(), 4U) << "a name and three phases";
     EXPECT_EQ(beside.header.size(), 7U);
     EXPECT_GT(beside.rows.size(), alone.rows.size()) << "durations and differences stand below";
