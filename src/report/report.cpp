@@ -57,7 +57,7 @@ void add_model(Draft& page, const BatchContent& content, const SectionScope& of)
         page.answers.warnings.push_back(of_folder(of, warning));
     const auto& published = page.input.published_file;
     ReportModel model{content.fit->model, origin_of_model(content, of), content.fit->bands};
-    model.table_one = cli::table_of(
+    model.table_one = cli::model_table(
         content.fit->model, published ? std::optional(mechanical::read_mechanical_model(*published)) : std::nullopt,
         mechanical::TableIntervals::present);
     sections.push_back(model_section(model, page.input.figures, of.id("model")));

@@ -30,10 +30,10 @@ esac
 LOG = '"$SOURCE/logs/opterra_synthetic_01.data"'
 LOGS = '"$SOURCE"/logs/opterra_synthetic_0[1-4].data'
 COMMANDS = [
-    f'flightwatt fit {LOGS} --errors -o m.toml --json; flightwatt predict {LOG} --model m.toml --until 300 --remaining 300 --json'
+    f'flightwatt fit {LOGS} --errors -o m.toml --json; flightwatt predict {LOG} --model m.toml --at 300 --remaining 300 --json'
     ' --battery "$SOURCE/fits/battery/synthetic-3s.toml"',
-    f"flightwatt fit {LOGS} --model best -o m.toml --json",
-    f"flightwatt validate {LOGS} --until 300 --json",
+    f"flightwatt fit {LOGS} --model-kind best -o m.toml --json",
+    f"flightwatt validate {LOGS} --at 300 --json",
     f"flightwatt replay {LOGS} --order 1 --json --mission \"$SOURCE/missions/paper/adaptive-replanned.toml\"",
     f"flightwatt export {LOG} --json -o track.kml; flightwatt export {LOG} --json -o columns.csv",
     'flightwatt simulate "$SOURCE/missions/paper/adaptive-replanned.toml" --samples 100 --json',
@@ -42,7 +42,7 @@ COMMANDS = [
     'flightwatt plan "$SOURCE/missions/paper/phased.toml" --longest-cruise --probability 0.9 --json',
     'flightwatt profile --check-interpolation "$SOURCE/fits/compute/tx2-detection.csv" --json',
     'flightwatt diff "$SOURCE"/missions/paper/phased.toml "$SOURCE"/missions/paper/plan.toml --json',
-    f'flightwatt watch - --json --decide --mission "$SOURCE/missions/synthetic/survey-path.toml" < {LOG}',
+    f'flightwatt watch - --json --replan --mission "$SOURCE/missions/synthetic/survey-path.toml" < {LOG}',
 ]
 
 

@@ -54,7 +54,7 @@ TEST(MissionOnAPath, IsIntegratedAsItIsSimulated) {
                                 {5.0, 30.0});
     mission.setup.battery.resistance_ohm = 0.2;
     mission.setup.reserve_soc_percent = 10.0;
-    ASSERT_GT(mission.setup.cruise_path->pieces->size(), 20U);
+    ASSERT_GT(mission.setup.cruise_path->pieces->time_s.size(), 20U);
     const double simulated = *simulate(mission).summary.final_soc_percent;
     EXPECT_NEAR(surplus_percent(mission), simulated - 10.0, 1e-7);
     battery::Discharge state{{mission.setup.initial_soc_percent}};

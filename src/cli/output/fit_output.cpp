@@ -160,10 +160,10 @@ Fields<FitOutput> record_fields(const FitOutput*) {
             field("weighting", at(&R::model, &M::weighting), "`--weights`"),
             field("phases", phases, "phases of the model"),
             field("flights", at(&R::model, &M::flights), "flights of the fit"),
-            field("validation", at(&R::model, &M::validation), "hold-out errors, of `--model best`", optional_key{}),
+            field("validation", at(&R::model, &M::validation), "hold-out errors, of `--model-kind best`", optional_key{}),
             field("warnings", at(&R::model, mechanical::model_warnings), "warnings"),
             field("notes", at(&R::model, mechanical::fit_notes), "remarks on the fit"),
-            field("physical", &R::physical, "physical model, of `--model physical`", optional_key{})};
+            field("physical", &R::physical, "physical model, of `--model-kind physical`", optional_key{})};
 }
 
 }  // namespace flightwatt::cli

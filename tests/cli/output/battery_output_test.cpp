@@ -12,9 +12,9 @@ namespace {
 
 using testing::HasSubstr;
 
-class BatteryOutput : public testing::Test {
+class BatteryTables : public testing::Test {
   protected:
-    BatteryOutput() {
+    BatteryTables() {
         battery::IdentificationOptions options;
         options.capacity_ah = test::known_pack().capacity_ah;
         for (const std::uint64_t seed : {1U, 2U}) {
@@ -28,7 +28,7 @@ class BatteryOutput : public testing::Test {
     std::vector<battery::LeaveOneOutCheck> checks_;
 };
 
-TEST_F(BatteryOutput, HasARowAParameterAndAFlight) {
+TEST_F(BatteryTables, HasARowAParameterAndAFlight) {
     const auto parameters = pack_table(identified_.battery);
     ASSERT_EQ(parameters.rows.size(), 5U);
     EXPECT_EQ(parameters.rows[0][0], "capacity [Ah]");
@@ -40,7 +40,7 @@ TEST_F(BatteryOutput, HasARowAParameterAndAFlight) {
     EXPECT_EQ(flights_table(identified_, {}).header.size() + 4, flights.header.size());
 }
 
-TEST_F(BatteryOutput, SaysWhosePackWasAssumed) {
+TEST_F(BatteryTables, SaysWhosePackWasAssumed) {
     EXPECT_EQ(describe_link(identified_.flights[1]), "");
     const auto columns = flights_table(identified_, {}).header.size();
     auto& flight = identified_.flights[1];
@@ -64,20 +64,20 @@ TEST_F(BatteryOutput, SaysWhosePackWasAssumed) {
     EXPECT_TRUE(json["resistance_trend"].is_null()) << "two flights have none";
 }
 
-TEST_F(BatteryOutput, SaysWhetherTheResistanceGoesOn) {
+TEST_F(BatteryTables, SaysWhetherTheResistanceGoesOn) {
     EXPECT_THAT(describe({4, 0.001, {0.0005, 0.0015}}),
                 HasSubstr("over 4 flights: +1.00 mohm a flight, +0.50 to +1.50"));
     EXPECT_THAT(describe({4, 0.001, {-0.0005, 0.0025}}), HasSubstr("no trend is seen"));
 }
 
-TEST_F(BatteryOutput, HasNoRowOfAnAbsentRcPair) {
+TEST_F(BatteryTables, HasNoRowOfAnAbsentRcPair) {
     identified_.fit.rc_resistance_ohm = 0.0;
     identified_.battery.thevenin->rc_resistance_ohm = 0.0;
     EXPECT_EQ(pack_table(identified_.battery).rows.size(), 3U) << "the capacity, the resistance and how flights differ";
     EXPECT_TRUE(record_json(cli::BatteryOutput{&identified_, &checks_})["rc_time_constant_s"].is_null());
 }
 
-TEST_F(BatteryOutput, IsNullInJsonWhereNothingIsKnown) {
+TEST_F(BatteryTables, IsNullInJsonWhereNothingIsKnown) {
     const auto json = record_json(cli::BatteryOutput{&identified_, &checks_});
     EXPECT_EQ(json["capacity_ah"], test::known_pack().capacity_ah);
     EXPECT_TRUE(json["capacity_ah_interval_95"].is_null()) << "it was given";
@@ -85,7 +85,7 @@ TEST_F(BatteryOutput, IsNullInJsonWhereNothingIsKnown) {
     EXPECT_EQ(json["leave_one_out"][1]["flight"], "synthetic_2");
 }
 
-TEST_F(BatteryOutput, ComparesAGivenCapacity) {
+TEST_F(BatteryTables, ComparesAGivenCapacity) {
     auto& pack = identified_.battery;
     const auto as_given = describe_given_capacity(pack);
     EXPECT_THAT(as_given, testing::AllOf(HasSubstr("using the given capacity of 2.4 Ah; the flights indicate "),
@@ -104,7 +104,7 @@ TEST_F(BatteryOutput, ComparesAGivenCapacity) {
     EXPECT_TRUE(record_json(cli::BatteryOutput{&identified_, &checks_})["flight_estimate_ah"].is_null());
 }
 
-TEST_F(BatteryOutput, WarnsOfAVoltageThatCellsDoNotHave) {
+TEST_F(BatteryTables, WarnsOfAVoltageThatCellsDoNotHave) {
     EXPECT_EQ(cells_warning(identified_), "");
     identified_.cells = 4;
     EXPECT_THAT(cells_warning(identified_),
@@ -112,7 +112,7 @@ TEST_F(BatteryOutput, WarnsOfAVoltageThatCellsDoNotHave) {
     EXPECT_THAT(provenance(identified_), HasSubstr("\n# Warning: 4 cells rest"));
 }
 
-TEST_F(BatteryOutput, NamesTheFlightsAtTheHeadOfItsFile) {
+TEST_F(BatteryTables, NamesTheFlightsAtTheHeadOfItsFile) {
     const auto head = provenance(identified_);
     EXPECT_THAT(head, HasSubstr("from synthetic_1 synthetic_2."));
     for (std::size_t line = 0; line < head.size(); line = head.find('\n', line) + 1) {

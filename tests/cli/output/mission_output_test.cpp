@@ -121,7 +121,9 @@ TEST(InfeasibilityJson, HasNullForMeasuresThatAreNotEnough) {
     mission::InfeasibilityReport report;
     report.shortfall_percent = 2.5;
     report.capacity_ah = 4.0;
-    const auto json = record_json(report);
+    const auto problem = test::paper_problem("plan");
+    const auto plan = plan_mission(problem);
+    const auto json = record_json(PlanOutput{&plan, &problem.setup, &report})["shortfall"];
     EXPECT_EQ(json["short_percent"], 2.5);
     EXPECT_EQ(json["smallest_capacity_ah"], 4.0);
     EXPECT_TRUE(json["longest_cruise_s"].is_null());
