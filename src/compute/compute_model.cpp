@@ -49,7 +49,7 @@ void require_full_grid(const PowerProfile& profile, const std::vector<ProfileNod
 
 PowerProfile make_power_profile(const std::string& file, const std::vector<std::string>& parameters,
                                 std::vector<ProfileNode> nodes) {
-    if (nodes.empty()) throw InputError({file}, "has no nodes, expected at min_at one profiled configuration");
+    if (nodes.empty()) throw InputError({file}, "has no nodes, expected at least one profiled configuration");
     // Lexicographic order of the QoS is the grid's order; stable, so that an error names the second of two equals.
     std::ranges::stable_sort(nodes, {}, &ProfileNode::qos);
     PowerProfile profile{file, parameters, {}, {}};

@@ -50,7 +50,6 @@ std::string add_health_of(std::span<FlightTrendData* const> flights, std::size_t
         return fmt::format("no resistance and no capacity of {} flights, expected at most {}", flights.size(),
                            max_flights);
     std::vector<battery::DischargeRecord> records;
-    records.reserve(flights.size());
     for (const auto* flight : flights) records.push_back(flight->records.front());
     battery::BatteryIdentification identified;
     try {

@@ -147,7 +147,11 @@ const battery::Battery* find_pack(std::span<const mission::MissionVariant> missi
 ReportBattery identify_for_report(std::span<const ReportFlight> flights, const battery::IdentificationOptions& options,
                                   std::size_t max_flights, std::span<const mission::MissionVariant> missions) {
     const auto* pack = find_pack(missions, flights);
-    if (pack == nullptr || options.capacity_ah) return identify_with(flights, options, max_flights);
+    if (pack == nullptr) return identify_with(flights, options, max_flights);
+    if (options.capacity_ah && *options.capacity_ah != pack->capacity_ah)
+        throw UsageError(fmt::format(
+            "--capacity {:g}: the missions' pack '{}' has {:g} Ah; give the capacity to `flightwatt battery` only",
+            *options.capacity_ah, pack->name, pack->capacity_ah));
     auto of_pack = options;
     const bool is_given = pack->capacity_ah != pack->flight_estimate->capacity_ah;
     if (is_given) of_pack.capacity_ah = pack->capacity_ah;

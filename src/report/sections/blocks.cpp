@@ -95,12 +95,10 @@ VegaJson packed_tables(const VegaJson& spec) {
         return packed_table(spec["values"].get_ref<const std::string&>(), spec["format"]["parse"]);
     if (spec.is_array()) {
         VegaJson::array_t packed;
-        packed.reserve(spec.size());
         for (const auto& part : spec) packed.push_back(packed_tables(part));
         return packed;
     }
     VegaJson::object_t packed;
-    packed.reserve(spec.size());
     for (const auto& [key, part] : spec.get_ref<const VegaJson::object_t&>()) packed.emplace(key, packed_tables(part));
     return packed;
 }

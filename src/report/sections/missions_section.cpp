@@ -199,13 +199,12 @@ Figure replay_figure(const std::vector<const mission::Replay*>& replays, const s
 
 Section plan_section(Missions missions) {
     Section section{"plan", "Plan"};
-    const bool any =
-        std::ranges::any_of(missions, [](const SimulatedMission& mission) { return mission.planned.has_value(); });
-    if (!any) return section;
+    const auto plans = plans_table(missions);
+    if (plans.rows.empty()) return section;
     section.html += paragraph(
         "Missions without a schedule are planned for maximum utility within the reserve. No schedule in slots that "
         "keeps the reserve exceeds the proven bound.");
-    add_table(section, {plans_table(missions), "Planned missions", "tab:plans"});
+    add_table(section, {plans, "Planned missions", "tab:plans"});
     std::size_t number = 0;
     for (const auto& simulated : missions)
         if (simulated.planned) add_plan(section, simulated, missions, ++number);

@@ -42,9 +42,9 @@ struct ReportBattery {
     std::string no_result_reason;                          ///< of missing results
 };
 
-/// Identifies the battery from the flights with measured current and voltage, `max_flights` at equal steps. Without a
-/// capacity in `options`, a pack of the missions that is of these flights gives capacity and cells. Throws UsageError
-/// as identify_battery.
+/// Identifies the battery from the flights with measured current and voltage, `max_flights` at equal steps; with the
+/// capacity and cells of the first pack of the missions that is of these flights. Throws UsageError as
+/// identify_battery, and for another capacity than that pack's.
 ReportBattery identify_for_report(std::span<const ReportFlight> flights, const battery::IdentificationOptions& options,
                                   std::size_t max_flights, std::span<const mission::MissionVariant> missions = {});
 
