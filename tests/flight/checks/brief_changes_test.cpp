@@ -41,12 +41,12 @@ TEST(BriefChanges, AreOfUpToFiveSamplesToLessThanTwoThirdsOrMore) {
 }
 
 TEST(BriefChanges, AreNotThoseOfTheThrottle) {
-    EXPECT_TRUE(is_brief({.samples = 3, .factor = 0.6, .throttle_percent = 36.0}));
-    EXPECT_FALSE(is_brief({.samples = 3, .factor = 0.6, .throttle_percent = 34.0})) << "less than 0.7 of 50 %";
-    EXPECT_TRUE(is_brief({.samples = 3, .factor = 0.6, .throttle_percent = 31.0, .usual_percent = 40.0}));
-    EXPECT_FALSE(is_brief({.samples = 3, .factor = 0.6, .throttle_percent = 29.0, .usual_percent = 40.0}));
-    EXPECT_TRUE(is_brief({.samples = 3, .factor = 1.6, .throttle_percent = 76.0})) << "50 % / 0.7 + 5 %";
-    EXPECT_FALSE(is_brief({.samples = 3, .factor = 1.6, .throttle_percent = 77.0}));
+    EXPECT_TRUE(is_brief({.samples = 3, .factor = 0.6, .throttle_percent = 43.0}));
+    EXPECT_FALSE(is_brief({.samples = 3, .factor = 0.6, .throttle_percent = 42.0})) << "less than 0.85 of 50 %";
+    EXPECT_TRUE(is_brief({.samples = 3, .factor = 0.6, .throttle_percent = 31.0, .usual_percent = 34.0}));
+    EXPECT_FALSE(is_brief({.samples = 3, .factor = 0.6, .throttle_percent = 29.0, .usual_percent = 34.0}));
+    EXPECT_TRUE(is_brief({.samples = 3, .factor = 1.6, .throttle_percent = 60.0})) << "50 % / 0.85 + 2 %";
+    EXPECT_FALSE(is_brief({.samples = 3, .factor = 1.6, .throttle_percent = 61.0}));
 }
 
 TEST(BriefChanges, AreLargerWithoutAThrottle) {
