@@ -109,8 +109,8 @@ std::optional<Battery> estimated_by_flights(const Battery& battery);
 /// "the capacity of 5 Ah contradicts the flights, which indicate ..."; empty where estimated_by_flights has none.
 std::string capacity_warning(const Battery& battery);
 
-/// Implausible values, a line each: a full voltage of less than 2.5 V or of more than 14 LiPo cells (60 V), a capacity of
-/// less than 0.05 Ah, a power limit below 1 W; and capacity_warning.
+/// Implausible values, a line each: a full voltage of less than 2.5 V or of more than 14 LiPo cells (60 V), a capacity
+/// of less than 0.05 Ah, a power limit below 1 W; and capacity_warning.
 std::vector<std::string> battery_warnings(const Battery& battery);
 
 /// The battery as read_battery reads it.

@@ -88,8 +88,8 @@ struct CircuitMoment {
     Number spare_v2 = Number(0.0);  ///< U^2 - 4 R P: below 0 beyond the power limit
 };
 
-/// An RC pair over a step, dU/dt = (R I - U) / tau. Of a current that is a parabola the solution is exact, and linear in
-/// the current at the start, the middle and the end.
+/// An RC pair over a step, dU/dt = (R I - U) / tau. Of a current that is a parabola the solution is exact, and linear
+/// in the current at the start, the middle and the end.
 template <typename Number>
 struct RcStep {
     RcStep(const Circuit<Number>& circuit, const Number& length_s) {

@@ -43,9 +43,9 @@ struct Discharge : BatteryState {
 };
 
 /// Integrates dSoC/dt = -I_int / Q_c (Eq. 8), and in a Thévenin circuit dU_rc/dt = (R_rc I_int - U_rc) / tau, with
-/// classic Runge-Kutta in equal steps of at most `max_step_s` and half the time constant. Its end is checked at the start
-/// and after each step, and located to 1e-10 s. Charge beyond 100 % is lost. Throws std::invalid_argument for a negative
-/// duration or voltage, a step that is not positive, or more than 100 %.
+/// classic Runge-Kutta in equal steps of at most `max_step_s` and half the time constant. Its end is checked at the
+/// start and after each step, and located to 1e-10 s. Charge beyond 100 % is lost. Throws std::invalid_argument for a
+/// negative duration or voltage, a step that is not positive, or more than 100 %.
 Discharge discharge(const Battery& battery, const Load& load, const BatteryState& state,
                     const DischargeOptions& options = {});
 

@@ -49,8 +49,8 @@ std::ptrdiff_t used_sample_count(const DischargeRecord& record);
 /// Used samples before the first load.
 std::ptrdiff_t rest_sample_count(const DischargeRecord& record);
 
-/// The current [A] of an RC pair's resistor with that time constant at every sample: the solution of tau dx/dt = I - x from
-/// the resting current on, exact for a current that is constant between samples.
+/// The current [A] of an RC pair's resistor with that time constant at every sample: the solution of tau dx/dt = I - x
+/// from the resting current on, exact for a current that is constant between samples.
 std::vector<double> rc_branch_current_a(const DischargeRecord& record, double time_constant_s);
 
 }  // namespace flightwatt::battery

@@ -12,8 +12,8 @@ struct FastDischargeOptions {
     double cutoff_voltage_v = 0.0;
 };
 
-/// As discharge(), for a Thévenin circuit under a load that never charges, some hundred times faster (CircuitRun); steps
-/// in which the battery may end are discharge()'s. Within 1e-3 points and 1 mV of discharge() where the power is
+/// As discharge(), for a Thévenin circuit under a load that never charges, some hundred times faster (CircuitRun);
+/// steps in which the battery may end are discharge()'s. Within 1e-3 points and 1 mV of discharge() where the power is
 /// constant, or a step a twelfth of its fastest harmonic. Throws std::invalid_argument if the circuit is not
 /// Thévenin's, or as discharge().
 Discharge fast_discharge(const Battery& battery, const Load& load, const BatteryState& state,

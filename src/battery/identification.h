@@ -19,10 +19,10 @@ struct IdentificationOptions {
     bool link_packs = true;        ///< recognise flights on the pack of the flight before them (find_pack_link)
 };
 
-/// Identifies the Thévenin circuit of a battery from flights, with the charge missing at the start of each and the chain
-/// of flights on one pack (aligned_fit.h). Capacity, and the charge missing from the fullest flight, come from charts
-/// (chart_match.h); the flights' own estimate of the capacity is added even if another is given. Throws NoResultError
-/// where the flights determine no such circuit, and as estimate_capacity and require_possible_cells.
+/// Identifies the Thévenin circuit of a battery from flights, with the charge missing at the start of each and the
+/// chain of flights on one pack (aligned_fit.h). Capacity, and the charge missing from the fullest flight, come from
+/// charts (chart_match.h); the flights' own estimate of the capacity is added even if another is given. Throws
+/// NoResultError where the flights determine no such circuit, and as estimate_capacity and require_possible_cells.
 BatteryIdentification identify_battery(std::span<const DischargeRecord> records, const IdentificationOptions& options);
 
 /// At every sample of a record; the state of charge may fall below 0 where the capacity is too small.

@@ -89,8 +89,8 @@ struct FlightResistance {
     Interval interval_ohm;  ///< 95 %, not below 0
 };
 
-/// The standard deviation of resistances between flights, less their errors, with a prior of 15 % (packs within some 8 K)
-/// that counts as one further flight.
+/// The standard deviation of resistances between flights, less their errors, with a prior of 15 % (packs within some 8
+/// K) that counts as one further flight.
 inline constexpr double default_scatter_fraction = 0.15;
 double resistance_scatter_ohm(std::span<const std::optional<FlightResistance>> resistances, double fitted_ohm);
 

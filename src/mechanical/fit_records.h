@@ -45,8 +45,8 @@ struct PhaseFit {
     std::size_t samples = 0;
     double autocorrelation = 0.0;     ///< of neighbouring residuals, 0 to max_autocorrelation
     double degrees_of_freedom = 1.0;  ///< number of independent residuals less coefficients; 1 or more
-    /// Frequencies (theta) more than a step of the scan away that fit almost as well (95 %), at most 100: with any of them
-    /// the frequency is not determined, and the coefficients describe this curve only.
+    /// Frequencies (theta) more than a step of the scan away that fit almost as well (95 %), at most 100: with any of
+    /// them the frequency is not determined, and the coefficients describe this curve only.
     std::vector<double> rivals_rad = {};
     bool is_clamped = false;  ///< harmonics were reduced (hold_above_floor)
 };
@@ -54,9 +54,9 @@ struct PhaseFit {
 /// Minimum number of samples of a flight: one more than its coefficients.
 constexpr std::size_t min_samples(int order) { return static_cast<std::size_t>(coefficient_count(order)) + 1; }
 
-/// The range of theta: from pi to 120 periods, and below the frequency at which, in some flight, the highest harmonic has
-/// less than two samples a period (of the median gap), or its two columns are so collinear on the samples that the noise
-/// variance of a coefficient doubles. Throws UsageError for an invalid order, NoResultError for an empty range.
+/// The range of theta: from pi to 120 periods, and below the frequency at which, in some flight, the highest harmonic
+/// has less than two samples a period (of the median gap), or its two columns are so collinear on the samples that the
+/// noise variance of a coefficient doubles. Throws UsageError for an invalid order, NoResultError for an empty range.
 FrequencyRange admissible_frequencies(std::span<const PhaseSamples> flights, const PhaseFitOptions& options);
 
 /// The weight of a flight in the average of its phase (the w_i of Eqs. 5-7).

@@ -24,14 +24,14 @@ struct FlightProgress {
 /// The last time of the log at which power or altitude was logged; -infinity without any.
 double last_time_s(const flight::FlightSeries& series);
 
-/// The log time `since_s` after a lift-off, which is found from the log up to that time alone, as a ground station would.
-/// `sortie` counts from 0. Throws NoResultError where the log ends more than 60 s before.
+/// The log time `since_s` after a lift-off, which is found from the log up to that time alone, as a ground station
+/// would. `sortie` counts from 0. Throws NoResultError where the log ends more than 60 s before.
 double log_time_after_lift_off(const flight::FlightSeries& series, double since_s, std::size_t sortie = 0,
                                const flight::SegmentationOptions& options = {});
 
-/// The state at a time of the log, from the log up to that time alone. `sortie` counts from 0. Throws NoResultError where
-/// by then the aircraft has not taken off, has not held its height for hold_s, or has landed, or where nothing was logged
-/// for more than 60 s before; and as segment.
+/// The state at a time of the log, from the log up to that time alone. `sortie` counts from 0. Throws NoResultError
+/// where by then the aircraft has not taken off, has not held its height for hold_s, or has landed, or where nothing
+/// was logged for more than 60 s before; and as segment.
 FlightProgress progress_at(const flight::FlightSeries& series, double until_s, std::size_t sortie = 0,
                            const flight::SegmentationOptions& options = {});
 

@@ -49,9 +49,9 @@ struct CoefficientIntervals {
     std::vector<Interval> sin_w;
 };
 
-/// Standard errors of a phase's averaged coefficients from the noise of the samples, approximate: of the weighted mean of
-/// these flights, with weights and durations given, at all admissible frequencies (analyse_errors). For the differences
-/// between flights see FlightEnvelope.
+/// Standard errors of a phase's averaged coefficients from the noise of the samples, approximate: of the weighted mean
+/// of these flights, with weights and durations given, at all admissible frequencies (analyse_errors). For the
+/// differences between flights see FlightEnvelope.
 struct PhaseErrors {
     double omega_rad_per_s = 0.0;
     double a0_w = 0.0;
@@ -172,8 +172,8 @@ FourierModel time_scaled_model(const PhaseModel& phase, double flown_s, PhaseTim
 MechanicalModel read_mechanical_model(const std::filesystem::path& path);
 std::string to_toml(const MechanicalModel& model);
 
-/// Number of evenly spread points that resolve the series over `duration_s`: 16 a period of its highest harmonic, and at
-/// least 1000.
+/// Number of evenly spread points that resolve the series over `duration_s`: 16 a period of its highest harmonic, and
+/// at least 1000.
 std::size_t curve_point_count(const FourierModel& model, double duration_s);
 
 /// f [W] at the middles of `points` equal parts of the phase.

@@ -123,7 +123,8 @@ void add_means(std::vector<Difference>& all, const PhasePair& pair) {
         });
 }
 
-/// The curves at equal parts of the phase, where they are furthest apart; without interval, as files have no error there.
+/// The curves at equal parts of the phase, where they are furthest apart; without interval, as files have no error
+/// there.
 Difference curve_difference(const PhasePair& pair) {
     const auto points = std::max(curve_point_count(pair.a.fourier, pair.a.duration_s),
                                  curve_point_count(pair.b.fourier, pair.b.duration_s));

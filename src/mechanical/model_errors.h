@@ -14,9 +14,10 @@ namespace flightwatt::mechanical {
 /// Number of points of the model file's envelope, from begin to end of the phase.
 inline constexpr std::size_t envelope_points = 21;
 
-/// Variability of the flights' own curves about their weighted mean at `points` evenly spread fractions of the phase (two
-/// or more): the envelope of those with a weight, and the standard deviation of one flight (docs/methods.md, Eq. 10).
-/// std::nullopt where a single flight counts. This is the range of a new flight's curve, not the error of the mean.
+/// Variability of the flights' own curves about their weighted mean at `points` evenly spread fractions of the phase
+/// (two or more): the envelope of those with a weight, and the standard deviation of one flight (docs/methods.md, Eq.
+/// 10). std::nullopt where a single flight counts. This is the range of a new flight's curve, not the error of the
+/// mean.
 std::optional<FlightEnvelope> compute_envelope(const PhaseFit& fit, std::span<const double> weights,
                                                std::size_t points = envelope_points);
 
@@ -35,9 +36,9 @@ struct CurveBand {
 /// The bands of a fit that was analysed, at 101 times a phase.
 flight::PerPhase<CurveBand> curve_bands(const ModelFit& fit, const flight::PerPhase<ErrorAnalysis>& analyses);
 
-/// Every phase's curve as CSV (docs/formats.md): with the interval of the weighted mean of these flights, the flights' own
-/// curves (the paper's grey band), and the interval of the mean of all flights like these. The last two are empty where a
-/// single flight counts.
+/// Every phase's curve as CSV (docs/formats.md): with the interval of the weighted mean of these flights, the flights'
+/// own curves (the paper's grey band), and the interval of the mean of all flights like these. The last two are empty
+/// where a single flight counts.
 std::string curves_csv(const ModelFit& fit, const flight::PerPhase<ErrorAnalysis>& analyses);
 
 }  // namespace flightwatt::mechanical

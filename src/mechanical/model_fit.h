@@ -45,8 +45,8 @@ void cache_scans(std::span<FlightSamples> flights, const ModelFitOptions& option
 
 /// The mechanical power of a flight from several flights (Eqs. 1-7): each phase is fitted over the flights that have it
 /// and averaged with their weights. A phase's rms_w is that of the samples about their own flights' curves. Throws
-/// NoResultError naming a phase that no flight has, or a flight with too few samples in a phase (min_samples), UsageError
-/// for a flight given twice, and as fit_phase.
+/// NoResultError naming a phase that no flight has, or a flight with too few samples in a phase (min_samples),
+/// UsageError for a flight given twice, and as fit_phase.
 ModelFit fit_model(std::span<const FlightSamples> flights, const ModelFitOptions& options = {});
 
 /// The series of the model's order and frequency which is nearest (least squares) to `power_w` at the parts `tau`

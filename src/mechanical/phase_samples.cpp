@@ -27,7 +27,8 @@ struct EdgeView {
     std::vector<double> other_w;       ///< of the neighbour, outwards
 };
 
-/// Candidates beyond the middle of a jump from the phase's power to the neighbour's, and the next one if it is in the jump.
+/// Candidates beyond the middle of a jump from the phase's power to the neighbour's, and the next one if it is in the
+/// jump.
 std::size_t count_of_neighbour(const EdgeView& view) {
     if (view.own_w.size() < min_compared || view.other_w.size() < min_compared) return 0;
     const double own_w = mean(view.own_w);

@@ -21,7 +21,8 @@ struct PhaseSamples {
     std::vector<double> tau;      ///< (time - begin of phase) / duration_s, in [0, 1]; gaps are allowed
     std::vector<double> power_w;  ///< as long as tau
     double start_s = 0.0;         ///< when the phase began, on the log's own clock
-    /// Samples at the phase's ends that are not among these: their power is the neighbouring phase's (count_neighbour_samples).
+    /// Samples at the phase's ends that are not among these: their power is the neighbouring phase's
+    /// (count_neighbour_samples).
     std::size_t edge_samples = 0;
     std::shared_ptr<const FrequencyScan> scan = {};  ///< of these samples, stored for several fits (cache_scans)
 };
@@ -53,8 +54,8 @@ struct EdgeSamples {
 
 /// The height determines a phase's edge to within the gap between two heights; the power may jump a second or two off.
 /// Samples near the edge are compared with the means of eight samples on either side of it: those beyond a jump of six
-/// standard deviations of both, and in it, are the neighbour's (docs/methods.md). Smooth power, or noise as large as the
-/// jump, leaves all samples to the phase.
+/// standard deviations of both, and in it, are the neighbour's (docs/methods.md). Smooth power, or noise as large as
+/// the jump, leaves all samples to the phase.
 EdgeSamples count_neighbour_samples(const flight::Track& power, const flight::PhaseSpan& span);
 
 }  // namespace flightwatt::mechanical

@@ -42,8 +42,8 @@ double degrees_of_freedom_of(double ratio, double inner_probability) {
     return std::exp(low);
 }
 
-/// The posterior as one record: means of coefficients and squared level sds, scaled to a Student's t with the posterior's
-/// 68 and 95 % intervals for the power of a typical flight.
+/// The posterior as one record: means of coefficients and squared level sds, scaled to a Student's t with the
+/// posterior's 68 and 95 % intervals for the power of a typical flight.
 void summarise(PhysicalModel& model, const PowerPosterior& posterior, const TermValues& typical) {
     const ColumnVector mean = mean_coefficients(posterior);
     const ColumnVector terms = as_columns(typical)(columns_of(model.terms));

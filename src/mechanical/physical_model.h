@@ -87,7 +87,8 @@ struct PhysicalModel {
     std::optional<double> cubic_mean_airspeed_m_per_s = {};
 };
 
-/// The power of a motion [W], 0 where the terms sum to less: the motor does not regenerate energy. Throws as term_values.
+/// The power of a motion [W], 0 where the terms sum to less: the motor does not regenerate energy. Throws as
+/// term_values.
 double power_w(const PhysicalModel& model, const FlightState& motion);
 
 /// The sum of the terms [W], which may be below 0: the means over a time of the terms give the mean power.

@@ -21,8 +21,8 @@ struct CruiseVariances {
     double flown_w2() const { return level_w2 + flown_drift_w2; }
 };
 
-/// Variance of the gain times the flown mean, to first order: the estimates of level and drift have relative variances 2
-/// / degrees of freedom, and the gain changes oppositely with the logarithms of both.
+/// Variance of the gain times the flown mean, to first order: the estimates of level and drift have relative variances
+/// 2 / degrees of freedom, and the gain changes oppositely with the logarithms of both.
 double gain_variance_w2(const CruiseVariances& of, double degrees_of_freedom) {
     if (!(of.flown_w2() > 0.0)) return 0.0;
     const double change_w = of.level_w2 * (of.flown_drift_w2 - of.drift_covariance_w2) / of.flown_w2();
@@ -146,8 +146,8 @@ RemainingCruise predict_remaining_cruise(const WeightedPhase& cruise, const Flig
     rest.measured_w = units::joule_from_wh(flown.cruise_energy_wh) / flown_s;
     rest.remaining_mean_w = (by_curve ? curve_remaining_w : mean_w) + gain * (rest.measured_w - rest.expected_w);
     rest.energy.energy_wh = units::wh_from_joule(rest.remaining_mean_w * remaining_s);
-    // The error's independent causes (docs/methods.md, Eq. 20). All rest on the flights, less one for their average: the
-    // drift differs between flights, so that more samples of a flight do not count more.
+    // The error's independent causes (docs/methods.md, Eq. 20). All rest on the flights, less one for their average:
+    // the drift differs between flights, so that more samples of a flight do not count more.
     const auto freedom = static_cast<double>(spread.flights - 1);
     const double average = 1.0 + cruise.weight_square_sum;
     const double drift_w2 =

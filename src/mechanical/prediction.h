@@ -37,8 +37,8 @@ struct EnergyInterval {
     bool contains(double energy_wh) const { return low_wh <= energy_wh && energy_wh <= high_wh; }
 };
 
-/// 95 % predictive interval: Student's t with Welch and Satterthwaite's degrees of freedom. A low end below 0 becomes 0:
-/// a drone does not regenerate energy. std::nullopt without known uncertainty.
+/// 95 % predictive interval: Student's t with Welch and Satterthwaite's degrees of freedom. A low end below 0 becomes
+/// 0: a drone does not regenerate energy. std::nullopt without known uncertainty.
 std::optional<EnergyInterval> interval_95(const EnergyEstimate& estimate);
 
 /// A phase of the model as a prediction needs it.
@@ -59,9 +59,9 @@ struct MeanPower {
     std::size_t samples = 0;  ///< of all flights that have the phase
 };
 
-/// The interval is Student's t over two flights or more (VarianceComponents); for a single one it is the residual of its
-/// curve over its effective samples, if errors were analysed. A low end below 0 is 0. std::nullopt for a model without
-/// the flights' mean powers.
+/// The interval is Student's t over two flights or more (VarianceComponents); for a single one it is the residual of
+/// its curve over its effective samples, if errors were analysed. A low end below 0 is 0. std::nullopt for a model
+/// without the flights' mean powers.
 std::optional<MeanPower> mean_power(const MechanicalModel& model, flight::Phase phase);
 
 /// Energy of a phase of `duration_s`, before the flight: the time-scaled curve's integral. Its interval includes the

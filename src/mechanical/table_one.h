@@ -7,8 +7,8 @@
 
 namespace flightwatt::mechanical {
 
-/// Whether each phase has a column of the coefficients' 95 % intervals, "LOW to HIGH"; '-' where the model has no errors,
-/// or none for the frequency.
+/// Whether each phase has a column of the coefficients' 95 % intervals, "LOW to HIGH"; '-' where the model has no
+/// errors, or none for the frequency.
 enum class TableIntervals { absent, present };
 
 /// The model as the paper's Table I: rows a0, a1, b1, ... and xi, a column a phase, four significant digits,

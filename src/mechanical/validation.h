@@ -32,17 +32,10 @@ inline constexpr std::size_t max_validation_folds = 40;
 void require_distinct(std::span<const MeasuredFlight> flights);
 
 /// Excludes each flight in turn (or each of `max_folds` groups), fits the others and predicts the energy of its phases
-/// from their durations alone, if another flight has the phase. Models:
-///   fourier         the model of this project (fit_phase_model)
-///   constant_mean   the mean power of the other flights
-///   physical        fit_physical_model of the others at the motion flown, as if it had been known; a phase without bins
-///                   as constant_mean; only if the flight and another have bins
-/// Where a flight has `flown`, its take-off is not predicted, and the first two predict the remaining cruise, as do
-///   in_flight            predict_remaining_cruise by the curve
-///   in_flight_constant   predict_remaining_cruise by the curve's mean
-///   in_flight_physical       predict_posterior_power at the remaining motion, as if it had been known
-/// `progress` gets the numbers of done and of all folds, from one thread at a time.
-/// Throws NoResultError for fewer than 2 flights, and as fit_phase_model.
+/// from their durations and, by "physical", their motion (docs/guide.md, validate). Of a flight with `flown` the
+/// remaining cruise and the landing are predicted, also by "in_flight", "in_flight_constant" and "in_flight_physical".
+/// `progress` gets the numbers of done and of all folds, from one thread at a time. Throws NoResultError for fewer than
+/// 2 flights, and as fit_phase_model.
 std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights, const ModelFitOptions& options = {},
                                            const std::function<void(std::size_t, std::size_t)>& progress = {},
                                            std::size_t max_folds = max_validation_folds);
@@ -69,8 +62,8 @@ struct PredictedEnergy {
 std::optional<PredictedEnergy> predicted_energy(const ValidatedFlight& flight, const std::string& model,
                                                 std::optional<flight::Phase> phase);
 
-/// Removes the predictions of the physical model from all flights if its error is greater than the mean power's, over the
-/// flights that it predicts as a whole. Returns the reason; empty: not removed.
+/// Removes the predictions of the physical model from all flights if its error is greater than the mean power's, over
+/// the flights that it predicts as a whole. Returns the reason; empty: not removed.
 std::string remove_rejected(std::vector<ValidatedFlight>& flights);
 
 /// Missions use the curve if its mean error is less than the mean power's by this fraction of it, and its error is less
@@ -81,8 +74,9 @@ inline constexpr double min_gain_of_curve = 0.05;
 /// that remove_rejected removes. std::nullopt where curve or mean power has none.
 std::optional<ModelValidation> validation_of(std::vector<ValidatedFlight> flights);
 
-/// Adds the validation to a fitted model, and the physical model if it is not rejected. Of more than max_validation_folds
-/// flights that many are validated, evenly from all. Adds nothing for fewer than 2 flights or folds that cannot be fitted.
+/// Adds the validation to a fitted model, and the physical model if it is not rejected. Of more than
+/// max_validation_folds flights that many are validated, evenly from all. Adds nothing for fewer than 2 flights or
+/// folds that cannot be fitted.
 void add_best_power(MechanicalModel& model, std::span<const MeasuredFlight> flights, const ModelFitOptions& options,
                     const std::function<void(std::size_t, std::size_t)>& progress = {});
 

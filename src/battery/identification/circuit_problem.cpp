@@ -316,7 +316,8 @@ ParameterErrors parameter_errors(const NormalEquations& problem, double sample_e
     ParameterErrors errors;
     errors.changes.resize(problem.places.count, std::ssize(problem.blocks));
     for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
-        // The change without a block, (N - P)^-1 s, from the inverse of N, as P has the record's columns only (Woodbury).
+        // The change without a block, (N - P)^-1 s, from the inverse of N, as P has the record's columns only
+        // (Woodbury).
         const auto& block = problem.blocks[b];
         const auto columns = problem.columns_of(block.record);
         const Eigen::MatrixXd across = inverse(Eigen::all, columns);

@@ -33,16 +33,16 @@ struct JointCircuitFit {
     Interval time_constants_s = {};  ///< range of an RC pair's that records can determine
 };
 
-/// Prior of a pack, as standard deviations. A resting voltage differs from the curve under load, because a pack relaxes for
-/// an hour: by a common 50 mV a cell, and in each flight by 10 mV a cell after charging and 0.3 of the difference to the
-/// fullest. The curve's slope changes by some 0.15 V a segment and cell.
+/// Prior of a pack, as standard deviations. A resting voltage differs from the curve under load, because a pack relaxes
+/// for an hour: by a common 50 mV a cell, and in each flight by 10 mV a cell after charging and 0.3 of the difference
+/// to the fullest. The curve's slope changes by some 0.15 V a segment and cell.
 inline constexpr double common_rest_sd_v = 0.05;
 inline constexpr double charged_rest_sd_v = 0.01;
 inline constexpr double lower_rest_fraction = 0.3;
 inline constexpr double slope_change_sd_v = 0.15;
 
-/// Free parameters in addition to those in which the voltage is linear: the knots, the rest offsets, the RC resistance and
-/// one series resistance. The initial charge of the reference is always fixed.
+/// Free parameters in addition to those in which the voltage is linear: the knots, the rest offsets, the RC resistance
+/// and one series resistance. The initial charge of the reference is always fixed.
 struct FreeParameters {
     bool initial_charges = true;
     bool time_constant = true;
@@ -93,8 +93,8 @@ struct RowBlock {
     Eigen::VectorXd score;
 };
 
-/// The normal equations of the least squares of voltages and prior at a fit. Blocks are intervals of the records' time: 12
-/// of each record, 30 of a single one, of 15 s or longer.
+/// The normal equations of the least squares of voltages and prior at a fit. Blocks are intervals of the records' time:
+/// 12 of each record, 30 of a single one, of 15 s or longer.
 struct NormalEquations {
     ParameterIndices places;
     std::vector<RowBlock> blocks;
@@ -111,8 +111,8 @@ NormalEquations normal_equations(const JointCircuitFit& joint, const FreeParamet
 Eigen::VectorXd step_of(const NormalEquations& problem);
 
 /// Gauss-Newton steps until they no longer improve; returns the equations at the end. After each step the knots are set
-/// again, and the linear parameters are solved (variable projection: Golub and Pereyra 1973). An RC pair whose resistance
-/// would be negative is dropped.
+/// again, and the linear parameters are solved (variable projection: Golub and Pereyra 1973). An RC pair whose
+/// resistance would be negative is dropped.
 NormalEquations least_squares(JointCircuitFit& joint, const FreeParameters& free);
 
 /// By the jackknife over blocks (CR3, linearised).

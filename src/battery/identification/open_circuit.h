@@ -20,9 +20,9 @@ inline constexpr double max_cell_voltage_v = 4.5;
 /// Throws UsageError where a pack with this number of cells cannot rest at this voltage.
 void require_possible_cells(double resting_voltage_v, int cells);
 
-/// The median and quantiles of the posterior, `measured` where the flights leave at most 5 % of it. Throws UsageError if
-/// the given capacity is less than the charge drawn, and NoResultError if none is given and the flights drew less than 3 %
-/// of the median.
+/// The median and quantiles of the posterior, `measured` where the flights leave at most 5 % of it. Throws UsageError
+/// if the given capacity is less than the charge drawn, and NoResultError if none is given and the flights drew less
+/// than 3 % of the median.
 Capacity estimate_capacity(double drawn_ah, std::span<const CapacityHypothesis> posterior,
                            std::optional<double> given_ah);
 

@@ -10,6 +10,8 @@
 #include <span>
 #include <vector>
 
+#include <Eigen/QR>
+
 namespace flightwatt::mechanical {
 namespace {
 
@@ -33,7 +35,24 @@ double min_power_w(const PhaseSamples& samples) {
     return min_w;
 }
 
-/// The curve's basis at the middles of equal parts of the phase that show every swing.
+/// Alternating projections onto the curves above the limit, the series, and those of the same mean power; the harmonics
+/// of the result are scaled by the rest.
+void lift_above(const Eigen::MatrixXd& basis, Eigen::VectorXd& coefficients, double min_w) {
+    constexpr int rounds = 50;
+    const double mean_w = std::max((basis * coefficients).mean(), min_w);
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(basis);
+    for (int round = 0; round < rounds; ++round) {
+        coefficients = qr.solve((basis * coefficients).cwiseMax(min_w));
+        coefficients(0) += mean_w - (basis * coefficients).mean();
+    }
+    const double lowest_w = (basis * coefficients).minCoeff();
+    if (lowest_w >= min_w) return;
+    const double fraction = (mean_w - min_w) / (mean_w - lowest_w);
+    coefficients *= fraction;
+    coefficients(0) += (1.0 - fraction) * mean_w;
+}
+
+/// The curve's basis at the middles of equal parts of the phase, which resolve it.
 Eigen::MatrixXd fine_basis(const FlightCurve& flight, double theta_rad) {
     const auto points = curve_point_count(flight.fourier, flight.duration_s);
     std::vector<double> tau;
@@ -55,10 +74,7 @@ void hold_above_floor(std::span<const PhaseSamples> flights, PhaseFit& fit) {
         const Eigen::VectorXd curve = basis * coefficients;
         if (curve.minCoeff() < floor_w) {
             // A little higher than the floor, for what is between the points.
-            const double lowest_w = floor_w + between_points * (curve.maxCoeff() - curve.minCoeff());
-            const double mean_w = std::max(curve.mean(), lowest_w);
-            coefficients *= (mean_w - lowest_w) / (curve.mean() - curve.minCoeff());
-            coefficients(0) += mean_w - (basis * coefficients).mean();
+            lift_above(basis, coefficients, floor_w + between_points * (curve.maxCoeff() - curve.minCoeff()));
             flight.fourier = series_of(coefficients, flight.fourier.omega_rad_per_s);
             const auto order = static_cast<int>(flight.fourier.cos_w.size());
             const Eigen::VectorXd residuals =

@@ -7,9 +7,9 @@
 
 namespace flightwatt::mechanical {
 
-/// Errors of the flights' mean curve from the noise of their samples (docs/methods.md, Errors of the fit): least squares
-/// at the frequency found, at frequencies around it and at its rivals, as far as the samples admit them. `flights`, `fit`
-/// and `weights` are in the same order; their samples are those that were fitted.
+/// Errors of the flights' mean curve from the noise of their samples (docs/methods.md, Errors of the fit): least
+/// squares at the frequency found, at frequencies around it and at its rivals, as far as the samples admit them.
+/// `flights`, `fit` and `weights` are in the same order; their samples are those that were fitted.
 ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseFit& fit,
                              std::span<const double> weights);
 

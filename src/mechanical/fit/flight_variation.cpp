@@ -64,8 +64,8 @@ void add_blocks(BlockSums& sums, const std::vector<double>& deviations) {
     ++sums.flights;
 }
 
-/// The correlation time at which means over neighbouring blocks, less their mean over a phase, have that correlation. By
-/// bisection, from a tenth of a block, where neighbours are nearly independent, to the duration of a phase.
+/// The correlation time at which means over neighbouring blocks, less their mean over a phase, have that correlation.
+/// By bisection, from a tenth of a block, where neighbours are nearly independent, to the duration of a phase.
 double correlation_time_s(double correlation_of_means, double length_s, double duration_s) {
     double low_s = 0.1 * length_s;
     double high_s = duration_s;
@@ -80,8 +80,8 @@ double correlation_time_s(double correlation_of_means, double length_s, double d
     return 0.5 * (low_s + high_s);
 }
 
-/// The drift whose means over blocks, less their mean over a phase, have the correlation and the variance of the blocks,
-/// or the larger variance of the phases' halves, which power that rises or falls throughout has.
+/// The drift whose means over blocks, less their mean over a phase, have the correlation and the variance of the
+/// blocks, or the larger variance of the phases' halves, which power that rises or falls throughout has.
 DriftProcess drift_of(const BlockSums& sums, double length_s, double duration_s) {
     if (!(sums.square > 0.0) || sums.neighbours == 0 || sums.flights < 2) return {0.0, length_s};
     const double variance = sums.square / static_cast<double>(sums.blocks);

@@ -18,8 +18,8 @@
 namespace flightwatt::mechanical {
 namespace {
 
-/// Phase of the highest harmonic between two thetas of the scan: half of it, from the middle of the phase, costs at most
-/// 2 % of a harmonic's power.
+/// Phase of the highest harmonic between two thetas of the scan: half of it, from the middle of the phase, costs at
+/// most 2 % of a harmonic's power.
 constexpr double turn_between_rad = 1.0;
 
 /// Minima of the scan that are refined. One that explains less than this fraction of the best explanation cannot become
@@ -207,6 +207,7 @@ JointFit refine_jointly(std::span<const PhaseSamples> flights, int order, const 
                         double start_rad) {
     constexpr int max_steps = 30;
     constexpr double tolerance = 1e-11;  // relative; far below the frequency's error
+    constexpr double rounding = 1e-12;
     auto fit = fit_at_frequency(flights, order, std::clamp(start_rad, range.low_rad, range.high_rad));
     double fraction = 1.0;  // of a Gauss-Newton step
     for (int i = 0; i < max_steps; ++i) {
@@ -216,7 +217,7 @@ JointFit refine_jointly(std::span<const PhaseSamples> flights, int order, const 
             std::clamp(fit.theta_rad - fraction * gradient / curvature, range.low_rad, range.high_rad);
         if (std::abs(next_rad - fit.theta_rad) <= tolerance * fit.theta_rad) break;
         auto next = fit_at_frequency(flights, order, next_rad);
-        const bool improves = total_square_sum(next) < total_square_sum(fit);
+        const bool improves = total_square_sum(next) <= (1.0 + rounding) * total_square_sum(fit);
         fraction = improves ? 1.0 : 0.5 * fraction;
         if (improves) fit = std::move(next);
     }

@@ -12,8 +12,8 @@
 
 namespace flightwatt::mechanical {
 
-/// The thetas of a scan, in steps. The highest harmonic's phase differs by at most 1 rad between two of them, so that no
-/// minimum is missed; a whole number of steps is the range's high end.
+/// The thetas of a scan, in steps. The highest harmonic's phase differs by at most 1 rad between two of them, so that
+/// no minimum is missed; a whole number of steps is the range's high end.
 struct ScanGrid {
     int order = 0;
     double step_rad = 0.0;
@@ -43,9 +43,9 @@ double find_frequency(std::span<const PhaseSamples> flights, int order, const Fr
                       const FrequencyScan& scan);
 
 /// A series of order p at theta contains the series of order p/m at m theta, so theta/2 and theta/3 fit a signal with
-/// weak harmonics as well. Returns m * theta_rad, refined, for the largest m in 2..order at which the lost harmonics are
-/// insignificant (F test at 0.1 %) and explain, less the expected noise, below 2 % of the series' power (which keeps
-/// trends of less than a period); else theta_rad.
+/// weak harmonics as well. Returns m * theta_rad, refined, for the largest m in 2..order at which the lost harmonics
+/// are insignificant (F test at 0.1 %) and explain, less the expected noise, below 2 % of the series' power (which
+/// keeps trends of less than a period); else theta_rad.
 double resolve_subharmonic(std::span<const PhaseSamples> flights, int order, const FrequencyRange& range,
                            double theta_rad);
 
@@ -63,8 +63,8 @@ JointFit fit_at_frequency(std::span<const PhaseSamples> flights, int order, doub
 /// The sum of squares of the residuals' slopes over theta, all coefficients following (variable projection).
 double frequency_information(std::span<const PhaseSamples> flights, const JointFit& fit);
 
-/// Gauss-Newton over theta with variable projection, from `start_rad`, within the range, with halved steps where the sum
-/// of squares would rise. Throws as fit_at_frequency.
+/// Gauss-Newton over theta with variable projection, from `start_rad`, within the range, with halved steps where the
+/// sum of squares would rise. Throws as fit_at_frequency.
 JointFit refine_jointly(std::span<const PhaseSamples> flights, int order, const FrequencyRange& range,
                         double start_rad);
 

@@ -79,7 +79,8 @@ FrequencyBound bound_reached(const FrequencyRange& range, double theta_rad) {
 }
 
 /// The correlation of neighbouring residuals, and the number of independent ones. White noise has a correlation of -
-/// coefficients / samples, because the curves follow it. One standard error is added, as few samples poorly determine it.
+/// coefficients / samples, because the curves follow it. One standard error is added, as few samples poorly determine
+/// it.
 void describe_noise(PhaseFit& fit, std::span<const PhaseSamples> centred, const JointFit& joint) {
     double squares = 0.0;
     double products = 0.0;  // of neighbours

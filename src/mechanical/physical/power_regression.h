@@ -85,8 +85,8 @@ class PowerRegression {
     std::size_t flights_ = 0;
 };
 
-/// The prior of the sd between flights is half a Student's t of 3 degrees of freedom with this scale: air density, load,
-/// and above all a few percent of airspeed error, which count three times in its cube, add up to about a tenth.
+/// The prior of the sd between flights is half a Student's t of 3 degrees of freedom with this scale: air density,
+/// load, and above all a few percent of airspeed error, which count three times in its cube, add up to about a tenth.
 inline constexpr double level_prior_scale = 0.1;
 
 /// The mean power of a motion ahead.

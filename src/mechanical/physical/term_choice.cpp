@@ -181,8 +181,8 @@ bool is_less(const Folds& of, const Eigen::ArrayXd& now_w2, const Eigen::ArrayXd
     return of.flights == 1 || 2 * improved > now_w2.size() || (now_w2.size() == 2 && improved == 1);
 }
 
-/// Tries a term with those that were chosen, and puts the result into the trial. Whole phases decide, as their energy is
-/// predicted, but bins must not be predicted worse. This rule was found on four real flights, whose take-offs need a
+/// Tries a term with those that were chosen, and puts the result into the trial. Whole phases decide, as their energy
+/// is predicted, but bins must not be predicted worse. This rule was found on four real flights, whose take-offs need a
 /// descent term (docs/validation.md, Airspeed and climb): they are no independent evidence for it.
 std::optional<Candidate> try_term(const Folds& of, const std::vector<PowerTerm>& terms, const HoldOutError& before,
                                   TermTrial& trial) {

@@ -20,8 +20,8 @@ enum class TomlLayout {
     section        ///< [path.key] and a line each
 };
 
-/// The keys of one table that is read or written. A record names each of its fields once, with one of these calls, which
-/// assigns the field while reading, and writes it otherwise. Reading throws InputError with its location.
+/// The keys of one table that is read or written. A record names each of its fields once, with one of these calls,
+/// which assigns the field while reading, and writes it otherwise. Reading throws InputError with its location.
 class TomlFields {
   public:
     explicit TomlFields(const TomlTable& table) : table_(&table) {}
