@@ -112,7 +112,7 @@ TEST_F(Robustness, Case01WatchStartsInFlight) {
     EXPECT_THAT(watch("printf '1247.795 7 ENERGY 94 10.883447 5.19984 56.592182 0.861353 9.800234\\n"
                       "1248.011 7 ESTIMATOR 119.537445 0.5\\n1248.507 7 ESTIMATOR 119.77951 0.74\\n'")
                     .out,
-                HasSubstr("waits for: "));
+                HasSubstr("no prediction: "));
     const auto log = test::shell_quoted(test::sample(1));
     for (int first = 700; first < 15'000; first += 2000)
         watch(fmt::format("tail -n +{} {} | head -n 1500", first, log));

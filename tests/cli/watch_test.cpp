@@ -82,7 +82,7 @@ TEST(Watch, WithoutAnyPredictionThereIsNoAnswer) {
                             test::shell_quoted(test::source_dir() / "fits/mechanical/synthetic-wing.toml"),
                         test::scratch_dir());
     EXPECT_EQ(run.code, 4);
-    EXPECT_THAT(run.out, HasSubstr("waits for: "));
+    EXPECT_THAT(run.out, HasSubstr("no prediction: "));
 }
 
 }  // namespace

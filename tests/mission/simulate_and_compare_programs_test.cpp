@@ -132,17 +132,17 @@ TEST(Compare, RanksMissions) {
     EXPECT_EQ(result.code, 0);
     EXPECT_EQ(result.err, "");
     EXPECT_EQ(result.out,
-              "rank  mission  final_soc_percent  energy_wh  mechanical_energy_wh  compute_energy_wh  "
-              "duration_s  depleted_at_s\n"
-              "   1  lasting              75.00     25.000                 0.000             25.000      "
-              "3600.0              -\n"
-              "   2  small                 0.00     25.000                 0.000             25.000      "
-              "3600.0         2880.0\n"
-              "   3  smaller               0.00     25.000                 0.000             25.000      "
-              "3600.0         1440.0\n");
+              "rank  mission  final state of charge [%]  reserve [%]  energy [Wh]  me"
+              "chanical [Wh]  computing [Wh]  duration [s]  empty at [s]\n"
+              "   1  lasting                      75.00         0.00       25.000    "
+              "        0.000          25.000        3600.0             -\n"
+              "   2  small                         0.00         0.00       25.000    "
+              "        0.000          25.000        3600.0        2880.0\n"
+              "   3  smaller                       0.00         0.00       25.000    "
+              "        0.000          25.000        3600.0        1440.0\n");
     EXPECT_EQ(run(folder, "compare", "small.toml smaller.toml lasting.toml").out, result.out);
     run(folder, "compare", "small.toml -o table.md");
-    EXPECT_THAT(read_file(folder / "table.md"), StartsWith("| rank | mission | final_soc_percent |"));
+    EXPECT_THAT(read_file(folder / "table.md"), StartsWith("| rank | mission | final state of charge [%] |"));
 }
 
 TEST(Compare, ListsSummariesAsJson) {
@@ -172,7 +172,7 @@ TEST(Compare, RanksWhatCannotBeDeliveredLast) {
     EXPECT_EQ(json[1]["mission"], "weak");
     EXPECT_TRUE(json[1]["final_soc_percent"].is_null());
     EXPECT_EQ(json[1]["feasible"], false);
-    EXPECT_THAT(run(folder, "compare", "weak.toml").out, HasSubstr("   1  weak                     -"));
+    EXPECT_THAT(run(folder, "compare", "weak.toml").out, HasSubstr("   1  weak                             -"));
 }
 
 TEST(Compare, StopsAtABadMission) {

@@ -32,13 +32,13 @@ Prediction made_up() {
 
 TEST(PredictionOutput, SaysWhatTheDifferenceSoFarMeans) {
     auto prediction = made_up();
-    EXPECT_THAT(text_of(prediction), HasSubstr("of the difference 25 % goes on"));
+    EXPECT_THAT(text_of(prediction), HasSubstr("25 % of the difference carried forward"));
     EXPECT_EQ(record_json(prediction)["cruise"]["gain"], 0.25);
     prediction.uses_physical_model = true;
-    EXPECT_THAT(text_of(prediction), HasSubstr("own level is not known"));
+    EXPECT_THAT(text_of(prediction), HasSubstr("no measured airspeed to compare with"));
     EXPECT_TRUE(record_json(prediction)["cruise"]["own_level"].is_null());
     prediction.flown.motion.bins.resize(2);
-    EXPECT_THAT(text_of(prediction), HasSubstr("this flight's own level +25.0 %"));
+    EXPECT_THAT(text_of(prediction), HasSubstr("this flight +25.0 %"));
     EXPECT_EQ(record_json(prediction)["cruise"]["own_level"], 0.25);
     EXPECT_TRUE(record_json(prediction)["cruise"]["gain"].is_null());
 }

@@ -55,7 +55,7 @@ std::vector<mission::Replay> all_cases() {
 TEST(ReplaySentences, CountTheFlightsOnWhichItWasBetter) {
     const auto sentences = replay_sentences(all_cases());
     ASSERT_EQ(sentences.size(), 1U) << "there is no plan with a margin";
-    EXPECT_THAT(sentences[0], AllOf(HasSubstr("survey: replanning in flight against planning beforehand, on 6 flights: "
+    EXPECT_THAT(sentences[0], AllOf(HasSubstr("survey: replanning in flight against planning before the flight, on 6 flights: "
                                               "better on 3, a tie on 1, worse on 2."),
                                     HasSubstr("keeps the reserve on 4 of 6, the plan on 4")));
 }
@@ -67,15 +67,15 @@ TEST(ReplaySentences, CountOneFlight) {
 
 TEST(ReplayCsv, LeavesEmptyWhatIsNot) {
     const std::vector replays{all_cases()[5]};
-    EXPECT_THAT(replay_csv(replays), HasSubstr("\nhopeless,survey,planned,20,false,,0,10,,,500,,,0,0,600\n"));
+    EXPECT_THAT(replay_csv(replays), HasSubstr("\nhopeless,survey,planned,,,0,20,false,0,0,0,0,600,500,,10,,,,\n"));
 }
 
 TEST(ReplayTable, TellsWhereASchedulesBatteryEnded) {
     const auto table = replay_table(all_cases());
     ASSERT_EQ(table.rows.size(), 12U);
-    EXPECT_EQ(table.rows[0][6], "below");
-    EXPECT_EQ(table.rows[1][6], "kept");
-    EXPECT_EQ(table.rows[10][6], "empty after 8 min 20 s");
+    EXPECT_EQ(table.rows[0][8], "below");
+    EXPECT_EQ(table.rows[1][8], "kept");
+    EXPECT_EQ(table.rows[10][8], "empty after 8 min 20 s");
 }
 
 TEST(ReplayBasis, SaysWhatTheModelSaw) {
@@ -83,9 +83,9 @@ TEST(ReplayBasis, SaysWhatTheModelSaw) {
     const auto model_cell = [&] { return replay_basis_table(std::vector{replay}).rows[0][2]; };
     EXPECT_EQ(model_cell(), "others, 1 flight");
     replay.model_saw_flight = mission::TrainingOverlap::yes;
-    EXPECT_EQ(model_cell(), "others, which saw this flight");
+    EXPECT_EQ(model_cell(), "others, fitted to this flight too");
     replay.model_saw_flight = mission::TrainingOverlap::unknown;
-    EXPECT_EQ(model_cell(), "others, which does not name its flights");
+    EXPECT_EQ(model_cell(), "others, flights unknown");
 }
 
 }  // namespace

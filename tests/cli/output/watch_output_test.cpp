@@ -38,7 +38,7 @@ live::LiveState flying() {
 TEST(WatchOutput, SaysWhatIsKnownAndWhatIsNot) {
     const auto line = line_of(flying(), two_components());
     EXPECT_THAT(line, HasSubstr("400 s  cruise 300 s  2.500 Wh"));
-    EXPECT_THAT(line, HasSubstr("waits for: a model"));
+    EXPECT_THAT(line, HasSubstr("no prediction: a model"));
     EXPECT_THAT(line, HasSubstr("runs detection fps=5.8, in 12 s detection fps=32, tx-2"));
     EXPECT_THAT(line, HasSubstr("ALARM silence: nothing was received for 40 s"));
     const auto screen = screen_of(flying(), two_components());
@@ -60,7 +60,7 @@ TEST(WatchOutput, SaysWhenToTurnHome) {
     state.battery->probability_below_reserve = 0.031;
     state.turn_home = live::ReturnDeadline{90.0, false};
     EXPECT_THAT(line_of(state, two_components()),
-                HasSubstr("reserve in 10.0 min of cruise, chance of landing below it 3.1 %, turn home within 1.5 min"));
+                HasSubstr("reserve in 10.0 min of cruise, probability of landing below it 3.1 %, turn home within 1.5 min"));
     state.turn_home = live::ReturnDeadline{};
     EXPECT_THAT(line_of(state, two_components()), HasSubstr("too late to turn home"));
     const auto compute = two_components();
