@@ -84,7 +84,7 @@ std::string truth_csv(const synthetic::SyntheticScenario& scenario) {
     return csv.text();
 }
 
-using Anomalies = std::vector<std::pair<std::string, synthetic::LogAnomaly>>;
+using Anomalies = std::vector<std::string>;
 
 struct SynthesizeArguments {
     std::size_t flights = 6;
@@ -100,9 +100,9 @@ struct SynthesizeArguments {
 
 /// The choices of --anomaly: none, each by its name, and all.
 std::vector<std::pair<std::string, Anomalies>> anomaly_choices() {
-    std::vector<std::pair<std::string, Anomalies>> choices{{"none", {{"", synthetic::LogAnomaly::none}}}};
-    for (const auto& anomaly : synthetic::anomaly_names()) choices.push_back({anomaly.first, {anomaly}});
-    choices.emplace_back("all", synthetic::anomaly_names());
+    std::vector<std::pair<std::string, Anomalies>> choices{{"none", {""}}};
+    for (const auto& anomaly : synthetic::anomalys()) choices.push_back({anomaly, {anomaly}});
+    choices.emplace_back("all", synthetic::anomalys());
     return choices;
 }
 
@@ -120,7 +120,7 @@ std::string log_name(const std::string& name, std::size_t number, const std::str
 void register_logs(const cli::StageCall& call, const SynthesizeArguments& arguments) {
     for (std::size_t i = 1; i <= arguments.flights; ++i) {
         for (const auto& anomaly : arguments.anomalies) {
-            const auto name = log_name(arguments.name, i, anomaly.first);
+            const auto name = log_name(arguments.name, i, anomaly);
             const auto stem = (std::filesystem::path(*call.output) / name).string();
             for (const auto* ending : {".log", ".data", ".truth.csv"}) register_output(stem + ending);
         }
@@ -194,13 +194,13 @@ int synthesize(const cli::StageCall& call, SynthesizeArguments arguments) {
         std::mt19937_64 random(seed + 1000 * (i + 1));
         const auto flight = make_flight(flights[i], random);
         const auto log_seed = random();
-        for (const auto& [anomaly_name, anomaly] : arguments.anomalies) {
+        for (const auto& anomaly : arguments.anomalies) {
             LogIdentity identity;
-            identity.name = log_name(arguments.name, i + 1, anomaly_name);
+            identity.name = log_name(arguments.name, i + 1, anomaly);
             identity.made_by =
                 fmt::format("Made by flightwatt synthesize: model {}, flight {} of {}, seed {}{}{}.", model.name, i + 1,
-                            count, seed, anomaly_name.empty() ? "" : ", anomaly ", anomaly_name);
-            const auto bytes = write_log(call, arguments, scenario_with_anomaly(flight, anomaly), identity, log_seed);
+                            count, seed, anomaly.empty() ? "" : ", anomaly ", anomaly);
+            const auto bytes = write_log(call, arguments, make_scenario(flight, anomaly), identity, log_seed);
             output.flights.push_back({identity.name, bytes});
         }
     }

@@ -9,14 +9,14 @@
 namespace flightwatt::synthetic {
 namespace {
 
-/// What one flight differs by in one phase.
+/// Deviation of a flight in a phase.
 struct Deviation {
     double level = 0.0;  ///< of the band
     double tilt = 0.0;   ///< of the band, opposite at the two ends of the phase
     double duration = 0.0;
 };
 
-/// The Fourier series of the phase's frequency next to level and tilt within the band.
+/// Fits a Fourier series of the phase's frequency to level and tilt.
 mechanical::FourierModel deviation_series(flight::Phase phase, const mechanical::PhaseModel& model,
                                           const Deviation& deviation) {
     constexpr std::size_t points = 200;
@@ -27,7 +27,7 @@ mechanical::FourierModel deviation_series(flight::Phase phase, const mechanical:
         power_w[i] = band_w(phase, tau[i]) * (deviation.level + deviation.tilt * (2.0 * tau[i] - 1.0));
     }
     auto series = mechanical::fit_series(model, tau, power_w);
-    if (!series) throw NoResultError("the model's frequency is too low to spread flights about it");
+    if (!series) throw NoResultError("the frequency of the model is too low to draw flights");
     return *std::move(series);
 }
 
@@ -41,7 +41,7 @@ mechanical::PhaseModel deviated(flight::Phase phase, const mechanical::PhaseMode
         flown.fourier.sin_w[n] += sign * difference.sin_w[n];
     }
     flown.duration_s *= 1.0 + sign * deviation.duration;
-    flown.fourier.omega_rad_per_s *= model.duration_s / flown.duration_s;  // the curve lasts as long
+    flown.fourier.omega_rad_per_s *= model.duration_s / flown.duration_s;  // the curve is scaled in time
     return flown;
 }
 

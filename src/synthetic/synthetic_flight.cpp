@@ -23,14 +23,14 @@ constexpr double dive_up_s = 20.0;
 constexpr double close_dives_s = 30.0;  // from one to the next, before the first is climbed back
 constexpr double estimator_climb_s = 15.0;
 constexpr double stage_change_s = 15.0;
-constexpr double settling_s = 4.0;     // how slowly the climb ends in the cruise height
-constexpr double oscillation = 0.008;  // of the height, while the autopilot holds it
+constexpr double settling_s = 4.0;     // time constant to the cruise height
+constexpr double oscillation = 0.008;  // of the height in cruise
 constexpr double oscillation_period_s = 47.0;
 
 /// Propeller power grows about with the cube of its speed.
 double throttle_for(double power_w) { return 100.0 * std::cbrt(std::clamp(power_w / full_power_w, 0.0, 1.0)); }
 
-/// How far a dive takes the aircraft down at `time_s`, as a part of its height.
+/// Depth of a dive as a fraction of the height.
 double dive_depth(const SyntheticFlight& flight, double time_s) {
     for (const double start_s : flight.dives_s) {
         const double since_s = time_s - start_s;
@@ -41,14 +41,14 @@ double dive_depth(const SyntheticFlight& flight, double time_s) {
     return 0.0;
 }
 
-/// What part of its height the aircraft holds at `time_s` until it lands.
+/// Fraction of the height before the landing.
 double stage_fraction(const SyntheticFlight& flight, double time_s) {
     if (flight.low_stage_s <= 0.0) return 1.0;
     const double begin_s = flight.start_s(flight::Phase::landing) - flight.low_stage_s;
     return std::lerp(1.0, low_stage_fraction, std::clamp((time_s - begin_s) / stage_change_s + 1.0, 0.0, 1.0));
 }
 
-/// The fraction of the height at `part` (0 to 1) of the landing, from `from` down to `ground`.
+/// Fraction of the height at a fraction of the landing, from `from` down to `ground`.
 double landing_fraction(const SyntheticFlight& flight, double part, double from, double ground) {
     const double step = flight.landing_step_s / flight.duration_s[flight::Phase::landing];
     if (step <= 0.0) return std::lerp(from, ground, part);
@@ -57,8 +57,8 @@ double landing_fraction(const SyntheticFlight& flight, double part, double from,
     return std::lerp(landing_step_fraction, ground, std::max(part - descent - step, 0.0) / descent);
 }
 
-/// Height above the ground. Phases begin and end where the segmentation's definitions put them: take-off at
-/// its fraction of the height for the ground and at that of the height held, which the oscillation raises.
+/// Height above the ground. Phases begin and end at the heights of the segmentation's definitions; the oscillation
+/// raises the cruise height.
 double height_m(const SyntheticFlight& flight, double time_s) {
     const flight::SegmentationOptions definition;
     const double ground = definition.ground_fraction;
@@ -87,7 +87,6 @@ double height_m(const SyntheticFlight& flight, double time_s) {
     return (fraction - dive_depth(flight, time_s)) * flight.height_m;
 }
 
-/// The motor while something unusual goes on: power and throttle.
 struct Motor {
     double power_w;
     double throttle_percent;
@@ -122,7 +121,7 @@ double power_w_at(const SyntheticFlight& flight, double time_s) {
     const double to_descent_s = flight.start_s(flight::Phase::landing) - time_s;
     if (cruised_s < 0.0) return phase_power_w(flight::Phase::takeoff);
     if (to_descent_s < 0.0) return phase_power_w(flight::Phase::landing);
-    // Power does not jump: the cruise takes over from the climb, and the descent from the cruise.
+    // Continuous power between the phases.
     const double from_climb = std::clamp(1.0 - cruised_s / hand_over_s, 0.0, 1.0);
     const double to_landing = std::clamp(1.0 - to_descent_s / hand_over_s, 0.0, 1.0);
     return from_climb * phase_power_w(flight::Phase::takeoff) + to_landing * phase_power_w(flight::Phase::landing) +
@@ -184,49 +183,45 @@ SyntheticState state_at(const SyntheticFlight& flight, double time_s) {
     return state;
 }
 
-SyntheticScenario plain_scenario(const SyntheticFlight& flight) { return {{flight}, 8.0, flight.log_end_s()}; }
-
-const std::vector<std::pair<std::string, LogAnomaly>>& anomaly_names() {
-    static const std::vector<std::pair<std::string, LogAnomaly>> all{
-        {"estimator-starts-at-zero", LogAnomaly::estimator_starts_at_zero},
-        {"dives-in-cruise", LogAnomaly::dives_in_cruise},
-        {"run-up", LogAnomaly::run_up},
-        {"power-burst-after-landing", LogAnomaly::power_burst_after_landing},
-        {"throttle-burst-before-touchdown", LogAnomaly::throttle_burst_before_touchdown},
-        {"two-sorties", LogAnomaly::two_sorties},
-        {"begins-in-the-air", LogAnomaly::begins_in_the_air},
-        {"ends-in-the-air", LogAnomaly::ends_in_the_air},
-        {"landing-in-steps", LogAnomaly::landing_in_steps},
-        {"works-low", LogAnomaly::low_survey_stage},
-    };
-    return all;
+const std::vector<std::string>& anomaly_names() {
+    static const std::vector<std::string> names{"estimator-starts-at-zero",
+                                                "dives-in-cruise",
+                                                "run-up",
+                                                "power-burst-after-landing",
+                                                "throttle-burst-before-touchdown",
+                                                "two-sorties",
+                                                "begins-in-the-air",
+                                                "ends-in-the-air",
+                                                "landing-in-steps",
+                                                "works-low"};
+    return names;
 }
 
-SyntheticScenario scenario_with_anomaly(SyntheticFlight flight, LogAnomaly hazard) {
+SyntheticScenario make_scenario(SyntheticFlight flight, std::string_view anomaly) {
     const double cruise_s = flight.duration_s[flight::Phase::cruise];
-    if (hazard == LogAnomaly::estimator_starts_at_zero) flight.estimator_fix_s = 12.0;
-    if (hazard == LogAnomaly::power_burst_after_landing) flight.power_burst_after_landing = true;
-    if (hazard == LogAnomaly::throttle_burst_before_touchdown) flight.throttle_burst_before_touchdown = true;
-    if (hazard == LogAnomaly::dives_in_cruise) {
+    if (anomaly == "estimator-starts-at-zero") flight.estimator_fix_s = 12.0;
+    if (anomaly == "power-burst-after-landing") flight.power_burst_after_landing = true;
+    if (anomaly == "throttle-burst-before-touchdown") flight.throttle_burst_before_touchdown = true;
+    if (anomaly == "dives-in-cruise") {
         const double cruise_start_s = flight.start_s(flight::Phase::cruise);
         flight.dives_s = {cruise_start_s + 0.2 * cruise_s, cruise_start_s + 0.5 * cruise_s,
                           cruise_start_s + 0.5 * cruise_s + close_dives_s, cruise_start_s + 0.8 * cruise_s};
     }
-    if (hazard == LogAnomaly::low_survey_stage) flight.low_stage_s = 120.0;
-    if (hazard == LogAnomaly::landing_in_steps) {
+    if (anomaly == "works-low") flight.low_stage_s = 120.0;
+    if (anomaly == "landing-in-steps") {
         flight.landing_step_s = 40.0;
         flight.duration_s[flight::Phase::landing] += flight.landing_step_s;
     }
-    if (hazard == LogAnomaly::run_up) {  // as long and as hard as a take-off
+    if (anomaly == "run-up") {  // as long and as hard as a take-off
         flight.motor_run_up_length_s = 28.0;
         flight.motor_run_up_power_w = full_power_w;
         flight.lift_off_s += flight.motor_run_up_length_s;
     }
-    auto scenario = plain_scenario(flight);
+    SyntheticScenario scenario{{flight}, 8.0, flight.log_end_s()};
     const double middle_s = flight.start_s(flight::Phase::cruise) + 0.5 * cruise_s;
-    if (hazard == LogAnomaly::begins_in_the_air) scenario.begin_s = middle_s;
-    if (hazard == LogAnomaly::ends_in_the_air) scenario.end_s = middle_s;
-    if (hazard == LogAnomaly::two_sorties) {
+    if (anomaly == "begins-in-the-air") scenario.begin_s = middle_s;
+    if (anomaly == "ends-in-the-air") scenario.end_s = middle_s;
+    if (anomaly == "two-sorties") {
         const double later_s = scenario.end_s + 20.0;
         flight.motor_run_up_s += later_s;
         flight.lift_off_s += later_s;

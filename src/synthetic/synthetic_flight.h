@@ -3,14 +3,16 @@
 #include "flight/flight_phases.h"
 
 #include <functional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace flightwatt::synthetic {
 
-/// A synthetic flight: what truly happens, as functions of time. It waits on the ground, runs its motor up,
-/// takes off, climbs into a circle, descends in circles, lands and waits.
+/// A synthetic flight: waits on the ground, runs its motor up, takes off, climbs into a circle, descends in circles,
+/// lands and waits.
 struct SyntheticFlight {
-    double motor_run_up_s = 30.0;  ///< when the motor is tried on the ground
+    double motor_run_up_s = 30.0;  ///< start of the motor test on the ground
     double motor_run_up_length_s = 4.0;
     double motor_run_up_power_w = 35.0;
     double lift_off_s = 60.0;
@@ -22,12 +24,12 @@ struct SyntheticFlight {
     double airspeed_m_per_s = 13.0;
     double wind_east_m_per_s = 2.0;
     double wind_north_m_per_s = -1.0;
-    std::vector<double> dives_s;                   ///< in cruise: down to a third of the height and up again
-    double low_stage_s = 0.0;                      ///< so long before the landing it works at low_stage_fraction
-    double landing_step_s = 0.0;                   ///< so long within the landing it circles at landing_step_fraction
-    double estimator_fix_s = 0.0;                  ///< until then the estimator reads 0, then it climbs to the truth
+    std::vector<double> dives_s;                   ///< start in cruise, down to a third of the height and up again
+    double low_stage_s = 0.0;                      ///< duration at low_stage_fraction before the landing
+    double landing_step_s = 0.0;                   ///< duration at landing_step_fraction within the landing
+    double estimator_fix_s = 0.0;                  ///< before, the estimator is at 0; then it rises to the altitude
     bool power_burst_after_landing = false;        ///< without throttle
-    bool throttle_burst_before_touchdown = false;  ///< at the end of a glide with the motor off
+    bool throttle_burst_before_touchdown = false;  ///< at the end of a glide
     /// Power [W] of a phase at tau in [0, 1] of it.
     std::function<double(flight::Phase phase, double tau)> power_w;
 
@@ -37,11 +39,10 @@ struct SyntheticFlight {
     double log_end_s() const { return end_s(flight::Phase::landing) + ground_after_s; }
 };
 
-/// Of the height: where it works before the landing, and where it circles within it.
+/// Of the height, before and within the landing.
 inline constexpr double low_stage_fraction = 0.6;
 inline constexpr double landing_step_fraction = 0.55;
 
-/// What the aircraft does at one moment.
 struct SyntheticState {
     double altitude_m = 0.0;
     double climb_m_per_s = 0.0;
@@ -57,40 +58,22 @@ struct SyntheticState {
     int mode = 0;
     int block = 0;
     bool airborne = false;
-    double estimated_altitude_m = 0.0;  ///< what the estimator makes of it, without noise
+    double estimated_altitude_m = 0.0;  ///< of the estimator, without noise
 };
 
 SyntheticState state_at(const SyntheticFlight& flight, double time_s);
 
-/// What a log holds: flights one after the other (their times are the log's), and where it begins and ends.
+/// Consecutive flights of a log (their times are the log's), and its begin and end.
 struct SyntheticScenario {
     std::vector<SyntheticFlight> flights;
-    double begin_s = 8.0;  ///< the server's clock starts before the first message comes in
+    double begin_s = 8.0;  ///< after the start of the server's clock
     double end_s = 0.0;
 };
 
-/// One flight from ground to ground.
-SyntheticScenario plain_scenario(const SyntheticFlight& flight);
+/// Anomalies of real logs that the segmentation must handle, by their names on the command line.
+const std::vector<std::string>& anomaly_names();
 
-/// Things that real logs do and that must not fool the segmentation.
-enum class LogAnomaly {
-    none,
-    estimator_starts_at_zero,
-    dives_in_cruise,
-    run_up,
-    power_burst_after_landing,
-    throttle_burst_before_touchdown,
-    two_sorties,
-    begins_in_the_air,
-    ends_in_the_air,
-    landing_in_steps,
-    low_survey_stage,
-};
-
-/// All but none, with their names on the command line.
-const std::vector<std::pair<std::string, LogAnomaly>>& anomaly_names();
-
-/// The scenario of a flight with a hazard.
-SyntheticScenario scenario_with_anomaly(SyntheticFlight flight, LogAnomaly hazard);
+/// A log of a flight with an anomaly; without one for any other name.
+SyntheticScenario make_scenario(SyntheticFlight flight, std::string_view anomaly = "");
 
 }  // namespace flightwatt::synthetic

@@ -17,15 +17,12 @@ namespace {
 constexpr double tick_s = 0.05;
 constexpr auto aircraft_id = "7";
 
-/// Pack voltage at rest, by the charge taken out of it: a line through a 3-cell pack's usual values.
-double rest_voltage_v(double charge_ah, double capacity_ah) { return 12.5 - 1.4 * charge_ah / capacity_ah; }
-
-/// What the phases' power draws: it is what reaches the sensors, so P = V I with V = U - R I.
+/// Solves P = V I with V = U - R I.
 double current_of_power_a(double power_w, double rest_v, double resistance_ohm) {
     return 2.0 * power_w / (rest_v + std::sqrt(rest_v * rest_v - 4.0 * resistance_ohm * power_w));
 }
 
-/// Sensors and counters, stepped through the flight.
+/// Sensors and counters over the flight.
 class Simulation {
   public:
     Simulation(const SyntheticSensors& sensors, std::mt19937_64& random) : sensors_(sensors), random_(random) {}
@@ -34,12 +31,12 @@ class Simulation {
         SensorReadings moment;
         moment.time_s = time_s;
         moment.state = state_at(flight, time_s);
-        const double rest_v = rest_voltage_v(charge_ah_, sensors_.pack_capacity_ah);
+        const double rest_v = 12.5 - 1.4 * charge_ah_ / sensors_.pack_capacity_ah;  // typical of three cells
         const double current_a = moment.state.power_w > 0.0
                                      ? current_of_power_a(moment.state.power_w, rest_v, sensors_.pack_resistance_ohm)
                                      : sensors_.idle_current_a;
         moment.voltage_v = rest_v - sensors_.pack_resistance_ohm * current_a;
-        // Reported is the charge that the voltage follows from: what has been drawn until now.
+        // The charge drawn before this step, which determines the voltage.
         moment.charge_ah = charge_ah_;
         moment.energy_wh = energy_wh_;
         charge_ah_ += current_a * tick_s / units::seconds_per_hour;
@@ -59,7 +56,7 @@ class Simulation {
     double energy_wh_ = 0.0;
 };
 
-/// A link that loses single lines and, while the aircraft cruises far off, now and then all for some seconds.
+/// Loses single lines, and while the aircraft is far off all lines of some seconds.
 class LossyLink {
   public:
     LossyLink(double lost_fraction, std::mt19937_64& random) : lost_fraction_(lost_fraction), random_(random) {
@@ -86,33 +83,27 @@ class LossyLink {
     double burst_end_s_ = 0.0;
 };
 
-std::string log_document(const SyntheticFlight& flight, const std::vector<PeriodicMessage>& reports,
-                         const std::string& name, const std::string& made_by) {
-    LogDocument document;
-    document.comment = fmt::format(" SYNTHETIC: no aircraft flew this. {} ", made_by);
-    document.time_of_day_s = 1577872800.0;
-    document.data_file = name + ".data";
-    document.aircraft.id = aircraft_id;
-    document.aircraft.name = "Opterra_synthetic";
-    document.aircraft.ground_altitude_m = flight.ground_altitude_m;
-    document.aircraft.block_names = {{0, "Wait GPS"}, {1, "Geo init"}, {2, "Holding point"},   {3, "Takeoff"},
-                                     {4, "Standby"},  {5, "Survey"},   {6, "Land Right AF-TD"}};
-    document.aircraft.current_origin = telemetry::CurrentOrigin::sensor;
-    for (const auto& report : reports) document.telemetry.push_back(report.definition);
-    document.telemetry.push_back({"TAKEOFF", {{"cpu_time", "uint16", "s", "", {}}}, ".log"});
-    document.telemetry.push_back({"INFO_MSG", {{"msg", "char[]", "", "", {}}}, ".log"});
-    return to_log_xml(document);
+std::string log_text(const SyntheticFlight& flight, const std::vector<PeriodicMessage>& reports,
+                     const std::string& name, const std::string& comment) {
+    telemetry::AircraftConfiguration aircraft{aircraft_id, "Opterra_synthetic", flight.ground_altitude_m, {}};
+    aircraft.block_names = {{0, "Wait GPS"}, {1, "Geo init"}, {2, "Holding point"},   {3, "Takeoff"},
+                            {4, "Standby"},  {5, "Survey"},   {6, "Land Right AF-TD"}};
+    aircraft.current_origin = telemetry::CurrentOrigin::sensor;
+    std::vector<telemetry::MessageDefinition> messages;
+    for (const auto& report : reports) messages.push_back(report.definition);
+    messages.push_back({"TAKEOFF", {{"cpu_time", "uint16", "s", "", {}}}, ".log"});
+    messages.push_back({"INFO_MSG", {{"msg", "char[]", "", "", {}}}, ".log"});
+    return to_log_xml(comment, name + ".data", aircraft, messages);
 }
 
 std::vector<PeriodicMessage> reports_of(const SyntheticSensors& sensors) {
     auto reports = periodic_messages();
     if (sensors.sends_other_messages) return reports;
-    const auto read = flight::flight_messages();
+    const auto required = flight::flight_messages();
     std::erase_if(reports, [&](const PeriodicMessage& report) {
-        return std::none_of(read.begin(), read.end(), [&](const telemetry::MessageRequest& request) {
-            return request.message == report.definition.name &&
-                   request.message != "COMMANDS";  // ENERGY has the throttle
-        });
+        const auto& name = report.definition.name;
+        return name == "COMMANDS" ||  // ENERGY contains the throttle
+               std::ranges::find(required, name, &telemetry::MessageRequest::message) == required.end();
     });
     return reports;
 }
@@ -130,8 +121,8 @@ SyntheticLog make_synthetic_log(const SyntheticScenario& scenario, const Synthet
         due_s.push_back(scenario.begin_s + tick_s * static_cast<double>(i));
     }
     SyntheticLog log;
-    log.data = data_line(scenario.begin_s, "ground", "INFO_MSG",
-                         {fmt::format("\"SYNTHETIC: no aircraft flew this. {}\"", made_by)});
+    const auto mark = "SYNTHETIC: no aircraft flew this. " + made_by;
+    log.data = data_line(scenario.begin_s, "ground", "INFO_MSG", {'"' + mark + '"'});
     std::size_t current = 0;
     bool takeoff_sent = false;  // of the current flight
     const auto ticks = static_cast<std::size_t>(scenario.end_s / tick_s);
@@ -142,10 +133,9 @@ SyntheticLog make_synthetic_log(const SyntheticScenario& scenario, const Synthet
             takeoff_sent = false;
         }
         const auto& flight = scenario.flights[current];
-        const auto moment = simulation.step(flight, time_s);  // the counters count before the log begins, too
+        const auto moment = simulation.step(flight, time_s);  // the counters also count before the log begins
         if (!takeoff_sent && moment.state.airborne) {
-            const bool logged = time_s >= scenario.begin_s;
-            if (logged)
+            if (time_s >= scenario.begin_s)
                 log.data +=
                     data_line(time_s, aircraft_id, "TAKEOFF", {fmt::format("{:.0f}", time_s - scenario.begin_s)});
             takeoff_sent = true;
@@ -159,7 +149,7 @@ SyntheticLog make_synthetic_log(const SyntheticScenario& scenario, const Synthet
             log.data += data_line(time_s, aircraft_id, reports[i].definition.name, reports[i].fields(moment));
         }
     }
-    log.log = log_document(scenario.flights.front(), reports, name, made_by);
+    log.log = log_text(scenario.flights.front(), reports, name, " " + mark + " ");
     return log;
 }
 

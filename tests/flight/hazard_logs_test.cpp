@@ -51,7 +51,7 @@ void expect_as_flown(const std::filesystem::path& data, const CsvTable& truth) {
 
 TEST(HazardLogs, AreSegmentedAsTheyWereFlown) {
     std::set<std::string> expected;
-    for (const auto& hazard : synthetic::anomaly_names()) expected.insert("hazard_01_" + hazard.first);
+    for (const auto& hazard : synthetic::anomaly_names()) expected.insert("hazard_01_" + hazard);
     std::set<std::string> seen;
     for (const auto& entry : std::filesystem::directory_iterator(test::source_dir() / "tests" / "data" / "hazards")) {
         if (entry.path().extension() != ".data") continue;

@@ -23,7 +23,7 @@ using testing::IsEmpty;
 FlightSeries sound_flight() {
     synthetic::SyntheticFlight flight;
     flight.power_w = [](Phase, double tau) { return 25.0 + 5.0 * tau; };
-    const auto log = make_synthetic_log(plain_scenario(flight), {}, "x", "", 1);
+    const auto log = make_synthetic_log(make_scenario(flight), {}, "x", "", 1);
     return flight_series(
         parse_telemetry(log.data, "x.data", telemetry::parse_log_configuration(log.log, "x.log"), flight_messages()),
         "7");

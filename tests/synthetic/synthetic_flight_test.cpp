@@ -79,30 +79,27 @@ TEST(StateAt, FliesCirclesAtItsAirspeedInTheWind) {
 }
 
 TEST(Hazards, HaveNamesOfTheirOwn) {
-    std::set<std::string> names;
-    for (const auto& [name, hazard] : anomaly_names()) {
-        EXPECT_TRUE(names.insert(name).second) << name;
-        EXPECT_NE(hazard, LogAnomaly::none) << name;
-    }
+    const std::set<std::string> names(anomaly_names().begin(), anomaly_names().end());
     EXPECT_EQ(names.size(), 10U);
+    EXPECT_EQ(anomaly_names().size(), 10U);
 }
 
 TEST(ScenarioWith, ChangesWhatTheHazardSays) {
     const auto flight = flight_at(27.0);
-    const auto plain = scenario_with_anomaly(flight, LogAnomaly::none);
+    const auto plain = make_scenario(flight);
     EXPECT_EQ(plain.flights.size(), 1U);
     EXPECT_EQ(plain.end_s, flight.log_end_s());
-    const auto two = scenario_with_anomaly(flight, LogAnomaly::two_sorties);
+    const auto two = make_scenario(flight, "two-sorties");
     ASSERT_EQ(two.flights.size(), 2U);
     EXPECT_GT(two.flights[1].lift_off_s, plain.end_s);
     EXPECT_EQ(two.end_s, two.flights[1].log_end_s());
-    EXPECT_GT(scenario_with_anomaly(flight, LogAnomaly::begins_in_the_air).begin_s, flight.start_s(Phase::cruise));
-    EXPECT_LT(scenario_with_anomaly(flight, LogAnomaly::ends_in_the_air).end_s, flight.end_s(Phase::cruise));
-    EXPECT_EQ(scenario_with_anomaly(flight, LogAnomaly::dives_in_cruise).flights[0].dives_s.size(), 4U);
+    EXPECT_GT(make_scenario(flight, "begins-in-the-air").begin_s, flight.start_s(Phase::cruise));
+    EXPECT_LT(make_scenario(flight, "ends-in-the-air").end_s, flight.end_s(Phase::cruise));
+    EXPECT_EQ(make_scenario(flight, "dives-in-cruise").flights[0].dives_s.size(), 4U);
 }
 
 TEST(ScenarioWith, DivesLowAndComesUpAgain) {
-    const auto flight = scenario_with_anomaly(flight_at(27.0), LogAnomaly::dives_in_cruise).flights[0];
+    const auto flight = make_scenario(flight_at(27.0), "dives-in-cruise").flights[0];
     const double dive_s = flight.dives_s[0];
     EXPECT_LT(height_m(flight, dive_s + 10.0), 0.4 * flight.height_m);
     EXPECT_EQ(state_at(flight, dive_s + 1.0).throttle_percent, 0.0);

@@ -57,14 +57,14 @@ std::string whole(double value) { return fmt::format("{}", std::llround(value));
 std::string tenths(double value) { return ocaml_float(std::round(value * 10.0) / 10.0); }
 std::string hundredths(double value) { return ocaml_float(std::round(value * 100.0) / 100.0); }
 
-/// Counts up from 0 with every message, and begins anew at `count`.
+/// Number of the message modulo `count`.
 int turn_of(const SensorReadings& m, double period_s, int count) {
     return static_cast<int>(m.time_s / period_s) % count;
 }
 int channel_of(const SensorReadings& m) { return turn_of(m, 0.6, 12); }
 int waypoint_of(const SensorReadings& m) { return turn_of(m, 1.2, 10); }
 
-/// What a field tells, as Paparazzi writes it.
+/// A field as Paparazzi writes it.
 struct NamedValue {
     std::string_view name;
     std::string (*text)(const SensorReadings& m);
@@ -123,8 +123,7 @@ constexpr NamedValue named_values[] = {
     {"log_file", [](const SensorReadings&) { return std::string(", FLIGHT_RECORDER\\fr_0001.LOG"); }},
 };
 
-/// A message: its fields as "name:type:unit" or "name:type", and as many values: a word that names one of
-/// named_values stands for that, any other for itself.
+/// A message: its fields as "name:type:unit" or "name:type", and their values: names of named_values, or literals.
 struct MessageRow {
     double period_s;
     const char* name;
@@ -133,7 +132,7 @@ struct MessageRow {
 };
 
 constexpr MessageRow message_rows[] = {
-    // What power and phases are read from.
+    // Required for power and phases.
     {1.1, "ENERGY", "throttle:uint8:% voltage:float:V current:float:A power:float:W charge:float:Ah energy:float:Wh",
      "throttle_percent voltage_v current_a power_w charge_ah energy_wh"},
     {0.5, "ESTIMATOR", "z:float:m z_dot:float:m/s", "altitude_m climb_m_per_s"},
@@ -145,7 +144,7 @@ constexpr MessageRow message_rows[] = {
     {5.0, "PPRZ_MODE",
      "ap_mode:uint8 ap_gaz:uint8 ap_lateral:uint8 ap_horizontal:uint8 if_calib_mode:uint8 mcu1_status:uint8",
      "mode automatic automatic 2 0 17"},
-    // What fills a real log too.
+    // Other typical messages.
     {0.15, "ATTITUDE", "phi:float:rad psi:float:rad theta:float:rad", "roll_rad heading_rad pitch_rad"},
     {0.5, "GPS",
      "mode:uint8:byte_mask utm_east:int32:cm utm_north:int32:cm course:int16:decideg alt:int32:mm "
@@ -157,7 +156,7 @@ constexpr MessageRow message_rows[] = {
      "wanted_roll_rad 0.05 course_rad east_m north_m true_altitude_m climb_m_per_s 13."},
     {0.6, "SVINFO", "chn:uint8 SVID:uint8 Flags:uint8 QI:uint8 CNO:uint8:dbHz Elev:int8:deg Azim:int16:deg",
      "channel satellite 13 7 36 elevation azimuth"},
-    // No AIRSPEED: the synthetic power does not follow it, and a sensor would suggest that it did.
+    // No AIRSPEED: the synthetic power does not depend on it.
     {0.9, "IMU_GYRO", "gp:float:rad/s gq:float:rad/s gr:float:rad/s", "0. 0. turn_rad_per_s"},
     {1.2, "WP_MOVED", "wp_id:uint8 utm_east:float:m utm_north:float:m alt:float:m utm_zone:uint8",
      "waypoint waypoint_east waypoint_north 105. 32"},
@@ -178,11 +177,6 @@ std::vector<std::string> split(const std::string& text, char separator) {
     return parts;
 }
 
-std::string value_of(const std::string& word, const SensorReadings& moment) {
-    const auto* named = std::ranges::find(named_values, word, &NamedValue::name);
-    return named == std::end(named_values) ? word : named->text(moment);
-}
-
 PeriodicMessage report_of(const MessageRow& row) {
     telemetry::MessageDefinition definition{row.name, {}, ".log"};
     for (const auto& field : split(row.fields, ' ')) {
@@ -191,7 +185,10 @@ PeriodicMessage report_of(const MessageRow& row) {
     }
     const auto fields = [words = split(row.values, ' ')](const SensorReadings& moment) {
         std::vector<std::string> values(words.size());
-        std::ranges::transform(words, values.begin(), [&](const auto& word) { return value_of(word, moment); });
+        std::ranges::transform(words, values.begin(), [&](const std::string& word) {
+            const auto* named = std::ranges::find(named_values, word, &NamedValue::name);
+            return named == std::end(named_values) ? word : named->text(moment);
+        });
         return values;
     };
     return {row.period_s, std::move(definition), fields};
@@ -211,19 +208,21 @@ std::string data_line(double time_s, std::string_view sender, std::string_view m
     return fmt::format("{:.3f} {} {} {}\n", time_s, sender, message, fmt::join(fields, " "));
 }
 
-std::string to_log_xml(const LogDocument& document) {
+std::string to_log_xml(const std::string& comment, const std::string& data_file,
+                       const telemetry::AircraftConfiguration& aircraft,
+                       const std::vector<telemetry::MessageDefinition>& messages) {
     pugi::xml_document xml;
-    xml.append_child(pugi::node_comment).set_value(document.comment.c_str());
+    xml.append_child(pugi::node_comment).set_value(comment.c_str());
     auto configuration = xml.append_child("configuration");
-    configuration.append_attribute("time_of_day") = fmt::format("{:.2f}", document.time_of_day_s).c_str();
-    configuration.append_attribute("data_file") = document.data_file.c_str();
+    configuration.append_attribute("time_of_day") = "1577872800.00";
+    configuration.append_attribute("data_file") = data_file.c_str();
     auto conf = configuration.append_child("conf");
-    add_aircraft(conf, document.aircraft);
+    add_aircraft(conf, aircraft);
     auto telemetry = configuration.append_child("protocol").append_child("msg_class");
     telemetry.append_attribute("NAME") = "telemetry";
     telemetry.append_attribute("ID") = 1;
     int id = 1;
-    for (const auto& definition : document.telemetry) add_message(telemetry, definition, id++);
+    for (const auto& definition : messages) add_message(telemetry, definition, id++);
     std::ostringstream text;
     xml.save(text, "  ", pugi::format_indent | pugi::format_no_declaration);
     return std::move(text).str();

@@ -27,14 +27,12 @@ TEST(DataLine, IsTimeSenderNameAndFields) {
 }
 
 TEST(LogXml, IsReadAsItWasWritten) {
-    LogDocument document;
-    document.comment = "made by a test";
-    document.data_file = "x.data";
-    document.aircraft = {
+    const telemetry::AircraftConfiguration written{
         "7", "Opt<e>\"ra\" & Co", 15.0, {{3, "Takeoff"}, {4, "Survey"}}, telemetry::CurrentOrigin::sensor};
-    document.telemetry = {{"ENERGY", {{"power", "float", "W", "", {}}, {"energy", "uint16", "mAh", "", {}}}, ".log"},
-                          {"PONG", {}, ".log"}};
-    const auto text = to_log_xml(document);
+    const auto text =
+        to_log_xml("made by a test", "x.data", written,
+                   {{"ENERGY", {{"power", "float", "W", "", {}}, {"energy", "uint16", "mAh", "", {}}}, ".log"},
+                    {"PONG", {}, ".log"}});
     EXPECT_NE(text.find("<!--made by a test-->"), std::string::npos);
     const auto configuration = telemetry::parse_log_configuration(text, "x.log");
     ASSERT_EQ(configuration.messages.size(), 2U);
@@ -44,7 +42,7 @@ TEST(LogXml, IsReadAsItWasWritten) {
     EXPECT_EQ(fields[1].type, "uint16");
     EXPECT_EQ(fields[1].unit, "mAh");
     const auto& aircraft = configuration.aircraft.at("7");
-    EXPECT_EQ(aircraft.block_names, document.aircraft.block_names);
+    EXPECT_EQ(aircraft.block_names, written.block_names);
     EXPECT_EQ(aircraft.current_origin, telemetry::CurrentOrigin::sensor);
     EXPECT_EQ(aircraft.ground_altitude_m, 15.0);
 }
