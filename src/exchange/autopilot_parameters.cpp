@@ -16,10 +16,9 @@
 namespace flightwatt::exchange {
 namespace {
 
-constexpr double full_soc_percent = 100.0;
 constexpr double max_charged_cell_v = 4.25;
 
-/// The battery as estimators see it, that know one resistance: after the RC pair has settled.
+/// The battery for estimators with a single resistance: in the steady state of the RC pair.
 struct PackSummary {
     battery::Battery battery;  ///< with the RC pair's resistance in series
     int cells = 1;             ///< in series
@@ -33,25 +32,25 @@ PackSummary summarize_pack(const EstimatorInput& input, const std::string& reade
         throw InputError({}, fmt::format("{} needs a battery, and none is given", reader),
                          "give a pack of `flightwatt battery`, or a mission");
     }
-    PackSummary facts;
-    facts.battery = *input.battery;
-    if (facts.battery.thevenin) {
-        facts.battery.resistance_ohm += facts.battery.thevenin->rc_resistance_ohm;
-        facts.battery.thevenin->rc_resistance_ohm = 0.0;
+    PackSummary pack;
+    pack.battery = *input.battery;
+    if (pack.battery.thevenin) {
+        pack.battery.resistance_ohm += pack.battery.thevenin->rc_resistance_ohm;
+        pack.battery.thevenin->rc_resistance_ohm = 0.0;
     }
-    const double full_v = open_circuit_voltage_v(facts.battery, full_soc_percent);
-    const auto fewest = static_cast<int>(std::max(1.0, std::ceil(full_v / max_charged_cell_v)));
-    facts.cells = input.cells_in_series.value_or(facts.battery.cells.value_or(fewest));
-    facts.capacity_mah = facts.battery.capacity_ah / units::milli;
-    facts.energy_wh = full_energy_wh(facts.battery);
-    return facts;
+    const double full_v = open_circuit_voltage_v(pack.battery, units::percent_per_whole);
+    const auto min_cells = static_cast<int>(std::max(1.0, std::ceil(full_v / max_charged_cell_v)));
+    pack.cells = input.cells_in_series.value_or(pack.battery.cells.value_or(min_cells));
+    pack.capacity_mah = pack.battery.capacity_ah / units::milli;
+    pack.energy_wh = full_energy_wh(pack.battery);
+    return pack;
 }
 
 /// Throws InputError without a model.
 const mechanical::MechanicalModel& required_model(const EstimatorInput& input, const std::string& reader) {
     if (!input.model) {
         throw InputError({}, fmt::format("{} needs a mechanical model, and none is given", reader),
-                         "give a model of `flightwatt fit` or `batch` beside the battery, or a mission");
+                         "give a model of `flightwatt fit` or `batch` with the battery, or a mission");
     }
     return *input.model;
 }
@@ -62,10 +61,10 @@ double mean_power_w(const EstimatorInput& input, flight::Phase phase) {
     return energy_j(curve.fourier, curve.duration_s) / curve.duration_s + input.compute_w;
 }
 
-/// A polynomial of least squares through points of a curve.
+/// A least-squares polynomial of a curve.
 struct CurveFit {
     Eigen::VectorXd coefficients;  ///< of 1, x, x^2 ...
-    double worst = 0.0;            ///< how far it is off the points at most
+    double max_error = 0.0;
 };
 
 template <typename Curve>
@@ -78,7 +77,7 @@ CurveFit fitted_polynomial(const mechanical::FlownRange& range, int points, int 
         values[i] = curve(x);
     }
     CurveFit fit{powers.colPivHouseholderQr().solve(values)};
-    fit.worst = (values - powers * fit.coefficients).cwiseAbs().maxCoeff();
+    fit.max_error = (values - powers * fit.coefficients).cwiseAbs().maxCoeff();
     return fit;
 }
 
@@ -88,7 +87,7 @@ constexpr double cw_per_w = 100.0;     // INAV's powers are in 0.01 W,
 constexpr double mwh_per_wh = 1000.0;  // its energies in mWh,
 constexpr double cm_per_m = 100.0;     // its speeds in cm/s
 
-/// Whole and not negative, as INAV's settings are.
+/// Rounded. Throws InputError beyond the range of INAV's setting.
 template <typename Stored>
 long long whole(double value, const char* name) {
     const double rounded = std::round(value);
@@ -96,6 +95,43 @@ long long whole(double value, const char* name) {
         return static_cast<long long>(rounded);
     throw InputError({}, fmt::format("{} would be {:.6g}: INAV takes 0 to {}", name, rounded,
                                      static_cast<long long>(std::numeric_limits<Stored>::max())));
+}
+
+constexpr auto energy_monitor = "Paparazzi's energy monitor";
+constexpr std::array cell_currents_a{2.0, 4.0, 6.0, 8.0, 10.0};
+constexpr int max_cv = 420;  // hundredths of a volt
+constexpr int min_cv = 250;
+constexpr double cv_per_v = 100.0;
+
+double phase_energy_wh(const EstimatorInput& input, flight::Phase phase) {
+    return units::wh_from_joule(mean_power_w(input, phase) * input.model->phases[phase].duration_s);
+}
+
+/// The fraction of a full pack that is drawn at an open-circuit voltage, 0 to 1.
+double drawn_fraction(const battery::OpenCircuitVoltage& curve, double voltage_v) {
+    if (voltage_v >= curve.voltage_v.back()) return 0.0;
+    return 1.0 - interpolate_clamped(curve.voltage_v, curve.soc_percent, voltage_v) / units::percent_per_whole;
+}
+
+constexpr auto px4 = "PX4";
+constexpr int max_px4_cells = 16;
+constexpr double max_resistance_ohm = 0.2;  // of a cell
+constexpr double max_capacity_mah = 100'000.0;
+constexpr double max_current_a = 500.0;
+constexpr double half_charged_percent = 50.0;
+
+void require_up_to(double value, double max, const char* name, const char* unit) {
+    if (value <= max) return;
+    throw InputError({}, fmt::format("{} would be {:.4g} {}: PX4 takes up to {:g}", name, value, unit, max),
+                     "is the number of cells right (--cells)?");
+}
+
+/// MAV_PARAM_TYPE of MAVLink.
+enum class ParameterType { int32 = 6, real32 = 9 };
+
+std::string px4_line(const char* name, double value, ParameterType type) {
+    const auto text = type == ParameterType::int32 ? fmt::format("{:.0f}", value) : fmt::format("{:.9g}", value);
+    return fmt::format("1\t1\t{}\t{}\t{}\n", name, text, static_cast<int>(type));
 }
 
 }  // namespace
@@ -111,7 +147,7 @@ ParameterText to_inav(const EstimatorInput& input) {
     const double idle_w = input.idle_w.value_or(input.compute_w);
     if (idle_w >= cruise_w) {
         throw InputError({}, fmt::format("idles at {:.1f} W, and cruises at {:.1f} W", idle_w, cruise_w),
-                         "expected the power while the motor stands (--idle-power)");
+                         "expected the power with the motor off (--idle-power)");
     }
     ParameterText result;
     const auto set = [&](const char* name, auto value) { result.text += fmt::format("set {} = {}\n", name, value); };
@@ -125,45 +161,22 @@ ParameterText to_inav(const EstimatorInput& input) {
         set("nav_fw_cruise_speed",
             whole<std::uint16_t>(model.physical->mean_airspeed_m_per_s * cm_per_m, "nav_fw_cruise_speed"));
     } else {
-        result.notes.emplace_back(
-            "the model knows no airspeed: nav_fw_cruise_speed is left out (fit --model-kind physical)");
+        result.notes.emplace_back("the model has no airspeed: nav_fw_cruise_speed is omitted (fit --model-kind physical)");
     }
     if (input.reserve_percent) {
         set("rth_energy_margin", whole<std::uint8_t>(*input.reserve_percent, "rth_energy_margin"));
     } else {
-        result.notes.emplace_back("no mission says what should be left: rth_energy_margin is left out");
+        result.notes.emplace_back("no mission states a reserve: rth_energy_margin is omitted");
     }
     return result;
 }
-
-namespace {
-
-constexpr auto energy_monitor = "Paparazzi's energy monitor";
-constexpr std::array cell_currents_a{2.0, 4.0, 6.0, 8.0, 10.0};
-constexpr int highest_cv = 420;  // hundredths of a volt
-constexpr int lowest_cv = 250;
-constexpr double cv_per_v = 100.0;
-
-double phase_energy_wh(const EstimatorInput& input, flight::Phase phase) {
-    return units::wh_from_joule(mean_power_w(input, phase) * input.model->phases[phase].duration_s);
-}
-
-/// The charge drawn of a full pack, as a part, when its open-circuit voltage has fallen to `voltage_v`: 0 above the
-/// full one, 1 below the empty one.
-double drawn_fraction(const battery::OpenCircuitVoltage& curve, double voltage_v) {
-    if (voltage_v >= curve.voltage_v.back()) return 0.0;
-    return 1.0 - interpolate_clamped(curve.voltage_v, curve.soc_percent, voltage_v) / units::percent_per_whole;
-}
-
-}  // namespace
 
 ParameterText to_paparazzi(const EstimatorInput& input) {
     const auto pack = summarize_pack(input, energy_monitor);
     const auto& model = required_model(input, energy_monitor);
     if (!model.physical) {
-        throw InputError(
-            {}, fmt::format("the model {} knows no airspeed, over which {} takes power", model.name, energy_monitor),
-            "fit one with flightwatt fit --model-kind physical");
+        throw InputError({}, fmt::format("the model {} has no airspeed, which {} requires", model.name, energy_monitor),
+                         "fit one with flightwatt fit --model-kind physical");
     }
     constexpr int airspeeds = 101;
     const auto power = fitted_polynomial(model.physical->airspeed_m_per_s, airspeeds, 2, [&](double airspeed) {
@@ -189,21 +202,21 @@ ParameterText to_paparazzi(const EstimatorInput& input) {
                     mean_power_w(input, flight::Phase::cruise), model.phases[flight::Phase::landing].duration_s);
     const auto& [low, high] = model.physical->airspeed_m_per_s;
     result.notes.push_back(
-        fmt::format("the polynomial is off the model by up to {:.2f} W from {:.1f} to {:.1f} m/s; "
-                    "beyond, it is extrapolated",
-                    power.worst, low, high));
+        fmt::format("the polynomial differs from the model by up to {:.2f} W from {:.1f} to {:.1f} m/s; "
+                    "outside, it is extrapolated",
+                    power.max_error, low, high));
     return result;
 }
 
 ParameterText to_paparazzi_map(const EstimatorInput& input) {
     const auto pack = summarize_pack(input, energy_monitor);
     if (!pack.battery.thevenin) {
-        throw InputError({}, "the battery has one voltage at all states of charge: there is no charge to tell by it",
+        throw InputError({}, "the voltage of this battery does not depend on its state of charge",
                          "identify the open-circuit voltage with flightwatt battery");
     }
     const double cell_mah = pack.capacity_mah / input.cells_in_parallel;
     ParameterText result;
-    for (int cv = highest_cv; cv >= lowest_cv; --cv) {
+    for (int cv = max_cv; cv >= min_cv; --cv) {
         result.text += fmt::format("{:.2f}", cv / cv_per_v);
         for (const double cell_a : cell_currents_a) {
             const double source_v =
@@ -215,31 +228,6 @@ ParameterText to_paparazzi_map(const EstimatorInput& input) {
     }
     return result;
 }
-
-namespace {
-
-constexpr auto px4 = "PX4";
-constexpr int max_px4_cells = 16;
-constexpr double max_resistance_ohm = 0.2;  // of a cell
-constexpr double max_capacity_mah = 100'000.0;
-constexpr double max_current_a = 500.0;
-constexpr double half_charged_percent = 50.0;
-
-void require_up_to(double value, double most, const char* name, const char* unit) {
-    if (value <= most) return;
-    throw InputError({}, fmt::format("{} would be {:.4g} {}: PX4 takes up to {:g}", name, value, unit, most),
-                     "is the number of cells right (--cells)?");
-}
-
-/// MAV_PARAM_TYPE of MAVLink.
-enum class ParameterType { int32 = 6, real32 = 9 };
-
-std::string px4_line(const char* name, double value, ParameterType type) {
-    const auto text = type == ParameterType::int32 ? fmt::format("{:.0f}", value) : fmt::format("{:.9g}", value);
-    return fmt::format("1\t1\t{}\t{}\t{}\n", name, text, static_cast<int>(type));
-}
-
-}  // namespace
 
 ParameterText to_px4(const EstimatorInput& input) {
     const auto pack = summarize_pack(input, px4);
@@ -255,25 +243,26 @@ ParameterText to_px4(const EstimatorInput& input) {
     result.text += px4_line("BAT1_CAPACITY", pack.capacity_mah, ParameterType::real32);
     result.text += px4_line("BAT1_R_INTERNAL", cell_ohm, ParameterType::real32);
     if (pack.battery.thevenin) {
-        // A straight line of a cell's voltage at rest; from 10 %, as PX4 asks for a voltage before the steep drop.
+        // A cell's resting voltage as a line from 10 % on: PX4 requires voltages above the steep drop.
         constexpr int charges = 91;
-        const auto line = fitted_polynomial({10.0, full_soc_percent}, charges, 1, [&](double soc_percent) {
+        const auto line = fitted_polynomial({10.0, units::percent_per_whole}, charges, 1, [&](double soc_percent) {
             return open_circuit_voltage_v(pack.battery, soc_percent) / pack.cells;
         });
         const double empty_v = line.coefficients[0];
         const double v_per_percent = line.coefficients[1];
         if (!(v_per_percent > 0.0)) {
-            throw InputError({}, "has one voltage at all states of charge, by which PX4 cannot tell the charge",
+            throw InputError({}, "the voltage of this battery does not depend on its state of charge, as PX4 requires",
                              "identify the open-circuit voltage with flightwatt battery");
         }
         result.text += px4_line("BAT1_V_EMPTY", empty_v, ParameterType::real32);
-        result.text += px4_line("BAT1_V_CHARGED", empty_v + v_per_percent * full_soc_percent, ParameterType::real32);
+        result.text +=
+            px4_line("BAT1_V_CHARGED", empty_v + v_per_percent * units::percent_per_whole, ParameterType::real32);
         result.notes.push_back(
-            fmt::format("PX4's state of charge by voltage is a straight line: from 10 to 100 % it is "
-                        "off by up to {:.0f} points",
-                        line.worst / v_per_percent));
+            fmt::format("PX4's state of charge by voltage is a line: from 10 to 100 % its error is up to "
+                        "{:.0f} points",
+                        line.max_error / v_per_percent));
     } else {
-        result.notes.emplace_back("the battery has a constant voltage: BAT1_V_EMPTY and BAT1_V_CHARGED are left out");
+        result.notes.emplace_back("the battery has a constant voltage: BAT1_V_EMPTY and BAT1_V_CHARGED are omitted");
     }
     if (input.model) {
         const double current_a =
@@ -281,7 +270,7 @@ ParameterText to_px4(const EstimatorInput& input) {
         require_up_to(current_a, max_current_a, "BAT_AVRG_CURRENT", "A");
         result.text += px4_line("BAT_AVRG_CURRENT", current_a, ParameterType::real32);
     } else {
-        result.notes.emplace_back("without a model BAT_AVRG_CURRENT is left out");
+        result.notes.emplace_back("without a model BAT_AVRG_CURRENT is omitted");
     }
     return result;
 }

@@ -17,15 +17,13 @@
 namespace flightwatt::exchange {
 namespace {
 
-using units::Quantity;
-
-std::string_view suffix_of(Quantity quantity) {
+std::string_view suffix_of(units::Quantity quantity) {
     constexpr std::array<std::string_view, 11> suffixes{"_v",       "_a", "_w",       "_ah",  "_wh", "_m",
                                                         "_m_per_s", "_s", "_percent", "_deg", "_c"};
     return suffixes.at(static_cast<std::size_t>(quantity));
 }
 
-/// The fields of a message in the .log's order; of a log without one, of every layout that is known.
+/// The fields of a message in the order of the .log; without a .log, those of all known layouts.
 std::vector<std::string> fields_of(const std::optional<telemetry::LogConfiguration>& configuration,
                                    const std::string& message) {
     std::vector<telemetry::MessageDefinition> layouts;
@@ -52,33 +50,33 @@ telemetry::TelemetryLog read_message(const flight::FlightFile& file,
 }
 
 [[noreturn]] void refuse_absent(const flight::FlightFile& file, const std::string& message, bool is_defined) {
-    std::vector<std::string> names;
     const auto counts =
         file.framing() ? flight::with_binary_log(file, [](const auto& log) { return census_of_binary_messages(log); })
                        : telemetry::count_messages(file.text());
-    bool is_there = false;
+    std::vector<std::string> names;
     for (const auto& [name, count] : counts) {
-        is_there = is_there || name == message;
+        if (name == message && !is_defined) {
+            throw InputError({file.path().string()}, fmt::format("has no definition of {}", message),
+                             "add the .log of the log, or give --messages FILE");
+        }
         names.push_back(fmt::format("{} {}", name, count));
     }
-    if (is_there && !is_defined) {
-        throw InputError({file.path().string()}, fmt::format("has no definition of {}", message),
-                         "put the .log beside the log, or give --messages FILE");
-    }
-    throw InputError({file.path().string()}, fmt::format("holds no readable {}", message),
-                     "it holds " + short_list(names));
+    throw InputError({file.path().string()}, fmt::format("contains no readable {}", message),
+                     "it contains " + short_list(names));
 }
 
-const telemetry::SenderLog& sender_of(const telemetry::TelemetryLog& log, const std::string& message,
-                                      const std::optional<std::string>& sender) {
+/// The rows of a message of one sender. Throws InputError without any, or for several senders.
+const telemetry::MessageTable& table_of(const telemetry::TelemetryLog& log, const flight::FlightFile& file,
+                                        const std::string& message, const std::optional<std::string>& sender) {
     std::vector<std::string> ids;
-    const telemetry::SenderLog* chosen = nullptr;
+    const telemetry::MessageTable* chosen = nullptr;
     for (const auto& candidate : log.senders) {
         const auto* table = candidate.table(message);
         if (table == nullptr || table->empty()) continue;
         ids.push_back(candidate.id);
-        if (!sender || candidate.id == *sender) chosen = &candidate;
+        if (!sender || candidate.id == *sender) chosen = table;
     }
+    if (ids.empty()) refuse_absent(file, message, true);
     if (chosen == nullptr) {
         throw InputError({log.data_file.string()}, fmt::format("aircraft {} sent no {}", *sender, message),
                          "it was sent by " + short_list(ids));
@@ -91,14 +89,10 @@ const telemetry::SenderLog& sender_of(const telemetry::TelemetryLog& log, const 
     return *chosen;
 }
 
-/// A number with all its digits; one that was converted without those that only the conversion has put there.
+/// A number with all its digits, if converted without rounding errors of the conversion.
 std::string cell(double value, bool is_converted) {
     if (!std::isfinite(value)) return {};
     return is_converted ? fmt::format("{:.15g}", value) : fmt::format("{}", value);
-}
-
-bool has_numbers(const telemetry::Column& column) {
-    return std::ranges::any_of(column.values, [](double value) { return std::isfinite(value); });
 }
 
 MessageCsv as_csv(const telemetry::MessageTable& table) {
@@ -106,7 +100,7 @@ MessageCsv as_csv(const telemetry::MessageTable& table) {
     std::vector<const telemetry::Column*> columns;
     std::vector<std::string> header{"time_s"};
     for (const auto& column : table.columns) {
-        if (!has_numbers(column)) {
+        if (std::ranges::none_of(column.values, [](double value) { return std::isfinite(value); })) {
             result.left_out.push_back(column.field);
             continue;
         }
@@ -130,20 +124,15 @@ MessageCsv as_csv(const telemetry::MessageTable& table) {
 MessageCsv message_table(const flight::FlightFile& file, const std::string& message,
                          const std::optional<std::string>& sender) {
     if (file.is_series()) {
-        throw InputError({file.path().string()}, "is a series, which holds tracks and no messages",
-                         "give the log that it was made from, or leave --message out");
+        throw InputError({file.path().string()}, "is a series, which contains tracks and no messages",
+                         "give the log that it was made from, or remove --message");
     }
     std::optional<telemetry::LogConfiguration> configuration;
     if (const auto& text = file.log_text()) configuration = telemetry::parse_log_configuration(*text, file.log_file());
     const auto fields = fields_of(configuration, message);
     if (fields.empty()) refuse_absent(file, message, false);
     const auto log = read_message(file, std::move(configuration), {message, fields});
-    const auto sent = [&](const telemetry::SenderLog& sender_log) {
-        const auto* table = sender_log.table(message);
-        return table != nullptr && !table->empty();
-    };
-    if (std::ranges::none_of(log.senders, sent)) refuse_absent(file, message, true);
-    return as_csv(*sender_of(log, message, sender).table(message));
+    return as_csv(table_of(log, file, message, sender));
 }
 
 std::string series_table(const flight::FlightSeries& series) {

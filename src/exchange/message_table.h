@@ -6,23 +6,23 @@
 #include <string>
 #include <vector>
 
-/// Columns over time for programs that plot them, such as PlotJuggler: a CSV without comments, `time_s` first, then a
-/// column a quantity with its unit as suffix. A cell is empty where its column has no value at that time.
+/// Columns over time for plotting programs such as PlotJuggler: a CSV without comments, `time_s` first, then a column
+/// for each quantity with its unit as suffix. A cell without a value is empty.
 namespace flightwatt::exchange {
 
 struct MessageCsv {
     std::string csv;
-    std::vector<std::string> left_out;  ///< fields that hold no number in any row: texts and arrays
+    std::vector<std::string> left_out;  ///< fields without a number in any row: texts and arrays
     std::size_t rows = 0;
 };
 
-/// All rows of one message of one sender, every field in the base unit of its quantity (ENERGY.voltage in V:
-/// voltage_v). `sender` may be absent where one alone sent it. Throws InputError for a series, for a message that the
-/// log does not hold (it says which it holds), and for one of several senders.
+/// All rows of a message of one sender, each field in the base unit of its quantity (ENERGY.voltage in V: voltage_v).
+/// `sender` may be omitted if there is only one. Throws InputError for a series, for a message that is not in the log
+/// (listing those that are), and for several senders.
 MessageCsv message_table(const flight::FlightFile& file, const std::string& message,
                          const std::optional<std::string>& sender);
 
-/// All tracks of a series, those that are not chosen too: the series file without its comments.
+/// All tracks of a series, also those not selected: the series file without its comments.
 std::string series_table(const flight::FlightSeries& series);
 
 }  // namespace flightwatt::exchange

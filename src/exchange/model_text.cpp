@@ -3,10 +3,11 @@
 #include "base/text.h"
 
 #include <algorithm>
-#include <cstdint>
+#include <sstream>
 #include <string_view>
 #include <vector>
 
+#include <boost/algorithm/string/case_conv.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -15,32 +16,16 @@
 namespace flightwatt::exchange {
 namespace {
 
-/// A value of our TOML as JSON: numbers as they are, whole numbers whole.
-nlohmann::json json_of(const toml::node& node) {
-    nlohmann::json json;
-    if (const auto* table = node.as_table()) {
-        for (const auto& [key, value] : *table) json[std::string(key.str())] = json_of(value);
-    } else if (const auto* array = node.as_array()) {
-        json = nlohmann::json::array();
-        for (const auto& value : *array) json.push_back(json_of(value));
-    } else if (const auto whole = node.value_exact<std::int64_t>()) {
-        json = *whole;
-    } else if (const auto real = node.value_exact<double>()) {
-        json = *real;
-    } else if (const auto flag = node.value_exact<bool>()) {
-        json = *flag;
-    } else {
-        json = node.value_or(std::string());
-    }
-    return json;
+/// nlohmann prints the shortest digits of a number, toml++ 17.
+std::string json_text(const std::string& toml) {
+    std::ostringstream json;
+    json << toml::json_formatter(toml::parse(toml));
+    return nlohmann::json::parse(json.str()).dump(2) + "\n";
 }
 
-std::string json_text(const std::string& toml_text) { return json_of(toml::parse(toml_text)).dump(2) + "\n"; }
-
 bool is_letter(char c) { return c >= 'a' && c <= 'z'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// A list of numbers that C reads as doubles, to their last digit, as TOML does.
+/// A list of doubles in C, which reads the digits of TOML.
 std::string c_numbers(const std::vector<double>& values) {
     auto list = toml_reals(values);
     list.front() = '{';
@@ -48,7 +33,7 @@ std::string c_numbers(const std::vector<double>& values) {
     return list;
 }
 
-/// What no compiler takes for the comment's end, for one within it, or for a trigraph.
+/// Text without characters that could end the comment, begin one within it, or be a trigraph.
 std::string comment_text(std::string_view text) {
     std::string result;
     for (const char c : text) {
@@ -56,12 +41,6 @@ std::string comment_text(std::string_view text) {
         result += is_plain && c != '*' && c != '?' ? c : '.';
     }
     return result;
-}
-
-std::string upper(std::string text) {
-    std::ranges::transform(text, text.begin(),
-                           [](char c) { return is_letter(c) ? static_cast<char>(c - 'a' + 'A') : c; });
-    return text;
 }
 
 std::string heading(const mechanical::MechanicalModel& model, const std::string& prefix) {
@@ -77,7 +56,8 @@ std::string heading(const mechanical::MechanicalModel& model, const std::string&
         "#ifndef {3}_MODEL_H\n#define {3}_MODEL_H\n\n#include <math.h>\n\n"
         "enum {4}_phase {{ {3}_TAKEOFF, {3}_CRUISE, {3}_LANDING }};\n\n",
         comment_text(model.name), comment_text(model.description),
-        flights.empty() ? "" : fmt::format(" * Flights: {}.\n", fmt::join(flights, ", ")), upper(prefix), prefix);
+        flights.empty() ? "" : fmt::format(" * Flights: {}.\n", fmt::join(flights, ", ")),
+        boost::algorithm::to_upper_copy(prefix), prefix);
 }
 
 std::size_t model_order(const mechanical::MechanicalModel& model) {
@@ -123,7 +103,7 @@ std::string curve_functions(const mechanical::MechanicalModel& model, const std:
     const auto values = constants(model, order);
     const auto durations = a_phase(model, [](const mechanical::PhaseModel& phase) { return phase.duration_s; });
     return fmt::format(
-        "/* How long the model's flights took for the phase. */\n"
+        "/* Duration of the phase in the model's flights. */\n"
         "static inline double {0}_duration_s(enum {0}_phase phase) {{\n"
         "    static const double duration_s[3] = {1};\n    return duration_s[phase];\n}}\n\n"
         "/* a0 + sum of a_n cos(n omega t) + b_n sin(n omega t). */\n"
@@ -133,10 +113,10 @@ std::string curve_functions(const mechanical::MechanicalModel& model, const std:
         "        const double angle_rad = (n + 1) * omega_rad_per_s[phase] * time_s;\n"
         "        power_w += cos_w[phase][n] * cos(angle_rad) + sin_w[phase][n] * sin(angle_rad);\n"
         "    }}\n    return power_w;\n}}\n\n"
-        "/* The same where the phase takes flown_s, above 0: the curve is stretched to it. */\n"
+        "/* The same scaled in time to a phase of flown_s, above 0. */\n"
         "static inline double {0}_flown_power_w(enum {0}_phase phase, double time_s, double flown_s) {{\n"
         "    return {0}_power_w(phase, time_s * {0}_duration_s(phase) / flown_s);\n}}\n\n"
-        "/* The integral of the power from the phase's begin. */\n"
+        "/* The integral of the power from the start of the phase. */\n"
         "static inline double {0}_energy_j(enum {0}_phase phase, double time_s) {{\n{2}"
         "    double energy_j = a0_w[phase] * time_s;\n"
         "    for (n = 0; n < {3}; ++n) {{\n"
@@ -151,8 +131,8 @@ std::string motion_function(const mechanical::PhysicalModel& physical, const std
     using mechanical::PowerTerm;
     const auto& c = physical.coefficients;
     return fmt::format(
-        "/* Of a motion through the air: airspeed above 0, climb rate (below 0: descending), load factor 1 / cos(bank).\n"
-        " * Flown: {1:.1f} to {2:.1f} m/s, climbing {3:.1f} to {4:.1f} m/s; beyond, it is extrapolated. */\n"
+        "/* Power of a motion through the air: airspeed above 0, climb rate (below 0: descending), load factor\n"
+        " * 1 / cos(bank). Range: {1:.1f} to {2:.1f} m/s, climb {3:.1f} to {4:.1f} m/s; extrapolated outside. */\n"
         "static inline double {0}_motion_power_w(double airspeed, double climb, double load_factor) {{\n"
         "    const double power_w = {5} * airspeed * airspeed * airspeed + {6} / airspeed +\n"
         "                           {7} * (load_factor * load_factor - 1.0) / airspeed + {8} * climb +\n"
@@ -171,11 +151,9 @@ std::string to_json_text(const mechanical::MechanicalModel& model) { return json
 std::string to_json_text(const battery::Battery& battery) { return json_text(to_toml(battery)); }
 
 std::string c_prefix(const std::string& name) {
-    std::string prefix;
-    for (char c : name) {
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-        prefix += is_letter(c) || is_digit(c) ? c : '_';
-    }
+    auto prefix = boost::algorithm::to_lower_copy(name);
+    std::ranges::replace_if(
+        prefix, [](char c) { return !is_letter(c) && !(c >= '0' && c <= '9'); }, '_');
     if (prefix.empty() || !is_letter(prefix.front())) prefix = "model_" + prefix;
     return prefix;
 }
@@ -184,7 +162,7 @@ std::string to_c_header(const mechanical::MechanicalModel& model) {
     const auto prefix = c_prefix(model.name);
     auto text = heading(model, prefix) + curve_functions(model, prefix);
     if (model.physical) text += motion_function(*model.physical, prefix);
-    return text + fmt::format("#endif /* {}_MODEL_H */\n", upper(prefix));
+    return text + fmt::format("#endif /* {}_MODEL_H */\n", boost::algorithm::to_upper_copy(prefix));
 }
 
 }  // namespace flightwatt::exchange

@@ -89,7 +89,7 @@ TEST(FlownTrack, RefusesALogWithoutPositionsAndSaysWhy) {
     auto metres = series.tracks[0];
     metres.name = "east_m";
     series.tracks.push_back(metres);
-    EXPECT_THAT(rejection_of(series), testing::HasSubstr("in metres alone"));
+    EXPECT_THAT(rejection_of(series), testing::HasSubstr("only in metres"));
 }
 
 TEST(ColouredParts, FollowThePhasesAndShareTheirEnds) {

@@ -54,7 +54,8 @@ TEST(MessageTable, HasNoDigitsThatOnlyTheConversionPutThere) {
 }
 
 TEST(MessageTable, SaysWhatTheLogHoldsInstead) {
-    EXPECT_THAT(rejection_of(test::sample(1), "NO_SUCH"), testing::HasSubstr("holds no readable NO_SUCH; it holds "));
+    EXPECT_THAT(rejection_of(test::sample(1), "NO_SUCH"),
+                testing::HasSubstr("contains no readable NO_SUCH; it contains "));
     EXPECT_THAT(rejection_of(test::sample(1), "ENERGY", "99"), testing::HasSubstr("aircraft 99 sent no ENERGY"));
     const auto bare = test::scratch_dir() / "bare.data";
     write_file_atomically(bare, "1.0 7 ODD 3\n1.5 7 GPS 3 1 2 0 1 2 3 2112 4 31 0\n");

@@ -109,7 +109,7 @@ TEST(TrackSchemas, HoldKml) {
                     {"absolute", "above sea level"},
                     {"<when>" + utc_text(track, track.points[0].time_s), "<when>10:26:44"},
                     {"<gx:coord>", "<gx:coord>,"},
-                    {"<Placemark>", "<Placemark><styleUrl>#c0072b2</styleUrl>"},
+                    {"<Placemark>", "<Placemark><Style/>"},
                     {"<Document>", "<Document><colour>red</colour>"}});
     expect_refused(to_kml(tracks()[1], TrackColour::phase), "kml.xsd",
                    {{"-70.5000000,-33.5000000 ", "-70.5000000, -33.5000000 "},
