@@ -39,7 +39,7 @@ const char* name_of(live::FlightPhase phase) {
     return names[static_cast<std::size_t>(phase)];
 }
 
-std::string prediction_json(const live::PredictorState& now, std::span<const live::AlarmText> alarms, double start_s) {
+std::string prediction_json(const live::PredictorState& now, double start_s) {
     Json json{
         {"format", 1},
         {"time_s", start_s + now.time_s},
@@ -57,14 +57,14 @@ std::string prediction_json(const live::PredictorState& now, std::span<const liv
         {"alarms", Json::array()},
         {"dropped", now.dropped},
     };
-    for (const auto& alarm : alarms) json["alarms"].push_back({{"kind", alarm.kind}, {"text", alarm.text}});
+    for (const auto& alarm : now.alarms) json["alarms"].push_back({{"kind", alarm.kind}, {"text", alarm.text}});
     return json.dump();
 }
 
-std::string decision_json(const live::PredictorState& now, std::span<const live::ComponentState> runs, double start_s) {
+std::string decision_json(const live::PredictorState& now, double start_s) {
     auto run = Json::object();
-    for (const auto& component : runs)
-        if (component.runs) run[std::string(component.name)] = component.quality;
+    for (const auto& component : now.components)
+        if (component.runs) run[component.name] = component.quality;
     const Json json{
         {"format", 1},
         {"time_s", start_s + now.time_s},
@@ -106,8 +106,8 @@ class SamplePredictor : public NodePredictor {
     std::optional<NodeTexts> look(double now_s) override {
         if (!start_s_) return std::nullopt;
         const auto& now = predictor_->update(std::max(0.0, now_s - latest_s_));
-        NodeTexts texts{prediction_json(now, predictor_->alarms(), *start_s_), {}};
-        if (now.decision) texts.decision = decision_json(now, predictor_->component_states(), *start_s_);
+        NodeTexts texts{prediction_json(now, *start_s_), {}};
+        if (now.decision) texts.decision = decision_json(now, *start_s_);
         return texts;
     }
 

@@ -19,12 +19,12 @@
 #include <sys/wait.h>
 
 namespace flightwatt::live {
+
 void DecisionCommand::run(const Environment& variables) {
-    if (child_ >= 0) {
-        waiting_ = variables;
-        return;
-    }
-    start(variables);
+    if (child_ >= 0)
+        pending_ = variables;
+    else
+        start(variables);
 }
 
 void DecisionCommand::start(const Environment& variables) {
@@ -53,22 +53,20 @@ std::optional<std::string> DecisionCommand::poll() {
         child_ = -1;
         if (WIFEXITED(status) && WEXITSTATUS(status) != 0) failure_ = fmt::format("exit code {}", WEXITSTATUS(status));
         if (WIFSIGNALED(status)) failure_ = "ended by " + signal_name(WTERMSIG(status));
-        if (waiting_) start(*std::exchange(waiting_, std::nullopt));
+        if (pending_) start(*std::exchange(pending_, std::nullopt));
     }
     if (failure_.empty()) return std::nullopt;
     return std::exchange(failure_, {});
 }
 
 bool DecisionCommand::wait(int max_ms) {
-    constexpr int look_again_ms = 10;
-    for (int waited_ms = 0; child_ >= 0; waited_ms += look_again_ms) {
-        const auto failure = poll();
-        if (failure) failure_ = *failure;
-        if (child_ < 0) break;
+    constexpr int poll_ms = 10;
+    for (int waited_ms = 0;; waited_ms += poll_ms) {
+        failure_ = poll().value_or("");
+        if (child_ < 0) return true;
         if (waited_ms >= max_ms) return false;
-        std::this_thread::sleep_for(std::chrono::milliseconds(look_again_ms));
+        std::this_thread::sleep_for(std::chrono::milliseconds(poll_ms));
     }
-    return true;
 }
 
 }  // namespace flightwatt::live

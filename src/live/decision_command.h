@@ -8,22 +8,19 @@
 
 namespace flightwatt::live {
 
-/// A command of sh that is run at each change of a decision, one at a time, without waiting for it. Where it still runs
-/// at the next change, it is run again once it has ended, with the latest decision.
+/// A command of sh, run at each change of a decision without waiting for it, one process at a time. If the decision
+/// changes while it runs, it is run once more when it has ended, with the latest decision.
 class DecisionCommand {
   public:
     using Environment = std::map<std::string, std::string>;
 
     explicit DecisionCommand(std::string command) : command_(std::move(command)) {}
-    DecisionCommand(const DecisionCommand&) = delete;
-    DecisionCommand& operator=(const DecisionCommand&) = delete;
-    ~DecisionCommand() = default;
 
-    /// With these variables beside the program's own. Its standard output goes to the standard error.
+    /// The variables are added to the program's environment. Standard output is redirected to standard error.
     void run(const Environment& variables);
-    /// What ended since, and badly: "exit code 3", "ended by SIGKILL", "cannot be run: ..."; starts what waits.
+    /// Starts a pending run. Returns a failure since the last call: "exit code 3", "ended by SIGKILL" ...
     std::optional<std::string> poll();
-    /// Waits for what runs, at most so long; false if it still does.
+    /// Waits up to `max_ms` for all runs; false if one still runs.
     bool wait(int max_ms);
 
   private:
@@ -31,7 +28,7 @@ class DecisionCommand {
 
     std::string command_;
     ::pid_t child_ = -1;
-    std::optional<Environment> waiting_;
+    std::optional<Environment> pending_;
     std::string failure_;
 };
 

@@ -3,8 +3,8 @@
 #include "flight/flight_phases.h"
 #include "live/live_schedule.h"
 #include "live/prediction.h"
+#include "live/predictor.h"
 #include "live/sources.h"
-#include "live/turn_home.h"
 #include "telemetry/log_configuration.h"
 
 #include <cstddef>
@@ -18,46 +18,38 @@
 
 namespace flightwatt::live {
 
-/// How a flight is watched.
 struct LiveOptions {
     std::string flight = "live";                                    ///< its name
-    std::optional<std::string> aircraft_id = {};                    ///< none: the one that flies
+    std::optional<std::string> aircraft_id = {};                    ///< none: the first that flies
     std::optional<telemetry::LogConfiguration> configuration = {};  ///< definitions; none: the built-in ones
-    double silence_threshold_s = 30.0;                              ///< after which the link is called silent
-    /// Called with every .data line that is believed, in their order; `clock_restarted`: the clock began anew before
-    /// them.
+    double silence_threshold_s = 30.0;                              ///< of the alarm
+    /// Called with the accepted .data lines in their order; `clock_restarted`: before them.
     std::function<void(std::string_view lines, bool clock_restarted)> on_lines = {};
-    std::size_t most_rows = 30'000;  ///< of messages, kept in memory
+    std::size_t max_rows = 30'000;  ///< of messages in memory
 };
 
-struct Alarm {
-    std::string kind;  ///< "reserve", "model", "silence" or "voltage"
-    std::string text;
-};
-
-/// What is known of the battery.
 struct LiveBattery {
-    std::optional<double> soc_percent;             ///< its charge at the start less what was drawn
-    std::optional<double> soc_by_voltage_percent;  ///< as the battery model tells it from voltage and current
+    std::optional<double> soc_percent;             ///< the initial one less the charge drawn
+    std::optional<double> soc_by_voltage_percent;  ///< by the battery model from voltage and current
     double initial_soc_percent = 0.0;
     bool initial_is_from_voltage = false;             ///< by the resting voltage
-    std::optional<double> drawn_ah;                   ///< since the first message that is kept
+    std::optional<double> drawn_ah;                   ///< since the first retained message
     std::optional<double> voltage_residual_v;         ///< measured less the model's, median of the last minute
-    std::optional<double> time_to_reserve_s;          ///< so long could a cruise go on until only the reserve is left
-    std::optional<double> probability_below_reserve;  ///< of landing below the reserve, 0 to 1
-    std::optional<battery::BatteryState> state;       ///< what the forecasts start from
+    std::optional<double> time_to_reserve_s;          ///< of a continued cruise
+    std::optional<double> probability_below_reserve;  ///< at landing, 0 to 1
+    std::optional<battery::BatteryState> state;       ///< for forecasts
 };
 
-/// All that is known at a moment of a flight.
+/// The state of a flight at a moment.
 struct LiveState {
     double time_s = 0.0;                               ///< of the latest message, on the clock of the telemetry
-    std::string aircraft_id;                           ///< empty: none is known yet
-    std::string aircraft_name;                         ///< as the .log has it
-    std::map<std::string, std::size_t> other_senders;  ///< messages of other senders
+    std::string aircraft_id;                           ///< empty: none yet
+    std::string aircraft_name;                         ///< from the .log
+    std::map<std::string, std::size_t> other_senders;  ///< with their numbers of messages
 
     std::optional<flight::Phase> phase;  ///< none: on the ground
-    std::size_t sortie = 0;              ///< since the watch began; 0: none yet
-    bool began_in_air = false;           ///< what was flown before the first message is not known
+    std::size_t sortie = 0;              ///< number since the watch began; 0: none yet
+    bool began_in_air = false;           ///< the flight before the first message is unknown
     bool landed = false;
     std::optional<double> lift_off_s;
     double flight_time_s = 0.0;  ///< in the air, or since the first message there
@@ -68,11 +60,11 @@ struct LiveState {
     std::optional<double> voltage_v;
     std::optional<double> current_a;
     std::optional<double> altitude_m;
-    std::optional<double> expected_power_w;  ///< of what comes next, as predicted; else the cruise's so far
+    std::optional<double> expected_power_w;  ///< of the next load, as predicted; else the mean of the cruise
 
     std::optional<LiveBattery> battery;
     std::optional<Prediction> prediction;
-    std::string no_prediction_reason;  ///< why there is none
+    std::string no_prediction_reason;
     std::optional<ReturnDeadline> turn_home;
     std::optional<LiveDecision> decision;
 
@@ -82,33 +74,31 @@ struct LiveState {
     std::size_t restarts = 0;  ///< of the clock
     double time_since_message_s = 0.0;
     std::map<std::string, std::size_t> unusable;  ///< lines and values by reason
-    std::size_t rows = 0;                         ///< kept
+    std::size_t rows = 0;                         ///< in memory
 };
 
-/// A flight that is in the air, from its messages as they come in. Memory is bounded: what lies before the rest before
-/// the last lift-off goes first, then every second row of the message that has most (docs/live.md). Nothing that comes
-/// in makes it throw.
+/// A flight in progress, updated with its messages. Memory is bounded: rows long before the last lift-off are
+/// dropped first, then the largest table is thinned by two (docs/live.md). Invalid input does not throw.
 class LiveFlight {
   public:
-    LiveFlight(LiveOptions options, std::optional<PredictionInput> basis, std::unique_ptr<LiveSchedule> schedule);
+    LiveFlight(LiveOptions options, std::optional<PredictionInput> input, std::unique_ptr<LiveSchedule> schedule);
     ~LiveFlight();
 
-    /// Takes a message; `arrival_s` is its time if its source has none, and tells a clock that was set ahead from a gap
-    /// where it goes on as the times do.
+    /// `arrival_s` is the time of a message without one, and serves to distinguish a clock that was set from a gap.
     void receive(IncomingMessage message, double arrival_s);
-    /// The time of the latest message that is believed; none before the first.
+    /// Time of the latest accepted message; none before the first.
     std::optional<double> clock_s() const;
-    /// No more messages will come.
+    /// No more messages will follow.
     void end();
 
-    /// What is known now. `time_since_message_s`: for how long nothing has come.
+    /// The current state. `silent_s`: time since the last message of any sender.
     LiveState update(double silent_s = 0.0);
-    /// The last state that had a prediction; none before.
+    /// The last state with a prediction; none before.
     const std::optional<LiveState>& last_predicted() const;
 
   private:
     class Impl;
-    std::unique_ptr<Impl> watch_;
+    std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace flightwatt::live

@@ -13,12 +13,12 @@ namespace {
 
 using mission::PhaseTime;
 
-/// Of a mission that is to decide in flight.
+/// The planning problem of a mission, with an adaptive policy.
 mission::PlanningProblem deciding(const mission::MissionVariant& mission) {
     const auto* problem = std::get_if<mission::PlanningProblem>(&mission);
     if (problem == nullptr) {
-        throw InputError({setup_of(mission).file}, "its schedule is fixed: there is nothing to decide",
-                         "say in [plan] what may be chosen (docs/missions.md), or leave --replan out");
+        throw InputError({setup_of(mission).file}, "its schedule is fixed and cannot be replanned",
+                         "add [plan] with the choices (docs/missions.md), or remove --replan");
     }
     auto decided = *problem;
     if (!decided.adaptive) {
@@ -28,7 +28,7 @@ mission::PlanningProblem deciding(const mission::MissionVariant& mission) {
     return decided;
 }
 
-/// The schedule that is known before the flight.
+/// The schedule known before the flight.
 mission::Schedule planned_schedule(mission::MissionVariant mission) {
     if (auto* problem = std::get_if<mission::PlanningProblem>(&mission)) problem->adaptive.reset();
     return prepare_mission(mission).schedule;
@@ -97,18 +97,18 @@ std::optional<LiveDecision> LiveSchedule::at(const PhaseTime& moment, double clo
     LiveDecision decision{
         current->run, utility_per_s(of.utilities, current->run), {}, 0.0, {}, keeps_reserve_, final_soc_percent_, 0};
     double utility = 0.0;
-    double rest_s = 0.0;
+    double remaining_s = 0.0;
     for (auto segment = current; segment != schedule_.end(); ++segment) {
         const double start_s = std::max(now_s, timeline.start_s[segment->phase] + segment->start_s);
         const double duration_s = timeline.start_s[segment->phase] + segment->end_s - start_s;
         utility += utility_per_s(of.utilities, segment->run) * duration_s;
-        rest_s += duration_s;
+        remaining_s += duration_s;
         if (decision.next || segment->run == decision.run) continue;
         decision.next = segment->run;
         decision.next_in_s = start_s - now_s;
     }
     const bool has_utility = std::ranges::any_of(of.utilities, [](const auto& each) { return each.has_value(); });
-    if (has_utility && rest_s > 0.0) decision.remaining_utility_per_s = utility / rest_s;
+    if (has_utility && remaining_s > 0.0) decision.remaining_utility_per_s = utility / remaining_s;
     if (running_ != decision.run) ++changes_;
     running_ = decision.run;
     decision.changes = changes_;

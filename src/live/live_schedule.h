@@ -10,38 +10,37 @@
 
 namespace flightwatt::live {
 
-/// Which software runs now, and what is to come.
+/// The software configuration that runs now, and the rest of the schedule.
 struct LiveDecision {
     compute::Configuration run;
-    double utility_per_s = 0.0;                  ///< of that; 0 where the mission states no utility
-    std::optional<compute::Configuration> next;  ///< what runs after it, if that changes
+    double utility_per_s = 0.0;                  ///< of `run`; 0 where the mission states no utility
+    std::optional<compute::Configuration> next;  ///< the next different configuration
     double next_in_s = 0.0;
-    std::optional<double> remaining_utility_per_s;  ///< mean a second, from here to the mission's end
-    bool keeps_reserve = true;                      ///< of a decision in flight: some plan does
-    std::optional<double> final_soc_percent;        ///< of a decision in flight, as planned
-    std::size_t changes = 0;                        ///< of what runs, so far
+    std::optional<double> remaining_utility_per_s;  ///< mean from now to the mission's end
+    bool keeps_reserve = true;                      ///< of a replanned schedule
+    std::optional<double> final_soc_percent;        ///< of a replanned schedule, as planned
+    std::size_t changes = 0;                        ///< of `run` so far
 };
 
-/// A mission's schedule beside a real flight: the one that it states or that was planned before the flight, or with
-/// `replans` planned anew at every slot of each phase, as an adaptive policy does. A phase that takes longer than
-/// planned stays at its end.
+/// A mission's schedule during a real flight: stated by the mission, planned before the flight, or with `replans`
+/// replanned at every slot of each phase as by an adaptive policy. A phase that takes longer than planned stays in its
+/// last slot.
 class LiveSchedule {
   public:
-    /// Throws InputError where `replans` is asked of a mission that has a fixed schedule, and as mission::prepare.
+    /// Throws InputError for `replans` of a mission with a fixed schedule, and as mission::prepare_mission.
     LiveSchedule(mission::MissionVariant mission, bool replans);
 
     bool replans() const { return decider_.has_value(); }
     const mission::MissionSetup& setup() const { return setup_of(mission_); }
 
-    /// What runs at a moment; `clock_s` tells how much time lies between two calls. Without a state of the battery the
-    /// last decision goes on; std::nullopt before there is one.
+    /// The decision at a moment. `clock_s`: for the time between calls. Replanning needs the battery's state; without
+    /// it the last plan continues. std::nullopt before the first plan.
     std::optional<LiveDecision> at(const mission::PhaseTime& moment, double clock_s,
                                    const std::optional<battery::BatteryState>& now);
-    /// Another flight begins: nothing is learned of it yet.
+    /// Another flight begins.
     void reset();
 
   private:
-    /// The slot that is being flown.
     struct Slot {
         mission::PhaseTime start;
         double clock_s = 0.0;
@@ -53,10 +52,10 @@ class LiveSchedule {
     void update_from_slot(double clock_s, double soc_percent);
 
     mission::MissionVariant mission_;
-    std::unique_ptr<const mission::AdaptivePlanner> planner_;  ///< the decider refers to it
+    std::unique_ptr<const mission::AdaptivePlanner> planner_;  ///< referred to by the decider
     std::optional<mission::FlightReplanner> decider_;
     mission::Schedule schedule_;
-    std::optional<Slot> slot_;
+    std::optional<Slot> slot_;  ///< the current one
     bool keeps_reserve_ = true;
     std::optional<double> final_soc_percent_;
     std::optional<compute::Configuration> running_;

@@ -1,30 +1,23 @@
 #include "live/page_server.h"
 
 #include "base/error.h"
-#include "base/number.h"
 #include "live/sources/endpoints.h"
 
 #include <algorithm>
 #include <chrono>
-#include <deque>
+#include <exception>
 #include <list>
 #include <random>
+#include <regex>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include <boost/algorithm/string/predicate.hpp>
-#include <boost/asio/buffer.hpp>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/post.hpp>
-#include <boost/asio/steady_timer.hpp>
-#include <boost/asio/write.hpp>
-#include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
-#include <boost/beast/http/empty_body.hpp>
-#include <boost/beast/http/parser.hpp>
-#include <boost/beast/http/read.hpp>
-#include <boost/beast/http/status.hpp>
+#include <boost/asio.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/lexical_cast.hpp>
 #include <fmt/format.h>
 
 namespace flightwatt::live {
@@ -38,33 +31,27 @@ using boost::system::error_code;
 
 constexpr std::chrono::seconds max_request{10}, max_write{20};
 constexpr std::size_t max_request_bytes = 16'384;
-constexpr std::size_t max_unsent_bytes = 2'000'000;  // a listener that takes nothing for minutes
+constexpr std::size_t max_unsent_bytes = 2'000'000;  // of a browser that has not read for minutes
 
 constexpr int ok = 200, forbidden = 403, not_found = 404, not_allowed = 405, too_many = 503;
 
 std::string_view text_of(boost::beast::string_view text) { return {text.data(), text.size()}; }
 
-/// Without its port; empty where that is none.
-std::string_view without_port(std::string_view host) {
-    const auto end = host.starts_with('[') ? host.find(']') : std::string_view::npos;
-    const auto colon = host.find(':', end == std::string_view::npos ? 0 : end);
-    if (colon == std::string_view::npos) return host;
-    return parse_unsigned(host.substr(colon + 1)) ? host.substr(0, colon) : std::string_view();
-}
-
-/// Whether a Host header names this machine by an address, or as localhost: a name that some name server made an
-/// address of this machine's is neither.
+/// Whether a Host header is an address or localhost. Other names may resolve to this machine by DNS rebinding.
 bool is_own_host(std::string_view host) {
-    auto name = without_port(host);
-    if (iequals(name, "localhost")) return true;
-    if (name.starts_with('[') && name.ends_with(']')) name = name.substr(1, name.size() - 2);
-    boost::system::error_code error;
-    boost::asio::ip::make_address(std::string(name), error);
-    return !error;
+    static const std::regex own(R"((localhost|[0-9.]+|\[[0-9a-f:.]+\])(:[0-9]+)?)", std::regex::icase);
+    constexpr std::size_t max_length = 255;  // std::regex is recursive
+    return host.size() <= max_length && std::regex_match(host.begin(), host.end(), own);
 }
 
-/// How a request is answered: 200, 403, 404 or 405.
-int status_of(const http::request<http::empty_body>& request, std::string_view target) {
+using Request = http::request<http::empty_body>;
+
+std::string_view target_of(const Request& request) {
+    return text_of(request.target().substr(0, request.target().find('?')));
+}
+
+int status_of(const Request& request) {
+    const auto target = target_of(request);
     const auto host = text_of(request[http::field::host]);
     const auto origin = text_of(request[http::field::origin]);
     const auto fetch_site = text_of(request["Sec-Fetch-Site"]);
@@ -76,8 +63,8 @@ int status_of(const http::request<http::empty_body>& request, std::string_view t
     return fetch_site.empty() || fetch_site == "same-origin" || fetch_site == "none" ? ok : forbidden;
 }
 
-/// The page may load nothing but what is here; Vega compiles its expressions.
-constexpr std::string_view head_for_all =
+/// The page may load only its own content; Vega compiles its expressions.
+constexpr std::string_view common_headers =
     "Cache-Control: no-store\r\nConnection: close\r\nX-Content-Type-Options: nosniff\r\nX-Frame-Options: DENY\r\n"
     "Referrer-Policy: no-referrer\r\nCross-Origin-Resource-Policy: same-origin\r\n"
     "Content-Security-Policy: default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval'; style-src 'unsafe-inline'; "
@@ -85,23 +72,21 @@ constexpr std::string_view head_for_all =
 
 std::string head_of(int status, std::string_view type, std::string_view more) {
     return fmt::format("HTTP/1.1 {} {}\r\nContent-Type: {}\r\n{}{}\r\n", status,
-                       text_of(http::obsolete_reason(static_cast<http::status>(status))), type, head_for_all, more);
+                       text_of(http::obsolete_reason(static_cast<http::status>(status))), type, common_headers, more);
 }
 
-std::string whole_answer(int status, std::string_view type, std::string_view body, bool head_alone) {
-    const auto* allow = status == not_allowed ? "Allow: GET, HEAD\r\n"
-                        : status == too_many  ? "Retry-After: 30\r\n"
-                                              : "";
-    auto text = head_of(status, type, fmt::format("Content-Length: {}\r\n{}", body.size(), allow));
-    if (!head_alone) text += body;
+std::string response_of(const Request& request, int status, std::string_view type, std::string_view body) {
+    const auto* more = status == not_allowed ? "Allow: GET, HEAD\r\n" : status == too_many ? "Retry-After: 30\r\n" : "";
+    auto text = head_of(status, type, fmt::format("Content-Length: {}\r\n{}", body.size(), more));
+    if (request.method() != http::verb::head) text += body;
     return text;
 }
 
-std::string refusal(int status) {
-    if (status == forbidden) return "Ask by the address of this machine or as localhost, and from its own page.\n";
-    if (status == not_allowed) return "This page is read alone.\n";
-    if (status == too_many) return "As many pages as may be are open.\n";
-    return "There is / and /state and /events.\n";
+std::string_view error_text(int status) {
+    if (status == forbidden) return "Use an address of this machine or localhost, and this server's own page.\n";
+    if (status == not_allowed) return "Only GET and HEAD are supported.\n";
+    if (status == too_many) return "The maximum number of pages is open.\n";
+    return "Only /, /state and /events exist.\n";
 }
 
 std::string event_of(std::string_view name, std::string_view data) {
@@ -109,227 +94,143 @@ std::string event_of(std::string_view name, std::string_view data) {
 }
 
 tcp::endpoint parse_listening_address(std::string_view at) {
-    const auto where = parse_host_and_port(at, "127.0.0.1");
-    if (where) return {asio::ip::make_address(where->host), where->port};
+    if (const auto parsed = parse_address_and_port(at, "127.0.0.1")) return {parsed->address, parsed->port};
     throw UsageError(fmt::format("--serve {}: expected PORT or ADDRESS:PORT, as 8080 or 127.0.0.1:8080", at));
+}
+
+/// Throws InputError.
+tcp::acceptor listen(asio::io_context& context, const tcp::endpoint& at) {
+    try {
+        tcp::acceptor acceptor(context, at);
+        close_on_exec(acceptor);
+        return acceptor;
+    } catch (const boost::system::system_error& error) {
+        throw InputError({fmt::format("--serve {}:{}", at.address().to_string(), at.port())},
+                         fmt::format("cannot listen: {}", error.code().message()),
+                         "find the program that uses the port (ss -ltp), or use another port");
+    }
 }
 
 }  // namespace
 
-/// A connection of a browser: one request, one answer, which for a listener does not end.
-class PageServer::Session : public std::enable_shared_from_this<Session> {
-  public:
-    Session(tcp::socket socket, Server& server) : stream_(std::move(socket)), server_(server) {}
+/// A connection of a browser: one request and its response, which for a listener to events does not end.
+struct PageServer::Session {
+    explicit Session(tcp::socket socket)
+        : stream(std::move(socket)), more(stream.get_executor(), asio::steady_timer::time_point::max()) {}
 
-    void start() {
-        parser_.header_limit(max_request_bytes);
-        parser_.body_limit(max_request_bytes);
-        stream_.expires_after(max_request);
-        http::async_read_header(stream_, buffer_, parser_,
-                                [self = shared_from_this()](const error_code& error, std::size_t) {
-                                    if (self->closed_) return;
-                                    if (error) return self->close();
-                                    self->answer();
-                                });
+    void send(std::string_view text) {
+        outgoing += text;
+        if (outgoing.size() > max_unsent_bytes) stream.close();
+        more.cancel();
     }
-    bool is_listener() const { return is_listener_; }
-    void send(std::string_view text);
-    void close();
 
-  private:
-    void answer();
-    void write_next();
-
-    boost::beast::tcp_stream stream_;
-    Server& server_;
-    boost::beast::flat_buffer buffer_;
-    http::request_parser<http::empty_body> parser_;
-    std::string outgoing_, writing_;
-    char beyond_ = '\0';
-    bool is_listener_ = false, closed_ = false;
+    boost::beast::tcp_stream stream;
+    asio::steady_timer more;  ///< cancelled when there is more to send
+    std::string outgoing;
+    bool is_listener = false;
 };
 
 class PageServer::Server {
   public:
-    Server(const tcp::endpoint& at, std::string page) : page_(std::move(page)), acceptor_(context_), timer_(context_) {
-        listen(at);
-        accept();
+    Server(const tcp::endpoint& at, std::string page)
+        : page_(std::move(page)), acceptor_(listen(context_, at)), endpoint_(acceptor_.local_endpoint()) {
+        asio::co_spawn(context_,
+                       accept_connections(acceptor_, [this](tcp::socket socket) { accept(std::move(socket)); }),
+                       asio::detached);
         thread_ = start_without_signals([this] { context_.run(); });
     }
     ~Server() {
-        asio::post(context_, [this] { stop(); });
+        context_.stop();
         thread_.join();
     }
     Server(const Server&) = delete;
     Server& operator=(const Server&) = delete;
 
     tcp::endpoint endpoint() const { return endpoint_; }
-    const std::string& page() const { return page_; }
-    const std::string& state() const { return state_; }
 
     void publish(std::string state, std::string point) {
         asio::post(context_, [this, state = std::move(state), point = std::move(point)]() mutable {
-            tell(std::move(state), std::move(point));
+            state_ = std::move(state);
+            if (!point.empty()) points_.push_back(std::move(point));
+            std::size_t index = 0;
+            if (points_.size() > max_points) std::erase_if(points_, [&](const auto&) { return index++ % 2 == 1; });
+            const auto event = event_of("state", state_);
+            for (const auto& session : sessions_)
+                if (session->is_listener) session->send(event);
         });
     }
-
-    /// Which run of the program this is, so that a page that comes back knows, and what was until now.
-    std::string first_events() const {
-        std::string points;
-        for (const auto& point : points_) points += (points.empty() ? "" : ",") + point;
-        return "retry: 1000\n\n" + event_of("begin", fmt::format(R"({{"run":"{}","points":[{}]}})", run_, points)) +
-               event_of("state", state_);
-    }
-    /// For one more listener.
-    bool has_room() const {
-        const auto listeners = std::ranges::count_if(sessions_, [](const auto& of) { return of->is_listener(); });
-        return listeners < static_cast<std::ptrdiff_t>(max_connections);
-    }
-    void remove(const std::shared_ptr<Session>& session) { sessions_.remove(session); }
 
   private:
-    void listen(const tcp::endpoint& at) {
-        error_code error;
-        acceptor_.open(at.protocol(), error);
-        if (!error) acceptor_.set_option(asio::socket_base::reuse_address(true), error);
-        if (!error) acceptor_.bind(at, error);
-        if (!error) acceptor_.listen(max_connections, error);
-        if (error) {
-            throw InputError({fmt::format("--serve {}:{}", at.address().to_string(), at.port())},
-                             fmt::format("cannot listen: {}", error.message()),
-                             "see which program has the port (ss -ltp), or take another one");
-        }
-        close_on_exec(acceptor_);
-        endpoint_ = acceptor_.local_endpoint();
+    void accept(tcp::socket socket) {
+        if (sessions_.size() >= 2 * max_connections) close_oldest_request();
+        const auto session = sessions_.emplace_back(std::make_shared<Session>(std::move(socket)));
+        asio::co_spawn(context_, serve(*session),
+                       [this, session](const std::exception_ptr&) { sessions_.remove(session); });
     }
 
-    void accept() {
-        acceptor_.async_accept([this](const error_code& error, tcp::socket socket) {
-            if (!acceptor_.is_open()) return;
-            if (error) {  // no files left
-                timer_.expires_after(std::chrono::milliseconds(500));
-                timer_.async_wait([this](const error_code& stopped) {
-                    if (!stopped) accept();
-                });
-                return;
-            }
-            close_on_exec(socket);
-            if (sessions_.size() >= 2 * max_connections) close_oldest_asker();
-            const auto session = std::make_shared<Session>(std::move(socket), *this);
-            sessions_.push_back(session);
-            session->start();
-            accept();
-        });
+    /// Until the response is sent, or for a listener until the browser closes. Throws where the connection fails.
+    asio::awaitable<void> serve(Session& session) {
+        boost::beast::flat_buffer buffer;
+        http::request_parser<http::empty_body> parser;
+        parser.header_limit(max_request_bytes);
+        parser.body_limit(max_request_bytes);
+        session.stream.expires_after(max_request);
+        co_await http::async_read_header(session.stream, buffer, parser, asio::use_awaitable);
+        session.outgoing = respond(parser.get(), session);
+        do {
+            const auto text = std::exchange(session.outgoing, {});
+            session.stream.expires_after(max_write);
+            co_await asio::async_write(session.stream, asio::buffer(text), asio::use_awaitable);
+            session.stream.expires_never();
+            error_code cancelled;
+            if (session.is_listener && session.outgoing.empty())
+                co_await session.more.async_wait(asio::redirect_error(asio::use_awaitable, cancelled));
+        } while (session.is_listener);
+        session.stream.socket().shutdown(tcp::socket::shutdown_both);
     }
 
-    /// Of those that are no pages: they have been answered, or never asked.
-    void close_oldest_asker() {
-        const auto asker = std::ranges::find_if(sessions_, [](const auto& of) { return !of->is_listener(); });
-        if (asker == sessions_.end()) return;
-        const auto closed = *asker;  // it takes itself off the list
-        closed->close();
+    /// The response to a request; a listener is registered.
+    std::string respond(const Request& request, Session& session) const {
+        constexpr auto plain = "text/plain; charset=utf-8";
+        const auto target = target_of(request);
+        const int status = status_of(request);
+        if (status != ok) return response_of(request, status, plain, error_text(status));
+        if (target == "/") return response_of(request, status, "text/html; charset=utf-8", page_);
+        if (target == "/state") return response_of(request, status, "application/json", state_ + "\n");
+        if (request.method() == http::verb::head) return head_of(status, "text/event-stream", "");
+        if (listeners() >= max_connections) return response_of(request, too_many, plain, error_text(too_many));
+        session.is_listener = true;
+        return head_of(status, "text/event-stream", "") + first_events();
     }
 
-    void tell(std::string state, std::string point) {
-        state_ = std::move(state);
-        const auto event = event_of("state", state_);
-        const auto sessions = sessions_;  // a session that ends takes itself off the list
-        for (const auto& session : sessions) {
-            if (session->is_listener()) session->send(event);
-        }
-        if (point.empty()) return;
-        points_.push_back(std::move(point));
-        if (points_.size() > max_points) thin();
+    /// Identifies this run of the program to pages that reconnect, with all points so far and the state.
+    std::string first_events() const {
+        return "retry: 1000\n\n" +
+               event_of("begin", fmt::format(R"({{"run":"{}","points":[{}]}})", run_, fmt::join(points_, ","))) +
+               event_of("state", state_);
     }
 
-    /// The newest quarter stays as it is.
-    void thin() {
-        std::deque<std::string> kept;
-        for (std::size_t i = 0; i < points_.size(); ++i) {
-            if (i % 2 == 0 || i > points_.size() * 3 / 4) kept.push_back(std::move(points_[i]));
-        }
-        points_ = std::move(kept);
+    std::size_t listeners() const {
+        return static_cast<std::size_t>(
+            std::ranges::count_if(sessions_, [](const auto& session) { return session->is_listener; }));
     }
 
-    void stop() {
-        error_code ignored;
-        acceptor_.close(ignored);
-        timer_.cancel(ignored);
-        const auto sessions = sessions_;
-        for (const auto& session : sessions) session->close();
-    }
-
-    static std::string new_run() {
-        std::random_device random;
-        return fmt::format("{:08x}{:08x}", random(), random());
+    /// Oldest connection that is not a listener: it was answered, or has sent no request.
+    void close_oldest_request() {
+        const auto oldest = std::ranges::find_if(sessions_, [](const auto& session) { return !session->is_listener; });
+        if (oldest != sessions_.end()) (*oldest)->stream.close();
     }
 
     const std::string page_;
     std::string state_ = "null";
     asio::io_context context_;
     tcp::acceptor acceptor_;
-    asio::steady_timer timer_;
     tcp::endpoint endpoint_;
-    std::deque<std::string> points_;
+    std::vector<std::string> points_;
     std::list<std::shared_ptr<Session>> sessions_;
-    const std::string run_ = new_run();
+    const std::string run_ = fmt::format("{:08x}{:08x}", std::random_device()(), std::random_device()());
     std::thread thread_;
 };
-
-void PageServer::Session::answer() {
-    const auto& request = parser_.get();
-    const auto target = text_of(request.target().substr(0, request.target().find('?')));
-    const int status = status_of(request, target);
-    const bool head_alone = request.method() == http::verb::head;
-    if (status != ok) {
-        send(whole_answer(status, "text/plain; charset=utf-8", refusal(status), head_alone));
-    } else if (target == "/") {
-        send(whole_answer(status, "text/html; charset=utf-8", server_.page(), head_alone));
-    } else if (target == "/state") {
-        send(whole_answer(status, "application/json", server_.state() + "\n", head_alone));
-    } else if (!head_alone && !server_.has_room()) {
-        send(whole_answer(too_many, "text/plain; charset=utf-8", refusal(too_many), head_alone));
-    } else {
-        is_listener_ = !head_alone;
-        send(head_of(status, "text/event-stream", "") + (head_alone ? "" : server_.first_events()));
-        if (!is_listener_) return;
-        // A listener says nothing more: what can be read is its end.
-        stream_.socket().async_read_some(
-            asio::buffer(&beyond_, 1), [self = shared_from_this()](const error_code&, std::size_t) { self->close(); });
-    }
-}
-
-void PageServer::Session::send(std::string_view text) {
-    if (closed_) return;
-    if (outgoing_.size() + text.size() > max_unsent_bytes + server_.page().size()) return close();
-    outgoing_ += text;
-    if (writing_.empty()) write_next();
-}
-
-void PageServer::Session::write_next() {
-    std::swap(writing_, outgoing_);
-    if (writing_.empty()) {
-        if (!is_listener_) close();
-        return;
-    }
-    stream_.expires_after(max_write);
-    asio::async_write(stream_, asio::buffer(writing_),
-                      [self = shared_from_this()](const error_code& error, std::size_t) {
-                          self->writing_.clear();
-                          if (self->closed_) return;
-                          if (error) return self->close();
-                          self->stream_.expires_never();
-                          self->write_next();
-                      });
-}
-
-void PageServer::Session::close() {
-    if (std::exchange(closed_, true)) return;
-    error_code ignored;
-    stream_.socket().shutdown(tcp::socket::shutdown_both, ignored);
-    stream_.close();
-    server_.remove(shared_from_this());
-}
 
 PageServer::PageServer(std::string_view at, std::string page)
     : server_(std::make_unique<Server>(parse_listening_address(at), std::move(page))) {}
@@ -337,10 +238,9 @@ PageServer::PageServer(std::string_view at, std::string page)
 PageServer::~PageServer() = default;
 
 std::string PageServer::address() const {
-    const auto at = server_->endpoint();
-    const auto host = at.address().is_unspecified() ? std::string("127.0.0.1") : at.address().to_string();
-    return at.address().is_v6() ? fmt::format("http://[{}]:{}/", host, at.port())
-                                : fmt::format("http://{}:{}/", host, at.port());
+    auto at = server_->endpoint();
+    if (at.address().is_unspecified()) at.address(asio::ip::address_v4::loopback());
+    return "http://" + boost::lexical_cast<std::string>(at) + "/";
 }
 
 void PageServer::publish(std::string state, std::string point) { server_->publish(std::move(state), std::move(point)); }

@@ -7,19 +7,17 @@
 
 namespace flightwatt::live {
 
-/// A page for browsers on this machine: the page itself at /, what is known now at /state (JSON), and what is new at
-/// /events (server-sent events), which the page listens to. It is read alone: GET and HEAD. It answers those who ask it
-/// by an address or as localhost, and no page of another origin, so that no web site reaches it through its visitor's
-/// browser. It works in a thread of its own, with a bounded number of connections; one that does not take what it is
-/// sent is closed. Whoever publishes waits for nothing.
+/// Serves a page at /, the current state at /state (JSON) and updates at /events (server-sent events). Read-only (GET,
+/// HEAD). Answers only requests to an address or localhost and from its own origin, so that no other web site can read
+/// it through a browser. Works in a thread of its own with a bounded number of connections; publish() does not block.
 class PageServer {
   public:
-    /// Points that are kept for pages that are opened later; of more, every second one of the older ones goes.
+    /// Points kept for pages opened later; beyond, every second one is removed.
     static constexpr std::size_t max_points = 1800;
     static constexpr std::size_t max_connections = 32;
 
-    /// `at`: "8080" (this machine alone), "ADDRESS:PORT". Throws UsageError for what is none, InputError where it
-    /// cannot listen there.
+    /// `at`: "8080" (this machine only) or "ADDRESS:PORT". Throws UsageError for any other text, InputError where it
+    /// cannot listen.
     PageServer(std::string_view at, std::string page);
     ~PageServer();
     PageServer(const PageServer&) = delete;
@@ -28,12 +26,12 @@ class PageServer {
     /// "http://127.0.0.1:8080/"
     std::string address() const;
 
-    /// What is known now, and of it what a page that is opened later draws (empty: nothing): JSON on one line.
+    /// The current state, and its point in the charts (empty: none): JSON on one line.
     void publish(std::string state, std::string point);
 
   private:
     class Server;
-    class Session;
+    struct Session;
     std::unique_ptr<Server> server_;
 };
 

@@ -20,9 +20,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
-constexpr std::chrono::milliseconds max_wait{50};  // until somebody asks whether to stop
+constexpr std::chrono::milliseconds max_wait{50};  // between two calls of stop()
 
-/// Waits in short steps; false: it was stopped.
+/// Waits in short steps; false: stopped.
 bool wait_for(Clock::time_point then, PlaybackTarget& target, const std::function<bool()>& stop) {
     for (;;) {
         if (stop()) return false;
@@ -32,17 +32,16 @@ bool wait_for(Clock::time_point then, PlaybackTarget& target, const std::functio
     }
 }
 
-/// One log on its way to a target.
-class Player : public MessageSink {
+/// Sends the messages of a log to a target when they are due.
+class Player final : public MessageSink {
   public:
     Player(double speed, PlaybackTarget& target, const std::function<bool()>& stop)
         : speed_(speed), target_(target), stop_(stop) {}
 
     bool is_stopped() const { return report_.stopped; }
 
-    /// Waits until the message is due, and sends it.
     void push(IncomingMessage message) override {
-        if (!message.time_s) return count("they have no time", 1);
+        if (!message.time_s) return count("no time", 1);
         if (report_.stopped) return;
         const double step_s = last_s_ ? std::max(0.0, *message.time_s - *last_s_) : 0.0;
         if (step_s > max_played_gap_s) ++report_.shortened_gaps;
@@ -52,8 +51,8 @@ class Player : public MessageSink {
         report_.stopped = !wait_for(due, target_, stop_);
         if (report_.stopped) return;
         report_.max_delay_s = std::max(report_.max_delay_s, Seconds(Clock::now() - due).count());
-        const auto why_not = target_.send(message);
-        ++(why_not.empty() ? report_.messages : report_.left_out[std::string(why_not)]);
+        const auto reason = target_.send(message);
+        ++(reason.empty() ? report_.messages : report_.left_out[std::string(reason)]);
     }
 
     void count(std::string_view reason, std::size_t times) override {
@@ -74,16 +73,16 @@ class Player : public MessageSink {
     Clock::time_point begin_ = Clock::now();
 };
 
-/// Piece by piece, so that a player that is stopped is soon at its end.
+/// In chunks, so that a stopped player ends soon.
 template <typename Reader>
 void play_bytes(std::string_view bytes, Reader& reader, const Player& player) {
-    constexpr std::size_t piece = 4096;
-    for (auto rest = bytes; !rest.empty() && !player.is_stopped(); rest.remove_prefix(std::min(piece, rest.size())))
-        reader.push(rest.substr(0, piece));
+    constexpr std::size_t chunk = 4096;
+    for (auto rest = bytes; !rest.empty() && !player.is_stopped(); rest.remove_prefix(std::min(chunk, rest.size())))
+        reader.push(rest.substr(0, chunk));
     if (!player.is_stopped()) reader.flush();
 }
 
-/// Throws InputError where its messages have other lengths than they are defined with.
+/// Throws InputError where the lengths of the messages differ from their definitions.
 void play_binary(const telemetry::BinaryLog& log, Player& player) {
     LinkReader reader(player, std::make_shared<const telemetry::MessageDictionary>(*log.messages), log.framing,
                       link_version(log));
@@ -91,10 +90,10 @@ void play_binary(const telemetry::BinaryLog& log, Player& player) {
     if (!player.is_stopped()) require_fitting(reader.counts(), log);
 }
 
-/// What was sent gets out, if it is fetched.
+/// Waits until the receiver has read all messages.
 void drain(PlaybackTarget& target, const std::function<bool()>& stop) {
-    constexpr std::chrono::seconds longest{10};
-    const auto end = Clock::now() + longest;
+    constexpr std::chrono::seconds timeout{10};
+    const auto end = Clock::now() + timeout;
     while (!target.is_drained() && Clock::now() < end && !stop()) target.wait_until(Clock::now() + max_wait);
 }
 
@@ -113,8 +112,8 @@ PlaybackReport play(const std::filesystem::path& log, double speed, PlaybackTarg
     const auto text = telemetry::read_data_file(log);
     const auto framing = telemetry::detect_binary_framing(text);
     if (framing && !definitions) {
-        throw InputError({log.string()}, "is a binary log, and no .log defines its messages",
-                         "name the messages.xml or .log of the aircraft and build that flew, with --messages FILE");
+        throw InputError({log.string()}, "is a binary log without a .log that defines its messages",
+                         "give the messages.xml or .log of the aircraft and its software version: --messages FILE");
     }
     Player player(speed, target, stop);
     if (framing) {

@@ -2,7 +2,10 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "path/path.h"
+#include "path/trajectory.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -12,284 +15,359 @@
 namespace flightwatt::live {
 namespace {
 
+using battery::ConstantLoad;
 using mechanical::FlightProgress;
+using path::PathFix;
 
-/// A motion that the model's flights did not fly.
-void warn_of_motion(const mechanical::PhysicalModel& model, const mechanical::FlightState& motion,
-                    Diagnostics& remarks) {
+void warn_of_extrapolation(const mechanical::PhysicalModel& model, const mechanical::FlightState& motion,
+                           Diagnostics& remarks) {
     if (is_within_flown_range(model, motion)) return;
     const auto& speeds = model.airspeed_m_per_s;
     remarks.warnings.push_back(
-        fmt::format("{:.1f} m/s at {:+.1f} m/s of climb is beyond what the model's flights flew: {:.1f} to {:.1f} m/s, "
-                    "{:+.1f} to {:+.1f} m/s of climb",
+        fmt::format("{:.1f} m/s at {:+.1f} m/s of climb is outside the range of the model's flights: {:.1f} to {:.1f} "
+                    "m/s, {:+.1f} to {:+.1f} m/s of climb",
                     motion.airspeed_m_per_s, motion.climb_m_per_s, speeds.low, speeds.high, model.climb_m_per_s.low,
                     model.climb_m_per_s.high));
 }
 
-/// A flight's own level that no flight of the model's aircraft should have.
+/// `level`: relative deviation of the flight's power from the model.
 void warn_of_level(const mechanical::PhysicalModel& model, double level, Diagnostics& remarks) {
     constexpr double max_sds = 3.0;
     const double sd = model.level_sd.value_or(0.0);
     if (std::abs(level) <= max_sds * sd) return;
     remarks.warnings.push_back(fmt::format(
-        "this flight takes {:+.1f} % of what the model says, whose flights differ by {:.1f} % (1 sd): is it "
-        "another aircraft, load or propeller?",
+        "the power of this flight differs from the model by {:+.1f} %, its flights by {:.1f} % (1 sd): check aircraft, "
+        "load and propeller",
         units::percentage(level, 1.0), units::percentage(sd, 1.0)));
 }
 
-/// Where on the path the flight is: where it was seen, after as long as it has cruised, or the remaining time before
-/// its end.
-double seconds_on_path(const PredictionInput& basis, const FlightProgress& flown,
-                       const std::optional<path::PathFix>& sighting) {
-    const auto& path = basis.path->flown();
-    if (basis.remaining_s) {
-        if (*basis.remaining_s <= path.duration_s) return path.duration_s - *basis.remaining_s;
-        throw UsageError(fmt::format("--remaining {:g}: the mission's path takes only {:.1f} s", *basis.remaining_s,
+/// The position on the path: by the aircraft's positions, by the time since the cruise began, or by --remaining.
+double seconds_on_path(const PredictionInput& input, const FlightProgress& flown, const std::optional<PathFix>& fix) {
+    const auto& path = input.path->flown();
+    if (input.remaining_s) {
+        if (*input.remaining_s <= path.duration_s) return path.duration_s - *input.remaining_s;
+        throw UsageError(fmt::format("--remaining {:g}: the mission's path takes only {:.1f} s", *input.remaining_s,
                                      path.duration_s));
     }
-    const bool is_sighted = sighting && sighting->path_time_s;
-    if (is_sighted && *sighting->path_time_s < path.duration_s) return *sighting->path_time_s;
-    if (is_sighted) {
-        throw NoResultError(
-            "the flight has flown the mission's path to its end: say with --remaining how long it "
-            "flies on");
+    if (fix && fix->path_time_s) {
+        if (*fix->path_time_s < path.duration_s) return *fix->path_time_s;
+        throw NoResultError("the mission's path is completed: give the remaining cruise with --remaining");
     }
     if (flown.cruise_s() <= path.duration_s) return flown.cruise_s();
     throw NoResultError(
-        fmt::format("the flight has cruised for {:.1f} s and the mission's path takes {:.1f} s: say "
-                    "with --remaining how much of it is left",
+        fmt::format("the cruise has taken {:.1f} s and the mission's path takes {:.1f} s: give the remaining cruise "
+                    "with --remaining",
                     flown.cruise_s(), path.duration_s));
 }
 
-void remark_on(const std::optional<path::PathFix>& sighting, double cruise_s, Diagnostics& remarks) {
-    if (!sighting) return;
-    if (!sighting->path_time_s) {
+void remark_on(const PathFix& fix, double cruise_s, Diagnostics& remarks) {
+    if (!fix.path_time_s) {
         remarks.warnings.emplace_back(
-            "the positions of this flight are not on the mission's path: it is taken to be as far along it as the time "
-            "since its cruise began");
+            "the positions of this flight are not on the mission's path: its position on the path is by the time since "
+            "the cruise began");
         return;
     }
-    if (!sighting->is_on_path) {
-        remarks.warnings.push_back(
-            fmt::format("the flight has left the mission's path, and is {:.0f} m from where it did: expected to go on "
-                        "from there, without the way back",
-                        sighting->distance_m));
+    if (!fix.is_on_path) {
+        remarks.warnings.push_back(fmt::format(
+            "the flight is {:.0f} m from where it left the mission's path: predicted from there on, without "
+            "the way back",
+            fix.distance_m));
     }
-    constexpr double much_s = 30.0;
-    const double ahead_s = *sighting->path_time_s - cruise_s;
-    if (std::abs(ahead_s) < much_s) return;
+    constexpr double min_noted_s = 30.0;
+    const double ahead_s = *fix.path_time_s - cruise_s;
+    if (std::abs(ahead_s) < min_noted_s) return;
     remarks.notes.push_back(fmt::format("by its position the flight is {:.0f} s {} the mission's plan",
                                         std::abs(ahead_s), ahead_s > 0.0 ? "ahead of" : "behind"));
 }
 
-/// The cruise along what is left of the path.
-mechanical::RemainingCruise predict_along(const PredictionInput& basis, const FlightProgress& flown,
-                                          const std::optional<path::PathFix>& sighting, Prediction& prediction,
-                                          Diagnostics& remarks) {
-    prediction.on_path_s = seconds_on_path(basis, flown, sighting);
-    prediction.is_from_position = sighting && sighting->path_time_s;
-    remark_on(sighting, flown.cruise_s(), remarks);
-    const auto rest = basis.path->predict(flown, position_at(basis.path->flown(), *prediction.on_path_s));
+mechanical::RemainingCruise predict_along_path(const PredictionInput& input, const FlightProgress& flown,
+                                               const std::optional<PathFix>& fix, Prediction& prediction,
+                                               Diagnostics& remarks) {
+    prediction.on_path_s = seconds_on_path(input, flown, fix);
+    prediction.is_from_position = fix && fix->path_time_s;
+    if (fix) remark_on(*fix, flown.cruise_s(), remarks);
+    const auto rest = input.path->predict(flown, position_at(input.path->flown(), *prediction.on_path_s));
     if (rest.infeasible_fraction > 0.0) {
-        remarks.warnings.push_back(
-            fmt::format("{:.0f} % of the winds that [wind] makes likely forbid what is left of the path: they are not "
-                        "in what follows",
-                        units::percentage(rest.infeasible_fraction, 1.0)));
+        remarks.warnings.push_back(fmt::format(
+            "the remaining path is infeasible in {:.0f} % of the likely winds of [wind], which are excluded",
+            units::percentage(rest.infeasible_fraction, 1.0)));
     }
     prediction.remaining_s = rest.duration_s;
-    const auto& pieces = rest.trajectory.pieces;
-    prediction.remaining_power.reserve(pieces.size());
-    for (const auto& piece : pieces)
-        prediction.remaining_power.push_back({power_w(basis.path->plan().power, piece.motion), piece.time_s});
+    for (const auto& segment : rest.trajectory.pieces)
+        prediction.remaining_power.push_back({power_w(input.path->plan().power, segment.motion), segment.time_s});
     return rest.cruise;
 }
 
-mechanical::RemainingCruise predict_cruise(const PredictionInput& basis, const FlightProgress& flown,
-                                           const std::optional<path::PathFix>& sighting, Prediction& prediction,
+mechanical::RemainingCruise predict_cruise(const PredictionInput& input, const FlightProgress& flown,
+                                           const std::optional<PathFix>& fix, Prediction& prediction,
                                            Diagnostics& remarks) {
-    prediction.uses_physical_model = basis.path || basis.motion;
+    prediction.uses_physical_model = input.path || input.motion;
     if (prediction.uses_physical_model && !flown.motion.no_bins_reason.empty())
         remarks.warnings.push_back(
-            fmt::format("this flight's own level is not known: {}", flown.motion.no_bins_reason));
-    if (basis.path) return predict_along(basis, flown, sighting, prediction, remarks);
-    prediction.remaining_s = basis.remaining_s ? *basis.remaining_s : basis.cruise_s.value() - flown.cruise_s();
+            fmt::format("the deviation of this flight from the model is unknown: {}", flown.motion.no_bins_reason));
+    if (input.path) return predict_along_path(input, flown, fix, prediction, remarks);
+    prediction.remaining_s = input.remaining_s ? *input.remaining_s : input.cruise_s.value() - flown.cruise_s();
     if (prediction.remaining_s < 0.0) {
         throw NoResultError(
-            fmt::format("the cruise takes {:.0f} s longer than the mission's {:.0f} s: how long it goes on "
-                        "is not known (--remaining says it)",
-                        -prediction.remaining_s, *basis.cruise_s));
+            fmt::format("the cruise takes {:.0f} s longer than the mission's {:.0f} s: give the remaining cruise with "
+                        "--remaining",
+                        -prediction.remaining_s, *input.cruise_s));
     }
-    if (!basis.motion)
-        return predict_remaining_cruise(forecast_of(basis.model, flight::Phase::cruise), flown, prediction.remaining_s,
-                                        basis.level.value_or(mechanical::CruisePrior::curve));
-    const auto& model = basis.model.physical.value();
-    warn_of_motion(model, *basis.motion, remarks);
-    return predict_remaining_physical(model, flown, {term_values(*basis.motion), prediction.remaining_s});
+    if (!input.motion)
+        return predict_remaining_cruise(forecast_of(input.model, flight::Phase::cruise), flown, prediction.remaining_s,
+                                        input.level.value_or(mechanical::CruisePrior::curve));
+    const auto& model = input.model.physical.value();
+    warn_of_extrapolation(model, *input.motion, remarks);
+    return predict_remaining_physical(model, flown, {term_values(*input.motion), prediction.remaining_s});
 }
 
-/// The battery through the rest, from what was measured of it until now.
-std::optional<BatteryPrediction> predict_battery(const PredictionInput& basis, const flight::FlightSeries& series,
-                                                 const Prediction& prediction, Diagnostics& remarks) {
-    if (!basis.battery) return std::nullopt;
-    const auto& battery = *basis.battery;
-    for (const auto& warning : battery_warnings(battery))
-        remarks.warnings.push_back(fmt::format("{}: {}", basis.battery_file, warning));
+/// From the whole record of the flight so far.
+BatteryPrediction predict_battery(const PredictionInput& input, const flight::FlightSeries& series,
+                                  const Prediction& prediction, Diagnostics& remarks) {
+    for (const auto& warning : battery_warnings(*input.battery))
+        remarks.warnings.push_back(fmt::format("{}: {}", input.battery_file, warning));
     const auto records = battery::discharge_records(series);
     remarks.notes.insert(remarks.notes.end(), records.notes.begin(), records.notes.end());
     const auto& record = records.records.back();
-    const double initial_percent = initial_soc_percent(basis, record);
+    const double initial_percent = initial_soc_percent(input, record);
     const auto state_of = [&](const auto& pack) { return state_after(pack, record, initial_percent); };
-    auto of = forecast_battery(battery, basis.limits, state_of, prediction);
-    of.initial_is_measured = !basis.initial_soc_percent;
-    of.initial_soc_percent = initial_percent;
-    return of;
+    auto result = forecast_battery(*input.battery, input.limits, state_of, prediction);
+    result.initial_is_measured = !input.initial_soc_percent;
+    result.initial_soc_percent = initial_percent;
+    return result;
 }
 
-/// Throws InputError where the model does not allow a prediction.
-void require_predicting(const PredictionInput& basis, const std::string& file) {
-    if (basis.path)
-        require_physical(basis.model, file, "--mission");
+/// Throws InputError where the model allows no prediction.
+void require_predicting(const PredictionInput& input, const std::string& file) {
+    if (input.path)
+        require_physical(input.model, file, "--mission");
     else
-        require_interval(basis.model, flight::Phase::cruise, file);
-    if (basis.landing_s > 0.0) require_interval(basis.model, flight::Phase::landing, file);
+        require_interval(input.model, flight::Phase::cruise, file);
+    if (input.landing_s > 0.0) require_interval(input.model, flight::Phase::landing, file);
 }
 
-/// Model and path, or time, of a mission.
-PredictionInput basis_of(const mission::MissionSetup& setup) {
-    PredictionInput basis{setup.mechanical.value(), {}, setup.duration_s[flight::Phase::landing]};
-    basis.limits = {setup.cutoff_voltage_v, setup.reserve_soc_percent};
-    if (setup.cruise_path) {
-        basis.path = std::make_shared<const path::PathForecast>(*setup.cruise_path->plan);
-    } else {
-        basis.cruise_s = setup.duration_s[flight::Phase::cruise];
-    }
-    return basis;
+PredictionInput unchecked_input(const mission::MissionSetup& setup) {
+    PredictionInput input{setup.mechanical.value(), {}, setup.duration_s[flight::Phase::landing]};
+    input.limits = {setup.cutoff_voltage_v, setup.reserve_soc_percent};
+    if (setup.cruise_path)
+        input.path = std::make_shared<const path::PathForecast>(*setup.cruise_path->plan);
+    else
+        input.cruise_s = setup.duration_s[flight::Phase::cruise];
+    return input;
 }
 
-/// The mission's own battery; and where a schedule is all that the mission can tell, that and why.
-void add_mission_battery(const mission::MissionSetup& setup, const std::string& file, PredictionInput& basis) {
-    basis.battery = setup.battery;
-    basis.battery->intervals.capacity_ah = capacity_interval_ah(setup);
-    basis.battery_file = file;
-    if (!setup.battery.thevenin) basis.initial_soc_percent = setup.initial_soc_percent;
-    try {
-        require_predicting(basis, file);
-    } catch (const InputError& error) {
-        basis.no_prediction_reason = error.what();
+/// The flight home from a time on the path; std::nullopt where the wind is too strong.
+std::optional<ConstantLoad> flight_home(const path::PathForecast& path, double on_path_s, double power_factor) {
+    const auto& plan = path.plan();
+    const auto position = position_at(path.flown(), on_path_s);
+    const auto at = local_position_at(plan.path, position);
+    const double distance_m = std::hypot(at.east_m, at.north_m);
+    const auto& element = plan.path.elements[std::min(position.element, plan.path.elements.size() - 1)];
+    const double power_w = mechanical::power_w(plan.power, {.airspeed_m_per_s = element.airspeed_m_per_s});
+    if (distance_m < 1.0) return ConstantLoad{power_w * power_factor, 0.0};
+    const double course_deg = std::atan2(-at.east_m, -at.north_m) * units::degree_per_rad;
+    const auto speed = ground_speed_m_per_s(element.airspeed_m_per_s, course_deg, plan.wind);
+    if (!speed) return std::nullopt;
+    return ConstantLoad{power_w * power_factor, distance_m / *speed};
+}
+
+double duration_s(const std::vector<ConstantLoad>& loads) {
+    double sum_s = 0.0;
+    for (const auto& load : loads) sum_s += load.duration_s;
+    return sum_s;
+}
+
+/// Discharges the battery by the first `time_s` of the loads, which are removed; false where the battery fails.
+bool advance(const PredictionInput& input, double time_s, std::vector<ConstantLoad>& ahead,
+             battery::BatteryState& state) {
+    while (time_s > 0.0 && !ahead.empty()) {
+        auto& load = ahead.front();
+        const double taken_s = std::min(time_s, load.duration_s);
+        if (taken_s > 0.0) {
+            const auto end =
+                discharge_constant_load(*input.battery, state, {load.power_w, taken_s}, input.limits.cutoff_voltage_v);
+            if (end.ended_at_s() || end.undeliverable) return false;
+            state = end;
+        }
+        time_s -= taken_s;
+        load.duration_s -= taken_s;
+        if (!(load.duration_s > 0.0)) ahead.erase(ahead.begin());
     }
+    return true;
 }
 
 }  // namespace
 
 void require_interval(const mechanical::MechanicalModel& model, flight::Phase phase, const std::string& file) {
     if (model.phases[phase].level_spread) return;
-    throw InputError({file}, fmt::format("[{}] has no spread: how much flights differ", to_string(phase)),
+    throw InputError({file}, fmt::format("[{}] has no spread between flights", to_string(phase)),
                      "fit it to two flights or more: flightwatt fit FLIGHT... -o MODEL.toml");
 }
 
 void require_physical(const mechanical::MechanicalModel& model, const std::string& file, const std::string& option) {
     if (model.physical && model.physical->level_sd) return;
     throw InputError(
-        {file}, model.physical ? "its [physical] rests on a single flight" : "it has no [physical]",
+        {file}, model.physical ? "its [physical] is fitted to a single flight" : "it has no [physical]",
         fmt::format("{} needs one of two flights or more: flightwatt fit --model-kind physical FLIGHT...", option));
 }
 
-double initial_soc_percent(const PredictionInput& basis, const battery::DischargeRecord& flown) {
-    return basis.initial_soc_percent ? *basis.initial_soc_percent : initial_soc_by_voltage_percent(basis, flown);
+double initial_soc_percent(const PredictionInput& input, const battery::DischargeRecord& flown) {
+    return input.initial_soc_percent ? *input.initial_soc_percent : initial_soc_by_voltage_percent(input, flown);
 }
 
-double initial_soc_by_voltage_percent(const PredictionInput& basis, const battery::DischargeRecord& flown) {
-    const auto& battery = basis.battery.value();
+double initial_soc_by_voltage_percent(const PredictionInput& input, const battery::DischargeRecord& flown) {
+    const auto& battery = input.battery.value();
     if (!battery.thevenin) {
-        throw InputError({basis.battery_file}, "a battery of constant voltage does not tell its state of charge",
+        throw InputError({input.battery_file}, "the voltage of this battery does not depend on its state of charge",
                          "give --initial-soc PERCENT");
     }
     const double rest_v = flown.resting_voltage_v + battery.resistance_ohm * flown.resting_current_a;
     return battery::resting_soc_percent(battery, rest_v);
 }
 
-Prediction predict_flight(const PredictionInput& basis, const mechanical::FlightProgress& flown,
-                          const flight::FlightSeries& series, Diagnostics& remarks) {
-    auto prediction = predict_energy(basis, flown, find_path_fix(basis, flown, series), remarks);
-    prediction.battery = predict_battery(basis, series, prediction, remarks);
+Prediction predict_flight(const PredictionInput& input, const FlightProgress& flown, const flight::FlightSeries& series,
+                          Diagnostics& remarks) {
+    std::optional<PathFix> fix;
+    if (input.path && !input.remaining_s)
+        fix = locate_on_path(*input.path, series, flown.cruise_start_s, flown.until_s);
+    auto prediction = predict_energy(input, flown, fix, remarks);
+    if (input.battery) prediction.battery = predict_battery(input, series, prediction, remarks);
     return prediction;
 }
 
-std::optional<path::PathFix> find_path_fix(const PredictionInput& basis, const FlightProgress& flown,
-                                           const flight::FlightSeries& series) {
-    if (!basis.path || basis.remaining_s) return std::nullopt;
-    return locate_on_path(*basis.path, series, flown.cruise_start_s, flown.until_s);
-}
-
-Prediction predict_energy(const PredictionInput& basis, const FlightProgress& flown,
-                          const std::optional<path::PathFix>& sighting, Diagnostics& remarks) {
+Prediction predict_energy(const PredictionInput& input, const FlightProgress& flown, const std::optional<PathFix>& fix,
+                          Diagnostics& remarks) {
     Prediction prediction;
     prediction.flown = flown;
-    prediction.cruise = predict_cruise(basis, flown, sighting, prediction, remarks);
-    if (prediction.uses_physical_model) warn_of_level(basis.model.physical.value(), prediction.cruise.gain, remarks);
-    prediction.landing_s = basis.landing_s;
-    if (basis.landing_s > 0.0) {
+    prediction.cruise = predict_cruise(input, flown, fix, prediction, remarks);
+    if (prediction.uses_physical_model) warn_of_level(input.model.physical.value(), prediction.cruise.gain, remarks);
+    prediction.landing_s = input.landing_s;
+    if (input.landing_s > 0.0) {
         prediction.landing =
-            mechanical::predict_before_flight(forecast_of(basis.model, flight::Phase::landing), basis.landing_s);
+            mechanical::predict_before_flight(forecast_of(input.model, flight::Phase::landing), input.landing_s);
     }
     prediction.remaining_energy = sum_of(prediction.cruise.energy, prediction.landing);
     prediction.interval = interval_95(prediction.remaining_energy).value();
     return prediction;
 }
 
-std::vector<battery::ConstantLoad> remaining_power(const Prediction& prediction, double part) {
-    double along_path_j = 0.0;
-    for (const auto& stretch : prediction.remaining_power) along_path_j += stretch.power_w * stretch.duration_s;
-    std::vector<battery::ConstantLoad> ahead;
-    if (along_path_j > 0.0) {
+double energy_j(const std::vector<ConstantLoad>& loads) {
+    double sum_j = 0.0;
+    for (const auto& load : loads) sum_j += load.power_w * load.duration_s;
+    return sum_j;
+}
+
+std::vector<ConstantLoad> remaining_power(const Prediction& prediction, double factor) {
+    auto ahead = prediction.remaining_power;
+    if (const double planned_j = energy_j(ahead); planned_j > 0.0) {
         const double cruise_j = units::joule_from_wh(prediction.cruise.energy.energy_wh);
-        for (const auto& [power_w, duration_s] : prediction.remaining_power)
-            ahead.push_back({power_w * part * cruise_j / along_path_j, duration_s});
+        for (auto& load : ahead) load.power_w = load.power_w * factor * cruise_j / planned_j;
     } else {
-        ahead.push_back({prediction.cruise.remaining_mean_w * part, prediction.remaining_s});
+        ahead = {{prediction.cruise.remaining_mean_w * factor, prediction.remaining_s}};
     }
     const double landing_j = units::joule_from_wh(prediction.landing.energy_wh);
-    if (prediction.landing_s > 0.0) ahead.push_back({landing_j / prediction.landing_s * part, prediction.landing_s});
+    if (prediction.landing_s > 0.0) ahead.push_back({landing_j / prediction.landing_s * factor, prediction.landing_s});
     return ahead;
+}
+
+double high_energy_factor(const Prediction& prediction) {
+    const double expected_wh = prediction.remaining_energy.energy_wh;
+    return expected_wh > 0.0 ? prediction.interval.high_wh / expected_wh : 1.0;
 }
 
 BatteryPrediction forecast_battery(const battery::Battery& battery, const battery::LandingLimits& limits,
                                    const std::function<battery::BatteryState(const battery::Battery&)>& state_of,
                                    const Prediction& prediction) {
-    const auto forecast = [&](const battery::Battery& of, double part) {
-        return battery::forecast_landing(of, state_of(of), remaining_power(prediction, part),
-                                         prediction.cruise.remaining_mean_w * part, limits);
+    const auto forecast = [&](const battery::Battery& pack, double factor) {
+        return battery::forecast_landing(pack, state_of(pack), remaining_power(prediction, factor),
+                                         prediction.cruise.remaining_mean_w * factor, limits);
     };
-    const double rest_wh = prediction.remaining_energy.energy_wh;
-    auto least = battery;
+    auto smaller = battery;
     BatteryPrediction result;
     result.limits = limits;
     result.worst_uses_min_capacity = battery.intervals.capacity_ah.has_value();
-    if (result.worst_uses_min_capacity) least.capacity_ah = battery.intervals.capacity_ah->low;
+    if (result.worst_uses_min_capacity) smaller.capacity_ah = battery.intervals.capacity_ah->low;
     result.expected = forecast(battery, 1.0);
-    result.worst = forecast(least, rest_wh > 0.0 ? prediction.interval.high_wh / rest_wh : 1.0);
+    result.worst = forecast(smaller, high_energy_factor(prediction));
     return result;
 }
 
+ReturnDeadline latest_return(const PredictionInput& input, const Prediction& prediction, battery::BatteryState now) {
+    constexpr double min_step_s = 10.0;
+    constexpr double max_steps = 40.0;
+    auto ahead = remaining_power(prediction, high_energy_factor(prediction));
+    ConstantLoad landing;
+    if (prediction.landing_s > 0.0) {
+        landing = ahead.back();
+        ahead.pop_back();
+    }
+    const double planned_j = energy_j(prediction.remaining_power);
+    const double power_factor = planned_j > 0.0 ? energy_j(ahead) / planned_j : 1.0;
+    const auto keeps_reserve_after = [&](double in_s) {
+        const auto home = flight_home(*input.path, prediction.on_path_s.value() + in_s, power_factor);
+        if (!home) return false;
+        const std::vector<ConstantLoad> loads{*home, landing};
+        return forecast_landing(*input.battery, now, loads, 0.0, input.limits).keeps_reserve;
+    };
+    const double total_s = duration_s(ahead);
+    const double step_s = std::max(min_step_s, total_s / max_steps);
+    ReturnDeadline deadline;
+    double in_s = 0.0;
+    while (keeps_reserve_after(in_s)) {
+        deadline.latest_in_s = in_s;
+        deadline.path_can_be_flown = in_s >= total_s;
+        const double next_s = std::min(in_s + step_s, total_s);
+        if (deadline.path_can_be_flown || !advance(input, next_s - in_s, ahead, now)) break;
+        in_s = next_s;
+    }
+    return deadline;
+}
+
+TimeCurve soc_ahead(const PredictionInput& input, const Prediction& prediction, battery::BatteryState now,
+                    double now_s) {
+    constexpr double min_step_s = 10.0;
+    constexpr double max_points = 100.0;
+    auto ahead = remaining_power(prediction);
+    const double total_s = duration_s(ahead);
+    const double step_s = std::max(min_step_s, total_s / max_points);
+    TimeCurve curve{{now_s}, {now.soc_percent}};
+    for (double in_s = 0.0; in_s < total_s;) {
+        const double next_s = std::min(in_s + step_s, total_s);
+        if (!advance(input, next_s - in_s, ahead, now)) break;
+        in_s = next_s;
+        curve.time_s.push_back(now_s + in_s);
+        curve.value.push_back(now.soc_percent);
+    }
+    return curve;
+}
+
 PredictionInput input_from_mission(const mission::MissionSetup& setup, const std::string& file) {
-    auto basis = basis_of(setup);
-    add_mission_battery(setup, file, basis);
-    return basis;
+    auto input = unchecked_input(setup);
+    input.battery = setup.battery;
+    input.battery->intervals.capacity_ah = capacity_interval_ah(setup);
+    input.battery_file = file;
+    if (!setup.battery.thevenin) input.initial_soc_percent = setup.initial_soc_percent;
+    try {
+        require_predicting(input, file);
+    } catch (const InputError& error) {
+        input.no_prediction_reason = error.what();
+    }
+    return input;
 }
 
 PredictionInput path_input_from_mission(const mission::MissionSetup& setup, const std::string& file) {
-    auto basis = basis_of(setup);
-    require_predicting(basis, file);
-    return basis;
+    auto input = unchecked_input(setup);
+    require_predicting(input, file);
+    return input;
 }
 
 PredictionInput input_from_model(mechanical::MechanicalModel model, const std::string& file, double remaining_s) {
-    PredictionInput basis;
+    PredictionInput input;
     for (const auto phase : {flight::Phase::cruise, flight::Phase::landing}) require_interval(model, phase, file);
-    basis.model = std::move(model);
-    basis.remaining_s = remaining_s;
-    basis.landing_s = basis.model.phases[flight::Phase::landing].duration_s;
-    return basis;
+    input.model = std::move(model);
+    input.remaining_s = remaining_s;
+    input.landing_s = input.model.phases[flight::Phase::landing].duration_s;
+    return input;
 }
 
 }  // namespace flightwatt::live

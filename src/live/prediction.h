@@ -14,45 +14,44 @@
 #include <string>
 #include <vector>
 
-/// The energy from a moment in cruise to the end of the flight: what predict and watch say.
+/// Prediction of the energy from a moment in cruise to the end of the flight, for predict and watch.
 namespace flightwatt::live {
 
-/// What a prediction rests on beside the flight.
+/// The inputs of a prediction, except for the flight itself.
 struct PredictionInput {
     mechanical::MechanicalModel model;
     std::optional<mechanical::CruisePrior> level = {};  ///< none: the curve
     double landing_s = 0.0;
-    std::optional<double> remaining_s = {};  ///< of the cruise, from the moment on, whatever was flown
-    std::optional<double> cruise_s = {};     ///< else: what is left of so long; none: what is left of the path
-    std::optional<mechanical::FlightState> motion = {};   ///< how the rest is flown
-    std::shared_ptr<const path::PathForecast> path = {};  ///< or along what
+    std::optional<double> remaining_s = {};               ///< of the cruise, from now on
+    std::optional<double> cruise_s = {};                  ///< else: of the whole cruise; none: of the path
+    std::optional<mechanical::FlightState> motion = {};   ///< of the remaining cruise; or
+    std::shared_ptr<const path::PathForecast> path = {};  ///< its path
     std::optional<battery::Battery> battery = {};
     std::string battery_file = {};                   ///< for errors
-    std::optional<double> initial_soc_percent = {};  ///< none: by the voltage at rest
+    std::optional<double> initial_soc_percent = {};  ///< none: by the resting voltage
     battery::LandingLimits limits = {};
-    std::string no_prediction_reason = {};  ///< why the model does not allow it; empty: it does
+    std::string no_prediction_reason = {};  ///< why the model allows none; empty: it does
 };
 
-/// The battery's part of a prediction.
 struct BatteryPrediction {
     battery::LandingForecast expected;
-    battery::LandingForecast worst;        ///< of energy's high end, and where its interval is known capacity's low one
-    battery::LandingLimits limits;         ///< of the mission
-    bool worst_uses_min_capacity = false;  ///< `worst`
+    battery::LandingForecast worst;  ///< at the high end of energy, and the low end of capacity if known
+    battery::LandingLimits limits;   ///< of the mission
+    bool worst_uses_min_capacity = false;
     double initial_soc_percent = 0.0;
     bool initial_is_measured = false;     ///< by the resting voltage
-    bool initial_soc_is_current = false;  ///< what was drawn before is not known: `initial_soc_percent` is that of now
+    bool initial_soc_is_current = false;  ///< earlier charge is unknown: `initial_soc_percent` is the current value
 };
 
 struct Prediction {
     mechanical::FlightProgress flown;
-    bool began_in_air = false;             ///< `flown` since the first message: the lift-off was not seen
-    std::optional<double> on_path_s = {};  ///< where on its path the flight is, in the path's planned time
-    bool is_from_position = false;         ///< there, by its positions; else by the time
+    bool began_in_air = false;             ///< the lift-off was not received: `flown` counts from the first message
+    std::optional<double> on_path_s = {};  ///< position on the path, as its planned time
+    bool is_from_position = false;         ///< of `on_path_s`: by the aircraft's positions, not by the time
     double remaining_s = 0.0;
-    bool uses_physical_model = false;  ///< the cruise, by airspeed and climb; else by the curve
+    bool uses_physical_model = false;  ///< for the cruise; else the curve
     mechanical::RemainingCruise cruise;
-    std::vector<battery::ConstantLoad> remaining_power = {};  ///< the cruise's course along a path; empty: even
+    std::vector<battery::ConstantLoad> remaining_power = {};  ///< planned, along the path; empty: constant
     mechanical::EnergyEstimate landing;
     double landing_s = 0.0;
     mechanical::EnergyEstimate remaining_energy;
@@ -60,60 +59,77 @@ struct Prediction {
     std::optional<BatteryPrediction> battery = {};
 };
 
-/// What a user should know of a prediction.
+/// Messages to the user about a prediction.
 struct Diagnostics {
     std::vector<std::string> warnings;
     std::vector<std::string> notes;
 };
 
-/// Throws InputError for a model whose interval would rest on nothing.
+/// Throws InputError for a model without between-flight variability of a phase, which an interval requires.
 void require_interval(const mechanical::MechanicalModel& model, flight::Phase phase, const std::string& file);
 
-/// Throws InputError for a model that does not know how power follows from airspeed and climb, or how flights differ in
-/// it. `option` is what needs that.
+/// Throws InputError for a model without a physical part or its between-flight variability, which `option` requires.
 void require_physical(const mechanical::MechanicalModel& model, const std::string& file, const std::string& option);
 
-/// The state of charge when a record began: as given, else by its voltage at rest. Throws InputError where a battery of
-/// constant voltage would have to tell it. The basis has a battery.
-double initial_soc_percent(const PredictionInput& basis, const battery::DischargeRecord& flown);
+/// The state of charge at the start of a record: the given one, else by its resting voltage. The input has a battery.
+/// Throws InputError where neither is available (a battery of constant voltage).
+double initial_soc_percent(const PredictionInput& input, const battery::DischargeRecord& flown);
 
-/// The same by the voltage at rest, whatever was given.
-double initial_soc_by_voltage_percent(const PredictionInput& basis, const battery::DischargeRecord& flown);
+/// By the resting voltage only.
+double initial_soc_by_voltage_percent(const PredictionInput& input, const battery::DischargeRecord& flown);
 
-/// The rest of a flight that is where `flown` says, and of which `series` holds what was measured until then. Throws
-/// NoResultError where the moment does not allow it (the path is behind it, more charge was drawn than there was),
-/// UsageError for a remaining time that the path does not have, and as mechanical::predict_remaining_cruise and
-/// battery::discharge_records.
-Prediction predict_flight(const PredictionInput& basis, const mechanical::FlightProgress& flown,
+/// Predicts the remaining flight from its progress and its series until now. Throws NoResultError where the moment
+/// allows none (path completed, more charge drawn than available), UsageError for a remaining time longer than the
+/// path, and as mechanical::predict_remaining_cruise and battery::discharge_records.
+Prediction predict_flight(const PredictionInput& input, const mechanical::FlightProgress& flown,
                           const flight::FlightSeries& series, Diagnostics& remarks);
 
-/// The same without the battery. `sighting`: where the path is to go on from; none: after as long as it has cruised.
-Prediction predict_energy(const PredictionInput& basis, const mechanical::FlightProgress& flown,
-                          const std::optional<path::PathFix>& sighting, Diagnostics& remarks);
+/// As predict_flight, without the battery. `fix`: position on the path; none: by the time since the cruise began.
+Prediction predict_energy(const PredictionInput& input, const mechanical::FlightProgress& flown,
+                          const std::optional<path::PathFix>& fix, Diagnostics& remarks);
 
-/// Where the positions see the flight on the path that is to be flown on; none where there is no path, where the time
-/// that is left is stated, or without positions.
-std::optional<path::PathFix> find_path_fix(const PredictionInput& basis, const mechanical::FlightProgress& flown,
-                                           const flight::FlightSeries& series);
+/// Expected loads of the remaining cruise and the landing, times `factor`.
+std::vector<battery::ConstantLoad> remaining_power(const Prediction& prediction, double factor = 1.0);
 
-/// The stretches of power ahead, cruise and landing, as expected times `part`.
-std::vector<battery::ConstantLoad> remaining_power(const Prediction& prediction, double part = 1.0);
+double energy_j(const std::vector<battery::ConstantLoad>& loads);
 
-/// Flies the battery through the rest of `prediction`. `state_of`: the state that a battery of that capacity is in now.
+/// The high end of the remaining energy's interval by its expectation.
+double high_energy_factor(const Prediction& prediction);
+
+/// Forecasts the battery to the landing. `state_of`: the current state of a battery of that capacity.
 BatteryPrediction forecast_battery(const battery::Battery& battery, const battery::LandingLimits& limits,
                                    const std::function<battery::BatteryState(const battery::Battery&)>& state_of,
                                    const Prediction& prediction);
 
-/// What a mission lets predict: its model, its path or else the time of its cruise, its battery (its capacity as
-/// uncertain as in the mission's drawn flights) and limits. Where its model does not allow a prediction,
-/// `no_prediction_reason` says why. The setup has a mechanical model; `file` names the mission in errors. Throws
-/// InputError for a path that cannot be flown.
+struct ReturnDeadline {
+    std::optional<double> latest_in_s;  ///< none: the reserve cannot be kept any more
+    bool path_can_be_flown = false;     ///< to its end, and home from there: `latest_in_s` is the end
+};
+
+/// The latest moment to leave the path and fly straight home, level, at the path's current airspeed and in the plan's
+/// wind, so that the landing keeps the reserve at the high end of the energy's interval. Evaluated every 10 s, or at
+/// 40 moments. The input has a path and a battery; `now`: its state.
+ReturnDeadline latest_return(const PredictionInput& input, const Prediction& prediction, battery::BatteryState now);
+
+struct TimeCurve {
+    std::vector<double> time_s;  ///< on the telemetry's clock
+    std::vector<double> value;
+};
+
+/// Predicted state of charge from `now_s` to the landing, or until the battery fails, at up to about a hundred points.
+/// The input has a battery.
+TimeCurve soc_ahead(const PredictionInput& input, const Prediction& prediction, battery::BatteryState now,
+                    double now_s);
+
+/// From a mission with a mechanical model: model, path or cruise duration, battery (capacity as uncertain as in the
+/// mission's drawn flights) and limits; `no_prediction_reason` where its model allows no prediction. `file`: of the
+/// mission, for errors. Throws InputError for an infeasible path.
 PredictionInput input_from_mission(const mission::MissionSetup& setup, const std::string& file);
 
-/// The same without the battery. Throws InputError where the model does not allow a prediction.
+/// As input_from_mission, without the battery. Throws InputError where the model allows no prediction.
 PredictionInput path_input_from_mission(const mission::MissionSetup& setup, const std::string& file);
 
-/// `remaining_s` more of the cruise from any moment on, and the model's usual landing. Throws as require_spread.
+/// `remaining_s` more of the cruise from any moment on, then the model's landing. Throws as require_interval.
 PredictionInput input_from_model(mechanical::MechanicalModel model, const std::string& file, double remaining_s);
 
 }  // namespace flightwatt::live

@@ -13,7 +13,6 @@
 #include <cstdint>
 #include <cstring>
 #include <exception>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -22,9 +21,9 @@
 namespace flightwatt::live {
 namespace {
 
-constexpr std::string_view no_memory = "there is not enough memory";
+constexpr auto no_memory = "out of memory";  // fits into a string without allocation
 
-/// The messages of samples.
+/// Definitions of the messages that samples are converted to.
 telemetry::LogConfiguration sample_configuration() {
     const auto definition = [](const char* name, std::vector<telemetry::FieldDefinition> fields) {
         return std::pair{std::string(name), telemetry::MessageDefinition{name, std::move(fields), "samples"}};
@@ -45,7 +44,7 @@ telemetry::LogConfiguration sample_configuration() {
 }
 
 struct Start {
-    std::optional<PredictionInput> basis;
+    std::optional<PredictionInput> input;
     std::unique_ptr<LiveSchedule> schedule;
     compute::ComputeModel compute;
 };
@@ -64,37 +63,37 @@ Start start_of_mission(const PredictorSetup& setup) {
     return start;
 }
 
-/// What --mission or --model, --battery, --remaining and --initial-soc of the programs are.
+/// As --mission or --model, --battery, --remaining and --initial-soc of the programs.
 Start start_of(const PredictorSetup& setup) {
     Start start;
     if (!setup.mission_file.empty()) {
         start = start_of_mission(setup);
     } else {
         if (setup.model_file.empty()) throw UsageError("no model given: expected mission_file, or model_file");
-        if (!setup.remaining_s) throw UsageError("model_file goes with remaining_s");
-        if (setup.replan) throw UsageError("decides goes with mission_file");
-        start.basis =
+        if (!setup.remaining_s) throw UsageError("model_file requires remaining_s");
+        if (setup.replan) throw UsageError("replan requires mission_file");
+        start.input =
             input_from_model(mechanical::read_mechanical_model(setup.model_file), setup.model_file, *setup.remaining_s);
     }
-    auto& basis = *start.basis;
-    basis.remaining_s = setup.remaining_s;
-    if (basis.remaining_s && !(*basis.remaining_s >= 0.0 && std::isfinite(*basis.remaining_s)))
-        throw UsageError(fmt::format("remaining_s is {}: expected 0 or more", *basis.remaining_s));
+    auto& input = *start.input;
+    input.remaining_s = setup.remaining_s;
+    if (input.remaining_s && !(*input.remaining_s >= 0.0 && std::isfinite(*input.remaining_s)))
+        throw UsageError(fmt::format("remaining_s is {}: expected 0 or more", *input.remaining_s));
     if (!setup.battery_file.empty()) {
-        basis.battery = battery::read_battery(setup.battery_file);
-        basis.battery_file = setup.battery_file;
+        input.battery = battery::read_battery(setup.battery_file);
+        input.battery_file = setup.battery_file;
     }
     if (!setup.initial_soc_percent) return start;
     if (!(*setup.initial_soc_percent >= 0.0 && *setup.initial_soc_percent <= 100.0))
         throw UsageError(fmt::format("initial_soc_percent is {}: expected 0 to 100", *setup.initial_soc_percent));
-    basis.initial_soc_percent = setup.initial_soc_percent;
+    input.initial_soc_percent = setup.initial_soc_percent;
     return start;
 }
 
 LiveOptions options_of(const PredictorSetup& setup) {
     LiveOptions options;
     if (!setup.aircraft_id.empty()) options.aircraft_id = setup.aircraft_id;
-    options.most_rows = setup.max_rows;
+    options.max_rows = setup.max_rows;
     if (setup.input == PredictorInput::samples) {
         options.configuration = sample_configuration();
     } else if (!setup.definitions_file.empty()) {
@@ -138,104 +137,110 @@ ScheduleState decision_of(const LiveDecision& of) {
     return decision;
 }
 
-}  // namespace
-
-/// Input since the last update, in memory that is allocated once.
+/// Input pushed since the last update, in memory that is allocated at the start.
 class InputBuffer {
   public:
     enum class Kind : std::uint8_t { line, message, frames, sample };
 
-    explicit InputBuffer(std::size_t max_bytes) : bytes_(max_bytes) {}
+    explicit InputBuffer(std::size_t max_bytes) : max_items_(max_bytes / sizeof(Item)) {
+        bytes_.reserve(max_bytes);
+        items_.reserve(max_items_);
+    }
 
     /// False where it does not fit.
     bool push(Kind kind, double time_s, std::string_view bytes) {
-        const Head head{time_s, bytes.size(), kind};
-        if (bytes.size() > bytes_.size() || used_ + sizeof(head) > bytes_.size() - bytes.size()) return false;
-        std::memcpy(bytes_.data() + used_, &head, sizeof(head));
-        if (!bytes.empty()) std::memcpy(bytes_.data() + used_ + sizeof(head), bytes.data(), bytes.size());
-        used_ += sizeof(head) + bytes.size();
+        if (items_.size() == max_items_ || bytes.size() > bytes_.capacity() - bytes_.size()) return false;
+        const char* begin = bytes_.data() + bytes_.size();
+        bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+        items_.push_back({kind, time_s, {begin, bytes.size()}});
         return true;
     }
 
-    static Sample sample_of(std::string_view bytes) {
-        Sample sample;
-        std::memcpy(&sample, bytes.data(), sizeof(sample));
-        return sample;
-    }
-
-    /// Hands out all of it, in its order, and is empty.
+    /// Passes all input in its order to `visit`, and removes it.
     template <typename Visit>
     void take(const Visit& visit) {
-        const auto end = used_;
-        used_ = 0;
-        for (std::size_t at = 0; at < end;) {
-            Head head;
-            std::memcpy(&head, bytes_.data() + at, sizeof(head));
-            at += sizeof(head);
-            visit(head.kind, head.time_s, std::string_view(bytes_.data() + at, head.size));
-            at += head.size;
-        }
+        for (const auto& item : items_) visit(item.kind, item.time_s, item.bytes);
+        items_.clear();
+        bytes_.clear();
     }
 
   private:
-    struct Head {
-        double time_s = 0.0;
-        std::size_t size = 0;
+    struct Item {
         Kind kind = Kind::line;
+        double time_s = 0.0;
+        std::string_view bytes;  ///< in `bytes_`
     };
-    static_assert(std::is_trivially_copyable_v<Sample> && std::is_trivially_copyable_v<Head>);
 
+    std::size_t max_items_;
     std::vector<char> bytes_;
-    std::size_t used_ = 0;
+    std::vector<Item> items_;
 };
 
-class Predictor::State {
+class LivePredictor final : public Predictor {
   public:
-    State(const PredictorSetup& setup, Start start)
+    LivePredictor(const PredictorSetup& setup, Start start)
         : input_(setup.input),
           waiting_(setup.max_pending_bytes),
-          flight_(options_of(setup), std::move(start.basis), std::move(start.schedule)),
+          flight_(options_of(setup), std::move(start.input), std::move(start.schedule)),
           compute_(std::move(start.compute)) {
         if (setup.input == PredictorInput::messages && !setup.definitions_file.empty())
             decoder_.emplace(telemetry::read_message_dictionary(setup.definitions_file));
-        for (const auto& component : compute_.components)
-            quality_.emplace_back(component.profile.parameters.size(), 0.0);
-        for (std::size_t c = 0; c < quality_.size(); ++c)
-            runs.push_back({compute_.components[c].name, false, quality_[c]});
+        state_.components = components_of({});
     }
 
-    bool push(InputBuffer::Kind kind, double time_s, std::string_view bytes) {
-        const bool is_of_input = (kind == InputBuffer::Kind::sample) == (input_ == PredictorInput::samples);
-        const bool is_wanted = is_of_input && std::isfinite(time_s) && (kind != InputBuffer::Kind::frames || decoder_);
+    bool push_line(std::string_view line) noexcept override { return push(Kind::line, 0.0, line); }
+    bool push_message(double time_s, std::string_view message) noexcept override {
+        return push(Kind::message, time_s, message);
+    }
+    bool push_frames(double time_s, std::string_view bytes) noexcept override {
+        return push(Kind::frames, time_s, bytes);
+    }
+    bool push_sample(const Sample& sample) noexcept override {
+        return push(Kind::sample, sample.time_s, {reinterpret_cast<const char*>(&sample), sizeof(sample)});
+    }
+    const PredictorState& update(double silent_s) noexcept override { return update_state(silent_s, false); }
+    const PredictorState& end() noexcept override { return update_state(0.0, true); }
+    const PredictorState& state() const noexcept override { return state_; }
+
+  private:
+    using Kind = InputBuffer::Kind;
+
+    bool push(Kind kind, double time_s, std::string_view bytes) noexcept {
+        const bool is_of_input = (kind == Kind::sample) == (input_ == PredictorInput::samples);
+        const bool is_wanted = is_of_input && std::isfinite(time_s) && (kind != Kind::frames || decoder_);
         if (is_wanted && waiting_.push(kind, time_s, bytes)) return true;
-        ++outlook.dropped;
+        ++state_.dropped;
         return false;
     }
 
-    void look(double silent_s);
-    void end();
+    const PredictorState& update_state(double silent_s, bool is_end) noexcept {
+        try {
+            ingest();
+            if (is_end) flush();
+            state_ = state_of(flight_.update(silent_s));
+        } catch (const std::exception&) {  // LiveFlight does not throw because of telemetry
+            state_.failure = no_memory;
+        }
+        return state_;
+    }
 
-    PredictorState outlook;
-    std::vector<ComponentState> runs;
-    std::vector<AlarmText> alarms;
-
-  private:
     void ingest();
+    void flush();
     void receive(const Sample& sample);
     void receive(const telemetry::LinkMessage& message, double time_s);
-    void set_runs(const compute::Configuration& configuration);
+    std::vector<ComponentState> components_of(const LiveState& state) const;
+    PredictorState state_of(const LiveState& state) const;
 
     PredictorInput input_;
     InputBuffer waiting_;
     LiveFlight flight_;
     compute::ComputeModel compute_;
     std::optional<telemetry::LinkDecoder> decoder_;
-    std::vector<std::vector<double>> quality_;
-    LiveState state_;
     std::size_t not_lines_ = 0;
+    PredictorState state_;
 };
 
-void Predictor::State::receive(const Sample& sample) {
+void LivePredictor::receive(const Sample& sample) {
     const auto send = [&](const char* message, std::vector<double> values) {
         for (auto& value : values)
             if (!std::isfinite(value)) value = Sample::unknown;
@@ -249,16 +254,19 @@ void Predictor::State::receive(const Sample& sample) {
     send("1 ATTITUDE", {sample.bank_deg});
 }
 
-void Predictor::State::receive(const telemetry::LinkMessage& message, double time_s) {
+void LivePredictor::receive(const telemetry::LinkMessage& message, double time_s) {
     if (message.class_id != telemetry::MessageDictionary::telemetry_class) return;
     flight_.receive({message.time_s, std::string(message.text), false, {message.values.begin(), message.values.end()}},
                     time_s);
 }
 
-void Predictor::State::ingest() {
-    using Kind = InputBuffer::Kind;
+void LivePredictor::ingest() {
     waiting_.take([&](Kind kind, double time_s, std::string_view bytes) {
-        if (kind == Kind::sample) return receive(InputBuffer::sample_of(bytes));
+        if (kind == Kind::sample) {
+            Sample sample;
+            std::memcpy(&sample, bytes.data(), sizeof(sample));
+            return receive(sample);
+        }
         if (kind == Kind::message) return flight_.receive({time_s, std::string(bytes)}, time_s);
         if (kind == Kind::frames) {
             return decoder_->push(bytes, [&](const telemetry::LinkMessage& message) { receive(message, time_s); });
@@ -269,94 +277,47 @@ void Predictor::State::ingest() {
     });
 }
 
-void Predictor::State::set_runs(const compute::Configuration& configuration) {
-    for (std::size_t c = 0; c < runs.size(); ++c) {
-        const auto running = std::ranges::find(configuration, c, &compute::RunningComponent::component);
-        runs[c].runs = running != configuration.end();
-        if (runs[c].runs)
-            std::ranges::copy(running->qos, quality_[c].begin());
-        else
-            std::ranges::fill(quality_[c], 0.0);
+std::vector<ComponentState> LivePredictor::components_of(const LiveState& state) const {
+    std::vector<ComponentState> components;
+    for (const auto& component : compute_.components) components.push_back({component.name});
+    if (!state.decision) return components;
+    for (const auto& running : state.decision->run) {
+        components[running.component].runs = true;
+        components[running.component].quality.assign(running.qos.begin(), running.qos.end());
     }
+    return components;
 }
 
-void Predictor::State::look(double silent_s) {
-    ingest();
-    state_ = flight_.update(silent_s);
-    PredictorState now{state_.time_s,       phase_of(state_.phase), state_.landed,
-                       state_.began_in_air, state_.flight_time_s,   state_.energy_wh,
-                       state_.power_w,      state_.voltage_v,       state_.altitude_m};
-    if (state_.battery && state_.battery->state) now.soc_percent = state_.battery->state->soc_percent;
-    if (state_.prediction) now.landing = landing_of(state_);
-    now.waits_for = state_.no_prediction_reason;
-    if (state_.decision) {
-        now.decision = decision_of(*state_.decision);
-        set_runs(state_.decision->run);
-    }
-    now.rows = state_.rows;
-    now.dropped = outlook.dropped;
+PredictorState LivePredictor::state_of(const LiveState& state) const {
+    PredictorState now{state.time_s,    phase_of(state.phase), state.landed,    state.began_in_air, state.flight_time_s,
+                       state.energy_wh, state.power_w,         state.voltage_v, state.altitude_m};
+    if (state.battery && state.battery->state) now.soc_percent = state.battery->state->soc_percent;
+    if (state.prediction) now.landing = landing_of(state);
+    now.waits_for = state.no_prediction_reason;
+    if (state.decision) now.decision = decision_of(*state.decision);
+    now.components = components_of(state);
+    now.alarms = state.alarms;
+    now.rows = state.rows;
+    now.dropped = state_.dropped;
     now.unusable = not_lines_;
-    for (const auto& [reason, count] : state_.unusable) now.unusable += count;
+    for (const auto& [reason, count] : state.unusable) now.unusable += count;
     if (decoder_) now.unusable += decoder_->counts().unknown + decoder_->counts().length_mismatches;
-    alarms.clear();
-    for (const auto& alarm : state_.alarms) alarms.push_back({alarm.kind, alarm.text});
-    outlook = now;
+    return now;
 }
 
-void Predictor::State::end() {
-    ingest();
+void LivePredictor::flush() {
     if (decoder_) {
         const double time_s = flight_.clock_s().value_or(0.0);
         decoder_->flush([&](const telemetry::LinkMessage& message) { receive(message, time_s); });
     }
     flight_.end();
-    look(0.0);
 }
 
-Predictor::Predictor(std::unique_ptr<State> state) : state_(std::move(state)) {}
-Predictor::~Predictor() = default;
-
-bool Predictor::push_line(std::string_view line) noexcept { return state_->push(InputBuffer::Kind::line, 0.0, line); }
-
-bool Predictor::push_message(double time_s, std::string_view message) noexcept {
-    return state_->push(InputBuffer::Kind::message, time_s, message);
-}
-
-bool Predictor::push_frames(double time_s, std::string_view bytes) noexcept {
-    return state_->push(InputBuffer::Kind::frames, time_s, bytes);
-}
-
-bool Predictor::push_sample(const Sample& sample) noexcept {
-    return state_->push(InputBuffer::Kind::sample, sample.time_s,
-                        {reinterpret_cast<const char*>(&sample), sizeof(sample)});
-}
-
-const PredictorState& Predictor::update(double silent_s) noexcept {
-    try {
-        state_->look(silent_s);
-    } catch (const std::exception&) {  // of telemetry nothing is thrown: LiveFlight
-        state_->outlook.failure = no_memory;
-    }
-    return state_->outlook;
-}
-
-const PredictorState& Predictor::end() noexcept {
-    try {
-        state_->end();
-    } catch (const std::exception&) {
-        state_->outlook.failure = no_memory;
-    }
-    return state_->outlook;
-}
-
-const PredictorState& Predictor::state() const noexcept { return state_->outlook; }
-std::span<const ComponentState> Predictor::component_states() const noexcept { return state_->runs; }
-std::span<const AlarmText> Predictor::alarms() const noexcept { return state_->alarms; }
+}  // namespace
 
 PredictorOrError make_predictor(const PredictorSetup& setup) noexcept {
     try {
-        auto state = std::make_unique<Predictor::State>(setup, start_of(setup));
-        return {std::unique_ptr<Predictor>(new Predictor(std::move(state))), ""};  // its constructor is private
+        return {std::make_unique<LivePredictor>(setup, start_of(setup)), ""};
     } catch (const InputError& error) {
         const auto hint = error.hint().empty() ? std::string() : "; " + error.hint();
         return {nullptr, fmt::format("{}: {}{}", to_string(error.where()), error.what(), hint)};

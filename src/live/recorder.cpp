@@ -8,6 +8,7 @@
 #include <ctime>
 
 #include <fcntl.h>
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -40,7 +41,7 @@ void Recorder::open_next() {
     throw OutputError(fmt::format("{} holds {} logs of this name", folder_.string(), max_files));
 }
 
-/// Telemetry is what cannot be had again: it is recorded without its definitions, where there is no room for both.
+/// A failure does not end the recording: telemetry cannot be received again.
 void Recorder::write_definitions() {
     if (!log_text_) return;
     auto log = file_;
@@ -52,10 +53,10 @@ void Recorder::write_definitions() {
     }
 }
 
-void Recorder::write(std::string_view lines, bool anew) {
+void Recorder::write(std::string_view lines, bool clock_restarted) {
     if (!failure_.empty()) return;
     try {
-        const bool is_new = anew || file_.empty();
+        const bool is_new = clock_restarted || file_.empty();
         if (is_new) open_next();
         out_.write(lines.data(), static_cast<std::streamsize>(lines.size()));
         out_.flush();
@@ -67,11 +68,7 @@ void Recorder::write(std::string_view lines, bool anew) {
 }
 
 std::string log_name(std::int64_t unix_s) {
-    const std::time_t time = unix_s;
-    std::tm utc{};
-    ::gmtime_r(&time, &utc);
-    return fmt::format("{:02}_{:02}_{:02}__{:02}_{:02}_{:02}", utc.tm_year % 100, utc.tm_mon + 1, utc.tm_mday,
-                       utc.tm_hour, utc.tm_min, utc.tm_sec);
+    return fmt::format("{:%y_%m_%d__%H_%M_%S}", fmt::gmtime(static_cast<std::time_t>(unix_s)));
 }
 
 }  // namespace flightwatt::live

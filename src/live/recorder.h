@@ -10,25 +10,25 @@
 
 namespace flightwatt::live {
 
-/// Makes an empty file; false where there is one already. Throws OutputError.
+/// Creates an empty file; false if it exists. Throws OutputError.
 bool make_new_file(const std::filesystem::path& path);
 
-/// Keeps telemetry as logs that a batch takes: NAME.data in a folder, with the .log of its definitions beside it. Where
-/// the clock begins anew a new log does, NAME_2 ...; no file that exists is written to. What is written can be read at
-/// once. A disk that is full ends the recording, not the watch.
+/// Records telemetry as logs for `batch`: NAME.data in a folder, with the .log of its definitions. After a restart of
+/// the clock a new log NAME_2 ... begins; existing files are never changed. Written lines can be read at once. A full
+/// disk ends the recording, not the watch.
 class Recorder {
   public:
-    /// Makes the folder. `log_text`: of the .log; none: without one. Throws OutputError.
+    /// Creates the folder. `log_text`: content of the .log; none: no .log. Throws OutputError.
     Recorder(std::filesystem::path folder, std::string name, std::optional<std::string> log_text);
 
-    /// Appends whole lines.
-    void write(std::string_view lines, bool anew);
+    /// Appends complete lines, after `clock_restarted` to a new log.
+    void write(std::string_view lines, bool clock_restarted);
 
-    /// The .data file that is written; empty before the first line.
+    /// The current .data file; empty before the first line.
     const std::filesystem::path& file() const { return file_; }
-    /// Why no more is written; empty while it is.
+    /// Reason why the recording ended; empty while it continues.
     const std::string& failure() const { return failure_; }
-    /// Why a .log could not be written; the .data goes on without it.
+    /// Reason why a .log could not be written; its .data is recorded without it.
     const std::string& lacks_definitions() const { return lacks_definitions_; }
 
   private:
@@ -45,7 +45,7 @@ class Recorder {
     std::string lacks_definitions_;
 };
 
-/// "26_11_22__14_05_09": as Paparazzi names its logs, of a Unix time, in UTC.
+/// "26_11_22__14_05_09": Paparazzi's log name for a Unix time, in UTC.
 std::string log_name(std::int64_t unix_s);
 
 }  // namespace flightwatt::live

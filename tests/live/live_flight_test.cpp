@@ -211,7 +211,7 @@ TEST(LiveFlight, ACruiseThatTakesLongerThanPlannedHasNoEndThatIsKnown) {
 TEST(LiveFlight, MemoryIsBoundedAndSeveralSortiesAreCounted) {
     const auto log = test::sample(1);
     auto options = test::options_of(log);
-    options.most_rows = 6000;  // one flight has 10,000
+    options.max_rows = 6000;  // one flight has 10,000
     LiveFlight flight(std::move(options), test::wing_basis(), nullptr);
     const auto messages = test::messages_of(log, 1000.0);
     const double day_s = messages.back().time_s.value() + 30.0;

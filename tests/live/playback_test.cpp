@@ -62,7 +62,7 @@ TEST(Playback, SendsAllMessagesInOrderAndCountsTheOthers) {
     const auto report = play(log, 1e5, target, never);
     EXPECT_THAT(target.lines, ElementsAre("10.5 20 PONG ", "10.5 20 A 1", "3 20 A 2", "5000 20 A 3", "5001 20 LAST"));
     EXPECT_EQ(report.messages, 5U);
-    EXPECT_EQ(report.left_out.at("lines that are no message (TIME SENDER NAME ...)"), 1U);
+    EXPECT_EQ(report.left_out.at("lines that are not messages (TIME SENDER NAME ...)"), 1U);
     EXPECT_EQ(report.left_out.at("they cannot be sent"), 1U);
     EXPECT_EQ(report.shortened_gaps, 1U);
     EXPECT_DOUBLE_EQ(report.log_s, 1.0 + max_played_gap_s + 1.0);
@@ -117,7 +117,7 @@ TEST(Playback, ASerialLineThatNobodyReadsEndsNothing) {
     const auto text = test::energy_lines(1).front();
     std::string_view why_not;
     for (int i = 0; i < 50'000 && why_not.empty(); ++i) why_not = target->send({0.0, text});
-    EXPECT_THAT(std::string(why_not), testing::HasSubstr("slower than what is played"));
+    EXPECT_THAT(std::string(why_not), testing::HasSubstr("slower than the log"));
 }
 
 TEST(Playback, RefusesTargetsThatAreNone) {

@@ -1,8 +1,11 @@
 #include "live/prediction.h"
 
 #include "base/error.h"
+#include "helpers/made_up_paths.h"
 #include "helpers/test_paths.h"
 #include "mission/mission_file.h"
+
+#include <memory>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -116,6 +119,98 @@ TEST(PredictionBasis, TakesTheModelsLanding) {
     EXPECT_EQ(basis.landing_s, model.phases[flight::Phase::landing].duration_s);
     model.phases[flight::Phase::landing].level_spread.reset();
     EXPECT_THROW(input_from_model(model, file, 300.0), InputError);
+}
+
+using path::FlightPath;
+using path::Leg;
+
+FlightPath out_and_on() {
+    return {{test::path_element(Leg{1000.0, 0.0}, 10.0), test::path_element(Leg{1000.0, 90.0}, 10.0)}};
+}
+
+/// 10 W wherever it flies, on an ideal battery of 1 Wh.
+struct Trial {
+    path::PlannedPath plan{out_and_on(), {}, test::made_up_wing()};
+    PredictionInput input;
+    Prediction prediction;
+    battery::BatteryState now;
+
+    Trial() {
+        plan.power.coefficients = {};
+        plan.power.terms = {mechanical::PowerTerm::constant};
+        plan.power.coefficients[mechanical::PowerTerm::constant] = 10.0;
+        input.battery.emplace();
+        input.battery->voltage_v = 10.0;
+        input.battery->capacity_ah = 0.1;
+        cruise_for(200.0);
+    }
+    void cruise_for(double time_s) {
+        prediction.remaining_power = {{10.0, time_s}};
+        prediction.cruise.energy.energy_wh = 10.0 * time_s / 3600.0;
+    }
+    ReturnDeadline turn(double on_path_s) {
+        input.path = std::make_shared<path::PathForecast>(plan);
+        prediction.on_path_s = on_path_s;
+        return latest_return(input, prediction, now);
+    }
+    void charge_for(double time_s) { now = {time_s * 10.0 / 3600.0 * 100.0, 0.0}; }
+};
+
+TEST(TurnHome, TurnsWhereTheWayBackJustKeepsTheReserve) {
+    Trial trial;
+    trial.charge_for(101.0);
+    const auto turn = trial.turn(0.0);
+    ASSERT_TRUE(turn.latest_in_s);
+    EXPECT_EQ(*turn.latest_in_s, 50.0) << "out and back along the first leg";
+    EXPECT_FALSE(turn.path_can_be_flown);
+    trial.prediction.cruise.energy.energy_wh *= 2.0;
+    trial.charge_for(202.0);
+    EXPECT_EQ(trial.turn(0.0).latest_in_s, 50.0) << "twice the planned power, home as well";
+    trial.charge_for(101.0);
+    EXPECT_EQ(trial.turn(0.0).latest_in_s, 20.0) << "a quarter of 101 s, in steps of 10";
+}
+
+TEST(TurnHome, SaysWhereThePathCanBeFlownAndWhereItIsTooLate) {
+    Trial trial;
+    trial.charge_for(345.0);  // 200 s and the diagonal's 141.4 s
+    EXPECT_TRUE(trial.turn(0.0).path_can_be_flown);
+    trial.charge_for(335.0);
+    const auto nearly = trial.turn(0.0);
+    EXPECT_FALSE(nearly.path_can_be_flown);
+    EXPECT_EQ(nearly.latest_in_s, 190.0);
+    trial.charge_for(80.0);
+    trial.cruise_for(100.0);
+    EXPECT_FALSE(trial.turn(100.0).latest_in_s) << "100 s from home";
+    trial.charge_for(110.0);
+    EXPECT_TRUE(trial.turn(100.0).latest_in_s);
+    trial.prediction.landing_s = 20.0;
+    trial.prediction.landing.energy_wh = 10.0 * 20.0 / 3600.0;
+    EXPECT_FALSE(trial.turn(100.0).latest_in_s) << "the landing counts";
+}
+
+TEST(TurnHome, AWindThatForbidsTheWayHomeIsTooLate) {
+    Trial trial;
+    trial.charge_for(300.0);
+    trial.plan.path = {{test::path_element(Leg{1000.0, 180.0}, 10.0)}};
+    trial.plan.wind = {20.0, 0.0};
+    EXPECT_FALSE(trial.turn(100.0).latest_in_s);
+}
+
+TEST(SocAhead, EndsWithThePrediction) {
+    PredictionInput basis;
+    basis.battery = battery::Battery{};
+    basis.battery->voltage_v = 10.0;
+    basis.battery->capacity_ah = 1.0;
+    Prediction prediction;
+    prediction.cruise.remaining_mean_w = 10.0;
+    prediction.remaining_s = 1800.0;
+    prediction.landing.energy_wh = 0.5;
+    prediction.landing_s = 100.0;
+    const auto curve = soc_ahead(basis, prediction, {90.0, 0.0}, 50.0);
+    EXPECT_NEAR(curve.time_s.back(), 1950.0, 1e-6);
+    EXPECT_NEAR(curve.value.back(), 35.0, 1e-6) << "5.5 Wh of 10";
+    EXPECT_LT(curve.time_s.size(), 120U);
+    EXPECT_LT(soc_ahead(basis, prediction, {20.0, 0.0}, 50.0).time_s.back(), 50.0 + 721.0) << "2 Wh at 10 W";
 }
 
 }  // namespace

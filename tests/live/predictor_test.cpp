@@ -132,7 +132,7 @@ TEST(Predictor, SaysOfAMissionWhatTheWatchSays) {
     EXPECT_EQ(outlook.decision->utility_per_s, state.decision->utility_per_s);
     EXPECT_EQ(outlook.decision->rest_utility, state.decision->remaining_utility_per_s);
     const auto& components = setup_of(mission).compute.components;
-    const auto runs = made.predictor->component_states();
+    const auto& runs = outlook.components;
     ASSERT_EQ(runs.size(), components.size());
     std::size_t running = 0;
     for (std::size_t c = 0; c < runs.size(); ++c) {

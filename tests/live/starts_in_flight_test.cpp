@@ -156,7 +156,7 @@ TEST(StartsInFlight, ContinueEnergyAndChargeByTheCountersAfterARestart) {
     EXPECT_NEAR(*again.energy_wh, *whole.energy_wh, 0.01 * *whole.energy_wh) << "ten seconds were not received";
     ASSERT_TRUE(again.battery && again.battery->soc_percent);
     EXPECT_NEAR(*again.battery->soc_percent, *whole.battery->soc_percent, 0.2);
-    EXPECT_THAT(again.warnings, testing::Contains(testing::HasSubstr("energy goes on by the autopilot's counter")));
+    EXPECT_THAT(again.warnings, testing::Contains(testing::HasSubstr("energy continues by the autopilot's counter")));
 }
 
 TEST(StartsInFlight, SayWhatIsUnknownAfterARestartWithoutCounters) {
@@ -169,7 +169,7 @@ TEST(StartsInFlight, SayWhatIsUnknownAfterARestartWithoutCounters) {
     EXPECT_FALSE(again.energy_wh);
     EXPECT_THAT(again.warnings,
                 testing::Contains(testing::ContainsRegex(
-                    "the clock began anew in the air, after .* s: the energy since the lift-off is unknown")));
+                    "the clock restarted in the air, after .* s: the energy since the lift-off is unknown")));
 }
 
 TEST(StartsInFlight, PredictNothingWhileThePowerRecordIsRejected) {

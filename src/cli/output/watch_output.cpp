@@ -3,7 +3,6 @@
 #include "base/units.h"
 #include "cli/output/prediction_output.h"
 #include "cli/screen_table.h"
-#include "live/turn_home.h"
 
 #include <algorithm>
 #include <cctype>

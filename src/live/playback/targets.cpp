@@ -9,13 +9,10 @@
 
 #include <cerrno>
 #include <cstring>
-#include <exception>
 #include <fstream>
 #include <utility>
 
-#include <boost/asio/buffer.hpp>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/udp.hpp>
+#include <boost/asio.hpp>
 #include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
@@ -25,7 +22,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Takes messages as link frames.
+/// Sends messages as link frames.
 class FrameTarget : public PlaybackTarget {
   public:
     explicit FrameTarget(PlaybackTargetSetup setup)
@@ -33,12 +30,12 @@ class FrameTarget : public PlaybackTarget {
 
     std::string_view send(const IncomingMessage& message) override {
         frame_.clear();
-        const auto why_not = encoder_.append_frame(message.text, frame_);
-        return why_not.empty() ? send_frame(frame_) : why_not;
+        const auto reason = encoder_.append_frame(message.text, frame_);
+        return reason.empty() ? send_frame(frame_) : reason;
     }
 
   protected:
-    /// Returns why it is not sent, and an empty text else.
+    /// Returns the reason if it is not sent, else an empty text.
     virtual std::string_view send_frame(std::string_view frame) = 0;
 
   private:
@@ -47,7 +44,7 @@ class FrameTarget : public PlaybackTarget {
     std::string frame_;
 };
 
-/// A datagram each. Datagrams that nobody listens for are lost, as over the air.
+/// A datagram each; without a receiver it is lost, as over the air.
 class UdpTarget : public FrameTarget {
   public:
     UdpTarget(std::string_view to, PlaybackTargetSetup setup)
@@ -59,7 +56,7 @@ class UdpTarget : public FrameTarget {
     std::string_view send_frame(std::string_view frame) override {
         boost::system::error_code error;
         socket_.send_to(boost::asio::buffer(frame), to_, 0, error);
-        return error && error != boost::asio::error::connection_refused ? "the network did not take them" : "";
+        return error && error != boost::asio::error::connection_refused ? "the network did not accept them" : "";
     }
 
     boost::asio::ip::udp::endpoint to_;
@@ -67,13 +64,13 @@ class UdpTarget : public FrameTarget {
     boost::asio::ip::udp::socket socket_;
 };
 
-/// On a serial line, which asio opens without blocking. What it does not take within a second is left out.
+/// On a serial line, which asio opens non-blocking. A frame that it does not accept within a second is left out.
 class SerialTarget : public FrameTarget {
   public:
     SerialTarget(std::string_view to, PlaybackTargetSetup setup)
         : FrameTarget(std::move(setup)), line_(parse_serial_line(to)) {
         register_output(line_.device);
-        if (const auto error = open_serial_line(line_, port_)) refuse_serial_line(line_, error);
+        require_serial_line(line_, port_);
     }
 
   private:
@@ -81,7 +78,7 @@ class SerialTarget : public FrameTarget {
         constexpr int max_ms = 1000;
         while (!frame.empty()) {
             ::pollfd line{port_.native_handle(), POLLOUT, 0};
-            if (::poll(&line, 1, max_ms) == 0) return "the serial line is slower than what is played";
+            if (::poll(&line, 1, max_ms) == 0) return "the serial line is slower than the log";
             const auto written = ::write(port_.native_handle(), frame.data(), frame.size());
             if (written > 0) frame.remove_prefix(static_cast<std::size_t>(written));
             if (written < 0 && errno != EINTR && errno != EAGAIN)
@@ -99,17 +96,7 @@ class IvyTarget : public PlaybackTarget {
   public:
     IvyTarget(std::string_view bus, bool as_aircraft)
         : as_aircraft_(as_aircraft),
-          agent_(context_, {.bus = parse_ivy_bus(bus), .name = "FlightWatt play", .sends = true}) {
-        agent_.start();
-    }
-    ~IvyTarget() override {
-        try {
-            agent_.stop();
-            context_.run();  // what was begun ends, since all is closed
-        } catch (const std::exception&) {
-            // Peers that are left without a good-bye see that the line is closed.
-        }
-    }
+          agent_(context_, {.bus = parse_ivy_bus(bus), .name = "FlightWatt play", .sends = true}) {}
 
     bool has_receiver(std::chrono::milliseconds timeout) override {
         for (const auto end = Clock::now() + timeout; agent_.ready_peers() == 0 && Clock::now() < end;) {
@@ -142,7 +129,7 @@ class IvyTarget : public PlaybackTarget {
     IvyAgent agent_;
 };
 
-/// Lines to a new file, each written at once.
+/// Lines to a new file, flushed one by one.
 class LineTarget : public PlaybackTarget {
   public:
     explicit LineTarget(std::string name) : name_(std::move(name)) {
@@ -167,13 +154,13 @@ class LineTarget : public PlaybackTarget {
 std::unique_ptr<PlaybackTarget> open_playback_target(std::string_view to, PlaybackTargetSetup setup) {
     const auto colon = to.find(':');
     const auto kind = to.substr(0, colon);
-    const auto place = colon == std::string_view::npos ? std::string_view() : to.substr(colon + 1);
-    if (kind == "file" && !place.empty()) return std::make_unique<LineTarget>(std::string(place));
-    if (kind == "ivy" && !place.empty()) return std::make_unique<IvyTarget>(place, setup.as_aircraft);
-    if (kind == "udp" && !place.empty()) return std::make_unique<UdpTarget>(place, std::move(setup));
-    if (kind == "serial" && !place.empty()) return std::make_unique<SerialTarget>(place, std::move(setup));
+    const auto where = colon == std::string_view::npos ? std::string_view() : to.substr(colon + 1);
+    if (kind == "file" && !where.empty()) return std::make_unique<LineTarget>(std::string(where));
+    if (kind == "ivy" && !where.empty()) return std::make_unique<IvyTarget>(where, setup.as_aircraft);
+    if (kind == "udp" && !where.empty()) return std::make_unique<UdpTarget>(where, std::move(setup));
+    if (kind == "serial" && !where.empty()) return std::make_unique<SerialTarget>(where, std::move(setup));
     throw UsageError(
-        fmt::format("nothing can be played to '{}': expected udp:ADDRESS:PORT, serial:DEVICE:BAUD, "
+        fmt::format("unknown target '{}': expected udp:ADDRESS:PORT, serial:DEVICE:BAUD, "
                     "ivy:ADDRESS:PORT, file:NAME.data or -",
                     to));
 }

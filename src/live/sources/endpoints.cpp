@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/number.h"
 
+#include <chrono>
 #include <csignal>
 #include <limits>
 #include <utility>
@@ -11,20 +12,19 @@
 
 namespace flightwatt::live {
 
-std::optional<HostAndPort> parse_host_and_port(std::string_view text, std::string_view host) {
+std::optional<AddressAndPort> parse_address_and_port(std::string_view text, std::string_view default_address) {
     const auto colon = text.rfind(':');
-    if (colon != std::string_view::npos) host = text.substr(0, colon);
+    auto host = colon == std::string_view::npos ? default_address : text.substr(0, colon);
     if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
     const auto port = parse_unsigned(colon == std::string_view::npos ? text : text.substr(colon + 1));
     boost::system::error_code error;
-    boost::asio::ip::make_address(std::string(host), error);
+    const auto address = boost::asio::ip::make_address(std::string(host), error);
     if (error || !port || *port == 0 || *port > std::numeric_limits<std::uint16_t>::max()) return std::nullopt;
-    return HostAndPort{std::string(host), static_cast<std::uint16_t>(*port)};
+    return AddressAndPort{address, static_cast<std::uint16_t>(*port)};
 }
 
 boost::asio::ip::udp::endpoint parse_udp_address(std::string_view text) {
-    const auto where = parse_host_and_port(text, "0.0.0.0");
-    if (where) return {boost::asio::ip::make_address(where->host), where->port};
+    if (const auto at = parse_address_and_port(text, "0.0.0.0")) return {at->address, at->port};
     throw UsageError(fmt::format("UDP '{}': expected PORT or ADDRESS:PORT, as 4242 or 127.0.0.1:4242", text));
 }
 
@@ -42,26 +42,44 @@ SerialLine parse_serial_line(std::string_view text) {
 
 boost::system::error_code open_serial_line(const SerialLine& line, boost::asio::serial_port& port) {
     using Port = boost::asio::serial_port;
-    boost::system::error_code error;
-    port.open(line.device, error);  // in the system's raw mode
-    if (!error) port.set_option(Port::baud_rate(line.baud), error);
-    if (!error) port.set_option(Port::character_size(8), error);
-    if (!error) port.set_option(Port::parity(Port::parity::none), error);
-    if (!error) port.set_option(Port::stop_bits(Port::stop_bits::one), error);
-    if (!error) port.set_option(Port::flow_control(Port::flow_control::none), error);
-    if (error) {
-        boost::system::error_code ignored;
-        port.close(ignored);
-        return error;
+    try {
+        port.open(line.device);  // in the system's raw mode
+        port.set_option(Port::baud_rate(line.baud));
+        port.set_option(Port::character_size(8));
+        port.set_option(Port::parity(Port::parity::none));
+        port.set_option(Port::stop_bits(Port::stop_bits::one));
+        port.set_option(Port::flow_control(Port::flow_control::none));
+        close_on_exec(port);
+        return {};
+    } catch (const boost::system::system_error& error) {
+        if (port.is_open()) port.close();
+        return error.code();
     }
-    close_on_exec(port);
-    return error;
 }
 
-void refuse_serial_line(const SerialLine& line, const boost::system::error_code& error) {
-    throw InputError({line.device},
-                     fmt::format("cannot open it as a serial line of {} baud: {}", line.baud, error.message()),
-                     "see that it is plugged in, may be read and written (group dialout), and knows the speed");
+void require_serial_line(const SerialLine& line, boost::asio::serial_port& port) {
+    if (const auto error = open_serial_line(line, port)) {
+        throw InputError({line.device},
+                         fmt::format("cannot open it as a serial line of {} baud: {}", line.baud, error.message()),
+                         "check that it is plugged in, readable and writable (group dialout), and supports the speed");
+    }
+}
+
+boost::asio::awaitable<void> accept_connections(boost::asio::ip::tcp::acceptor& acceptor,
+                                                std::function<void(boost::asio::ip::tcp::socket)> handle) {
+    using boost::asio::use_awaitable;
+    boost::asio::steady_timer timer(acceptor.get_executor());
+    for (;;) {
+        boost::system::error_code error;
+        auto socket = co_await acceptor.async_accept(boost::asio::redirect_error(use_awaitable, error));
+        if (error) {
+            timer.expires_after(std::chrono::milliseconds(500));
+            co_await timer.async_wait(use_awaitable);
+            continue;
+        }
+        close_on_exec(socket);
+        handle(std::move(socket));
+    }
 }
 
 std::thread start_without_signals(std::function<void()> work) {

@@ -7,20 +7,19 @@
 #include <string_view>
 #include <thread>
 
-#include <boost/asio/ip/udp.hpp>
-#include <boost/asio/serial_port.hpp>
+#include <boost/asio.hpp>
 #include <fcntl.h>
 
-/// Addresses and devices by their names, and what all that uses them needs.
+/// Names of addresses and devices, and helpers common to all sockets.
 namespace flightwatt::live {
 
-struct HostAndPort {
-    std::string host;  ///< an address in numbers
+struct AddressAndPort {
+    boost::asio::ip::address address;
     std::uint16_t port = 0;
 };
 
-/// "4242" (of `host`), "127.0.0.1:4242", "[::1]:4242". std::nullopt for any other text.
-std::optional<HostAndPort> parse_host_and_port(std::string_view text, std::string_view host);
+/// "4242" (of `default_address`), "127.0.0.1:4242", "[::1]:4242". std::nullopt for any other text.
+std::optional<AddressAndPort> parse_address_and_port(std::string_view text, std::string_view default_address);
 
 /// "4242" (any address), "127.0.0.1:4242". Throws UsageError.
 boost::asio::ip::udp::endpoint parse_udp_address(std::string_view text);
@@ -30,22 +29,26 @@ struct SerialLine {
     unsigned baud = 0;
 };
 
-/// "/dev/ttyUSB0:57600"; device names may have colons of their own. Throws UsageError.
+/// "/dev/ttyUSB0:57600"; the device name may contain colons. Throws UsageError.
 SerialLine parse_serial_line(std::string_view text);
 
-/// Opens it with eight bits, no parity, one stop bit and no flow control; closed again where that fails.
+/// Opens it with eight bits, no parity, one stop bit and no flow control; closed again if that fails.
 boost::system::error_code open_serial_line(const SerialLine& line, boost::asio::serial_port& port);
 
-/// Throws InputError: what could not be opened, and why.
-[[noreturn]] void refuse_serial_line(const SerialLine& line, const boost::system::error_code& error);
+/// As open_serial_line; throws InputError.
+void require_serial_line(const SerialLine& line, boost::asio::serial_port& port);
 
-/// Commands that the program runs do not inherit a port or a device. (Asio does not set this flag.)
+/// Child processes do not inherit a socket or a device. (Asio does not set this flag.)
 template <typename Opened>
 void close_on_exec(Opened& opened) {
     ::fcntl(opened.native_handle(), F_SETFD, FD_CLOEXEC);
 }
 
-/// A thread that receives no signals: they are for the one that the program waits in.
+/// Passes accepted connections to `handle`. While no file descriptor is free, it waits.
+boost::asio::awaitable<void> accept_connections(boost::asio::ip::tcp::acceptor& acceptor,
+                                                std::function<void(boost::asio::ip::tcp::socket)> handle);
+
+/// Starts a thread with all signals blocked; the main thread handles them.
 std::thread start_without_signals(std::function<void()> work);
 
 }  // namespace flightwatt::live

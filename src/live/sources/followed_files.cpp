@@ -2,7 +2,6 @@
 #include "base/overwrite_guard.h"
 #include "live/sources.h"
 #include "live/sources/message_readers.h"
-#include "live/sources/receiving_source.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -20,13 +19,13 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::size_t bytes_per_read = 16'384;  // fewer messages than a queue gives in a call
+constexpr std::size_t bytes_per_read = 16'384;  // fewer messages than MessageQueue::max_per_call
 
-/// The bytes of a file from its beginning, and those that are written to it from then on. Where the file gets shorter
-/// or another takes its name, that is read from its beginning; where it is missing for a while, it is waited for.
+/// Reads a file from its beginning while it grows. If the file is truncated or replaced, reading restarts at its
+/// beginning; while it is missing, read() waits.
 class FileTail {
   public:
-    /// `expected` says what file it should be. Throws InputError where there is no such file, or it is no regular one.
+    /// `expected` describes the file in errors. Throws InputError where it is missing or not a regular file.
     FileTail(std::filesystem::path path, const char* expected) : path_(std::move(path)), bytes_(bytes_per_read) {
         register_input(path_);
         if (std::filesystem::is_directory(path_) || !open()) {
@@ -36,25 +35,25 @@ class FileTail {
         struct stat status {};
         if (::fstat(file_, &status) == 0 && S_ISREG(status.st_mode)) return;
         close();
-        throw InputError({path_.string()}, "is no regular file", expected);
+        throw InputError({path_.string()}, "is not a regular file", expected);
     }
     ~FileTail() { close(); }
     FileTail(const FileTail&) = delete;
     FileTail& operator=(const FileTail&) = delete;
 
-    struct Piece {
-        std::string_view bytes;  ///< until the next call; none: nothing was written
-        bool anew = false;       ///< the first of another file
+    struct Chunk {
+        std::string_view bytes;    ///< valid until the next call; empty: nothing was written
+        bool is_new_file = false;  ///< the first bytes after truncation or replacement
     };
-    /// What was written, waited for at most so long. Zeros at the end of it wait, too, where they are padding: room set
-    /// aside for what is still to be written.
-    Piece read(milliseconds timeout, bool zeros_are_padding) {
+    /// Returns appended bytes, waiting up to `timeout`. Where `zeros_are_padding`, zeros at the end of the file are
+    /// preallocated space and are not returned.
+    Chunk read(milliseconds timeout, bool zeros_are_padding) {
         using Clock = std::chrono::steady_clock;
         constexpr milliseconds poll_interval{20};
         const auto until = Clock::now() + timeout;
         for (;;) {
             if (const auto count = read_more(zeros_are_padding); count > 0)
-                return {{bytes_.data(), count}, std::exchange(anew_, false)};
+                return {{bytes_.data(), count}, std::exchange(is_new_file_, false)};
             if (reopen_if_replaced()) continue;
             const auto left = until - Clock::now();
             if (left <= Clock::duration::zero()) return {};
@@ -79,9 +78,9 @@ class FileTail {
     std::size_t read_more(bool zeros_are_padding) {
         if (file_ < 0) return 0;
         struct stat status {};
-        if (::fstat(file_, &status) == 0 && status.st_size < offset_) {  // it was cut and is written again
+        if (::fstat(file_, &status) == 0 && status.st_size < offset_) {  // truncated
             offset_ = 0;
-            anew_ = true;
+            is_new_file_ = true;
         }
         const auto count = ::pread(file_, bytes_.data(), bytes_.size(), offset_);
         if (count <= 0) return 0;
@@ -91,24 +90,23 @@ class FileTail {
         return written;
     }
 
-    /// True if there is another file now, of which nothing was read yet.
+    /// True if another file has the name now; it is open and unread.
     bool reopen_if_replaced() {
         struct stat named {};
-        if (::stat(path_.c_str(), &named) != 0) return false;  // missing for a while: what is open is still read
+        if (::stat(path_.c_str(), &named) != 0) return false;  // missing: the open file is still read
         struct stat opened {};
         const bool is_same = file_ >= 0 && ::fstat(file_, &opened) == 0 && opened.st_ino == named.st_ino &&
                              opened.st_dev == named.st_dev;
         if (is_same) return false;
         close();
-        if (!open()) return false;
-        anew_ = true;
-        return true;
+        is_new_file_ = open();
+        return is_new_file_;
     }
 
     std::filesystem::path path_;
     int file_ = -1;
     ::off_t offset_ = 0;
-    bool anew_ = false;
+    bool is_new_file_ = false;
     std::vector<char> bytes_;
 };
 
@@ -146,13 +144,13 @@ class FollowedFile : public MessageSource {
         : tail_(path, expected), reader_(queue_, std::move(arguments)...) {}
 
     void receive(milliseconds timeout, std::vector<IncomingMessage>& messages) override {
-        constexpr bool is_binary = std::is_same_v<Reader, LinkReader>;  // room is set aside in such files
-        const auto piece = tail_.read(timeout, is_binary);
-        if (piece.anew) {
+        constexpr bool is_binary = std::is_same_v<Reader, LinkReader>;  // cards preallocate such files
+        const auto chunk = tail_.read(timeout, is_binary);
+        if (chunk.is_new_file) {
             reader_.restart();
             queue_.count_restart();
         }
-        reader_.push(piece.bytes);
+        reader_.push(chunk.bytes);
         queue_.take(milliseconds(0), messages, report_);
     }
     std::string description() const override { return "following " + tail_.path().string(); }
@@ -171,7 +169,7 @@ std::unique_ptr<MessageSource> standard_input() { return std::make_unique<Standa
 
 std::unique_ptr<MessageSource> follow_data_file(const std::filesystem::path& path) {
     return std::make_unique<FollowedFile<TextReader>>(
-        path, "expected the .data file that the ground station writes; of a pipe: flightwatt watch - < PIPE");
+        path, "expected the .data file that the ground station writes; for a pipe: flightwatt watch - < PIPE");
 }
 
 std::unique_ptr<MessageSource> follow_binary_log(const std::filesystem::path& path,

@@ -5,15 +5,16 @@
 #include "live/sources/message_readers.h"
 
 #include <algorithm>
+#include <chrono>
+#include <exception>
 #include <limits>
 #include <map>
+#include <optional>
 #include <random>
 #include <stdexcept>
 #include <utility>
 
-#include <boost/asio/buffer.hpp>
-#include <boost/asio/ip/multicast.hpp>
-#include <boost/asio/write.hpp>
+#include <boost/asio.hpp>
 #include <boost/regex.hpp>
 #include <fmt/format.h>
 #include <netinet/in.h>
@@ -24,40 +25,40 @@ namespace flightwatt::live {
 namespace {
 
 namespace asio = boost::asio;
+using asio::redirect_error;
+using asio::use_awaitable;
 using asio::ip::tcp;
 using asio::ip::udp;
 using boost::system::error_code;
 
-/// An announcement is a single datagram, which may be lost: while nobody has answered it is said again. Never to those
-/// who have: Ivy's C library would connect once more.
-constexpr std::chrono::seconds announce_again{1};
+/// The announcement is one datagram, which may be lost: it is repeated until an agent connects. Not later: Ivy's C
+/// library would connect once more.
+constexpr std::chrono::seconds announce_interval{1};
 
 using ReusePort = asio::detail::socket_option::boolean<SOL_SOCKET, SO_REUSEPORT>;
 
-void check(const error_code& error, const IvyBus& bus, const char* what) {
+void check(const error_code& error, const udp::endpoint& bus, const char* action) {
     if (!error) return;
-    throw InputError({fmt::format("Ivy bus {}:{}", bus.networks.front(), bus.port)},
-                     fmt::format("cannot {}: {}", what, error.message()),
-                     "see that the network is there and no other program holds the port for itself");
+    throw InputError({fmt::format("Ivy bus {}:{}", bus.address().to_string(), bus.port())},
+                     fmt::format("cannot {}: {}", action, error.message()),
+                     "check that the network is up and no other program uses the port exclusively");
 }
 
-void open_bus(udp::socket& socket, const IvyBus& bus) {
+void open_bus(udp::socket& socket, const udp::endpoint& bus) {
     error_code error;
     socket.open(udp::v4(), error);
     check(error, bus, "open a UDP socket");
     socket.set_option(asio::socket_base::reuse_address(true), error);
     socket.set_option(ReusePort(true), error);
     socket.set_option(asio::socket_base::broadcast(true), error);
-    socket.bind({udp::v4(), bus.port}, error);
+    socket.bind({udp::v4(), bus.port()}, error);
     check(error, bus, "listen for announcements");
-    for (const auto& network : bus.networks) {
-        const auto address = asio::ip::make_address_v4(network);
-        if (address.is_multicast()) socket.set_option(asio::ip::multicast::join_group(address), error);
-        check(error, bus, "join its group");
-    }
+    if (bus.address().is_multicast()) socket.set_option(asio::ip::multicast::join_group(bus.address()), error);
+    check(error, bus, "join its group");
+    close_on_exec(socket);
 }
 
-/// An agent whose machine is gone says nothing any more: the system finds out within a minute.
+/// The system detects an agent that vanished without closing the connection within a minute.
 void keep_alive(tcp::socket& socket) {
     error_code ignored;
     socket.set_option(asio::socket_base::keep_alive(true), ignored);
@@ -72,26 +73,20 @@ void keep_alive(tcp::socket& socket) {
 /// The connection with another agent.
 class IvyAgent::Peer : public std::enable_shared_from_this<Peer> {
   public:
+    /// Of an agent that connected.
     Peer(IvyAgent& agent, tcp::socket socket) : agent_(agent), socket_(std::move(socket)) {}
+    /// To an agent that was announced.
+    Peer(IvyAgent& agent, const tcp::endpoint& to, std::string announced_id)
+        : agent_(agent),
+          socket_(agent.context_),
+          address_(to.address()),
+          announced_id_(std::move(announced_id)),
+          service_port_(to.port()) {}
 
-    /// Connects to an agent that was announced.
-    void connect(const tcp::endpoint& to, std::string announced_id) {
-        address_ = to.address();
-        service_port_ = to.port();
-        announced_id_ = std::move(announced_id);
-        socket_.async_connect(to, [self = shared_from_this()](const error_code& error) {
-            if (self->closed_) return;
-            if (error) return self->lose();
-            self->begin();
-        });
-    }
-
-    /// The connection stands: sends our subscriptions, and listens.
-    void begin() {
-        error_code error;
-        const auto remote = socket_.remote_endpoint(error);
-        if (error) return lose();
-        address_ = remote.address();
+    /// Connects if necessary, sends the subscriptions, and handles lines until the connection ends (which throws).
+    asio::awaitable<void> run() {
+        if (!socket_.is_open()) co_await socket_.async_connect(tcp::endpoint(address_, service_port_), use_awaitable);
+        address_ = socket_.remote_endpoint().address();
         begun_ = true;
         keep_alive(socket_);
         close_on_exec(socket_);
@@ -100,7 +95,10 @@ class IvyAgent::Peer : public std::enable_shared_from_this<Peer> {
         for (const auto& subscription : agent_.setup_.subscriptions)
             hello += to_ivy_line(IvyType::subscribe, id++, subscription);
         write(hello + to_ivy_line(IvyType::end_of_subscriptions, 0));
-        listen();
+        while (!closed_) {
+            const auto count = co_await socket_.async_read_some(asio::buffer(received_), use_awaitable);
+            handle({received_.data(), count});
+        }
     }
 
     void send(std::string_view message) {
@@ -110,7 +108,7 @@ class IvyAgent::Peer : public std::enable_shared_from_this<Peer> {
             try {
                 if (!boost::regex_search(message.begin(), message.end(), match, regexp)) continue;
             } catch (const std::runtime_error&) {
-                continue;  // trying would take too long
+                continue;  // the match would take too long
             }
             std::string arguments;
             for (std::size_t group = 1; group < match.size(); ++group)
@@ -119,15 +117,15 @@ class IvyAgent::Peer : public std::enable_shared_from_this<Peer> {
         }
     }
 
-    /// This connection is one too many: no message is sent on it any more. It stays until the other end has said
-    /// good-bye, too, so that what either has sent before still arrives.
+    /// Stops sending messages on this duplicate connection. It stays open until the other end sends a bye, so that
+    /// messages already sent still arrive.
     void retire() {
         retired_ = true;
         ready_ = false;
         write(to_ivy_line(IvyType::bye, 0));
     }
 
-    /// With a good-bye where it can be sent.
+    /// Sends a bye if possible, and closes.
     void close() {
         if (std::exchange(closed_, true)) return;
         error_code ignored;
@@ -139,7 +137,15 @@ class IvyAgent::Peer : public std::enable_shared_from_this<Peer> {
         socket_.close(ignored);
     }
 
-    /// Whether this is the connection with the agent that takes connections there; `id`: as it was announced.
+    /// Closes and removes this connection.
+    void lose() {
+        if (closed_) return;
+        const auto self = shared_from_this();
+        close();
+        if (std::exchange(ready_, false)) agent_.setup_.on_peer_lost();
+        agent_.peers_.remove(self);
+    }
+
     bool is_of(const IvyAnnouncement& announcement, const asio::ip::address& from) const {
         return address_ == from && service_port_ == announcement.port &&
                (announced_id_.empty() || announced_id_ == announcement.id);
@@ -149,23 +155,13 @@ class IvyAgent::Peer : public std::enable_shared_from_this<Peer> {
     }
     bool ready() const { return ready_; }
     std::size_t waiting_bytes() const { return outgoing_.size() + writing_.size(); }
-    /// The same number at both ends: of two connections between two agents, the one of the higher is retired.
+    /// The same number at both ends: of two connections between two agents, both retire that of the higher number.
     std::uint16_t higher_port() const {
         error_code ignored;
         return std::max(socket_.local_endpoint(ignored).port(), socket_.remote_endpoint(ignored).port());
     }
 
   private:
-    void listen() {
-        socket_.async_read_some(asio::buffer(received_),
-                                [self = shared_from_this()](const error_code& error, std::size_t n) {
-                                    if (!self->closed_) self->handle({self->received_.data(), n});
-                                    if (self->closed_) return;
-                                    if (error) return self->lose();
-                                    self->listen();
-                                });
-    }
-
     void handle(std::string_view bytes) {
         lines_.clear();
         for (auto overlong = buffer_.push(bytes, lines_); overlong > 0; --overlong)
@@ -182,7 +178,6 @@ class IvyAgent::Peer : public std::enable_shared_from_this<Peer> {
     }
 
     void handle(const IvyLine& line) {
-        const auto& setup = agent_.setup_;
         switch (static_cast<IvyType>(line.type)) {
             case IvyType::start:
                 if (line.id > 0 && line.id <= std::numeric_limits<std::uint16_t>::max())
@@ -198,22 +193,20 @@ class IvyAgent::Peer : public std::enable_shared_from_this<Peer> {
                 ready_ = true;
                 return agent_.retire_duplicate(*this);
             case IvyType::message:
-                return setup.on_message(groups_of(line.arguments));
+                return agent_.setup_.on_message(groups_of(line.arguments));
             case IvyType::ping:
                 return write(to_ivy_line(IvyType::pong, line.id));
             case IvyType::bye:
-                other_said_bye_ = true;
+                other_ended_ = true;
                 return retired_ && waiting_bytes() > 0 ? void() : lose();
-            case IvyType::error:
-                return setup.on_unusable("errors that other agents report");
-            case IvyType::die:
-                return setup.on_unusable("requests to end, which are not followed");
-            case IvyType::direct:
-                return setup.on_unusable("messages to this agent alone, of which none is telemetry");
             case IvyType::pong:
                 return;
+            case IvyType::error:
+            case IvyType::die:
+            case IvyType::direct:
+                break;
         }
-        setup.on_unusable("lines of a type that the Ivy protocol does not know");
+        agent_.setup_.on_unusable(fmt::format("Ivy lines of type {}, which are ignored", line.type));
     }
 
     void subscribe(const IvyLine& line) {
@@ -221,7 +214,7 @@ class IvyAgent::Peer : public std::enable_shared_from_this<Peer> {
         if (!agent_.setup_.sends) return;
         const boost::regex regexp(line.arguments.begin(), line.arguments.end(),
                                   boost::regex::perl | boost::regex::no_except);
-        if (regexp.status() != 0) return write(to_ivy_line(IvyType::error, line.id, "no regular expression"));
+        if (regexp.status() != 0) return write(to_ivy_line(IvyType::error, line.id, "not a regular expression"));
         if (subscriptions_.size() >= max_subscriptions && !subscriptions_.contains(line.id)) return;
         subscriptions_.insert_or_assign(line.id, regexp);
     }
@@ -230,29 +223,20 @@ class IvyAgent::Peer : public std::enable_shared_from_this<Peer> {
         constexpr std::size_t max_waiting_bytes = 4'000'000;
         if (closed_ || !begun_) return;
         if (outgoing_.size() + text.size() > max_waiting_bytes)
-            return agent_.setup_.on_unusable("messages too many to send");
+            return agent_.setup_.on_unusable("messages lost as an agent does not read them");
         outgoing_ += text;
         if (writing_.empty()) write_next();
     }
 
     void write_next() {
         std::swap(writing_, outgoing_);
-        if (writing_.empty()) return other_said_bye_ ? lose() : void();
+        if (writing_.empty()) return other_ended_ ? lose() : void();
         asio::async_write(socket_, asio::buffer(writing_),
                           [self = shared_from_this()](const error_code& error, std::size_t) {
                               self->writing_.clear();
                               if (self->closed_) return;
-                              if (error) return self->lose();
-                              self->write_next();
+                              error ? self->lose() : self->write_next();
                           });
-    }
-
-    void lose() {
-        const auto self = shared_from_this();
-        const bool was_ready = ready_;
-        close();
-        if (was_ready) agent_.setup_.on_peer_lost();
-        agent_.peers_.remove(self);
     }
 
     IvyAgent& agent_;
@@ -260,7 +244,7 @@ class IvyAgent::Peer : public std::enable_shared_from_this<Peer> {
     asio::ip::address address_;
     std::string announced_id_;
     std::uint16_t service_port_ = 0;  ///< 0: not known yet
-    bool begun_ = false, ready_ = false, retired_ = false, other_said_bye_ = false, closed_ = false;
+    bool begun_ = false, ready_ = false, retired_ = false, other_ended_ = false, closed_ = false;
     std::array<char, 16'384> received_{};
     LineBuffer buffer_;
     std::vector<std::string> lines_;
@@ -269,109 +253,73 @@ class IvyAgent::Peer : public std::enable_shared_from_this<Peer> {
 };
 
 IvyAgent::IvyAgent(asio::io_context& context, IvyAgentSetup setup)
-    : context_(context),
-      setup_(std::move(setup)),
-      bus_socket_(context),
-      acceptor_(context),
-      timer_(context),
-      accept_timer_(context) {
+    : context_(context), setup_(std::move(setup)), bus_socket_(context), acceptor_(context) {
     open_bus(bus_socket_, setup_.bus);
     error_code error;
     acceptor_.open(tcp::v4(), error);
-    // On a bus of this machine alone nobody else is given a door.
-    if (!error)
-        acceptor_.bind({setup_.bus.is_local() ? asio::ip::address_v4::loopback() : asio::ip::address_v4(), 0}, error);
+    // On a bus of this machine, only this machine can connect.
+    if (!error) acceptor_.bind({is_local() ? asio::ip::address_v4::loopback() : asio::ip::address_v4(), 0}, error);
     if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
-    check(error, setup_.bus, "take connections");
+    check(error, setup_.bus, "accept connections");
     close_on_exec(acceptor_);
-    close_on_exec(bus_socket_);
     port_ = acceptor_.local_endpoint().port();
     std::random_device random;
-    id_ = fmt::format("flightwatt:{:08x}{:08x}:{}", random(), random(), port_);  // another at each start
+    id_ = fmt::format("flightwatt:{:08x}{:08x}:{}", random(), random(), port_);
+    asio::co_spawn(
+        context_,
+        accept_connections(acceptor_,
+                           [this](tcp::socket socket) { add_peer(std::make_shared<Peer>(*this, std::move(socket))); }),
+        asio::detached);
+    asio::co_spawn(context_, listen_for_announcements(), asio::detached);
+    asio::co_spawn(context_, announce_while_alone(), asio::detached);
 }
 
-IvyAgent::~IvyAgent() = default;
-
-void IvyAgent::start() {
-    accept();
-    listen_for_announcements();
-    announce_while_alone();
-}
-
-void IvyAgent::stop() {
-    stopped_ = true;
-    error_code ignored;
-    timer_.cancel(ignored);
-    accept_timer_.cancel(ignored);
-    acceptor_.close(ignored);
-    bus_socket_.close(ignored);
+IvyAgent::~IvyAgent() {
     for (const auto& peer : peers_) peer->close();
-    peers_.clear();
 }
 
 void IvyAgent::announce() {
     const auto datagram = to_datagram({port_, id_, setup_.name});
-    for (const auto& network : setup_.bus.networks) {
-        error_code error;
-        bus_socket_.send_to(asio::buffer(datagram), {asio::ip::make_address_v4(network), setup_.bus.port}, 0, error);
-        if (error) setup_.on_unusable("announcements that the network did not take");
+    error_code error;
+    bus_socket_.send_to(asio::buffer(datagram), setup_.bus, 0, error);
+    if (error) setup_.on_unusable("announcements that the network did not accept");
+}
+
+asio::awaitable<void> IvyAgent::announce_while_alone() {
+    asio::steady_timer timer(context_);
+    for (;;) {
+        if (ready_peers() == 0) announce();
+        timer.expires_after(announce_interval);
+        co_await timer.async_wait(use_awaitable);
     }
 }
 
-void IvyAgent::announce_while_alone() {
-    if (stopped_) return;
-    if (ready_peers() == 0) announce();
-    timer_.expires_after(announce_again);
-    timer_.async_wait([this](const error_code& error) {
-        if (!error) announce_while_alone();
-    });
-}
-
-void IvyAgent::listen_for_announcements() {
-    bus_socket_.async_receive_from(asio::buffer(datagram_), from_, [this](const error_code& error, std::size_t n) {
-        if (stopped_) return;
-        if (!error) {
-            const auto announcement = parse_announcement({datagram_.data(), n});
-            if (announcement) {
-                handle_announcement(*announcement, from_.address());
-            } else {
-                setup_.on_unusable("announcements that are not of the Ivy protocol, version 3");
-            }
-        }
-        listen_for_announcements();
-    });
+asio::awaitable<void> IvyAgent::listen_for_announcements() {
+    std::array<char, 4096> datagram{};
+    udp::endpoint from;
+    for (;;) {
+        error_code error;
+        const auto count =
+            co_await bus_socket_.async_receive_from(asio::buffer(datagram), from, redirect_error(use_awaitable, error));
+        if (error) continue;
+        if (const auto announcement = parse_announcement({datagram.data(), count}))
+            handle_announcement(*announcement, from.address());
+        else
+            setup_.on_unusable("announcements that are not of the Ivy protocol, version 3");
+    }
 }
 
 void IvyAgent::handle_announcement(const IvyAnnouncement& announcement, const asio::ip::address& from) {
-    if (announcement.id == id_ || (setup_.bus.is_local() && !from.is_loopback())) return;
+    if (announcement.id == id_ || (is_local() && !from.is_loopback())) return;
     if (std::ranges::any_of(peers_, [&](const auto& peer) { return peer->is_of(announcement, from); })) return;
-    if (const auto peer = add_peer(tcp::socket(context_))) peer->connect({from, announcement.port}, announcement.id);
+    add_peer(std::make_shared<Peer>(*this, tcp::endpoint(from, announcement.port), announcement.id));
 }
 
-void IvyAgent::accept() {
-    acceptor_.async_accept([this](const error_code& error, tcp::socket socket) {
-        if (stopped_) return;
-        if (error) return accept_later();
-        if (const auto peer = add_peer(std::move(socket))) peer->begin();
-        accept();
-    });
-}
-
-/// The system has no more files for a while.
-void IvyAgent::accept_later() {
-    accept_timer_.expires_after(std::chrono::seconds(1));
-    accept_timer_.async_wait([this](const error_code& error) {
-        if (!error && !stopped_) accept();
-    });
-}
-
-std::shared_ptr<IvyAgent::Peer> IvyAgent::add_peer(tcp::socket socket) {
+void IvyAgent::add_peer(std::shared_ptr<Peer> peer) {
     constexpr std::size_t max_peers = 64;
-    if (peers_.size() >= max_peers) {
-        setup_.on_unusable("agents too many to connect with");
-        return nullptr;
-    }
-    return peers_.emplace_back(std::make_shared<Peer>(*this, std::move(socket)));
+    if (peers_.size() >= max_peers) return setup_.on_unusable("agents beyond the limit of 64 connections");
+    peers_.push_back(peer);
+    asio::co_spawn(context_, peer->run(), [peer](const std::exception_ptr&) { peer->lose(); });
 }
 
 /// Two agents that announce themselves at the same time connect twice.
@@ -391,9 +339,9 @@ std::size_t IvyAgent::ready_peers() const {
 }
 
 std::size_t IvyAgent::waiting_bytes() const {
-    std::size_t most = 0;
-    for (const auto& peer : peers_) most = std::max(most, peer->waiting_bytes());
-    return most;
+    std::size_t max_bytes = 0;
+    for (const auto& peer : peers_) max_bytes = std::max(max_bytes, peer->waiting_bytes());
+    return max_bytes;
 }
 
 }  // namespace flightwatt::live

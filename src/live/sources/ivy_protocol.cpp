@@ -1,11 +1,16 @@
 #include "live/sources/ivy_protocol.h"
 
 #include "base/error.h"
+#include "base/number.h"
 
 #include <algorithm>
-#include <charconv>
+#include <cmath>
 #include <limits>
+#include <utility>
 
+#include <boost/algorithm/string/classification.hpp>
+#include <boost/algorithm/string/predicate.hpp>
+#include <boost/algorithm/string/trim.hpp>
 #include <fmt/format.h>
 
 namespace flightwatt::live {
@@ -13,69 +18,53 @@ namespace {
 
 constexpr char arguments_begin = '\002';
 constexpr char group_end = '\003';
-constexpr std::string_view default_network = "127.255.255.255";
 
-/// The number that all of `text` is; blanks around it are let pass, as by sscanf in Ivy's C library.
+/// Parses all of `text`, except for blanks around the number, which sscanf in Ivy's C library accepts.
 template <typename Number>
 std::optional<Number> whole_number(std::string_view text) {
-    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-    while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-    Number number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return number;
+    const auto number = parse_unsigned(boost::algorithm::trim_copy(std::string(text)));
+    if (!number || *number > static_cast<std::uint64_t>(std::numeric_limits<Number>::max())) return std::nullopt;
+    return static_cast<Number>(*number);
 }
 
-/// What stands before the next `mark`, which is taken off with it.
+/// Removes the text before the next `mark`, and the mark; returns the text.
 std::string_view take_until(std::string_view& text, char mark) {
     const auto end = std::min(text.find(mark), text.size());
-    const auto part = text.substr(0, end);
+    const auto taken = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
-    return part;
+    return taken;
 }
 
-[[noreturn]] void refuse_bus(std::string_view text, std::string_view why) {
-    throw UsageError(fmt::format("Ivy bus '{}': {}; expected ADDRESS:PORT, as 127.255.255.255:2010", text, why));
+constexpr std::string_view replay_prefix = "replay";
+constexpr std::string_view time_prefix = "time";
+constexpr std::size_t max_aircraft = 256;  // their ids are bytes
+constexpr std::size_t max_waiting_replay = 1000;
+
+bool is_id(std::string_view word) {
+    constexpr std::size_t max_digits = 5;
+    return !word.empty() && word.size() <= max_digits && boost::algorithm::all(word, boost::algorithm::is_digit());
 }
 
-/// "127" becomes "127.255.255.255".
-std::string parse_network(std::string_view text, std::string_view bus) {
-    std::string network;
-    int parts = 0;
-    for (auto rest = text; !rest.empty(); ++parts) {
-        const auto part = take_until(rest, '.');
-        const auto number = whole_number<unsigned>(part);
-        if (!number || *number > std::numeric_limits<std::uint8_t>::max() || parts == 4)
-            refuse_bus(bus, fmt::format("'{}' is no address", text));
-        network += fmt::format("{}{}", parts == 0 ? "" : ".", *number);
-    }
-    for (; parts < 4; ++parts) network += ".255";
-    return network;
+/// "20" of "replay20"; empty for any other word.
+std::string_view id_after(std::string_view prefix, std::string_view word) {
+    if (!word.starts_with(prefix) || !is_id(word.substr(prefix.size()))) return {};
+    return word.substr(prefix.size());
 }
 
 }  // namespace
 
-bool IvyBus::is_local() const {
-    return std::all_of(networks.begin(), networks.end(),
-                       [](const auto& network) { return network.starts_with("127."); });
-}
-
-IvyBus parse_ivy_bus(std::string_view text) {
-    IvyBus bus;
-    auto networks = text;
-    if (const auto colon = text.rfind(':'); colon != std::string_view::npos) {
-        const auto port = whole_number<std::uint16_t>(text.substr(colon + 1));
-        if (!port || *port == 0) refuse_bus(text, fmt::format("'{}' is no port", text.substr(colon + 1)));
-        bus.port = *port;
-        networks = text.substr(0, colon);
-    }
-    if (networks.empty()) networks = default_network;
-    while (!networks.empty()) {
-        const auto network = take_until(networks, ',');
-        if (network.empty()) refuse_bus(text, "an address is empty");
-        bus.networks.push_back(parse_network(network, text));
-    }
-    return bus;
+boost::asio::ip::udp::endpoint parse_ivy_bus(std::string_view text) {
+    constexpr std::uint16_t default_port = 2010;
+    const auto colon = text.rfind(':');
+    std::string network(text.substr(0, colon));
+    const auto port =
+        colon == std::string_view::npos ? default_port : whole_number<std::uint16_t>(text.substr(colon + 1));
+    if (network.empty()) network = "127";
+    while (std::ranges::count(network, '.') < 3) network += ".255";
+    boost::system::error_code error;
+    const auto address = boost::asio::ip::make_address_v4(network, error);
+    if (!error && port.value_or(0) > 0) return {address, *port};
+    throw UsageError(fmt::format("Ivy bus '{}': expected ADDRESS:PORT, as 127.255.255.255:2010", text));
 }
 
 std::string to_datagram(const IvyAnnouncement& announcement) {
@@ -111,6 +100,41 @@ std::vector<std::string_view> groups_of(std::string_view arguments) {
     std::vector<std::string_view> groups;
     while (!arguments.empty()) groups.push_back(take_until(arguments, group_end));
     return groups;
+}
+
+void IvyMessages::handle(std::string_view text) {
+    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+    const auto blank = text.find(' ');
+    if (blank == std::string_view::npos) return sink_.count("messages of a single word", 1);
+    const auto sender = text.substr(0, blank);
+    const auto rest = text.substr(blank);  // with its blank
+    if (const auto id = id_after(time_prefix, sender); !id.empty()) return handle_time(id, rest);
+    const auto id = id_after(replay_prefix, sender);
+    if (id.empty()) {
+        if (is_id(sender)) has_aircraft_ = true;
+        // Messages from the ground during a replay get the replay's time.
+        return sink_.push({has_aircraft_ ? std::nullopt : latest_time_s_, std::string(text)});
+    }
+    if (has_aircraft_ || (replays_.size() >= max_aircraft && !replays_.contains(id)))
+        return sink_.count("messages of a replay while an aircraft itself is on the bus", 1);
+    auto& replay = replays_[std::string(id)];
+    replay.waiting.push_back(fmt::format("{}{}", id, rest));
+    if (replay.waiting.size() > max_waiting_replay) forward(replay);
+}
+
+void IvyMessages::handle_time(std::string_view id, std::string_view text) {
+    const auto time_s = parse_number(text.substr(std::min(text.find_first_not_of(' '), text.size())));
+    if (!time_s || !std::isfinite(*time_s)) return sink_.count("replay times that are not numbers", 1);
+    const auto replay = replays_.find(id);
+    if (has_aircraft_ || replay == replays_.end()) return;
+    replay->second.time_s = time_s;
+    latest_time_s_ = time_s;
+    forward(replay->second);
+}
+
+void IvyMessages::forward(Replay& replay) {
+    for (auto& text : replay.waiting) sink_.push({replay.time_s, std::move(text)});
+    replay.waiting.clear();
 }
 
 }  // namespace flightwatt::live

@@ -1,40 +1,36 @@
 #pragma once
 
+#include "live/sources/message_readers.h"
+
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include <boost/asio/ip/udp.hpp>
+
 namespace flightwatt::live {
 
-/// An Ivy bus: where its agents announce themselves.
-struct IvyBus {
-    std::vector<std::string> networks;  ///< broadcast or multicast addresses, dotted
-    std::uint16_t port = 2010;
+/// Broadcast or multicast address and port of an Ivy bus: "127.255.255.255:2010". As in Ivy's libraries, missing bytes
+/// of the address are 255 ("127:2010"), and the address or the port may be omitted. Throws UsageError.
+boost::asio::ip::udp::endpoint parse_ivy_bus(std::string_view text);
 
-    /// All networks are of this machine alone (127...): nobody else is listened to.
-    bool is_local() const;
-};
-
-/// "127.255.255.255:2010", as Ivy's libraries read it: addresses by commas, what they lack is 255 ("127:2010"), and one
-/// part may be left out. Throws UsageError.
-IvyBus parse_ivy_bus(std::string_view text);
-
-/// What an agent says to all when it starts: "3 PORT ID NAME\n".
+/// Datagram that an agent broadcasts when it starts: "3 PORT ID NAME\n".
 struct IvyAnnouncement {
-    std::uint16_t port = 0;  ///< where it takes connections
-    std::string id;          ///< another at each start; may be empty, as the name
+    std::uint16_t port = 0;  ///< where it accepts connections
+    std::string id;          ///< different at each start; id and name may be empty
     std::string name;
 };
 
 inline constexpr int ivy_version = 3;
 
 std::string to_datagram(const IvyAnnouncement& announcement);
-/// std::nullopt: none, or of another version of the protocol.
+/// std::nullopt: not an announcement, or of another protocol version.
 std::optional<IvyAnnouncement> parse_announcement(std::string_view datagram);
 
-/// What lines between two agents say. Others are let pass.
+/// Types of the lines between two agents.
 enum class IvyType {
     bye = 0,
     subscribe = 1,
@@ -42,7 +38,7 @@ enum class IvyType {
     error = 3,
     unsubscribe = 4,
     end_of_subscriptions = 5,
-    start = 6,  ///< with the port where the agent takes connections, and its name
+    start = 6,  ///< with the port where the agent accepts connections, and its name
     direct = 7,
     die = 8,
     ping = 9,
@@ -53,7 +49,7 @@ enum class IvyType {
 struct IvyLine {
     int type = 0;
     int id = 0;
-    std::string_view arguments;  ///< of the line that was parsed
+    std::string_view arguments;  ///< refers to the parsed line
 };
 
 std::optional<IvyLine> parse_ivy_line(std::string_view line);
@@ -62,5 +58,29 @@ std::string to_ivy_line(IvyType type, int id, std::string_view arguments = {});
 
 /// The groups of a message's arguments, each ended by \003.
 std::vector<std::string_view> groups_of(std::string_view arguments);
+
+/// Extracts telemetry from the texts on an Ivy bus. Messages of an aircraft have no time and are forwarded at once.
+/// Paparazzi's log player sends "replay20 ENERGY ...", then "time20 13.9": the message is forwarded with that time.
+/// While an aircraft itself is on the bus, replays are ignored.
+class IvyMessages {
+  public:
+    explicit IvyMessages(MessageSink& sink) : sink_(sink) {}
+
+    void handle(std::string_view text);
+
+  private:
+    struct Replay {
+        std::optional<double> time_s;  ///< the latest
+        std::vector<std::string> waiting;
+    };
+
+    void handle_time(std::string_view id, std::string_view text);
+    void forward(Replay& replay);
+
+    MessageSink& sink_;
+    std::map<std::string, Replay, std::less<>> replays_;  ///< by aircraft
+    std::optional<double> latest_time_s_;                 ///< of any replay
+    bool has_aircraft_ = false;                           ///< an aircraft itself is on the bus
+};
 
 }  // namespace flightwatt::live

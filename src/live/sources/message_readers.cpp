@@ -2,7 +2,9 @@
 
 #include "base/number.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace flightwatt::live {
@@ -19,17 +21,52 @@ std::optional<IncomingMessage> message_of_line(std::string_view line) {
     return IncomingMessage{time_s, std::string(line.substr(blank + 1))};
 }
 
+void MessageQueue::push(IncomingMessage message) {
+    const std::chrono::duration<double> since = std::chrono::steady_clock::now() - opened_;
+    if (!message.time_s) message.time_s = since.count() * clock_factor_;
+    const std::lock_guard lock(mutex_);
+    message.is_after_restart = std::exchange(restarted_, false);
+    waiting_.push_back(std::move(message));
+    ++report_.messages;
+    if (waiting_.size() > max_waiting) {
+        waiting_.pop_front();
+        report_.count("messages dropped as they arrived faster than they were processed", 1);
+    }
+    changed_.notify_one();
+}
+
+void MessageQueue::count(std::string_view reason, std::size_t times) {
+    const std::lock_guard lock(mutex_);
+    report_.count(reason, times);
+}
+
+void MessageQueue::count_restart() {
+    const std::lock_guard lock(mutex_);
+    ++report_.restarts;
+    restarted_ = true;
+}
+
+void MessageQueue::take(std::chrono::milliseconds timeout, std::vector<IncomingMessage>& messages,
+                        SourceReport& report) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, timeout, [&] { return !waiting_.empty(); });
+    const auto end = waiting_.begin() + static_cast<std::ptrdiff_t>(std::min(waiting_.size(), max_per_call));
+    std::move(waiting_.begin(), end, std::back_inserter(messages));
+    waiting_.erase(waiting_.begin(), end);
+    report = report_;
+}
+
 std::size_t LineBuffer::push(std::string_view bytes, std::vector<std::string>& lines) {
     std::size_t overlong = 0;
     while (!bytes.empty()) {
         const auto line_break = bytes.find('\n');
-        const auto piece = bytes.substr(0, line_break);
-        if (!dropping_ && rest_.size() + piece.size() > max_line) {
+        const auto chunk = bytes.substr(0, line_break);
+        if (!dropping_ && partial_.size() + chunk.size() > max_line) {
             dropping_ = true;
             ++overlong;
-            rest_.clear();
+            partial_.clear();
         }
-        if (!dropping_) rest_ += piece;
+        if (!dropping_) partial_ += chunk;
         if (line_break == std::string_view::npos) break;
         if (!dropping_) lines.push_back(take_partial_line());
         dropping_ = false;
@@ -39,7 +76,7 @@ std::size_t LineBuffer::push(std::string_view bytes, std::vector<std::string>& l
 }
 
 std::string LineBuffer::take_partial_line() {
-    auto line = std::exchange(rest_, {});
+    auto line = std::exchange(partial_, {});
     if (!line.empty() && line.back() == '\r') line.pop_back();
     return line;
 }
@@ -53,7 +90,7 @@ void TextReader::push(std::string_view bytes) {
 void TextReader::read(const std::string& line) {
     if (line.empty()) return;
     if (auto message = message_of_line(line)) return sink_.push(std::move(*message));
-    sink_.count("lines that are no message (TIME SENDER NAME ...)", 1);
+    sink_.count("lines that are not messages (TIME SENDER NAME ...)", 1);
 }
 
 LinkReader::LinkReader(MessageSink& sink, Definitions definitions, std::optional<telemetry::Framing> framing,
@@ -76,7 +113,7 @@ void LinkReader::restart() {
     counted_ = {};
 }
 
-/// Messages from the ground to an aircraft are no telemetry.
+/// Messages from the ground to an aircraft are not telemetry.
 void LinkReader::forward(const telemetry::LinkMessage& message) {
     if (message.class_id != telemetry::MessageDictionary::telemetry_class)
         return sink_.count("messages of other classes than telemetry", 1);
@@ -86,7 +123,7 @@ void LinkReader::forward(const telemetry::LinkMessage& message) {
 void LinkReader::count_unusable() {
     const auto& now = decoder_.counts();
     sink_.count("frames of messages that are not defined", now.unknown - counted_.unknown);
-    sink_.count("frames of another length than their message's", now.length_mismatches - counted_.length_mismatches);
+    sink_.count("frames whose length differs from their message's", now.length_mismatches - counted_.length_mismatches);
     sink_.count("bytes between frames", now.skipped_bytes - counted_.skipped_bytes);
     counted_ = now;
 }

@@ -3,8 +3,12 @@
 #include "live/sources.h"
 #include "telemetry/link_decoder.h"
 
+#include <chrono>
+#include <condition_variable>
 #include <cstddef>
+#include <deque>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,40 +16,64 @@
 
 namespace flightwatt::live {
 
-/// Takes messages, and counts what cannot be used.
+/// Receiver of messages and of counts of unusable input.
 class MessageSink {
   public:
-    MessageSink() = default;
-    virtual ~MessageSink() = default;
-    MessageSink(const MessageSink&) = delete;
-    MessageSink& operator=(const MessageSink&) = delete;
-
     virtual void push(IncomingMessage message) = 0;
     virtual void count(std::string_view reason, std::size_t times) = 0;
+
+  protected:
+    ~MessageSink() = default;
 };
 
-/// Lines out of bytes as they come in, in any pieces. Memory is bounded: a line that is longer than any message is
-/// dropped, and counted.
+/// Messages received by any thread and not taken yet. Beyond `max_waiting` the oldest are dropped and counted.
+class MessageQueue final : public MessageSink {
+  public:
+    static constexpr std::size_t max_waiting = 100'000;  ///< an hour or more of a busy link
+    static constexpr std::size_t max_per_call = 4'000;
+
+    /// Messages without a time get their arrival time since now, times `clock_factor`.
+    explicit MessageQueue(double clock_factor) : clock_factor_(clock_factor) {}
+
+    void push(IncomingMessage message) override;
+    void count(std::string_view reason, std::size_t times) override;
+    /// The link was reopened, or another file begins.
+    void count_restart();
+
+    /// Appends messages, waiting up to `timeout` for the first; `report` is set to the counts so far.
+    void take(std::chrono::milliseconds timeout, std::vector<IncomingMessage>& messages, SourceReport& report);
+
+  private:
+    const std::chrono::steady_clock::time_point opened_ = std::chrono::steady_clock::now();
+    const double clock_factor_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::deque<IncomingMessage> waiting_;
+    SourceReport report_;
+    bool restarted_ = false;  ///< before the next message
+};
+
+/// Splits a byte stream into lines. Longer lines than any message are dropped, so memory is bounded.
 class LineBuffer {
   public:
     static constexpr std::size_t max_line = 16'384;  ///< bytes; Paparazzi's messages have at most 255
 
-    /// Appends the lines that are whole now, without their breaks (\n or \r\n). Returns how many were too long.
+    /// Appends the complete lines without their breaks (\n or \r\n). Returns the number of lines dropped.
     std::size_t push(std::string_view bytes, std::vector<std::string>& lines);
-    /// The last line, which lacks its break; empty if there is none.
+    /// The last line, which has no break yet; may be empty.
     std::string take_partial_line();
 
   private:
-    std::string rest_;
+    std::string partial_;
     bool dropping_ = false;
 };
 
-/// Messages out of the lines of a .data file.
+/// Parses the lines of a .data file.
 class TextReader {
   public:
     explicit TextReader(MessageSink& sink) : sink_(sink) {}
     void push(std::string_view bytes);
-    /// The last line, if it lacks its break.
+    /// Reads the last line even if it has no break.
     void flush() { read(buffer_.take_partial_line()); }
     void restart() { sink_.count("lines cut off by a restart", buffer_.take_partial_line().empty() ? 0 : 1); }
 
@@ -56,7 +84,7 @@ class TextReader {
     LineBuffer buffer_;
 };
 
-/// Messages out of the bytes of a link or a binary log.
+/// Decodes the bytes of a link or a binary log.
 class LinkReader {
   public:
     using Definitions = std::shared_ptr<const telemetry::MessageDictionary>;
@@ -66,9 +94,9 @@ class LinkReader {
                std::optional<telemetry::LinkVersion> version = std::nullopt);
 
     void push(std::string_view bytes);
-    /// The bytes end here.
+    /// The stream ends here.
     void flush();
-    /// The bytes end here, and others begin: another file, a link that is opened again.
+    /// The stream ends here and another one begins (file replaced, link reopened).
     void restart();
 
     const telemetry::LinkCounts& counts() const { return decoder_.counts(); }

@@ -4,7 +4,6 @@
 #include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
 #include "flight/selected_track.h"
-#include "live/state/aircraft_choice.h"
 #include "live/state/moment.h"
 #include "live/state/sender_clocks.h"
 #include "live/state/telemetry_store.h"
@@ -23,52 +22,49 @@
 namespace flightwatt::live {
 namespace {
 
-constexpr double judged_every_s = 30.0;  // the record's warnings take as long as all the rest
-
-std::optional<double> last_of(const flight::SelectedTracks& tracks, const char* name) {
+std::optional<double> last_value(const flight::SelectedTracks& tracks, const char* name) {
     const auto& track = tracks[name];
     return track.empty() ? std::nullopt : std::optional(track.value.back());
 }
 
 }  // namespace
 
-/// What cannot be computed from what came in is said, and the watch goes on: whatever a library throws of it.
+/// Results that cannot be computed are reported in the state, whatever the called functions throw.
 class LiveFlight::Impl {
   public:
-    Impl(LiveOptions options, std::optional<PredictionInput> basis, std::unique_ptr<LiveSchedule> schedule)
+    Impl(LiveOptions options, std::optional<PredictionInput> input, std::unique_ptr<LiveSchedule> schedule)
         : options_(std::move(options)),
-          basis_(std::move(basis)),
+          input_(std::move(input)),
           schedule_(std::move(schedule)),
-          store_(options_.flight, std::move(options_.configuration),
-                 {.bank = basis_ && (basis_->path || basis_->motion), .places = basis_ && basis_->path}),
+          store_(options_.flight, std::move(options_.configuration), input_ && (input_->path || input_->motion)),
           choice_(options_.aircraft_id) {
-        if (basis_ && basis_->path && !basis_->remaining_s && basis_->path->flown().duration_s > 0.0)
-            places_.emplace(*basis_->path);
-        if (!basis_ || !basis_->battery) return;
-        for (const auto& warning : battery_warnings(*basis_->battery))
-            battery_warnings_.push_back(fmt::format("{}: {}", basis_->battery_file, warning));
+        if (input_ && input_->path && !input_->remaining_s && input_->path->flown().duration_s > 0.0)
+            tracker_.emplace(*input_->path);
+        if (!input_ || !input_->battery) return;
+        for (const auto& warning : battery_warnings(*input_->battery))
+            battery_warnings_.push_back(fmt::format("{}: {}", input_->battery_file, warning));
     }
 
     void receive(IncomingMessage message, double arrival_s) {
         ++messages_;
         choice_.count(message.text);
         const std::string sender(sender_of(message.text));
-        believed_.clear();
+        accepted_.clear();
         using Scope = SenderClocks::RestartScope;
         const auto scope = clocks_.push(
             {message.time_s.value_or(arrival_s), std::move(message.text), arrival_s, std::move(message.values)},
-            message.is_after_restart, believed_);
+            message.is_after_restart, accepted_);
         const bool is_restart = scope == Scope::all || (scope == Scope::sender && clocks_.is_followed(sender));
         if (scope == Scope::sender) store_.drop(sender);
         if (scope == Scope::all) store_.clear();
         if (is_restart) restart();
-        take(is_restart);
+        store_accepted(is_restart);
     }
 
     void end() {
-        believed_.clear();
-        clocks_.flush(believed_);
-        take(false);
+        accepted_.clear();
+        clocks_.flush(accepted_);
+        store_accepted(false);
         ended_ = true;
     }
 
@@ -76,70 +72,69 @@ class LiveFlight::Impl {
         return clocks_.started() ? std::optional(clocks_.latest_s()) : std::nullopt;
     }
 
-    LiveState look(double silent_s);
+    LiveState update(double silent_s);
     const std::optional<LiveState>& last_predicted() const { return last_predicted_; }
 
   private:
-    void take(bool clock_restarted) {
-        for (const auto& line : believed_) store_.add(line.time_s, line.text, line.values);
-        while (store_.rows() > 2 * options_.most_rows) store_.thin();
-        if (!options_.on_lines || believed_.empty()) return;
+    void store_accepted(bool clock_restarted) {
+        for (const auto& line : accepted_) store_.add(line.time_s, line.text, line.values);
+        while (store_.rows() > 2 * options_.max_rows) store_.thin();
+        if (!options_.on_lines || accepted_.empty()) return;
         std::string lines;
-        for (const auto& line : believed_) fmt::format_to(std::back_inserter(lines), "{} {}\n", line.time_s, line.text);
+        for (const auto& line : accepted_) fmt::format_to(std::back_inserter(lines), "{} {}\n", line.time_s, line.text);
         options_.on_lines(lines, clock_restarted);
     }
 
     void restart() {
         ++restarts_;
-        sorties_before_ += sorties_kept_;
-        sorties_kept_ = 0;
+        sorties_before_ += std::exchange(phases_, {}).sorties.size();
         carried_percent_.reset();
         before_restart_ = std::exchange(in_the_air_, std::nullopt);
         rejected_.clear();
-        judged_s_.reset();
+        checked_s_.reset();
         warnings_.clear();
         if (schedule_) schedule_->reset();
     }
 
     void update_flight(const flight::SelectedTracks& tracks, LiveState& state);
-    void look_at_battery_of(const flight::SelectedTracks& tracks, LiveState& state,
-                            std::optional<battery::DischargeRecord>& record);
-    void predict(const flight::SelectedTracks& tracks, const std::optional<battery::DischargeRecord>& record,
-                 LiveState& state);
-    void look_ahead(LiveState& state) const;
-    void decide(LiveState& state);
-    void continue_after_restart(const flight::SelectedTracks& tracks, LiveState& state);
+    void update_battery(const flight::SelectedTracks& tracks, LiveState& state);
     void check_record(const flight::SelectedTracks& tracks, const LiveState& state);
-    void trim(const std::optional<battery::DischargeRecord>& record, const LiveState& state);
+    std::string no_prediction_reason(const flight::FlightSeries& series, const LiveState& state) const;
+    void predict(const flight::SelectedTracks& tracks, LiveState& state);
+    void predict_battery(LiveState& state, Diagnostics& remarks) const;
+    void forecast(LiveState& state) const;
+    void decide(LiveState& state);
+    void add_warnings(LiveState& state) const;
+    void trim(const LiveState& state);
 
     LiveOptions options_;
-    std::optional<PredictionInput> basis_;
+    std::optional<PredictionInput> input_;
     std::unique_ptr<LiveSchedule> schedule_;
     TelemetryStore store_;
     SenderClocks clocks_;
     AircraftSelector choice_;
-    std::optional<path::PathTracker> places_;  ///< where the path is to go on from
-    std::vector<ClockFilter::Line> believed_;  ///< of the last message: its memory is used again
+    std::optional<path::PathTracker> tracker_;  ///< of the position on the path
+    std::vector<ClockFilter::Line> accepted_;   ///< of the last message; a member to reuse its memory
     std::size_t messages_ = 0;
     std::size_t restarts_ = 0;
-    std::size_t sorties_before_ = 0;  ///< those that are not kept any more
-    std::size_t sorties_kept_ = 0;
-    std::size_t deciding_for_ = 0;  ///< the sortie that the schedule has seen
-    std::optional<double> carried_percent_;
+    std::size_t sorties_before_ = 0;               ///< sorties that are not in `phases_` any more
+    std::size_t scheduled_sortie_ = 0;             ///< sortie of the schedule
+    std::optional<double> carried_percent_;        ///< state of charge at the start of the stored rows
     std::optional<CarriedFlight> in_the_air_;      ///< at the last update
-    std::optional<CarriedFlight> before_restart_;  ///< of the flight that goes on
-    std::string rejected_;                         ///< why the power record is; empty if it is not
-    std::optional<double> judged_s_;
-    std::optional<double> looked_s_;
+    std::optional<CarriedFlight> before_restart_;  ///< of a flight that continues
+    std::string rejected_;                         ///< faults of the power record; empty if it is valid
+    std::optional<double> checked_s_;              ///< time of the last check of the record
+    std::optional<double> updated_s_;
     bool ended_ = false;
-    std::vector<std::string> warnings_;
+    std::vector<std::string> warnings_;          ///< of the last check
     std::vector<std::string> battery_warnings_;  ///< of its file
     flight::FlightPhases phases_;
-    std::string not_segmented_;  ///< why; empty if it is
+    std::optional<battery::DischargeRecord> record_;  ///< of the last update
+    std::string segmentation_error_;
     std::optional<LiveState> last_predicted_;
 };
 
-LiveState LiveFlight::Impl::look(double silent_s) {
+LiveState LiveFlight::Impl::update(double silent_s) {
     LiveState state;
     state.messages = messages_;
     state.restarts = restarts_;
@@ -147,39 +142,26 @@ LiveState LiveFlight::Impl::look(double silent_s) {
     clocks_.follow(series.aircraft_id);
     state.time_s = clocks_.latest_s();
     state.time_since_message_s = silent_s + clocks_.silent_s();
-    // What is known at the moment of the last power or altitude, as it is cut by predict.
+    // The series ends with the last power or altitude, as for predict.
     if (const double now_s = mechanical::last_time_s(series); std::isfinite(now_s))
         series = truncate_series(std::move(series), now_s);
     const flight::SelectedTracks tracks(series);
     state.aircraft_id = series.aircraft_id;
     state.aircraft_name = series.aircraft_name;
     state.other_senders = choice_.others();
-    std::optional<battery::DischargeRecord> record;
     update_flight(tracks, state);
-    look_at_battery_of(tracks, state, record);
-    continue_after_restart(tracks, state);
+    update_battery(tracks, state);
     check_record(tracks, state);
-    predict(tracks, record, state);
+    predict(tracks, state);
     try {
-        look_ahead(state);
+        forecast(state);
     } catch (const std::exception& error) {
         state.warnings.emplace_back(error.what());
     }
     decide(state);
-    state.warnings.insert(state.warnings.begin(), warnings_.begin(), warnings_.end());
-    state.warnings.insert(state.warnings.begin(), battery_warnings_.begin(), battery_warnings_.end());
-    state.unusable = store_.skipped();
-    if (clocks_.unconfirmed() > 0) state.unusable["a time that no other line confirms"] = clocks_.unconfirmed();
-    if (const auto steps = clocks_.steps_back(); steps > 0)
-        state.warnings.push_back(
-            fmt::format("the clock of the telemetry went back {} time{}", steps, steps == 1 ? "" : "s"));
-    if (const double set_s = clocks_.set_ahead_s(); set_s > 0.0)
-        state.warnings.push_back(fmt::format(
-            "the clock of the telemetry was set ahead by {:.0f} s: as seen by the arrival of its lines", set_s));
-    for (const auto& [message, stride] : store_.thinned())
-        state.warnings.push_back(fmt::format("of {} every {}th row is kept", message, stride));
-    state.alarms = alarms_of(state, basis_, options_.silence_threshold_s);
-    trim(record, state);
+    add_warnings(state);
+    state.alarms = alarms_of(state, input_, options_.silence_threshold_s);
+    trim(state);
     state.rows = store_.rows();
     if (state.prediction) last_predicted_ = state;
     if (!rejected_.empty()) last_predicted_.reset();
@@ -189,19 +171,17 @@ LiveState LiveFlight::Impl::look(double silent_s) {
 
 void LiveFlight::Impl::update_flight(const flight::SelectedTracks& tracks, LiveState& state) {
     phases_ = {};
-    not_segmented_.clear();
+    segmentation_error_.clear();
     try {
         if (!tracks["altitude_m"].empty()) phases_ = segment(tracks);
     } catch (const std::exception& error) {
-        not_segmented_ = error.what();
-        state.no_prediction_reason = without_flight_name(not_segmented_, tracks.series().flight);
+        segmentation_error_ = error.what();
     }
-    sorties_kept_ = phases_.sorties.size();
-    state.sortie = sorties_before_ + sorties_kept_;
-    state.power_w = last_of(tracks, "power_w");
-    state.voltage_v = last_of(tracks, "voltage_v");
-    state.current_a = last_of(tracks, "current_a");
-    state.altitude_m = last_of(tracks, "altitude_m");
+    state.sortie = sorties_before_ + phases_.sorties.size();
+    state.power_w = last_value(tracks, "power_w");
+    state.voltage_v = last_value(tracks, "voltage_v");
+    state.current_a = last_value(tracks, "current_a");
+    state.altitude_m = last_value(tracks, "altitude_m");
     if (phases_.sorties.empty()) return;
     choice_.keep(store_);
     const auto& sortie = phases_.sorties.back();
@@ -212,104 +192,100 @@ void LiveFlight::Impl::update_flight(const flight::SelectedTracks& tracks, LiveS
     state.energy_wh = integrated_energy_wh(tracks["power_w"], sortie.start_s(), state.landed ? sortie.end_s() : now_s);
 }
 
-void LiveFlight::Impl::look_at_battery_of(const flight::SelectedTracks& tracks, LiveState& state,
-                                          std::optional<battery::DischargeRecord>& record) {
-    if (!basis_ || !basis_->battery) return;
-    state.battery = estimate_soc(*basis_, carried_percent_, tracks, record);
-    if (state.began_in_air && !record) estimate_soc_from_counter(*basis_, tracks.series(), *state.battery);
+void LiveFlight::Impl::update_battery(const flight::SelectedTracks& tracks, LiveState& state) {
+    record_.reset();
+    const auto* battery = input_ && input_->battery ? &*input_->battery : nullptr;
+    if (battery != nullptr) {
+        state.battery = estimate_soc(*input_, carried_percent_, tracks, record_);
+        if (state.began_in_air && !record_ && input_->initial_soc_percent)
+            estimate_soc_from_counter(tracks["charge_ah"], battery->capacity_ah, *input_->initial_soc_percent, 0.0,
+                                      *state.battery);
+    }
+    if (!before_restart_ || phases_.sorties.empty()) return;
+    const auto& sortie = phases_.sorties.back();
+    if (!state.began_in_air || phases_.sorties.size() > 1) return before_restart_.reset();  // another flight
+    const double until_s = state.landed ? sortie.end_s() : mechanical::last_time_s(tracks.series());
+    continue_flight(*before_restart_, tracks, until_s, battery, state);
 }
 
-void LiveFlight::Impl::predict(const flight::SelectedTracks& tracks,
-                               const std::optional<battery::DischargeRecord>& record, LiveState& state) {
-    if (!basis_) {
-        state.no_prediction_reason = "a model: give --model or --mission";
-        return;
-    }
-    if (!basis_->no_prediction_reason.empty()) {
-        state.no_prediction_reason = basis_->no_prediction_reason;
-        return;
-    }
-    const double now_s = mechanical::last_time_s(tracks.series());
-    if (!rejected_.empty()) {
-        state.no_prediction_reason = "a power record that can be trusted: " + rejected_;
-        return;
-    }
-    if (state.landed) {
-        state.no_prediction_reason = fmt::format("at {:.1f} s of the log the aircraft has landed", now_s);
-        return;
-    }
+/// Why there can be no prediction now; empty: there can.
+std::string LiveFlight::Impl::no_prediction_reason(const flight::FlightSeries& series, const LiveState& state) const {
+    if (!input_) return "a model: give --model or --mission";
+    if (!input_->no_prediction_reason.empty()) return input_->no_prediction_reason;
+    if (!rejected_.empty()) return "a valid power record: " + rejected_;
+    if (state.landed)
+        return fmt::format("at {:.1f} s of the log the aircraft has landed", mechanical::last_time_s(series));
     if (!state.power_w) {
-        const auto why = no_power_reason(tracks.series());
-        state.no_prediction_reason = why.empty() ? "telemetry that tells of power" : "measured power: " + why;
-        return;
+        const auto reason = no_power_reason(series);
+        return reason.empty() ? "telemetry of power" : "measured power: " + reason;
     }
-    if (!state.no_prediction_reason.empty()) return;  // it cannot be segmented
+    return without_flight_name(segmentation_error_, series.flight);
+}
+
+void LiveFlight::Impl::predict(const flight::SelectedTracks& tracks, LiveState& state) {
+    state.no_prediction_reason = no_prediction_reason(tracks.series(), state);
+    if (!state.no_prediction_reason.empty()) return;
     Diagnostics remarks;
     try {
-        if (state.began_in_air) {
-            state.prediction = predict_airborne_start(*basis_, tracks.series(), phases_.sorties.back(),
-                                                      state.battery ? &*state.battery : nullptr,
-                                                      places_ ? &*places_ : nullptr, remarks);
-            state.expected_power_w = remaining_power(*state.prediction).front().power_w;
-            state.warnings.insert(state.warnings.end(), remarks.warnings.begin(), remarks.warnings.end());
-            return;
-        }
         const auto* sortie = phases_.sorties.empty() ? nullptr : &phases_.sorties.back();
-        const auto flown = mechanical::progress_of(tracks, sortie, now_s);
+        const auto flown = state.began_in_air
+                               ? airborne_progress(tracks, *sortie)
+                               : mechanical::progress_of(tracks, sortie, mechanical::last_time_s(tracks.series()));
         state.expected_power_w = units::joule_from_wh(flown.cruise_energy_wh) / flown.cruise_s();
-        std::optional<path::PathFix> sighting;
-        if (places_) sighting = places_->find(tracks, flown.cruise_start_s, flown.until_s);
-        auto energy = predict_energy(*basis_, flown, sighting, remarks);
-        if (record && state.battery && state.battery->soc_percent) {
-            const auto state_of = [&](const auto& pack) {
-                return state_after(pack, *record, state.battery->initial_soc_percent);
-            };
-            energy.battery = forecast_battery(*basis_->battery, basis_->limits, state_of, energy);
-            energy.battery->initial_soc_percent = state.battery->initial_soc_percent;
-            energy.battery->initial_is_measured = state.battery->initial_is_from_voltage;
-        }
-        state.prediction = std::move(energy);
+        const bool has_cruise_start = !state.began_in_air || sortie->phases.front().phase == flight::Phase::takeoff;
+        std::optional<path::PathFix> fix;
+        if (tracker_ && has_cruise_start) fix = tracker_->find(tracks, flown.cruise_start_s, flown.until_s);
+        state.prediction = state.began_in_air ? predict_airborne_start(*input_, flown, has_cruise_start, fix, remarks)
+                                              : predict_energy(*input_, flown, fix, remarks);
+        predict_battery(state, remarks);
         state.expected_power_w = remaining_power(*state.prediction).front().power_w;
     } catch (const std::exception& error) {
+        state.prediction.reset();
         state.no_prediction_reason = without_flight_name(error.what(), tracks.series().flight);
     }
     state.warnings.insert(state.warnings.end(), remarks.warnings.begin(), remarks.warnings.end());
 }
 
-void LiveFlight::Impl::look_ahead(LiveState& state) const {
+void LiveFlight::Impl::predict_battery(LiveState& state, Diagnostics& remarks) const {
+    if (!state.battery) return;
+    const auto& now = *state.battery;
+    const bool has_record = !state.began_in_air && record_ && now.soc_percent;
+    if (!has_record && !(state.began_in_air && now.state)) return;
+    const auto state_of = [&](const battery::Battery& pack) {
+        return has_record ? state_after(pack, *record_, now.initial_soc_percent) : *now.state;
+    };
+    auto result = forecast_battery(*input_->battery, input_->limits, state_of, *state.prediction);
+    result.initial_soc_percent = has_record ? now.initial_soc_percent : now.state->soc_percent;
+    result.initial_is_measured = has_record && now.initial_is_from_voltage;
+    result.initial_soc_is_current = !has_record;
+    if (!has_record)
+        remarks.warnings.emplace_back(now.soc_percent
+                                          ? "the telemetry begins in the air: the state of charge is by the "
+                                            "autopilot's counter, from --initial-soc or the mission"
+                                          : "the telemetry begins in the air: the state of charge is by the voltage");
+    state.prediction->battery = std::move(result);
+}
+
+/// What follows from the battery's state and the prediction.
+void LiveFlight::Impl::forecast(LiveState& state) const {
     if (!state.expected_power_w || !state.battery || !state.battery->state) return;
     const auto& now = *state.battery->state;
-    // Where nobody knows for how long the cruise goes on, it does so as it was.
-    const double cruise_w =
-        state.prediction ? state.prediction->cruise.remaining_mean_w : state.expected_power_w.value();
-    const std::vector<battery::ConstantLoad> nothing{{cruise_w, 0.0}};
+    // A cruise of unknown duration continues at its mean power.
+    const double cruise_w = state.prediction ? state.prediction->cruise.remaining_mean_w : *state.expected_power_w;
+    const std::vector<battery::ConstantLoad> at_once{{cruise_w, 0.0}};
     state.battery->time_to_reserve_s =
-        forecast_landing(*basis_->battery, now, nothing, cruise_w, basis_->limits).endurance_s;
+        forecast_landing(*input_->battery, now, at_once, cruise_w, input_->limits).endurance_s;
     if (!state.prediction) return;
-    const auto& prediction = *state.prediction;
-    state.battery->probability_below_reserve = probability_below_reserve(*basis_, prediction, *state.battery);
-    if (!basis_->path || basis_->remaining_s || state.phase != flight::Phase::cruise) return;
-    const double part = prediction.remaining_energy.energy_wh > 0.0
-                            ? prediction.interval.high_wh / prediction.remaining_energy.energy_wh
-                            : 1.0;
-    ReturnFlightInput budget{*basis_->battery, now, basis_->limits, remaining_power(prediction, part), {}, 1.0};
-    double planned_j = 0.0;
-    double expected_j = 0.0;
-    for (const auto& stretch : prediction.remaining_power) planned_j += stretch.power_w * stretch.duration_s;
-    if (prediction.landing_s > 0.0) {
-        budget.landing = budget.cruise_ahead.back();
-        budget.cruise_ahead.pop_back();
-    }
-    for (const auto& stretch : budget.cruise_ahead) expected_j += stretch.power_w * stretch.duration_s;
-    if (planned_j > 0.0) budget.power_factor = expected_j / planned_j;
-    state.turn_home = latest_return(*basis_->path, prediction.on_path_s.value(), budget);
+    state.battery->probability_below_reserve = probability_below_reserve(*input_, *state.prediction, *state.battery);
+    if (input_->path && !input_->remaining_s && state.phase == flight::Phase::cruise)
+        state.turn_home = latest_return(*input_, *state.prediction, now);
 }
 
 void LiveFlight::Impl::decide(LiveState& state) {
     if (!schedule_ || state.landed) return;
-    if (state.phase && state.sortie != deciding_for_) {
-        if (deciding_for_ > 0) schedule_->reset();
-        deciding_for_ = state.sortie;
+    if (state.phase && state.sortie != scheduled_sortie_) {
+        if (scheduled_sortie_ > 0) schedule_->reset();
+        scheduled_sortie_ = state.sortie;
     }
     const auto phase = state.phase.value_or(flight::Phase::takeoff);
     const auto now = state.battery ? state.battery->state : std::nullopt;
@@ -320,63 +296,70 @@ void LiveFlight::Impl::decide(LiveState& state) {
     }
 }
 
-void LiveFlight::Impl::continue_after_restart(const flight::SelectedTracks& tracks, LiveState& state) {
-    if (!before_restart_ || phases_.sorties.empty()) return;
-    if (!state.began_in_air || phases_.sorties.size() > 1) {
-        before_restart_.reset();  // another flight
-        return;
-    }
-    const double until_s = state.landed ? phases_.sorties.back().end_s() : mechanical::last_time_s(tracks.series());
-    continue_flight(*before_restart_, tracks, until_s, basis_ ? basis_->battery : std::nullopt, state);
-}
-
+/// Every 30 s, as it takes as long as the rest of an update; at once after a gap.
 void LiveFlight::Impl::check_record(const flight::SelectedTracks& tracks, const LiveState& state) {
-    constexpr double gap_s = 10.0;  // what was written across it is in doubt at once
-    if (looked_s_ && std::abs(state.time_s - *looked_s_) > gap_s) judged_s_.reset();
-    looked_s_ = state.time_s;
-    if (judged_s_ && state.time_s < *judged_s_ + judged_every_s && !state.landed && !ended_) return;
-    judged_s_ = state.time_s;
+    constexpr double interval_s = 30.0;
+    constexpr double gap_s = 10.0;
+    if (updated_s_ && std::abs(state.time_s - *updated_s_) > gap_s) checked_s_.reset();
+    updated_s_ = state.time_s;
+    if (checked_s_ && state.time_s < *checked_s_ + interval_s && !state.landed && !ended_) return;
+    checked_s_ = state.time_s;
     if (tracks.series().tracks.empty()) return;
-    if (!not_segmented_.empty()) {
-        warnings_ = {not_segmented_};
+    if (!segmentation_error_.empty()) {
+        warnings_ = {segmentation_error_};
         return;
     }
     try {
-        auto judgement = assess_flight(tracks, phases_);
-        const auto& faults = judgement.power.power_faults;
-        rejected_ = faults.empty() ? "" : fmt::format("{}", fmt::join(faults, ", "));
-        warnings_ = std::move(judgement.warnings);
+        auto assessment = assess_flight(tracks, phases_);
+        rejected_ = fmt::format("{}", fmt::join(assessment.power.power_faults, ", "));
+        warnings_ = std::move(assessment.warnings);
     } catch (const std::exception& error) {
         warnings_ = {error.what()};
     }
 }
 
-void LiveFlight::Impl::trim(const std::optional<battery::DischargeRecord>& record, const LiveState& state) {
-    if (store_.rows() <= options_.most_rows) return;
+void LiveFlight::Impl::add_warnings(LiveState& state) const {
+    auto warnings = battery_warnings_;
+    warnings.insert(warnings.end(), warnings_.begin(), warnings_.end());
+    state.warnings.insert(state.warnings.begin(), warnings.begin(), warnings.end());
+    state.unusable = store_.skipped();
+    if (clocks_.unconfirmed() > 0) state.unusable["a time that no other line confirms"] = clocks_.unconfirmed();
+    if (const auto steps = clocks_.steps_back(); steps > 0)
+        state.warnings.push_back(
+            fmt::format("the clock of the telemetry was set back {} time{}", steps, steps == 1 ? "" : "s"));
+    if (const double set_s = clocks_.set_ahead_s(); set_s > 0.0)
+        state.warnings.push_back(
+            fmt::format("the clock of the telemetry was set ahead by {:.0f} s, by the arrival of its lines", set_s));
+    for (const auto& [message, stride] : store_.thinned())
+        state.warnings.push_back(fmt::format("of {} every {}th row is retained", message, stride));
+}
+
+void LiveFlight::Impl::trim(const LiveState& state) {
+    if (store_.rows() <= options_.max_rows) return;
     const double from_s = retention_start_s(phases_, state);
-    if (record && state.battery && state.battery->soc_percent) {
-        if (const auto percent = soc_at(*basis_->battery, *record, state.battery->initial_soc_percent, from_s))
+    if (record_ && state.battery && state.battery->soc_percent) {
+        if (const auto percent = soc_at(*input_->battery, *record_, state.battery->initial_soc_percent, from_s))
             carried_percent_ = percent;
     }
     for (const auto& sortie : phases_.sorties) sorties_before_ += sortie.end_s() < from_s ? 1 : 0;
     store_.drop_before(from_s);
-    while (store_.rows() > options_.most_rows) store_.thin();
+    while (store_.rows() > options_.max_rows) store_.thin();
 }
 
-LiveFlight::LiveFlight(LiveOptions options, std::optional<PredictionInput> basis,
+LiveFlight::LiveFlight(LiveOptions options, std::optional<PredictionInput> input,
                        std::unique_ptr<LiveSchedule> schedule)
-    : watch_(std::make_unique<Impl>(std::move(options), std::move(basis), std::move(schedule))) {}
+    : impl_(std::make_unique<Impl>(std::move(options), std::move(input), std::move(schedule))) {}
 
 LiveFlight::~LiveFlight() = default;
 
-void LiveFlight::receive(IncomingMessage message, double arrival_s) { watch_->receive(std::move(message), arrival_s); }
+void LiveFlight::receive(IncomingMessage message, double arrival_s) { impl_->receive(std::move(message), arrival_s); }
 
-std::optional<double> LiveFlight::clock_s() const { return watch_->clock_s(); }
+std::optional<double> LiveFlight::clock_s() const { return impl_->clock_s(); }
 
-void LiveFlight::end() { watch_->end(); }
+void LiveFlight::end() { impl_->end(); }
 
-LiveState LiveFlight::update(double silent_s) { return watch_->look(silent_s); }
+LiveState LiveFlight::update(double silent_s) { return impl_->update(silent_s); }
 
-const std::optional<LiveState>& LiveFlight::last_predicted() const { return watch_->last_predicted(); }
+const std::optional<LiveState>& LiveFlight::last_predicted() const { return impl_->last_predicted(); }
 
 }  // namespace flightwatt::live

@@ -12,54 +12,56 @@
 namespace flightwatt::live {
 namespace {
 
-constexpr double rest_kept_s = 300.0;    // before a lift-off: longer than any rest that is looked at
+constexpr double rest_kept_s = 300.0;    // before a lift-off: longer than any rest that is evaluated
 constexpr double ground_kept_s = 600.0;  // on the ground
 
-/// Whether what looks like a touchdown is no touch-and-go, which climbs a little before the segmentation calls it one.
+/// Whether the height after a touchdown is constant; a touch-and-go climbs before the segmentation detects it.
 bool has_stayed(const flight::Track& altitude_m, double touchdown_s, double now_s) {
-    constexpr double beyond_doubt_s = 60.0;
+    constexpr double certain_s = 60.0;
     const flight::SegmentationOptions rest;
     if (now_s - touchdown_s < rest.rest_s) return false;
-    if (now_s - touchdown_s >= beyond_doubt_s) return true;
+    if (now_s - touchdown_s >= certain_s) return true;
     const auto& times_s = altitude_m.time_s;
     const auto from = std::ranges::lower_bound(times_s, now_s - rest.rest_s) - times_s.begin();
     const auto last = std::ranges::upper_bound(times_s, now_s) - times_s.begin();
     if (from >= last) return false;
-    const auto [least, most] = std::minmax_element(altitude_m.value.begin() + from, altitude_m.value.begin() + last);
-    return *most - *least <= rest.rest_height_m;
+    const auto [low, high] = std::minmax_element(altitude_m.value.begin() + from, altitude_m.value.begin() + last);
+    return *high - *low <= rest.rest_height_m;
 }
 
-/// [V] of a pack, measured below the battery's model for a minute: a cell at 3.7 V has fallen to 3.4, nearly empty.
+/// [V] of a pack below the battery's model: a cell at 3.7 V would be at 3.4 V, nearly empty.
 constexpr double failing_cell_v = 0.3;
 
-std::string reserve_text(const BatteryPrediction& battery, const std::optional<double>& chance) {
+std::string reserve_text(const BatteryPrediction& battery, const std::optional<double>& probability) {
     const auto& landing = battery.expected.keeps_reserve ? battery.worst : battery.expected;
     const auto* at = battery.expected.keeps_reserve ? "at the high end of the energy's interval " : "";
     auto text = landing.fails_after_s ? fmt::format("{}the battery fails in {:.1f} min, before the landing", at,
                                                     *landing.fails_after_s / 60.0)
                                       : fmt::format("{}{:.1f} % at landing, short of the reserve of {:g} %", at,
                                                     landing.soc_percent, battery.limits.reserve_soc_percent);
-    if (chance) text += fmt::format("; chance of landing below it {:.0f} %", units::percentage(*chance, 1.0));
+    if (probability)
+        text += fmt::format("; probability of landing below it {:.0f} %", units::percentage(*probability, 1.0));
     return text;
 }
 
-/// How far the cruise so far is off, where that is beyond 95 of 100 flights.
-std::string model_text(const Prediction& prediction, const PredictionInput& basis) {
+/// The deviation of the cruise from the model, where it is outside the 95 % interval; else empty.
+std::string model_text(const Prediction& prediction, const PredictionInput& input) {
     if (prediction.uses_physical_model) {
-        const auto& model = basis.model.physical.value();
+        const auto& model = input.model.physical.value();
         const double level = prediction.cruise.gain;
         if (!model.level_sd || prediction.flown.motion.bins.empty()) return "";
         const double reach = *model.level_sd * student_t_half_width(model.degrees_of_freedom);
         if (std::abs(level) <= reach) return "";
-        return fmt::format("this flight takes {:+.1f} % of what the model says; 95 of 100 flights lie within {:.1f} %",
-                           units::percentage(level, 1.0), units::percentage(reach, 1.0));
+        return fmt::format(
+            "the power of this flight differs from the model by {:+.1f} %, 95 of 100 flights by {:.1f} %",
+            units::percentage(level, 1.0), units::percentage(reach, 1.0));
     }
     const auto cruise_s = prediction.flown.cruise_s();
-    const auto expected = predict_before_flight(forecast_of(basis.model, flight::Phase::cruise), cruise_s);
+    const auto expected = predict_before_flight(forecast_of(input.model, flight::Phase::cruise), cruise_s);
     const auto interval = interval_95(expected);
     const double measured_wh = prediction.flown.cruise_energy_wh;
     if (!interval || interval->contains(measured_wh)) return "";
-    return fmt::format("the cruise so far took {:.3f} Wh; the model expected {:.3f} to {:.3f} Wh of 95 in 100 flights",
+    return fmt::format("the cruise so far took {:.3f} Wh; 95 of 100 flights of the model take {:.3f} to {:.3f} Wh",
                        measured_wh, interval->low_wh, interval->high_wh);
 }
 
@@ -98,7 +100,7 @@ std::string without_flight_name(const std::string& text, const std::string& flig
     return text.starts_with(prefix) ? text.substr(prefix.size()) : text;
 }
 
-std::vector<Alarm> alarms_of(const LiveState& state, const std::optional<PredictionInput>& basis, double silence_s) {
+std::vector<Alarm> alarms_of(const LiveState& state, const std::optional<PredictionInput>& input, double silence_s) {
     std::vector<Alarm> alarms;
     if (state.time_since_message_s >= silence_s) {
         alarms.push_back({"silence", fmt::format("nothing was received for {:.0f} s", state.time_since_message_s)});
@@ -106,13 +108,14 @@ std::vector<Alarm> alarms_of(const LiveState& state, const std::optional<Predict
     if (state.prediction) {
         if (const auto& battery = state.prediction->battery; battery && !battery->worst.keeps_reserve)
             alarms.push_back({"reserve", reserve_text(*battery, state.battery->probability_below_reserve)});
-        if (auto text = model_text(*state.prediction, *basis); !text.empty())
+        if (auto text = model_text(*state.prediction, *input); !text.empty())
             alarms.push_back({"model", std::move(text)});
     }
     if (state.phase && state.battery && state.battery->voltage_residual_v.value_or(0.0) < -failing_cell_v) {
-        alarms.push_back({"voltage", fmt::format("the voltage is {:.2f} V below what the battery's model says: a cell "
-                                                 "may be failing, or it is another pack",
-                                                 -*state.battery->voltage_residual_v)});
+        alarms.push_back(
+            {"voltage", fmt::format("the voltage is {:.2f} V below the battery's model: a failing cell, or "
+                                    "another pack",
+                                    -*state.battery->voltage_residual_v)});
     }
     return alarms;
 }

@@ -8,14 +8,11 @@ namespace flightwatt::live {
 
 bool ClockFilter::push(Line line, std::vector<Line>& accepted) {
     line.time_s += offset_s_;
-    const double ahead_s = line.time_s - latest_s_;
-    const double max_behind_s = is_guess_ ? max_step_s : max_off_s;
-    if (started_ && (ahead_s > max_off_s || ahead_s < -max_behind_s)) return hold(std::move(line), accepted);
+    if (started_ && std::abs(line.time_s - latest_s_) > max_off_s) return hold(std::move(line), accepted);
     unconfirmed_ += held_.size();
     held_.clear();
-    latest_s_ = started_ && !is_guess_ ? std::max(latest_s_, line.time_s) : line.time_s;
+    latest_s_ = started_ ? std::max(latest_s_, line.time_s) : line.time_s;
     started_ = true;
-    is_guess_ = false;
     accept_line(std::move(line), accepted);
     return false;
 }
@@ -33,30 +30,29 @@ bool ClockFilter::hold(Line line, std::vector<Line>& accepted) {
     held_.push_back(std::move(line));
     if (held_.size() < min_confirmations) return false;
     const double step_s = held_.front().time_s - latest_s_;
-    const bool anew = !is_guess_ && step_s < -max_step_s;
-    if (anew) {
-        set_held_back(offset_s_);
+    const bool restarted = step_s < -max_step_s;
+    if (restarted) {
+        shift_held(offset_s_);
         pace_ = {};
-    } else if (!is_guess_ && step_s < 0.0) {
-        set_held_back(step_s);
+    } else if (step_s < 0.0) {
+        shift_held(step_s);
         ++steps_back_;
-    } else if (const double set_s = set_ahead_of_arrivals_s(); !is_guess_ && set_s > max_off_s) {
-        set_held_back(set_s);
+    } else if (const double set_s = set_ahead_of_arrivals_s(); set_s > max_off_s) {
+        shift_held(set_s);
         set_ahead_s_ += set_s;
     }
     latest_s_ = std::ranges::max(held_, {}, &Line::time_s).time_s;
-    is_guess_ = false;
     for (auto& held : held_) accept_line(std::move(held), accepted);
     held_.clear();
-    return anew;
+    return restarted;
 }
 
-void ClockFilter::set_held_back(double by_s) {
-    for (auto& held : held_) held.time_s -= by_s;
-    offset_s_ -= by_s;
+void ClockFilter::shift_held(double back_s) {
+    for (auto& held : held_) held.time_s -= back_s;
+    offset_s_ -= back_s;
 }
 
-/// Of lines that are ahead of the latest one: how much further than those of the arrivals. 0 where that is not known.
+/// By how much the held lines are further ahead than their arrivals; 0 where the arrivals are not meaningful.
 double ClockFilter::set_ahead_of_arrivals_s() const {
     const auto& first = held_.front();
     const auto before_s = pace_.last_arrival_s();
@@ -66,7 +62,7 @@ double ClockFilter::set_ahead_of_arrivals_s() const {
 
 void ClockFilter::flush(std::vector<Line>& accepted) {
     for (auto& line : held_) {
-        if (is_guess_ || line.time_s < latest_s_) {
+        if (line.time_s < latest_s_) {
             ++unconfirmed_;
             continue;
         }
@@ -80,71 +76,58 @@ std::string_view sender_of(std::string_view text) { return text.substr(0, text.f
 
 SenderClocks::Clock& SenderClocks::clock_of(std::string_view sender) {
     if (const auto known = clocks_.find(sender); known != clocks_.end()) return known->second;
-    if (clocks_.empty()) {
-        followed_ = sender;
-        return clocks_[followed_];
-    }
-    const std::string name(clocks_.size() < max_senders ? sender : std::string_view());
-    if (const auto shared = clocks_.find(name); shared != clocks_.end()) return shared->second;
-    return clocks_.emplace(name, Clock{ClockFilter(latest_s()), 0, 0.0}).first->second;
+    if (clocks_.empty()) followed_ = sender;
+    return clocks_[std::string(clocks_.size() < max_senders ? sender : std::string_view())];
 }
 
-SenderClocks::RestartScope SenderClocks::push(ClockFilter::Line line, bool restarted,
-                                              std::vector<ClockFilter::Line>& believed) {
+const ClockFilter& SenderClocks::followed_clock() const {
+    static const ClockFilter not_started;
+    const auto followed = clocks_.find(followed_);
+    return followed == clocks_.end() ? not_started : followed->second.filter;
+}
+
+SenderClocks::RestartScope SenderClocks::push(ClockFilter::Line line, bool source_restarted,
+                                              std::vector<ClockFilter::Line>& accepted) {
     const std::string sender(sender_of(line.text));
-    const bool all = restarted && started() && clock_of(sender).filter.is_late(line.time_s);
+    const auto known = clocks_.find(sender);
+    const auto& reference = known == clocks_.end() ? followed_clock() : known->second.filter;
+    const bool all = source_restarted && reference.is_late(line.time_s);
     if (all) {
         unconfirmed_before_ = unconfirmed();
         clocks_.clear();
         others_s_ = 0.0;
     }
     auto& clock = clock_of(sender);
-    const bool anew = clock.filter.push(std::move(line), believed);
-    if (!believed.empty()) advance(sender, anew, clock);
-    return all ? RestartScope::all : anew ? RestartScope::sender : RestartScope::none;
+    const bool restarted = clock.filter.push(std::move(line), accepted);
+    if (!accepted.empty()) advance(sender, restarted, clock);
+    return all ? RestartScope::all : restarted ? RestartScope::sender : RestartScope::none;
 }
 
-void SenderClocks::advance(std::string_view sender, bool anew, Clock& clock) {
-    if (is_followed(sender)) {
-        ++round_;
-        others_s_ = 0.0;
-        return;
-    }
-    if (anew || clock.round != round_) clock.begin_s = clock.filter.latest_s();
-    clock.round = round_;
-    others_s_ = std::max(others_s_, clock.filter.latest_s() - clock.begin_s);
+void SenderClocks::advance(std::string_view sender, bool restarted, Clock& clock) {
+    if (is_followed(sender)) return reset_silence();
+    if (restarted || !clock.begin_s) clock.begin_s = clock.filter.latest_s();
+    others_s_ = std::max(others_s_, clock.filter.latest_s() - *clock.begin_s);
 }
 
-void SenderClocks::flush(std::vector<ClockFilter::Line>& believed) {
-    for (auto& [sender, clock] : clocks_) clock.filter.flush(believed);
+void SenderClocks::reset_silence() {
+    others_s_ = 0.0;
+    for (auto& [sender, clock] : clocks_) clock.begin_s.reset();
+}
+
+void SenderClocks::flush(std::vector<ClockFilter::Line>& accepted) {
+    for (auto& [sender, clock] : clocks_) clock.filter.flush(accepted);
 }
 
 void SenderClocks::follow(const std::string& sender) {
     if (is_followed(sender) || !clocks_.contains(sender)) return;
     followed_ = sender;
-    ++round_;
-    others_s_ = 0.0;
-}
-
-double SenderClocks::latest_s() const {
-    const auto followed = clocks_.find(followed_);
-    return followed == clocks_.end() ? 0.0 : followed->second.filter.latest_s() + others_s_;
+    reset_silence();
 }
 
 std::size_t SenderClocks::unconfirmed() const {
     std::size_t unconfirmed = unconfirmed_before_;
     for (const auto& [sender, clock] : clocks_) unconfirmed += clock.filter.unconfirmed();
     return unconfirmed;
-}
-
-std::size_t SenderClocks::steps_back() const {
-    const auto followed = clocks_.find(followed_);
-    return followed == clocks_.end() ? 0 : followed->second.filter.steps_back();
-}
-
-double SenderClocks::set_ahead_s() const {
-    const auto followed = clocks_.find(followed_);
-    return followed == clocks_.end() ? 0.0 : followed->second.filter.set_ahead_s();
 }
 
 }  // namespace flightwatt::live

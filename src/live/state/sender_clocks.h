@@ -12,14 +12,13 @@
 
 namespace flightwatt::live {
 
-/// Whether lines come in as fast as their clock goes, as over a link, and not a log at once or in bursts: over the last
-/// half a minute to a minute their times and their arrivals went on together.
+/// Whether lines arrive at the pace of their own times, as over a link, and not at once or in bursts: tested over the
+/// last 30 to 60 s.
 class ArrivalMonitor {
   public:
     static constexpr double window_s = 30.0;
     static constexpr double max_spread_s = 3.0;
 
-    /// A line that is believed, both on clocks in seconds.
     void add(double time_s, double arrival_s) {
         const double lag_s = arrival_s - time_s;
         if (!begin_s_ || time_s > *begin_s_ + window_s) {
@@ -31,7 +30,7 @@ class ArrivalMonitor {
         arrival_s_ = arrival_s;
     }
 
-    /// Of the last line; none where that is not known, or the two do not go together.
+    /// Arrival of the last line; none where the pace differs or is not known yet.
     std::optional<double> last_arrival_s() const {
         if (!before_) return std::nullopt;
         const double spread_s = std::max(before_->max_s, now_.max_s) - std::min(before_->min_s, now_.min_s);
@@ -44,15 +43,18 @@ class ArrivalMonitor {
         double max_s = 0.0;
     };
 
-    std::optional<double> begin_s_;  ///< of the window that `now_` is of
+    std::optional<double> begin_s_;  ///< of the current window
     Lag now_;
-    std::optional<Lag> before_;  ///< of the window before
+    std::optional<Lag> before_;  ///< of the previous window
     double arrival_s_ = 0.0;
 };
 
-/// Accepts or holds the times that come in (docs/live.md). A time more than 10 s off the latest counts when four more
-/// agree with it: forwards as a gap, a minute or more backwards as a restart, by less backwards as a clock that goes on
-/// from where it was. A clock more than 10 s further ahead than the arrivals was set; it goes on by the arrivals.
+/// Accepts, corrects or holds the times of one sender:
+/// - within 10 s of the latest: accepted;
+/// - otherwise held until five lines agree; then
+///   - forwards: a gap, or where the clock ran more than 10 s ahead of the arrivals, a clock that was set;
+///   - backwards by a minute or more: a restart;
+///   - backwards by less: a clock that was set back. A clock that was set is corrected, so that time continues.
 class ClockFilter {
   public:
     static constexpr double max_step_s = 60.0;
@@ -61,39 +63,31 @@ class ClockFilter {
     static constexpr double late_s = 2.0;
 
     struct Line {
-        double time_s = 0.0;                   ///< when accepted: on a clock that never goes back
-        std::string text;                      ///< behind the time
-        std::optional<double> arrival_s = {};  ///< on a clock that is never set; none where it is of no use
+        double time_s = 0.0;                   ///< once accepted: corrected
+        std::string text;                      ///< without the time
+        std::optional<double> arrival_s = {};  ///< on a clock that is never set; none where it is not meaningful
         std::vector<double> values = {};       ///< of the fields, where `text` has none
     };
 
-    ClockFilter() = default;
-    /// Of a sender whose clock is thought to be near that time: further lines show whether it is.
-    explicit ClockFilter(double about_s) : started_(true), is_guess_(true), latest_s_(about_s) {}
-
-    /// Takes a line, and appends those that are believed now. True where the first of them belongs to a clock that
-    /// began anew.
+    /// Takes a line and appends the accepted ones. True where they are the first after a restart.
     bool push(Line line, std::vector<Line>& accepted);
-    /// Whether a line of that time would be late.
     bool is_late(double time_s) const { return started_ && time_s + offset_s_ < latest_s_ - late_s; }
-    /// Nothing more will come: what was held ahead of the latest is believed.
+    /// At the end of the telemetry: accepts held lines that are ahead of the latest.
     void flush(std::vector<Line>& accepted);
 
     std::size_t unconfirmed() const { return unconfirmed_; }
     std::size_t steps_back() const { return steps_back_; }
     /// [s] by which the clock was set ahead, in all.
     double set_ahead_s() const { return set_ahead_s_; }
-    bool started() const { return started_; }
     double latest_s() const { return latest_s_; }
 
   private:
     bool hold(Line line, std::vector<Line>& accepted);
-    void set_held_back(double by_s);
+    void shift_held(double back_s);
     double set_ahead_of_arrivals_s() const;
     void accept_line(Line line, std::vector<Line>& accepted);
 
     bool started_ = false;
-    bool is_guess_ = false;  ///< `latest_s_`, of no line
     double latest_s_ = 0.0;
     double offset_s_ = 0.0;
     std::vector<Line> held_;
@@ -103,51 +97,49 @@ class ClockFilter {
     double set_ahead_s_ = 0.0;
 };
 
-/// A clock for each sender: what is wrong with one says nothing of the others. One of them is followed, and its clock
-/// is the telemetry's.
+/// A clock filter for each sender, so that an error of one does not affect the others. The clock of the followed sender
+/// is that of the telemetry.
 class SenderClocks {
   public:
-    static constexpr std::size_t max_senders = 32;  ///< those beyond share one
+    static constexpr std::size_t max_senders = 32;  ///< further ones share a filter
 
     enum class RestartScope { none, sender, all };
 
-    /// Takes a line, and appends those that are believed now. Whether the clock of their sender began anew before them,
-    /// or all did: `restarted` says that the source of the line began anew, so that no other lines have to agree.
-    RestartScope push(ClockFilter::Line line, bool restarted, std::vector<ClockFilter::Line>& believed);
-    /// Nothing more will come.
-    void flush(std::vector<ClockFilter::Line>& believed);
+    /// Takes a line and appends the accepted ones. Returns which clocks restarted before them. `source_restarted`: a
+    /// late line is a restart of all, without confirmation.
+    RestartScope push(ClockFilter::Line line, bool source_restarted, std::vector<ClockFilter::Line>& accepted);
+    /// At the end of the telemetry.
+    void flush(std::vector<ClockFilter::Line>& accepted);
 
-    /// From now on the clock is this sender's, once it has sent; until then that of the first who did.
+    /// Follows a sender once it has sent; before the first call, the first sender.
     void follow(const std::string& sender);
-    /// Whether a sender's clock is the one that counts.
     bool is_followed(std::string_view sender) const { return sender == followed_; }
 
     bool started() const { return !clocks_.empty(); }
-    /// The followed sender's latest time, and what the others' clocks have gone on since.
-    double latest_s() const;
-    /// For how long others, but not the followed sender, have sent.
+    /// The followed sender's latest time, advanced by the others' clocks since.
+    double latest_s() const { return followed_clock().latest_s() + others_s_; }
+    /// Time since the followed sender's last line, by the others' clocks.
     double silent_s() const { return others_s_; }
     std::size_t unconfirmed() const;
     /// Of the followed sender.
-    std::size_t steps_back() const;
-    double set_ahead_s() const;
+    std::size_t steps_back() const { return followed_clock().steps_back(); }
+    double set_ahead_s() const { return followed_clock().set_ahead_s(); }
 
   private:
     struct Clock {
-        ClockFilter filter;
-        std::size_t round = 0;  ///< of the followed sender's lines
-        double begin_s = 0.0;   ///< of this sender's first line in that round
+        ClockFilter filter = {};
+        std::optional<double> begin_s = {};  ///< of the first line since the followed sender's last one
     };
-    using Clocks = std::map<std::string, Clock, std::less<>>;
 
     Clock& clock_of(std::string_view sender);
-    void advance(std::string_view sender, bool anew, Clock& clock);
+    const ClockFilter& followed_clock() const;
+    void advance(std::string_view sender, bool restarted, Clock& clock);
+    void reset_silence();
 
-    Clocks clocks_;
+    std::map<std::string, Clock, std::less<>> clocks_;
     std::string followed_;
-    std::size_t round_ = 1;
     double others_s_ = 0.0;
-    std::size_t unconfirmed_before_ = 0;  ///< of clocks that are gone
+    std::size_t unconfirmed_before_ = 0;  ///< of removed clocks
 };
 
 /// The sender of a line without its time: its first word.

@@ -1,9 +1,12 @@
 #include "live/state/telemetry_store.h"
 
+#include "flight/segmentation.h"
+#include "flight/selected_track.h"
 #include "flight/telemetry_series.h"
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <functional>
 #include <set>
 
@@ -12,28 +15,22 @@
 namespace flightwatt::live {
 namespace {
 
-/// What a flight series is made of, without what no prediction looks at.
-std::vector<telemetry::MessageRequest> predicting_messages(const TelemetryFilter& wanted) {
-    static const std::set<std::string> of_places{"NAVIGATION", "GPS_LLA"};
-    static const std::set<std::string> place_fields{"utm_east", "utm_north", "utm_zone", "lat", "lon"};
+/// The messages and fields that live predictions need.
+std::vector<telemetry::MessageRequest> live_messages(bool motion) {
+    static const std::set<std::string> unused{"PPRZ_MODE", "TAKEOFF", "cur_block", "course", "temp", "psi"};
+    static const std::set<std::string> of_motion{"ATTITUDE", "NAVIGATION", "GPS_LLA", "utm_east", "utm_north",
+                                                 "utm_zone", "lat",        "lon",     "east",     "north"};
+    const auto is_unused = [&](const std::string& name) {
+        return unused.contains(name) || (!motion && of_motion.contains(name));
+    };
     auto messages = flight::flight_messages();
-    std::erase_if(messages, [&](const auto& request) {
-        const auto& name = request.message;
-        return name == "PPRZ_MODE" || name == "TAKEOFF" || (!wanted.bank && name == "ATTITUDE") ||
-               (!wanted.places && of_places.contains(name));
-    });
-    for (auto& request : messages) {
-        std::erase_if(request.fields, [&](const auto& field) {
-            const bool is_place = place_fields.contains(field) ||
-                                  (request.message == "ROTORCRAFT_FP" && (field == "east" || field == "north"));
-            return field == "cur_block" || field == "course" || field == "temp" || field == "psi" ||
-                   (!wanted.places && is_place);
-        });
-    }
+    std::erase_if(messages, [&](const auto& request) { return is_unused(request.message); });
+    for (auto& request : messages) std::erase_if(request.fields, is_unused);
+    std::erase_if(messages, [](const auto& request) { return request.fields.empty(); });
     return messages;
 }
 
-/// Which device a row is of, where several send one message.
+/// The device that sent a row.
 std::vector<double> device_of(const telemetry::MessageTable& table, std::size_t row) {
     std::vector<double> device;
     for (const auto* field : {"node_id", "motor_id", "circuit"}) {
@@ -43,7 +40,6 @@ std::vector<double> device_of(const telemetry::MessageTable& table, std::size_t 
     return device;
 }
 
-/// Keeps the rows for which `keep` is true.
 void filter_rows(telemetry::MessageTable& table, const std::function<bool(std::size_t)>& keep) {
     std::size_t kept = 0;
     for (std::size_t row = 0; row < table.time_s.size(); ++row) {
@@ -56,16 +52,26 @@ void filter_rows(telemetry::MessageTable& table, const std::function<bool(std::s
     for (auto& column : table.columns) column.values.resize(kept);
 }
 
+bool has_flown(const flight::FlightSeries& series) {
+    constexpr std::size_t min_samples = 2;
+    if (flight::select_track(series, "altitude_m").time_s.size() < min_samples) return false;
+    try {
+        return !segment(series).sorties.empty();
+    } catch (const std::exception&) {
+        return false;
+    }
+}
+
 }  // namespace
 
 TelemetryStore::TelemetryStore(std::string flight, std::optional<telemetry::LogConfiguration> configuration,
-                               TelemetryFilter wanted)
-    : decoder_(configuration, predicting_messages(wanted)) {
+                               bool motion)
+    : decoder_(configuration, live_messages(motion)) {
     log_.data_file = flight;
     log_.flight = std::move(flight);
     log_.configuration = std::move(configuration);
     if (!log_.configuration) return;
-    log_.configuration->messages.clear();  // its decoder has them
+    log_.configuration->messages.clear();  // the decoder contains them
     for (auto& aircraft : log_.configuration->aircraft) aircraft.second.block_names.clear();
 }
 
@@ -77,19 +83,19 @@ void TelemetryStore::add(double time_s, std::string_view message, std::span<cons
 }
 
 void TelemetryStore::append(const std::string& sender, const telemetry::MessageTable& row) {
-    auto of = std::ranges::find(log_.senders, sender, &telemetry::SenderLog::id);
-    if (of == log_.senders.end()) {
+    auto log = std::ranges::find(log_.senders, sender, &telemetry::SenderLog::id);
+    if (log == log_.senders.end()) {
         if (log_.senders.size() == max_senders)
-            return void(++not_kept_[fmt::format("of more than {} senders", max_senders)]);
-        of = log_.senders.insert(of, {sender, {}});
+            return void(++beyond_limits_[fmt::format("of more than {} senders", max_senders)]);
+        log = log_.senders.insert(log, {sender, {}});
     }
     auto& thinning = thinning_[{sender, row.message}];
     auto device = device_of(row, 0);
     if (thinning.rows_of.size() >= max_devices && !thinning.rows_of.contains(device))
-        return void(++not_kept_[fmt::format("{}: of more than {} devices", row.message, max_devices)]);
-    auto table = std::ranges::find(of->tables, row.message, &telemetry::MessageTable::message);
-    if (table == of->tables.end()) {
-        table = of->tables.insert(table, row);
+        return void(++beyond_limits_[fmt::format("{}: of more than {} devices", row.message, max_devices)]);
+    auto table = std::ranges::find(log->tables, row.message, &telemetry::MessageTable::message);
+    if (table == log->tables.end()) {
+        table = log->tables.insert(table, row);
         filter_rows(*table, [](std::size_t) { return false; });
     }
     if (thinning.rows_of[std::move(device)]++ % thinning.stride != 0) return;
@@ -124,20 +130,19 @@ void TelemetryStore::keep_only(const std::string& sender) {
 }
 
 void TelemetryStore::thin() {
-    telemetry::MessageTable* most = nullptr;
-    const std::string* sender_id = nullptr;
+    telemetry::MessageTable* largest = nullptr;
+    Thinning* thinning = nullptr;
     for (auto& sender : log_.senders) {
         for (auto& table : sender.tables) {
-            if (most != nullptr && table.time_s.size() <= most->time_s.size()) continue;
-            most = &table;
-            sender_id = &sender.id;
+            if (largest != nullptr && table.time_s.size() <= largest->time_s.size()) continue;
+            largest = &table;
+            thinning = &thinning_[{sender.id, table.message}];
         }
     }
-    if (most == nullptr) return;
-    auto& thinning = thinning_[{*sender_id, most->message}];
-    thinning.stride *= 2;
+    if (largest == nullptr) return;
+    thinning->stride *= 2;
     std::map<std::vector<double>, std::size_t> rows_of;
-    filter_rows(*most, [&](std::size_t row) { return rows_of[device_of(*most, row)]++ % 2 == 0; });
+    filter_rows(*largest, [&](std::size_t row) { return rows_of[device_of(*largest, row)]++ % 2 == 0; });
 }
 
 std::size_t TelemetryStore::rows() const {
@@ -148,7 +153,7 @@ std::size_t TelemetryStore::rows() const {
 }
 
 std::map<std::string, std::size_t> TelemetryStore::skipped() const {
-    auto skipped = not_kept_;
+    auto skipped = beyond_limits_;
     skipped.insert(decoder_.skipped().begin(), decoder_.skipped().end());
     return skipped;
 }
@@ -166,6 +171,43 @@ std::map<std::string, std::size_t> TelemetryStore::thinned() const {
     for (const auto& [name, thinning] : thinning_)
         if (thinning.stride > 1) thinned[name.second] = std::max(thinned[name.second], thinning.stride);
     return thinned;
+}
+
+void AircraftSelector::count(std::string_view text) {
+    const auto sender = text.substr(0, text.find(' '));
+    if (messages_.contains(sender) || messages_.size() < max_named) ++messages_[std::string(sender)];
+}
+
+void AircraftSelector::keep(TelemetryStore& store) {
+    if (is_locked_) return;
+    is_locked_ = true;
+    store.keep_only(chosen_);
+}
+
+flight::FlightSeries AircraftSelector::choose(TelemetryStore& store) {
+    if (named_ && !is_locked_) {
+        chosen_ = *named_;
+        keep(store);
+    }
+    if (is_locked_) return store.series(chosen_);
+    std::vector<flight::FlightSeries> candidates;
+    for (const auto& id : store.senders()) candidates.push_back(store.series(id));
+    if (candidates.empty()) return {};
+    const auto messages = [&](const auto& series) {
+        const auto found = messages_.find(series.aircraft_id);
+        return found == messages_.end() ? std::size_t{0} : found->second;
+    };
+    auto chosen = candidates.end();
+    if (candidates.size() > 1) chosen = std::ranges::find_if(candidates, has_flown);
+    if (chosen == candidates.end()) chosen = std::ranges::max_element(candidates, {}, messages);
+    chosen_ = chosen->aircraft_id;
+    return std::move(*chosen);
+}
+
+std::map<std::string, std::size_t> AircraftSelector::others() const {
+    std::map<std::string, std::size_t> others(messages_.begin(), messages_.end());
+    others.erase(chosen_);
+    return others;
 }
 
 }  // namespace flightwatt::live

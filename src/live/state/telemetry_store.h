@@ -14,39 +14,32 @@
 
 namespace flightwatt::live {
 
-/// What is not always wanted of telemetry.
-struct TelemetryFilter {
-    bool bank = true;    ///< the bank angle, which comes most often
-    bool places = true;  ///< positions, which cost most to make
-};
-
-/// The messages on energy that were received, as columns, in bounded memory: what it keeps is dropped from its
-/// beginning, or thinned evenly. Its columns are those of a log with the same messages.
+/// Received messages as columns in bounded memory, the same as of a log with these messages.
 class TelemetryStore {
   public:
-    static constexpr std::size_t max_senders = 8;   ///< aircraft of which rows are kept
+    static constexpr std::size_t max_senders = 8;   ///< with stored rows
     static constexpr std::size_t max_devices = 64;  ///< of one message
 
-    TelemetryStore(std::string flight, std::optional<telemetry::LogConfiguration> configuration,
-                   TelemetryFilter wanted = {});
+    /// Without `motion`: no bank angles, which are most frequent, and no positions, which take most time to convert.
+    TelemetryStore(std::string flight, std::optional<telemetry::LogConfiguration> configuration, bool motion = true);
 
     /// A message without its time: "20 ENERGY 57 11.62 1.64", or "20 ENERGY" with `values` of its fields.
     void add(double time_s, std::string_view message, std::span<const double> values = {});
     void clear();
     void drop_before(double time_s);
-    /// What was received of one sender.
     void drop(const std::string& sender);
+    /// Drops all other senders, also in future.
     void keep_only(const std::string& sender);
-    /// Keeps every second row of the message that has most, and of what comes of it: of each device.
+    /// Retains every second row of the largest table, of each device; and from now on every second one received.
     void thin();
 
-    /// The rows that are kept, of all senders.
+    /// Number of rows of all senders.
     std::size_t rows() const;
     std::vector<std::string> senders() const;
     flight::FlightSeries series(const std::string& sender) const;
-    /// Messages and values that could not be used, by reason.
+    /// Unusable messages and values, by reason.
     std::map<std::string, std::size_t> skipped() const;
-    /// Of every how many rows one is kept, of the messages that were thinned.
+    /// Received rows for each retained one, of the thinned messages.
     std::map<std::string, std::size_t> thinned() const;
 
   private:
@@ -62,7 +55,31 @@ class TelemetryStore {
     std::optional<std::string> only_;
     telemetry::MessageDecoder decoder_;
     std::map<TableName, Thinning> thinning_;
-    std::map<std::string, std::size_t> not_kept_;  ///< by reason
+    std::map<std::string, std::size_t> beyond_limits_;  ///< by reason
+};
+
+/// Selects the watched aircraft of several senders: the named one, else the first that flies; before any flies, the one
+/// with most messages. Once it has flown the selection is locked, and messages of the others are only counted.
+class AircraftSelector {
+  public:
+    static constexpr std::size_t max_named = 32;  ///< senders that are counted one by one
+
+    explicit AircraftSelector(std::optional<std::string> named) : named_(std::move(named)) {}
+
+    /// Counts a message by its sender.
+    void count(std::string_view text);
+    /// The series of the selected aircraft; empty without telemetry.
+    flight::FlightSeries choose(TelemetryStore& store);
+    /// Locks the selection.
+    void keep(TelemetryStore& store);
+    /// Message counts of the other senders.
+    std::map<std::string, std::size_t> others() const;
+
+  private:
+    std::optional<std::string> named_;
+    std::string chosen_;
+    bool is_locked_ = false;
+    std::map<std::string, std::size_t, std::less<>> messages_;
 };
 
 }  // namespace flightwatt::live

@@ -200,8 +200,8 @@ TEST_F(IvyAgentTest, OutlivesGarbageGoodByesAndAgentsThatVanish) {
     const auto& report = source->report();
     EXPECT_EQ(report.restarts, 2U);
     EXPECT_EQ(report.unusable.at("lines that are not of the Ivy protocol"), 2U);
-    EXPECT_EQ(report.unusable.at("requests to end, which are not followed"), 1U);
-    EXPECT_EQ(report.unusable.at("lines of a type that the Ivy protocol does not know"), 1U);
+    EXPECT_EQ(report.unusable.at("Ivy lines of type 8, which are ignored"), 1U);
+    EXPECT_EQ(report.unusable.at("Ivy lines of type 42, which are ignored"), 1U);
     EXPECT_EQ(report.unusable.at("lines longer than any message"), 1U);
     EXPECT_EQ(report.unusable.at("announcements that are not of the Ivy protocol, version 3"), 2U);
 }
@@ -240,7 +240,7 @@ TEST_F(IvyAgentTest, SaysGoodByeWhenItEnds) {
 TEST_F(IvyAgentTest, SendsWhatOthersSubscribeTo) {
     asio::io_context own;
     IvyAgent sender(own, {.bus = parse_ivy_bus(fmt::format("127:{}", port)), .name = "player", .sends = true});
-    sender.start();
+    own.poll();
     const auto run_until = [&](const auto& condition) {
         return test::wait_until([&] {
             own.run_for(milliseconds(5));
@@ -256,18 +256,17 @@ TEST_F(IvyAgentTest, SendsWhatOthersSubscribeTo) {
     sender.send("20 ALIVE 1");
     ASSERT_TRUE(run_until([&] { return sender.waiting_bytes() == 0; }));
     EXPECT_THAT(texts_of(*watch, 3), ElementsAre("20 ENERGY 57", "20 PONG ", "20 ALIVE 1"));
-    EXPECT_EQ(peer->hear_until("2 9\002\n"),
-              fmt::format(
-                  "6 {}\002player\n5 0\002\n3 8\002no regular expression\n2 7\00220\003ENERGY 57\003 57\003\n2 9\002\n",
-                  sender.port()));
+    EXPECT_EQ(
+        peer->hear_until("2 9\002\n"),
+        fmt::format(
+            "6 {}\002player\n5 0\002\n3 8\002not a regular expression\n2 7\00220\003ENERGY 57\003 57\003\n2 9\002\n",
+            sender.port()));
     peer->say("4 9\002\n4 55\002\n9 1\002\n");
     ASSERT_TRUE(run_until([&] { return peer->socket.available() > 0; }));
     sender.send("20 ALIVE 2");
     sender.send("20 ENERGY 58");
     ASSERT_TRUE(run_until([&] { return sender.waiting_bytes() == 0; }));
     EXPECT_EQ(peer->hear_until(" 58\003\n"), "10 1\002\n2 7\00220\003ENERGY 58\003 58\003\n");
-    sender.stop();
-    own.run_for(milliseconds(100));
 }
 
 }  // namespace

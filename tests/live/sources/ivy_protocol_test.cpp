@@ -2,7 +2,12 @@
 
 #include "base/error.h"
 
+#include <cstddef>
+#include <map>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -14,19 +19,16 @@ namespace {
 using testing::ElementsAre;
 
 TEST(IvyBus, IsReadAsIvysLibrariesDo) {
-    const auto whole = parse_ivy_bus("127.255.255.255:2010");
-    EXPECT_THAT(whole.networks, ElementsAre("127.255.255.255"));
-    EXPECT_EQ(whole.port, 2010);
-    EXPECT_TRUE(whole.is_local());
-    EXPECT_THAT(parse_ivy_bus("127:2011").networks, ElementsAre("127.255.255.255"));
-    EXPECT_EQ(parse_ivy_bus("127:2011").port, 2011);
-    EXPECT_THAT(parse_ivy_bus(":2012").networks, ElementsAre("127.255.255.255"));
-    EXPECT_EQ(parse_ivy_bus("10.0").port, 2010);
-    const auto two = parse_ivy_bus("192.168.1,10.31:3000");
-    EXPECT_THAT(two.networks, ElementsAre("192.168.1.255", "10.31.255.255"));
-    EXPECT_FALSE(two.is_local());
+    const auto text_of = [](const char* bus) {
+        const auto at = parse_ivy_bus(bus);
+        return at.address().to_string() + ":" + std::to_string(at.port());
+    };
+    EXPECT_EQ(text_of("127.255.255.255:2010"), "127.255.255.255:2010");
+    EXPECT_EQ(text_of("127:2011"), "127.255.255.255:2011");
+    EXPECT_EQ(text_of(":2012"), "127.255.255.255:2012");
+    EXPECT_EQ(text_of("10.0"), "10.0.255.255:2010");
     for (const auto* wrong :
-         {"127:", "127:0", "127:65536", "127:x", "1.2.3.4.5:2010", "256:2010", "bus:2010", "127,:1x"}) {
+         {"127:", "127:0", "127:65536", "127:x", "1.2.3.4.5:2010", "256:2010", "bus:2010", "192.168.1,10.31:3000"}) {
         EXPECT_THROW(parse_ivy_bus(wrong), UsageError) << wrong;
     }
 }
@@ -62,6 +64,76 @@ TEST(IvyLine, IsReadAndWritten) {
     for (const auto* wrong : {"", "2 3", "2\002x", "a 3\002x", "2 b\002x", "\002", "2 99999999999\002"}) {
         EXPECT_FALSE(parse_ivy_line(wrong)) << wrong;
     }
+}
+
+class IvyMessagesTest : public testing::Test, public MessageSink {
+  protected:
+    void push(IncomingMessage message) override { came.push_back(std::move(message)); }
+    void count(std::string_view reason, std::size_t times) override { unusable[std::string(reason)] += times; }
+
+    std::vector<IncomingMessage> came;
+    std::map<std::string, std::size_t> unusable;
+    IvyMessages messages{*this};
+};
+
+TEST_F(IvyMessagesTest, HandOnAnAircraftsMessagesAtOnce) {
+    messages.handle("20 ENERGY 57 11.62");
+    messages.handle("ground FLIGHT_PARAM 20 0.1");
+    messages.handle("20 PONG ");
+    messages.handle("replays_of_mine START now");
+    ASSERT_EQ(came.size(), 4U);
+    EXPECT_EQ(came[0].text, "20 ENERGY 57 11.62");
+    EXPECT_EQ(came[0].time_s, std::nullopt);
+    EXPECT_EQ(came[1].text, "ground FLIGHT_PARAM 20 0.1");
+    EXPECT_EQ(came[2].text, "20 PONG ");
+    EXPECT_EQ(came[3].text, "replays_of_mine START now");
+    messages.handle("");
+    messages.handle("word");
+    EXPECT_EQ(unusable.at("messages of a single word"), 2U);
+}
+
+TEST_F(IvyMessagesTest, GiveAReplayTheTimeThatIsSaidAfterIt) {
+    messages.handle("replay20 ENERGY 57 11.62");
+    EXPECT_TRUE(came.empty());
+    messages.handle("time20 13.900000");
+    messages.handle("replay20 ENERGY 58 11.61");
+    messages.handle("time21 99");  // another aircraft's
+    EXPECT_EQ(came.size(), 1U);
+    messages.handle("time20 14.9");
+    ASSERT_EQ(came.size(), 2U);
+    EXPECT_EQ(came[0].text, "20 ENERGY 57 11.62");
+    EXPECT_EQ(came[0].time_s, 13.9);
+    EXPECT_EQ(came[1].time_s, 14.9);
+}
+
+TEST_F(IvyMessagesTest, CountTimesThatAreNotNumbers) {
+    messages.handle("replay20 ENERGY 57 11.62");
+    messages.handle("time20 noon");
+    EXPECT_TRUE(came.empty());
+    EXPECT_EQ(unusable.at("replay times that are not numbers"), 1U);
+}
+
+TEST_F(IvyMessagesTest, HeedNoReplayWhileAnAircraftIsOnTheBus) {
+    messages.handle("20 ALIVE 1");
+    messages.handle("replay20 ENERGY 57 11.62");
+    messages.handle("time20 13.9");
+    messages.handle("replay21 ENERGY 57 11.62");
+    messages.handle("time21 13.9");
+    messages.handle("ground WIND 20 1 2");
+    ASSERT_EQ(came.size(), 2U);
+    EXPECT_EQ(came[1].text, "ground WIND 20 1 2");
+    EXPECT_EQ(came[1].time_s, std::nullopt);
+    EXPECT_EQ(unusable.at("messages of a replay while an aircraft itself is on the bus"), 2U);
+}
+
+TEST_F(IvyMessagesTest, TakeWhatTheGroundSaysBesideAReplayOnItsClock) {
+    messages.handle("ground WIND 20 1 2");
+    messages.handle("replay20 ENERGY 57 11.62");
+    messages.handle("time20 13.9");
+    messages.handle("ground WIND 20 1 3");
+    ASSERT_EQ(came.size(), 3U);
+    EXPECT_EQ(came[0].time_s, std::nullopt);
+    EXPECT_EQ(came[2].time_s, 13.9);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "live/sources/message_readers.h"
 
+#include <chrono>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -8,6 +9,44 @@
 
 namespace flightwatt::live {
 namespace {
+
+using std::chrono::milliseconds;
+
+TEST(MessageQueue, GivesTimesOfArrivalToMessagesWithoutOne) {
+    MessageQueue queue(60.0);
+    queue.push({std::nullopt, "1 A 1"});
+    queue.push({5000.0, "1 A 2"});
+    queue.push({std::nullopt, "1 A 3"});
+    std::vector<IncomingMessage> messages;
+    SourceReport report;
+    queue.take(milliseconds(0), messages, report);
+    ASSERT_EQ(messages.size(), 3U);
+    EXPECT_GE(messages[0].time_s, 0.0);
+    EXPECT_EQ(messages[1].time_s, 5000.0);
+    EXPECT_GE(messages[2].time_s, messages[0].time_s);
+    EXPECT_EQ(report.messages, 3U);
+}
+
+TEST(MessageQueue, DropsTheOldestOfTooManyAndSaysSo) {
+    MessageQueue queue(1.0);
+    for (std::size_t i = 0; i < MessageQueue::max_waiting + 3; ++i) queue.push({static_cast<double>(i), "1 A"});
+    queue.count("bytes", 7);
+    queue.count("bytes", 0);
+    std::vector<IncomingMessage> messages;
+    SourceReport report;
+    while (messages.size() < MessageQueue::max_waiting) {
+        const auto before = messages.size();
+        queue.take(milliseconds(0), messages, report);
+        ASSERT_GT(messages.size(), before);
+        ASSERT_LE(messages.size() - before, MessageQueue::max_per_call);
+    }
+    queue.take(milliseconds(0), messages, report);
+    EXPECT_EQ(messages.size(), MessageQueue::max_waiting);
+    EXPECT_EQ(messages.front().time_s, 3.0);
+    EXPECT_EQ(report.messages, MessageQueue::max_waiting + 3);
+    EXPECT_EQ(report.unusable.at("messages dropped as they arrived faster than they were processed"), 3U);
+    EXPECT_EQ(report.unusable.at("bytes"), 7U);
+}
 
 TEST(LineBuffer, LinesAreTheSameInAnyPieces) {
     const std::string text = "1.5 20 PONG \r\n\n2.5 20 ALIVE 1,2\nthe rest";
