@@ -101,8 +101,8 @@ struct SynthesizeArguments {
 /// The choices of --anomaly: none, each by its name, and all.
 std::vector<std::pair<std::string, Anomalies>> anomaly_choices() {
     std::vector<std::pair<std::string, Anomalies>> choices{{"none", {""}}};
-    for (const auto& anomaly : synthetic::anomalys()) choices.push_back({anomaly, {anomaly}});
-    choices.emplace_back("all", synthetic::anomalys());
+    for (const auto& anomaly : synthetic::anomaly_names()) choices.push_back({anomaly, {anomaly}});
+    choices.emplace_back("all", synthetic::anomaly_names());
     return choices;
 }
 
