@@ -58,9 +58,8 @@ void estimate_soc_from_voltage(const battery::Battery& battery, const flight::Se
 /// State of charge at landing above the reserve, for a factor of the expected energy and a deviation of the capacity in
 /// standard deviations, as in draws of flights.
 double surplus_percent(const PredictionInput& input, const Prediction& prediction, const LiveBattery& now,
-                       double energy_factor, double capacity_sds) {
-    auto battery = input.battery.value();
-    const double nominal_ah = battery.capacity_ah;
+                       battery::Battery& battery, double energy_factor, double capacity_sds) {
+    const double nominal_ah = input.battery->capacity_ah;
     if (const auto& interval = battery.intervals.capacity_ah) {
         const double half_width_ah = capacity_sds < 0.0 ? nominal_ah - interval->low : interval->high - nominal_ah;
         const double capacity_ah = nominal_ah + capacity_sds * half_width_ah / normal_half_width();
@@ -123,8 +122,9 @@ std::optional<double> probability_below_reserve(const PredictionInput& input, co
     const auto& rest = prediction.remaining_energy;
     if (!rest.uncertainty_known || !(rest.energy_wh > 0.0)) return std::nullopt;
     const double energy_sd = std::sqrt(rest.variance_wh2) / rest.energy_wh;
+    auto battery = input.battery.value();  // a copy for all evaluations
     const auto surplus = [&](double energy_sds, double capacity_sds) {
-        return surplus_percent(input, prediction, now, 1.0 + energy_sds * energy_sd, capacity_sds);
+        return surplus_percent(input, prediction, now, battery, 1.0 + energy_sds * energy_sd, capacity_sds);
     };
     // Direction to the most probable failure: each quantity in proportion to the effect of its deviation.
     const double expected = surplus(0.0, 0.0);
