@@ -84,8 +84,8 @@ std::vector<std::string> warnings_of(const ConvertedLog& log, const std::string&
                                        definitions, short_list(describe_ids(counts.other_length_ids))));
     }
     if (counts.skipped_bytes > 0) {
-        warnings.push_back(fmt::format("damaged: {} bytes in {} runs hold no frame with a right checksum",
-                                       counts.skipped_bytes, counts.skipped_runs));
+        warnings.push_back(fmt::format("damaged: {} bytes in {} runs without a valid frame", counts.skipped_bytes,
+                                       counts.skipped_runs));
     }
     if (!log.start_s) warnings.emplace_back("a capture of a link, whose messages have no times: all are written as 0");
     if (log.untimed > 0) {

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/toml_reader.h"
 #include "base/units.h"
+#include "cli/options.h"
 #include "cli/output/battery_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/json_document.h"

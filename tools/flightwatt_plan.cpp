@@ -127,7 +127,7 @@ int make_plan(const cli::StageCall& call, const PlanArguments& arguments, const 
     const auto folder = std::filesystem::absolute(call.output.value_or("result")).parent_path();
     const auto planned =
         planned_mission_toml(file.text, file.path, problem->setup.compute, plan.mission.schedule, folder);
-    cli::write_result(call, fmt::format("# {}\n", cli::one_line(text)) + planned.text);
+    cli::write_result(call, fmt::format("# {}\n", one_line(text)) + planned.text);
     cli::warn_of_lost_comments(call, planned);
     if (call.json) {
         cli::print_json(call, cli::PlanOutput{&plan, &problem->setup});

@@ -149,9 +149,8 @@ int profile_components(const cli::StageCall& call, const ProfileArguments& argum
 }  // namespace
 
 int flightwatt::stages::profile_stage(int argc, char** argv) {
-    cli::StageDefinition stage{
-        "profile", "SPEC -o DIR | --check-interpolation FILE...",
-        R"(Runs each component of SPEC (TOML) over its quality of service while sampling
+    cli::StageDefinition stage{"profile", "SPEC -o DIR | --check-interpolation FILE...",
+                               R"(Runs each component of SPEC (TOML) over its quality of service while sampling
 power. DIR/NAME.csv is layer 2, configuration to mean power, energy and standard error, as missions
 take it; DIR/layer1 holds power over time of every run, DIR/runs.csv the result of each, DIR/idle.csv
 the idle computer. A component that fails or hangs is recorded and ended with its process group, the

@@ -30,7 +30,7 @@ void write_schedule(const cli::StageCall& call, const std::optional<std::string>
                     const mission::PreparedMission& prepared, const mission::SimulatedFlight& flight) {
     if (!file) return;
     const auto folder = std::filesystem::absolute(*file).parent_path();
-    const auto heading = fmt::format("# {}\n", cli::one_line(describe(flight.simulation.summary)));
+    const auto heading = fmt::format("# {}\n", one_line(describe(flight.simulation.summary)));
     const auto flown = planned_mission_toml(text, call.inputs.front(), prepared.setup.compute, flight.schedule, folder);
     write_file_atomically(*file, heading + flown.text);
     cli::warn_of_lost_comments(call, flown);

@@ -94,4 +94,21 @@ std::string toml_inline_table(const std::vector<std::string>& pairs) {
     return pairs.empty() ? "{}" : fmt::format("{{ {} }}", fmt::join(pairs, ", "));
 }
 
+std::string one_line(std::string_view text) {
+    constexpr unsigned char first_printed = 0x20;
+    constexpr unsigned char delete_character = 0x7F;
+    std::string line;
+    for (const char c : text) {
+        const auto code = static_cast<unsigned char>(c);
+        if (c == '\n' || c == '\t') {
+            line += ' ';
+        } else if (code < first_printed || code == delete_character) {
+            line += fmt::format("\\x{:02x}", code);
+        } else {
+            line += c;
+        }
+    }
+    return line;
+}
+
 }  // namespace flightwatt

@@ -40,4 +40,8 @@ std::string toml_key(const std::string& name);
 /// "{ a = 1, b = 2 }" of "a = 1" and "b = 2"; "{}" for an empty list.
 std::string toml_inline_table(const std::vector<std::string>& pairs);
 
+/// `text` with blanks for control characters: diagnostics stay on one line, whatever a file (or its name) put
+/// into them.
+std::string one_line(std::string_view text);
+
 }  // namespace flightwatt

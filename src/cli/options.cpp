@@ -4,7 +4,6 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "base/toml_reader.h"
-#include "cli/stage.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/overwrite_guard.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "cli/help.h"
 #include "cli/terminal.h"
 
@@ -302,23 +303,6 @@ void write_result(const StageCall& call, std::string_view content) {
     } else if (!call.json) {
         print(content);
     }
-}
-
-std::string one_line(std::string_view text) {
-    constexpr unsigned char first_printed = 0x20;
-    constexpr unsigned char delete_character = 0x7F;
-    std::string line;
-    for (const char c : text) {
-        const auto code = static_cast<unsigned char>(c);
-        if (c == '\n' || c == '\t') {
-            line += ' ';
-        } else if (code < first_printed || code == delete_character) {
-            line += fmt::format("\\x{:02x}", code);
-        } else {
-            line += c;
-        }
-    }
-    return line;
 }
 
 std::string shell_quoted(std::string_view file) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/error.h"
+#include "base/text.h"
 #include "cli/options.h"
 
 #include <cstdint>
@@ -81,10 +82,6 @@ void print(std::string_view text);
 
 /// As print(), written at once, for programs that continue; false if the pipe has no reader any more.
 bool print_flushed(std::string_view text);
-
-/// `text` with blanks for control characters: diagnostics stay on one line, whatever a file (or its name) put
-/// into them.
-std::string one_line(std::string_view text);
 
 /// A file's name as a user types it in a shell: quoted where it has to be.
 std::string shell_quoted(std::string_view file);

@@ -138,6 +138,7 @@ struct JsonType<std::vector<T>> {
     static Json write(const std::vector<T>& values) { return json_list<T>(values); }
     static Json schema() { return {{"type", "array"}, {"items", JsonType<T>::schema()}}; }
     static void read(const Json& json, std::vector<T>& values) {
+        if (!json.is_array()) throw std::invalid_argument("not a list");
         values.reserve(json.size());
         for (const auto& entry : json) JsonType<T>::read(entry, values.emplace_back());
     }

@@ -40,7 +40,7 @@ TEST(StoredFlights, AreWhatTheBatchLeft) {
 
 TEST(StoredFlights, RefuseWhatIsNoBatchFolder) {
     const auto scratch = test::scratch_dir();
-    EXPECT_THAT(test::rejected([&] { read_stored_flights(scratch); }), HasSubstr("no batch.json in it"));
+    EXPECT_THAT(test::rejected([&] { read_stored_flights(scratch); }), HasSubstr("it has no batch.json"));
     write_manifest({}, scratch);
     make_directories(scratch / "flights");
     EXPECT_THAT(test::rejected([&] { read_stored_flights(scratch); }), HasSubstr("flight record"));

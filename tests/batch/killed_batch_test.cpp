@@ -101,8 +101,7 @@ TEST_F(KilledBatch, GoesOnAfterCtrlC) {
     }
     ASSERT_TRUE(WIFEXITED(status));
     ASSERT_EQ(WEXITSTATUS(status), 130);
-    EXPECT_THAT(read_file(folder / "stderr"),
-                HasSubstr("flightwatt-batch: stopped; run the same command to resume\n"));
+    EXPECT_THAT(read_file(folder / "stderr"), HasSubstr("flightwatt-batch: stopped; run the same command to resume\n"));
     for (const auto& [name, content] : contents(folder / "out")) {
         if (name.starts_with(temporary_folder)) continue;
         ASSERT_TRUE(whole.contains(name)) << name;  // nothing half-written

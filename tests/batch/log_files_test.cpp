@@ -147,9 +147,8 @@ TEST(FindLogs, TakesTheReasonWhyAFolderBelowIsNotFitted) {
 TEST(ListedPaths, AreLinesAsTheyStand) {
     EXPECT_THAT(parse_path_list("", "list"), ElementsAre());
     EXPECT_THAT(parse_path_list("a.data\n\n b c.data\n#d.data", "list"), ElementsAre("a.data", " b c.data", "#d.data"));
-    EXPECT_EQ(
-        rejected([] { parse_path_list(std::string_view("a.data\nb\0c", 10), "list"); }),
-        "list:2: contains a NUL; expected the path of a log in each line, as find -print writes them");
+    EXPECT_EQ(rejected([] { parse_path_list(std::string_view("a.data\nb\0c", 10), "list"); }),
+              "list:2: contains a NUL; expected the path of a log in each line, as find -print writes them");
 }
 
 TEST(FindLogs, TakesWhatIsListedAsItIs) {

@@ -75,11 +75,12 @@ TEST(Manifest, IsRefusedWhereItIsNone) {
                                 [{"flight": "x", "log": "x", "place": "/x", "why_not_fitted": ""},
                                  {"flight": "x", "log": "y", "place": "/y", "why_not_fitted": ""}]})"}) {
         write_text(out / manifest_name, text);
-        EXPECT_THAT(test::rejected([&] { read_manifest(out); }), HasSubstr("batch.json: this is no list")) << text;
+        EXPECT_THAT(test::rejected([&] { read_manifest(out); }), HasSubstr("batch.json: not a manifest of a batch"))
+            << text;
     }
     write_text(out / manifest_name, R"({"format": 1, "files": [], "flights": [], "x": )" + std::string(1000, '[') +
                                         std::string(1000, ']') + "}");
-    EXPECT_THAT(test::rejected([&] { read_manifest(out); }), HasSubstr("batch.json: this is no list"));
+    EXPECT_THAT(test::rejected([&] { read_manifest(out); }), HasSubstr("batch.json: not a manifest of a batch"));
     write_text(out / manifest_name, R"({"format": 99})");
     EXPECT_THAT(test::rejected([&] { read_manifest(out); }), HasSubstr("newer"));
 }
@@ -105,7 +106,9 @@ TEST(BatchPlan, RefusesFilesOfOthersWhereABatchWrites) {
     for (const auto* name : {"flights.csv", "model.toml", "model_errors.toml", "fit.json", "table1.md",
                              "flights/opterra_synthetic_01.series.csv", "flights/opterra_synthetic_01.record.json"}) {
         write_text(out / name, "mine");
-        EXPECT_THAT(refusal(plan, out), HasSubstr((out / name).string() + " would be replaced")) << name;
+        EXPECT_THAT(refusal(plan, out),
+                    HasSubstr((out / name).string() + " is not of a batch (see batch.json) and would be replaced"))
+            << name;
         std::filesystem::remove(out / name);
     }
     // Not through a link either, whoever made the folder.

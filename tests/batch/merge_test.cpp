@@ -143,8 +143,8 @@ TEST(Merge, RefusesWhatCannotBeJoined) {
     const auto refusal = [&](const Paths& batches, const std::filesystem::path& out) {
         return test::rejected([&] { merge(batches, out); });
     };
-    EXPECT_THAT(refusal({one, other}, scratch / "out"), HasSubstr("read differently by the batches"));
-    EXPECT_THAT(refusal({one, scratch}, scratch / "out"), HasSubstr("no batch.json in it"));
+    EXPECT_THAT(refusal({one, other}, scratch / "out"), HasSubstr("read this log differently"));
+    EXPECT_THAT(refusal({one, scratch}, scratch / "out"), HasSubstr("it has no batch.json"));
     EXPECT_THROW(merge({one, other}, one), UsageError);
     batch_of({logs[3]}, scratch / "third");
     EXPECT_THROW(merge({one}, scratch / "third"), UsageError);  // it would lose the flight that is there

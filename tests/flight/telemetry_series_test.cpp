@@ -347,7 +347,7 @@ TEST_F(ReadFlight, RefusesBadSeriesWithTheirPlace) {
     EXPECT_THAT(at("time_s,power_kw\n1,2\n"), HasSubstr("has no column 'power_w'; its columns are time_s, power_kw"));
     EXPECT_THAT(at("time_s,power_w,altitud_m\n1,2,3\n"), HasSubstr("did you mean 'altitude_m'?"));
     EXPECT_THAT(at("time_s,power_w\n1,2\n"), HasSubstr("fewer than two samples"));
-    EXPECT_THAT(at("time_s,power_w,power_w\n1,2,3\n2,2,3\n"), HasSubstr("column 'power_w' "));
+    EXPECT_THAT(at("time_s,power_w,power_w\n1,2,3\n2,2,3\n"), HasSubstr("duplicate column 'power_w'"));
 }
 
 TEST_F(ReadFlight, ReadsASeriesThatBeginsWithAByteOrderMark) {

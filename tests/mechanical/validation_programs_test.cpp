@@ -44,7 +44,7 @@ TEST(Validate, PrintsEveryModelOfEveryPart) {
     EXPECT_EQ(result.code, 0) << result.err;
     EXPECT_THAT(result.out, HasSubstr("opterra_synthetic_06  total    constant_mean"));
     EXPECT_THAT(result.out, HasSubstr("cruise: fourier does not beat constant_mean: "));
-    EXPECT_THAT(result.out, HasSubstr("coverage over 6 flights means little"));
+    EXPECT_THAT(result.out, HasSubstr("coverage of 6 flights is uncertain"));
 }
 
 TEST(Validate, PrintsJson) {
@@ -67,7 +67,7 @@ TEST(Validate, RefusesOneFlightAndMomentsThatAreNone) {
     const auto folder = test::scratch_dir();
     const auto one = run(folder, "validate" + sample("01"));
     EXPECT_EQ(one.code, 4);
-    EXPECT_THAT(one.err, HasSubstr("leaving one out needs 2 or more"));
+    EXPECT_THAT(one.err, HasSubstr("cross-validation needs 2 or more"));
     EXPECT_EQ(run(folder, "validate --at -5" + samples()).code, 2);
     const auto late = run(folder, "validate --at 5000" + samples());
     EXPECT_EQ(late.code, 4);
@@ -165,7 +165,7 @@ TEST(Fit, RefusesAPhysicalModelWithoutAirspeed) {
     for (const std::string program : {"fit", "batch -o other"}) {
         const auto usage = run(folder, program + " --model newton" + sample("01"));
         EXPECT_EQ(usage.code, 2);
-        EXPECT_THAT(usage.err, HasSubstr("--model newton: expected fourier, physical or best"));
+        EXPECT_THAT(usage.err, HasSubstr("--model-kind newton: expected one of fourier, physical, best"));
     }
     EXPECT_FALSE(std::filesystem::exists(folder / "other"));
 }

@@ -71,8 +71,9 @@ Findings product_difference(const PowerRecord& record) {
     }
     if (differences.empty()) return {};
     const double difference = median_high(std::move(differences));
-    return {{difference,
-             fmt::format("power is {:.0f} % away from voltage times current", units::percentage(difference, 1.0))}};
+    return {
+        {difference, fmt::format("the power of {} is {:.0f} % away from voltage times current: its energy is uncertain",
+                                 record.power_source, units::percentage(difference, 1.0))}};
 }
 
 Findings counter_return(const PowerRecord& record) {

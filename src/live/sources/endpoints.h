@@ -7,6 +7,8 @@
 #include <string_view>
 #include <thread>
 
+#include <utility>  // boost/asio/awaitable.hpp uses std::exchange
+
 #include <boost/asio.hpp>
 #include <fcntl.h>
 

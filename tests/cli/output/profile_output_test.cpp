@@ -56,7 +56,7 @@ TEST(ProfileText, FitsTheScreen) {
 TEST(ProfileText, SaysThatNothingCouldBeMeasured) {
     auto failed = outcome();
     failed.components.front().nodes.clear();
-    EXPECT_THAT(profile_text(failed, false), HasSubstr("detection\nnothing could be measured\n"));
+    EXPECT_THAT(profile_text(failed, false), HasSubstr("detection\nno configuration was measured\n"));
 }
 
 TEST(ProfileJson, HoldsReportedAndTotalPower) {
