@@ -80,9 +80,9 @@ TEST(ModelErrors, AFileWithImpossibleErrorsIsRefused) {
                 HasSubstr("cos_w has 2 numbers, expected 3"));
     EXPECT_THAT(refusal([](auto& phase) { phase.errors->sin_w[1] = -0.5; }), HasSubstr("negative"));
     EXPECT_THAT(refusal([](auto& phase) { phase.errors->r2 = 1.5; }), HasSubstr("r2 = 1.5, expected at most 1"));
-    EXPECT_THAT(refusal([](auto& phase) { phase.spread->high_w.pop_back(); }), HasSubstr("high_w does not fit low_w"));
+    EXPECT_THAT(refusal([](auto& phase) { phase.spread->high_w.pop_back(); }), HasSubstr("does not fit low_w"));
     EXPECT_THAT(refusal([](auto& phase) { std::swap(phase.spread->low_w, phase.spread->high_w); }),
-                HasSubstr("high_w does not fit low_w"));
+                HasSubstr("does not fit low_w"));
     const auto typo = [&] {
         auto text = to_toml(fit.model);
         text.replace(text.find("condition ="), 9, "conditoin");

@@ -6,7 +6,6 @@
 #include <string>
 #include <string_view>
 #include <thread>
-
 #include <utility>  // boost/asio/awaitable.hpp uses std::exchange
 
 #include <boost/asio.hpp>
