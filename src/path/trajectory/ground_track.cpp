@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <boost/math/special_functions/ellint_1.hpp>
+#include <boost/math/special_functions/ellint_2.hpp>
 
 namespace flightwatt::path {
 namespace {
@@ -15,18 +16,27 @@ constexpr double max_pieces = 240.0;  // of one element: longer ones have longer
 
 double rad_of(double deg) { return deg / units::degree_per_rad; }
 
-/// Integral along a circle of a function with the period `turn_m`.
-template <typename Function>
-double integral(const Function& function, double from_m, double to_m, double turn_m) {
-    constexpr unsigned max_depth = 15;
-    constexpr double tolerance = 1e-11;
-    using Quadrature = boost::math::quadrature::gauss_kronrod<double, 15>;
-    const double turns = std::floor((to_m - from_m) / turn_m);
-    const double of_turns =
-        turns > 0.0 ? turns * Quadrature::integrate(function, 0.0, turn_m, max_depth, tolerance) : 0.0;
-    const double rest_from_m = from_m + turns * turn_m;
-    return of_turns +
-           (rest_from_m < to_m ? Quadrature::integrate(function, rest_from_m, to_m, max_depth, tolerance) : 0.0);
+using Policy = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
+
+/// Incomplete elliptic integrals of the first and second kind, of one modulus.
+struct EllipticIntegrals {
+    double first = 0.0;
+    double second = 0.0;
+};
+EllipticIntegrals elliptic_integrals(double modulus, double angle_rad) {
+    constexpr double half_turn_rad = units::rad_per_turn / 2.0;
+    constexpr double small_rad = 1e-9;  // both are the angle to rounding, and Boost's divide by its sine
+    const double half_turns = std::round(angle_rad / half_turn_rad);
+    const double rest_rad = angle_rad - half_turns * half_turn_rad;
+    EllipticIntegrals integrals{rest_rad, rest_rad};
+    if (std::abs(rest_rad) > small_rad)
+        integrals = {boost::math::ellint_1(modulus, rest_rad, Policy()),
+                     boost::math::ellint_2(modulus, rest_rad, Policy())};
+    if (half_turns != 0.0) {
+        integrals.first += 2.0 * half_turns * boost::math::ellint_1(modulus, Policy());
+        integrals.second += 2.0 * half_turns * boost::math::ellint_2(modulus, Policy());
+    }
+    return integrals;
 }
 
 /// The wind [m/s] along a course and across it.
@@ -76,34 +86,49 @@ double GroundTrack::min_horizontal_m_per_s() const {
 
 double GroundTrack::time_s(double from_m, double to_m, double horizontal_m_per_s) const {
     if (!(to_m > from_m)) return 0.0;
-    const auto time_per_m = [&](double along_m) {
-        return 1.0 / triangle_at(along_m, horizontal_m_per_s).ground_speed_m_per_s;
-    };
-    if (is_steady()) return (to_m - from_m) * time_per_m(0.0);
-    return integral(time_per_m, from_m, to_m, units::rad_per_turn / std::abs(curvature_rad_m_));
+    if (is_steady()) return (to_m - from_m) / steady_drift(horizontal_m_per_s).ground_speed_m_per_s;
+    return turned(from_m, to_m, horizontal_m_per_s).time_s;
 }
 
 double GroundTrack::load_factor_squared(double from_m, double to_m, double horizontal_m_per_s) const {
     if (curvature_rad_m_ == 0.0 || !(to_m > from_m)) return 1.0;
     // Of a coordinated turn: tan(bank) = ground speed^2 / (g radius cos(drift)), and n^2 = 1 + tan^2.
-    const auto tangent_squared = [&](const WindTriangle& triangle) {
-        const double tangent = triangle.ground_speed_m_per_s * triangle.ground_speed_m_per_s * curvature_rad_m_ /
-                               (units::standard_gravity_m_per_s2 * triangle.cosine);
-        return tangent * tangent;
-    };
-    if (is_steady()) return 1.0 + tangent_squared({horizontal_m_per_s, 1.0});
-    const auto per_m = [&](double along_m) {
-        const auto triangle = triangle_at(along_m, horizontal_m_per_s);
-        return tangent_squared(triangle) / triangle.ground_speed_m_per_s;
-    };
-    return 1.0 + integral(per_m, from_m, to_m, units::rad_per_turn / std::abs(curvature_rad_m_)) /
-                     time_s(from_m, to_m, horizontal_m_per_s);
+    const double curvature_per_g = curvature_rad_m_ / units::standard_gravity_m_per_s2;
+    if (is_steady()) {
+        const double tangent = horizontal_m_per_s * horizontal_m_per_s * curvature_per_g;
+        return 1.0 + tangent * tangent;
+    }
+    const auto [time_s, speed_fourth_m4_per_s3] = turned(from_m, to_m, horizontal_m_per_s);
+    return 1.0 + curvature_per_g * curvature_per_g * speed_fourth_m4_per_s3 / time_s;
 }
 
-WindTriangle GroundTrack::triangle_at(double along_m, double horizontal_m_per_s) const {
-    // Above the minimum airspeed there is one, except for rounding.
-    return solve_wind_triangle(horizontal_m_per_s, course_rad_ + curvature_rad_m_ * along_m, wind_)
+WindTriangle GroundTrack::steady_drift(double horizontal_m_per_s) const {
+    // Above the least airspeed there is one, but for rounding.
+    return solve_wind_triangle(horizontal_m_per_s, course_rad_, wind_)
         .value_or(WindTriangle{1e-12 * horizontal_m_per_s, 1e-12});
+}
+
+GroundTrack::Turned GroundTrack::turned(double from_m, double to_m, double horizontal_m_per_s) const {
+    const auto from = turned_until(from_m, horizontal_m_per_s);
+    const auto to = turned_until(to_m, horizontal_m_per_s);
+    return {to.time_s - from.time_s, to.speed_fourth_m4_per_s3 - from.speed_fourth_m4_per_s3};
+}
+
+GroundTrack::Turned GroundTrack::turned_until(double along_m, double horizontal_m_per_s) const {
+    // With the course a against the wind's, the headway h = sqrt(V^2 - W^2 sin^2 a) and c = W cos a, ground speed is
+    // h + c = D / (h - c), where D = V^2 - W^2 = h^2 - c^2: its powers are sums of elliptic integrals.
+    const double wind_rad = std::atan2(wind_.east_m_per_s, wind_.north_m_per_s);
+    const double wind_m_per_s = std::hypot(wind_.east_m_per_s, wind_.north_m_per_s);
+    const double angle_rad = course_rad_ + curvature_rad_m_ * along_m - wind_rad;
+    const double speed = horizontal_m_per_s;
+    const double modulus = std::min(wind_m_per_s / speed, 1.0 - 1e-15);
+    const double difference = speed * speed * (1.0 - modulus) * (1.0 + modulus);
+    const double across = modulus * std::sin(angle_rad);
+    const auto integrals = elliptic_integrals(modulus, angle_rad);
+    const double headway = speed * integrals.second;
+    const double fourth =
+        4.0 * (headway + speed * across) - difference / speed * (3.0 * integrals.first + std::atanh(across));
+    return {(headway - speed * across) / difference / curvature_rad_m_, speed * speed * fourth / curvature_rad_m_};
 }
 
 std::size_t GroundTrack::segments_per_turn() const {

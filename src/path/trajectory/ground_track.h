@@ -19,7 +19,7 @@ struct WindTriangle {
     double cosine = 1.0;  ///< of the angle between heading and course
 };
 
-/// `horizontal_m_per_s`: horizontal component of the airspeed. None as ground_speed_m_per_s.
+/// `horizontal_m_per_s`: the airspeed's part along the ground. None as ground_speed_m_per_s.
 std::optional<WindTriangle> solve_wind_triangle(double horizontal_m_per_s, double course_rad, const WindVelocity& wind);
 
 /// A leg or circles as lines over ground, measured in metres from their start.
@@ -49,7 +49,16 @@ class GroundTrack {
     bool is_steady() const {
         return curvature_rad_m_ == 0.0 || (wind_.east_m_per_s == 0.0 && wind_.north_m_per_s == 0.0);
     }
-    WindTriangle triangle_at(double along_m, double horizontal_m_per_s) const;
+    WindTriangle steady_drift(double horizontal_m_per_s) const;
+
+    /// A part of a turn in wind: its time, and the integral over that of (ground speed^2 / cos(drift))^2.
+    struct Turned {
+        double time_s = 0.0;
+        double speed_fourth_m4_per_s3 = 0.0;
+    };
+    Turned turned(double from_m, double to_m, double horizontal_m_per_s) const;
+    /// The same from the course with the wind to the one at a place.
+    Turned turned_until(double along_m, double horizontal_m_per_s) const;
 
     double length_m_ = 0.0;
     double course_rad_ = 0.0;       ///< at its start
