@@ -214,7 +214,6 @@ Fields<FlightRecord> record_fields(const FlightRecord*) {
             field("aircraft_name", &R::aircraft_name, "name of the aircraft in the log", csv_column{}),
             field("power_source", &R::power_source, "message of the power", csv_column{}),
             field("error", &R::error, "reason of a rejected log", csv_column{}),
-            field("max_height_m", &R::max_height_m, "greatest height of the sorties above the ground", csv_column{}),
             field("current_origin", &R::current_origin),
             field("phases", &R::phases),
             field("verdicts", &R::edge_checks),
@@ -250,7 +249,6 @@ FlightRecord record_of(const flight::LoadedFlight& loaded) {
     const flight::SelectedTracks tracks(series);
     const flight::PowerStatistics power(series);
     for (const auto& sortie : phases.sorties) {
-        record.max_height_m = std::max(record.max_height_m, sortie.height_m);
         for (const auto& edge : compare_edges_with_events(tracks, sortie)) {
             record.edge_checks.push_back({edge.edge.time_s, edge_check(edge)});
         }

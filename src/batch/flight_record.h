@@ -47,7 +47,6 @@ struct FlightRecord {
     std::string aircraft_id;
     std::string aircraft_name;
     std::string power_source;
-    double max_height_m = 0.0;
     std::string current_origin;  ///< see CurrentOrigin
     std::vector<RecordedPhase> phases;
     std::vector<RecordedEdgeCheck> edge_checks;
