@@ -100,7 +100,7 @@ Totals totals_of(const BatchFlights& flights);
 /// A row a sortie or rejected log, of the first logs.
 TextTable flights_table(const BatchFlights& flights, std::size_t max_logs);
 
-/// OUT/flights.csv in chunks, as long as `flights` exists: a row for each phase and each rejected log (docs/formats.md).
+/// OUT/flights.csv in chunks, as long as `flights` exists: a row a phase, and one a rejected log (docs/formats.md).
 TextWriter catalogue_csv(const BatchFlights& flights);
 /// Its columns.
 Json catalogue_schema();

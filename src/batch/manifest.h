@@ -39,7 +39,7 @@ std::filesystem::path result_path(const std::filesystem::path& out, std::string_
 /// Removes the files of a flight.
 void remove_results(const std::filesystem::path& out, const std::string& flight);
 
-/// Parses a JSON file of a batch. Throws std::exception for invalid JSON, and for deep nesting, which needs much memory.
+/// Parses a JSON file of a batch. Throws std::exception for invalid or deeply nested JSON.
 nlohmann::ordered_json parse_json(const std::string& text);
 
 struct Manifest {

@@ -30,8 +30,8 @@ struct ScreenTable {
     std::size_t max_rows = 0;        ///< rows in the middle of longer tables are omitted; 0: none
 };
 
-/// The table in the width of the screen: heads with units below (by the suffix of the name), long texts on several lines,
-/// and the names of columns that do not fit. Without a terminal: to_text(table).
+/// The table in the width of the screen: heads with units below, by the suffix of the name; texts on several
+/// lines; the names of columns that do not fit. Without a terminal: to_text(table).
 std::string screen_text(TextTable table, const Screen& screen, const ScreenTable& options = {});
 
 /// A CSV text with decimals by the units of its columns (28.3 s), or four digits. Throws InputError for invalid CSV.

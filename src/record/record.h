@@ -115,7 +115,7 @@ auto follow(const auto& value, const auto& step, const auto& next, const auto&..
 
 }  // namespace record_detail
 
-/// The value at the end of a path of members and functions, for field(): at(&Flight::resistance, &Resistance::value_ohm).
+/// The value at the end of a path of members and functions: at(&Flight::resistance, &Resistance::value_ohm).
 template <typename R, typename T>
 auto at(T R::*first, auto... more) {
     return [=](const R& record) {

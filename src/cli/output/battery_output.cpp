@@ -157,8 +157,8 @@ std::string cells_warning(const battery::BatteryIdentification& identified) {
 std::string describe_link(const battery::IdentifiedFlight& flight) {
     if (!flight.link) return "";
     return fmt::format(
-        "{}: assumed to be flown on the pack of {}, as it begins {:.0f} min after that one ends, {}rests lower as far as "
-        "was drawn, and its voltage under load agrees",
+        "{}: assumed to be on the pack of {}, as it begins {:.0f} min after that one ends, {}rests lower by the charge "
+        "drawn, and its voltage under load agrees",
         flight.flight, flight.same_pack_as, units::minute_from_second(flight.link->pause_s),
         flight.link->counter_continues ? "its charge counter continues, it " : "");
 }
@@ -202,8 +202,8 @@ std::vector<std::string> curve_limits(const battery::BatteryIdentification& iden
     std::vector<std::string> limits;
     if (identified.observed_min_soc_percent > 0.0)
         limits.push_back(fmt::format(
-            "below {:.1f} % ({:.3f} Ah drawn) no flight shows the open-circuit voltage: it continues in parallel to the "
-            "usual chart of {} {} cells, less certain the further down; a deeper flight would show it",
+            "no data below {:.1f} % ({:.3f} Ah drawn): the open-circuit voltage is extrapolated parallel to the chart "
+            "of {} {} cells; a deeper flight would measure it",
             identified.observed_min_soc_percent, identified.fit.knots_ah.back(), identified.cells,
             to_string(identified.chemistry)));
     if (identified.curve_start_depletion_ah > 0.0)

@@ -102,7 +102,8 @@ std::string describe(const mechanical::ModelValidation& validation, bool has_phy
 }  // namespace
 
 TextTable model_table(const mechanical::MechanicalModel& model,
-                   const std::optional<mechanical::MechanicalModel>& published, mechanical::TableIntervals intervals) {
+                      const std::optional<mechanical::MechanicalModel>& published,
+                      mechanical::TableIntervals intervals) {
     return published ? table_one_comparison(*published, model, intervals) : table_one(model, intervals);
 }
 

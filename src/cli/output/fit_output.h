@@ -16,8 +16,8 @@ namespace flightwatt::cli {
 
 /// Table I of a model, with a published one for comparison.
 TextTable model_table(const mechanical::MechanicalModel& model,
-                   const std::optional<mechanical::MechanicalModel>& published,
-                   mechanical::TableIntervals intervals = mechanical::TableIntervals::absent);
+                      const std::optional<mechanical::MechanicalModel>& published,
+                      mechanical::TableIntervals intervals = mechanical::TableIntervals::absent);
 
 /// The mean power of each phase with its 95 % interval, flights and samples.
 TextTable mean_power_table(const mechanical::MechanicalModel& model);

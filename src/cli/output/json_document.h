@@ -2,7 +2,6 @@
 
 #include "cli/stage.h"
 #include "flight/flight_phases.h"
-#include "record/json_type.h"
 #include "record/record.h"
 
 #include <string>

@@ -3,6 +3,7 @@
 #include "base/units.h"
 #include "cli/output/prediction_output.h"
 #include "cli/screen_table.h"
+#include "record/json_type.h"
 
 #include <algorithm>
 #include <cctype>

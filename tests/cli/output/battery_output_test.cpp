@@ -48,7 +48,7 @@ TEST_F(BatteryTables, SaysWhosePackWasAssumed) {
     flight.same_pack_as = "synthetic_1";
     flight.air_temperature_c = 21.5;
     EXPECT_THAT(describe_link(flight),
-                HasSubstr("synthetic_2: assumed to be flown on the pack of synthetic_1, as it begins 23 min after"));
+                HasSubstr("synthetic_2: assumed to be on the pack of synthetic_1, as it begins 23 min after"));
     const auto table = flights_table(identified_, {});
     EXPECT_EQ(table.header.size(), columns + 2);
     EXPECT_THAT(table.rows[1], testing::IsSupersetOf({"synthetic_1", "21.5"}));
