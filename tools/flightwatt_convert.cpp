@@ -226,9 +226,9 @@ int flightwatt::stages::convert_stage(int argc, char** argv) {
         "convert", "LOG",
         R"(Writes a binary log as text, as Paparazzi's sd2log does: the .LOG or .tlm of an SD card, or a capture
 of a serial line, of UDP or of an XBee (also .gz, .bz2, .xz, .zst). With -o NAME.data, NAME.log is
-    stage.json_schema = cli::document_schema<ConvertOutput>;
 written next to it if the log has one. All stages also read the binary log itself, with the same
 results.)"};
+    stage.json_schema = cli::document_schema<ConvertOutput>;
     stage.max_inputs = 1;
     stage.examples = {"flightwatt convert flight.LOG -o flight.data",
                       "flightwatt convert capture.bin --messages messages.xml"};

@@ -194,7 +194,7 @@ struct Exported {
 Fields<Exported> record_fields(const Exported*) {
     using R = Exported;
     return {field("inputs", &R::inputs, "files"),
-            field("format", &R::format, "format, as of `--format`"),
+            field("export_format", &R::format, "format, as of `--format`"),
             field("notes", &R::notes, "what is missing or assumed"),
             field("points", &R::points, "of a track: positions", optional_key{}),
             field("parts", &R::segments, "of a track: lines", optional_key{}),

@@ -112,9 +112,9 @@ int flightwatt::stages::new_mission_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "new-mission", "--model MODEL.toml --battery PACK.toml [--profile P.csv]...",
         R"(Writes a mission file to begin with, for that aircraft, pack and software. It simulates as it is: each
-    stage.json_schema = cli::document_schema<NewMissionOutput>;
 component runs at the middle of what was profiled, and 20 % of charge are kept in reserve. It contains every other key of a
 mission as a comment, with its meaning and an example. An existing file is not replaced.)"};
+    stage.json_schema = cli::document_schema<NewMissionOutput>;
     stage.min_inputs = 0;
     stage.max_inputs = 0;
     stage.output_help = "write the mission to FILE, which names its files relative to it";

@@ -86,8 +86,8 @@ int flightwatt::stages::parse_stage(int argc, char** argv) {
         R"(Reads a Paparazzi log with its .log, .data or the .LOG of an SD card (also .gz, .bz2, .xz, .zst), and
 writes its data on the flight as a series file (CSV): power, voltage, current, charge, energy, throttle,
 altitude, position, speeds, wind, attitude, mode and block, each at the times when it was logged.
-    stage.json_schema = cli::document_schema<ParseOutput>;
 Any stage reads the series file as it reads the log, with the same results.)"};
+    stage.json_schema = cli::document_schema<ParseOutput>;
     stage.max_inputs = 1;
     stage.examples = {"flightwatt parse flight.data -o flight.csv",
                       "flightwatt parse flight.LOG --messages messages.xml --json"};

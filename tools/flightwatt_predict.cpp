@@ -85,11 +85,11 @@ int flightwatt::stages::predict_stage(int argc, char** argv) {
 moves the cruise level of the model towards this flight's own, weighted by the variances between
 flights and within one. No later part of the log is used: a log that ends there gives the same result.
 The remaining energy is that of --remaining more seconds of cruise and of a landing as in the model
-    stage.json_schema = cli::document_schema<cli::Prediction>;
 (its duration, too); with --airspeed the cruise has the power of the physical model, with --mission
 that of the remaining path in its wind. The 95 % interval of the remaining energy includes the
 variability between flights, the drift within one, that of the wind, and the uncertainty of a model
 from few flights.)"};
+    stage.json_schema = cli::document_schema<cli::Prediction>;
     stage.max_inputs = 1;
     stage.examples = {"flightwatt predict flight.data --model model.toml --remaining 600",
                       "flightwatt predict flight.data --mission mission.toml --at 300 --battery pack.toml"};

@@ -7,6 +7,7 @@
 #include "cli/output/stage_options.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
+#include "report/batch_content.h"
 #include "report/page.h"
 #include "report/trends_section.h"
 #include "stages.h"

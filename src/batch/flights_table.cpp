@@ -160,6 +160,11 @@ TextWriter catalogue_csv(const BatchFlights& flights) {
     };
 }
 
-Json catalogue_schema() { return record_schema<CatalogueRow>(); }
+Json catalogue_schema() {
+    std::vector<const FieldText*> columns;
+    for (const auto& field : fields_of<CatalogueRow>())
+        if (field.csv_column) columns.push_back(&field);
+    return object_schema(columns);
+}
 
 }  // namespace flightwatt::batch

@@ -161,7 +161,8 @@ ParameterText to_inav(const EstimatorInput& input) {
         set("nav_fw_cruise_speed",
             whole<std::uint16_t>(model.physical->mean_airspeed_m_per_s * cm_per_m, "nav_fw_cruise_speed"));
     } else {
-        result.notes.emplace_back("the model has no airspeed: nav_fw_cruise_speed is omitted (fit --model-kind physical)");
+        result.notes.emplace_back(
+            "the model has no airspeed: nav_fw_cruise_speed is omitted (fit --model-kind physical)");
     }
     if (input.reserve_percent) {
         set("rth_energy_margin", whole<std::uint8_t>(*input.reserve_percent, "rth_energy_margin"));

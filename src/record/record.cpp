@@ -75,7 +75,7 @@ const KeyUnit* unit_of_key(std::string_view key) {
 
 Json nullable(Json schema) {
     if (!schema.contains("type")) return schema.empty() ? schema : Json{{"anyOf", {schema, {{"type", "null"}}}}};
-    schema["type"] = Json::array({schema["type"], "null"});
+    if (!schema["type"].is_array()) schema["type"] = Json::array({schema["type"], "null"});
     return schema;
 }
 

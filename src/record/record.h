@@ -104,7 +104,7 @@ auto follow(const auto& value, const auto& step) {
     using T = std::remove_cvref_t<decltype(value)>;
     if constexpr (std::is_pointer_v<T>)
         return std::invoke(step, *value);
-    else if constexpr (requires { value.has_value(); })
+    else if constexpr (requires { *value; })  // std::optional and smart pointers
         return value ? std::optional(std::invoke(step, *value)) : std::nullopt;
     else
         return std::invoke(step, value);
@@ -166,6 +166,14 @@ auto embedded(F get, std::initializer_list<std::string_view> without = {}) {
             return part == nullptr ? Json() : value(*part);
         };
     }
+    return fields;
+}
+
+/// The same, with null for each key where there is no such record.
+template <typename F>
+auto embedded_or_null(F get) {
+    auto fields = embedded(get);
+    for (auto& field : fields) field.schema = [inner = field.schema] { return nullable(inner()); };
     return fields;
 }
 

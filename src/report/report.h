@@ -3,7 +3,7 @@
 #include "mechanical/mechanical_model.h"
 #include "mission/mission.h"
 #include "record/record.h"
-#include "report/sections/batch_content.h"
+#include "report/batch_content.h"
 #include "report/html.h"
 
 #include <cstddef>

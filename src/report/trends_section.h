@@ -5,7 +5,7 @@
 #include "batch/trend.h"
 #include "battery/discharge_record.h"
 #include "battery/identification.h"
-#include "report/sections/batch_content.h"
+#include "report/batch_content.h"
 #include "report/html.h"
 
 #include <cstddef>

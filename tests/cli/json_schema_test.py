@@ -48,7 +48,7 @@ COMMANDS = [
 
 def golden_commands():
     for case in sorted((SOURCE / "tests/cli/golden").glob("*.case")):
-        command = case.read_text(encoding="utf-8").split("--- command\n", 1)[1].split("\n--- ", 1)[0]
+        command = case.read_text(encoding="utf-8", errors="replace").split("--- command\n", 1)[1].split("\n--- ", 1)[0]
         if "--json" in command:
             yield command
 

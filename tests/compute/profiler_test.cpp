@@ -134,7 +134,8 @@ TEST_F(Profiler, CtrlCLeavesNothingAndIsResumed) {
     ::kill(child, SIGINT);
     EXPECT_EQ(test::exit_code_of(child), 130);
     EXPECT_EQ(test::processes_with(marker), 0);
-    EXPECT_THAT(text("stderr"), HasSubstr("stopped by SIGINT after 3 of 5 runs; the same command continues from there"));
+    EXPECT_THAT(text("stderr"),
+                HasSubstr("stopped by SIGINT after 3 of 5 runs; the same command continues from there"));
     const auto before = text("starts");
     const auto idle = text("out/layer1/idle/repeat_1.csv");
     write("free", "");

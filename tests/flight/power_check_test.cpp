@@ -61,7 +61,7 @@ TEST(PowerReport, NamesWhatCannotBe) {
     EXPECT_THAT(faults_after([](test::SampleColumns& s) {
                     for (auto& power : s.power_w) power *= 1.5;
                 }),
-                Contains("power is 50 % away from voltage times current"));
+                Contains("the power of series CSV is 50 % away from voltage times current: its energy is uncertain"));
     EXPECT_THAT(faults_after([](test::SampleColumns& s) {
                     for (std::size_t i = s.time_s.size() / 2; i < s.time_s.size(); ++i) s.energy_wh[i] = 0.0;
                 }),

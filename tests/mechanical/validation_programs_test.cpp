@@ -242,8 +242,7 @@ TEST(Predict, TellsHowTheBatteryLands) {
     EXPECT_FALSE(low["at_landing"]["fails_after_s"].is_null());
     EXPECT_EQ(run(folder, predict + " --initial-soc 1" + sample("01")).code, 4);  // more was drawn already
     EXPECT_EQ(run(folder, predict + " --initial-soc 101" + sample("01")).code, 2);
-    EXPECT_EQ(run(folder, "predict --model model.toml --at 300 --remaining 9 --initial-soc 50" + sample("01")).code,
-              2);
+    EXPECT_EQ(run(folder, "predict --model model.toml --at 300 --remaining 9 --initial-soc 50" + sample("01")).code, 2);
 }
 
 TEST(Predict, NeedsAPhysicalModelForAnAirspeed) {

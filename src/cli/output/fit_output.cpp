@@ -157,14 +157,15 @@ Fields<FitOutput> record_fields(const FitOutput*) {
         }
         return all;
     };
-    return {field("name", at(&R::model, &M::name), "name of the model"),
-            field("weighting", at(&R::model, &M::weighting), "`--weights`"),
-            field("phases", phases, "phases of the model"),
-            field("flights", at(&R::model, &M::flights), "flights of the fit"),
-            field("validation", at(&R::model, &M::validation), "hold-out errors, of `--model-kind best`", optional_key{}),
-            field("warnings", at(&R::model, mechanical::model_warnings), "warnings"),
-            field("notes", at(&R::model, mechanical::fit_notes), "remarks on the fit"),
-            field("physical", &R::physical, "physical model, of `--model-kind physical`", optional_key{})};
+    return {
+        field("name", at(&R::model, &M::name), "name of the model"),
+        field("weighting", at(&R::model, &M::weighting), "`--weights`"),
+        field("phases", phases, "phases of the model"),
+        field("flights", at(&R::model, &M::flights), "flights of the fit"),
+        field("validation", at(&R::model, &M::validation), "hold-out errors, of `--model-kind best`", optional_key{}),
+        field("warnings", at(&R::model, mechanical::model_warnings), "warnings"),
+        field("notes", at(&R::model, mechanical::fit_notes), "remarks on the fit"),
+        field("physical", &R::physical, "physical model, of `--model-kind physical`", optional_key{})};
 }
 
 }  // namespace flightwatt::cli

@@ -180,7 +180,9 @@ std::vector<ScheduleOutput> all_schedules(Replays replays) {
 
 }  // namespace
 
-TextTable replay_basis_table(Replays replays) { return flightwatt::table_of(std::vector<Replay>(replays.begin(), replays.end())); }
+TextTable replay_basis_table(Replays replays) {
+    return flightwatt::table_of(std::vector<Replay>(replays.begin(), replays.end()));
+}
 
 TextTable replay_table(Replays replays) { return flightwatt::table_of(all_schedules(replays)); }
 

@@ -101,7 +101,7 @@ Fields<PhaseSpanOutput> record_fields(const PhaseSpanOutput*) {
                           field("start_s", at(&R::span, &P::start, &E::time_s), "in the log's time"),
                           field("end_s", at(&R::span, &P::end, &E::time_s), "in the log's time"),
                           field("duration_s", at(&R::span, &P::duration_s), "end less start"),
-                          embedded([](const R& r) { return r.statistics ? &*r.statistics : nullptr; }),
+                          embedded_or_null([](const R& r) { return r.statistics ? &*r.statistics : nullptr; }),
                           field("complete", at(&R::span, &P::complete), "false: the log begins or ends in the phase"),
                           object<R>("evidence", "data at the edges",
                                     {field("start", at(&R::span, &P::start), "first edge"),

@@ -139,8 +139,8 @@ void move_phases(const MissionSetup& mission, const PhaseDeviations& deviations,
         moved_w = std::min(moved_w, max_rise_w[phase]);
         auto& model = flight.mechanical->phases[phase];
         model.fourier = mission.mechanical->phases[phase].fourier;
-        const bool stretched = mission.phase_clock == mechanical::PhaseTimeScaling::scaled;
-        move_level(model, moved_w, stretched ? model.duration_s : flown_s);
+        const bool is_scaled = mission.phase_clock == mechanical::PhaseTimeScaling::scaled;
+        move_level(model, moved_w, is_scaled ? model.duration_s : flown_s);
     }
 }
 

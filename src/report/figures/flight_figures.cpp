@@ -91,8 +91,8 @@ FigureData power_rows(const ReportFlight& flight, const flight::Track& power,
     for (const auto& sortie : flight.phases.sorties) {
         for (const auto& span : sortie.phases) {
             if (!span.complete || span.duration_s() <= 0.0) continue;
-            const auto curve = time_scaled_model(model->phases[span.phase], span.duration_s(),
-                                                 mechanical::PhaseTimeScaling::scaled);
+            const auto curve =
+                time_scaled_model(model->phases[span.phase], span.duration_s(), mechanical::PhaseTimeScaling::scaled);
             for (int i = 0; i <= points; ++i) {
                 const double time_s = span.duration_s() * i / points;
                 data.add({span.start.time_s + time_s, power_w(curve, time_s)}, {"model"});

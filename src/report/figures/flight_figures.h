@@ -5,7 +5,7 @@
 #include "mechanical/model_errors.h"
 #include "mechanical/physical_fit.h"
 #include "mechanical/validation.h"
-#include "report/sections/batch_content.h"
+#include "report/batch_content.h"
 #include "report/figure.h"
 
 #include <cstddef>

@@ -4,7 +4,7 @@
 #include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
 #include "flight/selected_track.h"
-#include "report/sections/batch_content.h"
+#include "report/batch_content.h"
 #include "report/figures/flight_figures.h"
 #include "report/html.h"
 #include "report/sections/sections.h"

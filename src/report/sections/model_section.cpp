@@ -44,8 +44,8 @@ Section validation_section(const std::vector<mechanical::ValidatedFlight>& fligh
     }
     section.html += paragraph(
         "Leave-one-out: the model is fitted to all flights but one and predicts the energy of that one from its "
-        "durations. Baselines: the mean power of each phase, the power of the flight with the nearest durations, and, "
-        "where it was measured, power by airspeed and climb (physical).");
+        "durations. Baselines: the mean power of each phase and, where airspeed was measured, power by airspeed and climb "
+        "(physical).");
     add_figure(section, validation_figure(flights, of.id("validation-errors")));
     add_table(
         section,

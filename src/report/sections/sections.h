@@ -8,7 +8,7 @@
 #include "mechanical/validation.h"
 #include "mission/mission.h"
 #include "mission/replay.h"
-#include "report/sections/batch_content.h"
+#include "report/batch_content.h"
 #include "report/figure.h"
 #include "report/html.h"
 #include "report/sections/simulated_mission.h"

@@ -1,6 +1,6 @@
 #include "base/duration_text.h"
 #include "flight/flight_identity.h"
-#include "report/sections/batch_content.h"
+#include "report/batch_content.h"
 #include "report/sections/sections.h"
 
 #include <algorithm>

@@ -55,9 +55,10 @@ std::vector<mission::Replay> all_cases() {
 TEST(ReplaySentences, CountTheFlightsOnWhichItWasBetter) {
     const auto sentences = replay_sentences(all_cases());
     ASSERT_EQ(sentences.size(), 1U) << "there is no plan with a margin";
-    EXPECT_THAT(sentences[0], AllOf(HasSubstr("survey: replanning in flight against planning before the flight, on 6 flights: "
-                                              "better on 3, a tie on 1, worse on 2."),
-                                    HasSubstr("keeps the reserve on 4 of 6, the plan on 4")));
+    EXPECT_THAT(sentences[0],
+                AllOf(HasSubstr("survey: replanning in flight against planning before the flight, on 6 flights: "
+                                "better on 3, a tie on 1, worse on 2."),
+                      HasSubstr("keeps the reserve on 4 of 6, the plan on 4")));
 }
 
 TEST(ReplaySentences, CountOneFlight) {

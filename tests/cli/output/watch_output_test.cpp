@@ -59,8 +59,9 @@ TEST(WatchOutput, SaysWhenToTurnHome) {
     state.battery->time_to_reserve_s = 600.0;
     state.battery->probability_below_reserve = 0.031;
     state.turn_home = live::ReturnDeadline{90.0, false};
-    EXPECT_THAT(line_of(state, two_components()),
-                HasSubstr("reserve in 10.0 min of cruise, probability of landing below it 3.1 %, turn home within 1.5 min"));
+    EXPECT_THAT(
+        line_of(state, two_components()),
+        HasSubstr("reserve in 10.0 min of cruise, probability of landing below it 3.1 %, turn home within 1.5 min"));
     state.turn_home = live::ReturnDeadline{};
     EXPECT_THAT(line_of(state, two_components()), HasSubstr("too late to turn home"));
     const auto compute = two_components();

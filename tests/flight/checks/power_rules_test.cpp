@@ -241,7 +241,8 @@ TEST(PowerRules, OfPowerThatIsNotVoltageTimesCurrent) {
             record.voltage_v.push_back(record.power_w[i] / (factor * record.current_a[i]));
         return found_in(std::move(record)).power_faults;
     };
-    EXPECT_THAT(apart(1.11), Contains("power is 11 % away from voltage times current"));
+    EXPECT_THAT(apart(1.11),
+                Contains("the power of ESC is 11 % away from voltage times current: its energy is uncertain"));
     EXPECT_THAT(apart(1.09), IsEmpty());
     EXPECT_THAT(apart(2.0, 0.11), testing::SizeIs(1)) << "1.1 W";
     EXPECT_THAT(apart(2.0, 0.09), IsEmpty()) << "0.9 W";

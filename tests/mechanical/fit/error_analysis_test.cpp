@@ -36,8 +36,7 @@ TEST(ErrorAnalysis, OfPreciseSamplesIsTheCovarianceOfTheTextbook) {
     // Little noise: the curve is linear in all that is not known, and sigma^2 (J^T J)^-1 is right.
     const auto one = analysed(test::record_flights(flight::Phase::cruise, 1, 0.05, 1), flight::Phase::cruise);
     const auto& samples = one.flights[0];
-    const auto at = fourier_residual(samples, one.fit.theta_rad,
-                                     coefficients_of(one.fit.flights[0].fourier));
+    const auto at = fourier_residual(samples, one.fit.theta_rad, coefficients_of(one.fit.flights[0].fourier));
     Eigen::MatrixXd jacobian(at.residual.size(), 1 + at.by_coefficients.cols());
     jacobian << at.by_theta, at.by_coefficients;
     const auto freedom = static_cast<double>(jacobian.rows() - jacobian.cols());

@@ -1,6 +1,6 @@
 // What the report takes from a batch's folder.
 
-#include "report/sections/batch_content.h"
+#include "report/batch_content.h"
 
 #include "base/error.h"
 #include "helpers/running_program.h"

@@ -1,4 +1,4 @@
-#include "report/sections/batch_content.h"
+#include "report/batch_content.h"
 
 #include "base/error.h"
 #include "base/units.h"
