@@ -192,7 +192,8 @@ TEST(Compare, ReproducesThePaper) {
     const auto result = run(folder, "compare", "--json " + missions);
     EXPECT_EQ(result.code, 0);
     std::vector<std::string> names;
-    for (const auto& summary : nlohmann::json::parse(result.out)["missions"]) names.push_back(summary["mission"]);
+    const auto json = nlohmann::json::parse(result.out);
+    for (const auto& summary : json["missions"]) names.push_back(summary["mission"]);
     EXPECT_THAT(names, testing::ElementsAre("computing-only", "mechanical-only", "invariant-5.8fps-32bit", "adaptive",
                                             "plan", "invariant-10fps-240bit", "adaptive-replanned", "phased",
                                             "invariant-32fps-448bit"));
