@@ -28,7 +28,9 @@ Discharge fast_discharge(const Battery& battery, const Load& load, const Battery
     }
     if (state.soc_percent <= 0.0) return {{0.0, state.rc_voltage_v}, load.start_s};
     const double length_s = load.end_s - load.start_s;
-    if (length_s == 0.0) return {state};
+    // Constants of an RC pair over much shorter steps than its time constant are differences of near numbers.
+    constexpr double min_length_s = 0.01;
+    if (length_s < min_length_s) return discharge(battery, load, state, {exact_step_s, options.cutoff_voltage_v});
     const auto count = fast_steps(*battery.thevenin, length_s, options.max_s);
     const double step_s = length_s / static_cast<double>(count);
     const auto circuit = circuit_of(battery);

@@ -13,23 +13,35 @@ namespace {
 
 constexpr double same_power_fraction = 1e-12;
 
-/// Neighbours of the same power become one piece.
+/// A piece is long enough for its power to follow from the energies at its ends.
+constexpr double min_piece_s = 1e-6;
+
+/// Neighbours of the same power become one piece; a shorter one becomes part of the next.
 PiecewisePower power_pieces(const mechanical::PhysicalModel& model, const PathTrajectory& flown, double factor) {
     PiecewisePower pieces;
     std::optional<double> last_w;
+    double end_s = 0.0;
+    double end_j = 0.0;
     for (const auto& [time_s, motion, element] : flown.pieces) {
         const double power_w = factor * mechanical::power_w(model, motion);
-        const double end_s = pieces.time_s.back() + time_s;
-        const double end_j = pieces.energy_j.back() + power_w * time_s;
-        if (last_w && std::abs(power_w - *last_w) <= same_power_fraction * std::abs(*last_w)) {
-            pieces.time_s.back() = end_s;
-            pieces.energy_j.back() = end_j;
-        } else {
-            pieces.time_s.push_back(end_s);
-            pieces.energy_j.push_back(end_j);
-            last_w = power_w;
+        end_s += time_s;
+        end_j += power_w * time_s;
+        if (end_s - pieces.time_s.back() < min_piece_s) continue;
+        const bool is_same = last_w && std::abs(power_w - *last_w) <= same_power_fraction * std::abs(*last_w);
+        if (!is_same) {
+            pieces.time_s.push_back(0.0);
+            pieces.energy_j.push_back(0.0);
         }
+        pieces.time_s.back() = end_s;
+        pieces.energy_j.back() = end_j;
+        last_w = power_w;
     }
+    if (pieces.time_s.size() == 1) {
+        end_s = std::max(end_s, min_piece_s);
+        pieces = {{0.0, end_s}, {0.0, end_j}};
+    }
+    pieces.time_s.back() = end_s;
+    pieces.energy_j.back() = end_j;
     return pieces;
 }
 

@@ -52,6 +52,18 @@ TEST(FastDischarge, ChangesNothingInNoTime) {
     EXPECT_FALSE(after.ended_at_s());
 }
 
+TEST(FastDischarge, IsExactOverAnyShortTime) {
+    std::mt19937_64 random(4713);
+    const auto pack = drawn_pack(random);
+    const BatteryState full{90.0, 0.2};
+    for (const double length_s : {1e-300, 1e-15, 1e-9, 1e-4, 0.009, 0.011}) {
+        const Load load{[](double) { return 30.0; }, 5.0, 5.0 + length_s};
+        const auto end = fast_discharge(pack, load, full, {20.0, 0.0});
+        EXPECT_NEAR(end.soc_percent, full.soc_percent, 1e-3) << length_s;
+        EXPECT_NEAR(end.rc_voltage_v, full.rc_voltage_v, 1e-3) << length_s;
+    }
+}
+
 TEST(FastDischarge, PartsNoStepForEver) {
     std::mt19937_64 random(4713);
     const auto pack = drawn_pack(random);
