@@ -30,7 +30,6 @@ using namespace flightwatt;
 struct TrendsArguments {
     std::optional<double> capacity_ah;
     std::optional<std::string> figures;
-    std::size_t max_records = 60;
     cli::FlightFilter filter;
     cli::FlightArguments flights;
 };
@@ -179,8 +178,8 @@ int show_trends(const cli::StageCall& call, const TrendsArguments& arguments) {
     std::ranges::stable_sort(flights, {}, [](const auto& flight) {
         return std::pair(flight.aircraft, flight.facts.start_clock_s.value_or(0.0));
     });
-    for (const auto& note : add_state_of_health(flights, arguments.max_records, arguments.capacity_ah))
-        cli::note(call, note);
+    constexpr std::size_t max_records = 60;
+    for (const auto& note : add_state_of_health(flights, max_records, arguments.capacity_ah)) cli::note(call, note);
     const auto trends = trends_of(flights);
     const auto screen = screen_of(call);
     write_csv_result(call, csv_of(flights),
@@ -218,8 +217,6 @@ each aircraft. A flight that is in two folders of batch counts once.)" +
         "where no flight determines their level");
     options.add("figures", arguments.figures, cli::output_file("DIR"),
                 "draw each aircraft's trends into DIR, as flightwatt report --figures does");
-    options.add("max-records", arguments.max_records, {.value = "N", .min = 5},
-                "flights per aircraft for its resistance and capacity");
     cli::add_filter_options(options, arguments.filter);
     cli::add_flight_options(options, arguments.flights);
     return cli::run_stage(argc, argv, stage, [&](const auto& call) { return show_trends(call, arguments); });
