@@ -25,7 +25,6 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <malloc.h>
 
 namespace {
 
@@ -214,7 +213,6 @@ int finish(const cli::StageCall& call, const BatchArguments& arguments, batch::B
                           options.out / batch::temporary_folder);
     const auto shown = flights_text(call, flights, options);
     const auto totals = totals_of(flights);
-    release_details(flights);
     try {
         if (totals.accepted == 0) {
             remove_model(call, options.out);
@@ -237,7 +235,6 @@ int finish(const cli::StageCall& call, const BatchArguments& arguments, batch::B
         }
         if (!arguments.flights.mix_aircraft) refuse_mix(call, flights, options.out);
         auto [fit, physical] = known ? *std::move(known) : fit_batch(call, arguments, flights, options);
-        ::malloc_trim(0);  // the samples
         fit.copies = std::move(copies);
         fit.excluded = options.load.excluded;
         fit.keep = options.load.keep;
@@ -325,13 +322,10 @@ int run_over_logs(const cli::StageCall& call, const BatchArguments& arguments) {
     auto plan = make_plan(call, arguments, options);
     tell_plan(call, plan);
     prepare_folder(plan, options.out);
-    plan.earlier = plan.manifest = {};
-    ::malloc_trim(0);  // of a hundred thousand logs, the plan took more than the work is going to
     const batch::RemoveIfEmpty unfinished{options.out / batch::temporary_folder};
     batch::end_at_signals(call.program);
     cli::ProgressBar bar("logs");
     auto flights = run_batch(plan.logs, options, progress_of(call, bar));
-    plan = {};
     bar.clear();
     return finish(call, arguments, std::move(flights), options, published);
 }

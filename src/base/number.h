@@ -48,16 +48,7 @@ inline double number_or_nan(std::string_view text) {
     return negative ? -magnitude : magnitude;
 }
 
-/// How many characters a number's text has at most: "-1.7976931348623157e+308".
-inline constexpr std::size_t max_number_chars = 24;
-/// Room for it, and more.
-inline constexpr std::size_t number_buffer_size = 48;
-
-/// Writes a finite number as fmt's "{}" does, in the shortest way that reads back as the same, and returns where it
-/// ends. `to` has room for `number_buffer_size` characters. Quick for short decimals, as logs are made of.
-char* write_number(char* to, double value);
-
-/// The same with std::nullopt for other texts.
+/// number_or_nan with std::nullopt for other texts.
 inline std::optional<double> parse_number(std::string_view text) {
     const double number = number_or_nan(text);
     return std::isnan(number) ? std::nullopt : std::optional(number);

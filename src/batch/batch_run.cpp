@@ -50,12 +50,6 @@ std::string fingerprint_of(const flight::FlightFile& file, const LogFile& log, c
     return fingerprint.hex();
 }
 
-/// Clears it and gives its memory back.
-template <typename Container>
-void release(Container& container) {
-    Container().swap(container);
-}
-
 bool has_results(const BatchOptions& options, const std::string& flight) {
     return std::filesystem::exists(result_path(options.out, flight, series_suffix)) ||
            std::filesystem::exists(result_path(options.out, flight, phases_suffix));
@@ -204,10 +198,6 @@ BatchFlight without_samples(FlightRecord record, std::size_t min_samples, const 
         done.selection.flights.push_back(std::move(sortie));
     }
     done.selection.exclusions = std::move(measured.exclusions);
-    release(record.edge_checks);
-    release(record.log);
-    release(record.current_origin);
-    record.phases.shrink_to_fit();
     done.record = std::move(record);
     return done;
 }
@@ -244,14 +234,6 @@ std::vector<mechanical::MeasuredFlight> read_samples(const BatchFlights& flights
     std::vector<mechanical::MeasuredFlight> measured;
     for (auto& of_log : of_logs) std::ranges::move(of_log, std::back_inserter(measured));
     return measured;
-}
-
-void release_details(BatchFlights& flights) {
-    for (auto& flight : flights) {
-        release(flight.record.phases);
-        release(flight.record.warnings);
-        release(flight.selection.exclusions);
-    }
 }
 
 std::string mixed_aircraft_reason(const BatchFlights& flights) {

@@ -81,9 +81,6 @@ void exclude_duplicates(BatchFlights& flights, const std::vector<DuplicateFlight
 /// Reason for excluding a duplicate.
 std::string duplicate_reason(const std::string& other);
 
-/// Frees phases, warnings and exclusions, half of the memory, before the fit.
-void release_details(BatchFlights& flights);
-
 /// Why the fitted flights are of several aircraft (describe_mixed_aircraft), or empty.
 std::string mixed_aircraft_reason(const BatchFlights& flights);
 

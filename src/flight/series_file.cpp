@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <utility>
@@ -202,19 +203,17 @@ void write_rows(const std::vector<Track>& tracks, const TextSink& sink) {
     const auto next_s = [&](std::size_t k) {
         return next[k] == tracks[k].time_s.size() ? infinite_s : tracks[k].time_s[next[k]];
     };
-    std::vector<char> row((tracks.size() + 1) * (number_buffer_size + 1));
     std::string text;
     while (true) {
         double time_s = infinite_s;
         for (std::size_t k = 0; k < tracks.size(); ++k) time_s = std::min(time_s, next_s(k));
         if (!std::isfinite(time_s)) break;
-        char* to = write_number(row.data(), time_s);
+        fmt::format_to(std::back_inserter(text), "{}", time_s);
         for (std::size_t k = 0; k < tracks.size(); ++k) {
-            *to++ = ',';
-            if (next_s(k) == time_s) to = write_number(to, tracks[k].value[next[k]++]);
+            text += ',';
+            if (next_s(k) == time_s) fmt::format_to(std::back_inserter(text), "{}", tracks[k].value[next[k]++]);
         }
-        *to++ = '\n';
-        text.append(row.data(), to);
+        text += '\n';
         if (text.size() < chunk_size) continue;
         sink(text);
         text.clear();

@@ -1,12 +1,12 @@
 #include "report/figure.h"
 
 #include "base/csv.h"
-#include "base/number.h"
 #include "base/text.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include <boost/algorithm/string/replace.hpp>
@@ -95,8 +95,7 @@ void FigureData::add(std::initializer_list<double> numbers, std::initializer_lis
             if (decimals_.empty()) {
                 fmt::format_to(std::back_inserter(row), "{:.6g}", number);
             } else {
-                std::array<char, number_buffer_size> text{};
-                row.append(text.data(), write_number(text.data(), rounded(number, decimals_.at(column))));
+                fmt::format_to(std::back_inserter(row), "{}", rounded(number, decimals_.at(column)));
             }
         }
         row += ',';
