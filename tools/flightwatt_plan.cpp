@@ -115,6 +115,9 @@ int make_plan(const cli::StageCall& call, const PlanArguments& arguments, const 
     const auto mission = file.read();
     const auto* problem = std::get_if<mission::PlanningProblem>(&mission);
     if (problem == nullptr) {
+        if (setup_of(mission).compute.components.empty())
+            throw InputError({setup_of(mission).file}, "the mission has no software whose schedule could be planned",
+                             "--longest-cruise gives the longest flight");
         throw InputError({setup_of(mission).file}, "the mission has a schedule already: there is nothing to plan",
                          "add [plan]: entries of [[schedule]] are then fixed, and the other slots planned");
     }
