@@ -30,7 +30,8 @@ namespace {
 
 using namespace flightwatt;
 
-struct BatchArguments : cli::FitArguments {
+struct BatchArguments {
+    cli::FitArguments model;
     cli::FlightArguments flights;
     cli::FlightFilter filter;
     std::optional<std::string> files_from;
@@ -82,8 +83,8 @@ struct FittedBatch {
 /// Fits what the batch accepted.
 FittedBatch fit_batch(const cli::StageCall& call, const BatchArguments& arguments, const batch::BatchFlights& flights,
                       const batch::BatchOptions& batch) {
-    const auto& options = arguments.fit;
-    const auto kind = arguments.kind;
+    const auto& options = arguments.model.fit;
+    const auto kind = arguments.model.kind;
     auto measured = read_samples(flights, batch);
     std::vector<mechanical::FlightSamples> samples;
     samples.reserve(measured.size());
@@ -108,10 +109,10 @@ std::string fingerprint_of(const BatchArguments& arguments, const batch::BatchFl
                            const batch::BatchOptions& options,
                            const std::optional<mechanical::MechanicalModel>& published) {
     auto more =
-        fmt::format("{}\n", static_cast<int>(arguments.kind)) + (published ? to_toml(*published) : std::string());
+        fmt::format("{}\n", static_cast<int>(arguments.model.kind)) + (published ? to_toml(*published) : std::string());
     for (const auto* names : {&options.load.excluded, &options.load.keep})
         more += fmt::format("{}: {}\n", names->size(), fmt::join(*names, "\n"));
-    return batch::fit_fingerprint(flights, arguments.fit, more);
+    return batch::fit_fingerprint(flights, arguments.model.fit, more);
 }
 
 /// The fit of an earlier run.
@@ -178,7 +179,7 @@ batch::BatchOptions batch_options(const cli::StageCall& call, const BatchArgumen
     batch::BatchOptions options;
     options.out = *call.output;
     options.load = arguments.flights.load;
-    options.min_samples = mechanical::min_samples(arguments.fit.phases.order);
+    options.min_samples = mechanical::min_samples(arguments.model.fit.phases.order);
     return options;
 }
 
@@ -203,7 +204,7 @@ int exit_code(const cli::StageCall& call, const batch::Totals& totals) {
 int finish(const cli::StageCall& call, const BatchArguments& arguments, batch::BatchFlights flights,
            const batch::BatchOptions& options, const std::optional<mechanical::MechanicalModel>& published) {
     const auto made_from = fingerprint_of(arguments, flights, options, published);
-    const bool shows_physical = arguments.kind == cli::ModelKind::physical;  // how it came about is not kept
+    const bool shows_physical = arguments.model.kind == cli::ModelKind::physical;  // how it came about is not kept
     const bool is_known = !arguments.no_fit && !shows_physical && batch::is_fit_current(options.out, made_from);
     auto known = is_known ? std::optional(known_fit(options.out)) : std::nullopt;
     auto copies = find_duplicates(flights);
@@ -315,7 +316,7 @@ void tell_plan(const cli::StageCall& call, const batch::BatchPlan& plan) {
 
 int run_over_logs(const cli::StageCall& call, const BatchArguments& arguments) {
     auto options = batch_options(call, arguments);
-    const auto published = read_published(arguments);
+    const auto published = read_published(arguments.model);
     make_directories(options.out);
     const batch::FolderLock lock(options.out);
     const batch::RemoveIfEmpty folder{options.out};  // where nothing can be done
@@ -356,11 +357,11 @@ any end, the same command continues where it stopped, with the same results.)"};
     stage.uses_threads = stage.shows_table = true;
     stage.output_help = "the folder of the results";
     BatchArguments arguments;
-    arguments.kind = cli::ModelKind::best;
-    arguments.fit.name = "batch";
+    arguments.model.kind = cli::ModelKind::best;
+    arguments.model.fit.name = "batch";
     auto& options = stage.options;
-    cli::add_model_options(options, arguments);
-    options.add("name", arguments.fit.name, {.value = "NAME"}, "the model's name");
+    cli::add_model_options(options, arguments.model);
+    options.add("name", arguments.model.fit.name, {.value = "NAME"}, "the model's name");
     options.add("files-from", arguments.files_from, cli::input_file("LIST"),
                 "also the logs that LIST names, one path a line; - is the standard input. A missing log is rejected");
     options.add("no-fit", arguments.no_fit,

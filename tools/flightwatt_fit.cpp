@@ -23,7 +23,8 @@ namespace {
 
 using namespace flightwatt;
 
-struct FitStageArguments : cli::FitArguments {
+struct FitStageArguments {
+    cli::FitArguments model;
     cli::FlightArguments flights;
     cli::FlightFilter filter;
     std::optional<std::string> name;
@@ -40,16 +41,16 @@ void check_table_file(const std::optional<std::string>& file) {
 }
 
 int fit(const cli::StageCall& call, FitStageArguments arguments) {
-    const auto& [options, kind, published_file] = static_cast<const cli::FitArguments&>(arguments);
+    const auto& [options, kind, published_file] = arguments.model;
     const auto& [table_file, constants_file, curves_file] =
         std::tie(arguments.table_file, arguments.constants_file, arguments.curves_file);
-    arguments.fit.name =
+    arguments.model.fit.name =
         arguments.name.value_or(call.output ? std::filesystem::path(*call.output).stem().string() : "fitted");
     check_table_file(table_file);
     check_table_file(constants_file);
     const bool with_motion = kind == cli::ModelKind::physical;
     if (constants_file && !with_motion) throw UsageError("--constants goes with --model-kind physical");
-    const auto published = read_published(arguments);
+    const auto published = read_published(arguments.model);
     const auto measured =
         cli::measured_flights(cli::with_chosen_flights(call, arguments.filter, arguments.flights.load),
                               arguments.flights, mechanical::min_samples(options.phases.order));
@@ -99,7 +100,7 @@ as TOML; with -o it goes to the file and Table I is shown.)" +
     stage.reads_logs = stage.uses_threads = stage.shows_table = true;
     FitStageArguments arguments;
     auto& options = stage.options;
-    cli::add_model_options(options, arguments);
+    cli::add_model_options(options, arguments.model);
     options.add("name", arguments.name, {.value = "NAME"}, "the model's name");
     options.add("table", arguments.table_file, cli::output_file("FILE"), "write Table I as .txt, .csv, .md or .tex");
     options.add("constants", arguments.constants_file, cli::output_file("FILE"),

@@ -110,21 +110,29 @@ void register_files(const StageCall& call, const Options& options, const Options
 class StandardInputFile {
   public:
     StandardInputFile() {
-        auto pattern = (std::filesystem::temp_directory_path() / "flightwatt-XXXXXX").string();
+        const char* temporary = std::getenv("TMPDIR");
+        auto pattern = fmt::format("{}/flightwatt-XXXXXX", temporary != nullptr ? temporary : "/tmp");
         if (::mkdtemp(pattern.data()) == nullptr)
             throw OutputError(fmt::format("{}: cannot make a folder: {}", pattern, std::strerror(errno)));
         folder_ = pattern;
-        std::ofstream(file(), std::ios::binary) << std::cin.rdbuf();
+        std::ofstream copy(file(), std::ios::binary);
+        if (std::cin.peek() != std::char_traits<char>::eof()) copy << std::cin.rdbuf();
+        copy.close();
+        if (copy) return;
+        const int error = errno;
+        remove();
+        throw OutputError(fmt::format("cannot copy the standard input to {}: {}", pattern, std::strerror(error)));
     }
-    ~StandardInputFile() {
-        std::error_code ignored;
-        std::filesystem::remove_all(folder_, ignored);
-    }
+    ~StandardInputFile() { remove(); }
     StandardInputFile(const StandardInputFile&) = delete;
     StandardInputFile& operator=(const StandardInputFile&) = delete;
     std::string file() const { return folder_ / "standard_input.data"; }
 
   private:
+    void remove() {
+        std::error_code ignored;
+        std::filesystem::remove_all(folder_, ignored);
+    }
     std::filesystem::path folder_;
 };
 

@@ -254,6 +254,16 @@ TEST(RunStage, ReadsALogFromTheStandardInput) {
     EXPECT_EQ(result.out, "a log\n");
 }
 
+TEST(RunStage, RefusesAStandardInputThatCannotBeCopied) {
+    const auto input = test::scratch_dir().parent_path() / "StandardInput.data";
+    std::ofstream(input) << "a log\n";
+    ASSERT_EQ(::setenv("TMPDIR", "/missing", 1), 0);
+    const auto result = run({"-"}, succeed, {}, input);
+    ::unsetenv("TMPDIR");
+    EXPECT_EQ(result.code, 1);
+    EXPECT_THAT(result.err, HasSubstr("/missing"));
+}
+
 TEST(RunStage, IsQuietOnRequest) {
     const auto body = [](const StageCall& call) {
         note(call, "a note");
