@@ -87,11 +87,11 @@ struct Getter<T (C::*)(const R&) const> {
 };
 
 template <typename R, typename T>
-Field<R> make_field(std::string key, std::string description, std::function<Json(const R&)> get,
+Field<R> make_field(const std::string& key, const std::string& description, std::function<Json(const R&)> get,
                     const auto&... changes) {
     Field<R> made;
-    made.key = std::move(key);
-    made.description = std::move(description);
+    made.key = key;
+    made.description = description;
     made.schema = [] { return JsonType<T>::schema(); };
     made.is_interval = std::is_same_v<T, Interval> || std::is_same_v<T, std::optional<Interval>>;
     made.get = std::move(get);
@@ -128,10 +128,9 @@ auto at(T R::*first, auto... more) {
 
 /// A field that is a member of the record.
 template <typename R, typename T>
-Field<R> field(std::string key, T R::*member, std::string description = {}, const auto&... changes) {
+Field<R> field(const std::string& key, T R::*member, const std::string& description = {}, const auto&... changes) {
     auto made = record_detail::make_field<R, T>(
-        std::move(key), std::move(description),
-        [member](const R& record) { return JsonType<T>::write(record.*member); }, changes...);
+        key, description, [member](const R& record) { return JsonType<T>::write(record.*member); }, changes...);
     if constexpr (JsonType<T>::reads)
         made.read = [member](const Json& json, R& record) { JsonType<T>::read(json, record.*member); };
     return made;
@@ -140,13 +139,12 @@ Field<R> field(std::string key, T R::*member, std::string description = {}, cons
 /// A field that `get` computes from the record.
 template <typename F>
 requires std::is_class_v<F>
-auto field(std::string key, F get, std::string description = {}, const auto&... changes) {
+auto field(const std::string& key, F get, const std::string& description = {}, const auto&... changes) {
     using Getter = record_detail::Getter<decltype(&F::operator())>;
     using R = typename Getter::Owner;
     using T = typename Getter::Value;
     return record_detail::make_field<R, T>(
-        std::move(key), std::move(description), [get](const R& record) { return JsonType<T>::write(get(record)); },
-        changes...);
+        key, description, [get](const R& record) { return JsonType<T>::write(get(record)); }, changes...);
 }
 
 /// The fields of a record within the record as fields of its own. `get` returns a pointer to it; where that is nullptr
@@ -259,10 +257,10 @@ Json record_schema() {
 
 /// An object of some of the record's fields.
 template <typename R>
-Field<R> object(std::string key, std::string description, Fields<R> fields, const auto&... changes) {
+Field<R> object(const std::string& key, const std::string& description, Fields<R> fields, const auto&... changes) {
     Field<R> made;
-    made.key = std::move(key);
-    made.description = std::move(description);
+    made.key = key;
+    made.description = description;
     made.schema = [fields] { return fields_schema(fields); };
     made.get = [fields = std::move(fields)](const R& record) { return fields_json(fields, record); };
     (changes(made), ...);
