@@ -44,7 +44,6 @@ struct ExportInput {
 
 struct ExportArguments {
     std::optional<std::string> format;
-    exchange::TrackColour colour = exchange::TrackColour::phase;
     std::optional<std::string> message;
     exchange::EstimatorInput estimator;
     std::optional<double> capacity_ah;
@@ -71,8 +70,8 @@ struct Format {
 const std::vector<Format>& formats() {
     using enum ExportKind;
     static const std::set<ExportKind> of_aircraft{model, battery, mission};
-    static const std::set<std::string> of_tracks{
-        "colour", "aircraft", "sortie", "exclude", "keep", "correct-idle-offset", "messages"};
+    static const std::set<std::string> of_tracks{"aircraft", "sortie", "exclude", "keep", "correct-idle-offset",
+                                                 "messages"};
     static const std::vector<Format> all{
         {"geojson", ".geojson", {flight}, of_tracks},
         {"kml", ".kml", {flight}, of_tracks},
@@ -204,19 +203,16 @@ Fields<Exported> record_fields(const Exported*) {
 
 Exported export_track(const cli::StageCall& call, const ExportArguments& arguments, const std::string& file,
                       const std::string& format) {
-    const auto colour = arguments.colour;
     auto options = arguments.load;
     options.flight_required = false;
     options.power_required = false;
     const auto loaded = cli::load_flight(call, file, options);
     const auto track = exchange::flown_track(loaded.series, loaded.phases);
     Exported result;
-    result.text = format == "geojson" ? to_geojson(track, colour)
-                  : format == "kml"   ? to_kml(track, colour)
-                                      : to_gpx(track, colour);
+    result.text = format == "geojson" ? to_geojson(track) : format == "kml" ? to_kml(track) : to_gpx(track);
     constexpr std::array clocks{"log", "name", "none"};
     result.points = track.points.size();
-    result.segments = coloured_segments(track, colour).size();
+    result.segments = phase_segments(track).size();
     result.clock = clocks.at(static_cast<std::size_t>(track.clock));
     if (track.clock == exchange::TrackClock::name)
         result.notes.push_back(file + ": no .log contains the date: that of its name is used, as UTC");
@@ -358,9 +354,6 @@ missions and the folder OUT of flightwatt batch: tables (latex). The form is tha
     auto& options = stage.options;
     options.add("format", arguments.format, {.value = "NAME"},
                 "the format, if the ending of FILE does not determine it");
-    options.add_choice("colour", arguments.colour,
-                       {{"phase", exchange::TrackColour::phase}, {"power", exchange::TrackColour::power}},
-                       {.value = "HOW"}, "of tracks: phase or power");
     options.add("message", arguments.message, {.value = "NAME"},
                 "of csv: all fields of one message, ENERGY ..., instead of the series' tracks");
     options.add("cells", arguments.estimator.cells_in_series, {.value = "N", .min = 1, .max = max_cells},

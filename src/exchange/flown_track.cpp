@@ -7,7 +7,6 @@
 #include "flight/selected_track.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <ctime>
 #include <sstream>
@@ -23,10 +22,6 @@ namespace {
 /// As in the report.
 constexpr flight::PerPhase<const char*> phase_colours{{"#d98200", "#0072b2", "#009e73"}};
 constexpr auto ground_colour = "#888888";
-constexpr std::size_t classes_of_power = 6;
-/// Viridis of matplotlib, which is readable without colour vision.
-constexpr std::array<const char*, classes_of_power> power_colours{"#440154", "#414487", "#2a788e",
-                                                                  "#22a884", "#7ad151", "#fde725"};
 constexpr double half_turn_deg = 180.0;
 
 std::optional<flight::Phase> phase_at(const flight::FlightPhases& phases, double time_s) {
@@ -44,47 +39,6 @@ void set_clock(FlownTrack& track, const flight::FlightSeries& series) {
         track.clock = TrackClock::name;
         track.start_clock_s = static_cast<double>(start->time_since_epoch().count());
     }
-}
-
-/// The smallest of 1, 2 and 5 times a power of ten that is at least `step`.
-double round_step(double step) {
-    const double magnitude = std::pow(10.0, std::floor(std::log10(step)));
-    for (const double factor : {1.0, 2.0, 5.0})
-        if (factor * magnitude >= step) return factor * magnitude;
-    return 10.0 * magnitude;
-}
-
-/// The width of a class of power.
-double power_step_w(const FlownTrack& track) {
-    std::vector<double> powers_w;
-    for (const auto& point : track.points)
-        if (point.power_w) powers_w.push_back(std::max(0.0, *point.power_w));
-    if (powers_w.empty()) {
-        throw InputError({track.flight}, "contains no measured power to colour its track by", "colour it by phase");
-    }
-    std::ranges::sort(powers_w);
-    const double high_w = powers_w[static_cast<std::size_t>(0.95 * static_cast<double>(powers_w.size() - 1))];
-    return high_w > 0.0 ? round_step(high_w / static_cast<double>(classes_of_power)) : 1.0;
-}
-
-struct Drawn {
-    std::string name;
-    std::string colour;
-};
-
-Drawn drawn_by_phase(const TrackPoint& point) {
-    if (!point.phase) return {"ground", ground_colour};
-    return {std::string(to_string(*point.phase)), phase_colours[*point.phase]};
-}
-
-Drawn drawn_by_power(const TrackPoint& point, double step_w) {
-    if (!point.power_w) return {"no power measured", ground_colour};
-    const double steps = std::clamp(std::floor(*point.power_w / step_w), 0.0, double{classes_of_power - 1});
-    const auto number = static_cast<std::size_t>(steps);
-    const double low_w = steps * step_w;
-    const auto name = number + 1 == classes_of_power ? fmt::format("{:g} W and more", low_w)
-                                                     : fmt::format("{:g} to {:g} W", low_w, low_w + step_w);
-    return {name, power_colours.at(number)};
 }
 
 std::optional<double> mean_power_w(const FlownTrack& track, const TrackSegment& segment) {
@@ -133,7 +87,7 @@ Json coordinates(const TrackPoint& point) {
     return place;
 }
 
-Json feature(const FlownTrack& track, const TrackSegment& segment, TrackColour colour) {
+Json feature(const FlownTrack& track, const TrackSegment& segment) {
     auto line = Json::array();
     auto times_s = Json::array();
     auto times = Json::array();
@@ -147,7 +101,7 @@ Json feature(const FlownTrack& track, const TrackSegment& segment, TrackColour c
     }
     Json properties{{"flight", track.flight},
                     {"aircraft", track.aircraft},
-                    {colour == TrackColour::phase ? "phase" : "power_class", segment.name},
+                    {"phase", segment.name},
                     {"stroke", segment.colour},
                     {"mean_power_w", segment.mean_power_w ? Json(*segment.mean_power_w) : Json()},
                     {"times_s", times_s},
@@ -248,8 +202,7 @@ std::string utc_text(const FlownTrack& track, double time_s) {
     return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03d}Z", fmt::gmtime(seconds), ms);
 }
 
-std::vector<TrackSegment> coloured_segments(const FlownTrack& track, TrackColour colour) {
-    const double step_w = colour == TrackColour::power ? power_step_w(track) : 0.0;
+std::vector<TrackSegment> phase_segments(const FlownTrack& track) {
     std::vector<TrackSegment> segments;
     bool is_open = false;
     for (std::size_t i = 0; i + 1 < track.points.size(); ++i) {
@@ -258,8 +211,10 @@ std::vector<TrackSegment> coloured_segments(const FlownTrack& track, TrackColour
             is_open = false;
             continue;
         }
-        const auto drawn = colour == TrackColour::phase ? drawn_by_phase(point) : drawn_by_power(point, step_w);
-        if (!is_open || segments.back().name != drawn.name) segments.push_back({drawn.name, drawn.colour, i, i + 1});
+        const auto name = point.phase ? to_string(*point.phase) : "ground";
+        if (!is_open || segments.back().name != name)
+            segments.push_back(
+                {std::string(name), point.phase ? phase_colours[*point.phase] : ground_colour, i, i + 1});
         segments.back().last = i + 1;
         is_open = true;
     }
@@ -267,14 +222,14 @@ std::vector<TrackSegment> coloured_segments(const FlownTrack& track, TrackColour
     return segments;
 }
 
-std::string to_geojson(const FlownTrack& track, TrackColour colour) {
+std::string to_geojson(const FlownTrack& track) {
     auto features = Json::array();
-    for (const auto& segment : coloured_segments(track, colour)) features.push_back(feature(track, segment, colour));
+    for (const auto& segment : phase_segments(track)) features.push_back(feature(track, segment));
     const Json collection{{"type", "FeatureCollection"}, {"features", features}};
     return collection.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string to_gpx(const FlownTrack& track, TrackColour colour) {
+std::string to_gpx(const FlownTrack& track) {
     pugi::xml_document file;
     auto gpx = file.append_child("gpx");
     gpx.append_attribute("version") = "1.1";
@@ -284,7 +239,7 @@ std::string to_gpx(const FlownTrack& track, TrackColour colour) {
     add_text(metadata, "name", track.flight);
     add_text(metadata, "desc", track.aircraft);
     if (track.clock != TrackClock::none) add_text(metadata, "time", utc_text(track, track.points.front().time_s));
-    for (const auto& segment : coloured_segments(track, colour)) {
+    for (const auto& segment : phase_segments(track)) {
         auto line = gpx.append_child("trk");
         add_text(line, "name", segment.name);
         add_style(line, segment.colour);
@@ -294,7 +249,7 @@ std::string to_gpx(const FlownTrack& track, TrackColour colour) {
     return xml_text(file);
 }
 
-std::string to_kml(const FlownTrack& track, TrackColour colour) {
+std::string to_kml(const FlownTrack& track) {
     pugi::xml_document file;
     auto kml = file.append_child("kml");
     kml.append_attribute("xmlns") = "http://www.opengis.net/kml/2.2";
@@ -302,7 +257,7 @@ std::string to_kml(const FlownTrack& track, TrackColour colour) {
     auto document = kml.append_child("Document");
     add_text(document, "name", track.flight);
     add_text(document, "description", track.aircraft);
-    for (const auto& segment : coloured_segments(track, colour)) {
+    for (const auto& segment : phase_segments(track)) {
         auto placemark = document.append_child("Placemark");
         add_text(placemark, "name", segment.name);
         add_text(placemark, "description", description(track, segment));

@@ -40,32 +40,28 @@ FlownTrack flown_track(const flight::FlightSeries& series, const flight::FlightP
 /// "2020-07-03T10:17:45.170Z"; the track has a clock.
 std::string utc_text(const FlownTrack& track, double time_s);
 
-enum class TrackColour { phase, power };
-
-/// A segment of one colour: two or more points from `first` to `last`. The next segment begins with point `last`,
+/// A segment of one phase: two or more points from `first` to `last`. The next segment begins with point `last`,
 /// except at the meridian of 180 degrees, which no segment crosses (RFC 7946, 3.1.9).
 struct TrackSegment {
-    std::string name;    ///< "cruise", "ground"; "20 to 40 W"
+    std::string name;    ///< "cruise", "ground"
     std::string colour;  ///< "#0072b2"
     std::size_t first = 0;
     std::size_t last = 0;
     std::optional<double> mean_power_w = {};  ///< over time, linear between the points
 };
 
-/// The track in segments. Classes of power are six equal, round steps from 0 to the 95 % quantile of the points. Throws
-/// InputError for colours by power without measured power.
-std::vector<TrackSegment> coloured_segments(const FlownTrack& track, TrackColour colour);
+std::vector<TrackSegment> phase_segments(const FlownTrack& track);
 
-// Tracks for maps, with a line for each segment. Times are UTC, and absent without a clock. Throw as coloured_segments.
+// Tracks for maps, with a line for each segment. Times are UTC, and absent without a clock.
 
 /// GeoJSON (RFC 7946): a FeatureCollection of LineStrings of [longitude, latitude, altitude]. Properties:
 /// docs/exports.md.
-std::string to_geojson(const FlownTrack& track, TrackColour colour);
+std::string to_geojson(const FlownTrack& track);
 
 /// KML 2.2 with Google's extension gx:Track; without a clock, a LineString.
-std::string to_kml(const FlownTrack& track, TrackColour colour);
+std::string to_kml(const FlownTrack& track);
 
 /// GPX 1.1: a <trk> for each segment, coloured by the extension gpx_style.
-std::string to_gpx(const FlownTrack& track, TrackColour colour);
+std::string to_gpx(const FlownTrack& track);
 
 }  // namespace flightwatt::exchange

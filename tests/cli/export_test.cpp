@@ -89,7 +89,7 @@ TEST(Export, TakesTheFormFromTheNameOfTheFile) {
     for (const auto& [words, beginning] : std::vector<std::pair<std::string, std::string>>{
              {log + " -o t.geojson", "{\"type\":\"FeatureCollection\""},
              {log + " -o t.kml", "<?xml"},
-             {log + " --colour power -o t.gpx", "<?xml"},
+             {log + " -o t.gpx", "<?xml"},
              {log + " -o t.csv", "time_s,"},
              {log + " --message GPS -o t.csv", "time_s,mode"},
              {model + " -o t.json", "{"},

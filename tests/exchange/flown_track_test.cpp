@@ -93,7 +93,7 @@ TEST(FlownTrack, RefusesALogWithoutPositionsAndSaysWhy) {
 }
 
 TEST(ColouredParts, FollowThePhasesAndShareTheirEnds) {
-    const auto parts = coloured_segments(flown_track(places(), two_phases()), TrackColour::phase);
+    const auto parts = phase_segments(flown_track(places(), two_phases()));
     ASSERT_EQ(parts.size(), 3U);
     EXPECT_EQ(parts[0].name, "ground");
     EXPECT_EQ(parts[1].name, "takeoff");
@@ -113,31 +113,13 @@ TEST(ColouredParts, HaveTheirMeanPowerOverTime) {
         point.power_w = power_w;
         track.points.push_back(point);
     }
-    const auto parts = coloured_segments(track, TrackColour::phase);
+    const auto parts = phase_segments(track);
     ASSERT_EQ(parts.size(), 1U);
     EXPECT_DOUBLE_EQ(parts[0].mean_power_w.value(), (10.0 * 1.0 + 20.0 * 9.0) / 10.0);
 }
 
-TEST(ColouredParts, HaveRoundClassesOfPower) {
-    const auto parts = coloured_segments(flown_track(places(), {}), TrackColour::power);
-    // 95 % of the points are at 30 W or below: steps of 5 W.
-    ASSERT_EQ(parts.size(), 4U);
-    EXPECT_EQ(parts[0].name, "0 to 5 W");
-    EXPECT_EQ(parts[1].name, "10 to 15 W");
-    EXPECT_EQ(parts[3].name, "25 W and more");
-}
-
-TEST(ColouredParts, NeedPowerForItsColour) {
-    auto series = places();
-    std::erase_if(series.tracks, [](const flight::Track& track) { return track.name == "power_w"; });
-    const auto track = flown_track(series, {});
-    EXPECT_THROW(coloured_segments(track, TrackColour::power), InputError);
-    EXPECT_EQ(coloured_segments(track, TrackColour::phase).size(), 1U);
-}
-
 TEST(ColouredParts, DoNotCrossTheMeridianOf180Degrees) {
-    const auto parts =
-        coloured_segments(flown_track(places({179.8, 179.9, -179.9, -179.8, -179.7}), {}), TrackColour::phase);
+    const auto parts = phase_segments(flown_track(places({179.8, 179.9, -179.9, -179.8, -179.7}), {}));
     ASSERT_EQ(parts.size(), 2U);
     EXPECT_EQ(parts[0].last, 1U);
     EXPECT_EQ(parts[1].first, 2U);
@@ -155,7 +137,7 @@ TEST(FlownTrack, CoversARealLog) {
         EXPECT_NEAR(point.latitude_deg, 43.46, 0.2);
         EXPECT_NEAR(point.longitude_deg, 1.27, 0.2);
     }
-    EXPECT_GE(coloured_segments(track, TrackColour::phase).size(), 4U);
+    EXPECT_GE(phase_segments(track).size(), 4U);
 }
 
 }  // namespace

@@ -52,32 +52,30 @@ pugi::xml_document parsed(const std::string& text) {
 
 TEST(GeoJson, IsAFeatureCollectionOfLinesByRfc7946) {
     const auto& track = sample_track();
-    for (const auto colour : {TrackColour::phase, TrackColour::power}) {
-        const auto json = Json::parse(to_geojson(track, colour));
-        EXPECT_EQ(json.at("type"), "FeatureCollection");
-        std::size_t segments = 0;
-        for (const auto& feature : json.at("features")) {
-            EXPECT_EQ(feature.at("type"), "Feature");
-            EXPECT_EQ(feature.at("geometry").at("type"), "LineString");
-            const auto& places = feature.at("geometry").at("coordinates");
-            ASSERT_GE(places.size(), 2U);
-            segments += places.size() - 1;
-            const auto& properties = feature.at("properties");
-            EXPECT_EQ(properties.at("times_s").size(), places.size());
-            EXPECT_EQ(properties.at("coordTimes").size(), places.size());
-            EXPECT_TRUE(std::regex_match(properties.at("stroke").get<std::string>(), std::regex("#[0-9a-f]{6}")));
-            for (const auto& place : places) {
-                ASSERT_EQ(place.size(), 3U);
-                EXPECT_LE(std::abs(place[0].get<double>()), 180.0);
-                EXPECT_LE(std::abs(place[1].get<double>()), 90.0);
-            }
+    const auto json = Json::parse(to_geojson(track));
+    EXPECT_EQ(json.at("type"), "FeatureCollection");
+    std::size_t segments = 0;
+    for (const auto& feature : json.at("features")) {
+        EXPECT_EQ(feature.at("type"), "Feature");
+        EXPECT_EQ(feature.at("geometry").at("type"), "LineString");
+        const auto& places = feature.at("geometry").at("coordinates");
+        ASSERT_GE(places.size(), 2U);
+        segments += places.size() - 1;
+        const auto& properties = feature.at("properties");
+        EXPECT_EQ(properties.at("times_s").size(), places.size());
+        EXPECT_EQ(properties.at("coordTimes").size(), places.size());
+        EXPECT_TRUE(std::regex_match(properties.at("stroke").get<std::string>(), std::regex("#[0-9a-f]{6}")));
+        for (const auto& place : places) {
+            ASSERT_EQ(place.size(), 3U);
+            EXPECT_LE(std::abs(place[0].get<double>()), 180.0);
+            EXPECT_LE(std::abs(place[1].get<double>()), 90.0);
         }
-        EXPECT_EQ(segments, track.points.size() - 1) << "every step of the track is drawn once";
     }
+    EXPECT_EQ(segments, track.points.size() - 1) << "every step of the track is drawn once";
 }
 
 TEST(GeoJson, HasLongitudeFirstAndWhatIsKnown) {
-    const auto json = Json::parse(to_geojson(bare_track(), TrackColour::phase));
+    const auto json = Json::parse(to_geojson(bare_track()));
     const auto& feature = json.at("features").at(0);
     EXPECT_EQ(feature.at("geometry").at("coordinates"), Json::parse("[[-70.5,-33.5],[-70.6,-33.6],[-70.7,-33.7]]"));
     EXPECT_FALSE(feature.at("properties").contains("coordTimes"));
@@ -86,7 +84,7 @@ TEST(GeoJson, HasLongitudeFirstAndWhatIsKnown) {
 
 TEST(Gpx, HasTheElementsOfItsSchemaInTheirOrder) {
     const auto& track = sample_track();
-    const auto document = parsed(to_gpx(track, TrackColour::phase));
+    const auto document = parsed(to_gpx(track));
     const auto gpx = document.child("gpx");
     EXPECT_STREQ(gpx.attribute("version").value(), "1.1");
     EXPECT_STREQ(gpx.attribute("xmlns").value(), "http://www.topografix.com/GPX/1/1");
@@ -109,7 +107,7 @@ TEST(Gpx, HasTheElementsOfItsSchemaInTheirOrder) {
 }
 
 TEST(Gpx, HasNoTimeWithoutAClockAndNoNameThatXmlCannotHold) {
-    const auto document = parsed(to_gpx(bare_track(), TrackColour::phase));
+    const auto document = parsed(to_gpx(bare_track()));
     EXPECT_STREQ(document.child("gpx").child("metadata").child("name").text().get(), "bare <&>?");
     const auto point = document.child("gpx").child("trk").child("trkseg").child("trkpt");
     EXPECT_STREQ(point.attribute("lat").value(), "-33.5000000");
@@ -119,7 +117,7 @@ TEST(Gpx, HasNoTimeWithoutAClockAndNoNameThatXmlCannotHold) {
 
 TEST(Kml, HasAStyledTrackAPartWithATimeAPlace) {
     const auto& track = sample_track();
-    const auto document = parsed(to_kml(track, TrackColour::phase));
+    const auto document = parsed(to_kml(track));
     const auto page = document.child("kml").child("Document");
     EXPECT_THAT(children(page), testing::ElementsAre("name", "description", "Placemark"));
     const std::map<std::string, std::string> colours{
@@ -140,7 +138,7 @@ TEST(Kml, HasAStyledTrackAPartWithATimeAPlace) {
 }
 
 TEST(Kml, HasALineOnTheGroundWithoutClockAndAltitude) {
-    const auto document = parsed(to_kml(bare_track(), TrackColour::phase));
+    const auto document = parsed(to_kml(bare_track()));
     const auto line = document.child("kml").child("Document").child("Placemark").child("LineString");
     EXPECT_STREQ(line.child("altitudeMode").text().get(), "clampToGround");
     EXPECT_STREQ(line.child("coordinates").text().get(),
@@ -215,11 +213,9 @@ void expect_lines_read_by_gpsbabel(const std::string& text) {
 TEST(TrackFiles, AreReadByGpsbabel) {
     if (test::run_shell("command -v gpsbabel", test::scratch_dir()).code != 0)
         GTEST_SKIP() << "gpsbabel is not here (apt-get install gpsbabel)";
-    for (const auto colour : {TrackColour::phase, TrackColour::power}) {
-        expect_read_by_gpsbabel("gpx", to_gpx(sample_track(), colour));
-        expect_read_by_gpsbabel("kml", to_kml(sample_track(), colour));
-        expect_lines_read_by_gpsbabel(to_geojson(sample_track(), colour));
-    }
+    expect_read_by_gpsbabel("gpx", to_gpx(sample_track()));
+    expect_read_by_gpsbabel("kml", to_kml(sample_track()));
+    expect_lines_read_by_gpsbabel(to_geojson(sample_track()));
 }
 
 }  // namespace

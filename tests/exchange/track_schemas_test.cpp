@@ -55,13 +55,10 @@ std::vector<FlownTrack> tracks() {
             {"bare <&>\x01", "", {{0.0, -70.5, -33.5}, {1.0, -70.6, -33.6}, {2.0, -70.7, -33.7}}}};
 }
 
-void expect_valid(std::string (*write)(const FlownTrack&, TrackColour), const std::string& schema) {
+void expect_valid(std::string (*write)(const FlownTrack&), const std::string& schema) {
     std::vector<std::string> texts;
-    for (const auto& track : tracks()) {
-        texts.push_back(write(track, TrackColour::phase));
-        if (track.points.front().power_w) texts.push_back(write(track, TrackColour::power));
-    }
-    EXPECT_EQ(judged(texts, schema), "track_0 validates\ntrack_1 validates\ntrack_2 validates\n");
+    for (const auto& track : tracks()) texts.push_back(write(track));
+    EXPECT_EQ(judged(texts, schema), "track_0 validates\ntrack_1 validates\n");
 }
 
 /// Damages that leave it XML or JSON: it is the schema that refuses them.
@@ -85,7 +82,7 @@ TEST(TrackSchemas, HoldGeoJsonByRfc7946) {
     if (!is_here("python3 -c 'import jsonschema'"))
         GTEST_SKIP() << "jsonschema is not here (apt-get install python3-jsonschema)";
     expect_valid(to_geojson, "geojson.schema.json");
-    expect_refused(to_geojson(tracks()[1], TrackColour::phase), "geojson.schema.json",
+    expect_refused(to_geojson(tracks()[1]), "geojson.schema.json",
                    {{"FeatureCollection", "Features"},
                     {"LineString", "Line"},
                     {"[-70.5,-33.5]", "[-33.5,-170.5]"},
@@ -102,7 +99,7 @@ TEST(TrackSchemas, HoldKml) {
     if (!is_here("command -v xmllint")) GTEST_SKIP() << "xmllint is not here (apt-get install libxml2-utils)";
     expect_valid(to_kml, "kml.xsd");
     const auto track = tracks()[0];
-    expect_refused(to_kml(track, TrackColour::phase), "kml.xsd",
+    expect_refused(to_kml(track), "kml.xsd",
                    {{"<color>ff", "<color>"},
                     {"<color>ff", "<color>#f"},
                     {"<width>3", "<width>3px"},
@@ -111,7 +108,7 @@ TEST(TrackSchemas, HoldKml) {
                     {"<gx:coord>", "<gx:coord>,"},
                     {"<Placemark>", "<Placemark><Style/>"},
                     {"<Document>", "<Document><colour>red</colour>"}});
-    expect_refused(to_kml(tracks()[1], TrackColour::phase), "kml.xsd",
+    expect_refused(to_kml(tracks()[1]), "kml.xsd",
                    {{"-70.5000000,-33.5000000 ", "-70.5000000, -33.5000000 "},
                     {"-70.5000000,-33.5000000 -70.6000000,-33.6000000 ", ""}});
 }
@@ -119,7 +116,7 @@ TEST(TrackSchemas, HoldKml) {
 TEST(TrackSchemas, HoldGpx) {
     if (!is_here("command -v xmllint")) GTEST_SKIP() << "xmllint is not here (apt-get install libxml2-utils)";
     expect_valid(to_gpx, "gpx.xsd");
-    const auto text = to_gpx(tracks()[0], TrackColour::phase);
+    const auto text = to_gpx(tracks()[0]);
     expect_refused(text, "gpx.xsd",
                    {{"version=\"1.1\"", "version=\"1.0\""},
                     {" creator=", " maker="},
