@@ -72,17 +72,6 @@ std::filesystem::path unfinished_name(const std::filesystem::path& folder) {
     return folder / fmt::format("{}{:08x}{:08x}", unfinished_prefix, random(), random());
 }
 
-/// A new file in the folder, whose name does not depend on the result's: that may be as long as names can be.
-int open_unfinished(const std::filesystem::path& folder, std::filesystem::path& file) {
-    constexpr int tries = 100;
-    for (int i = 0; i < tries; ++i) {
-        file = unfinished_name(folder);
-        const int opened = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (opened >= 0 || errno != EEXIST) return opened;
-    }
-    return -1;
-}
-
 /// Copies permissions and owner of the replaced file.
 bool keep_permissions(int file, const struct stat& before) {
     if (::fchown(file, before.st_uid, before.st_gid) != 0 &&
@@ -113,8 +102,9 @@ void write_directly(const std::filesystem::path& path, const TextWriter& write) 
 /// False where the folder of unfinished files is not there, or of another file system than the destination.
 bool replace(const std::filesystem::path& path, const Destination& destination, const TextWriter& write,
              const std::filesystem::path& folder) {
-    std::filesystem::path temporary_folder;
-    const int file = open_unfinished(folder, temporary_folder);
+    // Its name does not depend on the result's: that may be as long as names can be.
+    const auto unfinished = unfinished_name(folder);
+    const int file = ::open(unfinished.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file < 0 && errno == ENOENT) return false;
     if (file < 0) fail(path, errno);
     try {
@@ -122,12 +112,12 @@ bool replace(const std::filesystem::path& path, const Destination& destination, 
         if (destination.before && !keep_permissions(file, *destination.before)) fail(path, errno);
     } catch (...) {
         ::close(file);
-        ::unlink(temporary_folder.c_str());
+        ::unlink(unfinished.c_str());
         throw;
     }
-    if (::close(file) == 0 && ::rename(temporary_folder.c_str(), destination.file.c_str()) == 0) return true;
+    if (::close(file) == 0 && ::rename(unfinished.c_str(), destination.file.c_str()) == 0) return true;
     const int error = errno;
-    ::unlink(temporary_folder.c_str());
+    ::unlink(unfinished.c_str());
     if (error == EXDEV) return false;
     fail(path, error);
 }

@@ -56,75 +56,53 @@ constexpr std::size_t deepest_nesting = 50;
 /// A file in memory takes up to some hundred times its size. A mission or model has some 10 kB.
 constexpr std::size_t max_toml_bytes = 8'000'000;
 
-/// Nesting depth of keys, arrays and tables, by dots and brackets outside of strings and comments.
-class NestingCounter {
-  public:
-    explicit NestingCounter(std::string_view text) : text_(text) {}
-
-    /// Where it first is deeper than `most`; npos if it never is.
-    std::size_t find_deeper_than(std::size_t most) {
-        while (at_ < text_.size()) {
-            const char c = text_[at_];
-            if (c == '"' || c == '\'') {
-                skip_string(c);
-                continue;
-            }
-            if (c == '#') at_ = std::min(text_.find('\n', at_), text_.size() - 1);
-            count(text_[at_]);
-            if (open_.size() + dots_before_ + dots_ > most) return at_;
-            ++at_;
-        }
-        return std::string_view::npos;
-    }
-
-  private:
-    void count(char c) {
-        if (c == '.') {
-            ++dots_;
-        } else if (c == '[' || c == '{') {
-            open_.push_back(dots_);
-            dots_before_ += dots_;
-            dots_ = 0;
-        } else if ((c == ']' || c == '}') && !open_.empty()) {
-            dots_before_ -= open_.back();
-            dots_ = 0;
-            open_.pop_back();
-        } else if (c == '\n' || c == ',') {
-            dots_ = 0;
+/// Behind the end of the string that begins at `at`. One of a single line ends with the line: the parser refuses it.
+std::size_t end_of_string(std::string_view text, std::size_t at) {
+    const char quote = text[at];
+    const std::string triple(3, quote);
+    const bool is_long = text.substr(at).starts_with(triple);
+    for (at += is_long ? 3 : 1; at < text.size(); ++at) {
+        if (quote == '"' && text[at] == '\\') {
+            ++at;
+        } else if (is_long && text.substr(at).starts_with(triple)) {
+            return std::min(text.find_first_not_of(quote, at), at + 5);  // up to two quotes may be before the end
+        } else if (!is_long && (text[at] == quote || text[at] == '\n')) {
+            return text[at] == quote ? at + 1 : at;
         }
     }
+    return at;
+}
 
-    /// To behind its end. One of a single line ends with the line: the parser refuses it there.
-    void skip_string(char quote) {
-        const std::string triple(3, quote);
-        const bool is_long = text_.substr(at_).starts_with(triple);
-        at_ += is_long ? 3 : 1;
-        for (; at_ < text_.size(); ++at_) {
-            if (quote == '"' && text_[at_] == '\\') {
-                ++at_;
-            } else if (is_long ? text_.substr(at_).starts_with(triple) : text_[at_] == quote) {
-                at_ += is_long ? 3 : 1;
-                for (int more = 0; is_long && more < 2 && at_ < text_.size() && text_[at_] == quote; ++more) ++at_;
-                return;
-            } else if (!is_long && text_[at_] == '\n') {
-                return;
-            }
+/// Where more than `most` brackets are open, or a key has more dots, outside of strings and comments; npos: nowhere.
+std::size_t find_deeper_than(std::string_view text, std::size_t most) {
+    std::size_t open = 0;
+    std::size_t dots = 0;
+    for (std::size_t at = 0; at < text.size();) {
+        const char c = text[at];
+        if (c == '"' || c == '\'') {
+            at = end_of_string(text, at);
+            continue;
         }
+        if (c == '#') {
+            at = std::min(text.find('\n', at), text.size());
+            continue;
+        }
+        if (c == '.') ++dots;
+        if (c == '[' || c == '{') ++open;
+        if ((c == ']' || c == '}') && open > 0) --open;
+        if (c == '[' || c == '{' || c == '\n' || c == ',') dots = 0;
+        if (open > most || dots > most) return at;
+        ++at;
     }
-
-    std::string_view text_;
-    std::size_t at_ = 0;
-    std::size_t dots_ = 0;                ///< of the key or value that stands here
-    std::size_t dots_before_ = 0;         ///< of the keys whose values are open
-    std::vector<std::size_t> open_ = {};  ///< brackets, with the dots of their keys
-};
+    return std::string_view::npos;
+}
 
 void refuse_monsters(std::string_view text, const std::string& file) {
     if (text.size() > max_toml_bytes) {
         throw InputError({file}, fmt::format("holds more than {} MB of TOML", max_toml_bytes / 1'000'000),
                          "is it the file that was meant?");
     }
-    const auto at = NestingCounter(text).find_deeper_than(deepest_nesting);
+    const auto at = find_deeper_than(text, deepest_nesting);
     if (at == std::string_view::npos) return;
     const auto line = 1 + static_cast<std::size_t>(std::ranges::count(text.substr(0, at), '\n'));
     throw InputError({file, line, at - (text.substr(0, at).rfind('\n') + 1) + 1},
