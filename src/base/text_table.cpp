@@ -18,11 +18,22 @@
 namespace flightwatt {
 namespace {
 
+/// The ends of "0.5 to 2".
+std::optional<std::pair<std::string_view, std::string_view>> interval_ends(std::string_view cell) {
+    constexpr std::string_view between_ends = " to ";
+    const auto split = cell.find(between_ends);
+    if (split == std::string_view::npos) return std::nullopt;
+    const auto low = cell.substr(0, split);
+    const auto high = cell.substr(split + between_ends.size());
+    if (!parse_number(low) || !parse_number(high)) return std::nullopt;
+    return std::pair(low, high);
+}
+
 bool is_numeric_column(const TextTable& table, std::size_t column) {
     return std::ranges::all_of(table.rows, [&](const auto& row) {
         std::string_view cell = row[column];
         if (!cell.empty() && (cell.back() == '%' || cell.back() == '*')) cell.remove_suffix(1);
-        return cell.empty() || cell == "-" || parse_number(cell).has_value();
+        return cell.empty() || cell == "-" || parse_number(cell).has_value() || interval_ends(cell).has_value();
     });
 }
 
@@ -64,6 +75,9 @@ std::string_view latex_of(char c) {
 
 std::string latex_cell(std::string_view cell) {
     if (cell == "-") return "--";
+    if (cell.size() > 1 && cell.front() == '$' && cell.back() == '$') return std::string(cell);
+    if (const auto ends = interval_ends(cell))
+        return fmt::format("$[{},\\, {}]$", latex_number(ends->first), latex_number(ends->second));
     return parse_number(cell) ? fmt::format("${}$", latex_number(cell)) : latex_escaped(cell);
 }
 
@@ -168,31 +182,22 @@ std::string latex_number(std::string_view number) {
     return fmt::format("{} \\times 10^{{{:g}}}", number.substr(0, e), exponent.value_or(0.0));
 }
 
-std::string latex_table(const LatexFrame& frame, const TextTable& cells) {
-    const auto line_of = [](const std::vector<std::string>& row) {
-        return fmt::format("{} \\\\\n", fmt::join(row, " & "));
-    };
-    auto text = fmt::format("{}\n\\begin{{table}}\n\\centering\n\\caption{{{}}}\n\\label{{{}}}\n", frame.needs,
-                            frame.caption, frame.label);
-    if (!frame.width.empty()) text += fmt::format("\\resizebox{{{}}}{{!}}{{%\n", frame.width);
-    text += fmt::format("\\begin{{tabular}}{{{}}}\n\\toprule\n{}\\midrule\n", frame.columns, line_of(cells.header));
-    for (const auto& row : cells.rows) text += line_of(row);
-    return text + "\\bottomrule\n\\end{tabular}" + (frame.width.empty() ? "" : "}") + "\n\\end{table}\n";
-}
-
 std::string to_latex(const TextTable& table, std::string_view caption, std::string_view label) {
-    constexpr std::size_t columns_that_fit = 3;
-    const bool scaled = table.header.size() > columns_that_fit;
-    LatexFrame frame{
-        scaled ? "% needs \\usepackage{booktabs} and \\usepackage{graphicx}" : "% needs \\usepackage{booktabs}",
-        latex_escaped(caption), std::string(label), "",
-        scaled ? "\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi" : ""};
+    std::string columns;
     for (std::size_t column = 0; column < table.header.size(); ++column)
-        frame.columns += is_numeric_column(table, column) ? 'r' : 'l';
-    auto cells = table;
-    std::ranges::transform(table.header, cells.header.begin(), latex_escaped);
-    for (auto& row : cells.rows) std::ranges::transform(row, row.begin(), latex_cell);
-    return latex_table(frame, cells);
+        columns += is_numeric_column(table, column) ? 'r' : 'l';
+    auto text = fmt::format(
+        "% needs \\usepackage{{booktabs}}\n\\begin{{table}}\n\\centering\n\\caption{{{}}}\n\\label{{{}}}\n"
+        "\\begin{{tabular}}{{{}}}\n\\toprule\n",
+        latex_escaped(caption), label, columns);
+    const auto add_line = [&](std::vector<std::string> row, const auto& cell) {
+        std::ranges::transform(row, row.begin(), cell);
+        text += fmt::format("{} \\\\\n", fmt::join(row, " & "));
+    };
+    add_line(table.header, latex_escaped);
+    text += "\\midrule\n";
+    for (const auto& row : table.rows) add_line(row, latex_cell);
+    return text + "\\bottomrule\n\\end{tabular}\n\\end{table}\n";
 }
 
 std::string to_latex(const std::vector<CaptionedTable>& tables) {

@@ -38,20 +38,8 @@ std::string latex_escaped(std::string_view text);
 /// A number as mathematical mode takes it: 1.5 \times 10^{-5} for "1.5e-05".
 std::string latex_number(std::string_view number);
 
-/// Environment of a LaTeX table.
-struct LatexFrame {
-    std::string needs;  ///< comment: the packages
-    std::string caption;
-    std::string label;
-    std::string columns;  ///< "lrr"
-    std::string width;    ///< to which the table is scaled; empty: it is not
-};
-
-/// A table environment whose caption and cells are TeX already.
-std::string latex_table(const LatexFrame& frame, const TextTable& cells);
-
-/// A table environment with the rules of the package booktabs; a comment lists the packages it needs. Columns that are
-/// all numbers, or '-', stand to the right. A table that is wider than a page's text is scaled to it.
+/// A table environment with the rules of the package booktabs. Columns that are all numbers, intervals ("0.5 to 2") or
+/// '-' stand to the right; a cell between two '$' is TeX already.
 std::string to_latex(const TextTable& table, std::string_view caption, std::string_view label);
 
 /// The same of several, an empty line apart; tables without rows are left out.

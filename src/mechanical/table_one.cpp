@@ -36,11 +36,8 @@ std::vector<std::string> row_names(std::size_t order) {
     return names;
 }
 
-/// Separator of the ends of an asymmetric interval.
-constexpr std::string_view between_ends = " to ";
-
 std::string as_printed(const Interval& interval) {
-    return as_printed(interval.low) + std::string(between_ends) + as_printed(interval.high);
+    return fmt::format("{} to {}", as_printed(interval.low), as_printed(interval.high));
 }
 
 /// The cells of a0, a1, b1, ...: of numbers, or of their intervals.
@@ -112,24 +109,12 @@ TextTable build_table(const MechanicalModel* published, const MechanicalModel& m
     return table;
 }
 
-bool is_interval(std::string_view heading) { return heading.ends_with(interval_heading); }
-
-std::string cell(std::string_view text, std::string_view heading) {
-    if (text == "-") return "--";
-    if (const auto split = text.find(between_ends); is_interval(heading) && split != std::string_view::npos) {
-        return fmt::format("$[{},\\, {}]$", latex_number(text.substr(0, split)),
-                           latex_number(text.substr(split + between_ends.size())));
-    }
-    if (!parse_number(text)) return latex_escaped(text);
-    return fmt::format("${}$", latex_number(text));
-}
-
 /// a0 as $a_0$, xi as $\xi$; other rows as they are called.
-std::string row_name(std::string_view name) {
+std::string row_name(const std::string& name) {
     if (name == "xi") return "$\\xi$";
     const bool coefficient =
         name.size() > 1 && (name[0] == 'a' || name[0] == 'b') && parse_unsigned(name.substr(1)).has_value();
-    return coefficient ? fmt::format("${}_{{{}}}$", name[0], name.substr(1)) : latex_escaped(name);
+    return coefficient ? fmt::format("${}_{{{}}}$", name[0], name.substr(1)) : name;
 }
 
 }  // namespace
@@ -144,26 +129,16 @@ TextTable table_one_comparison(const MechanicalModel& published, const Mechanica
 }
 
 std::string to_latex(const TextTable& table) {
-    const bool intervals = std::ranges::any_of(table.header, is_interval);
-    // With published constants or intervals the columns are wider than a page's text.
-    constexpr std::size_t columns_that_fit = 4;
-    const bool scaled = table.header.size() > columns_that_fit;
     auto cells = table;
-    std::ranges::transform(table.header, cells.header.begin(), [](const std::string& heading) {
-        return is_interval(heading) ? "" : latex_escaped(heading);
-    });
+    std::string caption = "Constants for the mechanical energy model";
     cells.header.front().clear();
-    for (auto& row : cells.rows) {
-        row.front() = row_name(row.front());
-        for (std::size_t column = 1; column < row.size(); ++column)
-            row[column] = cell(row[column], table.header[column]);
+    for (auto& heading : cells.header) {
+        if (!heading.ends_with(interval_heading)) continue;
+        heading.clear();
+        caption = "Constants for the mechanical energy model (in brackets: 95 % intervals)";
     }
-    return latex_table(
-        {scaled ? "% needs \\usepackage{graphicx}\n% needs \\usepackage{booktabs}" : "% needs \\usepackage{booktabs}",
-         fmt::format("Constants for the mechanical energy model{}",
-                     intervals ? " (in brackets: 95\\,\\% intervals)" : ""),
-         "tab:mechanical-energy-model", "l" + std::string(table.header.size() - 1, 'r'), scaled ? "\\linewidth" : ""},
-        cells);
+    for (auto& row : cells.rows) row.front() = row_name(row.front());
+    return flightwatt::to_latex(cells, caption, "tab:mechanical-energy-model");
 }
 
 }  // namespace flightwatt::mechanical

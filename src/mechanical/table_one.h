@@ -22,7 +22,7 @@ TextTable table_one_comparison(const MechanicalModel& published, const Mechanica
                                TableIntervals intervals = TableIntervals::absent);
 
 /// Table I as a LaTeX table environment like the paper's: its caption on top, coefficients as $a_0$ ...
-/// $\xi$, numbers in mathematical mode, 95 % intervals in brackets. A comment names the packages it needs.
+/// $\xi$, numbers in mathematical mode, 95 % intervals in brackets.
 std::string to_latex(const TextTable& table);
 
 }  // namespace flightwatt::mechanical

@@ -44,9 +44,9 @@ a, b & $1.5$ \\
 \end{tabular}
 \end{table}
 )");
-    const TextTable wide{{"1", "2", "3", "4", "5", "6", "7"}, {}};
-    EXPECT_NE(to_latex(wide, "", "").find("\\resizebox"), std::string::npos);
-    EXPECT_EQ(to_latex(table, "", "").find("graphicx"), std::string::npos);
+    const TextTable odd{{"", "95 %"}, {{"$a_{0}$", "-0.012 to 3e-05"}}};
+    EXPECT_NE(to_latex(odd, "", "").find("{lr}\n\\toprule\n & 95 \\% \\\\\n"), std::string::npos);
+    EXPECT_NE(to_latex(odd, "", "").find("$a_{0}$ & $[-0.012,\\, 3 \\times 10^{-5}]$"), std::string::npos);
 }
 
 TEST(Latex, LeavesNoCharacterThatTexReadsOtherwise) {
