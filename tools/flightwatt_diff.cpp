@@ -18,7 +18,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace {
 
@@ -65,13 +64,7 @@ std::vector<mechanical::Difference> mission_differences(const cli::StageCall& ca
 
 /// Of two models or batches.
 cli::Differences compare_models(const cli::StageCall& call, ComparedKind kind) {
-    const auto a = read_model(call.inputs[0], kind);
-    const auto b = read_model(call.inputs[1], kind);
-    cli::Differences differences{kind, model_difference(a, b), shared_flights(a, b)};
-    if (const auto& shared = differences.shared_flights; !shared.empty())
-        cli::note(call, fmt::format("both rest on {}: the intervals of the differences allow for that",
-                                    fmt::join(shared, ", ")));
-    return differences;
+    return {kind, model_difference(read_model(call.inputs[0], kind), read_model(call.inputs[1], kind))};
 }
 
 int show_difference(const cli::StageCall& call) {

@@ -48,7 +48,7 @@ mechanical::ModelFitOptions options_from(const Json& json) {
 }
 
 /// Raised with every change of the fit that changes a model: older models are fitted again.
-constexpr auto fit_number = "fit 3";
+constexpr auto fit_number = "fit 4";
 
 constexpr auto copies_key = "copies";
 constexpr auto copies_without_power_key = "copies_without_power";

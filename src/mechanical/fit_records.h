@@ -48,26 +48,24 @@ struct PhaseFit {
     /// Frequencies (theta) more than a step of the scan away that fit almost as well (95 %), at most 100: with any of
     /// them the frequency is not determined, and the coefficients describe this curve only.
     std::vector<double> rivals_rad = {};
-    bool is_clamped = false;  ///< harmonics were reduced (hold_above_floor)
+    bool is_clamped = false;  ///< harmonics were reduced (hold_above_zero)
 };
 
 /// Minimum number of samples of a flight: one more than its coefficients.
 constexpr std::size_t min_samples(int order) { return static_cast<std::size_t>(coefficient_count(order)) + 1; }
 
 /// The range of theta: from pi to 120 periods, and below the frequency at which, in some flight, the highest harmonic
-/// has less than two samples a period (of the median gap), or its two columns are so collinear on the samples that the
-/// noise variance of a coefficient doubles. Throws UsageError for an invalid order, NoResultError for an empty range.
+/// has less than two samples a period (of the median gap), or little more. Throws UsageError for an invalid order, NoResultError for an empty range.
 FrequencyRange admissible_frequencies(std::span<const PhaseSamples> flights, const PhaseFitOptions& options);
 
 /// The weight of a flight in the average of its phase (the w_i of Eqs. 5-7).
 enum class Weighting {
-    uniform,           ///< equal
-    inverse_variance,  ///< samples / rms^2: flights with small residuals count more
-    agreement          ///< flights whose curve is near the others' count more
+    uniform,   ///< equal
+    agreement  ///< flights whose curve is near the others' count more
 };
 
 /// In the order of Weighting.
-inline constexpr std::array<std::string_view, 3> weighting_names{"uniform", "inverse-variance", "agreement"};
+inline constexpr std::array<std::string_view, 2> weighting_names{"uniform", "agreement"};
 
 constexpr std::string_view to_string(Weighting weighting) {
     return weighting_names[static_cast<std::size_t>(weighting)];

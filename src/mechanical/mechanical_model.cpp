@@ -28,16 +28,14 @@ void use_mean_power(MechanicalModel& model, flight::Phase phase) {
     mean_power.spread.reset();
 }
 
-void warn_of_negative_power(std::string_view phase, const PhaseModel& fitted, std::vector<std::string>& warnings) {
-    const auto points = curve_point_count(fitted.fourier, fitted.duration_s);
-    const auto curve = curve_w(fitted.fourier, fitted.duration_s, points);
-    const auto below = static_cast<double>(std::ranges::count_if(curve, [](double power) { return power < 0.0; }));
-    if (below == 0.0) return;
-    warnings.push_back(fmt::format(
-        "{}: the curve falls to {:.3g} W, and is below 0 for {:.1f} of {:.1f} s: implausible without regeneration; try "
-        "another order or more flights",
-        phase, *std::ranges::min_element(curve), below / static_cast<double>(points) * fitted.duration_s,
-        fitted.duration_s));
+/// The end of its range that the frequency has reached; empty: none.
+std::string_view bound_reached(const PhaseModel& phase) {
+    constexpr double tolerance = 1e-5;
+    if (!phase.range || phase.fourier.cos_w.empty()) return "";
+    const double theta_rad = phase.fourier.omega_rad_per_s * phase.duration_s;
+    return theta_rad <= (1.0 + tolerance) * phase.range->low_rad    ? "low"
+           : theta_rad >= (1.0 - tolerance) * phase.range->high_rad ? "high"
+                                                                    : "";
 }
 
 }  // namespace
@@ -50,10 +48,6 @@ MechanicalModel with_default_power(MechanicalModel model) {
     if (!model.validation || model.validation->prefers_curve) return model;
     for (const auto phase : flight::all_phases) use_mean_power(model, phase);
     return model;
-}
-
-std::string_view to_string(FrequencyBound bound) {
-    return bound == FrequencyBound::low ? "low" : bound == FrequencyBound::high ? "high" : "none";
 }
 
 double power_w(const FourierModel& model, double time_s) {
@@ -133,7 +127,16 @@ double rms_difference_w(const PhaseModel& a, const PhaseModel& b) {
 
 std::vector<std::string> model_warnings(const MechanicalModel& model) {
     std::vector<std::string> warnings;
-    for (const auto phase : flight::all_phases) warn_of_negative_power(to_string(phase), model.phases[phase], warnings);
+    for (const auto phase : flight::all_phases) {
+        const auto& fitted = model.phases[phase];
+        const auto curve =
+            curve_w(fitted.fourier, fitted.duration_s, curve_point_count(fitted.fourier, fitted.duration_s));
+        if (const double lowest_w = *std::ranges::min_element(curve); lowest_w < 0.0)
+            warnings.push_back(
+                fmt::format("{}: the curve falls to {:.3g} W: implausible without regeneration; try "
+                            "another order or more flights",
+                            to_string(phase), lowest_w));
+    }
     return warnings;
 }
 
@@ -147,12 +150,12 @@ std::vector<std::string> fit_notes(const MechanicalModel& model) {
         if (fitted.edge_samples > 0)
             note(fmt::format("{} sample{} left out at its ends: the power is that of the neighbouring phase",
                              fitted.edge_samples, fitted.edge_samples == 1 ? " was" : "s were"));
+        if (const auto bound = bound_reached(fitted); !bound.empty())
+            note(fmt::format("the frequency is at its {} bound: the data determine the curve, but not its frequency",
+                             bound));
         if (fitted.open_frequency)
             note("the samples do not determine the frequency: the coefficients describe this curve only");
-        if (fitted.not_negative)
-            note(
-                "the curve would fall below 0 W, or below the negative power that was measured: its harmonics were "
-                "reduced");
+        if (fitted.not_negative) note("the curve would fall below 0 W: its harmonics were reduced");
     }
     return notes;
 }

@@ -27,15 +27,10 @@ double power_w(const FourierModel& model, double time_s);
 /// The integral of f from 0 to `time_s` [J], in closed form.
 double energy_j(const FourierModel& model, double time_s);
 
-/// The end of its range that a frequency has reached.
-enum class FrequencyBound { none, low, high };
-std::string_view to_string(FrequencyBound bound);
-
 /// The admissible frequencies of a fit, as omega * duration [rad].
 struct FrequencyRange {
     double low_rad = 0.0;   ///< below, the basis becomes collinear
     double high_rad = 0.0;  ///< above, the third harmonic is faster than the samples
-    FrequencyBound at_bound = FrequencyBound::none;
 };
 
 /// Of a value with this standard error, by Student's t.
@@ -62,7 +57,6 @@ struct PhaseErrors {
     /// The errors are conditional on the frequency: the curve is a constant, or (in files of 0.2) at a bound.
     bool frequency_is_fixed = false;
     double r2 = 0.0;                 ///< of all samples about their own flights' curves and means
-    double condition = 0.0;          ///< of the basis on the samples, columns of length 1; the worst flight's
     double autocorrelation = 0.0;    ///< of neighbouring residuals
     double effective_samples = 0.0;  ///< independent samples with the same information on the mean
 };
@@ -81,13 +75,6 @@ struct VarianceComponents {
     double between_flight_sd_w = 0.0;  ///< of the flights' mean powers
     double drift_sd_w = 0.0;           ///< of the power about the curve at the flight's own level
     double correlation_s = 0.0;        ///< of that deviation (exponential correlation)
-};
-
-/// A phase's power as one constant.
-struct ConstantPower {
-    double mean_w = 0.0;
-    std::optional<double> sd_w;  ///< of a flight's mean power about it, its own error included
-    double degrees_of_freedom = 0.0;
 };
 
 struct PhaseModel;
@@ -147,7 +134,7 @@ std::string_view default_model(const ModelValidation& validation);
 struct MechanicalModel {
     std::string name;
     std::string description;  ///< how it was made, for people
-    std::string weighting;    ///< "uniform", "inverse-variance", "agreement", "by hand" or "published"
+    std::string weighting;    ///< "uniform", "agreement", "by hand" or "published"; older files also "inverse-variance"
     flight::PerPhase<PhaseModel> phases;
     std::vector<FlightContribution> flights;
     std::optional<PhysicalModel> physical = {};      ///< power by motion; absent unless fitted
@@ -186,8 +173,7 @@ double rms_difference_w(const PhaseModel& a, const PhaseModel& b);
 /// Warnings for users, a line each: a phase whose curve falls below 0 W.
 std::vector<std::string> model_warnings(const MechanicalModel& model);
 
-/// Deviations of the fit from least squares of all samples, a line each: samples excluded, a frequency that is not
-/// determined, a curve with reduced harmonics.
+/// Remarks on the fit, a line each: samples excluded, a frequency at a bound or not determined, reduced harmonics.
 std::vector<std::string> fit_notes(const MechanicalModel& model);
 
 }  // namespace flightwatt::mechanical

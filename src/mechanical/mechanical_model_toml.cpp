@@ -6,8 +6,6 @@
 #include <functional>
 #include <utility>
 
-#include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -38,11 +36,10 @@ void list_errors(TomlFields& fields, PhaseErrors& errors, std::size_t order) {
     fields.real("curve_w", errors.curve_w, at_least(0.0));
     fields.real("degrees_of_freedom", errors.degrees_of_freedom, at_least(1.0));
     fields.real("r2", errors.r2, at_most(1.0));
-    fields.real("condition", errors.condition, at_least(1.0));
     fields.real("autocorrelation", errors.autocorrelation, between(0.0, 1.0));
     fields.real("effective_samples", errors.effective_samples, at_least(0.0));
     if (const auto* table = fields.source())  // of earlier versions
-        for (const auto* key : {"from_flights", "noise_lasts", "interval_95"}) table->has(key);
+        for (const auto* key : {"from_flights", "noise_lasts", "interval_95", "condition"}) table->has(key);
 }
 
 void list_envelope(TomlFields& fields, FlightEnvelope& spread) {
@@ -60,18 +57,10 @@ void list_envelope(TomlFields& fields, FlightEnvelope& spread) {
     fields.real("counted_flights", spread.effective_flights, at_least(1.0));
 }
 
-FrequencyBound read_bound(const TomlTable& table) {
-    const auto name = table.string("at_bound");
-    for (const auto bound : {FrequencyBound::none, FrequencyBound::low, FrequencyBound::high}) {
-        if (name == to_string(bound)) return bound;
-    }
-    throw InputError(table.where("at_bound"), fmt::format("at_bound = '{}', expected none, low or high", name));
-}
-
 void list_frequency_range(TomlFields& fields, FrequencyRange& range) {
     fields.real("low_rad", range.low_rad, more_than(0.0));
     fields.real("high_rad", range.high_rad, at_least(range.low_rad));
-    fields.name("at_bound", range.at_bound, read_bound);
+    if (const auto* table = fields.source()) table->has("at_bound");  // of earlier versions
 }
 
 void list_variance(TomlFields& fields, VarianceComponents& spread) {
@@ -79,16 +68,6 @@ void list_variance(TomlFields& fields, VarianceComponents& spread) {
     fields.real("level_sd_w", spread.between_flight_sd_w, at_least(0.0));
     fields.real("drift_sd_w", spread.drift_sd_w, at_least(0.0));
     fields.real("correlation_s", spread.correlation_s, more_than(0.0));
-}
-
-/// Keys of earlier versions. A level law changed predictions; the others served airspeeds of missions, which need
-/// [physical] now.
-void read_removed_keys(const TomlTable& phase) {
-    if (phase.is_table("level_law"))
-        throw InputError(phase.where("level_law"), "a level law: cruises follow no covariate any more",
-                         "remove it: the cruise has the flights' average level; or fit by airspeed and climb: "
-                         "flightwatt fit --model-kind physical FLIGHT...");
-    for (const auto* key : {"airspeed", "airspeed_law", "airspeed_cubed_parts_m3_per_s3"}) phase.has(key);
 }
 
 void list_phase(TomlFields& fields, PhaseModel& phase) {
@@ -114,7 +93,8 @@ void list_phase(TomlFields& fields, PhaseModel& phase) {
     if (fields.has("open_frequency", phase.open_frequency)) fields.flag("open_frequency", phase.open_frequency);
     if (fields.has("not_negative", phase.not_negative)) fields.flag("not_negative", phase.not_negative);
     fields.optional_table("level_spread", phase.level_spread, list_variance);
-    if (table != nullptr) read_removed_keys(*table);
+    if (table != nullptr)  // keys of earlier versions, which changed no prediction
+        for (const auto* key : {"airspeed", "airspeed_law", "airspeed_cubed_parts_m3_per_s3"}) table->has(key);
     if (phase.errors) fields.line("");
     const auto list_of_order = [order](TomlFields& of, PhaseErrors& errors) { list_errors(of, errors, order); };
     fields.optional_table("errors", phase.errors, list_of_order, TomlLayout::section);
@@ -184,29 +164,19 @@ void require_term(const TomlTable& table, const std::vector<TermRow>& rows, std:
                                  row.covariance.size(), count));
 }
 
-/// Symmetric, and no combination of the terms with a variance below 0.
+/// Symmetric, with variances of 0 or more.
 void require_covariance(const PhysicalModel& model, const TomlTable& table) {
-    const auto count = std::ssize(model.terms);
-    Eigen::MatrixXd covariance(count, count);
-    for (Eigen::Index i = 0; i < count; ++i)
-        covariance.row(i) =
-            Eigen::Map<const Eigen::RowVectorXd>(model.covariance[static_cast<std::size_t>(i)].data(), count);
     constexpr double rounding = 1e-6;
-    const Eigen::VectorXd sds = covariance.diagonal().cwiseAbs().cwiseSqrt();
-    const Eigen::MatrixXd scale = sds * sds.transpose();
-    if (((covariance - covariance.transpose()).array().abs() > rounding * scale.array()).any())
-        throw InputError(table.where("terms"), "the covariance matrix is not symmetric",
-                         "expected the same covariance of two terms in both rows");
-    for (Eigen::Index i = 0; i < count; ++i)
-        if (covariance(i, i) < 0.0)
-            throw InputError(table.where("terms"),
-                             fmt::format("the variance of {} is {}: expected 0 or more",
-                                         to_string(model.terms[static_cast<std::size_t>(i)]), covariance(i, i)));
-    const Eigen::MatrixXd correlation =
-        (scale.array() > 0.0).select(covariance.array() / scale.array(), 2.0 * covariance.array().sign());
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation, Eigen::EigenvaluesOnly);
-    if (solver.eigenvalues().minCoeff() >= -rounding) return;
-    throw InputError(table.where("terms"), "the covariances are larger than the variances allow");
+    for (std::size_t i = 0; i < model.terms.size(); ++i) {
+        const auto& row = model.covariance[i];
+        if (row[i] < 0.0)
+            throw InputError(table.where("terms"), fmt::format("the variance of {} is {}: expected 0 or more",
+                                                               to_string(model.terms[i]), row[i]));
+        for (std::size_t j = 0; j < i; ++j)
+            if (std::abs(row[j] - model.covariance[j][i]) > rounding * std::sqrt(row[i] * model.covariance[j][j]))
+                throw InputError(table.where("terms"), "the covariance matrix is not symmetric",
+                                 "expected the same covariance of two terms in both rows");
+    }
 }
 
 void list_terms(TomlFields& fields, PhysicalModel& model) {

@@ -25,18 +25,6 @@ Contributions contributions_of(const MechanicalModel& model, flight::Phase phase
     return found;
 }
 
-/// Whether both are of one flight's phase, by quantities that no fit option changes: a name may be used twice.
-bool is_of_one_flight(const PhaseContribution& a, const PhaseContribution& b) {
-    constexpr double rounding = 1e-6;
-    return a.samples == b.samples && std::abs(a.duration_s - b.duration_s) <= rounding * a.duration_s;
-}
-
-/// Correlation of two estimates that share flights, of equal weights.
-double correlation_of(std::size_t shared, std::size_t flights_a, std::size_t flights_b) {
-    if (shared == 0) return 0.0;
-    return static_cast<double>(shared) / std::sqrt(static_cast<double>(flights_a * flights_b));
-}
-
 /// `value` with the interval that the flights' own values give their weighted mean; none from fewer than two.
 Estimate mean_of_flights(double value, const Contributions& flights,
                          const std::function<std::optional<double>(const PhaseContribution&)>& own) {
@@ -62,12 +50,11 @@ struct PhasePair {
     Contributions flights_a;
     Contributions flights_b;
     std::string part;
-    double correlation = 0.0;
 };
 
 /// Adds the row, with its interval if both estimates have theirs.
-void add_row(std::vector<Difference>& all, Difference row, double correlation, DifferenceBasis basis) {
-    if (row.a && row.b) row.interval = interval_of_difference(*row.a, *row.b, correlation);
+void add_row(std::vector<Difference>& all, Difference row, DifferenceBasis basis) {
+    if (row.a && row.b) row.interval = interval_of_difference(*row.a, *row.b);
     if (row.interval) row.basis = basis;
     all.push_back(std::move(row));
 }
@@ -97,16 +84,16 @@ void add_coefficients(std::vector<Difference>& all, const PhasePair& pair) {
     const auto b = coefficients_of(pair.b, order);
     for (std::size_t i = 0; i + 1 < a.size(); ++i) {
         auto quantity = fmt::format("{}{}_w", i > 0 && i % 2 == 0 ? 'b' : 'a', (i + 1) / 2);
-        add_row(all, {pair.part, std::move(quantity), "W", a[i], b[i]}, pair.correlation, DifferenceBasis::noise);
+        add_row(all, {pair.part, std::move(quantity), "W", a[i], b[i]}, DifferenceBasis::noise);
     }
-    add_row(all, {pair.part, "omega_rad_per_s", "rad/s", a.back(), b.back()}, pair.correlation, DifferenceBasis::noise);
+    add_row(all, {pair.part, "omega_rad_per_s", "rad/s", a.back(), b.back()}, DifferenceBasis::noise);
 }
 
 void add_means(std::vector<Difference>& all, const PhasePair& pair) {
     const auto add = [&](const char* quantity, const char* unit, const auto& of_model, const auto& of_flight) {
         const auto a = mean_of_flights(of_model(pair.a), pair.flights_a, of_flight);
         const auto b = mean_of_flights(of_model(pair.b), pair.flights_b, of_flight);
-        add_row(all, {pair.part, quantity, unit, a, b}, pair.correlation, DifferenceBasis::flights);
+        add_row(all, {pair.part, quantity, unit, a, b}, DifferenceBasis::flights);
     };
     const auto energy = [](const PhaseModel& phase) { return energy_j(phase.fourier, phase.duration_s); };
     add(
@@ -148,44 +135,24 @@ std::optional<Estimate> term_of(const std::optional<PhysicalModel>& model, Power
     return Estimate{value, student_t_interval(value, std::sqrt(model->covariance[i][i]), model->degrees_of_freedom)};
 }
 
-/// `shared` are the flights of both models.
 void add_physical(std::vector<Difference>& all, const std::optional<PhysicalModel>& a,
-                  const std::optional<PhysicalModel>& b, const std::vector<std::string>& shared) {
-    double correlation = 0.0;
-    if (a && b) {
-        const auto is_in = [](const PhysicalModel& model, const std::string& name) {
-            return std::ranges::find(model.flights, name) != model.flights.end();
-        };
-        const auto count =
-            std::ranges::count_if(shared, [&](const auto& name) { return is_in(*a, name) && is_in(*b, name); });
-        correlation = correlation_of(static_cast<std::size_t>(count), a->flights.size(), b->flights.size());
-    }
+                  const std::optional<PhysicalModel>& b) {
     for (const auto term : all_power_terms) {
         const auto of_a = term_of(a, term);
         const auto of_b = term_of(b, term);
         if (!of_a && !of_b) continue;
         Difference row{"physical", std::string(to_string(term)), std::string(unit_of(term)), of_a, of_b};
-        add_row(all, std::move(row), correlation, DifferenceBasis::flights);
+        add_row(all, std::move(row), DifferenceBasis::flights);
     }
 }
 
 }  // namespace
 
-std::optional<Interval> interval_of_difference(const Estimate& a, const Estimate& b, double correlation) {
+std::optional<Interval> interval_of_difference(const Estimate& a, const Estimate& b) {
     if (!a.interval || !b.interval) return std::nullopt;
-    const auto reach = [&](double of_a, double of_b) {
-        const auto x = std::max(0.0, of_a);  // a mean over frequencies may be outside its interval
-        const auto y = std::max(0.0, of_b);
-        return std::sqrt(std::max(0.0, x * x + y * y - 2.0 * correlation * x * y));
-    };
     const auto difference = b.value - a.value;
-    // The same estimate of the same flights: an asymmetric interval would leave a width at correlation 1.
-    constexpr double rounding = 1e-12;
-    const auto is_same =
-        a.value == b.value && a.interval->low == b.interval->low && a.interval->high == b.interval->high;
-    if (is_same && correlation >= 1.0 - rounding) return Interval{0.0, 0.0};
-    return Interval{difference - reach(a.interval->high - a.value, b.value - b.interval->low),
-                    difference + reach(a.value - a.interval->low, b.interval->high - b.value)};
+    return Interval{difference - std::hypot(a.interval->high - a.value, b.value - b.interval->low),
+                    difference + std::hypot(a.value - a.interval->low, b.interval->high - b.value)};
 }
 
 std::string to_string(DifferenceBasis basis) {
@@ -202,37 +169,16 @@ std::optional<bool> is_significant(const Difference& difference) {
     return difference.interval->low > 0.0 || difference.interval->high < 0.0;
 }
 
-std::vector<std::string> shared_flights(const MechanicalModel& a, const MechanicalModel& b) {
-    std::vector<std::string> shared;
-    for (const auto& flight : a.flights) {
-        const auto other = std::ranges::find(b.flights, flight.flight, &FlightContribution::flight);
-        if (other == b.flights.end()) continue;
-        const bool is_same = std::ranges::all_of(flight::all_phases, [&](flight::Phase phase) {
-            const auto& of_a = flight.phases[phase];
-            const auto& of_b = other->phases[phase];
-            return !of_a || !of_b || is_of_one_flight(*of_a, *of_b);
-        });
-        if (is_same) shared.push_back(flight.flight);
-    }
-    return shared;
-}
-
 std::vector<Difference> model_difference(const MechanicalModel& a, const MechanicalModel& b) {
     std::vector<Difference> all;
-    const auto shared = shared_flights(a, b);
     for (const auto phase : flight::all_phases) {
-        PhasePair pair{a.phases[phase], b.phases[phase], contributions_of(a, phase), contributions_of(b, phase),
-                       std::string(to_string(phase))};
-        const auto count = std::ranges::count_if(shared, [&](const std::string& name) {
-            return pair.flights_a.contains(name) && pair.flights_b.contains(name);
-        });
-        pair.correlation =
-            correlation_of(static_cast<std::size_t>(count), pair.flights_a.size(), pair.flights_b.size());
+        const PhasePair pair{a.phases[phase], b.phases[phase], contributions_of(a, phase), contributions_of(b, phase),
+                             std::string(to_string(phase))};
         add_coefficients(all, pair);
         add_means(all, pair);
         all.push_back(curve_difference(pair));
     }
-    add_physical(all, a.physical, b.physical, shared);
+    add_physical(all, a.physical, b.physical);
     return all;
 }
 

@@ -15,9 +15,9 @@ struct Estimate {
     std::optional<Interval> interval;
 };
 
-/// The 95 % interval of b - a from theirs, which need not be symmetric; `correlation` of the two, -1 to 1 (Eq. 42,
-/// Zou 2007). std::nullopt where one has none.
-std::optional<Interval> interval_of_difference(const Estimate& a, const Estimate& b, double correlation);
+/// The 95 % interval of b - a from theirs, which need not be symmetric, as of independent estimates (Eq. 42, Zou 2007):
+/// too wide where both models contain the same flights. std::nullopt where one has none.
+std::optional<Interval> interval_of_difference(const Estimate& a, const Estimate& b);
 
 /// The cause of a difference's interval.
 enum class DifferenceBasis {
@@ -44,12 +44,8 @@ std::optional<double> difference_of(const Difference& difference);
 /// Whether its interval excludes 0; std::nullopt without one.
 std::optional<bool> is_significant(const Difference& difference);
 
-/// The flights of both models: of one name, with phases as long and of as many samples.
-std::vector<std::string> shared_flights(const MechanicalModel& a, const MechanicalModel& b);
-
 /// Coefficients, duration, mean power, energy and the maximum difference of the curves of each phase; then the terms of
-/// the physical models. Shared flights correlate the estimates, and narrow the interval of the difference
-/// (docs/methods.md, Two models).
+/// the physical models (docs/methods.md, Two models).
 std::vector<Difference> model_difference(const MechanicalModel& a, const MechanicalModel& b);
 
 }  // namespace flightwatt::mechanical

@@ -5,7 +5,6 @@
 #include "mechanical/fit/error_analysis.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -20,9 +19,11 @@ std::vector<double> even_fractions(std::size_t points) {
     return fractions;
 }
 
-CurveBand band_of(const PhaseModel& model, const ErrorAnalysis& analysis, const std::vector<double>& taus) {
+/// The bands of one phase at `points` fractions of it.
+CurveBand band_of(const ModelFit& fit, flight::Phase phase, const ErrorAnalysis& analysis, std::size_t points) {
+    const auto& model = fit.model.phases[phase];
     CurveBand band;
-    for (const double tau : taus) {
+    for (const double tau : even_fractions(points)) {
         band.time_s.push_back(tau * model.duration_s);
         const auto [low, high] =
             student_t_interval(power_w(model.fourier, band.time_s.back()), curve_standard_error_w(analysis, tau),
@@ -30,30 +31,12 @@ CurveBand band_of(const PhaseModel& model, const ErrorAnalysis& analysis, const 
         band.low_95_w.push_back(low);
         band.high_95_w.push_back(high);
     }
-    return band;
-}
-
-void add_curve(CsvWriter& csv, const ModelFit& fit, flight::Phase phase, const ErrorAnalysis& analysis) {
-    const auto& model = fit.model.phases[phase];
-    const auto points = curve_point_count(model.fourier, model.duration_s) / 5 + 1;
-    const auto spread = compute_envelope(fit.fits[phase], fit.weights[phase], points);
-    const auto taus = even_fractions(points);
-    const auto band = band_of(model, analysis, taus);
-    const double half_width = student_t_half_width(analysis.errors.degrees_of_freedom);
-    for (std::size_t i = 0; i < points; ++i) {
-        const double power = power_w(model.fourier, band.time_s[i]);
-        const double error = (band.high_95_w[i] - power) / half_width;
-        std::array<std::optional<double>, 5> of_flights;
-        if (spread) {
-            // The mean of all flights like these, of which these are a sample.
-            const double flights = spread->effective_flights;
-            const double sd_w = spread->standard_deviation_w[i];
-            const auto population = student_t_interval(power, sd_w / std::sqrt(flights), flights - 1.0);
-            of_flights = {spread->low_w[i], spread->high_w[i], sd_w, population.low, population.high};
-        }
-        csv.add(to_string(phase), taus[i], band.time_s[i], power, error, band.low_95_w[i], band.high_95_w[i],
-                of_flights[0], of_flights[1], of_flights[2], of_flights[3], of_flights[4]);
+    if (auto spread = compute_envelope(fit.fits[phase], fit.weights[phase], points)) {
+        band.flights_low_w = std::move(spread->low_w);
+        band.flights_high_w = std::move(spread->high_w);
+        band.flights_sd_w = std::move(spread->standard_deviation_w);
     }
+    return band;
 }
 
 }  // namespace
@@ -91,14 +74,7 @@ flight::PerPhase<ErrorAnalysis> analyse_model(ModelFit& fit) {
 flight::PerPhase<CurveBand> curve_bands(const ModelFit& fit, const flight::PerPhase<ErrorAnalysis>& analyses) {
     constexpr std::size_t points = 101;
     flight::PerPhase<CurveBand> bands;
-    for (const auto phase : flight::all_phases) {
-        auto& band = bands[phase];
-        band = band_of(fit.model.phases[phase], analyses[phase], even_fractions(points));
-        if (const auto spread = compute_envelope(fit.fits[phase], fit.weights[phase], points)) {
-            band.flights_low_w = spread->low_w;
-            band.flights_high_w = spread->high_w;
-        }
-    }
+    for (const auto phase : flight::all_phases) bands[phase] = band_of(fit, phase, analyses[phase], points);
     return bands;
 }
 
@@ -107,7 +83,28 @@ std::string curves_csv(const ModelFit& fit, const flight::PerPhase<ErrorAnalysis
     CsvWriter csv({"phase", "tau", "time_s", "power_w", "standard_error_w", "low_95_w", "high_95_w", "flights_low_w",
                    "flights_high_w", "flights_sd_w", "population_low_95_w", "population_high_95_w"},
                   digits);
-    for (const auto phase : flight::all_phases) add_curve(csv, fit, phase, analyses[phase]);
+    for (const auto phase : flight::all_phases) {
+        const auto& model = fit.model.phases[phase];
+        const auto band =
+            band_of(fit, phase, analyses[phase], curve_point_count(model.fourier, model.duration_s) / 5 + 1);
+        const double half_width = student_t_half_width(analyses[phase].errors.degrees_of_freedom);
+        const auto& weights = fit.weights[phase];
+        const double flights = 1.0 / std::inner_product(weights.begin(), weights.end(), weights.begin(), 0.0);
+        for (std::size_t i = 0; i < band.time_s.size(); ++i) {
+            const double power = power_w(model.fourier, band.time_s[i]);
+            const auto of_flights = [&](const std::vector<double>& values) {
+                return values.empty() ? std::nullopt : std::optional(values[i]);
+            };
+            std::optional<Interval> population;  // the mean of all flights like these, of which these are a sample
+            if (const auto sd_w = of_flights(band.flights_sd_w))
+                population = student_t_interval(power, *sd_w / std::sqrt(flights), flights - 1.0);
+            csv.add(to_string(phase), band.time_s[i] / model.duration_s, band.time_s[i], power,
+                    (band.high_95_w[i] - power) / half_width, band.low_95_w[i], band.high_95_w[i],
+                    of_flights(band.flights_low_w), of_flights(band.flights_high_w), of_flights(band.flights_sd_w),
+                    population ? std::optional(population->low) : std::nullopt,
+                    population ? std::optional(population->high) : std::nullopt);
+        }
+    }
     return csv.text();
 }
 

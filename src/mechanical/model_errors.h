@@ -31,6 +31,7 @@ struct CurveBand {
     std::vector<double> high_95_w;
     std::vector<double> flights_low_w;  ///< envelope of the flights' own curves; empty of a single flight
     std::vector<double> flights_high_w;
+    std::vector<double> flights_sd_w = {};  ///< of one flight about the mean
 };
 
 /// The bands of a fit that was analysed, at 101 times a phase.

@@ -18,7 +18,7 @@ struct FrequencyScan;
 struct PhaseSamples {
     std::string flight;
     double duration_s = 0.0;
-    std::vector<double> tau;      ///< (time - begin of phase) / duration_s, in [0, 1]; gaps are allowed
+    std::vector<double> tau;      ///< (time - begin of phase) / duration_s, in [0, 1], rising; gaps are allowed
     std::vector<double> power_w;  ///< as long as tau
     double start_s = 0.0;         ///< when the phase began, on the log's own clock
     /// Samples at the phase's ends that are not among these: their power is the neighbouring phase's
@@ -35,16 +35,13 @@ double mean_power_w(const PhaseSamples& samples);
 bool is_constant(std::span<const PhaseSamples> flights);
 
 /// The median of the gaps between samples, as a part of the phase; 0 if all samples are at one time.
-double median_gap(std::vector<double> tau);
+double median_gap(const std::vector<double>& tau);
 
 /// One flight; a phase that it lacks, or that was not recorded, is absent.
 struct FlightSamples {
     std::string flight;
     flight::PerPhase<std::optional<PhaseSamples>> phases;
 };
-
-/// The same samples in the order of time.
-PhaseSamples sort_by_time(const PhaseSamples& samples);
 
 /// Samples at the ends of a phase whose power is the neighbouring phase's.
 struct EdgeSamples {

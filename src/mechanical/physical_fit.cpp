@@ -6,70 +6,47 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <numeric>
+#include <limits>
 
+#include <boost/math/special_functions/digamma.hpp>
 #include <fmt/format.h>
 
 namespace flightwatt::mechanical {
 namespace {
 
-/// Half width of the central part of a mixture of normal distributions with mean 0.
-double mixture_half_width(const std::vector<double>& sds, const std::vector<double>& weights, double probability) {
-    constexpr int bisections = 60;
-    double low = 0.0;
-    double high = 20.0 * *std::ranges::max_element(sds);
-    for (int i = 0; i < bisections; ++i) {
-        const double middle = std::midpoint(low, high);
-        double outside = 0.0;
-        for (std::size_t n = 0; n < sds.size(); ++n)
-            if (sds[n] > 0.0) outside += weights[n] * std::erfc(middle / sds[n] / std::numbers::sqrt2);
-        (outside > 1.0 - probability ? low : high) = middle;
-    }
-    return high;
-}
-
-/// Degrees of freedom, 1 to 200, of the Student's t with this ratio of the half widths of 95 % and of 68 %.
-double degrees_of_freedom_of(double ratio, double inner_probability) {
-    constexpr int bisections = 60;
-    double low = 0.0;  // logarithms
-    double high = std::log(200.0);
-    for (int i = 0; i < bisections; ++i) {
-        const double middle = std::exp(std::midpoint(low, high));
-        const bool is_wider = student_t_half_width(middle) / student_t_half_width(middle, inner_probability) > ratio;
-        (is_wider ? low : high) = std::log(middle);
-    }
-    return std::exp(low);
-}
-
-/// The posterior as one record: means of coefficients and squared level sds, scaled to a Student's t with the
-/// posterior's 68 and 95 % intervals for the power of a typical flight.
+/// The posterior as one record: means of coefficients and squared level sds, scaled to the Student's t whose variances
+/// have the same mean and variance of their logarithm, for the power of a typical flight.
 void summarise(PhysicalModel& model, const PowerPosterior& posterior, const TermValues& typical) {
     const ColumnVector mean = mean_coefficients(posterior);
     const ColumnVector terms = as_columns(typical)(columns_of(model.terms));
     ColumnMatrix covariance = ColumnMatrix::Zero(mean.size(), mean.size());
     double level_variance = 0.0;
     double variance_w2 = 0.0;
-    std::vector<double> sds_w;
+    double logarithm = 0.0;
+    double logarithm_square = 0.0;
     for (std::size_t n = 0; n < posterior.fits.size(); ++n) {
         const auto& fit = posterior.fits[n];
+        const double weight = posterior.weights[n];
         const ColumnVector off = fit.coefficients - mean;
         const ColumnMatrix own = fit.covariance + off * off.transpose();
         const double level = posterior.nodes[n].level_sd;
         const double own_w2 = std::pow(level * fit.coefficients.dot(terms), 2) + terms.dot(own * terms);
-        covariance += posterior.weights[n] * own;
-        level_variance += posterior.weights[n] * level * level;
-        variance_w2 += posterior.weights[n] * own_w2;
-        sds_w.push_back(std::sqrt(own_w2));
+        covariance += weight * own;
+        level_variance += weight * level * level;
+        variance_w2 += weight * own_w2;
+        const double own_logarithm = std::log(std::max(own_w2, std::numeric_limits<double>::min()));
+        logarithm += weight * own_logarithm;
+        logarithm_square += weight * own_logarithm * own_logarithm;
     }
     if (model.flights.size() > 1) {
-        constexpr double inner_probability = 0.6827;
-        const double inner_w = mixture_half_width(sds_w, posterior.weights, inner_probability);
-        const double outer_w = mixture_half_width(sds_w, posterior.weights, confidence_level);
-        model.degrees_of_freedom = degrees_of_freedom_of(inner_w > 0.0 ? outer_w / inner_w : 0.0, inner_probability);
-        const double sd_w = outer_w / student_t_half_width(model.degrees_of_freedom);
-        const double scale = variance_w2 > 0.0 ? sd_w * sd_w / variance_w2 : 1.0;
+        constexpr double max_degrees_of_freedom = 200.0;
+        // Of nu / chi^2 with nu degrees of freedom the logarithm has the variance trigamma(nu / 2), some 2/nu + 2/nu^2.
+        const double spread = std::max(logarithm_square - logarithm * logarithm, 1.0 / max_degrees_of_freedom);
+        const double freedom = std::clamp((1.0 + std::sqrt(1.0 + 2.0 * spread)) / spread, 1.0, max_degrees_of_freedom);
+        const double scale_w2 = std::exp(logarithm + boost::math::digamma(0.5 * freedom)) / (0.5 * freedom);
+        const double scale = variance_w2 > 0.0 ? scale_w2 / variance_w2 : 1.0;
         covariance *= scale;
+        model.degrees_of_freedom = freedom;
         model.level_sd = std::sqrt(scale * level_variance);
     }
     for (std::size_t i = 0; i < model.terms.size(); ++i) {

@@ -94,10 +94,11 @@ double power_w(const PhysicalModel& model, const FlightState& motion);
 /// The sum of the terms [W], which may be below 0: the means over a time of the terms give the mean power.
 double sum_of_terms_w(const PhysicalModel& model, const TermValues& values);
 
-/// A standard deviation with the degrees of freedom of the Student's t that makes intervals of it.
-struct PowerUncertainty {
-    double sd_w = 0.0;
-    double degrees_of_freedom = 0.0;
+/// A mean power and its uncertainty.
+struct ConstantPower {
+    double mean_w = 0.0;
+    std::optional<double> sd_w;       ///< of a flight's mean power about it, its own error included
+    double degrees_of_freedom = 0.0;  ///< of the Student's t that makes intervals of sd_w
 };
 
 /// A stationary deviation with exponential correlation (Ornstein-Uhlenbeck):
@@ -113,10 +114,9 @@ double variance_of_mean_w2(const DriftProcess& drift, double duration_s);
 /// Covariance [W^2] of the means over two durations, the second of which follows the first.
 double covariance_of_means_w2(const DriftProcess& drift, double first_s, double second_s);
 
-/// Uncertainty of a new flight's mean power over `duration_s` with these mean values of the terms: level, drift and
-/// coefficients (docs/methods.md, Power from airspeed and climb). std::nullopt for a model of a single flight.
-std::optional<PowerUncertainty> prediction_uncertainty(const PhysicalModel& model, const TermValues& mean_values,
-                                                       double duration_s);
+/// A new flight's mean power over `duration_s` with these mean values of the terms, not below 0; its uncertainty is of
+/// level, drift and coefficients (docs/methods.md, Power from airspeed and climb), and absent for a single flight's model.
+ConstantPower predicted_power(const PhysicalModel& model, const TermValues& mean_values, double duration_s);
 
 /// Whether the motion is within the range of the model's flights.
 bool is_within_flown_range(const PhysicalModel& model, const FlightState& motion);

@@ -42,11 +42,9 @@ std::optional<double> mean_power_half_width_w(const WeightedPhase& phase, std::s
 
 }  // namespace
 
-void add_variance(EnergyEstimate& estimate, const VarianceTerm& share) {
-    estimate.variance_wh2 += share.variance_wh2;
-    if (share.variance_wh2 > 0.0) {
-        estimate.satterthwaite_sum += share.variance_wh2 * share.variance_wh2 / share.degrees_of_freedom;
-    }
+void add_variance(EnergyEstimate& estimate, double variance_wh2, double degrees_of_freedom) {
+    estimate.variance_wh2 += variance_wh2;
+    if (variance_wh2 > 0.0) estimate.satterthwaite_sum += variance_wh2 * variance_wh2 / degrees_of_freedom;
 }
 
 EnergyEstimate sum_of(const EnergyEstimate& a, const EnergyEstimate& b) {
@@ -99,10 +97,8 @@ EnergyEstimate predict_before_flight(const WeightedPhase& phase, double duration
 
 EnergyEstimate energy_of(const ConstantPower& power, double duration_s) {
     EnergyEstimate estimate{units::wh_from_joule(power.mean_w * duration_s), power.sd_w.has_value(), 0.0, 0.0};
-    if (power.sd_w) {
-        const double sd_wh = units::wh_from_joule(*power.sd_w * duration_s);
-        add_variance(estimate, {sd_wh * sd_wh, power.degrees_of_freedom});
-    }
+    if (power.sd_w)
+        add_variance(estimate, std::pow(units::wh_from_joule(*power.sd_w * duration_s), 2), power.degrees_of_freedom);
     return estimate;
 }
 
@@ -114,7 +110,7 @@ EnergyEstimate predict_remaining_before_flight(const WeightedPhase& phase, doubl
     if (!phase.model.level_spread) return estimate;
     const auto& spread = *phase.model.level_spread;
     const double sd_wh = units::wh_from_joule(spread.between_flight_sd_w * remaining_s);
-    add_variance(estimate, {sd_wh * sd_wh * (1.0 + phase.weight_square_sum), static_cast<double>(spread.flights - 1)});
+    add_variance(estimate, sd_wh * sd_wh * (1.0 + phase.weight_square_sum), static_cast<double>(spread.flights - 1));
     return estimate;
 }
 
@@ -156,18 +152,8 @@ RemainingCruise predict_remaining_cruise(const WeightedPhase& cruise, const Flig
     const double wh2_per_w2 = std::pow(units::wh_from_joule(remaining_s), 2);
     for (const double variance_w2 : {average * (1.0 - gain) * (1.0 - gain) * of.level_w2, average * drift_w2,
                                      shape_w * shape_w, average * gain_variance_w2(of, freedom)})
-        add_variance(rest.energy, {variance_w2 * wh2_per_w2, freedom});
+        add_variance(rest.energy, variance_w2 * wh2_per_w2, freedom);
     return rest;
-}
-
-EnergyEstimate predict_physical(const PhysicalModel& model, const TermValues& mean_values, double duration_s) {
-    const double mean_w = std::max(sum_of_terms_w(model, mean_values), 0.0);
-    const auto uncertainty = prediction_uncertainty(model, mean_values, duration_s);
-    EnergyEstimate estimate{units::wh_from_joule(mean_w * duration_s), uncertainty.has_value(), 0.0, 0.0};
-    if (!uncertainty) return estimate;
-    const double sd_wh = units::wh_from_joule(uncertainty->sd_w * duration_s);
-    add_variance(estimate, {sd_wh * sd_wh, uncertainty->degrees_of_freedom});
-    return estimate;
 }
 
 std::vector<RemainingCruise> predict_remaining_physical(const PhysicalModel& model, const FlightProgress& flown,
@@ -189,12 +175,11 @@ std::vector<RemainingCruise> predict_remaining_physical(const PhysicalModel& mod
         rest.measured_w = units::joule_from_wh(flown.cruise_energy_wh) / flown.cruise_s();
         rest.remaining_mean_w = power.mean_w;
         rest.energy.energy_wh = power.mean_w * wh_per_w;
-        add_variance(rest.energy, {std::pow(power.parameter_sd_w * wh_per_w, 2), power.parameter_degrees_of_freedom});
-        add_variance(rest.energy, {std::pow(power.drift_sd_w * wh_per_w, 2), power.drift_degrees_of_freedom});
+        add_variance(rest.energy, std::pow(power.parameter_sd_w * wh_per_w, 2), model.degrees_of_freedom);
+        add_variance(rest.energy, std::pow(power.drift_sd_w * wh_per_w, 2), model.drift_degrees_of_freedom);
     }
     return rests;
 }
-
 RemainingCruise predict_remaining_physical(const PhysicalModel& model, const FlightProgress& flown,
                                            const MotionAhead& ahead) {
     return predict_remaining_physical(model, flown, std::span(&ahead, 1)).front();

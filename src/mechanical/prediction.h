@@ -12,12 +12,6 @@
 
 namespace flightwatt::mechanical {
 
-/// An independent cause of uncertainty: its variance and the degrees of freedom that the variance rests on.
-struct VarianceTerm {
-    double variance_wh2 = 0.0;
-    double degrees_of_freedom = 0.0;
-};
-
 /// A predicted energy. Without `uncertainty_known` there is no interval: a single flight has no variability.
 struct EnergyEstimate {
     double energy_wh = 0.0;
@@ -26,7 +20,8 @@ struct EnergyEstimate {
     double satterthwaite_sum = 0.0;  ///< of variance^2 / degrees_of_freedom over the causes
 };
 
-void add_variance(EnergyEstimate& estimate, const VarianceTerm& share);
+/// Adds an independent cause of uncertainty: its variance, and the degrees of freedom that the variance rests on.
+void add_variance(EnergyEstimate& estimate, double variance_wh2, double degrees_of_freedom);
 
 /// Both together, as if they were independent.
 EnergyEstimate sum_of(const EnergyEstimate& a, const EnergyEstimate& b);
@@ -68,7 +63,7 @@ std::optional<MeanPower> mean_power(const MechanicalModel& model, flight::Phase 
 /// variability of the flights' mean powers and that of their average (docs/methods.md, Eq. 16).
 EnergyEstimate predict_before_flight(const WeightedPhase& phase, double duration_s);
 
-/// Of a phase with a constant power.
+/// Of a phase with a constant power, such as predicted_power.
 EnergyEstimate energy_of(const ConstantPower& power, double duration_s);
 
 /// The same from `flown_s` on, without the measurements until then.
@@ -94,10 +89,6 @@ struct RemainingCruise {
 /// level_spread.
 RemainingCruise predict_remaining_cruise(const WeightedPhase& cruise, const FlightProgress& flown, double remaining_s,
                                          CruisePrior prior);
-
-/// Energy of `duration_s` with known motion (means of the terms), before the flight: sum_of_terms_w, not below 0, with
-/// prediction_uncertainty.
-EnergyEstimate predict_physical(const PhysicalModel& model, const TermValues& mean_values, double duration_s);
 
 /// The rest of a cruise with known motion, in flight (predict_posterior_power), for each possible motion ahead. Throws
 /// NoResultError if the model is of a single flight.

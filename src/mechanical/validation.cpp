@@ -47,8 +47,10 @@ Estimates predict_phase(const MeasuredFlight& flight, flight::Phase phase, doubl
     std::vector<FlightBin> bins;
     for (const auto& bin : flight.motion.bins)
         if (bin.phase == phase) bins.push_back(bin);
-    estimates.emplace_back("physical",
-                           bins.empty() ? by_mean : predict_physical(*others.physical, mean_values(bins), duration_s));
+    estimates.emplace_back(
+        "physical", bins.empty()
+                        ? by_mean
+                        : energy_of(predicted_power(*others.physical, mean_values(bins), duration_s), duration_s));
     return estimates;
 }
 

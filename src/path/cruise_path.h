@@ -59,7 +59,7 @@ struct PathElementResult {
 };
 std::vector<PathElementResult> path_element_results(const PlannedPath& plan);
 
-/// The mean of each term of the power over the cruise, weighted by time: what prediction_uncertainty wants. Where the
+/// The mean of each term of the power over the cruise, weighted by time: what predicted_power wants. Where the
 /// motor stands (power_w is 0) the terms count as zeros, so that their power is the mean power. Zeros for a path that
 /// takes no time.
 mechanical::TermValues mean_terms(const mechanical::PhysicalModel& model, const PathTrajectory& flown);

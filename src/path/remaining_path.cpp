@@ -75,8 +75,8 @@ RemainingPath PathForecast::predict(const mechanical::FlightProgress& flown, con
     if (rest.duration_s > 0.0)
         rest.cruise.remaining_mean_w = units::joule_from_wh(rest.cruise.energy.energy_wh) / rest.duration_s;
     if (energies_wh.size() > 1)
-        add_variance(rest.cruise.energy,
-                     {sample_variance(energies_wh) * (count - 1.0) / count, std::numeric_limits<double>::infinity()});
+        add_variance(rest.cruise.energy, sample_variance(energies_wh) * (count - 1.0) / count,
+                     std::numeric_limits<double>::infinity());
     return rest;
 }
 

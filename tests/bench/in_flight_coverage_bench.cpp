@@ -103,7 +103,7 @@ bool print_by_path(std::size_t flights, double part, std::size_t unseen) {
         for (const auto& bin : ahead) measured_wh += units::wh_from_joule(bin.power_w * bin.duration_s);
         const double remaining_s = mechanical::default_bin_s * static_cast<double>(ahead.size());
         const auto values = mean_values(ahead);
-        const auto before = predict_physical(model, values, remaining_s);
+        const auto before = energy_of(predicted_power(model, values, remaining_s), remaining_s);
         add(row, measured_wh, before, predict_remaining_physical(model, flown, {values, remaining_s}).energy);
     }
     return print(flights, part, row);

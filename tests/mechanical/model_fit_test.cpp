@@ -68,7 +68,7 @@ TEST(ModelFit, RegeneratesEveryCoefficientOfExactFlights) {
             EXPECT_NEAR(is.cos_w[n], was.cos_w[n], 1e-5);
             EXPECT_NEAR(is.sin_w[n], was.sin_w[n], 1e-5);
         }
-        EXPECT_NEAR(test::theta_rad(model.phases[phase]), test::theta_rad(published.phases[phase]), 1e-7);
+        EXPECT_NEAR(test::theta_rad(model.phases[phase]), test::theta_rad(published.phases[phase]), 1e-5);
     }
 }
 

@@ -15,7 +15,7 @@ TEST(MeanPower, WeighsSamplesByTime) {
 }
 
 TEST(MedianGap, CountsNoGapBetweenEqualTimes) {
-    EXPECT_DOUBLE_EQ(median_gap({0.5, 0.1, 0.1, 0.2, 0.8}), 0.3);
+    EXPECT_DOUBLE_EQ(median_gap({0.1, 0.1, 0.2, 0.5, 0.8}), 0.3);
     EXPECT_EQ(median_gap({0.5, 0.5}), 0.0);
 }
 

@@ -64,18 +64,19 @@ TEST(PhysicalModel, NamesEachTermOnce) {
 
 TEST(PhysicalModel, AddsTheCausesOfItsUncertainty) {
     const auto values = term_values({.airspeed_m_per_s = 10.0, .climb_m_per_s = 1.0});  // 22 W
-    const auto of = prediction_uncertainty(some_model(), values, 6000.0).value();
+    const auto of = predicted_power(some_model(), values, 6000.0);
+    EXPECT_NEAR(of.mean_w, 22.0, 1e-9);
     const double level_w2 = std::pow(0.05 * 22.0, 2);
     const double coefficients_w2 = 1e6 * 1e-8 + 2.0 * 1000.0 * 2e-5 + 0.25;
     // 100 correlation times: 2 sd^2 / 100, less a hundredth of that.
     const double drift_w2 = 2.0 * 9.0 / 100.0 * 0.99;
-    EXPECT_NEAR(of.sd_w, std::sqrt(level_w2 + coefficients_w2 + drift_w2), 1e-6);
+    EXPECT_NEAR(of.sd_w.value(), std::sqrt(level_w2 + coefficients_w2 + drift_w2), 1e-6);
     EXPECT_GT(of.degrees_of_freedom, 4.0);
     EXPECT_LT(of.degrees_of_freedom, 10.0);
-    EXPECT_GT(prediction_uncertainty(some_model(), values, 60.0)->sd_w, of.sd_w);
+    EXPECT_GT(predicted_power(some_model(), values, 60.0).sd_w, of.sd_w);
     auto single = some_model();
     single.level_sd.reset();
-    EXPECT_FALSE(prediction_uncertainty(single, values, 600.0).has_value());
+    EXPECT_FALSE(predicted_power(single, values, 600.0).sd_w.has_value());
 }
 
 TEST(PhysicalModel, KnowsWhatWasFlown) {

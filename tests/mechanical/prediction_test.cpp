@@ -166,7 +166,7 @@ TEST(Prediction, OfNothingLeftIsNothing) {
 
 EnergyEstimate estimate(double energy_wh, double variance_wh2, double degrees_of_freedom) {
     EnergyEstimate result{energy_wh, true, 0.0, 0.0};
-    add_variance(result, {variance_wh2, degrees_of_freedom});
+    add_variance(result, variance_wh2, degrees_of_freedom);
     return result;
 }
 

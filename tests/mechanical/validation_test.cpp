@@ -173,7 +173,7 @@ ValidatedFlight cruise(double measured_wh, double predicted_wh, std::optional<do
     EnergyEstimate estimate;
     estimate.energy_wh = predicted_wh;
     estimate.uncertainty_known = sd_wh.has_value();
-    if (sd_wh) add_variance(estimate, {*sd_wh * *sd_wh, 30.0});
+    if (sd_wh) add_variance(estimate, *sd_wh * *sd_wh, 30.0);
     FlightPrediction prediction;
     prediction.model = "fourier";
     prediction.phases[Phase::cruise] = estimate;

@@ -172,7 +172,6 @@ Fields<Differences> record_fields(const Differences*) {
         return std::string(kinds.at(static_cast<std::size_t>(r.kind)));
     };
     return {field("kind", kind, "`models`, `batches` or `missions`"),
-            field("shared_flights", &R::shared_flights, "flights of both models"),
             field(
                 "differences", [](const R& r) { return outputs_of(r); }, "quantities")};
 }

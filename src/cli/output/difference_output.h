@@ -17,7 +17,6 @@ enum class DifferenceKind { models, batches, missions };
 struct Differences {
     DifferenceKind kind = DifferenceKind::models;
     std::vector<mechanical::Difference> rows = {};
-    std::vector<std::string> shared_flights = {};  ///< of both models
 };
 
 /// Energy of each phase, the quantities of the whole mission, and the largest difference of the states of charge.

@@ -45,8 +45,7 @@ Fields<ModelValidation> record_fields(const ModelValidation*) {
 
 Fields<FrequencyRange> record_fields(const FrequencyRange*) {
     using R = FrequencyRange;
-    return {field("low", &R::low_rad, "lower bound of the search"), field("high", &R::high_rad, "upper bound"),
-            field("at_bound", &R::at_bound, "`none`, `low` or `high`")};
+    return {field("low", &R::low_rad, "lower bound of the search"), field("high", &R::high_rad, "upper bound")};
 }
 
 }  // namespace flightwatt::mechanical
@@ -130,15 +129,6 @@ std::string table_text(const TextTable& table, const std::filesystem::path& file
 }
 
 void warn_of_model(const StageCall& call, const mechanical::MechanicalModel& model) {
-    for (const auto phase : flight::all_phases) {
-        const auto& fitted = model.phases[phase];
-        if (!fitted.range || fitted.range->at_bound == mechanical::FrequencyBound::none) continue;
-        warn(call, fmt::format("{}: omega * duration is at its {} bound, {:.3f} rad: the data determine the curve, "
-                               "but not its frequency",
-                               to_string(phase), to_string(fitted.range->at_bound),
-                               fitted.range->at_bound == mechanical::FrequencyBound::low ? fitted.range->low_rad
-                                                                                         : fitted.range->high_rad));
-    }
     for (const auto& warning : model_warnings(model)) warn(call, warning);
     for (const auto& text : fit_notes(model)) note(call, text);
     if (model.validation) note(call, describe(*model.validation, model.physical.has_value()));

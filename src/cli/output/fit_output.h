@@ -25,7 +25,7 @@ TextTable mean_power_table(const mechanical::MechanicalModel& model);
 /// Text, CSV, Markdown or LaTeX, by the file's ending. Throws UsageError for another ending.
 std::string table_text(const TextTable& table, const std::filesystem::path& file);
 
-/// Warns of a frequency at a bound, and as model_warnings.
+/// Warns as model_warnings, and notes the fit's deviations and validation.
 void warn_of_model(const StageCall& call, const mechanical::MechanicalModel& model);
 
 /// JSON of a fitted model.

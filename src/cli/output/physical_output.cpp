@@ -90,12 +90,11 @@ std::string accuracy(const mechanical::PhysicalModel& model) {
     const mechanical::FlightState level{.airspeed_m_per_s = model.mean_airspeed_m_per_s};
     if (!(level.airspeed_m_per_s > 0.0)) return "";
     constexpr double hour_s = 3600.0;
-    const double power = power_w(model, level);
-    const auto of = prediction_uncertainty(model, term_values(level), hour_s).value();
+    const auto power = predicted_power(model, term_values(level), hour_s);
     return fmt::format(
         "an hour of level flight at {:.1f} m/s: {:.2f} W, of an unseen flight +- {:.2f} W (95 %); flights differ by "
         "{:.1f} % (1 sd), power drifts by {:.1f} W for {:.0f} s\n",
-        level.airspeed_m_per_s, power, student_t_half_width(of.degrees_of_freedom) * of.sd_w,
+        level.airspeed_m_per_s, power.mean_w, student_t_half_width(power.degrees_of_freedom) * power.sd_w.value(),
         units::percentage(*model.level_sd, 1.0), model.drift_sd_w, model.correlation_s);
 }
 

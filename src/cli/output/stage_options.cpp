@@ -11,9 +11,8 @@ void add_fit_options(Options& options, mechanical::ModelFitOptions& fit) {
                  .max = mechanical::max_order,
                  .hint = "'flightwatt validate --order N' shows how each order predicts"},
                 "order of the Fourier series, 0 to 8");
-    options.add_choice("weights", fit.weighting,
-                       {{"uniform", uniform}, {"inverse-variance", inverse_variance}, {"agreement", agreement}},
-                       {.value = "HOW"}, "weights of the flights: uniform, inverse-variance or agreement");
+    options.add_choice("weights", fit.weighting, {{"uniform", uniform}, {"agreement", agreement}}, {.value = "HOW"},
+                       "weights of the flights: uniform or agreement");
 }
 
 void add_model_options(Options& options, FitArguments& arguments) {

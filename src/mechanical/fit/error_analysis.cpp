@@ -4,7 +4,6 @@
 #include "base/statistics.h"
 #include "mechanical/fit/fourier_basis.h"
 #include "mechanical/fit/least_squares.h"
-#include "mechanical/fit/phase_fit.h"
 
 #include <algorithm>
 #include <array>
@@ -44,9 +43,6 @@ void describe_fit(PhaseErrors& errors, std::span<const PhaseSamples> flights, co
         residual_w2 += std::pow(fit.flights[i].rms_w, 2) * static_cast<double>(fit.flights[i].samples);
         const auto power_w = as_vector(flights[i].power_w);
         about_means_w2 += (power_w.array() - power_w.mean()).square().sum();
-        const int order = static_cast<int>(fit.flights[i].fourier.cos_w.size());
-        errors.condition =
-            std::max(errors.condition, basis_condition(fourier_basis(flights[i].tau, order, fit.theta_rad)));
     }
     errors.r2 = about_means_w2 > 0.0 ? 1.0 - residual_w2 / about_means_w2 : 1.0;
     errors.frequency_is_fixed = fit.flights.front().fourier.cos_w.empty() || is_constant(flights);
@@ -76,14 +72,30 @@ std::optional<CurveAtFrequency> curve_at(const WeightedFlights& samples, Eigen::
     return curve;
 }
 
-/// The fitted frequency first, then others within its linearised interval, the range's low end, where coefficients are
-/// known least, and the rivals.
-std::vector<double> frequencies_to_try(const PhaseFit& fit, double standard_error_rad, double half_width) {
+/// The fitted frequency first, then others between the ends of its own interval, the range's low end, where coefficients
+/// are known least, and the rivals. The interval is that of the likelihood: an F test rejects what is beyond.
+std::vector<double> frequencies_to_try(const WeightedFlights& samples, const PhaseFit& fit, int order,
+                                       double half_width) {
     constexpr int to_each_side = 6;
+    constexpr int bisections = 30;
+    std::vector<PhaseSamples> centred(samples.flights.begin(), samples.flights.end());
+    for (auto& flight : centred) {
+        const double mean_w = mean(flight.power_w);
+        for (double& power_w : flight.power_w) power_w -= mean_w;
+    }
+    const auto square_sum = [&](double theta_rad) { return projected_square_sum(centred, order, theta_rad); };
+    const double max_sum = square_sum(fit.theta_rad) * (1.0 + half_width * half_width / fit.degrees_of_freedom);
     std::vector<double> tried{fit.theta_rad, fit.range.low_rad};
-    for (int i = -to_each_side; i <= to_each_side; ++i) {
-        const double theta_rad = fit.theta_rad + half_width * standard_error_rad * i / to_each_side;
-        if (i != 0 && theta_rad > fit.range.low_rad && theta_rad < fit.range.high_rad) tried.push_back(theta_rad);
+    for (const double end_rad : {std::max(fit.range.low_rad, fit.theta_rad - scan_grid(fit.range, order).step_rad),
+                                 std::min(fit.range.high_rad, fit.theta_rad + scan_grid(fit.range, order).step_rad)}) {
+        double inside_rad = fit.theta_rad;
+        double outside_rad = end_rad;
+        for (int i = 0; i < bisections; ++i) {
+            const double middle_rad = std::midpoint(inside_rad, outside_rad);
+            (square_sum(middle_rad) < max_sum ? inside_rad : outside_rad) = middle_rad;
+        }
+        for (int i = 1; i <= to_each_side; ++i)
+            tried.push_back(std::lerp(fit.theta_rad, inside_rad, static_cast<double>(i) / to_each_side));
     }
     tried.insert(tried.end(), fit.rivals_rad.begin(), fit.rivals_rad.end());
     return tried;
@@ -140,21 +152,15 @@ ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseF
         duration_s += weights[i] * flights[i].duration_s;
     }
     std::vector<double> tried{fit.theta_rad};
-    double linear_rad = 0.0;
-    if (!errors.frequency_is_fixed) {
-        const auto found = fit_at_frequency(flights, static_cast<int>(size - 1) / 2, fit.theta_rad);
-        const double square_sum_w2 = std::accumulate(found.square_sum.begin(), found.square_sum.end(), 0.0);
-        const double information = frequency_information(flights, found);
-        if (information > 0.0) linear_rad = std::sqrt(square_sum_w2 / fit.degrees_of_freedom / information);
-        tried = frequencies_to_try(fit, linear_rad, curve.half_width);
-    }
+    if (!errors.frequency_is_fixed)
+        tried = frequencies_to_try(samples, fit, static_cast<int>(size - 1) / 2, curve.half_width);
     curve.admissible = admissible_curves(samples, size, fit, tried, curve.half_width);
     for (Eigen::Index k = 0; k < size; ++k) {
         const double error_w =
             standard_error(curve, [&](double) { return Eigen::VectorXd(Eigen::VectorXd::Unit(size, k)); });
         (k == 0 ? errors.a0_w : k % 2 == 1 ? errors.cos_w.emplace_back() : errors.sin_w.emplace_back()) = error_w;
     }
-    double half_width_rad = linear_rad * curve.half_width;
+    double half_width_rad = 0.0;
     for (const auto& at : curve.admissible)
         half_width_rad = std::max(half_width_rad, std::abs(at.theta_rad - curve.theta_rad));
     if (!errors.frequency_is_fixed) errors.omega_rad_per_s = half_width_rad / curve.half_width / duration_s;

@@ -5,34 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <utility>
 
 namespace flightwatt::mechanical {
 namespace {
 
-/// Maximum ratio of the flights' precisions.
-constexpr double max_times_exact = 1e3;
-
 /// Curves with a smaller relative difference are equal.
 constexpr double equal_level = 1e-9;
-
-std::vector<double> normalised(std::vector<double> weights) {
-    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
-    for (double& weight : weights) weight /= sum;
-    return weights;
-}
-
-std::vector<double> by_variance(const PhaseFit& fit) {
-    const double largest = std::ranges::max_element(fit.flights, {}, &FlightCurve::rms_w)->rms_w;
-    std::vector<double> weights;
-    for (const auto& flight : fit.flights) {
-        const auto samples = static_cast<double>(flight.samples);
-        // Relative to the largest, so that neither the unit nor an rms of 0 matters.
-        const double relative = largest > 0.0 ? std::max(flight.rms_w / largest, 1.0 / max_times_exact) : 1.0;
-        weights.push_back(samples / (relative * relative));
-    }
-    return normalised(std::move(weights));
-}
 
 /// Mean square distance of each flight's curve from the mean of the others over the phase [W^2].
 std::vector<double> disagreements(const PhaseFit& fit) {
@@ -57,25 +35,20 @@ std::vector<double> disagreements(const PhaseFit& fit) {
     return distances;
 }
 
-std::vector<double> by_agreement(const PhaseFit& fit) {
-    const auto count = fit.flights.size();
-    std::vector<double> equal(count, 1.0 / static_cast<double>(count));
-    if (count <= 2) return equal;
-    const auto distances = disagreements(fit);
-    double typical = median(distances);
-    if (typical == 0.0) typical = mean(distances);
-    if (typical == 0.0) return equal;
-    std::vector<double> weights(distances.size());
-    std::ranges::transform(distances, weights.begin(), [&](double distance) { return typical / (distance + typical); });
-    return normalised(std::move(weights));
-}
-
 }  // namespace
 
 std::vector<double> flight_weights(const PhaseFit& fit, Weighting weighting) {
-    if (weighting == Weighting::inverse_variance) return by_variance(fit);
-    if (weighting == Weighting::agreement) return by_agreement(fit);
-    return normalised(std::vector<double>(fit.flights.size(), 1.0));
+    const auto count = fit.flights.size();
+    std::vector<double> weights(count, 1.0 / static_cast<double>(count));
+    if (weighting == Weighting::uniform || count <= 2) return weights;
+    const auto distances = disagreements(fit);
+    double typical = median(distances);
+    if (typical == 0.0) typical = mean(distances);
+    if (typical == 0.0) return weights;
+    std::ranges::transform(distances, weights.begin(), [&](double distance) { return typical / (distance + typical); });
+    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+    for (double& weight : weights) weight /= sum;
+    return weights;
 }
 
 PhaseModel average_phase(const PhaseFit& fit, std::span<const double> weights) {

@@ -9,7 +9,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <unsupported/Eigen/FFT>
 
 namespace flightwatt::mechanical {
@@ -117,25 +116,9 @@ Eigen::MatrixXd fourier_basis(std::span<const double> tau, int order, double the
     return basis;
 }
 
-double basis_condition(Eigen::MatrixXd basis) {
-    basis.colwise().normalize();
-    const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(basis).singularValues();
-    return singular(0) / singular(singular.size() - 1);
-}
-
-FourierResidual fourier_residual(const PhaseSamples& samples, double theta_rad, const Eigen::VectorXd& coefficients) {
+Eigen::VectorXd residual_of(const PhaseSamples& samples, double theta_rad, const Eigen::VectorXd& coefficients) {
     const int order = static_cast<int>(coefficients.size() - 1) / 2;
-    FourierResidual result;
-    result.by_coefficients = fourier_basis(samples.tau, order, theta_rad);
-    result.residual = result.by_coefficients * coefficients - as_vector(samples.power_w);
-    // d/dtheta of a cos(n theta tau) + b sin(n theta tau) is n tau (b cos - a sin).
-    Eigen::VectorXd turned = Eigen::VectorXd::Zero(coefficients.size());
-    for (Eigen::Index n = 1; n <= order; ++n) {
-        turned(2 * n - 1) = static_cast<double>(n) * coefficients(2 * n);
-        turned(2 * n) = -static_cast<double>(n) * coefficients(2 * n - 1);
-    }
-    result.by_theta = as_vector(samples.tau).cwiseProduct(result.by_coefficients * turned);
-    return result;
+    return fourier_basis(samples.tau, order, theta_rad) * coefficients - as_vector(samples.power_w);
 }
 
 std::optional<LinearFit> solve_least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& values) {

@@ -25,18 +25,8 @@ FourierModel series_of(const Eigen::VectorXd& coefficients, double omega_rad_per
 /// 1, cos(angle), sin(angle), ... sin(order angle) at angle = theta tau: samples x coefficient_count(order).
 Eigen::MatrixXd fourier_basis(std::span<const double> tau, int order, double theta_rad);
 
-/// Largest over smallest singular value of the basis's columns, each scaled to length 1: by how much noise is
-/// amplified in the coefficients.
-double basis_condition(Eigen::MatrixXd basis);
-
-/// A flight's residuals f(tau) - power and their derivatives.
-struct FourierResidual {
-    Eigen::VectorXd residual;         ///< one a sample
-    Eigen::VectorXd by_theta;         ///< d residual / d theta
-    Eigen::MatrixXd by_coefficients;  ///< d residual / d coefficients: the basis
-};
-
-FourierResidual fourier_residual(const PhaseSamples& samples, double theta_rad, const Eigen::VectorXd& coefficients);
+/// The residuals f(tau) - power of a flight's samples.
+Eigen::VectorXd residual_of(const PhaseSamples& samples, double theta_rad, const Eigen::VectorXd& coefficients);
 
 /// A linear least-squares solution.
 struct LinearFit {

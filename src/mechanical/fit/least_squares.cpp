@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include <boost/math/distributions/fisher_f.hpp>
@@ -73,35 +72,6 @@ std::vector<Candidate> minima(const FrequencyScan& scan) {
     }
     std::ranges::sort(found, {}, &Candidate::square_sum);
     return found;
-}
-
-/// The derivative of a flight's residuals over theta, its coefficients following to first order (variable projection;
-/// Golub and Pereyra 1973, Kaufman 1975). 0 where its samples do not determine them.
-Eigen::VectorXd projected_slope(const FourierResidual& at) {
-    const auto followed = solve_least_squares(at.by_coefficients, at.by_theta);
-    if (!followed) return Eigen::VectorXd::Zero(at.by_theta.size());
-    return at.by_theta - at.by_coefficients * followed->coefficients;
-}
-
-/// Gradient of half the common sum of squares over theta, and its Gauss-Newton curvature.
-struct ThetaDerivatives {
-    double gradient = 0.0;
-    double curvature = 0.0;
-};
-
-ThetaDerivatives theta_derivatives(std::span<const PhaseSamples> flights, const JointFit& fit) {
-    ThetaDerivatives derivatives;
-    for (std::size_t i = 0; i < flights.size(); ++i) {
-        const auto at = fourier_residual(flights[i], fit.theta_rad, fit.coefficients[i]);
-        const auto slope = projected_slope(at);
-        derivatives.gradient += slope.dot(at.residual);
-        derivatives.curvature += slope.squaredNorm();
-    }
-    return derivatives;
-}
-
-double total_square_sum(const JointFit& fit) {
-    return std::accumulate(fit.square_sum.begin(), fit.square_sum.end(), 0.0);
 }
 
 }  // namespace
@@ -197,31 +167,6 @@ JointFit fit_at_frequency(std::span<const PhaseSamples> flights, int order, doub
         result.square_sum.push_back(fit->residual_square_sum);
     }
     return result;
-}
-
-double frequency_information(std::span<const PhaseSamples> flights, const JointFit& fit) {
-    return theta_derivatives(flights, fit).curvature;
-}
-
-JointFit refine_jointly(std::span<const PhaseSamples> flights, int order, const FrequencyRange& range,
-                        double start_rad) {
-    constexpr int max_steps = 30;
-    constexpr double tolerance = 1e-11;  // relative; far below the frequency's error
-    constexpr double rounding = 1e-12;
-    auto fit = fit_at_frequency(flights, order, std::clamp(start_rad, range.low_rad, range.high_rad));
-    double fraction = 1.0;  // of a Gauss-Newton step
-    for (int i = 0; i < max_steps; ++i) {
-        const auto [gradient, curvature] = theta_derivatives(flights, fit);
-        if (!(curvature > 0.0)) break;
-        const double next_rad =
-            std::clamp(fit.theta_rad - fraction * gradient / curvature, range.low_rad, range.high_rad);
-        if (std::abs(next_rad - fit.theta_rad) <= tolerance * fit.theta_rad) break;
-        auto next = fit_at_frequency(flights, order, next_rad);
-        const bool improves = total_square_sum(next) <= (1.0 + rounding) * total_square_sum(fit);
-        fraction = improves ? 1.0 : 0.5 * fraction;
-        if (improves) fit = std::move(next);
-    }
-    return fit;
 }
 
 }  // namespace flightwatt::mechanical

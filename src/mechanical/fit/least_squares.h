@@ -60,12 +60,4 @@ struct JointFit {
 /// coefficients.
 JointFit fit_at_frequency(std::span<const PhaseSamples> flights, int order, double theta_rad);
 
-/// The sum of squares of the residuals' slopes over theta, all coefficients following (variable projection).
-double frequency_information(std::span<const PhaseSamples> flights, const JointFit& fit);
-
-/// Gauss-Newton over theta with variable projection, from `start_rad`, within the range, with halved steps where the
-/// sum of squares would rise. Throws as fit_at_frequency.
-JointFit refine_jointly(std::span<const PhaseSamples> flights, int order, const FrequencyRange& range,
-                        double start_rad);
-
 }  // namespace flightwatt::mechanical

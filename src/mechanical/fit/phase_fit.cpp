@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -22,35 +21,14 @@ constexpr double min_theta_rad = std::numbers::pi;
 /// 120 in ten minutes are 5 s each: no periodic manoeuvre of a cruise is faster.
 constexpr double max_periods = 120.0;
 constexpr double max_autocorrelation = 0.99;  ///< such noise lasts for 200 samples
-constexpr double bound_tolerance = 1e-6;      ///< relative distance of a bound
-/// The collinearity of a harmonic's columns up to which the samples determine both with half the information or more.
-constexpr double max_collinearity = 0.5;
+/// From a flight's Nyquist frequency, of the highest harmonic: nearer, evenly spread samples do not determine both its
+/// columns with half the information or more.
+constexpr double below_nyquist_rad = 1.9;
 
 void check_options(const PhaseFitOptions& options) {
     if (options.order < 0 || options.order > max_order) {
         throw UsageError(
             fmt::format("the order of the Fourier series is {}, expected 0 to {}", options.order, max_order));
-    }
-}
-
-void check_samples(flight::Phase phase, const PhaseSamples& samples) {
-    const auto refuse = [&](const std::string& what) {
-        throw InputError({samples.flight}, fmt::format("{}: {}", to_string(phase), what));
-    };
-    if (samples.tau.size() != samples.power_w.size()) {
-        refuse(fmt::format("{} times and {} powers, expected as many of each", samples.tau.size(),
-                           samples.power_w.size()));
-    }
-    if (!(samples.duration_s > 0.0) || !std::isfinite(samples.duration_s)) {
-        refuse(fmt::format("duration_s = {} is not positive", samples.duration_s));
-    }
-    for (std::size_t i = 0; i < samples.tau.size(); ++i) {
-        if (!(samples.tau[i] >= 0.0 && samples.tau[i] <= 1.0)) {
-            refuse(fmt::format("sample {} at {} of the phase, expected 0 to 1", i + 1, samples.tau[i]));
-        }
-        if (!std::isfinite(samples.power_w[i])) {
-            refuse(fmt::format("sample {}: power_w is not finite: {}", i + 1, samples.power_w[i]));
-        }
     }
 }
 
@@ -71,13 +49,6 @@ CentredFlights centred_flights(std::span<const PhaseSamples> flights) {
     return centred;
 }
 
-FrequencyBound bound_reached(const FrequencyRange& range, double theta_rad) {
-    const double near = bound_tolerance * theta_rad;
-    if (theta_rad - range.low_rad <= near) return FrequencyBound::low;
-    if (range.high_rad - theta_rad <= near) return FrequencyBound::high;
-    return FrequencyBound::none;
-}
-
 /// The correlation of neighbouring residuals, and the number of independent ones. White noise has a correlation of -
 /// coefficients / samples, because the curves follow it. One standard error is added, as few samples poorly determine
 /// it.
@@ -87,8 +58,7 @@ void describe_noise(PhaseFit& fit, std::span<const PhaseSamples> centred, const 
     double samples = 0.0;
     double coefficients = 0.0;
     for (std::size_t i = 0; i < centred.size(); ++i) {
-        const auto sorted = sort_by_time(centred[i]);
-        const auto residual = fourier_residual(sorted, joint.theta_rad, joint.coefficients[i]).residual;
+        const auto residual = residual_of(centred[i], joint.theta_rad, joint.coefficients[i]);
         squares += residual.squaredNorm();
         products += residual.head(residual.size() - 1).dot(residual.tail(residual.size() - 1));
         samples += static_cast<double>(residual.size());
@@ -124,8 +94,6 @@ PhaseFit result_of(const CentredFlights& centred, const JointFit& joint, const F
     PhaseFit fit;
     fit.theta_rad = joint.theta_rad;
     fit.range = range;
-    const bool has_frequency = joint.coefficients.front().size() > 1;
-    if (has_frequency) fit.range.at_bound = bound_reached(range, joint.theta_rad);
     double square_sum = 0.0;
     for (std::size_t i = 0; i < centred.flights.size(); ++i) {
         const auto& flight = centred.flights[i];
@@ -141,22 +109,6 @@ PhaseFit result_of(const CentredFlights& centred, const JointFit& joint, const F
     return fit;
 }
 
-/// Collinearity of the two columns of the highest harmonic on the samples, 0 to 1.
-double collinearity(const std::vector<double>& tau, int order, double theta_rad) {
-    std::complex<double> sum = 0.0;
-    for (const double at : tau) sum += std::polar(1.0, 2.0 * order * theta_rad * at);
-    return std::abs(sum) / static_cast<double>(tau.size());
-}
-
-/// The highest frequency, from `high_rad` down, at which the samples determine amplitude and phase of the highest
-/// harmonic: evenly spread samples do not at half their own frequency.
-double determined_frequency(const std::vector<double>& tau, int order, double low_rad, double high_rad) {
-    const double step_rad = std::numbers::pi / (16.0 * std::max(1, order));  // a sixteenth of the collinearity's peak
-    double theta_rad = high_rad;
-    while (theta_rad > low_rad && collinearity(tau, order, theta_rad) > max_collinearity) theta_rad -= step_rad;
-    return theta_rad;
-}
-
 }  // namespace
 
 FrequencyRange admissible_frequencies(std::span<const PhaseSamples> flights, const PhaseFitOptions& options) {
@@ -165,18 +117,17 @@ FrequencyRange admissible_frequencies(std::span<const PhaseSamples> flights, con
     for (const auto& flight : flights) {
         const double gap = median_gap(flight.tau);
         // A constant has no frequency: the limit of a first order is enough.
-        const double nyquist = gap > 0.0 ? std::numbers::pi / (std::max(1, options.order) * gap) : 0.0;
+        const int order = std::max(1, options.order);
+        const double nyquist = gap > 0.0 ? std::numbers::pi / (order * gap) : 0.0;
         if (nyquist <= range.low_rad) {
             throw NoResultError(
                 fmt::format("flight '{}': {} samples, {:.3g} of the phase apart, are too sparse for a "
                             "Fourier series of order {}",
                             flight.flight, flight.tau.size(), gap, options.order));
         }
-        range.high_rad = std::min(range.high_rad, nyquist);
         // If not even the lowest is determined, the gap alone limits the range.
-        const double determined_rad =
-            determined_frequency(flight.tau, std::max(1, options.order), range.low_rad, range.high_rad);
-        if (determined_rad > range.low_rad) range.high_rad = determined_rad;
+        const double determined_rad = nyquist - below_nyquist_rad / order;
+        range.high_rad = std::min(range.high_rad, determined_rad > range.low_rad ? determined_rad : nyquist);
     }
     return range;
 }
@@ -185,7 +136,6 @@ PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights, c
     check_options(options);
     if (flights.empty()) throw NoResultError(fmt::format("no flight has a {} to fit", to_string(phase)));
     for (const auto& flight : flights) {
-        check_samples(phase, flight);
         if (flight.tau.size() >= min_samples(options.order)) continue;
         throw NoResultError(
             fmt::format("flight '{}' has {} samples in {}, a Fourier series of order {} needs {}: "
@@ -197,18 +147,17 @@ PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights, c
     const int order = options.order;
     try {
         const auto range = admissible_frequencies(flights, options);
-        std::optional<FrequencyScan> scan;
+        FrequencyScan scan;
         double theta_rad = std::clamp(units::rad_per_turn, range.low_rad, range.high_rad);
         if (order > 0) {
             scan = scan_frequencies(centred.flights, order, range);
-            theta_rad = find_frequency(centred.flights, order, range, *scan);
+            theta_rad = find_frequency(centred.flights, order, range, scan);
         }
-        const auto joint = scan ? refine_jointly(centred.flights, order, range, theta_rad)
-                                : fit_at_frequency(centred.flights, order, theta_rad);
+        const auto joint = fit_at_frequency(centred.flights, order, theta_rad);
         auto fit = result_of(centred, joint, range);
         describe_noise(fit, centred.flights, joint);
-        if (scan) fit.rivals_rad = rival_frequencies(fit, joint, *scan);
-        hold_above_floor(flights, fit);
+        fit.rivals_rad = rival_frequencies(fit, joint, scan);
+        hold_above_zero(flights, fit);
         return fit;
     } catch (const NoResultError& error) {
         throw NoResultError(fmt::format("{}: {}", to_string(phase), error.what()));

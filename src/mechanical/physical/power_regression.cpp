@@ -124,9 +124,7 @@ PosteriorPower posterior_power(const PhysicalModel& model, const ParameterDistri
     }
     power.mean_w = std::max(mean_w, 0.0);
     power.parameter_sd_w = std::sqrt(std::max(gradient.dot(parameters.covariance * gradient), 0.0));
-    power.parameter_degrees_of_freedom = model.degrees_of_freedom;
     power.drift_sd_w = std::sqrt(std::max(drift_w2, 0.0));
-    power.drift_degrees_of_freedom = model.drift_degrees_of_freedom;
     return power;
 }
 

@@ -94,10 +94,8 @@ struct PosteriorPower {
     double mean_w = 0.0;          ///< not below 0
     double model_w = 0.0;         ///< without this flight's measurements
     double level = 0.0;           ///< estimate of this flight's own level, relative to the power
-    double parameter_sd_w = 0.0;  ///< of level and coefficients, and
-    double parameter_degrees_of_freedom = 1.0;
-    double drift_sd_w = 0.0;  ///< of the drift ahead
-    double drift_degrees_of_freedom = 1.0;
+    double parameter_sd_w = 0.0;  ///< of level and coefficients
+    double drift_sd_w = 0.0;      ///< of the drift ahead
 };
 
 /// For each motion ahead: level and coefficients are updated by the bins flown (Bayes' rule for normal errors), and the

@@ -4,9 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 namespace flightwatt::mechanical {
 namespace {
 
@@ -142,18 +139,14 @@ bool is_level_term(PowerTerm term) {
 }
 
 /// Reason not to try a term with others; empty without one.
-std::string not_tried_reason(const Folds& of, const std::vector<PowerTerm>& terms, PowerTerm term) {
+std::string_view not_tried_reason(const Folds& of, const std::vector<PowerTerm>& terms, PowerTerm term) {
     if (term == PowerTerm::turn && !of.bank_measured) return "not tried: the bank was not measured in all flights";
     if (term == PowerTerm::descent && std::ranges::find(terms, PowerTerm::climb) == terms.end())
         return "not tried without the climb";
-    if (terms.size() >= max_terms(of))
-        return fmt::format("not tried: as many terms as the {} whole phases of a fit determine", max_terms(of));
-    std::vector<std::string_view> level_terms;
-    for (const auto other : terms)
-        if (is_level_term(other)) level_terms.push_back(to_string(other));
-    if (!is_level_term(term) || level_terms.empty() || level_terms.size() + 1 < of.flights) return "";
-    return fmt::format("not tried with {}: {} flight{} cannot distinguish them", fmt::join(level_terms, " and "),
-                       of.flights, of.flights == 1 ? "" : "s");
+    if (terms.size() >= max_terms(of)) return "not tried: as many terms as whole phases of a fit determine";
+    const auto level_terms = static_cast<std::size_t>(std::ranges::count_if(terms, is_level_term));
+    const bool has_room = !is_level_term(term) || level_terms == 0 || level_terms + 1 < of.flights;
+    return has_room ? "" : "not tried: so few flights cannot distinguish it from the other level terms";
 }
 
 std::vector<PowerTerm> with_term(std::vector<PowerTerm> terms, PowerTerm term) {

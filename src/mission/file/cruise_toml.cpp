@@ -31,17 +31,6 @@ void set_cruise_level(const mechanical::ConstantPower& level, MissionSetup& miss
     mission.cruise_level = level;
 }
 
-/// The level of the cruise and how flights differ about it, from the means of the terms over its time.
-mechanical::ConstantPower level_of(const mechanical::PhysicalModel& model, const mechanical::TermValues& terms,
-                                   double duration_s, double mean_w) {
-    mechanical::ConstantPower level{mean_w, std::nullopt, 0.0};
-    if (const auto uncertainty = prediction_uncertainty(model, terms, duration_s)) {
-        level.sd_w = uncertainty->sd_w;
-        level.degrees_of_freedom = uncertainty->degrees_of_freedom;
-    }
-    return level;
-}
-
 constexpr double max_wind_m_per_s = 100.0;
 constexpr auto altitudes = between(-1e5, 1e5);
 constexpr auto times = more_than_up_to(0.0, 1e7);
@@ -212,7 +201,7 @@ void apply_airspeed(const TomlTable& mission_table, MissionSetup& mission) {
     if (!is_within_flown_range(physical, motion))
         mission.notes.push_back(fmt::format("{} ({:.4g} to {:.4g} m/s): its power is extrapolated", beyond, low, high));
     const double duration_s = mission.mechanical->phases[Phase::cruise].duration_s;
-    set_cruise_level(level_of(physical, term_values(motion), duration_s, power), mission);
+    set_cruise_level(predicted_power(physical, term_values(motion), duration_s), mission);
 }
 
 void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& reading, MissionSetup& mission) {
@@ -232,8 +221,8 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
     for (auto& warning : path_warnings(plan, flown)) mission.notes.push_back(std::move(warning));
     const auto shared = std::make_shared<const path::PlannedPath>(std::move(plan));
     mission.cruise_path = compute_cruise(shared, shared->wind, path::InfeasibleLegPolicy::refuse);
-    mission.cruise_level =
-        level_of(shared->power, mean_terms(shared->power, flown), flown.duration_s, mean_power_w(*mission.cruise_path));
+    mission.cruise_level = predicted_power(shared->power, mean_terms(shared->power, flown), flown.duration_s);
+    mission.cruise_level->mean_w = mean_power_w(*mission.cruise_path);
     mission.duration_s[Phase::cruise] = duration_s(*mission.cruise_path);
     mission.duration_is_stated[Phase::cruise] = true;
 }

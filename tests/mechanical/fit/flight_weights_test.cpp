@@ -13,7 +13,6 @@
 namespace flightwatt::mechanical {
 namespace {
 
-using testing::DoubleEq;
 using testing::ElementsAre;
 
 FlightCurve curve_of(const std::string& flight, double a0_w, double rms_w, std::size_t samples) {
@@ -31,16 +30,16 @@ PhaseFit fit_with_levels(const std::vector<double>& levels_w) {
 }
 
 TEST(FlightWeights, HaveNamesBothWays) {
-    for (const auto weighting : {Weighting::uniform, Weighting::inverse_variance, Weighting::agreement}) {
+    for (const auto weighting : {Weighting::uniform, Weighting::agreement}) {
         EXPECT_EQ(weighting_from(to_string(weighting)), weighting);
     }
-    EXPECT_EQ(to_string(Weighting::inverse_variance), "inverse-variance");
+    EXPECT_EQ(to_string(Weighting::agreement), "agreement");
     EXPECT_FALSE(weighting_from("uniformly"));
 }
 
 TEST(FlightWeights, SumToOneWhateverTheWay) {
     const auto fit = fit_phase(flight::Phase::landing, test::record_flights(flight::Phase::landing, 6, 0.2, 1));
-    for (const auto weighting : {Weighting::uniform, Weighting::inverse_variance, Weighting::agreement}) {
+    for (const auto weighting : {Weighting::uniform, Weighting::agreement}) {
         const auto weights = flight_weights(fit, weighting);
         ASSERT_EQ(weights.size(), 6U);
         EXPECT_NEAR(std::accumulate(weights.begin(), weights.end(), 0.0), 1.0, 1e-14);
@@ -54,24 +53,6 @@ TEST(FlightWeights, SumToOneWhateverTheWay) {
 TEST(FlightWeights, UniformIsTheSameForAll) {
     EXPECT_THAT(flight_weights(fit_with_levels({1, 2, 3, 40}), Weighting::uniform),
                 ElementsAre(0.25, 0.25, 0.25, 0.25));
-}
-
-TEST(FlightWeights, InverseVarianceGoesWithSamplesAndScatter) {
-    PhaseFit fit;
-    fit.flights = {curve_of("a", 20, 1.0, 100), curve_of("b", 20, 2.0, 100), curve_of("c", 20, 1.0, 300)};
-    const auto weights = flight_weights(fit, Weighting::inverse_variance);
-    EXPECT_NEAR(weights[0] / weights[1], 4.0, 1e-12);
-    EXPECT_NEAR(weights[2] / weights[0], 3.0, 1e-12);
-}
-
-TEST(FlightWeights, InverseVarianceOfAnExactFlightIsFinite) {
-    PhaseFit fit;
-    fit.flights = {curve_of("a", 20, 0.0, 100), curve_of("b", 20, 1.0, 100)};
-    auto weights = flight_weights(fit, Weighting::inverse_variance);
-    EXPECT_NEAR(weights[1], 1e-6, 1e-9);
-    fit.flights = {curve_of("a", 20, 0.0, 100), curve_of("b", 20, 0.0, 300)};
-    weights = flight_weights(fit, Weighting::inverse_variance);
-    EXPECT_THAT(weights, ElementsAre(DoubleEq(0.25), DoubleEq(0.75)));
 }
 
 TEST(FlightWeights, AgreementIsTheFormulaOfItsDistances) {
