@@ -102,7 +102,7 @@ void note_sources(const cli::StageCall& call, const PlanArguments& arguments, co
 
 [[noreturn]] void refuse_infeasible(const cli::StageCall& call, const PlanArguments& arguments, const MissionFile& file,
                                     const mission::PlanningProblem& problem, const mission::MissionPlan& plan) {
-    if (!plan.plan.deliverable) throw NoResultError(describe(plan.summary));
+    if (plan.summary.undeliverable) throw NoResultError(describe(plan.summary));
     const auto report = infeasibility_report(
         problem, plan, [&](double cruise_s) { return file.read_with_cruise(cruise_s); }, arguments.probability);
     if (call.json) {

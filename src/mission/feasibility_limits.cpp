@@ -3,7 +3,6 @@
 #include "base/duration_text.h"
 #include "base/error.h"
 #include "base/units.h"
-#include "mission/planning/limit_search.h"
 #include "mission/planning/planner.h"
 #include "mission/sampling/landing_distribution.h"
 #include "path/path.h"
@@ -11,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <map>
 #include <variant>
 #include <vector>
 
@@ -22,53 +21,129 @@
 namespace flightwatt::mission {
 namespace {
 
-constexpr double longest_cruise_s = 1e7;
-constexpr double shortest_cruise_s = 1.0;
-constexpr double largest_payload_w = 1e6;
-constexpr double max_circles_tried = 1e4;
+LandingDistribution drawn_landings(const Mission& mission, double probability) {
+    require_known_spread(mission.setup);
+    return draw_landings_until_known(mission, collect_uncertainty(mission.setup), probability);
+}
 
-/// The last value known to have a surplus, and a greater one that has none; each may be missing.
-struct Bracket {
-    std::optional<double> good;
-    std::optional<double> bad;
-    double low = 0.0;  ///< `good`, or a greater value that is too small for the schedule
-};
+/// Simulated final state of charge minus the reserve [points]. Negative if the reserve is not kept, the more so the
+/// earlier the battery ends.
+double surplus_percent(const Mission& mission) {
+    const auto summary = simulate(mission).summary;
+    const double reserve_percent = mission.setup.reserve_soc_percent;
+    if (summary.feasible) return *summary.final_soc_percent - reserve_percent;
+    return -reserve_percent - units::percentage(summary.duration_s - powered_end_s(summary), summary.duration_s) - 1e-9;
+}
 
-/// Doubles `value` until there is no surplus, at most up to `max_value`.
-Bracket find_bracket(LimitSearch& search, double value, double max_value) {
-    Bracket bracket;
-    for (; value <= max_value; value *= 2.0) {
-        const auto surplus = search.surplus(value);
-        if (surplus && *surplus < 0.0) {
-            bracket.bad = value;
-            return bracket;
+/// Search for the greatest of a mission's numbers that keeps the reserve.
+class LimitSearch {
+  public:
+    /// `misfit_percent` is the surplus of values that do not fit the schedule: they are too small, or too great.
+    LimitSearch(const MissionVariation& variation, const std::optional<double>& probability,
+                double misfit_percent = 100.0)
+        : variation_(variation), probability_(probability), misfit_percent_(misfit_percent) {}
+
+    /// Surplus [points] over the reserve of the mission as stated, or with the search's probability; none where its
+    /// schedule does not fit.
+    std::optional<double> surplus(double value) {
+        const auto [known, is_new] = known_.try_emplace(value);
+        if (is_new && fits(value)) {
+            const auto at = mission(value);
+            known->second =
+                probability_ ? drawn_landings(at, *probability_).spare_percent(*probability_) : surplus_percent(at);
         }
-        if (surplus) bracket.good = value;
-        bracket.low = value;
+        return known->second;
     }
-    return bracket;
-}
 
-/// Narrows a bracket with a bad value to the accuracy of the search, or to neighbouring whole numbers. Values that do
-/// not fit the schedule are too small.
-Bracket refine(LimitSearch& search, Bracket bracket, bool is_whole = false) {
-    constexpr double of_misfit = 100.0;
-    const auto at = [&](double value) { return is_whole ? std::floor(value) : value; };
-    const auto surplus = [&](double value) {
-        const double percent = search.surplus(at(value)).value_or(of_misfit);
-        return percent >= 0.0 ? std::max(percent, std::numeric_limits<double>::min()) : percent;
-    };
-    const double accuracy = is_whole ? 0.5 : search.relative_accuracy() * *bracket.bad;
-    const auto is_close = [&](double low, double high) { return high - low <= accuracy; };
-    const double surplus_low = bracket.low > 0.0 ? surplus(bracket.low) : of_misfit;
-    std::uintmax_t iterations = 300;
-    const auto [low, high] = boost::math::tools::toms748_solve(surplus, bracket.low, *bracket.bad, surplus_low,
-                                                               surplus(*bracket.bad), is_close, iterations);
-    bracket.low = at(low);
-    bracket.bad = at(high);
-    bracket.good = bracket.low > 0.0 && search.surplus(bracket.low) ? std::optional(bracket.low) : std::nullopt;
-    return bracket;
-}
+    bool fits(double value) {
+        try {
+            mission(value);
+            return true;
+        } catch (const InputError& error) {
+            misfit_ = error;
+            return false;
+        }
+    }
+
+    /// Doubles `value` until the surplus is negative; false if it stays positive up to `max_value`.
+    bool find_end(double value, double max_value) {
+        for (; value <= max_value; value *= 2.0) {
+            const auto percent = surplus(value);
+            if (percent && *percent < 0.0) {
+                bad_ = value;
+                return true;
+            }
+            if (percent) good_ = value;
+            low_ = value;
+        }
+        return false;
+    }
+
+    void set_end(double bad) { bad_ = bad; }
+
+    /// Narrows to the accuracy of the search, or to neighbouring whole numbers.
+    void refine(bool is_whole = false) {
+        constexpr double of_nothing = 100.0;
+        const auto at = [&](double value) { return is_whole ? std::floor(value) : value; };
+        const auto sign = [&](double value) {
+            const double percent = surplus(at(value)).value_or(misfit_percent_);
+            return percent >= 0.0 ? std::max(percent, std::numeric_limits<double>::min()) : percent;
+        };
+        const double accuracy = is_whole ? 0.5 : relative_accuracy() * bad_;
+        const auto is_close = [&](double low, double high) { return high - low <= accuracy; };
+        std::uintmax_t iterations = 300;
+        const auto [low, high] = boost::math::tools::toms748_solve(
+            sign, low_, bad_, low_ > 0.0 ? sign(low_) : of_nothing, sign(bad_), is_close, iterations);
+        low_ = at(low);
+        bad_ = at(high);
+        good_ = low_ > 0.0 && surplus(low_) ? std::optional(low_) : std::nullopt;
+    }
+
+    /// The greatest value known to have a surplus, `low` one that may be too small for the schedule, and one without.
+    const std::optional<double>& good() const { return good_; }
+    double low() const { return low_; }
+    double bad() const { return bad_; }
+    /// The error of the last value that did not fit the schedule.
+    const std::optional<InputError>& misfit() const { return misfit_; }
+    /// To which limits can be known: drawn flights show less.
+    double relative_accuracy() const { return probability_ ? 0x1p-14 : 0x1p-48; }
+
+    std::string share_text() const {
+        return probability_ ? fmt::format(" in {:.4g} % of its flights", units::percentage(*probability_, 1.0)) : "";
+    }
+
+    /// The value as a limit; `beyond` is slightly more.
+    FeasibilityLimit limit(double value, double beyond) const {
+        const auto at = mission(value);
+        FeasibilityLimit most;
+        most.value = value;
+        if (probability_) {
+            const auto landings = drawn_landings(at, *probability_);
+            most.margin_percent = std::max(0.0, landings.nominal_percent - landings.quantile_percent(*probability_));
+            most.sources = collect_uncertainty(at.setup).sources;
+        }
+        most.final_soc_percent = simulate(at).summary.final_soc_percent.value_or(0.0);
+        most.residual_percent = most.final_soc_percent - most.margin_percent - at.setup.reserve_soc_percent;
+        const auto further = simulate(mission(beyond)).summary;
+        most.limited_by = further.undeliverable  ? LimitingFactor::power
+                          : further.cut_off_at_s ? LimitingFactor::cut_off
+                                                 : LimitingFactor::charge;
+        return most;
+    }
+
+  private:
+    /// With the schedule of least energy demand. Throws InputError where the mission's own does not fit.
+    Mission mission(double value) const { return with_minimum_energy_schedule(variation_(value)); }
+
+    const MissionVariation& variation_;
+    std::optional<double> probability_;
+    double misfit_percent_;
+    std::optional<InputError> misfit_;
+    std::map<double, std::optional<double>> known_;  ///< surplus by value: drawn flights take long
+    std::optional<double> good_;
+    double low_ = 0.0;
+    double bad_ = 0.0;
+};
 
 /// Its interval, if it has one, in proportion.
 Mission with_capacity(Mission mission, double capacity_ah) {
@@ -81,45 +156,26 @@ Mission with_capacity(Mission mission, double capacity_ah) {
     return mission;
 }
 
-/// The longest distance that can be flown at all: a leg may be infeasible on the way back, and with it all that follow.
-std::optional<double> longest_that_fits(LimitSearch& search, double max_m) {
-    constexpr int tried = 64;
-    if (search.fits(max_m)) return max_m;
-    double high = max_m;
-    for (int k = tried - 1; k > 0; --k, high -= max_m / tried) {
-        double low = max_m * k / tried;
-        if (!search.fits(low)) continue;
-        while (high - low > search.relative_accuracy() * max_m) {
-            const double middle = std::midpoint(low, high);
-            (search.fits(middle) ? low : high) = middle;
-        }
-        return low;
-    }
-    return std::nullopt;
-}
-
-[[noreturn]] void refuse(const LimitSearch& search, const std::string& message) {
-    if (search.misfit()) throw *search.misfit();
-    throw NoResultError(message);
-}
-
 }  // namespace
 
 FeasibilityLimit longest_cruise(const MissionVariation& with_cruise_s, const std::optional<double>& probability) {
+    constexpr double longest_cruise_s = 1e7;
     LimitSearch search(with_cruise_s, probability);
-    auto bracket = find_bracket(search, shortest_cruise_s, longest_cruise_s);
-    if (!bracket.bad && bracket.good)
-        throw NoResultError(fmt::format("a cruise of {:.3g} s still lands with the reserve", *bracket.good));
-    if (!bracket.bad)  // as of a planned schedule, without `otherwise`
+    if (!search.find_end(1.0, longest_cruise_s)) {
+        if (search.good())
+            throw NoResultError(fmt::format("a cruise of {:.3g} s still lands with the reserve", *search.good()));
+        // as of a planned schedule, without `otherwise`
         throw InputError(search.misfit()->where(), "the schedule fits one length of the cruise only",
                          "use the mission that it was planned from, or add an entry with `otherwise = true`");
-    bracket = refine(search, bracket);
-    if (!bracket.good)
+    }
+    search.refine();
+    if (!search.good())
         throw NoResultError(
             fmt::format("even with a cruise of {:.6g} s, the shortest that fits the schedule, the "
                         "mission does not land with its reserve{}",
-                        *bracket.bad, search.share_text()));
-    return search.limit(*bracket.good, std::nextafter(*bracket.good, longest_cruise_s) * (1.0 + 1e-9));
+                        search.bad(), search.share_text()));
+    const double most_s = *search.good();
+    return search.limit(most_s, std::nextafter(most_s, longest_cruise_s) * (1.0 + 1e-9));
 }
 
 Mission with_payload(const Mission& mission, double payload_w) {
@@ -134,20 +190,20 @@ Mission with_payload(const Mission& mission, double payload_w) {
 }
 
 FeasibilityLimit largest_payload(const MissionVariant& mission, const std::optional<double>& probability) {
+    constexpr double largest_payload_w = 1e6;
     const auto bare = with_minimum_energy_schedule(mission);
-    LimitSearch search([&](double payload_w) { return with_payload(bare, payload_w); }, probability);
+    const MissionVariation variation = [&](double payload_w) { return with_payload(bare, payload_w); };
+    LimitSearch search(variation, probability);
     if (const double surplus = search.surplus(0.0).value(); surplus < 0.0) {
         if (const auto summary = simulate(bare).summary; !summary.feasible)
             throw NoResultError("without any payload already: " + describe(summary));
         throw NoResultError(fmt::format("without any payload the mission misses its reserve by {:.4g} points already{}",
                                         -surplus, search.share_text()));
     }
-    auto bracket = find_bracket(search, 1.0, largest_payload_w);
-    if (!bracket.bad)
-        throw NoResultError(
-            fmt::format("a payload of {:.3g} W still lands with the reserve", bracket.good.value_or(0.0)));
-    const double payload_w = refine(search, bracket).low;
-    auto most = search.limit(payload_w, payload_w * (1.0 + 1e-9) + 1e-9);
+    if (!search.find_end(1.0, largest_payload_w))
+        throw NoResultError(fmt::format("a payload of {:.3g} W still lands with the reserve", search.low()));
+    search.refine();
+    auto most = search.limit(search.low(), search.low() * (1.0 + 1e-9) + 1e-9);
     if (probability) most.sources = collect_uncertainty(bare.setup).sources;
     return most;
 }
@@ -156,24 +212,26 @@ std::optional<double> min_capacity_ah(const MissionVariant& mission, const std::
     constexpr double max_times = 1000.0;
     const auto bare = with_minimum_energy_schedule(mission);
     const double own_ah = bare.setup.battery.capacity_ah;
-    LimitSearch search([&](double times_less) { return with_capacity(bare, own_ah / times_less); }, probability);
+    const MissionVariation variation = [&](double times_less) { return with_capacity(bare, own_ah / times_less); };
+    LimitSearch search(variation, probability);
     double times_less = 1.0;
     for (; search.surplus(times_less).value() < 0.0; times_less /= 2.0)
         if (times_less * max_times < 1.0) return std::nullopt;
-    auto bracket = find_bracket(search, times_less, max_times);
-    return own_ah / (bracket.bad ? refine(search, bracket).low : bracket.low);
+    if (search.find_end(times_less, max_times)) search.refine();
+    return own_ah / search.low();
 }
 
 FeasibilityLimit max_circles(const MissionVariation& with_circles, const std::optional<double>& probability) {
+    constexpr double max_circles_tried = 1e4;
     LimitSearch search(with_circles, probability);
-    auto bracket = find_bracket(search, 1.0, max_circles_tried);
-    if (!bracket.bad) {
-        if (bracket.good) throw NoResultError(fmt::format("{:.0f} circles still land with the reserve", *bracket.good));
-        refuse(search, "the mission does not land with its reserve");
+    if (!search.find_end(1.0, max_circles_tried)) {
+        if (search.good())
+            throw NoResultError(fmt::format("{:.0f} circles still land with the reserve", *search.good()));
+        throw *search.misfit();
     }
-    if (*bracket.bad > 1.0) bracket = refine(search, bracket, true);
-    if (!bracket.good) throw NoResultError("the fewest circles that fit do not land with the reserve");
-    return search.limit(*bracket.good, *bracket.good + 1.0);
+    if (search.bad() > 1.0) search.refine(true);
+    if (!search.good()) throw NoResultError("the fewest circles that fit do not land with the reserve");
+    return search.limit(*search.good(), *search.good() + 1.0);
 }
 
 FeasibilityLimit farthest_return(const MissionVariation& with_return_after_m, double length_m,
@@ -181,13 +239,16 @@ FeasibilityLimit farthest_return(const MissionVariation& with_return_after_m, do
     if (!(length_m > 0.0))
         throw NoResultError(
             "the path has no legs along which to return: holds, and ways to a place with duration_s, are not legs");
-    LimitSearch search(with_return_after_m, probability);
-    const auto max_m = longest_that_fits(search, length_m);
-    if (!max_m) refuse(search, "the path cannot be flown there and back");
-    if (search.surplus(*max_m).value() >= 0.0) return search.limit(*max_m, *max_m);
-    const auto bracket = refine(search, {std::nullopt, *max_m, 0.0});
-    if (!bracket.good) throw NoResultError("from nowhere along the path does the mission return with its reserve");
-    return search.limit(*bracket.good, std::min(*max_m, *bracket.bad));
+    // A leg may be infeasible on the way back, and with it all that follow.
+    constexpr double too_far_percent = -100.0;
+    LimitSearch search(with_return_after_m, probability, too_far_percent);
+    if (search.surplus(length_m).value_or(too_far_percent) >= 0.0) return search.limit(length_m, length_m);
+    search.set_end(length_m);
+    search.refine();
+    const bool fits_beyond = search.fits(search.bad());
+    if (search.good()) return search.limit(*search.good(), fits_beyond ? search.bad() : *search.good());
+    if (!fits_beyond) throw *search.misfit();
+    throw NoResultError("from nowhere along the path does the mission return with its reserve");
 }
 
 ReachUnit reach_unit_of(const MissionSetup& mission) {
@@ -214,48 +275,6 @@ Reach find_reach(const MissionLoader& mission_of, const std::optional<double>& p
     return {unit, farthest_return(variation, length_of_legs_m(setup.cruise_path->plan->path), probability)};
 }
 
-namespace {
-
-std::optional<double> cruise_that_lands(const MissionVariation& with_cruise_s,
-                                        const std::optional<double>& probability) {
-    try {
-        return longest_cruise(with_cruise_s, probability).value;
-    } catch (const NoResultError&) {
-        return std::nullopt;
-    }
-}
-
-std::optional<double> surplus_without_fixed(PlanningProblem problem, const std::optional<double>& probability) {
-    if (problem.fixed.empty()) return std::nullopt;
-    problem.fixed.clear();
-    const double percent = LimitSearch([&](double) { return problem; }, probability).surplus(0.0).value();
-    return percent < 0.0 ? std::nullopt : std::optional(percent);
-}
-
-/// A shorter cruise; where its duration differs between flights, a stated one, which may be longer.
-std::string cruise_remedy(const MissionSetup& mission, const InfeasibilityReport& report) {
-    const double now_s = mission.duration_s[Phase::cruise];
-    if (!report.cruise_differs_now)
-        return fmt::format("a cruise {} shorter ({:.1f} s: {})", duration_text(now_s - *report.cruise_s),
-                           *report.cruise_s, duration_text(*report.cruise_s));
-    return describe_stated_cruise(*report.cruise_s, now_s);
-}
-
-}  // namespace
-
-bool cruise_duration_varies(const MissionSetup& mission) {
-    return !mission.duration_is_stated[Phase::cruise] && !mission.uncertainty.duration_sd_s[Phase::cruise] &&
-           collect_uncertainty(mission).duration_sd_s[Phase::cruise] > 0.0;
-}
-
-std::string describe_stated_cruise(double max_s, double now_s) {
-    const double stated_s = std::floor(max_s * 10.0) / 10.0;  // must land as printed
-    return fmt::format(
-        "a stated cruise of at most {} (duration_s = {{ cruise = {:.1f} }}: the {} of the model's flights differ from "
-        "flight to flight)",
-        duration_text(stated_s), stated_s, duration_text(now_s));
-}
-
 InfeasibilityReport infeasibility_report(const PlanningProblem& problem, const MissionPlan& plan,
                                          const MissionVariation& with_cruise_s,
                                          const std::optional<double>& probability) {
@@ -264,9 +283,11 @@ InfeasibilityReport infeasibility_report(const PlanningProblem& problem, const M
     report.shortfall_percent = problem.setup.reserve_soc_percent - possible;
     report.shortfall_wh = units::amount_from_percent(full_energy_wh(problem.setup.battery), report.shortfall_percent);
     report.cut_off_at_s = plan.summary.cut_off_at_s;
-    report.cruise_s = cruise_that_lands(with_cruise_s, probability);
-    report.cruise_differs_now = probability && cruise_duration_varies(problem.setup);
-    report.min_fixed_surplus_percent = surplus_without_fixed(problem, probability);
+    try {
+        report.cruise_s = longest_cruise(with_cruise_s, probability).value;
+    } catch (const NoResultError&) {
+        // no cruise is short enough
+    }
     if (possible >= 0.0 && plan.summary.feasible) report.reserve_soc_percent = possible;
     report.capacity_ah = min_capacity_ah(problem, probability);
     return report;
@@ -274,10 +295,10 @@ InfeasibilityReport infeasibility_report(const PlanningProblem& problem, const M
 
 std::string describe(const MissionSetup& mission, const InfeasibilityReport& report) {
     std::vector<std::string> remedies;
-    if (report.cruise_s) remedies.push_back(cruise_remedy(mission, report));
-    if (report.min_fixed_surplus_percent) {
-        remedies.push_back(fmt::format("lower quality where it is fixed (the least leaves {:.2f} points to spare)",
-                                       *report.min_fixed_surplus_percent));
+    if (report.cruise_s) {
+        const double cruise_s = std::floor(*report.cruise_s * 10.0) / 10.0;  // must land as printed
+        remedies.push_back(fmt::format("a cruise of at most {} (duration_s = {{ cruise = {:.1f} }})",
+                                       duration_text(cruise_s), cruise_s));
     }
     if (report.reserve_soc_percent)
         remedies.push_back(fmt::format("a reserve of at most {:.2f} %", *report.reserve_soc_percent));

@@ -63,23 +63,15 @@ using MissionLoader = std::function<MissionVariant(const MissionReadOptions&)>;
 /// longest_cruise, max_circles or farthest_return; throws as they do.
 Reach find_reach(const MissionLoader& mission_of, const std::optional<double>& probability = std::nullopt);
 
-/// Whether the duration of the cruise differs between flights, because the mission does not state it.
-bool cruise_duration_varies(const MissionSetup& mission);
-
-/// Remedy for such a cruise of `now_s`: "a stated cruise of at most 20 min 1 s (duration_s = ...".
-std::string describe_stated_cruise(double max_s, double now_s);
-
 /// How far a mission without a feasible schedule misses its reserve, and remedies, each sufficient on its own; none
 /// where a measure alone is not sufficient.
 struct InfeasibilityReport {
-    double shortfall_percent = 0.0;                   ///< of the schedule that demands least energy
-    double shortfall_wh = 0.0;                        ///< the same, of the energy of a full battery
-    std::optional<double> cut_off_at_s;               ///< the shortfall then includes the demand after it
-    std::optional<double> cruise_s;                   ///< the longest that lands, its duration stated by the mission
-    bool cruise_differs_now = false;                  ///< between flights, as the mission does not state its duration
-    std::optional<double> min_fixed_surplus_percent;  ///< over the reserve, with the least where quality is fixed
-    std::optional<double> reserve_soc_percent;        ///< the greatest that can be kept
-    std::optional<double> capacity_ah;                ///< the least that suffices
+    double shortfall_percent = 0.0;             ///< of the schedule that demands least energy
+    double shortfall_wh = 0.0;                  ///< the same, of the energy of a full battery
+    std::optional<double> cut_off_at_s;         ///< the shortfall then includes the demand after it
+    std::optional<double> cruise_s;             ///< the longest that lands, its duration stated by the mission
+    std::optional<double> reserve_soc_percent;  ///< the greatest that can be kept
+    std::optional<double> capacity_ah;          ///< the least that suffices
 };
 
 /// `plan`, made with `probability`, is infeasible, of the mission that `with_cruise_s` gives for the cruise as it is.

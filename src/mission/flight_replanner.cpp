@@ -28,13 +28,10 @@ void require_few_decisions(const PlanningProblem& known) {
                      "make decide_every_s in [policy] longer");
 }
 
-/// Of tables: the relaxation's plan leaves at most what one slot could spend, and the next decision spends it; only
-/// near the end does a search pay. Where the battery's state counts, a few labels follow it all the way.
-SearchLimits effort_for(const PlanningTables& planner, double slots_left) {
+/// A few labels follow the plan all the way; more near the end, where what is left is spent.
+SearchLimits effort_for(double slots_left) {
     constexpr double searched_slots = 8.0;
-    const bool searches = slots_left <= searched_slots;
-    if (planner.step_s) return {1e-4, searches ? std::size_t{200} : std::size_t{20}, 16};
-    return {searches ? 1e-4 : 1.0, 200};
+    return {1e-4, slots_left <= searched_slots ? std::size_t{200} : std::size_t{20}, 16};
 }
 
 /// Quantile of the relative deviation of mechanical power from the model's at the policy's probability: by the policy's
@@ -69,12 +66,7 @@ AdaptivePlanner make_adaptive_planner(const PlanningProblem& problem) {
     if (!problem.adaptive) throw std::invalid_argument("make_adaptive_planner: the policy is not adaptive");
     require_few_decisions(problem);
     auto tables = make_planning_tables(problem);
-    if (auto& step_s = tables.step_s) {
-        double quick_s = 2.0;  // what that is off is far below what flights differ by
-        if (problem.setup.battery.thevenin)
-            quick_s = std::min(quick_s, problem.setup.battery.thevenin->rc_time_constant_s / 2.0);
-        step_s = std::max(*step_s, quick_s);
-    }
+    tables.step_s = tables.quick_step_s;  // what that is off is far below what flights differ by
     return {problem, std::make_shared<const PlanningTables>(std::move(tables))};
 }
 
@@ -86,8 +78,6 @@ FlightReplanner::FlightReplanner(const AdaptivePlanner& planner)
     required_deviation_ = expected_reach(nominal_);
 }
 
-bool FlightReplanner::state_counts() const { return adaptive_.planner->step_s.has_value(); }
-
 double FlightReplanner::mechanical_factor() const {
     if (learned_.mechanical_percent <= 0.0) return 1.0;
     const double gain = learned_.time_s / (learned_.time_s + nominal_.adaptive->learning_time_s);
@@ -95,28 +85,8 @@ double FlightReplanner::mechanical_factor() const {
         0.0, 1.0 + gain * (learned_.observed_percent - learned_.predicted_percent) / learned_.mechanical_percent);
 }
 
-double FlightReplanner::mechanical_percent(const PhaseSegment& time) const {
-    return depletion_percent(*known_load_, {time, {}});
-}
-
-double FlightReplanner::rest_mechanical_percent(const PhaseTime& moment) const {
-    double percent = 0.0;
-    for (const auto phase : all_phases) {
-        if (phase < moment.phase) continue;
-        const double from_s = phase == moment.phase ? moment.time_s : 0.0;
-        if (from_s < nominal_.setup.duration_s[phase])
-            percent += mechanical_percent({phase, from_s, nominal_.setup.duration_s[phase]});
-    }
-    return percent;
-}
-
-FlightReplanner::PredictedDepletion FlightReplanner::predict(const PhaseSegment& interval, const Schedule& run,
+FlightReplanner::PredictedDepletion FlightReplanner::predict(const Schedule& run,
                                                              const battery::BatteryState& state) const {
-    if (!state_counts()) {
-        PredictedDepletion predicted{0.0, mechanical_percent(interval)};
-        for (const auto& segment : run) predicted.percent += depletion_percent(*known_load_, segment);
-        return predicted;
-    }
     constexpr double more = 0.01;
     const auto lost_percent = [&](double mechanical_factor) {
         Disturbance wind;
@@ -133,26 +103,15 @@ FlightReplanner::PredictedDepletion FlightReplanner::predict(const PhaseSegment&
 
 Plan FlightReplanner::replan(const PhaseTime& moment, const battery::BatteryState& now) const {
     const auto& policy = *nominal_.adaptive;
-    PlanStart start{planned_.start_s[moment.phase] + moment.time_s,
-                    now.soc_percent,
-                    running_,
-                    running_for_s_,
-                    mechanical_factor(),
-                    now.rc_voltage_v};
+    const double time_s = planned_.start_s[moment.phase] + moment.time_s;
+    const double left_s = planned_.duration_s - time_s;
     const double seen =
         policy.learning_time_s > 0.0 ? policy.learning_time_s / (learned_.time_s + policy.learning_time_s) : 0.0;
-    const double to_come = policy.learning_time_s / (planned_.duration_s - start.time_s);
-    const double margin = required_deviation_ * std::sqrt(seen + to_come);  // of the mechanical power that is left
-    double reserve_percent = nominal_.setup.reserve_soc_percent;
-    if (state_counts())
-        start.mechanical_factor += margin;  // its voltage falls as well
-    else
-        reserve_percent += margin * rest_mechanical_percent(moment);
-    auto plan =
-        plan_remaining(nominal_, *adaptive_.planner, start, reserve_percent,
-                       effort_for(*adaptive_.planner, (planned_.duration_s - start.time_s) / nominal_.plan.slot_s));
-    if (plan.schedule.empty()) plan.schedule = minimum_energy_schedule(nominal_, start.time_s);
-    return plan;
+    const double margin = required_deviation_ * std::sqrt(seen + policy.learning_time_s / left_s);
+    const PlanStart start{time_s,          now.soc_percent, running_, running_for_s_, mechanical_factor() + margin,
+                          now.rc_voltage_v};
+    return plan_remaining(nominal_, *adaptive_.planner, start, nominal_.setup.reserve_soc_percent,
+                          effort_for(left_s / nominal_.plan.slot_s));
 }
 
 void FlightReplanner::update(const PhaseSegment& interval, const Schedule& run, const battery::BatteryState& before,
@@ -162,7 +121,7 @@ void FlightReplanner::update(const PhaseSegment& interval, const Schedule& run, 
         running_for_s_ += segment.duration_s();
         running_ = segment.run;
     }
-    const auto predicted = predict(interval, run, before);
+    const auto predicted = predict(run, before);
     const double observed_percent = before.soc_percent - soc_after_percent;
     if (observed_percent < 0.0 || observed_percent > jump_factor * predicted.percent) return;
     learned_.time_s += interval.duration_s();

@@ -33,7 +33,7 @@ class FlightReplanner {
   public:
     explicit FlightReplanner(const AdaptivePlanner& planner);
 
-    /// The plan from a time on; the schedule of least energy demand if none is deliverable. Takes milliseconds, less
+    /// The plan from a time on; the schedule of least energy demand if none is feasible. Takes milliseconds, less
     /// than 0.2 s for a few thousand slots.
     Plan replan(const PhaseTime& moment, const battery::BatteryState& now) const;
 
@@ -58,11 +58,7 @@ class FlightReplanner {
         double mechanical_percent = 0.0;  ///< how much more by mechanical power of twice as much
     };
 
-    bool state_counts() const;
-    double mechanical_percent(const PhaseSegment& time) const;
-    double rest_mechanical_percent(const PhaseTime& moment) const;  ///< of tables
-    PredictedDepletion predict(const PhaseSegment& interval, const Schedule& run,
-                               const battery::BatteryState& state) const;
+    PredictedDepletion predict(const Schedule& run, const battery::BatteryState& state) const;
 
     const AdaptivePlanner& adaptive_;
     const PlanningProblem& nominal_;

@@ -57,7 +57,7 @@ void make_stricter(const Trial& trial, double part, double slack_percent, Planni
 
 /// The best schedule found that lands, and into `plan` the bound of the problem as stated.
 Trial searched(const PlanningProblem& problem, const PlanningTables& planner, const Trial& least, Plan& plan) {
-    const double slack_percent = planner.step_s ? 3e-6 : 1e-12;  // errors of a search, and of sums of slots
+    constexpr double slack_percent = 3e-6;  // error of a search
     auto stricter = problem;
     double part = 1e-8;
     for (int round = 0; round < max_rounds_to_land; ++round) {
@@ -81,7 +81,6 @@ MissionPlan plan_certain(const PlanningProblem& problem) {
     MissionPlan result;
     auto& plan = result.plan;
     auto found = fly(problem, minimum_energy_schedule(problem));
-    plan.deliverable = !found.summary.undeliverable;
     plan.feasible = found.lands();
     if (plan.feasible) {
         found = searched(problem, planner, found, plan);
@@ -101,7 +100,6 @@ MissionPlan least_plan(const PlanningProblem& problem, const FlightUncertainty& 
     plan.mission = with_minimum_energy_schedule(problem);
     plan.summary = simulate(plan.mission).summary;
     plan.plan.schedule = plan.mission.schedule;
-    plan.plan.deliverable = !plan.summary.undeliverable;
     const auto landings = draw_landings(plan.mission, spreads);
     plan.margin_percent = landings.nominal_percent - landings.quantile_percent(probability);
     plan.plan.final_soc_percent = landings.nominal_percent;

@@ -39,16 +39,15 @@ struct ScheduleSegment : PhaseSegment {
 /// In the order of time.
 using Schedule = std::vector<ScheduleSegment>;
 
-/// A schedule for the rest of a mission: by the depletion of each slot, or where the battery's state counts, by search.
+/// A schedule for the rest of a mission.
 struct Plan {
     bool feasible = false;
-    bool deliverable = false;  ///< the battery can deliver the power of some schedule
     /// From the start to the mission's end; if infeasible, the one of least energy demand.
     Schedule schedule;
     double utility = 0.0;            ///< mean utility a second of the rest of the mission
     double utility_bound = 0.0;      ///< no schedule that keeps the reserve has more; 0 if infeasible
-    bool bound_is_proven = true;     ///< false: something charges a battery whose state counts
-    double final_soc_percent = 0.0;  ///< continued below empty
+    bool bound_is_proven = true;     ///< false: something charges the battery
+    double final_soc_percent = 0.0;  ///< minus infinity where the battery does not last
 };
 
 /// Appends a segment, or extends the last one if phase and configuration are the same.

@@ -1,6 +1,5 @@
 #include "helpers/path_missions.h"
 #include "mission/feasibility_limits.h"
-#include "mission/planning/limit_search.h"
 #include "mission/sampled_flights.h"
 #include "mission/simulation.h"
 #include "mission/simulation/load_segments.h"
@@ -47,23 +46,18 @@ TEST(MissionOnAPath, IsFlownBySimulation) {
     EXPECT_NEAR(simulate(mission, {}, {gust}).summary.mechanical_energy_wh, energy_wh + 60.0 / 3600.0, 1e-9);
 }
 
-/// Integrals of the pieces, Runge-Kutta, and Runge-Kutta in steps of a second agree where all three may be used.
+/// Integrals of the pieces and Runge-Kutta agree.
 TEST(MissionOnAPath, IsIntegratedAsItIsSimulated) {
     auto mission = path_mission({{path_element(Leg{1300.0, 0.0}), path_element(Circles{60.0, 3.3}),
                                   path_element(Leg{900.0, 200.0}, 14.5, 70.0)}},
                                 {5.0, 30.0});
     mission.setup.battery.resistance_ohm = 0.2;
-    mission.setup.reserve_soc_percent = 10.0;
     ASSERT_GT(mission.setup.cruise_path->pieces->time_s.size(), 20U);
     const double simulated = *simulate(mission).summary.final_soc_percent;
-    EXPECT_NEAR(surplus_percent(mission), simulated - 10.0, 1e-7);
     battery::Discharge state{{mission.setup.initial_soc_percent}};
     for (const auto& segment : load_segments(mission.setup, mission.schedule))
         state = advance_segment(mission.setup.battery, 0.0, segment, state);
     EXPECT_NEAR(state.soc_percent, simulated, 1e-7);
-    // More than the battery can deliver in one piece alone.
-    mission.setup.battery.resistance_ohm = 100.0 / 4.0 / 25.0;
-    EXPECT_LT(surplus_percent(mission), 0.0);
 }
 
 TEST(MissionOnAPath, DiffersWithTheWind) {

@@ -42,8 +42,6 @@ Fields<MonteCarloResult> record_fields(const MonteCarloResult*) {
         field("probability_below_reserve_interval_95", &R::probability_below_reserve_95, "Wilson's interval"),
         field("probability_below_reserve_standard_error", &R::probability_below_reserve_standard_error,
               "standard error of the probability"),
-        field("probability_below_reserve_outside_measured", &R::probability_below_reserve_outside_measured,
-              "part of the probability with more power in a phase than any measured flight"),
         field("probability_depleted", &R::probability_depleted, "the battery is empty before the end"),
         field("probability_battery_failure", &R::probability_battery_failure, "empty, cut off or too weak"),
         field("samples", &R::samples, "number of drawn flights"), field("seed", &R::seed, "seed of the random numbers"),
@@ -109,7 +107,6 @@ Fields<InfeasibilityReport> record_fields(const InfeasibilityReport*) {
             field("short_wh", &R::shortfall_wh, "the same as energy"),
             field("cut_off_at_s", &R::cut_off_at_s, "the voltage falls below the cut-off; null: never"),
             field("longest_cruise_s", &R::cruise_s, "longest feasible cruise"),
-            field("min_fixed_surplus_percent", &R::min_fixed_surplus_percent, "surplus with the least fixed quality"),
             field("largest_reserve_soc_percent", &R::reserve_soc_percent, "largest feasible reserve"),
             field("smallest_capacity_ah", &R::capacity_ah, "smallest sufficient capacity")};
 }

@@ -1,6 +1,5 @@
 #include "mission/planning/planner.h"
 
-#include "mission/planning/schedule_search.h"
 #include "mission/simulation/load_segments.h"
 
 #include <algorithm>
@@ -119,41 +118,17 @@ std::optional<std::size_t> index_of(const PlanningTables& planner, const compute
     return static_cast<std::size_t>(found - planner.configurations.begin());
 }
 
-/// All but the costs.
-MultipleChoiceKnapsack choices_of(const PlanningProblem& problem, const PlanningTables& planner, const PlanStart& start,
-                                  const std::vector<MissionSlot>& slots) {
-    MultipleChoiceKnapsack knapsack;
-    knapsack.utility_per_s = planner.utility_per_s;
-    knapsack.free_choices = planner.free_choices;
-    knapsack.dwell_s = problem.plan.dwell_s;
+ScheduleChoices choices_of(const PlanningProblem& problem, const PlanningTables& planner, const PlanStart& start,
+                           const std::vector<MissionSlot>& slots) {
+    ScheduleChoices choices{{}, planner.utility_per_s, planner.free_choices, problem.plan.dwell_s, std::nullopt};
     if (start.running) {
-        if (const auto choice = index_of(planner, *start.running)) knapsack.running = {*choice, start.running_for_s};
+        if (const auto choice = index_of(planner, *start.running)) choices.running = {*choice, start.running_for_s};
     }
     for (const auto& slot : slots) {
-        knapsack.slots.push_back({slot.duration_s(), std::nullopt, {}});
-        if (slot.fixed) knapsack.slots.back().fixed = index_of(planner, *slot.fixed).value();
+        choices.slots.push_back({slot.duration_s()});
+        if (slot.fixed) choices.slots.back().fixed = index_of(planner, *slot.fixed).value();
     }
-    return knapsack;
-}
-
-SlotDepletion depletion_of(const MissionLoad& load, const PlanningTables& planner, const MissionSlot& slot) {
-    SlotDepletion depletion{depletion_percent(load, {slot, {}}), {}};
-    for (const auto& run : planner.configurations) depletion.percent.push_back(depletion_percent(load, {slot, run}));
-    return depletion;
-}
-
-/// The depletions of the whole mission's slots are known; the first of the rest of a mission may be a part of one.
-void set_costs(const PlanningProblem& problem, const PlanningTables& planner, double mechanical_factor,
-               const std::vector<MissionSlot>& slots, MultipleChoiceKnapsack& knapsack) {
-    const auto load = make_mission_load(problem.setup);
-    const auto flown = planner.slots.size() - slots.size();
-    for (std::size_t i = 0; i < slots.size(); ++i) {
-        const PhaseSegment& known = planner.slots[flown + i];
-        const auto depletion =
-            known == slots[i] ? planner.depletions[flown + i] : depletion_of(load, planner, slots[i]);
-        for (const double percent : depletion.percent)
-            knapsack.slots[i].cost.push_back(percent + (mechanical_factor - 1.0) * depletion.mechanical_percent);
-    }
+    return choices;
 }
 
 std::vector<PhaseSegment> parts_of(const std::vector<MissionSlot>& slots) { return {slots.begin(), slots.end()}; }
@@ -168,10 +143,10 @@ std::vector<double> compute_w_of(const PlanningProblem& problem, const PlanningT
 /// at a knot of the open-circuit voltage.
 SlotDynamics dynamics_of(const PlanningProblem& problem, const PlanningTables& planner, const PlanStart& start,
                          const std::vector<MissionSlot>& slots, double step_s) {
-    const double longer_s = std::max(step_s, *planner.step_s);
+    const double longer_s = std::max(step_s, planner.step_s);
     auto dynamics = make_slot_dynamics(problem.setup, parts_of(slots), compute_w_of(problem, planner), longer_s,
                                        start.mechanical_factor);
-    if (longer_s > *planner.step_s) {
+    if (longer_s > planner.step_s) {
         const double part = longer_s / planner.quick_step_s * (longer_s / planner.quick_step_s);
         dynamics.error_percent = part * coarse_error_percent;
         dynamics.error_v = part * coarse_error_v;
@@ -222,16 +197,10 @@ PlanningTables make_planning_tables(const PlanningProblem& problem) {
         configurations.push_back(run);
         planner.utility_per_s.push_back(utility_per_s(problem.setup.utilities, run));
     }
-    planner.slots = make_slots(problem);
-    if (problem.setup.battery.thevenin || problem.setup.cutoff_voltage_v > 0.0) {
-        const auto slots = parts_of(planner.slots);
-        planner.step_s = choose_step_s(problem.setup, slots, compute_w_of(problem, planner));
-        planner.quick_step_s =
-            choose_coarse_step_s(problem.setup, slots, compute_w_of(problem, planner), *planner.step_s);
-        return planner;
-    }
-    const auto load = make_mission_load(problem.setup);
-    for (const auto& slot : planner.slots) planner.depletions.push_back(depletion_of(load, planner, slot));
+    const auto slots = parts_of(make_slots(problem));
+    const auto compute_w = compute_w_of(problem, planner);
+    planner.step_s = choose_step_s(problem.setup, slots, compute_w);
+    planner.quick_step_s = choose_coarse_step_s(problem.setup, slots, compute_w, planner.step_s);
     return planner;
 }
 
@@ -275,42 +244,30 @@ Mission with_minimum_energy_schedule(const MissionVariant& mission) {
 Plan plan_remaining(const PlanningProblem& problem, const PlanningTables& planner, const PlanStart& start,
                     double reserve_soc_percent, const SearchLimits& effort) {
     constexpr double rounding_percent = 3e-6;  // of the search's battery against the simulation's
-    constexpr double min_gap = 3e-5;
+    constexpr double closer = 4.0;
     const auto slots = make_slots(problem, start.time_s);
-    auto knapsack = choices_of(problem, planner, start, slots);
+    const auto choices = choices_of(problem, planner, start, slots);
+    const auto exact = dynamics_of(problem, planner, start, slots, planner.step_s);
+    const auto quick = dynamics_of(problem, planner, start, slots, planner.quick_step_s);
+    const auto in_between = dynamics_of(problem, planner, start, slots, planner.quick_step_s / closer);
+    const auto chosen = search_schedule({exact,
+                                         quick,
+                                         in_between,
+                                         choices,
+                                         {start.soc_percent, start.rc_voltage_v},
+                                         reserve_soc_percent - rounding_percent},
+                                        effort);
     Plan plan;
-    KnapsackSolution chosen;
-    if (planner.step_s) {
-        constexpr double closer = 4.0;
-        const auto exact = dynamics_of(problem, planner, start, slots, *planner.step_s);
-        const auto quick = dynamics_of(problem, planner, start, slots, planner.quick_step_s);
-        const auto in_between = dynamics_of(problem, planner, start, slots, planner.quick_step_s / closer);
-        plan.bound_is_proven = !charges(exact);
-        auto coarser = effort;
-        coarser.relative_gap = std::max(effort.relative_gap, min_gap);
-        chosen = search_schedule({exact,
-                                  quick,
-                                  in_between,
-                                  knapsack,
-                                  {start.soc_percent, start.rc_voltage_v},
-                                  reserve_soc_percent - rounding_percent},
-                                 coarser);
-    } else {
-        set_costs(problem, planner, start.mechanical_factor, slots, knapsack);
-        knapsack.budget = start.soc_percent - reserve_soc_percent;
-        chosen = solve_knapsack(knapsack, effort);
-    }
     plan.feasible = chosen.feasible;
-    plan.deliverable = chosen.possible;
-    if (!chosen.possible) return plan;
-    plan.schedule = schedule_of(planner, slots, chosen.choices);
+    plan.bound_is_proven = !charges(exact);
+    plan.schedule = schedule_of(planner, slots, chosen.best.choices);
+    plan.final_soc_percent = chosen.best.end_percent;
     double duration_s = 0.0;
     for (const auto& slot : slots) duration_s += slot.duration_s();
     if (duration_s > 0.0) {
-        plan.utility = chosen.utility / duration_s;
+        plan.utility = chosen.best.utility / duration_s;
         plan.utility_bound = chosen.bound / duration_s;
     }
-    plan.final_soc_percent = start.soc_percent - chosen.cost;
     return plan;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "mission/mission.h"
-#include "mission/planning/knapsack.h"
+#include "mission/planning/schedule_search.h"
 
 #include <cstddef>
 #include <optional>
@@ -14,23 +14,14 @@ struct MissionSlot : PhaseSegment {
     std::optional<compute::Configuration> fixed;
 };
 
-/// Depletion of the battery by a slot [points].
-struct SlotDepletion {
-    double mechanical_percent = 0.0;  ///< while nothing runs
-    std::vector<double> percent;      ///< with each of the choices; infinite if the battery cannot deliver that
-};
-
 /// Tables for all plans of a problem: configurations with their utility and depletion.
 struct PlanningTables {
     std::vector<compute::Configuration> configurations;  ///< the choices
     std::vector<double> utility_per_s;                   ///< of each of them
-    std::size_t free_choices = 0;           ///< number of leading ones that may be chosen; the others are only fixed
-    std::vector<MissionSlot> slots;         ///< of the whole mission
-    std::vector<SlotDepletion> depletions;  ///< of each slot
-    /// The step of schedule_search.h, for batteries whose depletion by a slot depends on what ran before: their source
-    /// follows their charge, or they may be cut off. There are no depletions then.
-    std::optional<double> step_s = std::nullopt;
-    double quick_step_s = 0.0;  ///< of choose_coarse_step_s
+    std::size_t free_choices = 0;  ///< number of leading ones that may be chosen; the others are only fixed
+    // Steps of slot_dynamics.h: [s] as choose_step_s has it, and choose_coarse_step_s.
+    double step_s = 0.0;
+    double quick_step_s = 0.0;
 };
 
 /// The configurations that [plan] allows, without those that draw more than another one of as much utility, and those
@@ -64,8 +55,8 @@ struct PlanStart {
     double rc_voltage_v = 0.0;       ///< of a Thévenin battery
 };
 
-/// The schedule of most utility of those that end with the reserve; takes milliseconds, or with little effort on a
-/// battery whose state counts, for calls in flight.
+/// The schedule of most utility of those that end with the reserve; with little effort in milliseconds, for calls in
+/// flight.
 Plan plan_remaining(const PlanningProblem& problem, const PlanningTables& planner, const PlanStart& start,
                     double reserve_soc_percent, const SearchLimits& effort = {});
 

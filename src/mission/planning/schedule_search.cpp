@@ -12,12 +12,6 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-struct FoundSchedule {
-    std::vector<std::size_t> choices;
-    double utility = -infinite;
-    double end_percent = -infinite;
-};
-
 /// Where a schedule ends; minus infinity if it does not.
 double end_percent(const SlotDynamics& dynamics, const std::vector<std::size_t>& choices, battery::BatteryState state) {
     for (std::size_t i = 0; i < choices.size(); ++i) {
@@ -36,6 +30,14 @@ void set_bound(const UtilityBound& value, StateLabel& label) {
                       : -infinite;
 }
 
+/// Puts the labels' last runs into the trail: only those that survived, for it grows with every slot.
+void leave_trail(std::vector<StateLabel>& labels, std::vector<RunStep>& trail) {
+    for (auto& label : labels) {
+        trail.push_back(label);
+        label.before = trail.size() - 1;
+    }
+}
+
 /// One pass from the first slot to the last with a limited number of labels.
 class StatePass {
   public:
@@ -46,7 +48,7 @@ class StatePass {
         const HeuristicValue* ranking = nullptr;  ///< of dropped labels; none: by their bound
     };
 
-    StatePass(const ScheduleProblem& problem, const KnapsackGraph& graph, const UtilityBound& value,
+    StatePass(const ScheduleProblem& problem, const ScheduleGraph& graph, const UtilityBound& value,
               const StateLabel& first, const Limits& limits)
         : problem_(problem), graph_(graph), value_(value), first_(first), limits_(limits) {
         constexpr double part_for_rounding = 1e-3;
@@ -92,9 +94,7 @@ class StatePass {
     void try_schedule(const StateLabel& label, FoundSchedule& best) const {
         if (label.utility <= best.utility) return;
         FoundSchedule found{choices_until(label, trail_, graph_), 0.0, -infinite};
-        for (std::size_t i = 0; i < found.choices.size(); ++i) {
-            found.utility += problem_.choices.utility_per_s[found.choices[i]] * problem_.choices.slots[i].duration_s;
-        }
+        found.utility = utility_of(problem_.choices, found.choices);
         if (found.utility <= best.utility) return;
         found.end_percent = end_percent(problem_.exact, found.choices, problem_.start);
         if (found.end_percent >= problem_.reserve_soc_percent) best = std::move(found);
@@ -131,7 +131,7 @@ class StatePass {
             StateLabel next = label;
             next.choice = run.choice;
             next.to = run.to;
-            next.utility += run.sum.utility;
+            next.utility += run.utility;
             // The tabulated transition saves most integrations.
             const auto end = apply_transition(value_, i, reach, label.charge);
             if (!is_wanted(next.utility + utility_to_go(value_, run.to, run.choice, end))) continue;
@@ -174,7 +174,7 @@ class StatePass {
     }
 
     const ScheduleProblem& problem_;
-    const KnapsackGraph& graph_;
+    const ScheduleGraph& graph_;
     const UtilityBound& value_;
     const StateLabel& first_;
     Limits limits_;
@@ -188,26 +188,16 @@ class StatePass {
     std::vector<RunStep> trail_;
 };
 
-/// The choices as a graph in which the least cost is the least energy demand.
-KnapsackGraph graph_of(const ScheduleProblem& problem) {
-    auto choices = problem.choices;
-    for (std::size_t i = 0; i < choices.slots.size(); ++i) {
-        auto& slot = choices.slots[i];
-        slot.cost.clear();
-        for (const double compute_w : problem.exact.compute_w)
-            slot.cost.push_back(problem.exact.slots[i].mechanical_energy_j + compute_w * slot.duration_s);
-    }
-    return make_knapsack_graph(choices);
-}
-
 /// The schedule of least energy demand, and where it ends.
-FoundSchedule least_schedule(const ScheduleProblem& problem, const KnapsackGraph& graph) {
-    const auto path = best_path(graph, cost_to_go(graph, 0.0, 1.0), 0.0, 1.0);
-    return {path.choices, path.sum.utility, end_percent(problem.exact, path.choices, problem.start)};
+FoundSchedule least_schedule(const ScheduleProblem& problem, const ScheduleGraph& graph) {
+    auto choices = least_choices(problem.choices, graph, problem.exact.compute_w);
+    const double utility = utility_of(problem.choices, choices);
+    const double end = end_percent(problem.exact, choices, problem.start);
+    return {std::move(choices), utility, end};
 }
 
 /// As much of the effort as time and memory allow for many slots, choices or long runs.
-SearchLimits affordable(SearchLimits effort, const KnapsackGraph& graph) {
+SearchLimits affordable(SearchLimits effort, const ScheduleGraph& graph) {
     constexpr std::size_t max_slots_followed = 2000000;  // for the bound
     constexpr std::size_t max_labels_made = 6000000;
     constexpr std::size_t min_labels = 50;
@@ -237,11 +227,11 @@ struct SearchState {
 };
 
 /// Passes with increasing numbers of labels: the first ones find a good schedule, the others prove.
-void improve(const ScheduleProblem& problem, const KnapsackGraph& graph, const SearchLimits& effort,
+void improve(const ScheduleProblem& problem, const ScheduleGraph& graph, const SearchLimits& effort,
              SearchState& search) {
     const auto value = make_schedule_value(problem, graph, effort.value_cells);
     // Behind the slots that are committed already.
-    StateLabel first{{0, graph.begin_choice, 0}, problem.start, graph.before_begin.utility};
+    StateLabel first{{0, graph.begin_choice, 0}, problem.start, graph.utility_before_begin};
     first.to = graph.begin;
     const auto begun = advance_run(problem.coarse, 0, graph.begin, graph.begin_choice, problem.start);
     if (!value.possible || !begun) {
@@ -286,8 +276,7 @@ void begin_with_long_runs(const ScheduleProblem& problem, SearchState& search) {
     choices.dwell_s = std::max(choices.dwell_s, slots_a_run * mission_s / static_cast<double>(choices.slots.size()));
     const ScheduleProblem coarse{problem.exact, problem.coarse, problem.medium,
                                  choices,       problem.start,  problem.reserve_soc_percent};
-    const auto graph = graph_of(coarse);
-    if (!graph.possible) return;
+    const auto graph = make_schedule_graph(choices);
     SearchState found{search.best};
     improve(coarse, graph, affordable(quick_effort, graph), found);
     search.best = std::move(found.best);
@@ -295,8 +284,8 @@ void begin_with_long_runs(const ScheduleProblem& problem, SearchState& search) {
 
 }  // namespace
 
-KnapsackSolution search_schedule(const ScheduleProblem& problem, const SearchLimits& wanted_effort) {
-    const auto graph = graph_of(problem);
+SearchResult search_schedule(const ScheduleProblem& problem, const SearchLimits& wanted_effort) {
+    const auto graph = make_schedule_graph(problem.choices);
     const auto effort = affordable(wanted_effort, graph);
     const auto least = least_schedule(problem, graph);
     SearchState search;
@@ -311,14 +300,10 @@ KnapsackSolution search_schedule(const ScheduleProblem& problem, const SearchLim
                                      problem.choices, problem.start,  problem.reserve_soc_percent};
         improve(closer, graph, effort, search);
     }
-    KnapsackSolution result;
-    result.possible = true;
+    SearchResult result;
     result.feasible = std::isfinite(search.best.utility);
-    const auto& found = result.feasible ? search.best : least;
-    result.choices = found.choices;
-    result.utility = found.utility;
-    result.cost = problem.start.soc_percent - found.end_percent;
-    result.bound = result.feasible ? std::max(search.bound, found.utility) : 0.0;
+    result.best = result.feasible ? std::move(search.best) : least;
+    if (result.feasible) result.bound = std::max(search.bound, result.best.utility);
     return result;
 }
 

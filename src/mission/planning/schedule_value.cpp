@@ -294,12 +294,12 @@ void add_run_points(const UtilityBound& value, std::size_t from, std::size_t lev
         const std::size_t at = level * (value.cells + 1) + j;
         const double end_percent = min_percent(value, from) + step * static_cast<double>(j);
         add_mapped(next[reach.end[at].level],
-                   {end_percent - step, end_percent, reach.end[at].percent, reach.growth[at]}, run.sum.utility, points);
+                   {end_percent - step, end_percent, reach.end[at].percent, reach.growth[at]}, run.utility, points);
     }
 }
 
 /// The curves of one slot, of those behind it.
-void set_curves(const ScheduleProblem& problem, const KnapsackGraph& graph, std::size_t i, UtilityBound& value) {
+void set_curves(const ScheduleProblem& problem, const ScheduleGraph& graph, std::size_t i, UtilityBound& value) {
     for (const auto& run : graph.runs[i]) value.runs[i].push_back(reach_of(problem.coarse, value, i, run));
     for (const auto& run : graph.one_more[i]) value.one_more[i].push_back(reach_of(problem.coarse, value, i, run));
     if (!graph.one_more[i].empty()) value.with[i].resize(graph.choices);
@@ -318,7 +318,7 @@ void set_curves(const ScheduleProblem& problem, const KnapsackGraph& graph, std:
 
 }  // namespace
 
-UtilityBound make_schedule_value(const ScheduleProblem& problem, const KnapsackGraph& graph, std::size_t cells) {
+UtilityBound make_schedule_value(const ScheduleProblem& problem, const ScheduleGraph& graph, std::size_t cells) {
     UtilityBound value;
     value.cells = cells;
     value.possible = fly_least(problem, value);

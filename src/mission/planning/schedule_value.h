@@ -1,7 +1,7 @@
 #pragma once
 
 #include "mission/planning/concave_curve.h"
-#include "mission/planning/knapsack.h"
+#include "mission/planning/schedule_graph.h"
 #include "mission/planning/slot_dynamics.h"
 
 #include <cstddef>
@@ -12,9 +12,9 @@ namespace flightwatt::mission {
 /// Which choice to run in each slot, so that the battery lands with the reserve.
 struct ScheduleProblem {
     const SlotDynamics& exact;
-    const SlotDynamics& coarse;             ///< in longer steps, for the many states that are compared
-    const SlotDynamics& medium;             ///< in between, where `coarse` is too inaccurate
-    const MultipleChoiceKnapsack& choices;  ///< costs and budget are ignored
+    const SlotDynamics& coarse;  ///< in longer steps, for the many states that are compared
+    const SlotDynamics& medium;  ///< in between, where `coarse` is too inaccurate
+    const ScheduleChoices& choices;
     battery::BatteryState start;
     double reserve_soc_percent = 0.0;
 };
@@ -59,7 +59,7 @@ struct UtilityBound {
     bool possible = true;  ///< the course of least power lands with the reserve
 };
 
-UtilityBound make_schedule_value(const ScheduleProblem& problem, const KnapsackGraph& graph, std::size_t cells);
+UtilityBound make_schedule_value(const ScheduleProblem& problem, const ScheduleGraph& graph, std::size_t cells);
 
 EffectiveCharge effective_charge(const UtilityBound& value, std::size_t slot, const battery::BatteryState& state);
 

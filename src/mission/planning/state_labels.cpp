@@ -64,7 +64,7 @@ double after_run(const ScheduleProblem& problem, const UtilityBound& bounds, con
                           steady_rc_v(dynamics, from, min_w, soc_percent);
     const auto after = advance_run(dynamics, from, run.to, run.choice,
                                    {soc_percent, bounds.min_power_trajectory[from].rc_voltage_v + more_v});
-    return after ? run.sum.utility + utility_to_go(value, run.to, after->soc_percent) : unreachable;
+    return after ? run.utility + utility_to_go(value, run.to, after->soc_percent) : unreachable;
 }
 
 }  // namespace
@@ -95,7 +95,7 @@ std::vector<StateLabel> merge_labels(const std::vector<StateLabel>& labels, cons
     return kept;
 }
 
-HeuristicValue make_cautious_value(const ScheduleProblem& problem, const KnapsackGraph& graph,
+HeuristicValue make_cautious_value(const ScheduleProblem& problem, const ScheduleGraph& graph,
                                    const UtilityBound& bounds, std::size_t cells) {
     HeuristicValue value;
     value.at.resize(graph.slots + 1);

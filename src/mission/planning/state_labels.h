@@ -47,7 +47,7 @@ struct HeuristicValue {
 
 /// By dynamic programming over `cells` of charge a slot, with the steady RC voltage of each choice and runs of minimum
 /// duration.
-HeuristicValue make_cautious_value(const ScheduleProblem& problem, const KnapsackGraph& graph,
+HeuristicValue make_cautious_value(const ScheduleProblem& problem, const ScheduleGraph& graph,
                                    const UtilityBound& bounds, std::size_t cells);
 
 double utility_to_go(const HeuristicValue& value, std::size_t slot, double soc_percent);

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 
 #include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/tools/minima.hpp>
@@ -54,17 +53,12 @@ void disturb_power(const Disturbance& disturbance, LoadSegment& segment) {
     segment.mechanical->a0_w += disturbance.mechanical_w;
 }
 
-/// Of a constant source.
-bool is_deliverable(const battery::Battery& battery, double cutoff_voltage_v, double demand_w) {
-    return demand_w <= power_limit_w(battery) &&
-           terminal_voltage_v(battery, {}, internal_current_a(battery, demand_w)) >= cutoff_voltage_v;
-}
-
 /// Whether the source is constant, and nothing but an empty battery can end the segment.
 bool depends_on_power_alone(const battery::Battery& battery, double cutoff_voltage_v, const LoadSegment& segment) {
     if (battery.thevenin) return false;
     const auto bounds = bounds_of(segment);
-    return bounds.low >= 0.0 && is_deliverable(battery, cutoff_voltage_v, bounds.high);
+    return bounds.low >= 0.0 && bounds.high <= power_limit_w(battery) &&
+           terminal_voltage_v(battery, {}, internal_current_a(battery, bounds.high)) >= cutoff_voltage_v;
 }
 
 /// Depletion of a constant source that delivers a segment.
@@ -94,7 +88,6 @@ double depleted_percent(const battery::Battery& battery, const LoadSegment& segm
 
 constexpr double points_a_turn = 16.0;        // of the highest harmonic: one valley between two neighbours
 constexpr double rounding_of_power_w = 1e-6;  // fits that touch 0 do not charge
-constexpr double never_enough_w = std::numeric_limits<double>::infinity();
 
 /// No harmonics together are greater than their amplitudes.
 double amplitude_w(const mechanical::FourierModel& curve) {
@@ -103,13 +96,11 @@ double amplitude_w(const mechanical::FourierModel& curve) {
     return sum_w;
 }
 
-/// The least mechanical power of a segment or, times -1, the greatest, in the phase's own time; as min_power_w.
-PowerAt extreme_w(const LoadSegment& segment, double sign, double enough_w) {
-    const double start_s = segment.start_s - segment.phase_start_s;
-    if (!segment.mechanical) return {start_s, 0.0};
-    auto curve = *segment.mechanical;
-    scale(curve, sign);
-    return min_power_w(curve, {start_s, segment.end_s - segment.phase_start_s}, enough_w);
+/// The least mechanical power of a segment, in the phase's own time; a bound where the whole is not negative.
+PowerAt least_w(const LoadSegment& segment) {
+    const TimeInterval within{segment.start_s - segment.phase_start_s, segment.end_s - segment.phase_start_s};
+    if (!segment.mechanical) return {within.start_s, 0.0};
+    return min_power_w(*segment.mechanical, within, -segment.compute_w);
 }
 
 /// The parts of a segment with the constant power of each piece.
@@ -222,20 +213,6 @@ double compute_energy_j(const LoadSegment& segment, double time_s) {
     return segment.compute_w * (time_s - segment.start_s);
 }
 
-double depletion_percent(const MissionLoad& load, const ScheduleSegment& scheduled) {
-    const auto& battery = load.mission.battery;
-    const double cutoff_voltage_v = load.mission.cutoff_voltage_v;
-    double sum_percent = 0.0;
-    for (const auto& segment : load_segments(load, scheduled)) {
-        if (!is_deliverable(battery, cutoff_voltage_v, bounds_of(segment).high) &&
-            !is_deliverable(battery, cutoff_voltage_v,
-                            segment.compute_w - extreme_w(segment, -1.0, never_enough_w).power_w))
-            return std::numeric_limits<double>::infinity();
-        sum_percent += depleted_percent(battery, segment);
-    }
-    return sum_percent;
-}
-
 battery::Discharge apply_charge_drop(battery::Discharge state, const LoadSegment& segment) {
     state.soc_percent -= segment.soc_drop_percent;
     if (state.soc_percent <= 0.0) {
@@ -283,15 +260,11 @@ PowerAt min_power_w(const mechanical::FourierModel& curve, const TimeInterval& w
     return valley_w < least.power_w ? PowerAt{time_s, valley_w} : least;
 }
 
-bool charges_battery(const LoadSegment& segment) {
-    return extreme_w(segment, 1.0, -segment.compute_w).power_w + segment.compute_w < -rounding_of_power_w;
-}
-
 void refuse_charging(const MissionSetup& mission, const std::vector<LoadSegment>& segments) {
     if (mission.may_charge) return;
     for (const auto& segment : segments) {
-        if (!charges_battery(segment)) continue;
-        const auto least = extreme_w(segment, 1.0, -segment.compute_w);
+        const auto least = least_w(segment);
+        if (least.power_w + segment.compute_w >= -rounding_of_power_w) continue;
         throw InputError(
             {mission.file},
             fmt::format("{}: {:.1f} s into the {} it draws {:.4g} W ({:.4g} W mechanical, {:.4g} W computing), which "

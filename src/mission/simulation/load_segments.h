@@ -57,11 +57,6 @@ double quick_step_s(const LoadSegment& segment);
 double mechanical_energy_j(const LoadSegment& segment, double time_s);
 double compute_energy_j(const LoadSegment& segment, double time_s);
 
-/// Depletion [points] of a constant source by a part of a schedule, continued below empty: the closed integral of Eq. 1
-/// without resistance, else Gauss quadrature. Infinite where the battery cannot deliver the power, or its voltage would
-/// be below the cut-off.
-double depletion_percent(const MissionLoad& load, const ScheduleSegment& scheduled);
-
 /// The battery after the charge that it loses at once as a segment starts.
 battery::Discharge apply_charge_drop(battery::Discharge state, const LoadSegment& segment);
 
@@ -81,11 +76,8 @@ struct PowerAt {
 /// more, a bound below the least, at the start.
 PowerAt min_power_w(const mechanical::FourierModel& curve, const TimeInterval& within, double enough_w = 0.0);
 
-/// Whether a segment's power is below 0 somewhere, by more than fits that touch 0: it charges the battery.
-bool charges_battery(const LoadSegment& segment);
-
-/// Throws InputError where a mission asks for power below 0, with phase, time and power: it would charge the battery,
-/// without may_charge.
+/// Throws InputError where a mission asks for power below 0 by more than fits that touch 0, with phase, time and power:
+/// it would charge the battery, without may_charge.
 void refuse_charging(const MissionSetup& mission, const std::vector<LoadSegment>& segments);
 
 }  // namespace flightwatt::mission

@@ -127,9 +127,8 @@ std::string reach_line(const SimulatedMission& simulated, const MissionAssessmen
         line += fmt::format(" (now {})", duration_text(simulated.mission.setup.duration_s[flight::Phase::cruise]));
     line += " as modelled";
     if (answer.reach_at_95_percent)
-        line += fmt::format(", {} with a probability of {:.0f} %{}", describe_reach(*answer.reach_at_95_percent),
-                            units::percentage(reach_probability, 1.0),
-                            answer.cruise_differs_now ? " if that is stated" : "");
+        line += fmt::format(", {} with a probability of {:.0f} %", describe_reach(*answer.reach_at_95_percent),
+                            units::percentage(reach_probability, 1.0));
     if (answer.is_unplanned) line += ", with the minimum of software";
     return line;
 }
@@ -148,14 +147,6 @@ bool shorter_helps(const SimulatedMission& simulated, const mission::Reach& reac
            reach.limit.value < simulated.mission.setup.duration_s[flight::Phase::cruise];
 }
 
-/// "fly 24 min of cruise at most". Without a stated duration the flights' durations vary, so it has to be stated.
-std::string shorter_way(const SimulatedMission& simulated, const MissionAssessment& answer,
-                        const mission::Reach& reach) {
-    if (!answer.cruise_differs_now) return fmt::format("fly {} at most", describe_reach(reach));
-    const double now_s = simulated.mission.setup.duration_s[flight::Phase::cruise];
-    return "fly " + mission::describe_stated_cruise(reach.limit.value, now_s);
-}
-
 /// Ways to keep the reserve; empty without any.
 std::string remedy_line(const SimulatedMission& simulated, const MissionAssessment& answer) {
     const auto& reach = answer.reach_at_95_percent ? answer.reach_at_95_percent : answer.reach;
@@ -165,7 +156,7 @@ std::string remedy_line(const SimulatedMission& simulated, const MissionAssessme
     // A plan does not reach further than the minimum of software.
     const bool is_in_reach = answer.reach_at_95_percent && (!shorter || reach->unit != mission::ReachUnit::cruise_s);
     if (simulated.planned && is_in_reach) ways.emplace_back("plan it with --probability 0.95");
-    if (shorter) ways.push_back(shorter_way(simulated, answer, *reach));
+    if (shorter) ways.push_back(fmt::format("fly {} at most", describe_reach(*reach)));
     if (answer.capacity_ah)
         ways.push_back(fmt::format("use a battery of {:.2f} Ah (now {:.4g})", *answer.capacity_ah, capacity_ah));
     if (ways.empty()) return "";
@@ -213,9 +204,6 @@ MissionAssessment assess_mission(const SimulatedMission& simulated, const missio
     answer.reach = try_compute([&] { return find_reach(mission_of); }, &answer.no_reach_reason);
     if (answer.reach && simulated.simulation.summary.samples)
         answer.reach_at_95_percent = try_compute([&] { return find_reach(mission_of, reach_probability); });
-    answer.cruise_differs_now = answer.reach_at_95_percent &&
-                                answer.reach_at_95_percent->unit == mission::ReachUnit::cruise_s &&
-                                mission::cruise_duration_varies(setup_of(*mission));
     if (modelled_status(simulated.simulation.summary) == ReserveStatus::keeps) return answer;
     const auto probability = answer.reach_at_95_percent ? std::optional(reach_probability) : std::nullopt;
     const auto capacity_ah = try_compute([&] { return min_capacity_ah(*mission, probability); }).value_or(std::nullopt);

@@ -39,7 +39,6 @@ struct MissionAssessment {
     std::optional<mission::Reach> reach_at_95_percent;  ///< with reach_probability
     std::string no_reach_reason;
     std::optional<double> capacity_ah;  ///< minimum for the reserve, if more than it has
-    bool cruise_differs_now = false;    ///< the cruise varies, and reach_at_95_percent is a stated duration
     bool is_unplanned = false;          ///< reach and capacity are of the schedule with the least energy
 };
 

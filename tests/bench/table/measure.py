@@ -28,7 +28,6 @@ class Sizes:
 
     rounds: int = 5  # after one that warms caches; the least counts
     log_mb: int = 250
-    schedules: int = 1_000_000
     flights: int = 1000  # of one page, and of the batch that is run twice
     validated: int = 20  # leave-one-out: of so many flights, and of twice as many
     real_logs: int = 200  # of 4 MB
@@ -41,7 +40,6 @@ class Sizes:
 QUICK = Sizes(
     rounds=1,
     log_mb=2,
-    schedules=1000,
     flights=3,
     validated=2,
     real_logs=2,

@@ -1,4 +1,4 @@
-"""One core's computing: fits of a phase, schedules of common slots, drawn flights; each beside its peer."""
+"""One core's computing: fits of a phase, drawn flights; each beside its peer."""
 
 import json
 import os
@@ -8,7 +8,7 @@ import sys
 from measure import say
 from rows import Row, at_least, at_most, times_as_fast
 
-TARGETS = ["fit_series", "schedules_bench", "sampling_bench"]
+TARGETS = ["fit_series", "sampling_bench"]
 
 
 def python_with_scipy():
@@ -55,25 +55,8 @@ def fit_rows(bench):
     ]
 
 
-def schedule_rows(bench):
-    """Of the paper's mission, 73 segments each: by the depletion of each slot, beside classic Runge-Kutta with 43 steps."""
-    count = bench.sizes.schedules
-    say(f"final charge of {count} schedules, beside Boost.Odeint")
-    command = [bench.benchmark("schedules_bench"), f"--benchmark_filter=/schedules:{count}/", "--benchmark_format=json"]
-    bench.run(command, one_core=True)
-    runs = {run["name"].split("/")[0]: run for run in json.loads(bench.printed())["benchmarks"]}
-    seconds = {name: run["cpu_time"] * 1e-3 for name, run in runs.items()}
-    slots, odeint = (seconds[f"final_soc_by_{name}"] for name in ("slots", "odeint"))
-    off = runs["final_soc_by_slots"]["worst_difference_percent"]
-    of = str(count)
-    return [
-        times_as_fast("schedules of common slots", of, slots, "Odeint", odeint, at_least(20)),
-        Row("schedules, off by", "100", off, "%", at_most(1e-4, "%")),
-    ]
-
-
 def sampling_rows(bench):
-    """Flights a second and core, by 32 side by side, beside the same one at a time."""
+    """Flights a second and core."""
     say("drawn flights")
     least_s = f"--benchmark_min_time={bench.sizes.least_benchmark_s}"
     command = [bench.benchmark("sampling_bench"), least_s, "--benchmark_format=json"]
@@ -87,13 +70,11 @@ def sampling_rows(bench):
                 off[name] = run["worst_difference_percent"]
     rows = []
     for battery, title in (("thevenin", "Thévenin pack"), ("paper", "paper's pack")):
-        together, alone = most[f"side_by_side/{battery}"], most[f"one_at_a_time/{battery}"]
-        ratio = together / alone
-        rows.append(Row("drawn flights a core", title, together, "/s", at_least(1e5, "/s"), "one by one", alone, ratio))
+        rows.append(Row("drawn flights a core", title, most[f"drawn_flights/{battery}"], "/s", at_least(1e4, "/s")))
         worst = off[f"off_runge_kutta/{battery}"]
         rows.append(Row("drawn flights, off by", title, worst, "%", at_most(0.01, "%")))
     return rows
 
 
 def measure(bench):
-    return fit_rows(bench) + schedule_rows(bench) + sampling_rows(bench)
+    return fit_rows(bench) + sampling_rows(bench)

@@ -142,19 +142,6 @@ TEST(MissionAnswer, OffersAPlanWithAMarginWhereOneIsInReach) {
                 testing::AllOf(HasSubstr("fly 9 min 34 s of cruise at most"), testing::Not(HasSubstr("plan it with"))));
 }
 
-TEST(MissionAnswer, SaysThatALengthHasToBeStatedWhereFlightsDifferInIt) {
-    const auto simulated = simulate_for_report({reading_of("plan")({.allow_unplanned = true})}).front();
-    auto answer = assess_mission(simulated, reading_of("plan"));
-    ASSERT_TRUE(answer.reach_at_95_percent);
-    answer.cruise_differs_now = false;
-    EXPECT_THAT(card_lines(simulated, answer).back(), HasSubstr("fly 9 min 34 s of cruise at most"));
-    answer.cruise_differs_now = true;
-    const auto lines = card_lines(simulated, answer);
-    EXPECT_THAT(lines.back(), HasSubstr("fly a stated cruise of at most 9 min 34 s (duration_s = { cruise = 57"));
-    EXPECT_THAT(lines.back(), HasSubstr("of the model's flights differ from flight to flight)"));
-    EXPECT_THAT(lines, Contains(HasSubstr("with a probability of 95 % if that is stated")));
-}
-
 TEST(MissionAnswer, CountsCirclesOfAPath) {
     const auto path = test::source_dir() / "missions/synthetic/survey-path.toml";
     const mission::MissionLoader reading = [&](const mission::MissionReadOptions& how) {
