@@ -7,19 +7,9 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <utility>
 #include <vector>
 
-#include <Eigen/Core>
-
 namespace flightwatt::battery {
-
-/// Number of batteries that are discharged side by side.
-inline constexpr int lane_count = 32;
-
-/// One number for each of them. Of fixed size, so that a lane's result does not depend on the other lanes, to the last
-/// bit.
-using Lanes = Eigen::Array<double, lane_count, 1>;
 
 /// A quantity over a step of time: the parabola through its start, middle and end.
 struct Parabola {
@@ -50,57 +40,36 @@ struct Parabola {
     }
 };
 
-// For a number and for lanes; the other functions are std's and Eigen's.
-inline double at_least(double x, double min) { return std::max(x, min); }
-inline double at_most(double x, double max) { return std::min(x, max); }
-inline bool is_any_positive(double x) { return x > 0.0; }
-template <typename Derived>
-auto at_least(const Eigen::ArrayBase<Derived>& x, double min) {
-    return x.max(min);
-}
-template <typename Derived, typename Max>
-auto at_most(const Eigen::ArrayBase<Derived>& x, const Max& max) {
-    return x.min(max);
-}
-template <typename Derived>
-bool is_any_positive(const Eigen::ArrayBase<Derived>& x) {
-    return (x > 0.0).any();
-}
-
-/// The constants of a circuit, or of those in lanes.
-template <typename Number>
+/// The constants of a circuit.
 struct Circuit {
-    Number resistance_ohm = Number(0.0);
-    Number percent_per_as = Number(1.0);  ///< state of charge per coulomb [points]
-    Number rc_resistance_ohm = Number(0.0);
-    Number rc_time_constant_s = Number(1.0);
+    double resistance_ohm = 0.0;
+    double percent_per_as = 1.0;  ///< state of charge per coulomb [points]
+    double rc_resistance_ohm = 0.0;
+    double rc_time_constant_s = 1.0;
 };
 
 /// A circuit at one moment.
-template <typename Number>
 struct CircuitMoment {
-    Number soc_percent = Number(0.0);
-    Number rc_voltage_v = Number(0.0);
-    Number power_w = Number(0.0);
-    Number current_a = Number(0.0);
-    Number source_v = Number(0.0);
-    Number terminal_v = Number(0.0);
-    Number spare_v2 = Number(0.0);  ///< U^2 - 4 R P: below 0 beyond the power limit
+    double soc_percent = 0.0;
+    double rc_voltage_v = 0.0;
+    double power_w = 0.0;
+    double current_a = 0.0;
+    double source_v = 0.0;
+    double terminal_v = 0.0;
+    double spare_v2 = 0.0;  ///< U^2 - 4 R P: below 0 beyond the power limit
 };
 
 /// An RC pair over a step, dU/dt = (R I - U) / tau. Of a current that is a parabola the solution is exact, and linear
 /// in the current at the start, the middle and the end.
-template <typename Number>
 struct RcStep {
-    RcStep(const Circuit<Number>& circuit, const Number& length_s) {
-        using std::exp;
-        decay = exp(-length_s / circuit.rc_time_constant_s);
-        const Number c = circuit.rc_time_constant_s / length_s;
+    RcStep(const Circuit& circuit, double length_s) {
+        decay = std::exp(-length_s / circuit.rc_time_constant_s);
+        const double c = circuit.rc_time_constant_s / length_s;
         // The particular solution, R (I - tau I' + tau^2 I''), and the decaying one.
-        const auto of_current = [&](const Parabola& current_a) -> Number {
-            const Number bent_a = 2.0 * current_a.curvature() * c * c;
-            const Number first_a = current_a.start - c * current_a.slope() + bent_a;
-            const Number last_a = current_a.end - c * (current_a.slope() + 2.0 * current_a.curvature()) + bent_a;
+        const auto of_current = [&](const Parabola& current_a) {
+            const double bent_a = 2.0 * current_a.curvature() * c * c;
+            const double first_a = current_a.start - c * current_a.slope() + bent_a;
+            const double last_a = current_a.end - c * (current_a.slope() + 2.0 * current_a.curvature()) + bent_a;
             return circuit.rc_resistance_ohm * (last_a - first_a * decay);
         };
         of_first_ohm = of_current({1.0, 0.0, 0.0});
@@ -108,23 +77,22 @@ struct RcStep {
         of_last_ohm = of_current({0.0, 0.0, 1.0});
     }
 
-    Number decay;
-    Number of_first_ohm;
-    Number of_middle_ohm;
-    Number of_last_ohm;
+    double decay;
+    double of_first_ohm;
+    double of_middle_ohm;
+    double of_last_ohm;
 };
 
 /// A circuit's constants for steps of one length.
-template <typename Number>
 struct StepLength {
-    StepLength(const Circuit<Number>& circuit, const Number& length_s)
+    StepLength(const Circuit& circuit, double length_s)
         : percent_per_a(circuit.percent_per_as * length_s / 6.0),
-          half(circuit, Number(0.5 * length_s)),
+          half(circuit, 0.5 * length_s),
           whole(circuit, length_s) {}
 
-    Number percent_per_a;  ///< [points] for each of Simpson's six parts
-    RcStep<Number> half;
-    RcStep<Number> whole;
+    double percent_per_a;  ///< [points] for each of Simpson's six parts
+    RcStep half;
+    RcStep whole;
 };
 
 /// One of the straight lines of an open-circuit voltage: offset + slope * charge, from one charge to another.
@@ -164,37 +132,31 @@ class VoltageLine {
     VoltageSegment segment_;
 };
 
-/// The one step of a battery under a load, for a number and for lanes: over it the current is a parabola through its
-/// start, middle and end, with which the RC pair's voltage is exact. `OpenCircuit` gives the voltage of a charge.
-template <typename Number, typename OpenCircuit>
+/// The one step of a battery under a load: over it the current is a parabola through its start, middle and end, with
+/// which the RC pair's voltage is exact.
 class CircuitRun {
   public:
-    using Moment = CircuitMoment<Number>;
+    using Moment = CircuitMoment;
 
-    CircuitRun(const Circuit<Number>& circuit, OpenCircuit open_circuit)
-        : circuit_(circuit),
-          has_rc_(is_any_positive(circuit.rc_resistance_ohm)),
-          open_circuit_(std::move(open_circuit)) {}
-
-    OpenCircuit& open_circuit() { return open_circuit_; }
+    CircuitRun(const Circuit& circuit, VoltageLine open_circuit)
+        : circuit_(circuit), has_rc_(circuit.rc_resistance_ohm > 0.0), open_circuit_(open_circuit) {}
 
     /// Fills in a moment whose charge, RC voltage and power are known (Eq. 10).
     void complete(Moment& now) {
-        using std::sqrt;
         constexpr double min_v = 1e-300;  // no 0 / 0 without power
-        now.source_v = at_least(open_circuit_(now.soc_percent) - now.rc_voltage_v, 0.0);
+        now.source_v = std::max(open_circuit_(now.soc_percent) - now.rc_voltage_v, 0.0);
         now.spare_v2 = now.source_v * now.source_v - 4.0 * circuit_.resistance_ohm * now.power_w;
-        now.current_a = 2.0 * now.power_w / at_least(now.source_v + sqrt(at_least(now.spare_v2, 0.0)), min_v);
+        now.current_a = 2.0 * now.power_w / std::max(now.source_v + std::sqrt(std::max(now.spare_v2, 0.0)), min_v);
         now.terminal_v = now.source_v - circuit_.resistance_ohm * now.current_a;
     }
 
     /// From a start to the middle and the end, whose powers are known.
-    void step(const StepLength<Number>& length, const Moment& start, Moment& middle, Moment& end) {
+    void step(const StepLength& length, const Moment& start, Moment& middle, Moment& end) {
         advance_half(length, start, start.current_a, middle);
         complete(middle);
         advance_half(length, start, middle.current_a, middle);
         complete(middle);
-        advance(length, start, middle.current_a, Number(2.0 * middle.current_a - start.current_a), end);
+        advance(length, start, middle.current_a, 2.0 * middle.current_a - start.current_a, end);
         complete(end);
         advance(length, start, middle.current_a, end.current_a, end);
         complete(end);
@@ -202,8 +164,7 @@ class CircuitRun {
 
   private:
     /// Half a step, with a current that is linear up to the middle.
-    void advance_half(const StepLength<Number>& length, const Moment& start, const Number& middle_a,
-                      Moment& middle) const {
+    void advance_half(const StepLength& length, const Moment& start, double middle_a, Moment& middle) const {
         middle.soc_percent = start.soc_percent - 1.5 * length.percent_per_a * (start.current_a + middle_a);
         if (!has_rc_) return;
         const auto& rc = length.half;
@@ -212,38 +173,35 @@ class CircuitRun {
                               (rc.of_last_ohm + 0.5 * rc.of_middle_ohm) * middle_a;
     }
 
-    void advance(const StepLength<Number>& length, const Moment& start, const Number& middle_a, const Number& end_a,
-                 Moment& end) const {
+    void advance(const StepLength& length, const Moment& start, double middle_a, double end_a, Moment& end) const {
         end.soc_percent =
-            at_most(start.soc_percent - length.percent_per_a * (start.current_a + 4.0 * middle_a + end_a), 100.0);
+            std::min(start.soc_percent - length.percent_per_a * (start.current_a + 4.0 * middle_a + end_a), 100.0);
         if (!has_rc_) return;
         const auto& rc = length.whole;
         end.rc_voltage_v = start.rc_voltage_v * rc.decay + rc.of_first_ohm * start.current_a +
                            rc.of_middle_ohm * middle_a + rc.of_last_ohm * end_a;
     }
 
-    const Circuit<Number>& circuit_;
+    const Circuit& circuit_;
     bool has_rc_;
-    OpenCircuit open_circuit_;
+    VoltageLine open_circuit_;
 };
 
 /// 0 or less where the battery may end within a step: empty, beyond the power limit, or below the cut-off voltage (0:
 /// none). A parabola through three values is at most an eighth of its second difference below their minimum.
-template <typename Number>
-Number end_margin(const CircuitMoment<Number>& start, const CircuitMoment<Number>& middle,
-                  const CircuitMoment<Number>& end, double cutoff_v) {
-    using std::abs;
-    const auto lower_bound = [](const Number& a, const Number& b, const Number& c) -> Number {
-        return at_most(at_most(a, b), c) - 0.125 * abs(a - 2.0 * b + c);
+inline double end_margin(const CircuitMoment& start, const CircuitMoment& middle, const CircuitMoment& end,
+                         double cutoff_v) {
+    const auto lower_bound = [](double a, double b, double c) {
+        return std::min({a, b, c}) - 0.125 * std::abs(a - 2.0 * b + c);
     };
-    const Number margin = at_most(end.soc_percent, lower_bound(start.spare_v2, middle.spare_v2, end.spare_v2));
+    const double margin = std::min(end.soc_percent, lower_bound(start.spare_v2, middle.spare_v2, end.spare_v2));
     if (cutoff_v <= 0.0) return margin;
-    return at_most(margin, lower_bound(start.terminal_v, middle.terminal_v, end.terminal_v) - cutoff_v);
+    return std::min(margin, lower_bound(start.terminal_v, middle.terminal_v, end.terminal_v) - cutoff_v);
 }
 
 /// The circuit of a battery; the paper's has no RC pair.
-inline Circuit<double> circuit_of(const Battery& battery) {
-    Circuit<double> circuit;
+inline Circuit circuit_of(const Battery& battery) {
+    Circuit circuit;
     circuit.resistance_ohm = battery.resistance_ohm;
     circuit.percent_per_as = units::percentage(1.0, units::coulomb_from_ah(battery.capacity_ah));
     if (!battery.thevenin || battery.thevenin->rc_resistance_ohm == 0.0) return circuit;

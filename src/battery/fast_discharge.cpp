@@ -34,9 +34,9 @@ Discharge fast_discharge(const Battery& battery, const Load& load, const Battery
     const auto count = fast_steps(*battery.thevenin, length_s, options.max_s);
     const double step_s = length_s / static_cast<double>(count);
     const auto circuit = circuit_of(battery);
-    CircuitRun<double, VoltageLine> run(circuit, VoltageLine(battery.thevenin->open_circuit, state.soc_percent));
-    const StepLength<double> length(circuit, step_s);
-    CircuitMoment<double> now{
+    CircuitRun run(circuit, VoltageLine(battery.thevenin->open_circuit, state.soc_percent));
+    const StepLength length(circuit, step_s);
+    CircuitMoment now{
         .soc_percent = state.soc_percent, .rc_voltage_v = state.rc_voltage_v, .power_w = load.power_w(load.start_s)};
     run.complete(now);
     for (std::uint64_t k = 0; k < count; ++k) {

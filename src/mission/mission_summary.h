@@ -67,8 +67,6 @@ struct MonteCarloResult {
     double probability_below_reserve = 0.0;                 ///< the share of the flights
     double probability_below_reserve_standard_error = 0.0;  ///< sqrt(p (1 - p) / samples)
     Interval probability_below_reserve_95;                  ///< Wilson's score interval (1927)
-    /// The share of the flights that land below it with more power in a phase, on average, than any flight ever had.
-    double probability_below_reserve_outside_measured = 0.0;
     UncertaintySources sources;
     std::vector<SocBand> bands;
 };

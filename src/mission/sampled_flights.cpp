@@ -5,7 +5,7 @@
 #include "base/units.h"
 #include "mission/plan.h"
 #include "mission/sampling/flight_draws.h"
-#include "mission/sampling/flight_lanes.h"
+#include "mission/sampling/flight_outcomes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,23 +66,6 @@ void count_landings(const std::vector<FlightOutcome>& landings, MonteCarloResult
     flights.probability_below_reserve = p;
     flights.probability_below_reserve_standard_error = std::sqrt(p * (1.0 - p) / n);
     flights.probability_below_reserve_95 = wilson_interval(p, n);
-}
-
-/// How many of the flights that miss the reserve have a phase of more power than was measured.
-std::size_t count_misses_outside_measured(const std::vector<FlightOutcome>& landings, const MissionSetup& mission,
-                                          const FlightUncertainty& spreads, const MonteCarloResult& flights) {
-    if (!mission.mechanical) return 0;
-    const double highest_w = highest_measured_power_w(*mission.mechanical);
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < landings.size(); ++i) {
-        if (!misses_reserve(landings[i], flights.reserve_soc_percent)) continue;
-        const auto drawn = draw_flight(mission, spreads, flights.seed, i);
-        const auto is_outside = [&](Phase phase) {
-            return drawn.duration_s[phase] > 0.0 && mean_level_w(drawn, phase) > highest_w;
-        };
-        if (std::ranges::any_of(all_phases, is_outside)) ++count;
-    }
-    return count;
 }
 
 std::vector<SocBand> bands_of(const std::vector<FlightOutcome>& landings, const std::vector<double>& times_s) {
@@ -199,9 +182,6 @@ MonteCarloResult sample_flights(const PreparedMission& prepared, const Disturban
         flights.final_soc_quantiles_percent[i] =
             quantile(final_percent, units::amount_from_percent(1.0, shown_quantiles_percent[i]));
     count_landings(landings, flights);
-    flights.probability_below_reserve_outside_measured =
-        static_cast<double>(count_misses_outside_measured(landings, prepared.setup, spreads, flights)) /
-        static_cast<double>(landings.size());
     flights.bands = bands_of(landings, times_s);
     return flights;
 }
@@ -248,13 +228,11 @@ std::string describe(const SampledDifference& difference) {
 std::string describe(const MonteCarloResult& flights) {
     const auto& q = flights.final_soc_quantiles_percent;
     const double cut_off = flights.probability_battery_failure - flights.probability_depleted;
-    const double outside = flights.probability_below_reserve_outside_measured;
     auto text = fmt::format(
         "{}: {} flights drawn: below the reserve of {:.6g} % with probability {:.4f} (95 % interval {:.4f} "
-        "to {:.4f}{}), depleted {:.4f}{}; final state of charge {:.2f} % on average, sd {:.2f}, quantiles",
+        "to {:.4f}), depleted {:.4f}{}; final state of charge {:.2f} % on average, sd {:.2f}, quantiles",
         flights.mission, flights.samples, flights.reserve_soc_percent, flights.probability_below_reserve,
         flights.probability_below_reserve_95.low, flights.probability_below_reserve_95.high,
-        outside > 0.0 ? fmt::format("; {:.4f} with more power than any flight had", outside) : "",
         flights.probability_depleted,
         cut_off > 0.0 ? fmt::format(", cut off or too weak {:.4f} (counts as empty)", cut_off) : "",
         flights.final_soc_mean_percent, flights.final_soc_sd_percent);

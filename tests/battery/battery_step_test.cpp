@@ -23,7 +23,7 @@ TEST(BatteryStep, FindsWhereAParabolaCrossesZero) {
 TEST(BatteryStep, SolvesTheRcPairExactly) {
     const auto circuit = circuit_of(pack());
     const double length_s = 12.0;
-    const RcStep<double> step(circuit, length_s);
+    const RcStep step(circuit, length_s);
     // dU/dt = (R I - U) / tau with I = 2 + 3 s - s^2, s the part of the step, by ten thousand steps of midpoints.
     const auto current_a = [](double part) { return 2.0 + 3.0 * part - part * part; };
     double voltage_v = 0.1;

@@ -1,10 +1,9 @@
-// Flights sampled by a single thread: of both battery kinds, beside the same flights one at a time, and how far they
-// are off Runge-Kutta.
+// Flights sampled by a single thread: of both battery kinds, and how far they are off Runge-Kutta.
 
 #include "log_passes.h"
 #include "mission/mission_file.h"
 #include "mission/sampling/flight_draws.h"
-#include "mission/sampling/flight_lanes.h"
+#include "mission/sampling/flight_outcomes.h"
 #include "mission/simulation.h"
 
 #include <algorithm>
@@ -36,29 +35,13 @@ struct Sampled {
     FlightUncertainty spreads;
 };
 
-void side_by_side(benchmark::State& state, const char* path) {
-    const Sampled sampled(path);
-    const FlightDraw draw = [&](std::size_t number, DrawnFlight& flight) { sampled.draw(number, flight); };
-    std::vector<FlightOutcome> landings(256);
-    std::size_t flights = 0;
-    for (auto _ : state) {
-        fly_side_by_side(sampled.mission.setup, draw, flights, landings);
-        flights += landings.size();
-        benchmark::DoNotOptimize(landings.data());
-    }
-    state.SetItemsProcessed(static_cast<std::int64_t>(flights));
-}
-
-void one_at_a_time(benchmark::State& state, const char* path) {
+void drawn_flights(benchmark::State& state, const char* path) {
     const Sampled sampled(path);
     DrawnFlight flight{sampled.mission.setup, {}};
     std::size_t flights = 0;
     for (auto _ : state) {
         sampled.draw(flights++, flight);
-        battery::Discharge charge{{flight.setup.initial_soc_percent}};
-        for (const auto& segment : flight.segments)
-            charge = advance_segment(flight.setup.battery, flight.setup.cutoff_voltage_v, segment, charge);
-        benchmark::DoNotOptimize(charge.soc_percent);
+        benchmark::DoNotOptimize(simulate_flight(flight).final_soc_percent);
     }
     state.SetItemsProcessed(static_cast<std::int64_t>(flights));
 }
@@ -67,13 +50,14 @@ void one_at_a_time(benchmark::State& state, const char* path) {
 void off_runge_kutta(benchmark::State& state, const char* path) {
     const Sampled sampled(path);
     const FlightDraw draw = [&](std::size_t number, DrawnFlight& flight) { sampled.draw(number, flight); };
-    std::vector<FlightOutcome> landings(100);
-    for (auto _ : state) fly_side_by_side(sampled.mission.setup, draw, 0, landings);
+    std::vector<FlightOutcome> landings;
+    for (auto _ : state) landings = fly_drawn(sampled.mission.setup, draw, 0, 100);
     double worst_percent = 0.0;
     std::size_t compared = 0;
     for (std::size_t i = 0; i < landings.size(); ++i) {
         if (landings[i].battery_failure) continue;
-        const auto flight = draw_flight(sampled.mission.setup, sampled.spreads, 1, i);
+        const auto flight = apply_draw(sampled.mission.setup, sampled.spreads,
+                                       draw_normals(count_normals(sampled.mission.setup), 1, i));
         const auto schedule =
             rescale_to_flown_durations(sampled.mission.schedule, sampled.mission.setup.duration_s, flight.duration_s);
         const auto reference = simulate(flight, schedule, {60.0, 0.25}).summary.final_soc_percent;
@@ -85,10 +69,8 @@ void off_runge_kutta(benchmark::State& state, const char* path) {
     state.counters["worst_difference_percent"] = worst_percent;
 }
 
-BENCHMARK_CAPTURE(side_by_side, thevenin, "missions/synthetic/thevenin-pack.toml");
-BENCHMARK_CAPTURE(one_at_a_time, thevenin, "missions/synthetic/thevenin-pack.toml");
-BENCHMARK_CAPTURE(side_by_side, paper, "missions/paper/phased.toml");
-BENCHMARK_CAPTURE(one_at_a_time, paper, "missions/paper/phased.toml");
+BENCHMARK_CAPTURE(drawn_flights, thevenin, "missions/synthetic/thevenin-pack.toml");
+BENCHMARK_CAPTURE(drawn_flights, paper, "missions/paper/phased.toml");
 BENCHMARK_CAPTURE(off_runge_kutta, thevenin, "missions/synthetic/thevenin-pack.toml")->Iterations(1);
 BENCHMARK_CAPTURE(off_runge_kutta, paper, "missions/paper/phased.toml")->Iterations(1);
 

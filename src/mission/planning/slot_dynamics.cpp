@@ -16,8 +16,8 @@ constexpr double wanted_agreement_percent = 1e-7;
 constexpr double longest_quick_step_s = 20.0;
 constexpr double quick_agreement_percent = coarse_error_percent / 10.0;
 
-using Moment = battery::CircuitMoment<double>;
-using SlotRun = battery::CircuitRun<double, battery::VoltageLine>;
+using Moment = battery::CircuitMoment;
+using SlotRun = battery::CircuitRun;
 
 bool is_deliverable(const SlotDynamics& dynamics, const Moment& moment) {
     return moment.spare_v2 >= -2.0 * dynamics.error_v * moment.source_v;
@@ -65,7 +65,7 @@ SlotDynamics::Slot slot_of(const SlotDynamics& dynamics, const std::vector<LoadS
 struct SlotStep {
     battery::Parabola power_w;
     double length_s;
-    const battery::StepLength<double>& length;
+    const battery::StepLength& length;
 };
 
 /// Result of a step.
@@ -92,7 +92,7 @@ StepEnd after_knot(const SlotDynamics& dynamics, SlotRun& run, const SlotStep& s
     const auto part_of = [&](double from, double to, Moment at) {
         const auto& power_w = step.power_w;
         const double length_s = (to - from) * step.length_s;
-        const battery::StepLength<double> length(dynamics.circuit, length_s);
+        const battery::StepLength length(dynamics.circuit, length_s);
         return after_step(run, {{power_w.at(from), power_w.at((from + to) / 2.0), power_w.at(to)}, length_s, length},
                           at);
     };

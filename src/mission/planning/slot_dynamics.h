@@ -16,7 +16,7 @@ struct SlotDynamics {
     /// steps, in each of which the current is a parabola.
     struct Part {
         double step_s;
-        battery::StepLength<double> step;
+        battery::StepLength step;
         std::vector<double> mechanical_w;  ///< 2 steps + 1
     };
     struct Slot {
@@ -29,7 +29,7 @@ struct SlotDynamics {
 
     std::vector<Slot> slots;
     std::vector<double> compute_w;  ///< of each choice
-    battery::Circuit<double> circuit;
+    battery::Circuit circuit;
     battery::OpenCircuitVoltage open_circuit;
     double cutoff_voltage_v = 0.0;  ///< 0: never
     // Error bounds of long steps. A battery that fails by less than these is not ended.

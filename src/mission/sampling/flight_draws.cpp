@@ -267,9 +267,4 @@ void apply_draw_to(const MissionSetup& mission, const FlightUncertainty& spreads
                        min_initial_soc_percent, units::percent_per_whole);
 }
 
-MissionSetup draw_flight(const MissionSetup& mission, const FlightUncertainty& spreads, std::uint64_t seed,
-                         std::uint64_t index) {
-    return apply_draw(mission, spreads, draw_normals(count_normals(mission), seed, index));
-}
-
 }  // namespace flightwatt::mission

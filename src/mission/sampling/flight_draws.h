@@ -39,8 +39,4 @@ CommonSources common_sources(const MissionSetup& a, const MissionSetup& b);
 std::vector<double> correlated_normals(const MissionSetup& a, const MissionSetup& b, const CommonSources& common,
                                        std::span<const double> of_a, std::vector<double> own);
 
-/// The flight that draw_normals makes.
-MissionSetup draw_flight(const MissionSetup& mission, const FlightUncertainty& spreads, std::uint64_t seed,
-                         std::uint64_t index);
-
 }  // namespace flightwatt::mission

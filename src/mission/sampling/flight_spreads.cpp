@@ -53,23 +53,11 @@ std::vector<std::optional<double>> of_flights(const MissionSetup& mission, Phase
     return values;
 }
 
-/// Share of the flights whose mean power is limited to 0, if it is 1 in 2000 or more.
-std::string at_zero_words(const MissionSetup& mission, Phase phase, const MeanPowerDeviation& deviation) {
-    constexpr double min_share = 5e-4;
-    const auto& model = mission.mechanical->phases[phase];
-    const auto curve = time_scaled_model(model, mission.duration_s[phase], mission.phase_clock);
-    const double mean_w = energy_j(curve, mission.duration_s[phase]) / mission.duration_s[phase];
-    if (!(mean_w > 0.0) || !(deviation.sd_w > 0.0)) return "";
-    const double share =
-        normal_tail_probability(normal_from_student(mean_w / deviation.sd_w, deviation.degrees_of_freedom));
-    return share < min_share ? "" : fmt::format(", 0 W in {:.2g} % of flights", units::percentage(share, 1.0));
-}
-
 void find_level(const MissionSetup& mission, Phase phase, FlightUncertainty& spreads,
                 std::vector<EstimatedSpread>& estimated) {
     const auto deviation = level_deviation(mission, phase);
     spreads.level_sd_w[phase] = deviation.sd_w;
-    auto basis = deviation.basis + at_zero_words(mission, phase, deviation);
+    auto basis = deviation.basis;
     if (deviation.degrees_of_freedom < infinite_dof) {
         EstimatedSpread spread{level_index(phase), deviation.sd_w, deviation.degrees_of_freedom, {}};
         if (deviation.flights > 0) {

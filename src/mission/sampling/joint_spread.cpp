@@ -5,7 +5,6 @@
 #include <map>
 
 #include <Eigen/Eigenvalues>
-#include <boost/math/constants/constants.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
@@ -18,16 +17,6 @@ constexpr double min_chance = 1e-300;
 using Policy = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 using Student = boost::math::students_t_distribution<double, Policy>;
 using Normal = boost::math::normal_distribution<double, Policy>;
-
-/// The quantile of `to` with the same tail probability as `value` of `from`.
-template <typename From, typename To>
-double as_far_out(const From& from, const To& to, double value) {
-    using boost::math::cdf;
-    using boost::math::complement;
-    using boost::math::quantile;
-    const double beyond = std::max(min_chance, cdf(complement(from, std::abs(value))));
-    return std::copysign(quantile(complement(to, beyond)), value);
-}
 
 /// The flights that have the quantity of each of `spreads`, a row a flight, less their means.
 Eigen::MatrixXd centred_flights(const std::vector<EstimatedSpread>& spreads) {
@@ -75,20 +64,11 @@ Eigen::MatrixXd root_of(const Eigen::MatrixXd& matrix) {
 
 }  // namespace
 
-double normal_tail_probability(double deviations) {
-    return 0.5 * std::erfc(deviations / boost::math::constants::root_two<double>());
-}
-
 double student_from_normal(double normal, double degrees_of_freedom) {
     if (normal == 0.0 || std::isinf(degrees_of_freedom)) return normal;
-    const Student student(degrees_of_freedom);
-    return std::clamp(as_far_out(Normal(), student, normal), -max_student, max_student);
-}
-
-double normal_from_student(double student, double degrees_of_freedom) {
-    if (student == 0.0 || std::isinf(degrees_of_freedom)) return student;
-    const Student from(degrees_of_freedom);
-    return as_far_out(from, Normal(), student);
+    const double beyond = std::max(min_chance, cdf(complement(Normal(), std::abs(normal))));
+    const double student = quantile(complement(Student(degrees_of_freedom), beyond));
+    return std::copysign(std::min(student, max_student), normal);
 }
 
 std::vector<double> student_vector(std::span<const double> normals, double degrees_of_freedom) {

@@ -18,14 +18,8 @@ inline constexpr double infinite_dof = std::numeric_limits<double>::infinity();
 /// No number of Student's t is drawn further out: with one degree of freedom, 6 of 10 million would be.
 inline constexpr double max_student = 1e6;
 
-/// Probability of a standard normal number above `deviations`.
-double normal_tail_probability(double deviations);
-
 /// The quantile of Student's t with the same tail probability as `normal` of a standard normal.
 double student_from_normal(double normal, double degrees_of_freedom);
-
-/// The inverse of that.
-double normal_from_student(double student, double degrees_of_freedom);
 
 /// The standard normal numbers as numbers of the multivariate Student t with covariance structure 1: each is Student t,
 /// so is any weighted sum of them (in the root of the squares' sum), and they are far out together, since all are in

@@ -1,7 +1,7 @@
 #include "mission/sampling/landing_distribution.h"
 
 #include "base/statistics.h"
-#include "mission/sampling/flight_lanes.h"
+#include "mission/sampling/flight_outcomes.h"
 
 #include <algorithm>
 #include <cmath>

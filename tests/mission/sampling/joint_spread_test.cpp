@@ -19,17 +19,9 @@ TEST(Student, LiesAsFarOutAsTheNormal) {
     EXPECT_EQ(student_from_normal(-1.3, 2.0), -student_from_normal(1.3, 2.0));
 }
 
-TEST(Student, ComesBack) {
-    for (const double freedom : {1.0, 2.0, 7.3, 200.0})
-        for (const double normal : {-3.0, -0.2, 0.0, 1e-3, 1.0, 4.0})
-            EXPECT_NEAR(normal_from_student(student_from_normal(normal, freedom), freedom), normal, 1e-9);
-    EXPECT_EQ(normal_from_student(2.5, infinite_dof), 2.5);
-}
-
 TEST(Student, EndsSomewhere) {
     EXPECT_EQ(student_from_normal(9.0, 1.0), max_student);
     EXPECT_EQ(student_from_normal(-40.0, 1.0), -max_student);
-    EXPECT_TRUE(std::isfinite(normal_from_student(1e200, 1.0)));
 }
 
 /// A sum of numbers that share one estimated deviation is Student t with the same degrees of freedom, whatever its

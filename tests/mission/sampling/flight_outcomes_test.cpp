@@ -1,4 +1,4 @@
-#include "mission/sampling/flight_lanes.h"
+#include "mission/sampling/flight_outcomes.h"
 
 #include "helpers/generated_missions.h"
 #include "mission/sampling/flight_draws.h"
@@ -57,7 +57,7 @@ Mission flown_mission(unsigned seed, double charge_part) {
 }
 
 // Missions of odd seeds have the paper's battery, those of even ones Thévenin's.
-TEST(FlightLanes, LandAsRungeKuttaDoes) {
+TEST(FlightOutcome, LandAsRungeKuttaDoes) {
     std::size_t compared = 0;
     std::size_t failed = 0;
     for (unsigned seed = 1; seed <= 40; ++seed) {
@@ -86,7 +86,7 @@ TEST(FlightLanes, LandAsRungeKuttaDoes) {
     EXPECT_GT(failed, 5U);
 }
 
-TEST(FlightLanes, LandAsFlightsAlone) {
+TEST(FlightOutcome, NotesTheChargeAtTimesOfTheMission) {
     for (const unsigned seed : {1U, 2U, 3U, 4U, 5U, 6U, 18U}) {  // of 18 flights fail one after the other
         const auto mission = flown_mission(seed, seed % 3 == 0 ? 0.8 : 1.0);
         const auto spreads = collect_uncertainty(mission.setup);
@@ -114,18 +114,8 @@ TEST(FlightLanes, LandAsFlightsAlone) {
     }
 }
 
-TEST(FlightLanes, DependOnNothingBeside) {
-    const auto mission = flown_mission(2, 0.9);
-    auto normals = drawn_numbers(mission.setup, 45);
-    const auto landings = fly(mission, normals);
-    std::ranges::reverse(normals);
-    const auto reversed = fly(mission, normals);
-    for (std::size_t i = 0; i < normals.size(); ++i)
-        EXPECT_EQ(landings[i].remaining_percent, reversed[normals.size() - 1 - i].remaining_percent) << i;
-}
-
 /// Under disturbances, each of another kind, and along pieces of power as a path has them.
-TEST(FlightLanes, FlyDisturbancesAndPieces) {
+TEST(FlightOutcome, FlyDisturbancesAndPieces) {
     auto mission = flown_mission(2, 1.0);
     const double cruise_s = mission.setup.duration_s[Phase::cruise];
     mission.setup.measured_power[Phase::cruise] = std::make_shared<const path::PiecewisePower>(

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <span>
 #include <vector>
 
 namespace flightwatt::mission {
@@ -35,16 +34,11 @@ inline bool misses_reserve(const FlightOutcome& landing, double reserve_soc_perc
 /// Draws flight number `number` onto `flight`, which is the mission or another flight of it: copying less is faster.
 using FlightDraw = std::function<void(std::size_t number, DrawnFlight& flight)>;
 
-/// Flies flights of a mission side by side, from number `first` on: each through its own segments, as advance_segment()
-/// does, to 1e-9 points. The result of a flight depends on its own numbers alone.
-void fly_side_by_side(const MissionSetup& mission, const FlightDraw& draw, std::size_t first,
-                      std::span<FlightOutcome> outcomes);
+/// One flight, through its segments as advance_segment() does.
+FlightOutcome simulate_flight(const DrawnFlight& flight);
 
-/// The same on all threads.
+/// Flights of a mission from number `first` on, on all threads. The result of a flight depends on its number alone.
 std::vector<FlightOutcome> fly_drawn(const MissionSetup& mission, const FlightDraw& draw, std::size_t first,
                                      std::size_t count);
-
-/// One flight.
-FlightOutcome simulate_flight(const DrawnFlight& flight);
 
 }  // namespace flightwatt::mission
