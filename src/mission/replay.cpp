@@ -179,37 +179,6 @@ void add_hindsight(const LeaveOneOutMission& folded, PlanningProblem problem, Re
     replay.schedules.push_back(std::move(best));
 }
 
-/// Choices in hindsight for a mission without [plan]: the profiled levels, and those of its schedule.
-PlanningProblem choices_in_hindsight(const Mission& mission, const MissionSetup& known) {
-    PlanningProblem problem{known, {}, {}, std::nullopt};
-    for (const auto& component : mission.setup.compute.components)
-        problem.plan.choices.push_back({component.profile.axes});
-    auto& choices = problem.plan.choices;
-    for (const auto& run : configurations_of(mission.schedule)) {
-        for (std::size_t c = 0; c < choices.size(); ++c) {
-            const auto running = std::ranges::find(run, c, &compute::RunningComponent::component);
-            if (running == run.end()) {
-                choices[c].may_be_off = true;
-                continue;
-            }
-            for (std::size_t i = 0; i < running->qos.size(); ++i) {
-                auto& levels = choices[c].levels[i];
-                if (std::ranges::count(levels, running->qos[i]) == 0) levels.push_back(running->qos[i]);
-            }
-        }
-    }
-    return problem;
-}
-
-void replay_given(const Mission& mission, const LeaveOneOutMission& folded, Replay& replay) {
-    const auto known = rescale_to_flown_durations(mission.schedule, mission.setup.duration_s, folded.known.duration_s);
-    replay.schedules.push_back(replay_schedule(folded, ScheduleMethod::given, known, ScheduleOrigin::given));
-    if (std::ranges::any_of(mission.setup.utilities, [](const auto& utility) { return utility.has_value(); }))
-        add_hindsight(folded, choices_in_hindsight(mission, folded.known), replay);
-    else
-        replay.notes.emplace_back("the mission states no utility: hindsight has nothing to choose by");
-}
-
 void replay_planned(const PlanningProblem& stated, const LeaveOneOutMission& folded, Replay& replay) {
     auto problem = stated;
     problem.setup = folded.known;
@@ -278,7 +247,10 @@ Replay replay_one(const MissionVariant& mission, const mechanical::MeasuredFligh
     add_notes(stated, flight, replay);
     describe_flight(folded, flight, replay);
     if (const auto* scheduled = std::get_if<Mission>(&mission))
-        replay_given(*scheduled, folded, replay);
+        replay.schedules.push_back(
+            replay_schedule(folded, ScheduleMethod::given,
+                            rescale_to_flown_durations(scheduled->schedule, stated.duration_s, folded.known.duration_s),
+                            ScheduleOrigin::given));
     else
         replay_planned(std::get<PlanningProblem>(mission), folded, replay);
     return replay;

@@ -31,7 +31,7 @@ struct ReplayedSchedule {
     MissionSummary summary;  ///< with the origin by the model: infeasible if no schedule keeps the reserve
     std::optional<double> expected_soc_percent = {};  ///< at the end, as expected before the flight
     Schedule schedule = {};                           ///< as it was flown
-    /// The utility that hindsight has more; none where a reserve is not kept, or the mission states no utility.
+    /// The utility that hindsight has more; none where a reserve is not kept, or the schedule is given.
     std::optional<double> regret = {};
 };
 
@@ -54,7 +54,7 @@ struct Replay {
     double max_gap_s = 0.0;
     std::optional<double> bound;  ///< of the utility: no schedule on the plan's slots that keeps the reserve has more
     bool bound_is_proven = true;
-    std::vector<ReplayedSchedule> schedules;  ///< hindsight last; it is absent where the mission states no utility
+    std::vector<ReplayedSchedule> schedules;  ///< hindsight last, of a mission that is to be planned
     std::vector<std::string> notes;
 };
 

@@ -91,7 +91,6 @@ TEST(Replay, OfTheModelsOwnPowerEndsAsSimulateEnds) {
         SCOPED_TRACE(has_circuit);
         const auto problem = constant_problem(1);
         auto mission = with_minimum_energy_schedule(has_circuit ? with_thevenin(problem) : problem);
-        if (mission.setup.battery.thevenin) mission.setup.utilities.clear();  // hindsight would take long
         const auto replay = only_replay(mission, flight_of_model("same", mission.setup), with_model_of(mission.setup));
         const auto& given = *by(replay, ScheduleMethod::given);
         const auto simulated = simulate(mission).summary;
@@ -110,7 +109,6 @@ TEST(Replay, OfSamplesOfACurveEndsAsTheCurve) {
         if (has_circuit) problem = with_thevenin(problem);
         for (const auto phase : all_phases) problem.setup.duration_is_stated[phase] = true;
         auto mission = with_minimum_energy_schedule(problem);
-        if (mission.setup.battery.thevenin) mission.setup.utilities.clear();  // hindsight would take long
         const auto replay =
             only_replay(mission, flight_of_model("same", mission.setup, 1.0, 1.0, 0.05), with_model_of(mission.setup));
         EXPECT_NEAR(*by(replay, ScheduleMethod::given)->summary.final_soc_percent,
@@ -298,15 +296,6 @@ TEST(Replay, CountsPowerBelowZeroAsNothingAndSaysSo) {
     EXPECT_THAT(replay.notes, ElementsAre(HasSubstr("below 0 counts as 0")));
     const auto seconds = mission.setup.duration_s[Phase::takeoff] + mission.setup.duration_s[Phase::cruise];
     EXPECT_NEAR(replay.measured_mechanical_wh, 20.0 * seconds / 3600.0, 1e-6);
-}
-
-TEST(Replay, OfAMissionWithoutUtilityHasNoHindsight) {
-    auto mission = planned_mission(constant_problem(1));
-    mission.setup.utilities.clear();
-    const auto replay = only_replay(mission, flight_of_model("f", mission.setup), with_model_of(mission.setup));
-    ASSERT_EQ(replay.schedules.size(), 1U);
-    EXPECT_FALSE(replay.schedules[0].regret);
-    EXPECT_THAT(replay.notes, ElementsAre(HasSubstr("no utility")));
 }
 
 }  // namespace
