@@ -23,10 +23,10 @@ double end_percent(const SlotDynamics& dynamics, const std::vector<std::size_t>&
 }
 
 void set_bound(const UtilityBound& value, StateLabel& label) {
-    label.charge = effective_charge(value, label.to, label.state);
+    label.effective_percent = effective_percent(value, label.to, label.state);
     label.adjusted_percent = label.state.soc_percent - value.rc_low[label.to] * label.state.rc_voltage_v;
     label.bound = may_land(value, label.to, label.state)
-                      ? label.utility + utility_to_go(value, label.to, label.choice, label.charge)
+                      ? label.utility + utility_to_go(value, label.to, label.choice, label.effective_percent)
                       : -infinite;
 }
 
@@ -133,7 +133,7 @@ class StatePass {
             next.to = run.to;
             next.utility += run.utility;
             // The tabulated transition saves most integrations.
-            const auto end = apply_transition(value_, i, reach, label.charge);
+            const auto end = apply_transition(value_, i, reach, label.effective_percent);
             if (!is_wanted(next.utility + utility_to_go(value_, run.to, run.choice, end))) continue;
             const auto after = advance_run(problem_.coarse, i, run.to, run.choice, next.state);
             if (!after) continue;

@@ -202,23 +202,16 @@ double energy_j(const SlotDynamics& dynamics, std::size_t from, const ChoiceRun&
     return sum_j;
 }
 
-/// Equal levels of RC voltage from the least power's to the greatest power's; voltages above count as the last.
-void set_levels(const ScheduleProblem& problem, UtilityBound& value) {
-    constexpr std::size_t levels = 5;
-    constexpr std::size_t cells_with_levels = 48;  // fewer cells are meant to be quick
+void set_max_above(const ScheduleProblem& problem, UtilityBound& value) {
     const auto& dynamics = problem.coarse;
-    value.level_v.assign(dynamics.slots.size() + 1, 0.0);
-    if (dynamics.circuit.rc_resistance_ohm == 0.0 || value.cells < cells_with_levels) return;
-    value.levels = levels;
-    value.cells /= 3;
-    double above_v = 0.0;
+    value.max_above_v.assign(dynamics.slots.size() + 1, 0.0);
+    if (dynamics.circuit.rc_resistance_ohm == 0.0) return;
     for (std::size_t i = 0; i < dynamics.slots.size(); ++i) {
         const auto range = range_of(problem, i);
         const double source_v = open_circuit_voltage_v(dynamics, value.min_power_trajectory[i].soc_percent);
         const double steady_v = dynamics.circuit.rc_resistance_ohm * (range.max_w - range.min_w) / source_v;
-        above_v = relaxed(above_v, steady_v / dynamics.circuit.rc_time_constant_s,
-                          1.0 / dynamics.circuit.rc_time_constant_s, dynamics.slots[i].duration_s);
-        value.level_v[i + 1] = above_v / static_cast<double>(levels);
+        value.max_above_v[i + 1] = relaxed(value.max_above_v[i], steady_v / dynamics.circuit.rc_time_constant_s,
+                                           1.0 / dynamics.circuit.rc_time_constant_s, dynamics.slots[i].duration_s);
     }
 }
 
@@ -229,9 +222,8 @@ void set_enough(const ScheduleProblem& problem, UtilityBound& value) {
     const auto& dynamics = problem.coarse;
     if (dynamics.cutoff_voltage_v == 0.0) return;
     const std::size_t slots = dynamics.slots.size();
-    const auto levels = static_cast<double>(value.levels);
     for (std::size_t i = 0; i <= slots; ++i)
-        value.enough_step_v.push_back(value.level_v[i] * levels / static_cast<double>(steps));
+        value.enough_step_v.push_back(value.max_above_v[i] / static_cast<double>(steps));
     value.min_charge_percent.assign(slots + 1, std::vector<double>(steps + 1, quick_reserve_percent(problem)));
     for (std::size_t i = slots; i-- > 0;) {
         for (std::size_t k = 0; k <= steps; ++k) {
@@ -249,70 +241,57 @@ void set_enough(const ScheduleProblem& problem, UtilityBound& value) {
     }
 }
 
-double level_rc_v(const UtilityBound& value, std::size_t slot, std::size_t level) {
-    return value.min_power_trajectory[slot].rc_voltage_v + value.level_v[slot] * static_cast<double>(level);
-}
-
-const std::vector<ConcaveCurve>& curves_with(const UtilityBound& value, std::size_t slot, std::size_t choice) {
+const ConcaveCurve& curve_with(const UtilityBound& value, std::size_t slot, std::size_t choice) {
     const auto& with = value.with[slot];
-    return choice < with.size() && !with[choice].empty() ? with[choice] : value.any[slot];
+    return choice < with.size() && !with[choice].points.empty() ? with[choice] : value.any[slot];
 }
 
 /// Two charges diverge as the higher one's voltage saves current: of a slope m by m P / U^2 points a second or more.
 RunTransition reach_of(const SlotDynamics& dynamics, const UtilityBound& value, std::size_t from,
                        const ChoiceRun& run) {
-    const std::size_t charges = value.cells + 1;
-    RunTransition reach{std::vector<EffectiveCharge>(value.levels * charges, {never, 0}),
-                        std::vector<double>(value.levels * charges, 1.0)};
+    RunTransition reach{std::vector<double>(value.cells + 1, never), std::vector<double>(value.cells + 1, 1.0)};
     const double run_j = energy_j(dynamics, from, run);
-    for (std::size_t level = 0; level < value.levels; ++level) {
-        std::optional<double> lower_end;
-        for (std::size_t j = 0; j < charges; ++j) {
-            const double start_percent = min_percent(value, from) + cell_percent(value) * static_cast<double>(j);
-            const auto end =
-                advance_run(dynamics, from, run.to, run.choice, {start_percent, level_rc_v(value, from, level)});
-            if (!end || !may_land(value, run.to, *end)) continue;
-            reach.end[level * charges + j] = effective_charge(value, run.to, *end);
-            if (lower_end) {
-                const double source_v = open_circuit_voltage_v(dynamics, start_percent);
-                reach.growth[level * charges + j] += slopes_in(dynamics, *lower_end, start_percent).least *
-                                                     dynamics.circuit.percent_per_as * std::max(0.0, run_j) /
-                                                     (source_v * source_v);
-            }
-            lower_end = end->soc_percent;
+    std::optional<double> lower_end;
+    for (std::size_t j = 0; j <= value.cells; ++j) {
+        const double start_percent = min_percent(value, from) + cell_percent(value) * static_cast<double>(j);
+        const auto end = advance_run(dynamics, from, run.to, run.choice,
+                                     {start_percent, value.min_power_trajectory[from].rc_voltage_v});
+        if (!end || !may_land(value, run.to, *end)) continue;
+        reach.end_percent[j] = effective_percent(value, run.to, *end);
+        if (lower_end) {
+            const double source_v = open_circuit_voltage_v(dynamics, start_percent);
+            reach.growth[j] += slopes_in(dynamics, *lower_end, start_percent).least * dynamics.circuit.percent_per_as *
+                               std::max(0.0, run_j) / (source_v * source_v);
         }
+        lower_end = end->soc_percent;
     }
     return reach;
 }
 
-/// Of one level.
-void add_run_points(const UtilityBound& value, std::size_t from, std::size_t level, const ChoiceRun& run,
-                    const RunTransition& reach, std::vector<CurvePoint>& points) {
-    const auto& next = curves_with(value, run.to, run.choice);
+void add_run_points(const UtilityBound& value, std::size_t from, const ChoiceRun& run, const RunTransition& reach,
+                    std::vector<CurvePoint>& points) {
+    const auto& next = curve_with(value, run.to, run.choice);
     const double step = cell_percent(value);
     for (std::size_t j = 1; j <= value.cells; ++j) {
-        const std::size_t at = level * (value.cells + 1) + j;
         const double end_percent = min_percent(value, from) + step * static_cast<double>(j);
-        add_mapped(next[reach.end[at].level],
-                   {end_percent - step, end_percent, reach.end[at].percent, reach.growth[at]}, run.utility, points);
+        add_mapped(next, {end_percent - step, end_percent, reach.end_percent[j], reach.growth[j]}, run.utility, points);
     }
 }
 
 /// The curves of one slot, of those behind it.
 void set_curves(const ScheduleProblem& problem, const ScheduleGraph& graph, std::size_t i, UtilityBound& value) {
-    for (const auto& run : graph.runs[i]) value.runs[i].push_back(reach_of(problem.coarse, value, i, run));
-    for (const auto& run : graph.one_more[i]) value.one_more[i].push_back(reach_of(problem.coarse, value, i, run));
+    std::vector<CurvePoint> points;
+    for (const auto& run : graph.runs[i]) {
+        value.runs[i].push_back(reach_of(problem.coarse, value, i, run));
+        add_run_points(value, i, run, value.runs[i].back(), points);
+    }
+    value.any[i] = concave_hull(std::move(points));
     if (!graph.one_more[i].empty()) value.with[i].resize(graph.choices);
-    for (std::size_t level = 0; level < value.levels; ++level) {
-        std::vector<CurvePoint> points;
-        for (std::size_t r = 0; r < graph.runs[i].size(); ++r)
-            add_run_points(value, i, level, graph.runs[i][r], value.runs[i][r], points);
-        value.any[i].push_back(concave_hull(std::move(points)));
-        for (std::size_t r = 0; r < graph.one_more[i].size(); ++r) {
-            auto own = value.any[i][level].points;
-            add_run_points(value, i, level, graph.one_more[i][r], value.one_more[i][r], own);
-            value.with[i][graph.one_more[i][r].choice].push_back(concave_hull(std::move(own)));
-        }
+    for (const auto& run : graph.one_more[i]) {
+        value.one_more[i].push_back(reach_of(problem.coarse, value, i, run));
+        auto own = value.any[i].points;
+        add_run_points(value, i, run, value.one_more[i].back(), own);
+        value.with[i][run.choice] = concave_hull(std::move(own));
     }
 }
 
@@ -325,13 +304,13 @@ UtilityBound make_schedule_value(const ScheduleProblem& problem, const ScheduleG
     if (!value.possible) return value;
     set_rc_low(problem, value);
     set_rc_high(problem, value);
-    set_levels(problem, value);
+    set_max_above(problem, value);
     set_enough(problem, value);
     value.any.resize(graph.slots + 1);
     value.with.resize(graph.slots + 1);
     value.runs.resize(graph.slots);
     value.one_more.resize(graph.slots);
-    value.any.back().assign(value.levels, {{{quick_reserve_percent(problem), 0.0}}});
+    value.any.back() = {{{quick_reserve_percent(problem), 0.0}}};
     for (std::size_t i = graph.slots; i-- > graph.begin;) set_curves(problem, graph, i, value);
     return value;
 }
@@ -346,27 +325,21 @@ bool may_land(const UtilityBound& value, std::size_t slot, const battery::Batter
     return state.soc_percent >= enough[static_cast<std::size_t>(steps)];
 }
 
-EffectiveCharge effective_charge(const UtilityBound& value, std::size_t slot, const battery::BatteryState& state) {
+double effective_percent(const UtilityBound& value, std::size_t slot, const battery::BatteryState& state) {
     const double above_v = state.rc_voltage_v - value.min_power_trajectory[slot].rc_voltage_v;
-    const double level_v = value.level_v[slot];
-    const double max_level = static_cast<double>(value.levels - 1);
-    const double level = level_v > 0.0 ? std::clamp(std::floor(above_v / level_v), 0.0, max_level) : 0.0;
-    return {state.soc_percent - value.rc_low[slot] * (above_v - level * level_v), static_cast<std::size_t>(level)};
+    return state.soc_percent - value.rc_low[slot] * above_v;
 }
 
-double utility_to_go(const UtilityBound& value, std::size_t slot, std::size_t choice, const EffectiveCharge& charge) {
-    return value_at(curves_with(value, slot, choice)[charge.level], charge.percent);
+double utility_to_go(const UtilityBound& value, std::size_t slot, std::size_t choice, double percent) {
+    return value_at(curve_with(value, slot, choice), percent);
 }
 
-EffectiveCharge apply_transition(const UtilityBound& value, std::size_t slot, const RunTransition& reach,
-                                 const EffectiveCharge& charge) {
+double apply_transition(const UtilityBound& value, std::size_t slot, const RunTransition& reach, double percent) {
     const double step = cell_percent(value);
     const double lowest = min_percent(value, slot);
-    const double position = std::ceil((charge.percent - lowest) / step);
+    const double position = std::ceil((percent - lowest) / step);
     const auto j = static_cast<std::size_t>(std::clamp(position, 1.0, static_cast<double>(value.cells)));
-    const std::size_t at = charge.level * (value.cells + 1) + j;
-    const double below_percent = lowest + step * static_cast<double>(j) - charge.percent;
-    return {reach.end[at].percent - reach.growth[at] * below_percent, reach.end[at].level};
+    return reach.end_percent[j] - reach.growth[j] * (lowest + step * static_cast<double>(j) - percent);
 }
 
 }  // namespace flightwatt::mission

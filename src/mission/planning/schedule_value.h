@@ -19,16 +19,10 @@ struct ScheduleProblem {
     double reserve_soc_percent = 0.0;
 };
 
-/// A state of the battery at a slot as the bound knows it: a charge at one of a few RC voltages.
-struct EffectiveCharge {
-    double percent = 0.0;  ///< the state's charge, less what its RC voltage above the level's costs at least
-    std::size_t level = 0;
-};
-
-/// Where a run leads to from evenly spread charges at each level of RC voltage.
+/// Where a run leads to from evenly spread effective charges.
 struct RunTransition {
-    std::vector<EffectiveCharge> end;  ///< level by level; minus infinity: the battery does not do it
-    std::vector<double> growth;        ///< by which the end rises at least with the start, from the charge below
+    std::vector<double> end_percent;  ///< minus infinity: the battery does not do it
+    std::vector<double> growth;       ///< by which the end rises at least with the start, from the charge below
 };
 
 /// An upper bound of the utility that can follow from any state in which a slot may be reached.
@@ -46,31 +40,30 @@ struct UtilityBound {
     std::vector<double> rc_usual;  ///< rc_high, if neither a cut-off nor the power limit ends what lands otherwise
     /// By which leaving out a volt makes a state better, about: beyond rc_low, and where the voltage limits the power.
     std::vector<double> rc_joined;
-    std::size_t levels = 1;       ///< of RC voltage, from the course's on
-    std::vector<double> level_v;  ///< from one to the next, at each slot's start
+    std::vector<double> max_above_v;  ///< RC voltage of the greatest power above the trajectory's, at each slot's start
     /// Where there is a cut-off: with less than this charge not even the least power keeps the battery from it. At each
     /// slot's start, for RC voltages from the course's on, in equal steps.
     std::vector<std::vector<double>> min_charge_percent;
     std::vector<double> enough_step_v;
-    std::vector<std::vector<ConcaveCurve>> any;  ///< of each level, over effective charge; free to begin a run
-    std::vector<std::vector<std::vector<ConcaveCurve>>> with;  ///< while a choice runs that may continue; empty: as any
-    std::vector<std::vector<RunTransition>> runs;              ///< as the graph's
+    std::vector<ConcaveCurve> any;                 ///< over effective charge; free to begin a run
+    std::vector<std::vector<ConcaveCurve>> with;   ///< while a choice runs that may continue; empty: as any
+    std::vector<std::vector<RunTransition>> runs;  ///< as the graph's
     std::vector<std::vector<RunTransition>> one_more;
     bool possible = true;  ///< the course of least power lands with the reserve
 };
 
 UtilityBound make_schedule_value(const ScheduleProblem& problem, const ScheduleGraph& graph, std::size_t cells);
 
-EffectiveCharge effective_charge(const UtilityBound& value, std::size_t slot, const battery::BatteryState& state);
+/// A state's charge, less what its RC voltage above the trajectory's costs at least.
+double effective_percent(const UtilityBound& value, std::size_t slot, const battery::BatteryState& state);
 
 /// Whether the course of least power may land from a state; nothing else lands otherwise.
 bool may_land(const UtilityBound& value, std::size_t slot, const battery::BatteryState& state);
 
 /// The bound of what can follow while a choice runs.
-double utility_to_go(const UtilityBound& value, std::size_t slot, std::size_t choice, const EffectiveCharge& charge);
+double utility_to_go(const UtilityBound& value, std::size_t slot, std::size_t choice, double percent);
 
-/// No more than this is left of a charge at `slot` after a run.
-EffectiveCharge apply_transition(const UtilityBound& value, std::size_t slot, const RunTransition& reach,
-                                 const EffectiveCharge& charge);
+/// No more than this is left of an effective charge at `slot` after a run.
+double apply_transition(const UtilityBound& value, std::size_t slot, const RunTransition& reach, double percent);
 
 }  // namespace flightwatt::mission

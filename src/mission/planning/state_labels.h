@@ -12,7 +12,7 @@ namespace flightwatt::mission {
 struct StateLabel : RunStep {
     battery::BatteryState state;
     double utility = 0.0;
-    EffectiveCharge charge = {};
+    double effective_percent = 0.0;
     double adjusted_percent = 0.0;  ///< the charge less what its RC voltage costs at least
     double bound = 0.0;             ///< nothing that begins so has more utility
     double priority = 0.0;          ///< where there is no room for all, those with the greatest are kept
