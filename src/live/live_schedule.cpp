@@ -80,7 +80,8 @@ void LiveSchedule::decide(const PhaseTime& moment, double clock_s, const battery
     auto plan = decider_->replan(moment, now);
     schedule_ = std::move(plan.schedule);
     keeps_reserve_ = plan.feasible;
-    final_soc_percent_ = plan.final_soc_percent;
+    final_soc_percent_.reset();
+    if (std::isfinite(plan.final_soc_percent)) final_soc_percent_ = plan.final_soc_percent;
     slot_ = Slot{moment, clock_s, now};
 }
 
