@@ -229,7 +229,7 @@ Prediction predict_flight(const PredictionInput& input, const FlightProgress& fl
                           Diagnostics& remarks) {
     std::optional<PathFix> fix;
     if (input.path && !input.remaining_s)
-        fix = locate_on_path(*input.path, series, flown.cruise_start_s, flown.until_s);
+        fix = locate_on_path(*input.path, flight::SelectedTracks(series), flown.cruise_start_s, flown.until_s);
     auto prediction = predict_energy(input, flown, fix, remarks);
     if (input.battery) prediction.battery = predict_battery(input, series, prediction, remarks);
     return prediction;

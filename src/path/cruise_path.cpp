@@ -122,38 +122,32 @@ mechanical::TermValues mean_terms(const mechanical::PhysicalModel& model, const 
 std::vector<std::string> path_warnings(const PlannedPath& plan, const PathTrajectory& flown) {
     constexpr double steep_load_factor = 2.0;  // a bank of 60 degrees
     constexpr double felt_load_factor = 1.1;   // a tenth more lift is a fifth more drag of lift
-    constexpr std::size_t max_named = 3;
     std::vector<std::string> warnings;
-    std::size_t warned = plan.path.elements.size();
-    std::size_t extrapolated = 0;
-    bool is_steep = false;
-    double max_load_factor = 1.0;
-    for (const auto& [time_s, motion, element] : flown.pieces) {
-        const auto& name = plan.path.elements[element].name;
-        if (element != warned && !is_within_flown_range(plan.power, motion)) {
-            warned = element;
-            if (++extrapolated > max_named) continue;
-            warnings.push_back(fmt::format(
-                "{}: {:.4g} m/s with a climb of {:.3g} m/s is beyond what the model's flights flew ({}, climb {}): its "
-                "power is extrapolated",
-                name, motion.airspeed_m_per_s, motion.climb_m_per_s, range_text(plan.power.airspeed_m_per_s),
-                range_text(plan.power.climb_m_per_s)));
-        }
-        max_load_factor = std::max(max_load_factor, motion.load_factor);
-        if (motion.load_factor > steep_load_factor && !is_steep) {
-            is_steep = true;
-            const double bank_deg = std::acos(1.0 / motion.load_factor) * units::degree_per_rad;
-            warnings.push_back(fmt::format("{}: such a circle takes a bank of {:.0f} degrees", name, bank_deg));
-        }
+    const auto name_of = [&](const TrajectorySegment& piece) { return plan.path.elements[piece.element].name; };
+    const auto is_flown = [&](const TrajectorySegment& piece) {
+        return is_within_flown_range(plan.power, piece.motion);
+    };
+    if (const auto beyond = std::ranges::find_if_not(flown.pieces, is_flown); beyond != flown.pieces.end()) {
+        warnings.push_back(fmt::format(
+            "{}: {:.4g} m/s with a climb of {:.3g} m/s is beyond what the model's flights flew ({}, climb {}): its "
+            "power is extrapolated",
+            name_of(*beyond), beyond->motion.airspeed_m_per_s, beyond->motion.climb_m_per_s,
+            range_text(plan.power.airspeed_m_per_s), range_text(plan.power.climb_m_per_s)));
     }
-    if (max_load_factor > felt_load_factor && !std::ranges::count(plan.power.terms, mechanical::PowerTerm::turn)) {
+    const auto load_of = [](const TrajectorySegment& piece) { return piece.motion.load_factor; };
+    const auto steepest = std::ranges::max_element(flown.pieces, {}, load_of);
+    if (steepest == flown.pieces.end()) return warnings;
+    if (load_of(*steepest) > steep_load_factor) {
+        const double bank_deg = std::acos(1.0 / load_of(*steepest)) * units::degree_per_rad;
+        warnings.push_back(
+            fmt::format("{}: such a circle takes a bank of {:.0f} degrees", name_of(*steepest), bank_deg));
+    }
+    if (load_of(*steepest) > felt_load_factor && !std::ranges::count(plan.power.terms, mechanical::PowerTerm::turn)) {
         warnings.push_back(fmt::format(
             "its circles take up to {:.2f} times the lift of straight flight, and the model has no term for "
             "turns: they are taken to cost nothing",
-            max_load_factor));
+            load_of(*steepest)));
     }
-    if (extrapolated > max_named)
-        warnings.push_back(fmt::format("the power of {} more is extrapolated so", extrapolated - max_named));
     return warnings;
 }
 

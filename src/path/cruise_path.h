@@ -64,8 +64,7 @@ std::vector<PathElementResult> path_element_results(const PlannedPath& plan);
 /// takes no time.
 mechanical::TermValues mean_terms(const mechanical::PhysicalModel& model, const PathTrajectory& flown);
 
-/// For people: the elements that the model's flights did not fly so, and banks above 60 degrees; empty if there are
-/// none.
+/// Warnings of the first element outside of the model's flown range, and of a bank above 60 degrees.
 std::vector<std::string> path_warnings(const PlannedPath& plan, const PathTrajectory& flown);
 
 }  // namespace flightwatt::path

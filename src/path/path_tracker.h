@@ -1,10 +1,8 @@
 #pragma once
 
-#include "flight/flight_series.h"
 #include "flight/selected_track.h"
 #include "path/remaining_path.h"
 
-#include <memory>
 #include <optional>
 
 namespace flightwatt::path {
@@ -16,27 +14,10 @@ struct PathFix {
     double distance_m = 0.0;                 ///< from there, now
 };
 
-/// Finds the position of a flight on its path from the positions of its cruise up to a given time, by a forward filter
-/// over the path (docs/methods.md, Flight along a path). Later data are ignored. The filter continues from call to call
-/// and restarts where positions have changed, so that results depend on the series alone.
-class PathTracker {
-  public:
-    /// `path` takes some time.
-    explicit PathTracker(const PathForecast& path);
-    ~PathTracker();
-    PathTracker(const PathTracker&) = delete;
-    PathTracker& operator=(const PathTracker&) = delete;
-
-    /// The path begins where the cruise does. std::nullopt without positions.
-    std::optional<PathFix> find(const flight::SelectedTracks& tracks, double cruise_start_s, double until_s);
-
-  private:
-    class State;
-    std::unique_ptr<State> state_;
-};
-
-/// The same for a single time; std::nullopt also for a path that takes no time.
-std::optional<PathFix> locate_on_path(const PathForecast& path, const flight::FlightSeries& series,
+/// Finds the position of a flight on its path, which begins where the cruise does, from the positions of the cruise up
+/// to a given time, by a forward filter over the path (docs/methods.md, Flight along a path). Later data are ignored.
+/// std::nullopt without positions, and for a path that takes no time.
+std::optional<PathFix> locate_on_path(const PathForecast& path, const flight::SelectedTracks& tracks,
                                       double cruise_start_s, double until_s);
 
 }  // namespace flightwatt::path

@@ -18,6 +18,11 @@ namespace {
 
 constexpr double begin_s = 100.0;
 
+std::optional<PathFix> locate(const PathForecast& path, const flight::FlightSeries& series, double start_s,
+                              double until_s) {
+    return locate_on_path(path, flight::SelectedTracks(series), start_s, until_s);
+}
+
 /// A survey with circles in it, and two legs that are flown in both directions.
 FlightPath survey() {
     FlightPath path;
@@ -98,7 +103,7 @@ double worst_s(const FlightPath& path, const Conditions& conditions, const Flown
     const PathForecast plan({path, conditions.planned, test::made_up_wing()});
     double worst_s = 0.0;
     for (double time_s = begin_s + 30.0; time_s < flown.end_s - 10.0; time_s += 10.0) {
-        const auto sighting = locate_on_path(plan, truncate_series(flown.series, time_s), begin_s, time_s);
+        const auto sighting = locate(plan, truncate_series(flown.series, time_s), begin_s, time_s);
         if (!sighting || !sighting->path_time_s) return -1.0;
         const auto index = static_cast<std::size_t>((time_s - begin_s) / conditions.every_s);
         const double off_s = std::abs(*sighting->path_time_s - flown.planned_s[index]);
@@ -140,7 +145,7 @@ TEST(PathTracker, ADetourIsSeenAndThePathGoesOnWhereItWasLeft) {
     const auto flown = fly(path, conditions, 5);
     const PathForecast plan({path, {}, test::made_up_wing()});
     const auto at = [&](double time_s) {
-        return locate_on_path(plan, truncate_series(flown.series, begin_s + time_s), begin_s, begin_s + time_s);
+        return locate(plan, truncate_series(flown.series, begin_s + time_s), begin_s, begin_s + time_s);
     };
     ASSERT_TRUE(at(290.0));
     EXPECT_FALSE(at(290.0)->is_on_path);
@@ -156,10 +161,10 @@ TEST(PathTracker, IsNotToldByPositionsElsewhereOrMissingOnes) {
     FlightPath other;
     other.elements = {test::path_element(Circles{150.0, 8.0, false, 270.0})};
     const auto elsewhere = fly(other, {}, 3);
-    EXPECT_FALSE(locate_on_path(plan, elsewhere.series, begin_s, begin_s + 400.0).value().path_time_s);
-    EXPECT_FALSE(locate_on_path(plan, {}, begin_s, begin_s + 400.0));
+    EXPECT_FALSE(locate(plan, elsewhere.series, begin_s, begin_s + 400.0).value().path_time_s);
+    EXPECT_FALSE(locate(plan, {}, begin_s, begin_s + 400.0));
     const auto late = fly(survey(), {}, 3);
-    EXPECT_FALSE(locate_on_path(plan, late.series, begin_s - 30.0, begin_s + 200.0)) << "from where is not known";
+    EXPECT_FALSE(locate(plan, late.series, begin_s - 30.0, begin_s + 200.0)) << "from where is not known";
 }
 
 TEST(PathTracker, NothingLaterIsLookedAt) {
@@ -167,62 +172,10 @@ TEST(PathTracker, NothingLaterIsLookedAt) {
     const auto flown = fly(path, {}, 8);
     const PathForecast plan({path, {}, test::made_up_wing()});
     const double until_s = begin_s + 222.2;
-    const auto whole = locate_on_path(plan, flown.series, begin_s, until_s);
-    const auto known = locate_on_path(plan, truncate_series(flown.series, until_s), begin_s, until_s);
+    const auto whole = locate(plan, flown.series, begin_s, until_s);
+    const auto known = locate(plan, truncate_series(flown.series, until_s), begin_s, until_s);
     ASSERT_TRUE(whole && known);
     EXPECT_NEAR(whole->path_time_s.value(), known->path_time_s.value(), 1.0);
-}
-
-Conditions made_up_conditions(std::mt19937& random) {
-    std::uniform_real_distribution<double> part(0.0, 1.0);
-    Conditions conditions;
-    conditions.true_wind = {8.0 * part(random), 360.0 * part(random)};
-    conditions.noise_m = 1.0 + 11.0 * part(random);
-    conditions.origin = {80.0 * part(random) - 40.0, 80.0 * part(random) - 40.0};
-    if (part(random) < 0.5) {
-        conditions.detour_at_s = 60.0 + 120.0 * part(random);
-        conditions.detour_s = 40.0 + 100.0 * part(random);
-    }
-    return conditions;
-}
-
-TEST(PathTracker, GoingOnFromMomentToMomentIsTheSameAsBeginningAnew) {
-    const auto path = survey();
-    const PathForecast plan({path, {}, test::made_up_wing()});
-    std::mt19937 random(2024);
-    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
-        const auto flown = fly(path, made_up_conditions(random), seed);
-        PathTracker finder(plan);
-        for (double time_s = begin_s + 5.0; time_s < flown.end_s; time_s += 11.3) {
-            const auto series = truncate_series(flown.series, time_s);
-            const auto found = finder.find(flight::SelectedTracks(series), begin_s, time_s);
-            const auto anew = locate_on_path(plan, series, begin_s, time_s);
-            ASSERT_TRUE(found && anew);
-            EXPECT_EQ(found->path_time_s, anew->path_time_s) << seed << " " << time_s;
-            EXPECT_EQ(found->is_on_path, anew->is_on_path);
-            EXPECT_EQ(found->distance_m, anew->distance_m);
-        }
-    }
-}
-
-/// As when rows are thinned, or a late message comes in.
-TEST(PathTracker, WhatChangedBeforeIsTakenAnew) {
-    const auto path = survey();
-    const PathForecast plan({path, {}, test::made_up_wing()});
-    const auto flown = fly(path, {}, 4);
-    const double until_s = begin_s + 200.0;
-    auto changed = truncate_series(flown.series, until_s);
-    PathTracker finder(plan);
-    ASSERT_TRUE(finder.find(flight::SelectedTracks(changed), begin_s, until_s)->path_time_s);
-    for (auto& track : changed.tracks)
-        for (std::size_t i = 0; i < track.value.size(); ++i) track.value[i] += i < 400 ? 6.0 : 0.0;
-    const auto found = finder.find(flight::SelectedTracks(changed), begin_s, until_s);
-    EXPECT_EQ(found->path_time_s, locate_on_path(plan, changed, begin_s, until_s)->path_time_s);
-    const auto earlier = truncate_series(changed, until_s - 50.0);
-    EXPECT_EQ(finder.find(flight::SelectedTracks(earlier), begin_s, until_s - 50.0)->path_time_s,
-              locate_on_path(plan, earlier, begin_s, until_s - 50.0)->path_time_s);
-    EXPECT_FALSE(finder.find(flight::SelectedTracks(flight::FlightSeries{}), begin_s, until_s));
-    EXPECT_EQ(finder.find(flight::SelectedTracks(changed), begin_s, until_s)->path_time_s, found->path_time_s);
 }
 
 }  // namespace
