@@ -40,12 +40,11 @@ telemetry::MessageDictionary read_definitions(const cli::StageCall& call, const 
 
 live::PlaybackTargetSetup target_setup(const cli::StageCall& call, const PlayArguments& arguments) {
     const auto& to = *arguments.to;
-    const bool to_frames = to.starts_with("udp:") || to.starts_with("serial:");
     if (!to.starts_with("ivy:") && arguments.as_aircraft)
         throw UsageError("--as-aircraft goes with --to ivy:ADDRESS:PORT");
     live::PlaybackTargetSetup setup;
     setup.as_aircraft = arguments.as_aircraft;
-    if (to_frames) setup.definitions = read_definitions(call, arguments);
+    if (to.starts_with("udp:")) setup.definitions = read_definitions(call, arguments);
     return setup;
 }
 
@@ -108,8 +107,7 @@ void print_report(const cli::StageCall& call, const PlayArguments& arguments, co
 
 int play(const cli::StageCall& call, const PlayArguments& arguments) {
     if (!arguments.to)
-        throw UsageError(
-            "nowhere to play to: expected --to udp:ADDRESS:PORT, serial:DEVICE:BAUD, ivy:ADDRESS:PORT, file:NAME.data or -");
+        throw UsageError("nowhere to play to: expected --to udp:ADDRESS:PORT, ivy:ADDRESS:PORT, file:NAME.data or -");
     const auto& to = *arguments.to;
     if (to == "-" && call.json) throw UsageError("--json would stand among the lines of --to -");
     const double speed = arguments.speed;
@@ -139,9 +137,8 @@ int flightwatt::stages::play_stage(int argc, char** argv) {
         "play", "LOG --to TARGET",
         R"(Sends a log as live telemetry, in its own time or faster, over a link that flightwatt watch listens to: a test
 bench for software that runs during a flight. The log is text or binary. Targets: udp:ADDRESS:PORT
-(Paparazzi's link frames, a datagram each), serial:DEVICE:BAUD (the same on a serial line), ivy:ADDRESS:PORT (a
-replay on an Ivy bus, in the form of Paparazzi's log player), file:NAME.data (a file that grows), - (the standard
-output).)"};
+(Paparazzi's link frames, a datagram each), ivy:ADDRESS:PORT (a replay on an Ivy bus, in the form of Paparazzi's
+log player), file:NAME.data (a file that grows), - (the standard output).)"};
     stage.json_schema = cli::document_schema<live::PlaybackReport>;
     stage.max_inputs = 1;
     stage.output_help = "write how it was played to FILE instead of the standard output";
@@ -155,9 +152,8 @@ output).)"};
     options.add("speed", arguments.speed,
                 {.value = "X", .min = 0.0, .max = max_speed, .above_min = true, .unit = "times as fast"},
                 "speed relative to the log's own time");
-    options.add(
-        "messages", arguments.messages, cli::input_file("FILE"),
-        "definitions of the messages, for udp, serial and binary logs: a messages.xml, or a .log; default: the log's");
+    options.add("messages", arguments.messages, cli::input_file("FILE"),
+                "definitions of the messages, for udp and binary logs: a messages.xml, or a .log; default: the log's");
     options.add("as-aircraft", arguments.as_aircraft,
                 "for ivy: messages as the aircraft itself sends them, without their time");
     return cli::run_stage(argc, argv, stage, [&](const auto& call) { return play(call, arguments); });

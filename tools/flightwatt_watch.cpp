@@ -210,8 +210,6 @@ int watch(const cli::StageCall& call, const WatchArguments& arguments) {
     update_flight(0.0);
     hook.end();
     for (const auto& [reason, count] : source->report().unusable) cli::warn(call, fmt::format("{}: {}", reason, count));
-    if (recorder && !recorder->lacks_definitions().empty())
-        cli::warn(call, "recorded without its .log: " + recorder->lacks_definitions());
     if (recorder && !recorder->failure().empty()) cli::warn(call, "the recording ended early: " + recorder->failure());
     speaker.end(flight, why);
     return flight.last_predicted() || !watched.basis || !watched.basis->no_prediction_reason.empty() ? cli::ok
@@ -241,7 +239,7 @@ with its source, or by a signal, and then prints its last prediction. The source
     auto& options = stage.options;
     cli::add_source_options(options, arguments.source);
     options.add("aircraft", arguments.live.aircraft_id, {.value = "ID"},
-                "the aircraft to watch; default: the one that flies");
+                "the aircraft to watch; default: the one that sends most");
     cli::add_basis_options(options, arguments.basis);
     options.add("replan", arguments.replans,
                 "plan the remaining mission again at every slot of its [plan], or as its [policy] states",

@@ -20,7 +20,7 @@ namespace flightwatt::live {
 
 struct LiveOptions {
     std::string flight = "live";                                    ///< its name
-    std::optional<std::string> aircraft_id = {};                    ///< none: the first that flies
+    std::optional<std::string> aircraft_id = {};                    ///< none: the one that sends most
     std::optional<telemetry::LogConfiguration> configuration = {};  ///< definitions; none: the built-in ones
     double silence_threshold_s = 30.0;                              ///< of the alarm
     /// Called with the accepted .data lines in their order; `clock_restarted`: before them.
@@ -84,7 +84,7 @@ class LiveFlight {
     LiveFlight(LiveOptions options, std::optional<PredictionInput> input, std::unique_ptr<LiveSchedule> schedule);
     ~LiveFlight();
 
-    /// `arrival_s` is the time of a message without one, and serves to distinguish a clock that was set from a gap.
+    /// `arrival_s` is the time of a message without one, and serves to find a silent aircraft while others send.
     void receive(IncomingMessage message, double arrival_s);
     /// Time of the latest accepted message; none before the first.
     std::optional<double> clock_s() const;

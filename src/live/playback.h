@@ -39,14 +39,14 @@ class PlaybackTarget {
 };
 
 struct PlaybackTargetSetup {
-    std::optional<telemetry::MessageDictionary> definitions = {};  ///< for udp: and serial:
+    std::optional<telemetry::MessageDictionary> definitions = {};  ///< for udp:
     telemetry::LinkVersion version = telemetry::LinkVersion::v2;
     bool as_aircraft = false;  ///< for ivy: messages as the aircraft sends them, without their time
 };
 
-/// "udp:127.0.0.1:4242" (a link frame in each datagram), "serial:/dev/ttyUSB0:57600" (link frames),
-/// "ivy:127.255.255.255:2010" (a replay as by Paparazzi's log player), "file:NAME.data" (a new file that grows). Throws
-/// UsageError for another name, InputError for a bus or device that cannot be opened, OutputError for the file.
+/// "udp:127.0.0.1:4242" (a link frame in each datagram), "ivy:127.255.255.255:2010" (a replay as by Paparazzi's log
+/// player), "file:NAME.data" (a new file that grows). Throws UsageError for another name, InputError for a bus that
+/// cannot be opened, OutputError for the file.
 std::unique_ptr<PlaybackTarget> open_playback_target(std::string_view to, PlaybackTargetSetup setup);
 
 struct PlaybackReport {

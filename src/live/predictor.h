@@ -27,8 +27,7 @@ struct PredictorSetup {
     std::optional<double> initial_soc_percent = {};  ///< none: by the resting voltage
     bool replan = false;                             ///< at every slot of the mission's plan
     PredictorInput input = PredictorInput::messages;
-    std::size_t max_rows = 30'000;              ///< of messages in memory; beyond, they are thinned
-    std::size_t max_pending_bytes = 1'000'000;  ///< pushed between two updates; beyond, input is dropped
+    std::size_t max_rows = 30'000;  ///< of messages in memory; beyond, they are thinned
 };
 
 /// Measurements at a time; NaN: unknown. Unknown power is voltage times current.
@@ -106,7 +105,7 @@ struct PredictorState {
     std::vector<ComponentState> components = {};  ///< all of the mission, by the last decision
     std::vector<Alarm> alarms = {};
     std::size_t rows = 0;      ///< in memory
-    std::size_t dropped = 0;   ///< pushes that did not fit, since the start
+    std::size_t dropped = 0;   ///< pushes that returned false, since the start
     std::size_t unusable = 0;  ///< lines, frames and values, since the start
     std::string failure = {};  ///< reason why the update failed (out of memory); else empty
 };
@@ -120,8 +119,7 @@ class Predictor {
     Predictor(const Predictor&) = delete;
     Predictor& operator=(const Predictor&) = delete;
 
-    // Pushed input is copied into memory allocated at the start, without computation. False, and counted, where it does
-    // not fit, and for the other kind of input.
+    // Input that is pushed is stored. False, and counted, without memory and for the other kind of input.
 
     /// A line of a .data file: "73.2 20 ENERGY 57 11.62 1.64 19.1 0.08 0.97".
     virtual bool push_line(std::string_view line) noexcept = 0;
@@ -131,7 +129,7 @@ class Predictor {
     virtual bool push_frames(double time_s, std::string_view bytes) noexcept = 0;
     virtual bool push_sample(const Sample& sample) noexcept = 0;
 
-    /// Processes the pushed input and updates the prediction; once a second of flight suffices. `silent_s`: time since
+    /// Updates the prediction; once a second of flight suffices. `silent_s`: time since
     /// the last input. The result is valid until the next update.
     virtual const PredictorState& update(double silent_s = 0.0) noexcept = 0;
     /// No more input will follow: accepts messages whose times are not confirmed yet, and updates.

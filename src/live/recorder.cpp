@@ -34,6 +34,7 @@ void Recorder::open_next() {
         const auto data = folder_ / (stem + ".data");
         const auto log = folder_ / (stem + ".log");
         if (std::filesystem::exists(log) || !make_new_file(data)) continue;
+        if (log_text_) write_file_atomically(log, *log_text_);
         out_ = std::ofstream(data, std::ios::app | std::ios::binary);
         file_ = data;
         return;
@@ -41,27 +42,13 @@ void Recorder::open_next() {
     throw OutputError(fmt::format("{} holds {} logs of this name", folder_.string(), max_files));
 }
 
-/// A failure does not end the recording: telemetry cannot be received again.
-void Recorder::write_definitions() {
-    if (!log_text_) return;
-    auto log = file_;
-    log.replace_extension(".log");
-    try {
-        write_file_atomically(log, *log_text_);
-    } catch (const OutputError& error) {
-        lacks_definitions_ = error.what();
-    }
-}
-
 void Recorder::write(std::string_view lines, bool clock_restarted) {
     if (!failure_.empty()) return;
     try {
-        const bool is_new = clock_restarted || file_.empty();
-        if (is_new) open_next();
+        if (clock_restarted || file_.empty()) open_next();
         out_.write(lines.data(), static_cast<std::streamsize>(lines.size()));
         out_.flush();
         if (!out_) throw OutputError(fmt::format("cannot write {}: {}", file_.string(), std::strerror(errno)));
-        if (is_new) write_definitions();
     } catch (const OutputError& error) {
         failure_ = error.what();
     }

@@ -28,12 +28,9 @@ class Recorder {
     const std::filesystem::path& file() const { return file_; }
     /// Reason why the recording ended; empty while it continues.
     const std::string& failure() const { return failure_; }
-    /// Reason why a .log could not be written; its .data is recorded without it.
-    const std::string& lacks_definitions() const { return lacks_definitions_; }
 
   private:
     void open_next();
-    void write_definitions();
 
     std::filesystem::path folder_;
     std::string name_;
@@ -42,7 +39,6 @@ class Recorder {
     std::filesystem::path file_;
     std::ofstream out_;
     std::string failure_;
-    std::string lacks_definitions_;
 };
 
 /// "26_11_22__14_05_09": Paparazzi's log name for a Unix time, in UTC.

@@ -94,7 +94,7 @@ class PathFlight {
         const double least = track.min_horizontal_m_per_s();
         const double crawl_s = track.length_m() / (crawling_fraction * airspeed());
         const bool is_forbidden = airspeed() <= least * (1.0 + 1e-12);
-        if (is_forbidden && !crawls_) refuse_wind(shape);
+        if (is_forbidden && !crawls_) refuse_wind();
         if (crawls_ && (is_forbidden || track.time_s(0.0, track.length_m(), airspeed()) > crawl_s)) {
             flown_.infeasible_elements.push_back(index_);
             add(crawl_s, 0.0);
@@ -180,23 +180,10 @@ class PathFlight {
             "all of it");
     }
 
-    [[noreturn]] void refuse_wind(const Leg& leg) const {
-        const auto [speed, from_deg, speed_sd, direction_sd] = wind_;
-        const double angle_rad = (from_deg - leg.course_deg) / units::degree_per_rad;
-        const double against = speed * std::cos(angle_rad);
-        const double across = std::abs(speed * std::sin(angle_rad));
-        const auto why = across >= airspeed()
-                             ? fmt::format("{:.4g} m/s of it blow across, which no drift angle holds", across)
-                             : fmt::format("{:.4g} m/s of it blow against it, and {:.4g} m/s across", against, across);
-        refuse(fmt::format("the wind of {:.4g} m/s from {:.4g} degrees forbids the course of {:.4g} degrees at an "
-                           "airspeed of {:.4g} m/s: {}",
-                           speed, from_deg, leg.course_deg, airspeed(), why),
+    [[noreturn]] void refuse_wind() const {
+        refuse(fmt::format("the wind of {:.4g} m/s from {:.4g} degrees is too strong for an airspeed of {:.4g} m/s",
+                           wind_.speed_m_per_s, wind_.from_deg, airspeed()),
                "fly it faster, on another course, or on another day");
-    }
-    [[noreturn]] void refuse_wind(const Circles& /*circles*/) const {
-        refuse(fmt::format("in a wind of {:.4g} m/s no circle over ground can be flown at an airspeed of {:.4g} m/s",
-                           wind_.speed_m_per_s, airspeed()),
-               "fly it faster, or on another day");
     }
 
     const FlightPath& path_;

@@ -4,7 +4,6 @@
 #include "base/atomic_file.h"
 #include "helpers/binary_frames.h"
 #include "helpers/free_port.h"
-#include "helpers/pseudo_terminal.h"
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
 
@@ -164,22 +163,6 @@ TEST_F(WatchFlightsStudy, OverUdp) {
         {"--udp", fmt::format("{}", port), "--messages", "flown.log", "--clock-factor", "60", "--aircraft", "20"});
     ASSERT_TRUE(test::wait_until([&] { return test::is_taken(port); }));
     play(fmt::format("udp:127.0.0.1:{}", port), 60);
-    expect_as_predicted(ended(watching, log_end_s - 30.0), "flown.data", of_arrivals);
-}
-
-TEST_F(WatchFlightsStudy, OverASerialLine) {
-    const test::NullModem line(folder / "aircraft", folder / "ground");
-    const auto watching = start_watch(
-        {"--serial", "ground:57600", "--messages", "flown.log", "--clock-factor", "60", "--aircraft", "20"});
-    const auto ground = std::filesystem::read_symlink(folder / "ground");
-    const auto is_open = [&] {
-        std::error_code error;
-        for (const auto& file : std::filesystem::directory_iterator(fmt::format("/proc/{}/fd", watching), error))
-            if (std::filesystem::read_symlink(file.path(), error) == ground) return true;
-        return false;
-    };
-    ASSERT_TRUE(test::wait_until(is_open));
-    play("serial:aircraft:57600", 60);
     expect_as_predicted(ended(watching, log_end_s - 30.0), "flown.data", of_arrivals);
 }
 

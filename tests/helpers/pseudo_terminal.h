@@ -1,17 +1,13 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <thread>
 
 #include <fcntl.h>
-#include <poll.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -44,41 +40,9 @@ class PseudoTerminal {
             bytes.remove_prefix(static_cast<std::size_t>(sent));
         }
     }
-    /// What has come within 20 ms.
-    std::string receive() const {
-        constexpr int wait_ms = 20;
-        ::pollfd line{file_, POLLIN, 0};
-        std::array<char, 4096> bytes{};
-        if (::poll(&line, 1, wait_ms) <= 0) return {};
-        const auto count = ::read(file_, bytes.data(), bytes.size());
-        if (count <= 0) ::usleep(wait_ms * 1000);  // nobody has opened it
-        return count > 0 ? std::string(bytes.data(), static_cast<std::size_t>(count)) : std::string();
-    }
 
   private:
     int file_;
-};
-
-/// Two serial lines: what is written to the first can be read from the second.
-class NullModem {
-  public:
-    NullModem(const std::filesystem::path& from, const std::filesystem::path& to) : from_(from), to_(to) {
-        thread_ = std::thread([this] {
-            while (!stopped_) to_.send(from_.receive());
-        });
-    }
-    ~NullModem() {
-        stopped_ = true;
-        thread_.join();
-    }
-    NullModem(const NullModem&) = delete;
-    NullModem& operator=(const NullModem&) = delete;
-
-  private:
-    PseudoTerminal from_;
-    PseudoTerminal to_;
-    std::atomic<bool> stopped_ = false;
-    std::thread thread_;
 };
 
 }  // namespace flightwatt::test

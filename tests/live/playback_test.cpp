@@ -5,7 +5,6 @@
 #include "helpers/binary_frames.h"
 #include "helpers/free_port.h"
 #include "helpers/link_lines.h"
-#include "helpers/pseudo_terminal.h"
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
 #include "live/sources.h"
@@ -109,19 +108,8 @@ TEST(Playback, PlaysBinaryLogsAsTheirText) {
     EXPECT_THROW(play(log, 1.0, target, never), InputError) << "nothing defines its messages";
 }
 
-TEST(Playback, ASerialLineThatNobodyReadsEndsNothing) {
-    const auto folder = test::scratch_dir();
-    const test::PseudoTerminal line(folder / "line");
-    const auto target =
-        open_playback_target("serial:" + (folder / "line").string(), {.definitions = test::small_dictionary()});
-    const auto text = test::energy_lines(1).front();
-    std::string_view why_not;
-    for (int i = 0; i < 50'000 && why_not.empty(); ++i) why_not = target->send({0.0, text});
-    EXPECT_THAT(std::string(why_not), testing::HasSubstr("slower than the log"));
-}
-
 TEST(Playback, RefusesTargetsThatAreNone) {
-    for (const auto* wrong : {"", "udp", "udp:", "tcp:127.0.0.1:1", "file:", "ivy", "serial", "serial::9600"}) {
+    for (const auto* wrong : {"", "udp", "udp:", "tcp:127.0.0.1:1", "file:", "ivy", "serial:/dev/ttyUSB0:9600"}) {
         EXPECT_THROW(open_playback_target(wrong, {.definitions = test::small_dictionary()}), UsageError) << wrong;
     }
     EXPECT_THROW(open_playback_target("udp:host:1", {.definitions = test::small_dictionary()}), UsageError);
@@ -173,19 +161,6 @@ TEST(Playback, BringsAllToAUdpSourceAtTheirTimes) {
         EXPECT_TRUE(std::ranges::is_sorted(messages, {}, &IncomingMessage::time_s));
         EXPECT_GE(*messages.back().time_s, 19.9);  // since the source was opened, however late the first were heard
     }
-}
-
-TEST(Playback, BringsAllOverASerialLine) {
-    const auto lines = test::energy_lines(300);
-    const auto folder = test::scratch_dir();
-    const test::NullModem modem(folder / "here", folder / "there");
-    const auto source = open_serial((folder / "there").string() + ":57600", test::small_dictionary(), 100.0);
-    const auto target = open_playback_target("serial:" + (folder / "here").string() + ":57600",
-                                             {.definitions = test::small_dictionary()});
-    const auto messages = played(*source, write_log(log_of(lines)), 100.0, *target, lines.size());
-    EXPECT_EQ(texts_of(messages), lines);
-    EXPECT_THROW(open_playback_target("serial:/dev/never:57600", {.definitions = test::small_dictionary()}),
-                 InputError);
 }
 
 TEST(Playback, BringsAllOverAnIvyBusWithTheirTimes) {

@@ -42,15 +42,6 @@ TEST(Recorder, GivesUpWhereItCannotWrite) {
     recorder.write("2 20 PONG\n", false);
 }
 
-TEST(Recorder, GoesOnWithoutTheDefinitions) {
-    const auto folder = test::scratch_dir();
-    Recorder recorder(folder, "a", "<log/>");
-    std::filesystem::create_directory(folder / "a.log.tmp");
-    recorder.write("1 20 PONG\n", false);
-    EXPECT_TRUE(recorder.failure().empty());
-    EXPECT_EQ(read_file(folder / "a.data"), "1 20 PONG\n");
-}
-
 TEST(Recorder, NamesLogsAsPaparazziDoes) { EXPECT_EQ(log_name(1593778665), "20_07_03__12_17_45"); }
 
 }  // namespace

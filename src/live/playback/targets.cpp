@@ -14,82 +14,38 @@
 
 #include <boost/asio.hpp>
 #include <fmt/format.h>
-#include <poll.h>
-#include <unistd.h>
 
 namespace flightwatt::live {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Sends messages as link frames.
-class FrameTarget : public PlaybackTarget {
+/// Sends messages as link frames, each in a datagram; without a receiver it is lost, as over the air.
+class UdpTarget : public PlaybackTarget {
   public:
-    explicit FrameTarget(PlaybackTargetSetup setup)
-        : definitions_(std::move(setup.definitions.value())), encoder_(definitions_, setup.version) {}
+    UdpTarget(std::string_view to, PlaybackTargetSetup setup)
+        : definitions_(std::move(setup.definitions.value())),
+          encoder_(definitions_, setup.version),
+          to_(parse_udp_address(to)),
+          socket_(context_, to_.protocol()) {
+        socket_.set_option(boost::asio::socket_base::broadcast(true));
+    }
 
     std::string_view send(const IncomingMessage& message) override {
         frame_.clear();
-        const auto reason = encoder_.append_frame(message.text, frame_);
-        return reason.empty() ? send_frame(frame_) : reason;
+        if (const auto reason = encoder_.append_frame(message.text, frame_); !reason.empty()) return reason;
+        boost::system::error_code error;
+        socket_.send_to(boost::asio::buffer(frame_), to_, 0, error);
+        return error && error != boost::asio::error::connection_refused ? "the network did not accept them" : "";
     }
-
-  protected:
-    /// Returns the reason if it is not sent, else an empty text.
-    virtual std::string_view send_frame(std::string_view frame) = 0;
 
   private:
     telemetry::MessageDictionary definitions_;
     telemetry::LinkEncoder encoder_;
     std::string frame_;
-};
-
-/// A datagram each; without a receiver it is lost, as over the air.
-class UdpTarget : public FrameTarget {
-  public:
-    UdpTarget(std::string_view to, PlaybackTargetSetup setup)
-        : FrameTarget(std::move(setup)), to_(parse_udp_address(to)), socket_(context_, to_.protocol()) {
-        socket_.set_option(boost::asio::socket_base::broadcast(true));
-    }
-
-  private:
-    std::string_view send_frame(std::string_view frame) override {
-        boost::system::error_code error;
-        socket_.send_to(boost::asio::buffer(frame), to_, 0, error);
-        return error && error != boost::asio::error::connection_refused ? "the network did not accept them" : "";
-    }
-
     boost::asio::ip::udp::endpoint to_;
     boost::asio::io_context context_;
     boost::asio::ip::udp::socket socket_;
-};
-
-/// On a serial line, which asio opens non-blocking. A frame that it does not accept within a second is left out.
-class SerialTarget : public FrameTarget {
-  public:
-    SerialTarget(std::string_view to, PlaybackTargetSetup setup)
-        : FrameTarget(std::move(setup)), line_(parse_serial_line(to)) {
-        register_output(line_.device);
-        require_serial_line(line_, port_);
-    }
-
-  private:
-    std::string_view send_frame(std::string_view frame) override {
-        constexpr int max_ms = 1000;
-        while (!frame.empty()) {
-            ::pollfd line{port_.native_handle(), POLLOUT, 0};
-            if (::poll(&line, 1, max_ms) == 0) return "the serial line is slower than the log";
-            const auto written = ::write(port_.native_handle(), frame.data(), frame.size());
-            if (written > 0) frame.remove_prefix(static_cast<std::size_t>(written));
-            if (written < 0 && errno != EINTR && errno != EAGAIN)
-                throw OutputError(fmt::format("cannot write to {}: {}", line_.device, std::strerror(errno)));
-        }
-        return {};
-    }
-
-    SerialLine line_;
-    boost::asio::io_context context_;
-    boost::asio::serial_port port_{context_};
 };
 
 class IvyTarget : public PlaybackTarget {
@@ -158,11 +114,8 @@ std::unique_ptr<PlaybackTarget> open_playback_target(std::string_view to, Playba
     if (kind == "file" && !where.empty()) return std::make_unique<LineTarget>(std::string(where));
     if (kind == "ivy" && !where.empty()) return std::make_unique<IvyTarget>(where, setup.as_aircraft);
     if (kind == "udp" && !where.empty()) return std::make_unique<UdpTarget>(where, std::move(setup));
-    if (kind == "serial" && !where.empty()) return std::make_unique<SerialTarget>(where, std::move(setup));
     throw UsageError(
-        fmt::format("unknown target '{}': expected udp:ADDRESS:PORT, serial:DEVICE:BAUD, "
-                    "ivy:ADDRESS:PORT, file:NAME.data or -",
-                    to));
+        fmt::format("unknown target '{}': expected udp:ADDRESS:PORT, ivy:ADDRESS:PORT, file:NAME.data or -", to));
 }
 
 }  // namespace flightwatt::live

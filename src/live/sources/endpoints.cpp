@@ -57,14 +57,6 @@ boost::system::error_code open_serial_line(const SerialLine& line, boost::asio::
     }
 }
 
-void require_serial_line(const SerialLine& line, boost::asio::serial_port& port) {
-    if (const auto error = open_serial_line(line, port)) {
-        throw InputError({line.device},
-                         fmt::format("cannot open it as a serial line of {} baud: {}", line.baud, error.message()),
-                         "check that it is plugged in, readable and writable (group dialout), and supports the speed");
-    }
-}
-
 boost::asio::awaitable<void> accept_connections(boost::asio::ip::tcp::acceptor& acceptor,
                                                 std::function<void(boost::asio::ip::tcp::socket)> handle) {
     using boost::asio::use_awaitable;

@@ -36,9 +36,6 @@ SerialLine parse_serial_line(std::string_view text);
 /// Opens it with eight bits, no parity, one stop bit and no flow control; closed again if that fails.
 boost::system::error_code open_serial_line(const SerialLine& line, boost::asio::serial_port& port);
 
-/// As open_serial_line; throws InputError.
-void require_serial_line(const SerialLine& line, boost::asio::serial_port& port);
-
 /// Child processes do not inherit a socket or a device. (Asio does not set this flag.)
 template <typename Opened>
 void close_on_exec(Opened& opened) {

@@ -37,7 +37,6 @@ std::string_view take_until(std::string_view& text, char mark) {
 
 constexpr std::string_view replay_prefix = "replay";
 constexpr std::string_view time_prefix = "time";
-constexpr std::size_t max_aircraft = 256;  // their ids are bytes
 constexpr std::size_t max_waiting_replay = 1000;
 
 bool is_id(std::string_view word) {
@@ -45,10 +44,9 @@ bool is_id(std::string_view word) {
     return !word.empty() && word.size() <= max_digits && boost::algorithm::all(word, boost::algorithm::is_digit());
 }
 
-/// "20" of "replay20"; empty for any other word.
-std::string_view id_after(std::string_view prefix, std::string_view word) {
-    if (!word.starts_with(prefix) || !is_id(word.substr(prefix.size()))) return {};
-    return word.substr(prefix.size());
+/// Whether a word is a prefix and an aircraft's id, as "replay20".
+bool has_id(std::string_view prefix, std::string_view word) {
+    return word.starts_with(prefix) && is_id(word.substr(prefix.size()));
 }
 
 }  // namespace
@@ -107,34 +105,23 @@ void IvyMessages::handle(std::string_view text) {
     const auto blank = text.find(' ');
     if (blank == std::string_view::npos) return sink_.count("messages of a single word", 1);
     const auto sender = text.substr(0, blank);
-    const auto rest = text.substr(blank);  // with its blank
-    if (const auto id = id_after(time_prefix, sender); !id.empty()) return handle_time(id, rest);
-    const auto id = id_after(replay_prefix, sender);
-    if (id.empty()) {
-        if (is_id(sender)) has_aircraft_ = true;
+    if (has_id(time_prefix, sender)) {
+        const auto time_s = parse_number(boost::algorithm::trim_copy(std::string(text.substr(blank))));
+        if (!time_s || !std::isfinite(*time_s)) return sink_.count("replay times that are not numbers", 1);
+        if (!waiting_.empty()) latest_time_s_ = time_s;
+        for (auto& message : std::exchange(waiting_, {})) sink_.push({time_s, std::move(message)});
+    } else if (!has_id(replay_prefix, sender)) {
+        if (is_id(sender)) {
+            has_aircraft_ = true;
+            waiting_.clear();
+        }
         // Messages from the ground during a replay get the replay's time.
-        return sink_.push({has_aircraft_ ? std::nullopt : latest_time_s_, std::string(text)});
+        sink_.push({has_aircraft_ ? std::nullopt : latest_time_s_, std::string(text)});
+    } else if (has_aircraft_ || waiting_.size() >= max_waiting_replay) {
+        sink_.count("messages of a replay without times, or while an aircraft itself is on the bus", 1);
+    } else {
+        waiting_.emplace_back(text.substr(replay_prefix.size()));
     }
-    if (has_aircraft_ || (replays_.size() >= max_aircraft && !replays_.contains(id)))
-        return sink_.count("messages of a replay while an aircraft itself is on the bus", 1);
-    auto& replay = replays_[std::string(id)];
-    replay.waiting.push_back(fmt::format("{}{}", id, rest));
-    if (replay.waiting.size() > max_waiting_replay) forward(replay);
-}
-
-void IvyMessages::handle_time(std::string_view id, std::string_view text) {
-    const auto time_s = parse_number(text.substr(std::min(text.find_first_not_of(' '), text.size())));
-    if (!time_s || !std::isfinite(*time_s)) return sink_.count("replay times that are not numbers", 1);
-    const auto replay = replays_.find(id);
-    if (has_aircraft_ || replay == replays_.end()) return;
-    replay->second.time_s = time_s;
-    latest_time_s_ = time_s;
-    forward(replay->second);
-}
-
-void IvyMessages::forward(Replay& replay) {
-    for (auto& text : replay.waiting) sink_.push({replay.time_s, std::move(text)});
-    replay.waiting.clear();
 }
 
 }  // namespace flightwatt::live

@@ -3,7 +3,6 @@
 #include "live/sources/message_readers.h"
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -69,18 +68,10 @@ class IvyMessages {
     void handle(std::string_view text);
 
   private:
-    struct Replay {
-        std::optional<double> time_s;  ///< the latest
-        std::vector<std::string> waiting;
-    };
-
-    void handle_time(std::string_view id, std::string_view text);
-    void forward(Replay& replay);
-
     MessageSink& sink_;
-    std::map<std::string, Replay, std::less<>> replays_;  ///< by aircraft
-    std::optional<double> latest_time_s_;                 ///< of any replay
-    bool has_aircraft_ = false;                           ///< an aircraft itself is on the bus
+    std::vector<std::string> waiting_;     ///< messages of replays, for the next time
+    std::optional<double> latest_time_s_;  ///< of any replay
+    bool has_aircraft_ = false;            ///< an aircraft itself is on the bus
 };
 
 }  // namespace flightwatt::live

@@ -109,7 +109,12 @@ class SerialReceiver {
           port_(context),
           timer_(context),
           reader_(queue, std::move(definitions)) {
-        require_serial_line(line_, port_);
+        if (const auto error = open_serial_line(line_, port_)) {
+            throw InputError(
+                {line_.device},
+                fmt::format("cannot open it as a serial line of {} baud: {}", line_.baud, error.message()),
+                "check that it is plugged in, readable and writable (group dialout), and supports the speed");
+        }
         asio::co_spawn(context, run(), asio::detached);
     }
 

@@ -4,11 +4,10 @@
 #include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
 #include "flight/selected_track.h"
+#include "live/state/clock_filter.h"
 #include "live/state/moment.h"
-#include "live/state/sender_clocks.h"
 #include "live/state/telemetry_store.h"
 #include "mechanical/prediction.h"
-#include "path/path_tracker.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,10 +35,8 @@ class LiveFlight::Impl {
         : options_(std::move(options)),
           input_(std::move(input)),
           schedule_(std::move(schedule)),
-          store_(options_.flight, std::move(options_.configuration), input_ && (input_->path || input_->motion)),
-          choice_(options_.aircraft_id) {
-        if (input_ && input_->path && !input_->remaining_s && input_->path->flown().duration_s > 0.0)
-            tracker_.emplace(*input_->path);
+          store_(options_.flight, std::move(options_.configuration), input_ && (input_->path || input_->motion)) {
+        if (options_.aircraft_id) store_.keep_only(aircraft_ = *options_.aircraft_id);
         if (!input_ || !input_->battery) return;
         for (const auto& warning : battery_warnings(*input_->battery))
             battery_warnings_.push_back(fmt::format("{}: {}", input_->battery_file, warning));
@@ -47,29 +44,37 @@ class LiveFlight::Impl {
 
     void receive(IncomingMessage message, double arrival_s) {
         ++messages_;
-        choice_.count(message.text);
-        const std::string sender(sender_of(message.text));
+        arrival_s_ = arrival_s;
+        const auto sender = message.text.substr(0, message.text.find(' '));
+        if (followed_.empty()) followed_ = sender;
+        if (sender == followed_) heard_s_ = arrival_s;
+        if (messages_of_.size() < max_senders || messages_of_.contains(sender)) ++messages_of_[sender];
+        if (!message.time_s) message.time_s = arrival_s;
+        const bool is_known = clocks_.contains(sender);
+        const auto name = is_known || clocks_.size() < max_senders ? sender : std::string();
+        // In a new file, an earlier time needs no confirmation.
+        const bool all_restart =
+            message.is_after_restart && clocks_[is_known ? sender : followed_].is_late(*message.time_s);
+        if (all_restart) clocks_.clear();
         accepted_.clear();
-        using Scope = SenderClocks::RestartScope;
-        const auto scope = clocks_.push(
-            {message.time_s.value_or(arrival_s), std::move(message.text), arrival_s, std::move(message.values)},
-            message.is_after_restart, accepted_);
-        const bool is_restart = scope == Scope::all || (scope == Scope::sender && clocks_.is_followed(sender));
-        if (scope == Scope::sender) store_.drop(sender);
-        if (scope == Scope::all) store_.clear();
+        const bool restarts = clocks_[name].push(std::move(message), accepted_);
+        if (restarts) store_.drop(sender);
+        if (all_restart) store_.clear();
+        const bool is_restart = all_restart || (restarts && sender == followed_);
         if (is_restart) restart();
         store_accepted(is_restart);
     }
 
     void end() {
         accepted_.clear();
-        clocks_.flush(accepted_);
+        for (auto& [sender, clock] : clocks_) clock.flush(accepted_);
         store_accepted(false);
         ended_ = true;
     }
 
     std::optional<double> clock_s() const {
-        return clocks_.started() ? std::optional(clocks_.latest_s()) : std::nullopt;
+        const auto followed = clocks_.find(followed_);
+        return followed == clocks_.end() ? std::nullopt : std::optional(followed->second.latest_s());
     }
 
     LiveState update(double silent_s);
@@ -77,11 +82,12 @@ class LiveFlight::Impl {
 
   private:
     void store_accepted(bool clock_restarted) {
-        for (const auto& line : accepted_) store_.add(line.time_s, line.text, line.values);
+        for (const auto& line : accepted_) store_.add(*line.time_s, line.text, line.values);
         while (store_.rows() > 2 * options_.max_rows) store_.thin();
         if (!options_.on_lines || accepted_.empty()) return;
         std::string lines;
-        for (const auto& line : accepted_) fmt::format_to(std::back_inserter(lines), "{} {}\n", line.time_s, line.text);
+        for (const auto& line : accepted_)
+            fmt::format_to(std::back_inserter(lines), "{} {}\n", *line.time_s, line.text);
         options_.on_lines(lines, clock_restarted);
     }
 
@@ -89,7 +95,6 @@ class LiveFlight::Impl {
         ++restarts_;
         sorties_before_ += std::exchange(phases_, {}).sorties.size();
         carried_percent_.reset();
-        before_restart_ = std::exchange(in_the_air_, std::nullopt);
         rejected_.clear();
         checked_s_.reset();
         warnings_.clear();
@@ -111,19 +116,21 @@ class LiveFlight::Impl {
     std::optional<PredictionInput> input_;
     std::unique_ptr<LiveSchedule> schedule_;
     TelemetryStore store_;
-    SenderClocks clocks_;
-    AircraftSelector choice_;
-    std::optional<path::PathTracker> tracker_;  ///< of the position on the path
-    std::vector<ClockFilter::Line> accepted_;   ///< of the last message; a member to reuse its memory
+    static constexpr std::size_t max_senders = 32;            ///< with clocks and counts; further ones share a clock
+    std::map<std::string, ClockFilter, std::less<>> clocks_;  ///< of the senders
+    std::map<std::string, std::size_t, std::less<>> messages_of_;  ///< the senders
+    std::string aircraft_;                                         ///< empty: not known yet
+    std::string followed_;    ///< the aircraft; before one is known, the first sender
+    double arrival_s_ = 0.0;  ///< of the last message, and of the aircraft's last one
+    double heard_s_ = 0.0;
+    std::vector<IncomingMessage> accepted_;  ///< of the last message; a member to reuse its memory
     std::size_t messages_ = 0;
     std::size_t restarts_ = 0;
-    std::size_t sorties_before_ = 0;               ///< sorties that are not in `phases_` any more
-    std::size_t scheduled_sortie_ = 0;             ///< sortie of the schedule
-    std::optional<double> carried_percent_;        ///< state of charge at the start of the stored rows
-    std::optional<CarriedFlight> in_the_air_;      ///< at the last update
-    std::optional<CarriedFlight> before_restart_;  ///< of a flight that continues
-    std::string rejected_;                         ///< faults of the power record; empty if it is valid
-    std::optional<double> checked_s_;              ///< time of the last check of the record
+    std::size_t sorties_before_ = 0;         ///< sorties that are not in `phases_` any more
+    std::size_t scheduled_sortie_ = 0;       ///< sortie of the schedule
+    std::optional<double> carried_percent_;  ///< state of charge at the start of the stored rows
+    std::string rejected_;                   ///< faults of the power record; empty if it is valid
+    std::optional<double> checked_s_;        ///< time of the last check of the record
     std::optional<double> updated_s_;
     bool ended_ = false;
     std::vector<std::string> warnings_;          ///< of the last check
@@ -138,17 +145,19 @@ LiveState LiveFlight::Impl::update(double silent_s) {
     LiveState state;
     state.messages = messages_;
     state.restarts = restarts_;
-    auto series = choice_.choose(store_);
-    clocks_.follow(series.aircraft_id);
-    state.time_s = clocks_.latest_s();
-    state.time_since_message_s = silent_s + clocks_.silent_s();
+    if (auto busiest = store_.busiest_sender(); !busiest.empty()) aircraft_ = std::move(busiest);
+    auto series = aircraft_.empty() ? flight::FlightSeries() : store_.series(aircraft_);
+    if (!aircraft_.empty() && aircraft_ != std::exchange(followed_, aircraft_)) heard_s_ = arrival_s_;
+    state.time_s = clock_s().value_or(0.0);
+    state.time_since_message_s = silent_s + arrival_s_ - heard_s_;
     // The series ends with the last power or altitude, as for predict.
     if (const double now_s = mechanical::last_time_s(series); std::isfinite(now_s))
         series = truncate_series(std::move(series), now_s);
     const flight::SelectedTracks tracks(series);
     state.aircraft_id = series.aircraft_id;
     state.aircraft_name = series.aircraft_name;
-    state.other_senders = choice_.others();
+    state.other_senders = {messages_of_.begin(), messages_of_.end()};
+    state.other_senders.erase(aircraft_);
     update_flight(tracks, state);
     update_battery(tracks, state);
     check_record(tracks, state);
@@ -165,7 +174,6 @@ LiveState LiveFlight::Impl::update(double silent_s) {
     state.rows = store_.rows();
     if (state.prediction) last_predicted_ = state;
     if (!rejected_.empty()) last_predicted_.reset();
-    in_the_air_ = state.phase ? std::optional(carried_flight(state, tracks)) : std::nullopt;
     return state;
 }
 
@@ -183,7 +191,7 @@ void LiveFlight::Impl::update_flight(const flight::SelectedTracks& tracks, LiveS
     state.current_a = last_value(tracks, "current_a");
     state.altitude_m = last_value(tracks, "altitude_m");
     if (phases_.sorties.empty()) return;
-    choice_.keep(store_);
+    store_.keep_only(aircraft_);
     const auto& sortie = phases_.sorties.back();
     const double now_s = mechanical::last_time_s(tracks.series());
     update_flight_times(sortie, tracks["altitude_m"], now_s,
@@ -194,18 +202,12 @@ void LiveFlight::Impl::update_flight(const flight::SelectedTracks& tracks, LiveS
 
 void LiveFlight::Impl::update_battery(const flight::SelectedTracks& tracks, LiveState& state) {
     record_.reset();
-    const auto* battery = input_ && input_->battery ? &*input_->battery : nullptr;
-    if (battery != nullptr) {
-        state.battery = estimate_soc(*input_, carried_percent_, tracks, record_);
-        if (state.began_in_air && !record_ && input_->initial_soc_percent)
-            estimate_soc_from_counter(tracks["charge_ah"], battery->capacity_ah, *input_->initial_soc_percent, 0.0,
-                                      *state.battery);
-    }
-    if (!before_restart_ || phases_.sorties.empty()) return;
-    const auto& sortie = phases_.sorties.back();
-    if (!state.began_in_air || phases_.sorties.size() > 1) return before_restart_.reset();  // another flight
-    const double until_s = state.landed ? sortie.end_s() : mechanical::last_time_s(tracks.series());
-    continue_flight(*before_restart_, tracks, until_s, battery, state);
+    if (!input_ || !input_->battery) return;
+    state.battery = estimate_soc(*input_, carried_percent_, tracks, record_);
+    const bool is_counted = state.began_in_air && !record_ && restarts_ == 0;
+    if (is_counted && input_->initial_soc_percent)
+        estimate_soc_from_counter(tracks["charge_ah"], input_->battery->capacity_ah, *input_->initial_soc_percent,
+                                  *state.battery);
 }
 
 /// Why there can be no prediction now; empty: there can.
@@ -234,7 +236,8 @@ void LiveFlight::Impl::predict(const flight::SelectedTracks& tracks, LiveState& 
         state.expected_power_w = units::joule_from_wh(flown.cruise_energy_wh) / flown.cruise_s();
         const bool has_cruise_start = !state.began_in_air || sortie->phases.front().phase == flight::Phase::takeoff;
         std::optional<path::PathFix> fix;
-        if (tracker_ && has_cruise_start) fix = tracker_->find(tracks, flown.cruise_start_s, flown.until_s);
+        if (input_->path && !input_->remaining_s && has_cruise_start)
+            fix = locate_on_path(*input_->path, tracks, flown.cruise_start_s, flown.until_s);
         state.prediction = state.began_in_air ? predict_airborne_start(*input_, flown, has_cruise_start, fix, remarks)
                                               : predict_energy(*input_, flown, fix, remarks);
         predict_battery(state, remarks);
@@ -323,13 +326,13 @@ void LiveFlight::Impl::add_warnings(LiveState& state) const {
     warnings.insert(warnings.end(), warnings_.begin(), warnings_.end());
     state.warnings.insert(state.warnings.begin(), warnings.begin(), warnings.end());
     state.unusable = store_.skipped();
-    if (clocks_.unconfirmed() > 0) state.unusable["a time that no other line confirms"] = clocks_.unconfirmed();
-    if (const auto steps = clocks_.steps_back(); steps > 0)
+    std::size_t unconfirmed = 0;
+    for (const auto& [sender, clock] : clocks_) unconfirmed += clock.unconfirmed();
+    if (unconfirmed > 0) state.unusable["a time that no other line confirms"] = unconfirmed;
+    const auto followed = clocks_.find(followed_);
+    if (const auto steps = followed == clocks_.end() ? 0 : followed->second.steps_back(); steps > 0)
         state.warnings.push_back(
             fmt::format("the clock of the telemetry was set back {} time{}", steps, steps == 1 ? "" : "s"));
-    if (const double set_s = clocks_.set_ahead_s(); set_s > 0.0)
-        state.warnings.push_back(
-            fmt::format("the clock of the telemetry was set ahead by {:.0f} s, by the arrival of its lines", set_s));
     for (const auto& [message, stride] : store_.thinned())
         state.warnings.push_back(fmt::format("of {} every {}th row is retained", message, stride));
 }

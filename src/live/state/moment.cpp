@@ -1,8 +1,13 @@
 #include "live/state/moment.h"
 
+#include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
+#include "flight/phase_statistics.h"
 #include "flight/segmentation.h"
+#include "flight/selected_track.h"
+#include "mechanical/flight_bins.h"
+#include "mechanical/flight_progress.h"
 
 #include <algorithm>
 #include <cmath>
@@ -65,6 +70,14 @@ std::string model_text(const Prediction& prediction, const PredictionInput& inpu
                        measured_wh, interval->low_wh, interval->high_wh);
 }
 
+/// The longest remaining cruise after `received_s` of it.
+double max_remaining_s(const PredictionInput& input, double received_s) {
+    const double whole_s = input.path ? input.path->flown().duration_s : input.cruise_s.value();
+    if (received_s < whole_s) return whole_s - received_s;
+    throw NoResultError(fmt::format(
+        "the cruise takes longer than the mission's {:.0f} s: give the remaining cruise with --remaining", whole_s));
+}
+
 }  // namespace
 
 void update_flight_times(const flight::Sortie& sortie, const flight::Track& altitude_m, double now_s, bool is_over,
@@ -98,6 +111,64 @@ double retention_start_s(const flight::FlightPhases& phases, const LiveState& st
 std::string without_flight_name(const std::string& text, const std::string& flight) {
     const auto prefix = flight + ": ";
     return text.starts_with(prefix) ? text.substr(prefix.size()) : text;
+}
+
+mechanical::FlightProgress airborne_progress(const flight::SelectedTracks& tracks, const flight::Sortie& sortie) {
+    mechanical::FlightProgress flown;
+    flown.until_s = mechanical::last_time_s(tracks.series());
+    flown.lift_off_s = sortie.start_s();
+    const auto& first = sortie.phases.front();
+    flown.cruise_start_s = first.phase == flight::Phase::takeoff ? first.end.time_s : sortie.start_s();
+    const double hold_s = flight::SegmentationOptions{}.hold_s;
+    if (sortie.phases.back().phase == flight::Phase::takeoff || flown.cruise_s() < hold_s) {
+        throw NoResultError(
+            fmt::format("at {:.1f} s of the log, which begins in the air, the aircraft has not held its height for "
+                        "{:.0f} s",
+                        flown.until_s, hold_s));
+    }
+    const auto& power = tracks["power_w"];
+    flown.cruise_energy_wh = integrated_energy_wh(power, flown.cruise_start_s, flown.until_s);
+    flown.energy_wh = integrated_energy_wh(power, flown.lift_off_s, flown.cruise_start_s) + flown.cruise_energy_wh;
+    flown.motion = mechanical::bin_flight(tracks, {{flight::Phase::cruise, flown.cruise_start_s, flown.until_s}});
+    return flown;
+}
+
+Prediction predict_airborne_start(const PredictionInput& input, const mechanical::FlightProgress& flown,
+                                  bool has_cruise_start, const std::optional<path::PathFix>& fix,
+                                  Diagnostics& remarks) {
+    auto ahead = input;
+    if (!ahead.level) ahead.level = mechanical::CruisePrior::constant;  // the position on the curve is not known
+    const bool is_remaining_known = input.remaining_s || has_cruise_start;
+    const double max_s = is_remaining_known ? 0.0 : max_remaining_s(input, flown.cruise_s());
+    if (!is_remaining_known) {
+        ahead.remaining_s = 0.5 * max_s;
+        remarks.warnings.push_back(
+            fmt::format("the telemetry begins in the air: 0 to {:.0f} s of the mission's cruise may remain; half of "
+                        "that is expected, and the interval contains all of it",
+                        max_s));
+    }
+    auto prediction = predict_energy(ahead, flown, fix, remarks);
+    prediction.began_in_air = true;
+    if (is_remaining_known) return prediction;
+    constexpr double uniform_variance = 1.0 / 12.0;
+    constexpr double degrees_of_freedom = 1e9;  // known exactly
+    const double energy_wh = units::wh_from_joule(prediction.cruise.remaining_mean_w * max_s);
+    mechanical::add_variance(prediction.remaining_energy,
+                             {energy_wh * energy_wh * uniform_variance, degrees_of_freedom});
+    prediction.interval = mechanical::interval_95(prediction.remaining_energy).value();
+    return prediction;
+}
+
+void estimate_soc_from_counter(const flight::Track& charge_ah, double capacity_ah, double initial_soc_percent,
+                               LiveBattery& result) {
+    if (charge_ah.empty() || result.soc_percent) return;
+    const double drawn_ah = charge_ah.value.back();
+    const double left_percent = initial_soc_percent - units::percentage(drawn_ah, capacity_ah);
+    if (!(drawn_ah > 0.0) || !(left_percent > 0.0)) return;  // it does not count, restarted, or counts another pack
+    result.drawn_ah = drawn_ah;
+    result.initial_soc_percent = initial_soc_percent;
+    result.soc_percent = left_percent;
+    result.state = battery::BatteryState{left_percent, 0.0};
 }
 
 std::vector<Alarm> alarms_of(const LiveState& state, const std::optional<PredictionInput>& input, double silence_s) {

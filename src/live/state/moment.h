@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-/// Functions of LiveFlight at one moment: phase, battery, start or restart in the air, alarms.
+/// Functions of LiveFlight at one moment: phase, battery, start in the air, alarms.
 namespace flightwatt::live {
 
 /// Sets phase and times from the last sortie. A climb that has not held its height yet is a take-off. Landed: the
@@ -46,27 +46,10 @@ mechanical::FlightProgress airborne_progress(const flight::SelectedTracks& track
 Prediction predict_airborne_start(const PredictionInput& input, const mechanical::FlightProgress& flown,
                                   bool has_cruise_start, const std::optional<path::PathFix>& fix, Diagnostics& remarks);
 
-/// A flight in the air before a restart of its clock.
-struct CarriedFlight {
-    double clock_s = 0.0;  ///< before the restart
-    std::optional<double> energy_wh = {};
-    std::optional<double> soc_percent = {};
-    std::optional<double> counted_wh = {};  ///< by the autopilot's counters; none of one that is constant
-    std::optional<double> counted_ah = {};
-};
-
-CarriedFlight carried_flight(const LiveState& state, const flight::SelectedTracks& tracks);
-
-/// Sets the state of charge by the autopilot's counter where it is not known otherwise: from `soc_percent` at
-/// `counted_ah`.
-void estimate_soc_from_counter(const flight::Track& charge_ah, double capacity_ah, double soc_percent,
-                               double counted_ah, LiveBattery& result);
-
-/// Continues energy and charge after a restart in the air by the autopilot's counters, which may have restarted, too.
-/// Without a counter the energy is unknown, and the charge is that of the voltage. Adds a warning. `battery`: may be
-/// null.
-void continue_flight(const CarriedFlight& before, const flight::SelectedTracks& tracks, double now_s,
-                     const battery::Battery* battery, LiveState& state);
+/// Sets the state of charge by the autopilot's counter, which counts from `initial_soc_percent` on, where it is not
+/// known otherwise.
+void estimate_soc_from_counter(const flight::Track& charge_ah, double capacity_ah, double initial_soc_percent,
+                               LiveBattery& result);
 
 /// Alarms: reserve not kept at the high end of the energy's interval, power outside the model's 95 % interval, silent
 /// link, voltage below the battery's model.

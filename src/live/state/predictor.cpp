@@ -10,8 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <exception>
 #include <utility>
 #include <vector>
@@ -137,50 +135,10 @@ ScheduleState decision_of(const LiveDecision& of) {
     return decision;
 }
 
-/// Input pushed since the last update, in memory that is allocated at the start.
-class InputBuffer {
-  public:
-    enum class Kind : std::uint8_t { line, message, frames, sample };
-
-    explicit InputBuffer(std::size_t max_bytes) : max_items_(max_bytes / sizeof(Item)) {
-        bytes_.reserve(max_bytes);
-        items_.reserve(max_items_);
-    }
-
-    /// False where it does not fit.
-    bool push(Kind kind, double time_s, std::string_view bytes) {
-        if (items_.size() == max_items_ || bytes.size() > bytes_.capacity() - bytes_.size()) return false;
-        const char* begin = bytes_.data() + bytes_.size();
-        bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
-        items_.push_back({kind, time_s, {begin, bytes.size()}});
-        return true;
-    }
-
-    /// Passes all input in its order to `visit`, and removes it.
-    template <typename Visit>
-    void take(const Visit& visit) {
-        for (const auto& item : items_) visit(item.kind, item.time_s, item.bytes);
-        items_.clear();
-        bytes_.clear();
-    }
-
-  private:
-    struct Item {
-        Kind kind = Kind::line;
-        double time_s = 0.0;
-        std::string_view bytes;  ///< in `bytes_`
-    };
-
-    std::size_t max_items_;
-    std::vector<char> bytes_;
-    std::vector<Item> items_;
-};
-
 class LivePredictor final : public Predictor {
   public:
     LivePredictor(const PredictorSetup& setup, Start start)
         : input_(setup.input),
-          waiting_(setup.max_pending_bytes),
           flight_(options_of(setup), std::move(start.input), std::move(start.schedule)),
           compute_(std::move(start.compute)) {
         if (setup.input == PredictorInput::messages && !setup.definitions_file.empty())
@@ -188,34 +146,42 @@ class LivePredictor final : public Predictor {
         state_.components = components_of({});
     }
 
-    bool push_line(std::string_view line) noexcept override { return push(Kind::line, 0.0, line); }
+    bool push_line(std::string_view line) noexcept override {
+        return push(PredictorInput::messages, 0.0, [&] {
+            auto message = message_of_line(line);
+            if (!message) return void(++not_lines_);
+            flight_.receive(std::move(*message), 0.0);
+        });
+    }
     bool push_message(double time_s, std::string_view message) noexcept override {
-        return push(Kind::message, time_s, message);
+        return push(PredictorInput::messages, time_s, [&] { flight_.receive({time_s, std::string(message)}, time_s); });
     }
     bool push_frames(double time_s, std::string_view bytes) noexcept override {
-        return push(Kind::frames, time_s, bytes);
+        return decoder_ && push(PredictorInput::messages, time_s, [&] {
+                   decoder_->push(bytes, [&](const telemetry::LinkMessage& message) { receive(message, time_s); });
+               });
     }
     bool push_sample(const Sample& sample) noexcept override {
-        return push(Kind::sample, sample.time_s, {reinterpret_cast<const char*>(&sample), sizeof(sample)});
+        return push(PredictorInput::samples, sample.time_s, [&] { receive(sample); });
     }
     const PredictorState& update(double silent_s) noexcept override { return update_state(silent_s, false); }
     const PredictorState& end() noexcept override { return update_state(0.0, true); }
     const PredictorState& state() const noexcept override { return state_; }
 
   private:
-    using Kind = InputBuffer::Kind;
-
-    bool push(Kind kind, double time_s, std::string_view bytes) noexcept {
-        const bool is_of_input = (kind == Kind::sample) == (input_ == PredictorInput::samples);
-        const bool is_wanted = is_of_input && std::isfinite(time_s) && (kind != Kind::frames || decoder_);
-        if (is_wanted && waiting_.push(kind, time_s, bytes)) return true;
+    template <typename Receive>
+    bool push(PredictorInput kind, double time_s, const Receive& receive) noexcept {
+        try {
+            if (kind == input_ && std::isfinite(time_s)) return receive(), true;
+        } catch (const std::exception&) {
+            state_.failure = no_memory;
+        }
         ++state_.dropped;
         return false;
     }
 
     const PredictorState& update_state(double silent_s, bool is_end) noexcept {
         try {
-            ingest();
             if (is_end) flush();
             state_ = state_of(flight_.update(silent_s));
         } catch (const std::exception&) {  // LiveFlight does not throw because of telemetry
@@ -224,7 +190,6 @@ class LivePredictor final : public Predictor {
         return state_;
     }
 
-    void ingest();
     void flush();
     void receive(const Sample& sample);
     void receive(const telemetry::LinkMessage& message, double time_s);
@@ -232,7 +197,6 @@ class LivePredictor final : public Predictor {
     PredictorState state_of(const LiveState& state) const;
 
     PredictorInput input_;
-    InputBuffer waiting_;
     LiveFlight flight_;
     compute::ComputeModel compute_;
     std::optional<telemetry::LinkDecoder> decoder_;
@@ -258,23 +222,6 @@ void LivePredictor::receive(const telemetry::LinkMessage& message, double time_s
     if (message.class_id != telemetry::MessageDictionary::telemetry_class) return;
     flight_.receive({message.time_s, std::string(message.text), false, {message.values.begin(), message.values.end()}},
                     time_s);
-}
-
-void LivePredictor::ingest() {
-    waiting_.take([&](Kind kind, double time_s, std::string_view bytes) {
-        if (kind == Kind::sample) {
-            Sample sample;
-            std::memcpy(&sample, bytes.data(), sizeof(sample));
-            return receive(sample);
-        }
-        if (kind == Kind::message) return flight_.receive({time_s, std::string(bytes)}, time_s);
-        if (kind == Kind::frames) {
-            return decoder_->push(bytes, [&](const telemetry::LinkMessage& message) { receive(message, time_s); });
-        }
-        auto message = message_of_line(bytes);
-        if (message) return flight_.receive(std::move(*message), 0.0);
-        ++not_lines_;
-    });
 }
 
 std::vector<ComponentState> LivePredictor::components_of(const LiveState& state) const {

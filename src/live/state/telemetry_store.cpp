@@ -1,12 +1,9 @@
 #include "live/state/telemetry_store.h"
 
-#include "flight/segmentation.h"
-#include "flight/selected_track.h"
 #include "flight/telemetry_series.h"
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <functional>
 #include <set>
 
@@ -52,14 +49,10 @@ void filter_rows(telemetry::MessageTable& table, const std::function<bool(std::s
     for (auto& column : table.columns) column.values.resize(kept);
 }
 
-bool has_flown(const flight::FlightSeries& series) {
-    constexpr std::size_t min_samples = 2;
-    if (flight::select_track(series, "altitude_m").time_s.size() < min_samples) return false;
-    try {
-        return !segment(series).sorties.empty();
-    } catch (const std::exception&) {
-        return false;
-    }
+std::size_t rows_of(const telemetry::SenderLog& sender) {
+    std::size_t rows = 0;
+    for (const auto& table : sender.tables) rows += table.time_s.size();
+    return rows;
 }
 
 }  // namespace
@@ -147,9 +140,13 @@ void TelemetryStore::thin() {
 
 std::size_t TelemetryStore::rows() const {
     std::size_t rows = 0;
-    for (const auto& sender : log_.senders)
-        for (const auto& table : sender.tables) rows += table.time_s.size();
+    for (const auto& sender : log_.senders) rows += rows_of(sender);
     return rows;
+}
+
+std::string TelemetryStore::busiest_sender() const {
+    const auto busiest = std::ranges::max_element(log_.senders, {}, rows_of);
+    return busiest == log_.senders.end() ? "" : busiest->id;
 }
 
 std::map<std::string, std::size_t> TelemetryStore::skipped() const {
@@ -157,8 +154,6 @@ std::map<std::string, std::size_t> TelemetryStore::skipped() const {
     skipped.insert(decoder_.skipped().begin(), decoder_.skipped().end());
     return skipped;
 }
-
-std::vector<std::string> TelemetryStore::senders() const { return flight::telemetry_senders(log_); }
 
 flight::FlightSeries TelemetryStore::series(const std::string& sender) const {
     auto series = flight::flight_series(log_, sender);
@@ -171,43 +166,6 @@ std::map<std::string, std::size_t> TelemetryStore::thinned() const {
     for (const auto& [name, thinning] : thinning_)
         if (thinning.stride > 1) thinned[name.second] = std::max(thinned[name.second], thinning.stride);
     return thinned;
-}
-
-void AircraftSelector::count(std::string_view text) {
-    const auto sender = text.substr(0, text.find(' '));
-    if (messages_.contains(sender) || messages_.size() < max_named) ++messages_[std::string(sender)];
-}
-
-void AircraftSelector::keep(TelemetryStore& store) {
-    if (is_locked_) return;
-    is_locked_ = true;
-    store.keep_only(chosen_);
-}
-
-flight::FlightSeries AircraftSelector::choose(TelemetryStore& store) {
-    if (named_ && !is_locked_) {
-        chosen_ = *named_;
-        keep(store);
-    }
-    if (is_locked_) return store.series(chosen_);
-    std::vector<flight::FlightSeries> candidates;
-    for (const auto& id : store.senders()) candidates.push_back(store.series(id));
-    if (candidates.empty()) return {};
-    const auto messages = [&](const auto& series) {
-        const auto found = messages_.find(series.aircraft_id);
-        return found == messages_.end() ? std::size_t{0} : found->second;
-    };
-    auto chosen = candidates.end();
-    if (candidates.size() > 1) chosen = std::ranges::find_if(candidates, has_flown);
-    if (chosen == candidates.end()) chosen = std::ranges::max_element(candidates, {}, messages);
-    chosen_ = chosen->aircraft_id;
-    return std::move(*chosen);
-}
-
-std::map<std::string, std::size_t> AircraftSelector::others() const {
-    std::map<std::string, std::size_t> others(messages_.begin(), messages_.end());
-    others.erase(chosen_);
-    return others;
 }
 
 }  // namespace flightwatt::live

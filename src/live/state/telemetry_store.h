@@ -35,7 +35,8 @@ class TelemetryStore {
 
     /// Number of rows of all senders.
     std::size_t rows() const;
-    std::vector<std::string> senders() const;
+    /// The sender of most rows; empty without rows.
+    std::string busiest_sender() const;
     flight::FlightSeries series(const std::string& sender) const;
     /// Unusable messages and values, by reason.
     std::map<std::string, std::size_t> skipped() const;
@@ -56,30 +57,6 @@ class TelemetryStore {
     telemetry::MessageDecoder decoder_;
     std::map<TableName, Thinning> thinning_;
     std::map<std::string, std::size_t> beyond_limits_;  ///< by reason
-};
-
-/// Selects the watched aircraft of several senders: the named one, else the first that flies; before any flies, the one
-/// with most messages. Once it has flown the selection is locked, and messages of the others are only counted.
-class AircraftSelector {
-  public:
-    static constexpr std::size_t max_named = 32;  ///< senders that are counted one by one
-
-    explicit AircraftSelector(std::optional<std::string> named) : named_(std::move(named)) {}
-
-    /// Counts a message by its sender.
-    void count(std::string_view text);
-    /// The series of the selected aircraft; empty without telemetry.
-    flight::FlightSeries choose(TelemetryStore& store);
-    /// Locks the selection.
-    void keep(TelemetryStore& store);
-    /// Message counts of the other senders.
-    std::map<std::string, std::size_t> others() const;
-
-  private:
-    std::optional<std::string> named_;
-    std::string chosen_;
-    bool is_locked_ = false;
-    std::map<std::string, std::size_t, std::less<>> messages_;
 };
 
 }  // namespace flightwatt::live
