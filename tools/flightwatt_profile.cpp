@@ -101,7 +101,6 @@ compute::ProfilerOptions options_of(const cli::StageCall& call, const SignalWatc
     options.signal_fd = signals.fd();
     options.caught = [&signals] { return signals.received().value_or(SIGINT); };
     options.on_sampler_opened = [&call](const compute::PowerSampler& sampler) {
-        for (const auto& line : sampler.found) cli::note(call, "found " + line);
         cli::note(call, fmt::format("sampling with {}: {}", to_string(sampler.kind), sampler.source));
     };
     return options;
@@ -159,7 +158,7 @@ it stopped. Without duration_s in SPEC a run is as long as its command, ended as
 with it the command is ended when its time is over, whatever it does. Runs that succeeded are not done
 again while their part of SPEC is the same; remove DIR when a program itself has changed.
 
-Samplers: auto, ina238, ina3221 (either of ina3221-iio, ina3221-hwmon), rapl, power_supply, command, recorded.)"};
+Samplers: auto, ina3221, rapl, command, recorded.)"};
     stage.output_help = "the folder of the results";
     stage.json_schema = cli::document_schema<cli::ProfileOutput, CheckOutput>;
     stage.examples = {"flightwatt profile detector.toml -o profiles",

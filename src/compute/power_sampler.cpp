@@ -12,9 +12,8 @@
 namespace flightwatt::compute {
 namespace {
 
-/// In the order of SamplerKind; error messages do not list the last one, which means two of the others.
-const std::vector<std::string_view> kind_names{"auto",         "ina238",  "ina3221-iio", "ina3221-hwmon", "rapl",
-                                               "power_supply", "command", "recorded",    "ina3221"};
+/// In the order of SamplerKind.
+const std::vector<std::string> kind_names{"auto", "ina3221", "rapl", "command", "recorded"};
 
 SamplerKind kind_of(const TomlTable& table) {
     const auto name = table.optional_string("kind");
@@ -23,12 +22,12 @@ SamplerKind kind_of(const TomlTable& table) {
                : table.has("file")  ? SamplerKind::recorded
                                     : SamplerKind::automatic;
     }
-    if (const auto kind = sampler_kind_from(*name)) return *kind;
-    const std::vector<std::string> names(kind_names.begin(), kind_names.end() - 1);
-    const auto near = nearest_word(*name, names);
-    throw InputError(
-        table.where("kind"), fmt::format("there is no sampler '{}'", *name),
-        near.empty() ? fmt::format("there are {}", fmt::join(names, ", ")) : fmt::format("did you mean '{}'?", near));
+    const auto known = std::ranges::find(kind_names, *name);
+    if (known != kind_names.end()) return static_cast<SamplerKind>(known - kind_names.begin());
+    const auto near = nearest_word(*name, kind_names);
+    throw InputError(table.where("kind"), fmt::format("there is no sampler '{}'", *name),
+                     near.empty() ? fmt::format("there are {}", fmt::join(kind_names, ", "))
+                                  : fmt::format("did you mean '{}'?", near));
 }
 
 /// Refuses a key that has no effect with this kind.
@@ -41,12 +40,6 @@ void refuse_foreign_key(const TomlTable& table, std::string_view key, SamplerKin
 }  // namespace
 
 std::string_view to_string(SamplerKind kind) { return kind_names[static_cast<std::size_t>(kind)]; }
-
-std::optional<SamplerKind> sampler_kind_from(std::string_view name) {
-    const auto found = std::ranges::find(kind_names, name);
-    if (found == kind_names.end()) return std::nullopt;
-    return static_cast<SamplerKind>(found - kind_names.begin());
-}
 
 SamplerSettings read_sampler_settings(const TomlTable& root, const std::filesystem::path& folder) {
     SamplerSettings settings;
@@ -79,31 +72,14 @@ namespace {
 struct Sensor {
     SamplerKind kind;
     std::vector<PowerRail> rails;
-
-    std::vector<std::string> names() const {
-        std::vector<std::string> all;
-        for (const auto& rail : rails) all.push_back(rail.name);
-        return all;
-    }
-
-    bool is_asked_for(SamplerKind asked) const {
-        const bool is_ina3221 = kind == SamplerKind::ina3221_iio || kind == SamplerKind::ina3221_hwmon;
-        return asked == SamplerKind::automatic || asked == kind || (asked == SamplerKind::ina3221 && is_ina3221);
-    }
 };
-
-std::vector<Sensor> probe(const std::filesystem::path& sysfs) {
-    return {{SamplerKind::ina238, ina238_rails(sysfs)},
-            {SamplerKind::ina3221_iio, iio_rails(sysfs)},
-            {SamplerKind::ina3221_hwmon, hwmon_rails(sysfs)},
-            {SamplerKind::rapl, rapl_rails(sysfs)},
-            {SamplerKind::power_supply, power_supply_rails(sysfs)}};
-}
 
 PowerSampler sampler_of(const Sensor& sensor, const std::vector<std::string>& wanted) {
     std::vector<PowerRail> chosen;
+    std::vector<std::string> names;
     std::vector<std::string> sources;
-    for (const auto index : rails_of_total(sensor.names(), wanted)) {
+    for (const auto& rail : sensor.rails) names.push_back(rail.name);
+    for (const auto index : rails_of_total(names, wanted)) {
         chosen.push_back(sensor.rails[index]);
         sources.push_back(fmt::format("{} ({})", chosen.back().name, chosen.back().source));
     }
@@ -125,25 +101,19 @@ PowerSampler sampler_of(const Sensor& sensor, const std::vector<std::string>& wa
 
 PowerSampler open_sampler(const SamplerSettings& settings) {
     if (settings.kind == SamplerKind::command) return open_command_sampler(settings);
-    std::error_code none;
-    const auto inner = settings.sysfs / "sys";
-    const auto sysfs = std::filesystem::is_directory(inner, none) ? inner : settings.sysfs;
-    const auto sensors = probe(sysfs);
+    const std::vector<Sensor> sensors{{SamplerKind::ina3221, ina3221_rails(settings.sysfs)},
+                                      {SamplerKind::rapl, rapl_rails(settings.sysfs)}};
     for (const auto& sensor : sensors) {
-        if (!sensor.is_asked_for(settings.kind) || sensor.rails.empty()) continue;
-        auto sampler = sampler_of(sensor, settings.rails);
-        for (const auto& found : sensors)
-            if (!found.rails.empty())
-                sampler.found.push_back(fmt::format("{}: {}", to_string(found.kind), fmt::join(found.names(), ", ")));
-        return sampler;
+        const bool is_wanted = settings.kind == SamplerKind::automatic || settings.kind == sensor.kind;
+        if (is_wanted && !sensor.rails.empty()) return sampler_of(sensor, settings.rails);
     }
     throw NoResultError(fmt::format(
-        "there is no {} below {} that can be read; searched for INA238 and INA3221 (bus/i2c/drivers/ina*, bus/iio, "
-        "class/hwmon), RAPL (class/powercap, often for root alone) and class/power_supply; a [sampler] of "
-        "kind \"command\" reads any other meter",
+        "there is no {} below {} that can be read; searched for INA3221 (bus/i2c/drivers/ina3221*, bus/iio, "
+        "class/hwmon) and RAPL (class/powercap, often for root alone); a [sampler] of kind \"command\" reads any other "
+        "meter",
         settings.kind == SamplerKind::automatic ? "power sensor"
                                                 : fmt::format("sensor of kind {}", to_string(settings.kind)),
-        sysfs.string()));
+        settings.sysfs.string()));
 }
 
 }  // namespace flightwatt::compute

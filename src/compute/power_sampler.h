@@ -18,28 +18,16 @@ struct PowerReading {
     double power_w = 0.0;
 };
 
-/// `automatic`: the first available sensor in this order; `ina3221`: by either driver.
-enum class SamplerKind {
-    automatic,
-    ina238,
-    ina3221_iio,
-    ina3221_hwmon,
-    rapl,
-    power_supply,
-    command,
-    recorded,
-    ina3221
-};
+/// `automatic`: the first available sensor in this order.
+enum class SamplerKind { automatic, ina3221, rapl, command, recorded };
 
-/// "auto", "ina3221-iio" and so on.
+/// "auto", "ina3221" and so on.
 std::string_view to_string(SamplerKind kind);
-std::optional<SamplerKind> sampler_kind_from(std::string_view name);
 
 /// A power meter of this computer.
 struct PowerSampler {
     SamplerKind kind = SamplerKind::recorded;
-    std::string source;              ///< "VDD_IN (/sys/...)"
-    std::vector<std::string> found;  ///< by probing, a line a sensor
+    std::string source;  ///< "VDD_IN (/sys/...)"
     /// The current value of a sensor, or the lines that a program printed since the last call. Throws InputError for an
     /// invalid reading, NoResultError when the program has failed.
     std::function<std::vector<PowerReading>()> read;
@@ -64,8 +52,8 @@ struct SamplerSettings {
 /// Reads [sampler] of a profile's specification; paths are relative to `folder`. Throws InputError.
 SamplerSettings read_sampler_settings(const TomlTable& root, const std::filesystem::path& folder);
 
-/// Opens a live sampler: by its kind, or the first available one. A sysfs root with a folder sys/ (a recorded tree) is
-/// entered there. Throws NoResultError if there is no sensor, with the searched paths.
+/// Opens a live sampler: by its kind, or the first available one. Throws NoResultError if there is no sensor, with the
+/// searched paths.
 PowerSampler open_sampler(const SamplerSettings& settings);
 
 /// A program that prints watts, a number a line: one that keeps printing, each line stamped on arrival, or one that

@@ -117,10 +117,10 @@ ProfileColumns columns_of_names(const CsvTable& table, const ProfileNaming& nami
 }
 
 PowerProfile profile_of_combinations(const std::filesystem::path& path, const ProfileNaming& naming) {
-    const auto config = read_powprofiler_config(path);
-    require_names(naming, config.combinations.front().qos.size(), path.string());
+    const auto combinations = read_powprofiler_config(path);
+    require_names(naming, combinations.front().qos.size(), path.string());
     std::vector<ProfileNode> nodes;
-    for (const auto& combination : config.combinations) {
+    for (const auto& combination : combinations) {
         const auto power_w = layer1_power_w(read_csv(combination.recording, CsvHeader::absent));
         nodes.push_back({combination.qos, mean(power_w), combination.where, {}});
     }

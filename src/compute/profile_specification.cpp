@@ -231,7 +231,9 @@ ProfileSpecification parse_profile_specification(std::string_view text, const st
 }
 
 ProfileSpecification read_profile_specification(const std::filesystem::path& path) {
-    if (path.extension() == ".cfg") return read_powprofiler_specification(path);
+    if (path.extension() == ".cfg")
+        throw InputError({path.string()}, "is a file of powprofiler, expected TOML",
+                         "a mission reads its recordings: profile = FILE.cfg; programs to run are [components.NAME]");
     return parse_profile_specification(read_file(path), path);
 }
 

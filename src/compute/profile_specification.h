@@ -44,14 +44,11 @@ struct ProfileSpecification {
     SamplerSettings sampler;
 };
 
-/// Reads a specification (docs/formats.md): TOML, or a .cfg of powprofiler with [combinations]. Paths are relative to
-/// the file. Throws InputError with file, line and column.
+/// Reads a specification (docs/formats.md), in TOML. Paths are relative to the file. Throws InputError with file, line
+/// and column.
 ProfileSpecification read_profile_specification(const std::filesystem::path& path);
 
 /// The same from TOML text of the file `path`.
 ProfileSpecification parse_profile_specification(std::string_view text, const std::filesystem::path& path);
-
-/// The same from a .cfg, whose parameters have no names: qos_1, qos_2, ...
-ProfileSpecification read_powprofiler_specification(const std::filesystem::path& path);
 
 }  // namespace flightwatt::compute

@@ -115,7 +115,7 @@ ProfileOutcome profile(const ProfileSpecification& specification, const Profiler
     check_result_files(specification, outcome.runs, options.folder);
     load_completed_runs(outcome.runs, options.folder);
     const bool is_recorded = specification.sampler.kind == SamplerKind::recorded;
-    PowerSampler sampler{SamplerKind::recorded, "recorded", {}, {}};
+    PowerSampler sampler{SamplerKind::recorded, "recorded", {}};
     if (!is_recorded) sampler = open_sampler(specification.sampler);
     if (options.on_sampler_opened) options.on_sampler_opened(sampler);
     outcome.sampler = to_string(sampler.kind);

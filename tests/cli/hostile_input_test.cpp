@@ -62,7 +62,7 @@ class HostileInput : public testing::Test {
             const auto from = test::source_dir() / log;
             std::filesystem::copy_file(from, folder / from.filename());
         }
-        test::write_text(folder / "spec.cfg", "[combinations]\nFILE=1\n");
+        test::write_text(folder / "recordings.cfg", "[combinations]\nFILE=1\n");
         const auto mission = [&](const char* name, const std::string& model, const std::string& battery,
                                  const std::string& profile) {
             test::write_text(folder / name, fmt::format("name = \"m\"\nmechanical = \"{}\"\nbattery = \"{}\"\n"
@@ -102,7 +102,7 @@ class HostileInput : public testing::Test {
                 sed("of_model.toml", "flightwatt simulate "),
                 sed("of_battery.toml", "flightwatt simulate "),
                 sed("of_profile.toml", "flightwatt simulate "),
-                sed("spec.cfg", "flightwatt profile -o profiles ")};
+                sed("recordings.cfg", "flightwatt profile --parameters fps --check-interpolation ")};
     }
 
     std::vector<test::ProgramResult> results_with(const std::string& file) const {

@@ -102,19 +102,12 @@ TEST(ProfileSpecification, EachErrorHasItsPlace) {
                 HasSubstr("p.toml:2:1: several configurations have the recording x.csv; name the file by"));
 }
 
-TEST(PowprofilerSpecification, HasRecordings) {
+TEST(ProfileSpecification, IsNoFileOfPowprofiler) {
     const auto folder = test::scratch_dir();
-    write_text(folder / "x.csv", "");
-    const auto spec = read_profile_specification(
-        write_text(folder / "c.cfg", "[settings]\nfrequency = 20\n[combinations]\nx.csv=1,2\n"));
-    EXPECT_EQ(spec.sampler.interval_s, 0.05);
-    ASSERT_EQ(spec.components.size(), 1U);
-    EXPECT_EQ(spec.components[0].name, "c");
-    EXPECT_EQ(spec.components[0].parameters, (Words{"qos_1", "qos_2"}));
-    EXPECT_EQ(spec.components[0].configurations[0].recording, folder / "x.csv");
-    EXPECT_EQ(rejected([&] { read_profile_specification(write_text(folder / "e.cfg", "[combinations]\ny.csv=1\n")); },
+    EXPECT_EQ(rejected([&] { read_profile_specification(write_text(folder / "c.cfg", "[combinations]\nx.csv=1\n")); },
                        folder),
-              "e.cfg:2: the recording y.csv does not exist");
+              "c.cfg: is a file of powprofiler, expected TOML; a mission reads its recordings: profile = FILE.cfg; "
+              "programs to run are [components.NAME]");
 }
 
 }  // namespace

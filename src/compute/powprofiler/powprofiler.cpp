@@ -3,7 +3,6 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/number.h"
-#include "compute/profile_specification.h"
 
 #include <map>
 #include <string_view>
@@ -49,89 +48,16 @@ Property property_of(std::string_view line, const Location& where) {
     return {trimmed(line.substr(0, equals)), trimmed(line.substr(equals + 1))};
 }
 
-void read_setting(const Property& property, const Location& where, PowprofilerConfig& config) {
-    if (property.name != "frequency") return;
-    config.sampling_hz = numbers_in(property.value, where).front();
-    if (config.sampling_hz <= 0.0) {
-        throw InputError(where, fmt::format("frequency = {} Hz is not positive", config.sampling_hz));
-    }
-}
-
 void read_combination(const Property& property, const Location& where, const std::filesystem::path& folder,
-                      PowprofilerConfig& config) {
-    if (property.name == "name") {
-        config.combinations_name = property.value;
-        return;
-    }
+                      std::vector<PowprofilerCombination>& combinations) {
+    if (property.name == "name") return;  // of powprofiler's own layer 2
     auto values = numbers_in(property.value, where);
-    if (!config.combinations.empty() && config.combinations.front().qos.size() != values.size()) {
-        throw InputError(where,
-                         fmt::format("{} values, expected {} as in line {}", values.size(),
-                                     config.combinations.front().qos.size(), config.combinations.front().where.line));
+    if (!combinations.empty() && combinations.front().qos.size() != values.size()) {
+        throw InputError(where, fmt::format("{} values, expected {} as in line {}", values.size(),
+                                            combinations.front().qos.size(), combinations.front().where.line));
     }
-    config.combinations.push_back({folder / property.name, std::move(values), where});
+    combinations.push_back({folder / property.name, std::move(values), where});
 }
-
-}  // namespace
-
-PowprofilerConfig read_powprofiler_config(const std::filesystem::path& path) {
-    const auto content = read_file(path);
-    PowprofilerConfig config;
-    std::string_view section;
-    Location where{path.string()};
-    for (std::size_t begin = 0; begin < content.size();) {
-        const auto whole = std::string_view(content).substr(begin, content.find('\n', begin) - begin);
-        begin += whole.size() + 1;
-        const auto line = trimmed(whole.substr(0, whole.find('#')));
-        ++where.line;
-        if (line.empty()) continue;
-        if (line.front() == '[' && line.back() == ']') {
-            section = line;
-        } else if (section == "[settings]") {
-            read_setting(property_of(line, where), where, config);
-        } else if (section == "[combinations]") {
-            read_combination(property_of(line, where), where, path.parent_path(), config);
-        } else if (!section.starts_with("[component")) {
-            throw InputError(where, fmt::format("'{}' is outside of [settings] and [combinations]", line));
-        }
-    }
-    if (config.combinations.empty()) {
-        throw InputError({path.string()}, "has no [combinations], lines of file.csv=value,value",
-                         "write what powprofiler runs by [components] as TOML, [components.NAME]");
-    }
-    for (const auto& combination : config.combinations) {
-        const auto error = open_error(combination.recording);
-        if (!error) continue;
-        const auto reason =
-            error == std::errc::no_such_file_or_directory ? "does not exist" : "cannot be read: " + error.message();
-        throw InputError(combination.where, fmt::format("the recording {} {}", combination.recording.string(), reason));
-    }
-    return config;
-}
-
-ProfileSpecification read_powprofiler_specification(const std::filesystem::path& path) {
-    const auto config = read_powprofiler_config(path);
-    ProfileSpecification specification;
-    specification.file = path.string();
-    specification.idle_s = 0.0;
-    specification.sampler.kind = SamplerKind::recorded;
-    specification.sampler.folder = path.parent_path();
-    specification.sampler.where = {path.string()};
-    specification.sampler.interval_s = 1.0 / config.sampling_hz;
-    specification.sampler.interval_is_given = true;
-    const auto name = std::filesystem::path(config.combinations_name).stem().string();
-    ProfiledComponent component{name.empty() ? path.stem().string() : name, {}, {}, {}};
-    for (std::size_t i = 1; i <= config.combinations.front().qos.size(); ++i) {
-        component.parameters.push_back(fmt::format("qos_{}", i));
-    }
-    for (const auto& combination : config.combinations) {
-        component.configurations.push_back({combination.qos, {}, combination.recording});
-    }
-    specification.components.push_back(std::move(component));
-    return specification;
-}
-
-namespace {
 
 constexpr unsigned total_power_flag = 100;
 constexpr unsigned first_parameter_flag = 200;
@@ -169,6 +95,39 @@ std::vector<std::size_t> parameter_columns(const std::map<std::uint64_t, std::si
 }
 
 }  // namespace
+
+std::vector<PowprofilerCombination> read_powprofiler_config(const std::filesystem::path& path) {
+    const auto content = read_file(path);
+    std::vector<PowprofilerCombination> combinations;
+    std::string_view section;
+    Location where{path.string()};
+    for (std::size_t begin = 0; begin < content.size();) {
+        const auto whole = std::string_view(content).substr(begin, content.find('\n', begin) - begin);
+        begin += whole.size() + 1;
+        const auto line = trimmed(whole.substr(0, whole.find('#')));
+        ++where.line;
+        if (line.empty()) continue;
+        if (line.front() == '[' && line.back() == ']') {
+            section = line;
+        } else if (section == "[combinations]") {
+            read_combination(property_of(line, where), where, path.parent_path(), combinations);
+        } else if (section != "[settings]" && !section.starts_with("[component")) {
+            throw InputError(where, fmt::format("'{}' is outside of [settings] and [combinations]", line));
+        }
+    }
+    if (combinations.empty()) {
+        throw InputError({path.string()}, "has no [combinations], lines of file.csv=value,value",
+                         "write what powprofiler runs by [components] as TOML, [components.NAME]");
+    }
+    for (const auto& combination : combinations) {
+        const auto error = open_error(combination.recording);
+        if (!error) continue;
+        const auto reason =
+            error == std::errc::no_such_file_or_directory ? "does not exist" : "cannot be read: " + error.message();
+        throw InputError(combination.where, fmt::format("the recording {} {}", combination.recording.string(), reason));
+    }
+    return combinations;
+}
 
 std::optional<PowprofilerColumns> powprofiler_columns(const CsvTable& table) {
     const auto& header = table.rows.front();

@@ -18,17 +18,10 @@ struct PowprofilerCombination {
     Location where;
 };
 
-/// [combinations] of a powprofiler configuration file: recordings.
-struct PowprofilerConfig {
-    double sampling_hz = 10.0;  ///< [settings] frequency; powprofiler's default
-    std::vector<PowprofilerCombination> combinations;
-    std::string combinations_name;  ///< the layer 2 that name= asks for, "m2l.csv"
-};
-
-/// Reads [settings] and [combinations], lines of `file.csv=value,value` whose recordings are in the file's folder. '#'
-/// begins a comment; other settings and the sections of components are ignored. Throws InputError for another line, no
-/// combinations, different numbers of values, and a recording that cannot be read.
-PowprofilerConfig read_powprofiler_config(const std::filesystem::path& path);
+/// Reads [combinations] of a powprofiler configuration file: lines of `file.csv=value,value` whose recordings are in the
+/// file's folder. '#' begins a comment; [settings] and the sections of components are ignored. Throws InputError for
+/// another line, no combinations, different numbers of values, and a recording that cannot be read.
+std::vector<PowprofilerCombination> read_powprofiler_config(const std::filesystem::path& path);
 
 /// Columns of a powprofiler CSV by its header, a row of integer flags, one or more (joined by '+') a column: 0 nothing,
 /// 100 total power, 101 CPU, 102 GPU, 130..132 energy, 160..162 state of charge, 200 + i the i-th QoS parameter. Only

@@ -10,6 +10,10 @@
 #include <thread>
 #include <utility>
 
+#include <boost/process/args.hpp>
+#include <boost/process/child.hpp>
+#include <boost/process/extend.hpp>
+#include <boost/process/posix.hpp>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/epoll.h>
@@ -23,44 +27,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int cannot_execute = 127;                       // exit code of a shell then
 constexpr std::chrono::milliseconds kill_patience(5000);  // after SIGKILL, only the kernel can delay the end
 
 OutputError process_error(int error) {
     return OutputError(fmt::format("cannot start a process: {}", std::strerror(error)));
-}
-
-struct Pipe {
-    int reads = -1;
-    int writes = -1;
-};
-
-Pipe make_pipe() {
-    int ends[2] = {-1, -1};
-    if (::pipe2(ends, O_CLOEXEC) != 0) throw OutputError(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
-    return {ends[0], ends[1]};
-}
-
-/// Executes the command in a forked process. Writes errno to `failure` on an error; else it is closed.
-[[noreturn]] void become(const std::vector<std::string>& words, const SupervisionOptions& options, int failure,
-                         ::pid_t parent) {
-    ::setpgid(0, 0);  // Ctrl-C on the terminal goes to the profiler only
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != parent) ::_exit(0);  // the parent has died before the line above
-    const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
-    ::dup2(nothing, STDIN_FILENO);
-    ::dup2(options.output >= 0 ? options.output : nothing, STDOUT_FILENO);
-    ::dup2(options.errors >= 0 ? options.errors : nothing, STDERR_FILENO);
-    for (const int signal : {SIGPIPE, SIGXFSZ, SIGCHLD, SIGTERM, SIGINT, SIGHUP}) ::signal(signal, SIG_DFL);
-    sigset_t none;
-    sigemptyset(&none);
-    ::sigprocmask(SIG_SETMASK, &none, nullptr);
-    std::vector<char*> arguments(words.size() + 1);  // and a null pointer
-    std::ranges::transform(words, arguments.begin(), [](auto& word) { return const_cast<char*>(word.c_str()); });
-    ::execvp(arguments.front(), arguments.data());
-    const int error = errno;
-    [[maybe_unused]] const auto ignored = ::write(failure, &error, sizeof error);
-    ::_exit(cannot_execute);
 }
 
 /// Whether a process of the group is alive; reaps those that have ended.
@@ -100,29 +70,33 @@ SupervisedProcesses::~SupervisedProcesses() {
 }
 
 void SupervisedProcesses::start(const std::vector<std::string>& words, const SupervisionOptions& options) {
-    const auto failure = make_pipe();
+    namespace bp = boost::process;
     const auto parent = ::getpid();
-    const auto child = ::fork();
-    if (child == 0) become(words, options, failure.writes, parent);
-    const int fork_error = errno;
-    ::close(failure.writes);
-    int start_error = 0;
-    if (child > 0) {
-        ::setpgid(child, child);  // here too: a signal may come before it runs
-        while (::read(failure.reads, &start_error, sizeof start_error) < 0 && errno == EINTR) {
-        }
-    }
-    ::close(failure.reads);
-    if (child < 0) throw process_error(fork_error);
-    if (start_error != 0) {
-        ::waitpid(child, nullptr, 0);
-        not_started_.push_back({start_error, 0, Clock::now()});
-        return;
-    }
-    const auto process = static_cast<int>(::syscall(SYS_pidfd_open, child, 0));
-    commands_.push_back({child, process});
+    const auto prepare = [parent](auto& executor) {
+        ::setpgid(0, 0);  // Ctrl-C on the terminal goes to the profiler only
+        ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+        if (::getppid() != parent) ::_exit(0);  // the parent has died before the line above
+        for (const int signal : {SIGPIPE, SIGXFSZ, SIGCHLD, SIGTERM, SIGINT, SIGHUP}) ::signal(signal, SIG_DFL);
+        sigset_t none;
+        sigemptyset(&none);
+        ::sigprocmask(SIG_SETMASK, &none, nullptr);
+        ::execvp(executor.exe, executor.cmd_line);  // along PATH
+        executor.exe = "";                          // so that Boost's own attempt fails and reports it
+    };
+    const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+    const auto to = [&](int file) { return file >= 0 ? file : nothing; };
+    std::error_code error;
+    bp::child process(words.front(), bp::args(std::vector<std::string>(words.begin() + 1, words.end())),
+                      bp::posix::fd.bind(STDIN_FILENO, nothing), bp::posix::fd.bind(STDOUT_FILENO, to(options.output)),
+                      bp::posix::fd.bind(STDERR_FILENO, to(options.errors)), bp::extend::on_exec_setup(prepare), error);
+    ::close(nothing);
+    if (error) return void(not_started_.push_back({error.value(), 0, Clock::now()}));
+    const auto child = process.id();
+    process.detach();
+    const auto file = static_cast<int>(::syscall(SYS_pidfd_open, child, 0));
+    commands_.push_back({child, file});
     ::epoll_event event{EPOLLIN, {}};
-    if (process < 0 || ::epoll_ctl(poll_fd_, EPOLL_CTL_ADD, process, &event) != 0) throw process_error(errno);
+    if (file < 0 || ::epoll_ctl(poll_fd_, EPOLL_CTL_ADD, file, &event) != 0) throw process_error(errno);
 }
 
 std::vector<FinishedCommand> SupervisedProcesses::ended() {

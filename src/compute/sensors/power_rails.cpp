@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <fstream>
 #include <limits>
 #include <optional>
@@ -74,45 +73,62 @@ void add_device(std::vector<path>& devices, const path& folder) {
     devices.push_back(folder);
 }
 
-/// Units of a driver.
-struct RailUnits {
-    double (*watt)(double);
-    double (*volt)(double);
-    double (*ampere)(double);
-};
-constexpr RailUnits milli_units{units::watt_from_milliwatt, units::volt_from_millivolt, units::ampere_from_milliampere};
-
-/// Adds a rail by its power, else by voltage and current; none where neither can be read.
-void add_rail(const std::string& name, const path& power, const path& voltage, const path& current, const RailUnits& in,
+/// Adds a rail by its power [mW], else by voltage [mV] and current [mA]; none where neither can be read.
+void add_rail(const std::string& name, const path& power, const path& voltage, const path& current,
               std::vector<PowerRail>& rails) {
     if (sysfs_number(power)) {
-        rails.push_back({name, power.string(), [=](auto) { return in.watt(require_sysfs_number(power)); }});
+        rails.push_back(
+            {name, power.string(), [=](auto) { return units::watt_from_milliwatt(require_sysfs_number(power)); }});
     } else if (sysfs_number(voltage) && sysfs_number(current)) {
         rails.push_back({name, fmt::format("{} x {}", voltage.string(), current.filename().string()), [=](auto) {
-                             return in.volt(require_sysfs_number(voltage)) * in.ampere(require_sysfs_number(current));
+                             return units::volt_from_millivolt(require_sysfs_number(voltage)) *
+                                    units::ampere_from_milliampere(require_sysfs_number(current));
                          }});
     }
 }
 
-/// Devices of the I2C drivers `chip`, by the names of their folders below `inner`.
-std::vector<path> driver_devices(const path& sysfs, std::string_view chip, const path& inner, std::string_view prefix) {
+/// Devices of the drivers ina3221*, by the names of their folders below `inner`.
+std::vector<path> driver_devices(const path& sysfs, const path& inner, std::string_view prefix) {
     std::vector<path> devices;
-    for (const auto& driver : sysfs_entries(sysfs / "bus/i2c/drivers", chip))
+    for (const auto& driver : sysfs_entries(sysfs / "bus/i2c/drivers", "ina3221"))
         for (const auto& bound : sysfs_entries(driver))
             for (const auto& device : sysfs_entries(bound / inner, prefix)) add_device(devices, device);
-    return devices;
-}
-
-std::vector<path> hwmon_devices(const path& sysfs, std::string_view chip) {
-    auto devices = driver_devices(sysfs, chip, "hwmon", "hwmon");
-    for (const auto& device : sysfs_entries(sysfs / "class/hwmon", "hwmon"))
-        if (sysfs_text(device / "name").value_or("").starts_with(chip)) add_device(devices, device);
     return devices;
 }
 
 /// A channel's label, or the device and the channel's number.
 std::string channel_name(const path& label, int channel) {
     return sysfs_text(label).value_or(fmt::format("{}.{}", label.parent_path().filename().string(), channel));
+}
+
+std::vector<PowerRail> iio_rails(const path& sysfs) {
+    auto devices = driver_devices(sysfs, "", "iio");
+    for (const auto& device : sysfs_entries(sysfs / "bus/iio/devices", "iio:device")) {
+        const auto name = sysfs_text(device / "name").value_or("");
+        if (name.starts_with("ina3221") || sysfs_text(device / "rail_name_0")) add_device(devices, device);
+    }
+    std::vector<PowerRail> rails;
+    for (const auto& device : devices)
+        for (int i = 0; i < channels; ++i)
+            add_rail(channel_name(device / fmt::format("rail_name_{}", i), i),
+                     device / fmt::format("in_power{}_input", i), device / fmt::format("in_voltage{}_input", i),
+                     device / fmt::format("in_current{}_input", i), rails);
+    return rails;
+}
+
+std::vector<PowerRail> hwmon_rails(const path& sysfs) {
+    auto devices = driver_devices(sysfs, "hwmon", "hwmon");
+    for (const auto& device : sysfs_entries(sysfs / "class/hwmon", "hwmon"))
+        if (sysfs_text(device / "name").value_or("").starts_with("ina3221")) add_device(devices, device);
+    std::vector<PowerRail> rails;
+    for (const auto& device : devices) {
+        for (int i = 1; i <= channels; ++i) {
+            if (sysfs_number(device / fmt::format("in{}_enable", i)) == 0.0) continue;
+            add_rail(channel_name(device / fmt::format("in{}_label", i), i), {}, device / fmt::format("in{}_input", i),
+                     device / fmt::format("curr{}_input", i), rails);
+        }
+    }
+    return rails;
 }
 
 }  // namespace
@@ -139,56 +155,9 @@ std::vector<std::size_t> rails_of_total(const std::vector<std::string>& names, c
     return chosen;
 }
 
-std::vector<PowerRail> iio_rails(const path& sysfs) {
-    auto devices = driver_devices(sysfs, "ina3221", "", "iio");
-    for (const auto& device : sysfs_entries(sysfs / "bus/iio/devices", "iio:device")) {
-        const auto name = sysfs_text(device / "name").value_or("");
-        if (name.starts_with("ina3221") || sysfs_text(device / "rail_name_0")) add_device(devices, device);
-    }
-    std::vector<PowerRail> rails;
-    for (const auto& device : devices)
-        for (int i = 0; i < channels; ++i)
-            add_rail(channel_name(device / fmt::format("rail_name_{}", i), i),
-                     device / fmt::format("in_power{}_input", i), device / fmt::format("in_voltage{}_input", i),
-                     device / fmt::format("in_current{}_input", i), milli_units, rails);
-    return rails;
-}
-
-std::vector<PowerRail> hwmon_rails(const path& sysfs) {
-    std::vector<PowerRail> rails;
-    for (const auto& device : hwmon_devices(sysfs, "ina3221")) {
-        for (int i = 1; i <= channels; ++i) {
-            if (sysfs_number(device / fmt::format("in{}_enable", i)) == 0.0) continue;
-            add_rail(channel_name(device / fmt::format("in{}_label", i), i), {}, device / fmt::format("in{}_input", i),
-                     device / fmt::format("curr{}_input", i), milli_units, rails);
-        }
-    }
-    return rails;
-}
-
-std::vector<PowerRail> ina238_rails(const path& sysfs) {
-    constexpr RailUnits in{units::watt_from_microwatt, milli_units.volt, milli_units.ampere};
-    std::vector<PowerRail> rails;
-    for (const auto& folder : hwmon_devices(sysfs, "ina238")) {
-        const auto name = sysfs_text(folder / "in1_label").value_or("VIN " + folder.filename().string());
-        add_rail(name, folder / "power1_input", folder / "in1_input", folder / "curr1_input", in, rails);
-    }
-    return rails;
-}
-
-std::vector<PowerRail> power_supply_rails(const path& sysfs) {
-    // Drivers differ in the sign of a discharge.
-    constexpr RailUnits in{[](double power_uw) { return std::abs(units::watt_from_microwatt(power_uw)); },
-                           units::volt_from_microvolt,
-                           [](double current_ua) { return std::abs(units::ampere_from_microampere(current_ua)); }};
-    std::vector<PowerRail> rails;
-    for (const auto& supply : sysfs_entries(sysfs / "class/power_supply")) {
-        const auto status = sysfs_text(supply / "status").value_or("");
-        if (status == "Charging" || status == "Full") continue;
-        add_rail(supply.filename().string(), supply / "power_now", supply / "voltage_now", supply / "current_now", in,
-                 rails);
-    }
-    return rails;
+std::vector<PowerRail> ina3221_rails(const path& sysfs) {
+    auto rails = iio_rails(sysfs);
+    return rails.empty() ? hwmon_rails(sysfs) : rails;
 }
 
 std::vector<PowerRail> rapl_rails(const path& sysfs) {

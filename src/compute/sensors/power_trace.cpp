@@ -3,79 +3,14 @@
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/error.h"
-#include "base/number.h"
-#include "base/units.h"
 #include "compute/powprofiler/powprofiler.h"
-#include "compute/sensors/power_rails.h"
 
-#include <ctime>
-#include <iomanip>
-#include <regex>
-#include <sstream>
+#include <algorithm>
 
 #include <fmt/format.h>
 
 namespace flightwatt::compute {
 namespace {
-
-/// Name, power now, average. Other values have another unit ("RAM 2448/7850MB") or no slash.
-const std::regex& rail_pattern() {
-    static const std::regex pattern(R"((\w+) (\d+)(?:mW)?/\d+(?:mW)?(?=\s|$))");
-    return pattern;
-}
-
-/// Date at the beginning of a line of newer versions, in seconds of the epoch.
-std::optional<double> date_s(const std::string& line) {
-    std::tm date{};
-    std::istringstream text(line);
-    if (!(text >> std::get_time(&date, "%m-%d-%Y %H:%M:%S"))) return std::nullopt;
-    return static_cast<double>(::timegm(&date));
-}
-
-double total_w(const std::string& line, const Location& where) {
-    std::vector<std::string> names;
-    std::vector<double> power_mw;
-    for (std::sregex_iterator it(line.begin(), line.end(), rail_pattern()), end; it != end; ++it) {
-        names.push_back((*it)[1].str());
-        power_mw.push_back(number_or_nan((*it)[2].str()));
-    }
-    double total_mw = 0.0;
-    for (const auto rail : rails_of_total(names, {})) total_mw += power_mw[rail];
-    if (!names.empty()) return units::watt_from_milliwatt(total_mw);
-    throw InputError(where, "has no rail with its power, 'VDD_IN 4936mW/4936mW'", "keep complete lines of tegrastats");
-}
-
-/// Whether a line has a rail with power now and average, "VDD_IN 4936mW/4936mW", or "POM_5V_IN 2545/2600" (older
-/// boards).
-bool is_tegrastats(const std::string& line) { return std::regex_search(line, rail_pattern()); }
-
-/// Sum of rails_of_total(). Times since the first line by the dates, "11-21-2022 13:41:31", which are whole seconds; or
-/// with steps of `interval_s`.
-PowerTrace trace_of_tegrastats(const std::string& text, const std::string& file, std::optional<double> interval_s) {
-    PowerTrace trace;
-    std::optional<double> first_date_s;
-    std::istringstream lines(text);
-    std::string line;
-    Location where{file};
-    while (std::getline(lines, line)) {
-        ++where.line;
-        if (line.empty() || line.front() == '#') continue;
-        const auto now_s = date_s(line);
-        if (!first_date_s) first_date_s = now_s;
-        if (!interval_s && !now_s) {
-            throw InputError(where, "has no date and no interval is given",
-                             "give the sampler's interval_s, tegrastats --interval");
-        }
-        const double time_s =
-            interval_s ? static_cast<double>(trace.time_s.size()) * *interval_s : *now_s - *first_date_s;
-        if (!trace.time_s.empty() && time_s <= trace.time_s.back()) {
-            throw InputError(where, "date is not after that of the previous line",
-                             "dates count whole seconds: give the sampler's interval_s");
-        }
-        trace.add(time_s, total_w(line, where));
-    }
-    return trace;
-}
 
 PowerTrace trace_of_csv(const CsvTable& table) {
     const auto time = column_index(table, "time_s");
@@ -103,28 +38,17 @@ PowerTrace trace_of_layer1(const CsvTable& table, std::optional<double> interval
     return trace;
 }
 
-/// The first line that is not a comment.
-std::string first_line(const std::string& text) {
-    std::istringstream lines(text);
-    std::string line;
-    while (std::getline(lines, line))
-        if (!line.empty() && line.front() != '#') return line;
-    return "";
-}
-
 }  // namespace
 
 PowerTrace read_power_trace(const std::filesystem::path& path, std::optional<double> interval_s) {
     const auto text = read_file(path);
     const auto file = path.string();
-    const auto first = first_line(text);
-    // tegrastats has no header and no commas.
-    if (is_tegrastats(first)) return trace_of_tegrastats(text, file, interval_s);
-    if (first.find("time_s") != std::string::npos) return trace_of_csv(parse_csv(text, file));
     const auto table = parse_csv(text, file, CsvHeader::absent);
+    const auto& first = table.rows.front();
+    if (std::ranges::count(first.cells, "time_s", &CsvTable::Cell::text) > 0)
+        return trace_of_csv(parse_csv(text, file));
     if (powprofiler_columns(table)) return trace_of_layer1(table, interval_s);
-    throw InputError({file, table.rows.front().line},
-                     "is not a recording of power: neither time_s,power_w nor 100,... nor tegrastats");
+    throw InputError({file, first.line}, "is not a recording of power: neither time_s,power_w nor 100,...");
 }
 
 std::string to_csv(const PowerTrace& trace, const std::vector<std::string>& comments) {

@@ -11,8 +11,6 @@ namespace flightwatt::compute {
 
 /// Reads a recording of power:
 ///   - CSV with columns time_s and power_w
-///   - output of tegrastats: the board's total (VDD_IN, POM_5V_IN, ...) or the sum of its rails; times from the date,
-///     or in steps of `interval_s`
 ///   - powprofiler layer 1 (flags 100, ...), in steps of `interval_s`
 /// Throws InputError for another format, times that do not rise, or a missing interval.
 PowerTrace read_power_trace(const std::filesystem::path& path, std::optional<double> interval_s);

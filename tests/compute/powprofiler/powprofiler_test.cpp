@@ -22,14 +22,12 @@ TEST(PowprofilerConfig, ReadsCombinations) {
                                            "  [settings]  # ours\n frequency = 20\nh=0,01\ndirectory=out\n\n"
                                            "\t[combinations]\r\n# none\n1,5=a.csv=4,0.5 # yes\nb.csv = 1 , 10\n"
                                            "name=out.csv\n[components]\n[component.a]\nsrc=./a\nrange=1,4,pow(2)"));
-    EXPECT_EQ(config.sampling_hz, 20.0);
-    EXPECT_EQ(PowprofilerConfig{}.sampling_hz, 10.0) << "powprofiler's default";
-    ASSERT_EQ(config.combinations.size(), 2U);
-    EXPECT_EQ(config.combinations[0].recording, folder / "1,5=a.csv");
-    EXPECT_EQ(config.combinations[0].qos, (std::vector<double>{4.0, 0.5}));
-    EXPECT_EQ(config.combinations[1].recording, folder / "b.csv");
-    EXPECT_EQ(config.combinations[1].qos, (std::vector<double>{1.0, 10.0}));
-    EXPECT_EQ(config.combinations[1].where.line, 9U);
+    ASSERT_EQ(config.size(), 2U);
+    EXPECT_EQ(config[0].recording, folder / "1,5=a.csv");
+    EXPECT_EQ(config[0].qos, (std::vector<double>{4.0, 0.5}));
+    EXPECT_EQ(config[1].recording, folder / "b.csv");
+    EXPECT_EQ(config[1].qos, (std::vector<double>{1.0, 10.0}));
+    EXPECT_EQ(config[1].where.line, 9U);
 }
 
 TEST(PowprofilerConfig, RefusesWhatIsNoCombination) {
@@ -42,7 +40,6 @@ TEST(PowprofilerConfig, RefusesWhatIsNoCombination) {
               "c.cfg:2: 'x' is not a finite number; write decimals with a point, values apart with a comma");
     EXPECT_EQ(of("[combinations]\na.csv=1,2\nb.csv=1\n"), "c.cfg:3: 1 values, expected 2 as in line 2");
     EXPECT_EQ(of("a.csv=1,2\n"), "c.cfg:1: 'a.csv=1,2' is outside of [settings] and [combinations]");
-    EXPECT_EQ(of("[settings]\nfrequency=-1\n"), "c.cfg:2: frequency = -1 Hz is not positive");
     EXPECT_EQ(of("[component.a]\nsrc=b\n"),
               "c.cfg: has no [combinations], lines of file.csv=value,value; write what powprofiler runs by "
               "[components] as TOML, [components.NAME]");
