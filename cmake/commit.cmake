@@ -22,10 +22,9 @@ if(GIT)
   endif()
 endif()
 file(CONFIGURE OUTPUT "${OUTPUT}" CONTENT
-"#include \"cli/help.h\"
+"namespace flightwatt::cli {
 
-namespace flightwatt::cli {
-
+const char* commit();
 const char* commit() { return \"${commit}\"; }
 
 }  // namespace flightwatt::cli

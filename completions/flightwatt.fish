@@ -33,7 +33,7 @@ end
 
 function __flightwatt_stages
     set -l words (__flightwatt_words)
-    printf 'help\ta page of the documentation\n'
+    printf "help\ta stage's options\n"
     $words[1] --list-stages 2>/dev/null
 end
 

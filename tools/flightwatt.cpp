@@ -1,9 +1,7 @@
 // The program: `flightwatt STAGE ...`. flightwatt-STAGE is a link to it.
 
 #include "base/error.h"
-#include "base/input_file.h"
 #include "base/toml_reader.h"
-#include "cli/help.h"
 #include "cli/stage.h"
 #include "stages.h"
 
@@ -97,63 +95,28 @@ std::vector<std::string> stage_names() {
     return names;
 }
 
-/// "did you mean 'plan'?", or what to do instead where nothing is near.
-std::string suggestion(const std::string& word, const std::vector<std::string>& known, const char* otherwise) {
-    const auto near = nearest_word(word, known);
-    return near.empty() ? otherwise : fmt::format("did you mean '{}'?", near);
-}
-
-std::filesystem::path documentation() {
-    return data_folder("docs", "FLIGHTWATT_DOCS", "the pages of the documentation");
-}
-
-void list_topics() {
-    std::string text =
-        "usage: flightwatt help STAGE   what a stage does and its options\n"
-        "       flightwatt help PAGE    a page of the documentation\n\nPages:\n";
-    for (const auto& page : cli::help_pages(documentation())) {
-        text += fmt::format("  {:<11} {}\n", page.topic, page.title);
-    }
-    cli::print(text + stage_list());
-}
-
 int show_help(const Stage& stage) {
     std::string words[] = {std::string(stage.name), "--help"};
     char* arguments[] = {words[0].data(), words[1].data(), nullptr};
     return stage.run(2, arguments);
 }
 
-void show_topic(const std::string& topic) {
-    auto known = stage_names();
-    for (const auto& page : cli::help_pages(documentation())) {
-        if (page.topic == topic) return cli::print(read_file(page.file));
-        known.push_back(page.topic);
-    }
-    throw UsageError(fmt::format("there is no help on '{}'; {}", topic,
-                                 suggestion(topic, known, "flightwatt help lists what there is")));
-}
-
 /// The program without a stage.
-int run_front(int argc, char** argv) {
-    const std::string word = argc > 1 ? argv[1] : "--help";
+int run_front(const std::string& word) {
     if (word == "--help" || word == "-h") {
         cli::print(
             "flightwatt: the energy of electric drone missions, flight and on-board computer together\n\n"
-            "usage: flightwatt STAGE [arguments]; more: flightwatt help\n" +
+            "usage: flightwatt STAGE [arguments]; more: flightwatt help STAGE\n" +
             stage_list());
     } else if (word == "--list-stages") {  // for completion and man pages
         for (const auto& stage : all_stages()) cli::print(fmt::format("{}\t{}\n", stage.name, stage.summary));
     } else if (word == "--version") {
         cli::print(fmt::format("flightwatt {}\n", cli::version_text()));
-    } else if (word != "help") {
-        throw UsageError(fmt::format("there is no stage '{}'; {}", word,
-                                     suggestion(word, stage_names(), "flightwatt alone lists them")));
-    } else if (argc > 3) {
-        throw UsageError(fmt::format("unexpected argument '{}'; usage: flightwatt help [STAGE|PAGE]", argv[3]));
-    } else if (argc == 3) {
-        show_topic(argv[2]);
     } else {
-        list_topics();
+        const auto near = nearest_word(word, stage_names());
+        throw UsageError(
+            fmt::format("there is no stage '{}'; {}", word,
+                        near.empty() ? "flightwatt alone lists them" : fmt::format("did you mean '{}'?", near)));
     }
     return cli::ok;
 }
@@ -165,9 +128,11 @@ int main(int argc, char** argv) {
     const std::string called = argc > 0 ? std::filesystem::path(argv[0]).filename().string() : "";
     if (const auto linked = called.starts_with(prefix) ? find_stage(called.substr(prefix.size())) : std::nullopt)
         return linked->run(argc, argv);
-    const std::string word = argc > 1 ? argv[1] : "";
+    std::string word = argc > 1 ? argv[1] : "--help";
     if (const auto stage = find_stage(word)) return stage->run(argc - 1, argv + 1);
-    if (word == "help" && argc == 3)
-        if (const auto stage = find_stage(argv[2])) return show_help(*stage);
-    return cli::run_guarded("flightwatt", [&] { return run_front(argc, argv); });
+    if (word == "help") {
+        word = argc > 2 ? argv[2] : "--help";
+        if (const auto stage = find_stage(word)) return show_help(*stage);
+    }
+    return cli::run_guarded("flightwatt", [&] { return run_front(word); });
 }

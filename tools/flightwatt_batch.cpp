@@ -9,7 +9,6 @@
 #include "batch/write_guard.h"
 #include "cli/output/fit_output.h"
 #include "cli/output/flight_options.h"
-#include "cli/output/json_document.h"
 #include "cli/output/physical_output.h"
 #include "cli/output/stage_options.h"
 #include "cli/screen_table.h"
@@ -282,8 +281,9 @@ std::vector<std::string> listed_logs(const cli::StageCall& call, const std::opti
     return paths;
 }
 
-/// The changes of the run to the folder, before it makes them. Patterns of --exclude become names in `options`.
-batch::BatchPlan make_plan(const cli::StageCall& call, const BatchArguments& arguments, batch::BatchOptions& options) {
+/// The changes of the run to the folder, before it makes them.
+batch::BatchPlan make_plan(const cli::StageCall& call, const BatchArguments& arguments,
+                           const batch::BatchOptions& options) {
     auto logs =
         chosen_logs(call, arguments.filter, batch::find_logs(call.inputs, listed_logs(call, arguments.files_from)));
     for (const auto& log : logs) {
@@ -295,7 +295,6 @@ batch::BatchPlan make_plan(const cli::StageCall& call, const BatchArguments& arg
     std::vector<std::string> names;
     names.reserve(plan.logs.size());
     for (const auto& log : plan.logs) names.push_back(log.flight);
-    options.load.excluded = cli::expand_patterns(options.load.excluded, "exclude", names);
     cli::refuse_unknown_flights(options.load, names);
     return plan;
 }
@@ -327,7 +326,7 @@ int run_over_logs(const cli::StageCall& call, const BatchArguments& arguments) {
     batch::end_at_signals(call.program);
     cli::ProgressBar bar("logs");
     auto flights = run_batch(plan.logs, options, progress_of(call, bar));
-    bar.clear();
+    bar.hide();
     return finish(call, arguments, std::move(flights), options, published);
 }
 

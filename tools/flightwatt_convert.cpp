@@ -3,7 +3,6 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/overwrite_guard.h"
-#include "cli/output/json_document.h"
 #include "cli/stage.h"
 #include "flight/load_flight.h"
 #include "stages.h"

@@ -81,12 +81,12 @@ int show_difference(const cli::StageCall& call) {
         kind == ComparedKind::missions ? cli::Differences{kind, mission_differences(call)} : compare_models(call, kind);
     const auto screen = screen_of(call);
     if (screen.is_terminal && !call.output && !call.json) {
-        const auto table = difference_table(differences);
+        const auto table = table_of(differences.rows);
         cli::print(screen_text(table, screen,
                                {fmt::format("{} against {}", b, a),
                                 {"part", "quantity", "a", "b", "difference", "low", "high", "differs", "at_s"}}));
     } else {
-        cli::write_result(call, differences_csv(differences));
+        cli::write_result(call, csv_of(differences.rows));
     }
     if (call.json) cli::print_json(call, differences);
     if (kind != ComparedKind::missions) note_differences(call, differences.rows);

@@ -6,7 +6,6 @@
 #include "cli/options.h"
 #include "cli/output/battery_output.h"
 #include "cli/output/flight_options.h"
-#include "cli/output/json_document.h"
 #include "cli/output/mission_output.h"
 #include "cli/output/stage_options.h"
 #include "cli/stage.h"

@@ -2,7 +2,6 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "cli/output/json_document.h"
 #include "cli/output/stage_options.h"
 #include "cli/stage.h"
 #include "stages.h"

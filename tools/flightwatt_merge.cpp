@@ -5,7 +5,6 @@
 #include "batch/batch_fit.h"
 #include "batch/merge.h"
 #include "batch/write_guard.h"
-#include "cli/output/json_document.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"

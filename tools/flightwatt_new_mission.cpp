@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "battery/battery.h"
-#include "cli/output/json_document.h"
 #include "cli/output/mission_output.h"
 #include "cli/stage.h"
 #include "compute/profile_reader.h"

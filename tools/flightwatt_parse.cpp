@@ -1,7 +1,6 @@
 // flightwatt parse: a Paparazzi log to the series CSV of its power samples.
 
 #include "cli/output/flight_options.h"
-#include "cli/output/json_document.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "flight/flight_identity.h"

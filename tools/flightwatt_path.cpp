@@ -5,7 +5,6 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "cli/output/flight_options.h"
-#include "cli/output/json_document.h"
 #include "cli/output/mission_output.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"

@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "base/signal_watch.h"
-#include "cli/output/json_document.h"
 #include "cli/stage.h"
 #include "live/playback.h"
 #include "stages.h"

@@ -50,8 +50,11 @@ struct CheckedProfile {
 
 Fields<CheckedProfile> record_fields(const CheckedProfile*) {
     using R = CheckedProfile;
-    return {field("file", &R::file, "file of the profile"), field("nodes", &R::nodes, "its nodes"),
-            field("leave_one_out", &R::errors, "errors of the interpolation")};
+    auto columns = embedded(&R::errors);
+    for (auto& column : columns) column.in_json = false;
+    return list_fields<R>(field("file", &R::file, "file of the profile", column{}),
+                          field("nodes", &R::nodes, "its nodes", column{}), std::move(columns),
+                          field("leave_one_out", &R::errors, "errors of the interpolation"));
 }
 
 /// JSON of --check-interpolation.
@@ -64,18 +67,14 @@ Fields<CheckOutput> record_fields(const CheckOutput*) {
 }
 
 int check_interpolation(const cli::StageCall& call, const ProfileArguments& arguments) {
-    std::string text;
     const auto screen = call.output ? cli::Screen() : screen_of(call);
     CheckOutput output;
     for (const auto& file : call.inputs) {
         const auto profile = read_power_profile(file, naming_of(arguments));
         if (const auto negative = negative_power_warning(profile); !negative.empty()) cli::warn(call, negative);
-        const auto error = compute::leave_one_out(profile);
-        if (!text.empty()) text += "\n";
-        text += cli::interpolation_text(file, profile.power_w.size(), error, screen);
-        output.profiles.push_back({file, profile.power_w.size(), error});
+        output.profiles.push_back({file, profile.power_w.size(), compute::leave_one_out(profile)});
     }
-    cli::write_result(call, text);
+    cli::write_result(call, screen_text(table_of(output.profiles), screen));
     if (call.json) cli::print_json(call, output);
     return cli::ok;
 }
@@ -112,7 +111,7 @@ int conclude(const cli::StageCall& call, const compute::ProfileOutcome& outcome,
     if (call.json) {
         cli::print_json(call, cli::ProfileOutput{outcome, specification.above_idle});
     } else {
-        cli::print(cli::profile_text(outcome, specification.above_idle, screen_of(call)));
+        cli::print(cli::profile_text({outcome, specification.above_idle}, screen_of(call)));
     }
     std::size_t failed = 0;
     for (const auto& component : outcome.components) failed += component.failures.size();

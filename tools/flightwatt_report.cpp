@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/text.h"
-#include "cli/output/json_document.h"
 #include "cli/output/mission_output.h"
 #include "cli/output/stage_options.h"
 #include "cli/stage.h"

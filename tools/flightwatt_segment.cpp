@@ -3,7 +3,6 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "cli/output/flight_options.h"
-#include "cli/output/json_document.h"
 #include "cli/output/segment_output.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
@@ -68,11 +67,10 @@ void add_flight(const cli::StageCall& call, const std::string& file, const fligh
 }
 
 /// The flights of several logs and folders. One that cannot be used is skipped.
-void segment_several(const cli::StageCall& call, flight::LoadOptions options, SegmentedFlights& segmented) {
+void segment_several(const cli::StageCall& call, const flight::LoadOptions& options, SegmentedFlights& segmented) {
     const auto files = cli::files_of(call, options);
     std::vector<std::string> names(files.size());
     std::ranges::transform(files, names.begin(), cli::flight_of_file);
-    options.excluded = cli::expand_patterns(options.excluded, "exclude", names);
     cli::refuse_unknown_flights(options, names);
     segmented.are_several = true;
     std::size_t used = 0;

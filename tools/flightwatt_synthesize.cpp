@@ -5,7 +5,6 @@
 #include "base/duration_text.h"
 #include "base/error.h"
 #include "base/overwrite_guard.h"
-#include "cli/output/json_document.h"
 #include "cli/stage.h"
 #include "mechanical/mechanical_model.h"
 #include "stages.h"

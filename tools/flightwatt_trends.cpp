@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "batch/trend.h"
 #include "cli/output/flight_options.h"
-#include "cli/output/json_document.h"
 #include "cli/output/stage_options.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"

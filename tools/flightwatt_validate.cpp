@@ -75,7 +75,7 @@ int validate_flights(const cli::StageCall& call, const ValidateArguments& argume
     auto validated = validate(flights, options, folds);
     if (const auto rejected = remove_rejected(validated); !rejected.empty()) cli::note(call, rejected);
     const auto screen = call.output ? cli::Screen() : screen_of(call);
-    cli::write_result(call, cli::validation_text(validated, at_s.has_value(), screen));
+    cli::write_result(call, cli::validation_text(validated, screen));
     if (call.json) cli::print_json(call, cli::ValidationOutput{validated, std::min(flights.size(), folds)});
     return cli::ok;
 }

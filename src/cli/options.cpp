@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <regex>
 #include <sstream>
 
@@ -65,36 +64,8 @@ void add_to(po::options_description& description, const Option& option) {
     description.add_options()(declared_name(option).c_str(), semantic_of(option), option.description.c_str());
 }
 
-/// Options of earlier versions, with their replacement.
-const std::map<std::string, std::string>& removed_options() {
-    static const std::map<std::string, std::string> removed{
-        {"--above-idle", "state above_idle = true in the specification"},
-        {"--covariate", "'physical' predicts by airspeed and climb, where they were measured"},
-        {"--csv", "-o FILE.csv writes the table as CSV with all digits"},
-        {"--cut", "--sortie N reads one sortie of a log, in every stage"},
-        {"--curve", "the curve is that of least squares, and a note states where its frequency is open"},
-        {"--know-durations", "schedules are made for the durations that are known before the flight"},
-        {"--level", "the model's curve is expected; its mean where the flight is not known from its take-off on"},
-        {"--level-covariate", "fit by airspeed and climb instead: --model-kind physical"},
-        {"--link-version", "frames are of version 2 of pprzlink"},
-        {"--loss", "fits are of least squares; leave flights out with --exclude"},
-        {"--markdown", "-o FILE.md writes the table as Markdown"},
-        {"--max-battery-flights", "up to 12 flights are taken"},
-        {"--max-periods", "a phase has 0.5 to 120 periods"},
-        {"--max-validation-flights", "up to 30 flights are taken"},
-        {"--min-periods", "a phase has 0.5 to 120 periods"},
-        {"--powprofiler", "DIR/NAME.csv holds the same powers, with names in place of flags"},
-        {"--sampler", "state its kind under [sampler] of the specification"},
-        {"--sysfs", "state sysfs under [sampler] of the specification"},
-        {"--trials", "every configuration is run"},
-        {"--weight", "leave flights out with --exclude, or choose another --weights"}};
-    return removed;
-}
-
 [[noreturn]] void refuse_unknown_option(const std::string& name, const std::string& reason,
                                         const std::vector<Option>& known) {
-    if (const auto removed = removed_options().find(name); removed != removed_options().end())
-        throw UsageError(fmt::format("{} was removed: {}", name, removed->second));
     std::vector<std::string> names(known.size());
     std::ranges::transform(known, names.begin(), [](const auto& option) { return "--" + option.name; });
     const auto near = nearest_word(name, names);

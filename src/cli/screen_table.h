@@ -27,11 +27,11 @@ Screen screen_of(const StageCall& call);
 struct ScreenTable {
     std::string title;               ///< shown on a terminal
     std::vector<std::string> first;  ///< important columns, the most important first
-    std::size_t max_rows = 0;        ///< rows in the middle of longer tables are omitted; 0: none
+    std::size_t max_rows = 0;        ///< of longer tables the first rows are shown; 0: all
 };
 
-/// The table in the width of the screen: heads with units below, by the suffix of the name; texts on several
-/// lines; the names of columns that do not fit. Without a terminal: to_text(table).
+/// The table in the width of the screen: the important columns, long texts shortened, then the names of the others.
+/// Without a terminal: to_text(table).
 std::string screen_text(TextTable table, const Screen& screen, const ScreenTable& options = {});
 
 /// A CSV text with decimals by the units of its columns (28.3 s), or four digits. Throws InputError for invalid CSV.

@@ -5,7 +5,6 @@
 #include "base/overwrite_guard.h"
 #include "base/parallel.h"
 #include "base/text.h"
-#include "cli/help.h"
 #include "cli/terminal.h"
 
 #include <cerrno>
@@ -24,6 +23,11 @@
 #include <unistd.h>
 
 namespace flightwatt::cli {
+
+/// The commit that the program was built of; empty where it is unknown. Programs alone define it (cmake/commit.cmake),
+/// so that a new commit relinks them and compiles nothing.
+[[gnu::weak]] const char* commit();
+
 namespace {
 
 namespace po = boost::program_options;
@@ -38,20 +42,10 @@ bool is_quiet = false;
 /// Diagnostics that cannot be written (closed, full disk) are dropped.
 void print_diagnostic(const std::string& line) { std::fwrite(line.data(), 1, line.size(), stderr); }
 
-/// Beginning of a line, in colour where the standard error has colours.
-std::string alert(const char* word, int color) {
-    return standard_error_has_colors() ? fmt::format("\x1b[1;38;5;{}m{}:\x1b[0m", color, word)
-                                       : fmt::format("{}:", word);
-}
-
-constexpr int color_of_errors = 160;
-constexpr int color_of_warnings = 172;
-
 /// Prints an error with its location; returns the exit code.
 ExitCode failed(ExitCode code, const std::string& program, const std::string& message, const std::string& where = "") {
     const auto prefix = where.empty() ? "" : where + ": ";
-    print_diagnostic(fmt::format("{}: {}{} {}\n", program, one_line(prefix), alert("error", color_of_errors),
-                                 one_line(truncated(message))));
+    print_diagnostic(fmt::format("{}: {}error: {}\n", program, one_line(prefix), one_line(truncated(message))));
     return code;
 }
 
@@ -78,11 +72,14 @@ void occupy_closed_streams() {
     ::_exit(killed_by_signal + SIGPIPE);
 }
 
+void flush_standard_output() {
+    if (reader_has_left || std::fflush(stdout) == 0) return;
+    if (errno != EPIPE) cannot_print();
+    reader_has_left = true;
+}
+
 void close_standard_output() {
-    if (!reader_has_left && std::fflush(stdout) != 0) {
-        if (errno != EPIPE) cannot_print();
-        reader_has_left = true;
-    }
+    flush_standard_output();
     if (reader_has_left) end_by_broken_pipe();
     if (std::fclose(stdout) != 0) cannot_print();
 }
@@ -95,15 +92,15 @@ std::string usage_line(const StageDefinition& definition) {
 void register_files(const StageCall& call, const Options& options, const Options::Given& given) {
     enable_overwrite_guard();
     for (const auto& input : call.inputs) register_input(input);
-    for (const auto role : {FileRole::input, FileRole::output}) {
-        for (const auto& [name, files] : given.options) {
-            if (options.find(name)->file != role) continue;
-            for (const auto& file : files) {
-                if (role == FileRole::input) register_input(file);
-                if (role == FileRole::output && file != "-") register_output(file, "--" + name);
-            }
-        }
-    }
+    const auto register_role = [&](FileRole role, const auto& use) {
+        for (const auto& [name, files] : given.options)
+            if (options.find(name)->file == role)
+                for (const auto& file : files) use(file, "--" + name);
+    };
+    register_role(FileRole::input, [](const auto& file, const auto&) { register_input(file); });
+    register_role(FileRole::output, [](const auto& file, const auto& name) {
+        if (file != "-") register_output(file, name);
+    });
 }
 
 /// A copy of the standard input as a file, which the readers of logs can map. It is removed with this object.
@@ -281,6 +278,11 @@ int run_guarded(const std::string& program, const std::function<int()>& body) {
     }
 }
 
+std::string version_text() {
+    const std::string_view known = commit != nullptr ? commit() : "";
+    return known.empty() ? FLIGHTWATT_VERSION : fmt::format(FLIGHTWATT_VERSION " ({})", known);
+}
+
 int run_stage(int argc, char** argv, StageDefinition definition, const StageBody& body) {
     return run_guarded("flightwatt-" + definition.name, [&] { return run(argc, argv, definition, body); });
 }
@@ -298,10 +300,7 @@ void print(std::string_view text) {
 
 bool print_flushed(std::string_view text) {
     print(text);
-    if (!reader_has_left && std::fflush(stdout) != 0) {
-        if (errno != EPIPE) cannot_print();
-        reader_has_left = true;
-    }
+    flush_standard_output();
     return !reader_has_left;
 }
 
@@ -313,6 +312,29 @@ void write_result(const StageCall& call, std::string_view content) {
     }
 }
 
+Json json_document(const StageCall& call, const Json& record) {
+    constexpr std::string_view prefix = "flightwatt-";
+    Json json{{"format", json_format}, {"stage", call.program.substr(prefix.size())}};
+    json.update(record);
+    return json;
+}
+
+Json json_schema(std::vector<Json> forms) {
+    for (auto& form : forms) {
+        Json properties{{"format", {{"const", json_format}, {"description", "format of this JSON"}}},
+                        {"stage", {{"type", "string"}, {"description", "name of the stage"}}}};
+        properties.update(form["properties"]);
+        form["properties"] = std::move(properties);
+        form["required"].insert(form["required"].begin(), {"format", "stage"});
+    }
+    Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"}};
+    if (forms.size() == 1)
+        schema.update(forms.front());
+    else
+        schema["anyOf"] = std::move(forms);
+    return schema;
+}
+
 std::string shell_quoted(std::string_view file) {
     if (!file.empty() && file.find_first_of(" \t\n'\"\\$`&;|<>()*?[]#~!{}") == std::string_view::npos)
         return std::string(file);
@@ -322,7 +344,7 @@ std::string shell_quoted(std::string_view file) {
 }
 
 void warn(const StageCall& call, std::string_view message) {
-    print_diagnostic(fmt::format("{}: {} {}\n", call.program, alert("warning", color_of_warnings), one_line(message)));
+    print_diagnostic(fmt::format("{}: warning: {}\n", call.program, one_line(message)));
 }
 
 void note(const StageCall& call, std::string_view message) {

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "cli/options.h"
+#include "record/record.h"
 
 #include <cstdint>
 #include <functional>
@@ -13,11 +14,9 @@
 #include <string_view>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 namespace flightwatt::cli {
 
-using Json = nlohmann::ordered_json;
+using flightwatt::Json;
 
 enum ExitCode : int { ok = 0, internal_error = 1, usage_error = 2, input_rejected = 3, no_answer = 4 };
 
@@ -30,10 +29,10 @@ struct StageDefinition {
     Options options = {};
     std::size_t min_inputs = 1;
     std::size_t max_inputs = 1000000;
-    nlohmann::ordered_json (*json_schema)() = nullptr;  ///< of --json, which --json-schema prints
-    bool reads_logs = false;                            ///< its inputs are logs: - is the standard input
-    bool uses_threads = false;                          ///< then --jobs is an option
-    bool shows_table = false;                           ///< on a terminal: then --wide is an option
+    Json (*json_schema)() = nullptr;  ///< of --json, which --json-schema prints
+    bool reads_logs = false;          ///< its inputs are logs: - is the standard input
+    bool uses_threads = false;        ///< then --jobs is an option
+    bool shows_table = false;         ///< on a terminal: then --wide is an option
     std::string output_help = "write the result to FILE instead of the standard output";
 };
 
@@ -73,6 +72,10 @@ void skip_input(const StageCall& call, const std::string& file, const InputError
 /// Closes the standard output.
 int run_guarded(const std::string& program, const std::function<int()>& body);
 
+/// The version, and the commit in parentheses where it is known: "0.2.0 (c72d378)". For --version alone: files and JSON
+/// have the version, because equal inputs give equal bytes at every commit.
+std::string version_text();
+
 /// The result to --output's file (atomically), or to the standard output unless --json claims that.
 void write_result(const StageCall& call, std::string_view content);
 
@@ -91,10 +94,24 @@ inline std::string json_text(const Json& json) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-/// null for what is not known.
-template <typename T>
-Json optional_json(const std::optional<T>& value) {
-    return value ? Json(*value) : Json(nullptr);
+/// Raised with every change of a key that readers have to know.
+inline constexpr int json_format = 1;
+
+/// The JSON of a stage: an object that begins with "format" and "stage", then the fields of a record.
+Json json_document(const StageCall& call, const Json& record);
+
+/// Prints a record as the JSON of the stage.
+template <Record R>
+void print_json(const StageCall& call, const R& record) {
+    print(json_text(json_document(call, record_json(record))));
+}
+
+Json json_schema(std::vector<Json> forms);
+
+/// For StageDefinition::json_schema: the schema of documents that are one of these records.
+template <Record... Forms>
+Json document_schema() {
+    return json_schema({record_schema<Forms>()...});
 }
 
 /// A line on the standard error: "flightwatt-fit: warning: ...".

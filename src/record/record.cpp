@@ -1,6 +1,7 @@
 #include "record/record.h"
 
 #include <array>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -37,6 +38,7 @@ std::string cell_text(const Json& value, const FieldText& field) {
     if (value.is_string()) return value.get<std::string>();
     if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
     if (!value.is_number_float()) return value.dump();
+    if (!std::isfinite(value.get<double>())) return "-";
     const auto* unit = unit_of_key(field.key);
     const auto digits = !field.digits.empty() ? field.digits
                         : unit != nullptr     ? fmt::format(".{}f", unit->decimals)
@@ -116,6 +118,21 @@ CsvWriter csv_header(const RecordRows& records, int digits) {
     for (const auto* field : records.fields)
         std::ranges::move(names_of(*field, field->csv_column.value(), "_"), std::back_inserter(names));
     return CsvWriter(std::vector<std::string_view>(names.begin(), names.end()), digits);
+}
+
+std::string values_text(const Json& record, const std::string& prefix) {
+    std::string text;
+    for (const auto& [key, value] : record.items()) {
+        const auto* unit = unit_of_key(key);
+        auto label = prefix + key.substr(0, key.size() - (unit != nullptr ? unit->suffix.size() : 0));
+        std::ranges::replace(label, '_', ' ');
+        if (value.is_object())
+            text += values_text(value, label + ' ');
+        else if (!value.is_null() && !value.is_array())
+            text += fmt::format("{}: {}{}\n", label, cell_text(value, {.key = key, .description = {}}),
+                                unit != nullptr ? fmt::format(" {}", unit->unit) : "");
+    }
+    return text;
 }
 
 void add_csv_rows(const RecordRows& records, CsvWriter& csv) {

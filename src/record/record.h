@@ -306,6 +306,9 @@ std::string csv_of(const std::vector<R>& records, int digits = 0) {
     return csv.text();
 }
 
+/// A line a known number, text or flag of a record's JSON, "idle current mean: 0.30 A"; its lists are left out.
+std::string values_text(const Json& record, const std::string& prefix = {});
+
 /// The unit that a key or a column ends with, and the decimals that people read; nullptr for none.
 struct KeyUnit {
     std::string_view suffix;

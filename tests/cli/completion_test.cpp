@@ -96,7 +96,7 @@ TEST_P(Shell, OffersFilesThatAreRead) {
     EXPECT_THAT(words, Not(Contains("picture.png")));
 }
 
-TEST_P(Shell, OffersPagesOfTheHelp) { EXPECT_THAT(offered("flightwatt help "), Contains("missions")); }
+TEST_P(Shell, OffersStagesToHelp) { EXPECT_THAT(offered("flightwatt help "), Contains("plan")); }
 
 INSTANTIATE_TEST_SUITE_P(Completion, Shell, testing::Values("bash", "fish", "zsh"),
                          [](const auto& param) { return std::string(param.param); });

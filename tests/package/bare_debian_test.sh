@@ -70,7 +70,6 @@ grep -q '<details class="flight" id="flight-opterra_synthetic_01"' "$root/srv/re
 for ending in vl.json svg pdf; do
     [[ -s $root/srv/figures/flight-opterra_synthetic_01-power.$ending ]] || fail "there is no figure as .$ending"
 done
-inside flightwatt help missions | grep -q . || fail "flightwatt help finds no documents"
 
 step "every program, its page of the manual and completions"
 for program in "$root"/usr/bin/flightwatt*; do

@@ -2,7 +2,7 @@
 
 #include "base/statistics.h"
 #include "base/units.h"
-#include "cli/output/json_document.h"
+#include "cli/stage.h"
 
 #include <optional>
 
@@ -221,9 +221,6 @@ std::string provenance(const battery::BatteryIdentification& identified) {
     text += fmt::format(".\n# {}; {} cells.\n", describe(identified.capacity), identified.cells);
     for (const auto& warning : {capacity_warning(identified.battery), cells_warning(identified)})
         if (!warning.empty()) text += fmt::format("# Warning: {}.\n", warning);
-    for (const auto& limit : curve_limits(identified)) text += fmt::format("# {}.\n", limit);
-    for (const auto& flight : identified.flights)
-        if (flight.link) text += fmt::format("# {}.\n", describe_link(flight));
     text += fmt::format("# Voltages are met within {:.1f} mV RMS; intervals rest on {} blocks of {:.0f} s.\n",
                         units::mv_from_v(identified.fit.rms_v), identified.errors.blocks, identified.errors.block_s);
     return text;

@@ -3,7 +3,7 @@
 #include "base/text_table.h"
 #include "battery/identification.h"
 #include "battery/identified_battery.h"
-#include "cli/output/json_document.h"
+#include "cli/stage.h"
 
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cli/output/json_document.h"
+#include "cli/stage.h"
 #include "mechanical/model_difference.h"
 #include "mission/sampled_flights.h"
 #include "mission/simulation.h"
@@ -8,6 +8,10 @@
 #include <optional>
 #include <string>
 #include <vector>
+
+namespace flightwatt::mechanical {
+Fields<Difference> record_fields(const Difference*);
+}
 
 /// Output of diff.
 namespace flightwatt::cli {
@@ -19,14 +23,9 @@ struct Differences {
     std::vector<mechanical::Difference> rows = {};
 };
 
-/// Energy of each phase, the quantities of the whole mission, and the largest difference of the states of charge.
-/// Intervals are those of `drawn`.
+/// Energy of each phase and the quantities of the whole mission. Intervals are those of `drawn`.
 std::vector<mechanical::Difference> mission_difference(const mission::Simulation& a, const mission::Simulation& b,
                                                        const std::optional<mission::SampledDifference>& drawn);
-
-/// A row a quantity.
-TextTable difference_table(const Differences& differences);
-std::string differences_csv(const Differences& differences);
 
 /// JSON of the stage.
 Fields<Differences> record_fields(const Differences*);

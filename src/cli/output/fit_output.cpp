@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::mechanical {
 
@@ -41,11 +42,6 @@ Fields<ModelValidation> record_fields(const ModelValidation*) {
     return {field(
                 "default_model", [](const ModelValidation& r) { return default_model(r); }, "model of missions"),
             field("scores", &ModelValidation::scores, "hold-out errors")};
-}
-
-Fields<FrequencyRange> record_fields(const FrequencyRange*) {
-    using R = FrequencyRange;
-    return {field("low", &R::low_rad, "lower bound of the search"), field("high", &R::high_rad, "upper bound")};
 }
 
 }  // namespace flightwatt::mechanical
@@ -80,21 +76,18 @@ Fields<PhaseOutput> record_fields(const PhaseOutput*) {
         field("not_negative", at(&R::fitted, &M::not_negative), "the curve was limited to 0 W or more"),
         field("mean_power_w", at(&R::mean_power, &P::mean_w), "mean over the flights", optional_key{}),
         field("mean_power_w_interval_95", at(&R::mean_power, &P::interval), "null: a single flight"),
-        field("omega_duration_rad", at(&R::fitted, &M::range), "range of the search", optional_key{}),
         embedded_if_any(&R::intervals));
 }
 
 /// "hold-out error of 4 flights: constant_mean 18.6 %, ...; missions use constant_mean".
 std::string describe(const mechanical::ModelValidation& validation, bool has_physical) {
-    std::string errors;
+    std::vector<std::string> errors;
     std::size_t flights = 0;
     for (const auto& score : validation.scores) {
-        errors +=
-            fmt::format("{}{} {:.1f} %", errors.empty() ? "" : ", ", score.model, score.mean_absolute_error_percent);
-        if (flights > 0 && score.flights != flights) errors += fmt::format(" (on {} of them)", score.flights);
+        errors.push_back(fmt::format("{} {:.1f} %", score.model, score.mean_absolute_error_percent));
         flights = std::max(flights, score.flights);
     }
-    return fmt::format("hold-out error of {} flights: {}; missions use {}{}", flights, errors,
+    return fmt::format("hold-out error of {} flights: {}; missions use {}{}", flights, fmt::join(errors, ", "),
                        has_physical ? "physical at a stated airspeed, else " : "", default_model(validation));
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/text_table.h"
-#include "cli/output/json_document.h"
+#include "cli/stage.h"
 #include "mechanical/model_errors.h"
 #include "mechanical/model_fit.h"
 #include "mechanical/physical_fit.h"

@@ -16,29 +16,12 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <fnmatch.h>
 
 namespace flightwatt::cli {
 namespace {
 
-bool matches(const std::string& pattern, const std::string& name) {
-    return ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0;
-}
-
-bool is_pattern(const std::string& text) { return text.find_first_of("*?[") != std::string::npos; }
-
-/// fnmatch takes a bracket that is not closed for a letter, and no pattern for one that no flight has.
-void require_pattern(const std::string& pattern) {
-    const auto open = pattern.find('[');
-    if (pattern.empty() || (open != std::string::npos && pattern.find(']', open + 2) == std::string::npos))
-        throw UsageError(fmt::format("--glob '{}': expected a pattern as '20_07_*', each [ closed by ]", pattern));
-}
-
 /// Reason to exclude a flight; empty for one that is used.
 std::string why_left_out(const FlightFilter& filter, const std::string& flight) {
-    const auto fits = [&](const auto& pattern) { return matches(pattern, flight); };
-    if (!filter.patterns.empty() && std::ranges::none_of(filter.patterns, fits)) return "its name is not of --glob";
     if (!filter.since && !filter.until) return "";
     const auto start = flight::start_in_name(flight);  // of a log that the ground station named after its start
     if (!start) return "its name holds no date (YY_MM_DD__hh_mm_ss)";
@@ -118,10 +101,7 @@ void add_filter_options(Options& options, FlightFilter& filter) {
     options.add("since", filter.since, {.value = "DATE"},
                 "flights of this day (2020-07-05) and later, by the date in their names");
     options.add("until", filter.until, {.value = "DATE"}, "flights of this day and before");
-    options.add("glob", filter.patterns, {.value = "PATTERN"},
-                "flights whose name matches, '20_07_*'; may be given several times");
     options.add_rule([&filter] {
-        std::ranges::for_each(filter.patterns, require_pattern);
         if (filter.since && filter.until && *filter.since > *filter.until)
             throw UsageError("--since is after --until: no flight is of both");
     });
@@ -130,25 +110,17 @@ void add_filter_options(Options& options, FlightFilter& filter) {
 std::vector<bool> filter_flights(const StageCall& call, const FlightFilter& filter,
                                  const std::vector<std::string>& flights) {
     std::vector<bool> chosen;
-    std::vector<std::string> left_out;
-    chosen.reserve(flights.size());
+    std::string first;
     for (const auto& flight : flights) {
         const auto why = why_left_out(filter, flight);
         chosen.push_back(why.empty());
-        if (!why.empty()) left_out.push_back(fmt::format("{} ({})", flight, why));
+        if (first.empty() && !why.empty()) first = fmt::format("{} ({})", flight, why);
     }
-    if (left_out.empty()) return chosen;
-    if (left_out.size() == flights.size()) {
-        throw InputError({}, fmt::format("no flight is left of {}: {}", flights.size(), left_out.front()),
-                         "see --since, --until and --glob");
-    }
-    constexpr std::size_t most = 8;
-    const auto more = left_out.size() > most ? fmt::format(" and {} more", left_out.size() - most) : std::string();
-    note(call,
-         fmt::format("{} of {} flights are left out: {}{}", left_out.size(), flights.size(),
-                     fmt::join(left_out.begin(),
-                               left_out.begin() + static_cast<std::ptrdiff_t>(std::min(left_out.size(), most)), ", "),
-                     more));
+    const auto left_out = std::ranges::count(chosen, false);
+    if (left_out == 0) return chosen;
+    if (left_out == std::ssize(flights))
+        throw InputError({}, fmt::format("no flight is left of {}: {}", left_out, first), "see --since and --until");
+    note(call, fmt::format("{} of {} flights are left out, the first: {}", left_out, flights.size(), first));
     return chosen;
 }
 
@@ -192,24 +164,6 @@ std::string flight_of_file(const std::filesystem::path& file) {
     const std::string_view series = batch::series_suffix;
     if (name.ends_with(series)) return name.substr(0, name.size() - series.size());
     return telemetry::flight_name(file);
-}
-
-std::set<std::string> expand_patterns(const std::set<std::string>& names, const std::string& option,
-                                      const std::vector<std::string>& flights) {
-    std::set<std::string> all;
-    for (const auto& name : names) {
-        const bool is_flight = std::ranges::find(flights, name) != flights.end();
-        if (is_flight || !is_pattern(name)) {
-            all.insert(name);
-            continue;
-        }
-        const auto before = all.size();
-        for (const auto& flight : flights)
-            if (matches(name, flight)) all.insert(flight);
-        if (all.size() == before && std::ranges::none_of(flights, [&](const auto& f) { return matches(name, f); }))
-            throw UsageError(fmt::format("--{} {}: no flight's name matches", option, name));
-    }
-    return all;
 }
 
 }  // namespace flightwatt::cli

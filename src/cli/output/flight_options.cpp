@@ -128,13 +128,9 @@ flight::LoadedFlight load_flight(const StageCall& call, const std::string& file,
 
 std::vector<std::size_t> for_each_flight(const StageCall& call, const FlightArguments& arguments,
                                          const std::function<void(const std::string&, flight::LoadedFlight&)>& read) {
-    auto options = arguments.load;
+    const auto& options = arguments.load;
     const auto inputs = files_of(call, options);
     std::vector<std::string> flights;
-    flights.reserve(inputs.size());
-    for (const auto& file : inputs) flights.push_back(flight_of_file(file));
-    options.excluded = expand_patterns(options.excluded, "exclude", flights);
-    flights.clear();
     std::vector<ReadFlight> known;
     std::optional<flight::OtherAircraftError> other;
     std::optional<InputError> unusable;

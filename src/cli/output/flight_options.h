@@ -33,10 +33,9 @@ void add_flight_options(Options& options, FlightArguments& flights);
 struct FlightFilter {
     std::optional<std::chrono::sys_days> since;
     std::optional<std::chrono::sys_days> until;
-    std::vector<std::string> patterns;
 };
 
-/// --since, --until and --glob.
+/// --since and --until.
 void add_filter_options(Options& options, FlightFilter& filter);
 
 /// Prints the warnings of a flight that was read from `file`.
@@ -89,11 +88,6 @@ StageCall with_chosen_flights(StageCall call, const FlightFilter& filter, const 
 
 /// The name of a flight by that of its file, also of a series that a batch wrote.
 std::string flight_of_file(const std::filesystem::path& file);
-
-/// The names with all flights that match in place of those that are patterns ('20_07_*'). Throws UsageError for one
-/// that matches none.
-std::set<std::string> expand_patterns(const std::set<std::string>& names, const std::string& option,
-                                      const std::vector<std::string>& flights);
 
 /// Throws UsageError for --exclude and --keep of a flight that is not in `flights`.
 void refuse_unknown_flights(const flight::LoadOptions& options, const std::vector<std::string>& flights);

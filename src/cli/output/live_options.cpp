@@ -210,11 +210,9 @@ std::unique_ptr<live::MessageSource> open_source(const StageCall& call, const So
         throw UsageError(
             fmt::format("'{0}': expected - (the standard input); to follow a file: --follow {0}", call.inputs.front()));
     }
-    if (!call.inputs.empty() && has_option)
-        throw UsageError("- and a source option exclude each other: give one of them");
-    if (call.inputs.empty() && !has_option)
+    if (call.inputs.empty() != has_option)
         throw UsageError(
-            "no source given: expected --follow FILE, --udp PORT, --serial DEVICE:BAUD, --ivy ADDRESS:PORT or - (the "
+            "expected one source: --follow FILE, --udp PORT, --serial DEVICE:BAUD, --ivy ADDRESS:PORT or - (the "
             "standard input)");
     const double factor = clock_factor.value_or(1.0);
     if (follow_file) return follow(arguments, *follow_file);

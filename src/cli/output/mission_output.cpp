@@ -73,9 +73,9 @@ Fields<MissionSummary> record_fields(const MissionSummary*) {
         return summary.schedule == ScheduleOrigin::given ? std::nullopt : std::optional(to_string(summary.schedule));
     };
     return list_fields<R>(
-        field("mission", &R::mission, "name of the mission", csv_column{}),
-        field("schedule", schedule, "origin of the schedule, unless the mission states it", csv_column{},
-              optional_key{}),
+        field("mission", &R::mission, "name of the mission", column{}, csv_column{}),
+        field("schedule", schedule, "origin of the schedule, unless the mission states it", column_if_any(),
+              csv_column{}, optional_key{}),
         field("final_soc_percent", &R::final_soc_percent, "at the end; null: the battery cannot deliver the power",
               column{"final state of charge [%]", ".2f"}, csv_column{}),
         field("reserve_soc_percent", &R::reserve_soc_percent, "reserve that the mission demands",
@@ -117,14 +117,8 @@ namespace flightwatt::cli {
 
 Fields<RankedMission> record_fields(const RankedMission*) {
     using R = RankedMission;
-    const auto title = [](const R& ranked) {
-        const auto origin = to_string(ranked.summary.schedule);
-        return origin.empty() ? ranked.summary.mission : fmt::format("{} ({})", ranked.summary.mission, origin);
-    };
-    return list_fields<R>(
-        field("rank", &R::rank, "1: most charge left", column{}, csv_column{}),
-        field("title", title, "the mission and the origin of its schedule", column{"mission"}, not_in_json{}),
-        embedded(&R::summary));
+    return list_fields<R>(field("rank", &R::rank, "1: most charge left", column{}, csv_column{}),
+                          embedded(&R::summary));
 }
 
 Fields<MissionComparison> record_fields(const MissionComparison*) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cli/output/json_document.h"
+#include "cli/stage.h"
 #include "mission/disturbance.h"
 #include "mission/feasibility_limits.h"
 #include "mission/mission_file.h"

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "base/text_table.h"
-#include "cli/output/json_document.h"
 #include "cli/screen_table.h"
+#include "cli/stage.h"
 #include "mechanical/physical_fit.h"
 #include "mechanical/validation.h"
 
@@ -16,23 +16,20 @@ Fields<PhysicalFit> record_fields(const PhysicalFit*);
 /// Output of physical models: coefficients and their selection.
 namespace flightwatt::cli {
 
-/// One row a term: its coefficient with half the 95 % interval, and the unit.
+/// One row a term: its coefficient with the 95 % interval, and the unit.
 TextTable constants_table(const mechanical::PhysicalModel& model);
 
 /// One row a term that was tried: hold-out error without and with it, and the result.
 TextTable trials_table(const mechanical::PhysicalFit& fit);
 
-/// Both tables, the data of the model and its prediction interval.
+/// Both tables and the data of the model.
 std::string physical_text(const mechanical::PhysicalFit& fit, const Screen& screen);
-
-/// Warns of skipped flights, and of a model of a single flight.
-void warn_of_physical(const StageCall& call, const mechanical::PhysicalFit& fit);
 
 /// mechanical::add_best_power, with its progress.
 void add_best_power(std::span<const mechanical::MeasuredFlight> measured, const mechanical::ModelFitOptions& options,
                     mechanical::MechanicalModel& model);
 
-/// Fits the physical model, adds it to `model`, and warns as warn_of_physical. Throws as fit_physical_model.
+/// Fits the physical model, adds it to `model`, and warns of skipped flights and of a model of a single flight. Throws as fit_physical_model.
 mechanical::PhysicalFit fit_motion(const StageCall& call, std::span<const mechanical::MeasuredFlight> measured,
                                    mechanical::MechanicalModel& model);
 

@@ -25,17 +25,13 @@ namespace flightwatt::mechanical {
 
 Fields<ModelScore> record_fields(const ModelScore*) {
     using R = ModelScore;
-    const auto coverage = [](const R& score) {
-        return score.coverage_95 ? std::optional(fmt::format("{:.0f} %", units::percentage(*score.coverage_95, 1.0)))
-                                 : std::nullopt;
-    };
     return {field("flights", &R::flights, "flights that the model predicted", column{}),
             field("mean_absolute_error_wh", &R::mean_absolute_error_wh, "mean of |error|", column{"mean |error| Wh"}),
             field("mean_absolute_error_percent", &R::mean_absolute_error_percent, "of the measured energy",
                   column{"mean |error| %"}),
             field("bias_wh", &R::bias_wh, "mean of predicted less measured", column{"bias Wh", "+.3f"}),
-            field("coverage_95", &R::coverage_95, "fraction of the flights within the 95 % interval"),
-            field("coverage", coverage, "the same", column{"95 % interval covers"}, not_in_json{})};
+            field("coverage_95", &R::coverage_95, "fraction of the flights within the 95 % interval",
+                  column{"95 % interval covers", ".2f"})};
 }
 
 }  // namespace flightwatt::mechanical
@@ -80,13 +76,9 @@ bool is_expected(const Prediction& prediction) {
     return !prediction.uses_physical_model || !prediction.flown.motion.bins.empty();
 }
 
-/// The power expected so far, and the effect of the difference on the remaining energy.
 std::string expectation_text(const Prediction& prediction) {
-    if (!is_expected(prediction)) return "no measured airspeed to compare with";
-    const double gain_percent = units::percentage(prediction.cruise.gain, 1.0);
-    return fmt::format("expected {:.2f} W, ", prediction.cruise.expected_w) +
-           (prediction.uses_physical_model ? fmt::format("this flight {:+.1f} %", gain_percent)
-                                           : fmt::format("{:.0f} % of the difference carried forward", gain_percent));
+    return is_expected(prediction) ? fmt::format("expected {:.2f} W", prediction.cruise.expected_w)
+                                   : "no measured airspeed to compare with";
 }
 
 /// The phases, and the whole flight.
@@ -114,14 +106,6 @@ std::vector<ScoreRow> score_rows(const std::vector<mechanical::ValidatedFlight>&
         for (const auto& model : model_names(flights))
             if (const auto score = score_of(flights, model, part)) rows.push_back({name_of(part), model, *score});
     return rows;
-}
-
-std::string comparison(const std::string& part, const std::string& challenger, const mechanical::ModelScore& ours,
-                       const std::string& baseline, const mechanical::ModelScore& theirs) {
-    const bool better = ours.mean_absolute_error_wh < theirs.mean_absolute_error_wh;
-    return fmt::format("{}: {} {} {}: {:.3f} Wh against {:.3f} Wh\n", part, challenger,
-                       better ? "beats" : "does not beat", baseline, ours.mean_absolute_error_wh,
-                       theirs.mean_absolute_error_wh);
 }
 
 }  // namespace
@@ -177,32 +161,15 @@ TextTable scores_table(const std::vector<mechanical::ValidatedFlight>& flights) 
     return flightwatt::table_of(score_rows(flights));
 }
 
-std::string comparison_sentences(const std::vector<mechanical::ValidatedFlight>& flights, const std::string& challenger,
-                                 const std::string& baseline) {
-    std::string text;
-    for (const auto& part : validated_parts) {
-        const auto ours = score_of(flights, challenger, part);
-        const auto theirs = score_of(flights, baseline, part);
-        if (!ours || !theirs) continue;
-        if (ours->mean_absolute_error_wh == theirs->mean_absolute_error_wh) continue;
-        text += comparison(name_of(part), challenger, *ours, baseline, *theirs);
-    }
-    return text;
-}
-
-std::string validation_text(const std::vector<mechanical::ValidatedFlight>& flights, bool in_flight,
-                            const Screen& screen) {
+std::string validation_text(const std::vector<mechanical::ValidatedFlight>& flights, const Screen& screen) {
     const ScreenTable shown{fmt::format("{} flights, each predicted by the others", flights.size()),
                             {"flight", "phase", "model", "error %", "measured Wh", "predicted Wh", "error Wh"}};
     auto text = screen_text(flights_table(flights), screen, shown) + "\n" +
-                screen_text(scores_table(flights), screen, {"prediction errors", {}}) + "\n" +
-                comparison_sentences(flights, "fourier", "constant_mean");
-    if (in_flight) text += comparison_sentences(flights, "in_flight", "fourier");
+                screen_text(scores_table(flights), screen, {"prediction errors", {}});
     constexpr std::size_t few = 20;
-    if (flights.size() < few) {
-        text += fmt::format("coverage of {} flights is uncertain: each counts for {:.0f} points\n", flights.size(),
+    if (flights.size() < few)
+        text += fmt::format("\ncoverage of {} flights is uncertain: each counts for {:.0f} points\n", flights.size(),
                             units::percentage(1.0, static_cast<double>(flights.size())));
-    }
     return text;
 }
 

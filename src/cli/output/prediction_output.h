@@ -1,7 +1,7 @@
 #pragma once
 
-#include "cli/output/json_document.h"
 #include "cli/screen_table.h"
+#include "cli/stage.h"
 #include "live/prediction.h"
 #include "mechanical/validation.h"
 
@@ -29,13 +29,8 @@ TextTable flights_table(const std::vector<mechanical::ValidatedFlight>& flights)
 /// One row a phase and model.
 TextTable scores_table(const std::vector<mechanical::ValidatedFlight>& flights);
 
-/// One sentence a phase: whether `challenger` has the lower mean absolute error; none for ties.
-std::string comparison_sentences(const std::vector<mechanical::ValidatedFlight>& flights, const std::string& challenger,
-                                 const std::string& baseline);
-
-/// Both tables and the comparisons of the models; `in_flight`: also of the one in flight.
-std::string validation_text(const std::vector<mechanical::ValidatedFlight>& flights, bool in_flight,
-                            const Screen& screen);
+/// Both tables.
+std::string validation_text(const std::vector<mechanical::ValidatedFlight>& flights, const Screen& screen);
 
 /// JSON of validate: scores by phase and model.
 struct ValidationOutput {

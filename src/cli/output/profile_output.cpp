@@ -14,12 +14,12 @@ Fields<PowerEstimate> record_fields(const PowerEstimate*) {
     const auto error_w = [](const R& power) {
         return std::isfinite(power.standard_error_w) ? std::optional(power.standard_error_w) : std::nullopt;
     };
-    return {field("power_w", &R::power_w, "mean power"),
-            field("standard_error_w", error_w, "standard error of the mean; null: of a single run"),
-            field("duration_s", &R::duration_s, "measured time"),
-            field("energy_j", &R::energy_j, "energy [J]"),
-            field("samples", &R::samples, "samples"),
-            field("repeats", &R::repeats, "runs")};
+    return {field("power_w", &R::power_w, "mean power", column{"", ".4f"}),
+            field("standard_error_w", error_w, "standard error of the mean; null: of a single run", column{"", ".4f"}),
+            field("duration_s", &R::duration_s, "measured time", column{"", ".2f"}),
+            field("energy_j", &R::energy_j, "energy [J]", column{"", ".2f"}),
+            field("samples", &R::samples, "samples", column{}),
+            field("repeats", &R::repeats, "runs", column{})};
 }
 
 Fields<ProfileRun> record_fields(const ProfileRun*) {
@@ -37,41 +37,18 @@ Fields<SamplingJitter> record_fields(const SamplingJitter*) {
 
 Fields<LeaveOneOutErrors> record_fields(const LeaveOneOutErrors*) {
     using R = LeaveOneOutErrors;
-    return {field("nodes", &R::nodes, "nodes that have neighbours"),
-            field("mean_absolute_error_w", &R::mean_absolute_w, "mean of |error|"),
-            field("mean_absolute_error_percent", &R::mean_absolute_percent, "mean of |error|"),
-            field("rms_error_w", &R::rms_w, "root mean square error"),
-            field("largest_error_w", &R::largest_w, "largest error")};
+    return {field("nodes", &R::nodes, "nodes that have neighbours", column{"from others"}),
+            field("mean_absolute_error_w", &R::mean_absolute_w, "mean of |error|", column{"mean |error| W", ".4f"}),
+            field("mean_absolute_error_percent", &R::mean_absolute_percent, "mean of |error|",
+                  column{"mean |error| %", ".2f"}),
+            field("rms_error_w", &R::rms_w, "root mean square error", column{"RMS W", ".4f"}),
+            field("largest_error_w", &R::largest_w, "largest error", column{"largest W", ".4f"})};
 }
 
 }  // namespace flightwatt::compute
 
 namespace flightwatt::cli {
 namespace {
-
-std::string component_table(const compute::ComponentEstimate& component, const compute::ProfileOutcome& outcome,
-                            bool above_idle, const Screen& screen) {
-    TextTable table;
-    table.header = component.parameters;
-    table.header.insert(table.header.end(),
-                        {"power_w", "standard_error_w", "duration_s", "energy_j", "samples", "repeats"});
-    for (const auto& node : component.nodes) {
-        const auto reported = reported_power(node.total, outcome.idle, above_idle);
-        std::vector<std::string> row;
-        for (const double value : node.qos) row.push_back(fmt::format("{}", value));
-        row.push_back(fixed(reported.power_w, 4));
-        row.push_back(compute::number_or(reported.standard_error_w, 4, "-"));
-        row.push_back(fixed(node.total.duration_s, 2));
-        row.push_back(fixed(reported.power_w * node.total.duration_s, 2));
-        row.push_back(fmt::format("{}", node.total.samples));
-        row.push_back(fmt::format("{}", node.total.repeats));
-        table.rows.push_back(std::move(row));
-    }
-    if (component.nodes.empty()) return "no configuration was measured\n";
-    ScreenTable shown{"", component.parameters};
-    shown.first.insert(shown.first.end(), {"power_w", "standard_error_w"});
-    return screen_text(table, screen, shown);
-}
 
 /// A configuration as measured.
 struct NodeOutput {
@@ -94,25 +71,37 @@ Fields<NodeOutput> record_fields(const NodeOutput*) {
                               "total_power_w", [](const R& r) { return r.node.total.power_w; }, "with the idle power"));
 }
 
+std::vector<NodeOutput> node_outputs(const compute::ComponentEstimate& component, const ProfileOutput& profile) {
+    std::vector<NodeOutput> all;
+    for (const auto& node : component.nodes) {
+        const auto reported = reported_power(node.total, profile.outcome.idle, profile.above_idle);
+        auto estimate = node.total;
+        estimate.power_w = reported.power_w;
+        estimate.standard_error_w = reported.standard_error_w;
+        estimate.energy_j = reported.power_w * node.total.duration_s;
+        all.push_back({node, estimate});
+    }
+    return all;
+}
+
+/// A row a configuration: its parameters, then its power.
+TextTable component_table(const compute::ComponentEstimate& component, const ProfileOutput& profile) {
+    auto table = table_of(node_outputs(component, profile));
+    table.header.insert(table.header.begin(), component.parameters.begin(), component.parameters.end());
+    for (std::size_t i = 0; i < table.rows.size(); ++i)
+        for (std::size_t k = component.parameters.size(); k-- > 0;)
+            table.rows[i].insert(table.rows[i].begin(), fmt::format("{}", component.nodes[i].qos[k]));
+    return table;
+}
+
 Fields<ComponentOutput> record_fields(const ComponentOutput*) {
     using R = ComponentOutput;
-    const auto nodes = [](const R& r) {
-        std::vector<NodeOutput> all;
-        for (const auto& node : r.component.nodes) {
-            auto reported = reported_power(node.total, r.profile.outcome.idle, r.profile.above_idle);
-            auto estimate = node.total;
-            estimate.power_w = reported.power_w;
-            estimate.standard_error_w = reported.standard_error_w;
-            estimate.energy_j = reported.power_w * node.total.duration_s;
-            all.push_back({node, estimate});
-        }
-        return all;
-    };
     return {field(
                 "name", [](const R& r) { return r.component.name; }, "name of the component"),
             field(
                 "parameters", [](const R& r) { return r.component.parameters; }, "names of its parameters"),
-            field("nodes", nodes, "configurations"),
+            field(
+                "nodes", [](const R& r) { return node_outputs(r.component, r.profile); }, "configurations"),
             field(
                 "failures", [](const R& r) { return r.component.failures; }, "failed runs")};
 }
@@ -136,34 +125,21 @@ Fields<ProfileOutput> record_fields(const ProfileOutput*) {
             field("components", components, "components")};
 }
 
-std::string profile_text(const compute::ProfileOutcome& outcome, bool above_idle, const Screen& screen) {
-    std::string text;
-    if (outcome.idle) {
-        text += fmt::format("idle: {:.4f} W, standard error {} W, {} samples in {:.2f} s\n", outcome.idle->power_w,
-                            compute::number_or(outcome.idle->standard_error_w, 4, "-"), outcome.idle->samples,
-                            outcome.idle->duration_s);
-    }
-    text += fmt::format("sampling interval: mean {:.4f} s, standard deviation {:.4f} s, longest {:.4f} s\n",
-                        outcome.jitter.mean_s, outcome.jitter.sd_s, outcome.jitter.max_s);
+std::string profile_text(const ProfileOutput& profile, const Screen& screen) {
+    const auto& outcome = profile.outcome;
+    auto text = outcome.idle ? values_text(record_json(*outcome.idle), "idle ") : "";
+    text += values_text(record_json(outcome.jitter), "sampling interval ");
     for (const auto& component : outcome.components) {
-        text += fmt::format("\n{}{}\n", component.name, above_idle ? ", above idle" : "");
-        text += component_table(component, outcome, above_idle, screen);
-        for (const auto& run : component.failures) {
+        text += fmt::format("\n{}{}\n", component.name, profile.above_idle ? ", above idle" : "");
+        ScreenTable shown{"", component.parameters};
+        shown.first.insert(shown.first.end(), {"power_w", "standard_error_w"});
+        text += component.nodes.empty() ? "no configuration was measured\n"
+                                        : screen_text(component_table(component, profile), screen, shown);
+        for (const auto& run : component.failures)
             text +=
                 fmt::format("{} repeat {} {}: {}\n", run.configuration, run.repeat, to_string(run.status), run.note);
-        }
     }
     return text;
-}
-
-std::string interpolation_text(const std::string& file, std::size_t nodes, const compute::LeaveOneOutErrors& error,
-                               const Screen& screen) {
-    TextTable table;
-    table.header = {"nodes found from the others", "mean |error| W", "mean |error| %", "RMS W", "largest W"};
-    table.rows.push_back({fmt::format("{} of {}", error.nodes, nodes), fixed(error.mean_absolute_w, 4),
-                          compute::number_or(error.mean_absolute_percent, 2, "-"), fixed(error.rms_w, 4),
-                          fixed(error.largest_w, 4)});
-    return file + "\n" + screen_text(table, screen);
 }
 
 }  // namespace flightwatt::cli

@@ -1,6 +1,5 @@
 #include "cli/output/replay_output.h"
 
-#include "base/duration_text.h"
 #include "cli/output/mission_output.h"
 
 #include <algorithm>
@@ -8,6 +7,7 @@
 #include <iterator>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -37,40 +37,25 @@ struct ScheduleOutput {
 
 constexpr std::array baselines{ScheduleMethod::planned, ScheduleMethod::planned_with_margin};
 
+/// Values by phase: "takeoff", "cruise", "landing".
+Keyed<double> by_phase(const mission::PerPhase<double>& values) {
+    Keyed<double> all;
+    for (const auto phase : flight::all_phases) all.emplace_back(std::string(to_string(phase)), values[phase]);
+    return all;
+}
+
 double total_s(const mission::PerPhase<double>& duration_s) {
     return std::accumulate(duration_s.values.begin(), duration_s.values.end(), 0.0);
 }
 
-std::string model_text(const Replay& replay) {
-    switch (replay.model_saw_flight) {
-        case mission::TrainingOverlap::yes:
-            return fmt::format("{}, fitted to this flight too", replay.model);
-        case mission::TrainingOverlap::unknown:
-            return fmt::format("{}, flights unknown", replay.model);
-        case mission::TrainingOverlap::no:
-            break;
-    }
-    return fmt::format("{}, {} flight{}", replay.model, replay.model_flights.size(),
-                       replay.model_flights.size() == 1 ? "" : "s");
+/// The flight is part of the model's fit.
+std::string overlap_text(const Replay& replay) {
+    constexpr std::array<const char*, 3> names{"no", "yes", "unknown"};
+    return names.at(static_cast<std::size_t>(replay.model_saw_flight));
 }
 
 std::optional<double> undeliverable_at_s(const ReplayedSchedule& replayed) {
     return replayed.summary.undeliverable ? std::optional(replayed.summary.undeliverable->time_s) : std::nullopt;
-}
-
-std::string end_text(const ReplayedSchedule& replayed) {
-    const auto& summary = replayed.summary;
-    if (summary.undeliverable)
-        return fmt::format("beyond power after {}", duration_text(summary.undeliverable->time_s));
-    if (summary.depleted_at_s) return fmt::format("empty after {}", duration_text(*summary.depleted_at_s));
-    if (summary.cut_off_at_s) return fmt::format("cut off after {}", duration_text(*summary.cut_off_at_s));
-    return summary.keeps_reserve ? "kept" : "below";
-}
-
-/// The method, and whether no plan keeps the reserve.
-std::string method_text(const ReplayedSchedule& replayed) {
-    const bool is_hopeless = replayed.summary.schedule == mission::ScheduleOrigin::infeasible;
-    return mission::to_string(replayed.way) + (is_hopeless ? " (least energy)" : "");
 }
 
 std::vector<std::string> missions_of(Replays replays) {
@@ -85,38 +70,17 @@ std::string_view outcome_name(ComparisonOutcome outcome) {
     return names.at(static_cast<std::size_t>(outcome));
 }
 
-std::string baseline_words(ScheduleMethod baseline) {
-    return baseline == ScheduleMethod::planned ? "planning before the flight" : "planning with the policy's margin";
-}
-
 std::string sentence(const std::string& mission, ScheduleMethod baseline,
                      const std::vector<mission::Comparison>& comparisons) {
-    const auto flights = comparisons.size();
-    const auto count = [&](bool mission::Comparison::*keeps) {
-        return std::ranges::count_if(comparisons, [&](const auto& comparison) { return comparison.*keeps; });
-    };
-    double utility = 0.0;
-    double soc_percent = 0.0;
-    std::size_t charged = 0;
-    for (const auto& comparison : comparisons) {
-        utility += comparison.more_utility;
-        if (!comparison.more_soc_percent) continue;
-        soc_percent += *comparison.more_soc_percent;
-        ++charged;
-    }
-    const auto count_of = [&](ComparisonOutcome outcome) {
-        return std::ranges::count(comparisons, outcome, &mission::Comparison::outcome);
-    };
-    auto text = fmt::format(
-        "{}: replanning in flight against {}, on {} flight{}: better on {}, a tie on {}, worse on {}. It keeps the "
-        "reserve on {} of {}, the plan on {}; on average it has {:+.4g} of utility",
-        mission, baseline_words(baseline), flights, flights == 1 ? "" : "s", count_of(ComparisonOutcome::better),
-        count_of(ComparisonOutcome::tie), count_of(ComparisonOutcome::worse),
-        count(&mission::Comparison::replanned_keeps_reserve), flights,
-        count(&mission::Comparison::baseline_keeps_reserve), utility / static_cast<double>(flights));
-    if (charged > 0)
-        text += fmt::format(" and leaves {:+.2f} points of charge", soc_percent / static_cast<double>(charged));
-    return text + ".";
+    const auto count = [&](auto member, const auto& value) { return std::ranges::count(comparisons, value, member); };
+    using C = mission::Comparison;
+    return fmt::format(
+        "{}: replanning in flight against {}: better on {} of {}, a tie on {}, worse on {}; it keeps the reserve on "
+        "{}, the plan on {}.",
+        mission, baseline == ScheduleMethod::planned ? "planning before the flight" : "planning with the margin",
+        count(&C::outcome, ComparisonOutcome::better), comparisons.size(), count(&C::outcome, ComparisonOutcome::tie),
+        count(&C::outcome, ComparisonOutcome::worse), count(&C::replanned_keeps_reserve, true),
+        count(&C::baseline_keeps_reserve, true));
 }
 
 std::vector<BaselineComparison> comparisons_of(Replays replays) {
@@ -153,23 +117,25 @@ Fields<ScheduleOutput> record_fields(const ScheduleOutput*) {
     using R = ScheduleOutput;
     using S = ReplayedSchedule;
     auto summary = embedded(at(&R::replayed, [](const S& replayed) { return &replayed.summary; }), {"mission"});
+    const std::set<std::string> shown{"final_soc_percent", "reserve_soc_percent", "utility",
+                                      "compute_energy_wh", "depleted_at_s",       "cut_off_at_s"};
     for (auto& field : summary)
-        if (field.key != "final_soc_percent" && field.key != "reserve_soc_percent" && field.key != "utility" &&
-            field.key != "compute_energy_wh")
-            field.table_column.reset();
+        if (!shown.contains(field.key)) field.table_column.reset();
     return list_fields<R>(
         field("flight", at(&R::replay, &Replay::flight), "name of the flight", column{}, csv_column{}, not_in_json{}),
         field("mission", at(&R::replay, &Replay::mission), "of the mission", column{}, csv_column{}, not_in_json{}),
-        field("method", at(&R::replayed, &S::way), "`given`, `invariant` ... `hindsight`", csv_column{}),
-        field("shown_method", at(&R::replayed, method_text), "", column{"schedule"}, not_in_json{}),
+        field("method", at(&R::replayed, &S::way), "`given`, `invariant` ... `hindsight`", column{"schedule"},
+              csv_column{}),
         field("expected_soc_percent", at(&R::replayed, &S::expected_soc_percent), "at the end, as expected before",
               column{"expected [%]", ".2f"}, csv_column{}),
-        std::move(summary), field("end", at(&R::replayed, end_text), "", column{"reserve"}, not_in_json{}),
+        std::move(summary),
+        field("kept", at(&R::replayed, &S::summary, &mission::MissionSummary::keeps_reserve), "",
+              column{"reserve kept"}, not_in_json{}),
         field("regret", at(&R::replayed, &S::regret), "utility less than hindsight's; null: without reserve or utility",
               column{"", ".4f"}, csv_column{}),
         field("bound", at(&R::replay, proven_bound), "as of `replays[]`", csv_column{}, not_in_json{}),
         field("undeliverable_at_s", at(&R::replayed, undeliverable_at_s), "time of the failure; null: never",
-              csv_column{}));
+              column_if_any("beyond power at [s]"), csv_column{}));
 }
 
 std::vector<ScheduleOutput> all_schedules(Replays replays) {
@@ -198,8 +164,9 @@ std::string replay_remark() {
 }
 
 std::string replay_text(Replays replays, const Screen& screen) {
-    const ScreenTable results{"results of the schedules",
-                              {"flight", "mission", "schedule", "final state of charge [%]", "utility", "reserve"}};
+    const ScreenTable results{
+        "results of the schedules",
+        {"flight", "mission", "schedule", "final state of charge [%]", "utility", "reserve kept"}};
     auto text = screen_text(replay_basis_table(replays), screen, {"data of the replays", {}}) + "\n" +
                 screen_text(replay_table(replays), screen, results) + "\n";
     for (const auto& sentence : replay_sentences(replays)) text += sentence + "\n";
@@ -235,36 +202,31 @@ Fields<SkippedReplay> record_fields(const SkippedReplay*) {
 
 Fields<Replay> record_fields(const Replay*) {
     using R = Replay;
-    const auto overlap = [](const R& replay) {
-        constexpr std::array<const char*, 3> names{"no", "yes", "unknown"};
-        return std::string(names.at(static_cast<std::size_t>(replay.model_saw_flight)));
-    };
-    return {
-        field("flight", &R::flight, "name of the flight", column{}),
-        field("mission", &R::mission, "name of the mission", column{}),
-        field("model", &R::model, "name of the model"),
-        field(
-            "model_text", [](const R& r) { return cli::model_text(r); }, "the model", column{"model"}, not_in_json{}),
-        field("model_flights", &R::model_flights, "flights of the model's fit"),
-        field("training_overlap", overlap, "the flight is part of the fit: `no`, `yes` or `unknown`"),
-        field("planned_s", at(&R::planned_s, cli::by_phase<PerPhase<double>>), "planned durations"),
-        field("flown_s", at(&R::flown_s, cli::by_phase<PerPhase<double>>), "measured durations"),
-        field("planned_total_s", at(&R::planned_s, cli::total_s), "their sum", column{"planned s", ".0f"},
-              not_in_json{}),
-        field("flown_total_s", at(&R::flown_s, cli::total_s), "their sum", column{"flown s", ".0f"}, not_in_json{}),
-        field("expected_mechanical_wh", &R::expected_mechanical_wh, "by the model, over the planned durations",
-              column{"expected Wh"}),
-        field("measured_mechanical_wh", &R::measured_mechanical_wh, "measured in the phases of the mission",
-              column{"measured Wh"}),
-        field("counter_energy_wh", &R::counter_energy_wh, "by the autopilot's counter", column{"counter Wh"}),
-        field("gaps", &R::gaps, "gaps in the measured power", column{}),
-        field("longest_gap_s", &R::max_gap_s, "the longest of them", column{"longest gap s"}),
-        field(
-            "bound", [](const R& replay) { return cli::proven_bound(replay); }, "no schedule has a greater utility",
-            column{"", ".4f"}),
-        field("notes", &R::notes, "adjustments of mission or flight"),
-        field(
-            "schedules", [](const R& replay) { return cli::schedules_of(replay); }, "results by schedule")};
+    return {field("flight", &R::flight, "name of the flight", column{}),
+            field("mission", &R::mission, "name of the mission", column{}),
+            field("model", &R::model, "name of the model", column{}),
+            field("model_flights", &R::model_flights, "flights of the model's fit"),
+            field(
+                "training_overlap", [](const R& r) { return cli::overlap_text(r); },
+                "the flight is part of the fit: `no`, `yes` or `unknown`", column{"fitted to it"}),
+            field("planned_s", at(&R::planned_s, cli::by_phase), "planned durations"),
+            field("flown_s", at(&R::flown_s, cli::by_phase), "measured durations"),
+            field("planned_total_s", at(&R::planned_s, cli::total_s), "their sum", column{"planned s", ".0f"},
+                  not_in_json{}),
+            field("flown_total_s", at(&R::flown_s, cli::total_s), "their sum", column{"flown s", ".0f"}, not_in_json{}),
+            field("expected_mechanical_wh", &R::expected_mechanical_wh, "by the model, over the planned durations",
+                  column{"expected Wh"}),
+            field("measured_mechanical_wh", &R::measured_mechanical_wh, "measured in the phases of the mission",
+                  column{"measured Wh"}),
+            field("counter_energy_wh", &R::counter_energy_wh, "by the autopilot's counter", column{"counter Wh"}),
+            field("gaps", &R::gaps, "gaps in the measured power", column{}),
+            field("longest_gap_s", &R::max_gap_s, "the longest of them", column{"longest gap s"}),
+            field(
+                "bound", [](const R& replay) { return cli::proven_bound(replay); }, "no schedule has a greater utility",
+                column{"", ".4f"}),
+            field("notes", &R::notes, "adjustments of mission or flight"),
+            field(
+                "schedules", [](const R& replay) { return cli::schedules_of(replay); }, "results by schedule")};
 }
 
 Fields<mission::Replays> record_fields(const mission::Replays*) {

@@ -13,16 +13,6 @@
 
 namespace flightwatt::flight {
 
-Fields<PhaseEdge> record_fields(const PhaseEdge*) {
-    using R = PhaseEdge;
-    return {field("altitude_m", &R::altitude_m, "altitude"),
-            field("gap_s", &R::gap_s, "interval between the samples around the edge"),
-            field("throttle_percent", &R::throttle_percent, "throttle"),
-            field("mode", &R::mode, "mode of the autopilot"),
-            field("block", &R::block, "block of the flight plan"),
-            field("takeoff_message_offset_s", &R::takeoff_after_s, "time of the `TAKEOFF` message after the edge")};
-}
-
 Fields<EdgeEvent> record_fields(const EdgeEvent*) {
     using R = EdgeEvent;
     return {field("what", &R::what, "event"), field("time_s", &R::time_s, "time of the event"),
@@ -34,6 +24,8 @@ Fields<EdgeReport> record_fields(const EdgeReport*) {
     return {field("edge", &R::kind, "name of the edge"),
             field(
                 "time_s", [](const R& edge) { return edge.edge.time_s; }, "time of the edge"),
+            field(
+                "altitude_m", [](const R& edge) { return edge.edge.altitude_m; }, "altitude"),
             field("height_percent", &R::height_percent, "of the flight's height"),
             field("matching_events", &R::matching_events, "autopilot events that mark the edge"),
             field("other_events", &R::other_events, "other autopilot events near it"),
@@ -102,10 +94,7 @@ Fields<PhaseSpanOutput> record_fields(const PhaseSpanOutput*) {
                           field("end_s", at(&R::span, &P::end, &E::time_s), "in the log's time"),
                           field("duration_s", at(&R::span, &P::duration_s), "end less start"),
                           embedded_or_null([](const R& r) { return r.statistics ? &*r.statistics : nullptr; }),
-                          field("complete", at(&R::span, &P::complete), "false: the log begins or ends in the phase"),
-                          object<R>("evidence", "data at the edges",
-                                    {field("start", at(&R::span, &P::start), "first edge"),
-                                     field("end", at(&R::span, &P::end), "last edge")}));
+                          field("complete", at(&R::span, &P::complete), "false: the log begins or ends in the phase"));
 }
 
 /// A sortie with its phases and edges.
@@ -146,30 +135,6 @@ std::string heights_text(const flight::Sortie& sortie) {
                             hold.start_s, hold.end_s, duration_text(hold.duration_s()),
                             hold.of_landing ? "a step of the landing" : "cruise");
     }
-    return text;
-}
-
-/// Findings on the power record, a line each.
-std::string power_text(const flight::FlightSeries& series, const flight::PowerReport& power) {
-    if (power_track(series).empty()) return "power: not measured\n";
-    std::string text = fmt::format("power: {}, current {}\n", power_track(series).source, to_string(power.origin));
-    if (power.idle) {
-        text += fmt::format("idle current on the ground: {:.4f} A, standard deviation {:.4f} A, {} samples\n",
-                            power.idle->mean_a, power.idle->sd_a, power.idle->samples);
-    }
-    if (power.energy_closure_percent) {
-        text += fmt::format("integral of power over the on-board energy counter: {:+.2f} %\n",
-                            *power.energy_closure_percent);
-    }
-    if (power.charge_closure_percent) {
-        text += fmt::format("integral of current over the on-board charge counter: {:+.2f} %\n",
-                            *power.charge_closure_percent);
-    }
-    double max_s = 0.0;
-    for (const auto& gap : power.gaps) max_s = std::max(max_s, gap.duration_s);
-    text += fmt::format("gaps in flight: {}, the longest {:.1f} s\n", power.gaps.size(), max_s);
-    for (const auto& fault : power.power_faults) text += fmt::format("power fault: {}\n", fault);
-    for (const auto& warning : power.warnings) text += fmt::format("warning: {}\n", warning);
     return text;
 }
 
@@ -215,11 +180,11 @@ std::string explanation(const flight::FlightSeries& series, const flight::Flight
                             {"sortie", "edge", "time s", "agreement", "altitude m", "events"}};
     std::string text = screen_text(edges_table(series, phases), screen, shown);
     for (const auto& sortie : phases.sorties) text += heights_text(sortie);
-    for (const auto& other : phases.ground_events) {
-        text += fmt::format("no flight from {:.0f} to {:.0f} s: {}\n", other.start_s, other.end_s, other.what);
-    }
     if (!phases.motor_source.empty()) text += fmt::format("motor signal: {}\n", phases.motor_source);
-    return text + power_text(series, power);
+    return text + (power_track(series).empty()
+                       ? "power: not measured\n"
+                       : values_text({{"power", power_track(series).source}}) + values_text(record_json(power)) +
+                             fmt::format("gaps in flight: {}\n", power.gaps.size()));
 }
 
 Fields<SegmentedFlight> record_fields(const SegmentedFlight*) {

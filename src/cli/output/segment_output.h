@@ -1,7 +1,7 @@
 #pragma once
 
-#include "cli/output/json_document.h"
 #include "cli/screen_table.h"
+#include "cli/stage.h"
 #include "flight/edge_events.h"
 #include "flight/power_check.h"
 #include "flight/segmentation.h"

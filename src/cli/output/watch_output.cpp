@@ -2,15 +2,14 @@
 
 #include "base/units.h"
 #include "cli/output/prediction_output.h"
-#include "cli/screen_table.h"
 #include "record/json_type.h"
 
 #include <algorithm>
 #include <cctype>
 #include <optional>
-#include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::live {
 
@@ -157,19 +156,6 @@ std::string json_line(const StageCall& call, const R& record) {
     return json_document(call, record_json(record)).dump(-1, ' ', false, replace_invalid) + "\n";
 }
 
-/// A line broken at blanks into lines of at most `columns` characters; all but the first are indented.
-std::string wrapped(std::string line, std::size_t columns) {
-    const std::string indent(10, ' ');
-    std::string text;
-    while (line.size() > columns) {
-        const auto blank = line.rfind(' ', columns);
-        if (blank == std::string::npos || blank <= indent.size()) break;
-        text += line.substr(0, blank) + "\n";
-        line.replace(0, blank + 1, indent);
-    }
-    return text + line + "\n";
-}
-
 std::string without_numbers(std::string text) {
     std::erase_if(text, [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
     return text;
@@ -226,47 +212,33 @@ Fields<WatchEnd> record_fields(const WatchEnd*) {
 PageEvent page_event(const live::LiveState& state, const compute::ComputeModel& compute, const live::TimeCurve& ahead) {
     const auto soc = state.battery ? state.battery->soc_percent : std::nullopt;
     const auto by_voltage = state.battery ? state.battery->soc_by_voltage_percent : std::nullopt;
+    const auto known = [](const auto& value) { return JsonType<std::optional<double>>::write(value); };
     const Json point{{"t", state.time_s},
                      {"phase", phase_text(state)},
-                     {"soc", optional_json(soc)},
-                     {"soc_by_voltage", optional_json(by_voltage)},
-                     {"power", optional_json(state.power_w)},
-                     {"expected", optional_json(state.expected_power_w)},
-                     {"altitude", optional_json(state.altitude_m)}};
+                     {"soc", known(soc)},
+                     {"soc_by_voltage", known(by_voltage)},
+                     {"power", known(state.power_w)},
+                     {"expected", known(state.expected_power_w)},
+                     {"altitude", known(state.altitude_m)}};
     auto json = record_json(WatchState{&state, &compute});
     json["ahead"] = {{"time_s", ahead.time_s}, {"soc_percent", ahead.value}};
     json["point"] = point;
     return {json.dump(-1, ' ', false, replace_invalid), point.dump(-1, ' ', false, replace_invalid)};
 }
 
-std::string line_of(const live::LiveState& state, const compute::ComputeModel& compute) {
-    auto line = fmt::format("{:.0f} s  {} {:.0f} s  {}  {}", state.time_s, phase_text(state), state.flight_time_s,
-                            with_unit(state.energy_wh, 3, "Wh"), with_unit(state.power_w, 1, "W"));
-    for (const auto& text :
-         {charge_text(state), landing_line(state), reserve_line(state), schedule_line(state, compute)})
-        if (!text.empty()) line += "  " + text;
-    for (const auto& alarm : state.alarms) line += fmt::format("  ALARM {}: {}", alarm.kind, alarm.text);
-    return one_line(line) + "\n";
-}
-
 std::vector<std::string> screen_of(const live::LiveState& state, const compute::ComputeModel& compute) {
-    const auto aircraft = state.aircraft_id.empty() ? std::string("no aircraft yet") : "aircraft " + state.aircraft_id;
     std::vector<std::string> lines{
-        fmt::format("{}  {:.0f} s  {}{}", aircraft, state.time_s, phase_text(state),
-                    state.flight_time_s > 0.0 ? fmt::format(", {:.1f} min in the air{}", state.flight_time_s / 60.0,
-                                                            state.began_in_air ? " since the first message" : "")
-                                              : ""),
-        fmt::format("energy    {}, {} now{}, {}, {}", with_unit(state.energy_wh, 3, "Wh"),
-                    with_unit(state.power_w, 1, "W"),
-                    state.expected_power_w ? fmt::format(" ({:.1f} W expected)", *state.expected_power_w) : "",
-                    with_unit(state.voltage_v, 2, "V"), with_unit(state.altitude_m, 0, "m"))};
-    if (const auto text = charge_text(state); !text.empty()) lines.push_back("charge    " + text);
-    lines.push_back("landing   " + landing_line(state));
-    if (const auto text = reserve_line(state); !text.empty()) lines.push_back("          " + text);
-    if (const auto text = schedule_line(state, compute); !text.empty()) lines.push_back("schedule  " + text);
-    for (const auto& alarm : state.alarms) lines.push_back("ALARM     " + alarm.text);
+        fmt::format("{:.0f} s  {} {:.0f} s  {}  {}", state.time_s, phase_text(state), state.flight_time_s,
+                    with_unit(state.energy_wh, 3, "Wh"), with_unit(state.power_w, 1, "W")),
+        charge_text(state), landing_line(state), reserve_line(state), schedule_line(state, compute)};
+    std::erase(lines, "");
+    for (const auto& alarm : state.alarms) lines.push_back(fmt::format("ALARM {}: {}", alarm.kind, alarm.text));
     for (auto& line : lines) line = one_line(line);
     return lines;
+}
+
+std::string line_of(const live::LiveState& state, const compute::ComputeModel& compute) {
+    return fmt::format("{}\n", fmt::join(screen_of(state, compute), "  "));
 }
 
 live::DecisionCommand::Environment decision_environment(const live::LiveState& state,
@@ -291,44 +263,24 @@ live::DecisionCommand::Environment decision_environment(const live::LiveState& s
     return variables;
 }
 
-std::vector<std::string> WarningThrottle::due(const std::vector<std::string>& now) {
+std::vector<std::string> fresh_warnings(const std::vector<std::string>& now, std::set<std::string>& reported) {
+    constexpr std::size_t max_kinds = 200;
     std::vector<std::string> fresh;
     for (const auto& text : now)
-        if (reported_.size() < max_kinds && reported_.emplace(without_numbers(text), text).second)
-            fresh.push_back(text);
+        if (reported.size() < max_kinds && reported.insert(without_numbers(text)).second) fresh.push_back(text);
     return fresh;
 }
 
-std::vector<std::string> WarningThrottle::final_updates(const std::vector<std::string>& now) {
-    std::vector<std::string> fresh;
-    for (const auto& text : now) {
-        const auto known = reported_.find(without_numbers(text));
-        if (known != reported_.end() && std::exchange(known->second, text) != text) fresh.push_back(text);
-    }
-    return fresh;
-}
-
-WatchOutput::WatchOutput(const StageCall& call, const compute::ComputeModel& compute) : call_(call), compute_(compute) {
-    const auto ability = standard_output_ability();
-    if (ability.redraws && !call.output && !call.json) columns_ = ability.columns;
-}
+WatchOutput::WatchOutput(const StageCall& call, const compute::ComputeModel& compute)
+    : call_(call), compute_(compute), is_screen_(!call.output && !call.json && standard_output_redraws()) {}
 
 void WatchOutput::print_state(const live::LiveState& state) {
-    warnings_ = state.warnings;
-    const auto fresh = throttle_.due(warnings_);
-    for (const auto& warning : fresh)
-        if (!columns_) warn(call_, warning);
-    if (columns_) {
-        draw(state);
-    } else if (call_.json) {
-        is_read_ = print_flushed(json_line(call_, WatchState{&state, &compute_}));
-    } else {
-        is_read_ = print_flushed(line_of(state, compute_));
-    }
+    if (is_screen_) return draw(state);
+    for (const auto& warning : fresh_warnings(state.warnings, reported_)) warn(call_, warning);
+    is_read_ = print_flushed(call_.json ? json_line(call_, WatchState{&state, &compute_}) : line_of(state, compute_));
 }
 
 void WatchOutput::end(const live::LiveFlight& flight, const std::string& why) {
-    for (const auto& warning : throttle_.final_updates(warnings_)) warn(call_, warning);
     const auto& last = flight.last_predicted();
     if (call_.json) {
         print(json_line(call_, WatchEnd{why, last ? std::optional(WatchState{&*last, &compute_}) : std::nullopt}));
@@ -345,9 +297,8 @@ void WatchOutput::draw(const live::LiveState& state) {
     if (drawn_ && now - *drawn_ < min_interval) return;
     drawn_ = now;
     auto lines = screen_of(state, compute_);
-    for (const auto& warning : state.warnings) lines.push_back("          " + one_line(warning));
-    std::string text = "\x1b[H\x1b[J";  // clears the screen
-    for (const auto& line : lines) text += wrapped(line, *columns_);
+    for (const auto& warning : state.warnings) lines.push_back(one_line(warning));
+    const auto text = fmt::format("\x1b[H\x1b[J{}\n", fmt::join(lines, "\n"));  // clears the screen
     is_read_ = print_flushed(text);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cli/output/json_document.h"
+#include "cli/stage.h"
 #include "cli/terminal.h"
 #include "compute/compute_model.h"
 #include "live/decision_command.h"
@@ -8,8 +8,8 @@
 
 #include <chrono>
 #include <cstddef>
-#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -37,11 +37,11 @@ struct PageEvent {
 };
 PageEvent page_event(const live::LiveState& state, const compute::ComputeModel& compute, const live::TimeCurve& ahead);
 
-/// One line, for a log.
-std::string line_of(const live::LiveState& state, const compute::ComputeModel& compute);
-
 /// A few lines, for a screen; alarms last.
 std::vector<std::string> screen_of(const live::LiveState& state, const compute::ComputeModel& compute);
+
+/// The same in one line, for a log.
+std::string line_of(const live::LiveState& state, const compute::ComputeModel& compute);
 
 /// Environment of --on-decision's command: FLIGHTWATT_TIME_S, FLIGHTWATT_PHASE, FLIGHTWATT_SOC_PERCENT,
 /// FLIGHTWATT_RUN (JSON), and of each component FLIGHTWATT_COMPONENT_NAME (1 or 0) and, where it runs,
@@ -49,19 +49,8 @@ std::vector<std::string> screen_of(const live::LiveState& state, const compute::
 live::DecisionCommand::Environment decision_environment(const live::LiveState& state,
                                                         const compute::ComputeModel& compute);
 
-/// Reports each warning once, whatever its numbers become.
-class WarningThrottle {
-  public:
-    static constexpr std::size_t max_kinds = 200;
-
-    /// Warnings of `now` that were not reported yet.
-    std::vector<std::string> due(const std::vector<std::string>& now);
-    /// At the end: those whose numbers have changed since.
-    std::vector<std::string> final_updates(const std::vector<std::string>& now);
-
-  private:
-    std::map<std::string, std::string> reported_;  ///< by their texts without numbers
-};
+/// The warnings that were not reported yet, whatever their numbers were; at most 200 kinds.
+std::vector<std::string> fresh_warnings(const std::vector<std::string>& now, std::set<std::string>& reported);
 
 /// The standard output of watch: a screen on a terminal, else a line or with --json an object per state. Its arguments
 /// must outlive it.
@@ -79,9 +68,8 @@ class WatchOutput {
 
     const StageCall& call_;
     const compute::ComputeModel& compute_;
-    std::optional<std::size_t> columns_;  ///< of the terminal that shows a screen
-    WarningThrottle throttle_;
-    std::vector<std::string> warnings_;  ///< of the latest state
+    bool is_screen_;
+    std::set<std::string> reported_;  ///< warnings without their numbers
     std::optional<std::chrono::steady_clock::time_point> drawn_;
     bool is_read_ = true;
 };

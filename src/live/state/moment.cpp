@@ -153,8 +153,7 @@ Prediction predict_airborne_start(const PredictionInput& input, const mechanical
     constexpr double uniform_variance = 1.0 / 12.0;
     constexpr double degrees_of_freedom = 1e9;  // known exactly
     const double energy_wh = units::wh_from_joule(prediction.cruise.remaining_mean_w * max_s);
-    mechanical::add_variance(prediction.remaining_energy,
-                             {energy_wh * energy_wh * uniform_variance, degrees_of_freedom});
+    mechanical::add_variance(prediction.remaining_energy, energy_wh * energy_wh * uniform_variance, degrees_of_freedom);
     prediction.interval = mechanical::interval_95(prediction.remaining_energy).value();
     return prediction;
 }

@@ -30,15 +30,15 @@ Prediction made_up() {
     return prediction;
 }
 
-TEST(PredictionOutput, SaysWhatTheDifferenceSoFarMeans) {
+TEST(PredictionOutput, SaysWhatWasExpectedSoFar) {
     auto prediction = made_up();
-    EXPECT_THAT(text_of(prediction), HasSubstr("25 % of the difference carried forward"));
+    EXPECT_THAT(text_of(prediction), HasSubstr("expected 0.00 W"));
     EXPECT_EQ(record_json(prediction)["cruise"]["gain"], 0.25);
     prediction.uses_physical_model = true;
     EXPECT_THAT(text_of(prediction), HasSubstr("no measured airspeed to compare with"));
     EXPECT_TRUE(record_json(prediction)["cruise"]["own_level"].is_null());
     prediction.flown.motion.bins.resize(2);
-    EXPECT_THAT(text_of(prediction), HasSubstr("this flight +25.0 %"));
+    EXPECT_THAT(text_of(prediction), HasSubstr("expected 0.00 W"));
     EXPECT_EQ(record_json(prediction)["cruise"]["own_level"], 0.25);
     EXPECT_TRUE(record_json(prediction)["cruise"]["gain"].is_null());
 }
@@ -77,19 +77,6 @@ TEST(FlightsTable, HasMeasuredAndPredictedEnergyOfEachFlight) {
             EXPECT_EQ(row[7], "-") << "its power is near zero";
         }
     }
-}
-
-TEST(Verdict, ComparesPhaseByPhaseAndIsSilentOnTies) {
-    EXPECT_EQ(comparison_sentences(validated(), "fourier", "fourier"), "");
-    EXPECT_EQ(comparison_sentences(validated(), "fourier", "unknown"), "");
-    const auto text = comparison_sentences(validated(), "fourier", "constant_mean");
-    const auto back = comparison_sentences(validated(), "constant_mean", "fourier");
-    const bool better = score_of(validated(), "fourier", std::nullopt)->mean_absolute_error_wh <
-                        score_of(validated(), "constant_mean", std::nullopt)->mean_absolute_error_wh;
-    EXPECT_THAT(
-        text, HasSubstr(better ? "total: fourier beats constant_mean" : "total: fourier does not beat constant_mean"));
-    EXPECT_THAT(
-        back, HasSubstr(better ? "total: constant_mean does not beat fourier" : "total: constant_mean beats fourier"));
 }
 
 TEST(ScoresJson, HoldsTheScoresAsNumbers) {

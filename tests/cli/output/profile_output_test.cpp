@@ -2,9 +2,6 @@
 
 #include "cli/output/profile_output.h"
 
-#include "compute/profile_reader.h"
-#include "helpers/test_paths.h"
-
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -31,32 +28,34 @@ compute::ProfileOutcome outcome() {
 }
 
 TEST(ProfileText, ShowsTotalPowerOrThatAboveIdle) {
-    const auto total = profile_text(outcome(), false);
-    EXPECT_THAT(total, HasSubstr("idle: 2.0000 W"));
+    const auto measured = outcome();
+    const auto total = profile_text({measured, false});
+    EXPECT_THAT(total, HasSubstr("idle power: 2.00 W"));
     EXPECT_THAT(total, HasSubstr("\ndetection\n"));
     EXPECT_THAT(total, HasSubstr("5.0000"));
     EXPECT_THAT(total, HasSubstr("24.00"));
-    const auto above = profile_text(outcome(), true);
+    const auto above = profile_text({measured, true});
     EXPECT_THAT(above, HasSubstr("\ndetection, above idle\n"));
     EXPECT_THAT(above, HasSubstr("3.0000"));
 }
 
 TEST(ProfileText, FitsTheScreen) {
+    const auto measured = outcome();
     Screen narrow;
     narrow.is_terminal = true;
     narrow.columns = 44;
-    const auto text = profile_text(outcome(), false, narrow);
+    const auto text = profile_text({measured, false}, narrow);
     EXPECT_THAT(text, HasSubstr("left out: "));
     EXPECT_THAT(text, HasSubstr("fps"));
     EXPECT_THAT(text, HasSubstr("6.0000"));
     narrow.wide = true;
-    EXPECT_THAT(profile_text(outcome(), false, narrow), Not(HasSubstr("left out: ")));
+    EXPECT_THAT(profile_text({measured, false}, narrow), Not(HasSubstr("left out: ")));
 }
 
 TEST(ProfileText, SaysThatNothingCouldBeMeasured) {
     auto failed = outcome();
     failed.components.front().nodes.clear();
-    EXPECT_THAT(profile_text(failed, false), HasSubstr("detection\nno configuration was measured\n"));
+    EXPECT_THAT(profile_text({failed, false}), HasSubstr("detection\nno configuration was measured\n"));
 }
 
 TEST(ProfileJson, HoldsReportedAndTotalPower) {
@@ -69,14 +68,6 @@ TEST(ProfileJson, HoldsReportedAndTotalPower) {
     EXPECT_EQ(node["energy_j"], 12.0);
     EXPECT_NEAR(node["standard_error_w"].get<double>(), std::hypot(0.1, 0.1), 1e-12) << "that of idle as well";
     EXPECT_EQ(json["components"][0]["nodes"][1]["energy_j"], 16.0);
-}
-
-TEST(InterpolationText, HasItsRowUnderTheProfilesName) {
-    const auto file = test::source_dir() / "fits" / "compute" / "tx2-detection.csv";
-    const auto profile = compute::read_power_profile(file);
-    const auto text = interpolation_text("a.csv", profile.power_w.size(), compute::leave_one_out(profile));
-    EXPECT_TRUE(text.starts_with("a.csv\nnodes found from the others"));
-    EXPECT_THAT(text, HasSubstr("2 of 4"));
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ TEST(Explanation, GivesTheReasonsOfEveryEdgeAndThePowerRecord) {
     EXPECT_EQ(table.rows[0][2], fmt::format("{:.1f}", phases.sorties[0].phases[0].start.time_s));
     auto text = explanation(series, phases, power, {});
     EXPECT_THAT(text, HasSubstr(to_text(table)));
-    EXPECT_THAT(text, HasSubstr("idle current on the ground: "));
+    EXPECT_THAT(text, HasSubstr("idle current mean: "));
     EXPECT_THAT(text, HasSubstr(fmt::format("gaps in flight: {}", power.gaps.size())));
     power.idle.reset();
     text = explanation(series, phases, power, {});

@@ -8,6 +8,7 @@
 namespace flightwatt::cli {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 compute::ComputeModel two_components() {
@@ -77,6 +78,22 @@ TEST(WatchOutput, ACommandFindsTheDecisionInItsEnvironment) {
     EXPECT_EQ(variables.at("FLIGHTWATT_COMPONENT_DETECTION"), "1");
     EXPECT_EQ(variables.at("FLIGHTWATT_COMPONENT_DETECTION_FPS"), "5.8");
     EXPECT_EQ(variables.at("FLIGHTWATT_COMPONENT_TX_2"), "0");
+}
+
+TEST(FreshWarnings, AreReportedOnceWhateverTheirNumbers) {
+    std::set<std::string> reported;
+    EXPECT_THAT(fresh_warnings({"1 gap, of 12 s"}, reported), ElementsAre("1 gap, of 12 s"));
+    EXPECT_THAT(fresh_warnings({"2 gaps, of 12.5 s", "no wind"}, reported),
+                ElementsAre("2 gaps, of 12.5 s", "no wind"));
+    EXPECT_THAT(fresh_warnings({"3 gaps, of 40 s", "no wind"}, reported), testing::IsEmpty());
+}
+
+TEST(FreshWarnings, AreBounded) {
+    std::set<std::string> reported;
+    std::size_t fresh = 0;
+    for (int i = 0; i < 1000; ++i)
+        fresh += fresh_warnings({std::string(static_cast<std::size_t>(i) + 1, 'x')}, reported).size();
+    EXPECT_EQ(fresh, 200U);
 }
 
 }  // namespace

@@ -1,8 +1,7 @@
-// The pages of the documentation: which there are, and how they are shown.
-
-#include "cli/help.h"
+// The version of the program, and the commit that it was built of.
 
 #include "base/atomic_file.h"
+#include "cli/stage.h"
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
 
@@ -16,35 +15,6 @@ namespace flightwatt::cli {
 namespace {
 
 using testing::HasSubstr;
-
-std::filesystem::path folder_with_pages() {
-    auto folder = test::scratch_dir() / "pages";
-    make_directories(folder);
-    write_file_atomically(folder / "missions.md", "Above.\n\n# Mission files\n\nKeys.\n## More\n");
-    write_file_atomically(folder / "battery.md", "# Batteries\n");
-    write_file_atomically(folder / "bare.md", "no heading\n");
-    write_file_atomically(folder / "plan.svg", "# not a page\n");
-    return folder;
-}
-
-TEST(HelpPages, AreTheFoldersMarkdownFilesByTopic) {
-    const auto pages = help_pages(folder_with_pages());
-    ASSERT_EQ(pages.size(), 3U);
-    EXPECT_EQ(pages[0].topic, "bare");
-    EXPECT_EQ(pages[0].title, "");
-    EXPECT_EQ(pages[1].topic, "battery");
-    EXPECT_EQ(pages[1].title, "Batteries");
-    EXPECT_EQ(pages[2].topic, "missions");
-    EXPECT_EQ(pages[2].title, "Mission files");
-}
-
-TEST(HelpPages, AreNoneWithoutTheFolder) { EXPECT_TRUE(help_pages(test::scratch_dir() / "absent").empty()); }
-
-TEST(HelpPages, AreShownAsTheyStand) {
-    const auto folder = folder_with_pages();
-    const auto shown = test::run_shell("flightwatt help missions", folder, "FLIGHTWATT_DOCS=" + folder.string());
-    EXPECT_EQ(shown.out, "Above.\n\n# Mission files\n\nKeys.\n## More\n");
-}
 
 TEST(VersionText, IsTheVersionAloneWhereNoCommitIsKnown) { EXPECT_EQ(version_text(), FLIGHTWATT_VERSION); }
 
