@@ -129,7 +129,7 @@ std::string values_text(const Json& record, const std::string& prefix) {
         if (value.is_object())
             text += values_text(value, label + ' ');
         else if (!value.is_null() && !value.is_array())
-            text += fmt::format("{}: {}{}\n", label, cell_text(value, {.key = key, .description = {}}),
+            text += fmt::format("{}: {}{}\n", label, cell_text(value, {.key = key, .description = {}, .digits = ".4g"}),
                                 unit != nullptr ? fmt::format(" {}", unit->unit) : "");
     }
     return text;
