@@ -65,7 +65,7 @@ void report_notes(const cli::StageCall& call, const batch::BatchFlights& flights
     }
 }
 
-/// On failure no model of an earlier run stays behind to be taken for this one's.
+/// Without a fit no model of an earlier run stays behind to be taken for this one's.
 void remove_model(const cli::StageCall& call, const std::filesystem::path& out) {
     const auto removed = batch::remove_batch_fit(out);
     if (removed.empty()) return;
@@ -73,15 +73,38 @@ void remove_model(const cli::StageCall& call, const std::filesystem::path& out) 
                                 fmt::join(removed, ", "), out.string()));
 }
 
-/// A fit, and how its physical model came about, where one was asked for.
+/// A fit with its Table I, and how its physical model came about, where one was asked for.
 struct FittedBatch {
     batch::BatchFit fit;
+    TextTable table;
     std::optional<mechanical::PhysicalFit> physical;
 };
 
-/// Fits what the batch accepted.
-FittedBatch fit_batch(const cli::StageCall& call, const BatchArguments& arguments, const batch::BatchFlights& flights,
-                      const batch::BatchOptions& batch) {
+/// Fits what the batch accepted, and writes the model and its Table I; std::nullopt, with a note, if nothing is to be
+/// fitted.
+std::optional<FittedBatch> fit_batch(const cli::StageCall& call, const BatchArguments& arguments,
+                                     const batch::BatchFlights& flights, const batch::BatchOptions& batch,
+                                     std::vector<batch::DuplicateFlight> copies,
+                                     const std::optional<mechanical::MechanicalModel>& published) {
+    const auto totals = totals_of(flights);
+    if (totals.accepted == 0) {
+        throw InputError(
+            {}, fmt::format("all {} logs were rejected or left out, so there is nothing to fit", flights.size()));
+    }
+    if (totals.with_power == 0) {
+        cli::warn(call, "no flight has measured power: nothing was fitted, and there is no model");
+        return std::nullopt;
+    }
+    if (arguments.no_fit) {
+        cli::note(call, fmt::format("nothing was fitted; next: flightwatt fit {} -o MODEL.toml",
+                                    cli::shell_quoted(batch.out.string())));
+        return std::nullopt;
+    }
+    if (const auto mix = mixed_aircraft_reason(flights); !mix.empty() && !arguments.flights.mix_aircraft)
+        throw NoResultError(
+            fmt::format("the catalogue is written, and no model: the flights are of several aircraft: {}; "
+                        "--exclude flights, or fit all as if they were of one with --mix-aircraft",
+                        mix));
     const auto& options = arguments.model.fit;
     const auto kind = arguments.model.kind;
     auto measured = read_samples(flights, batch);
@@ -89,46 +112,20 @@ FittedBatch fit_batch(const cli::StageCall& call, const BatchArguments& argument
     samples.reserve(measured.size());
     for (auto& flight : measured)
         samples.push_back(std::move(flight.samples));  // of thousands, two copies are too many
-    try {
-        FittedBatch fitted{batch::fit_flights(samples, options), std::nullopt};
-        auto& model = fitted.fit.model;
-        if (kind == cli::ModelKind::physical) fitted.physical = cli::fit_motion(call, measured, model);
-        if (kind != cli::ModelKind::best) return fitted;
-        for (std::size_t i = 0; i < measured.size(); ++i) measured[i].samples = std::move(samples[i]);
-        cli::add_best_power(measured, options, model);
-        return fitted;
-    } catch (...) {
-        remove_model(call, batch.out);
-        throw;
-    }
-}
-
-/// Of all that the model and its tables are made from.
-std::string fingerprint_of(const BatchArguments& arguments, const batch::BatchFlights& flights,
-                           const batch::BatchOptions& options,
-                           const std::optional<mechanical::MechanicalModel>& published) {
-    auto more =
-        fmt::format("{}\n", static_cast<int>(arguments.model.kind)) + (published ? to_toml(*published) : std::string());
-    for (const auto* names : {&options.load.excluded, &options.load.keep})
-        more += fmt::format("{}: {}\n", names->size(), fmt::join(*names, "\n"));
-    return batch::fit_fingerprint(flights, arguments.model.fit, more);
-}
-
-/// The fit of an earlier run.
-FittedBatch known_fit(const std::filesystem::path& out) {
-    const OverwriteExemption own;
-    return {batch::read_batch_fit(out).value(), std::nullopt};
-}
-
-/// Refuses to fit one model to several aircraft.
-void refuse_mix(const cli::StageCall& call, const batch::BatchFlights& flights, const std::filesystem::path& out) {
-    const auto mix = mixed_aircraft_reason(flights);
-    if (mix.empty()) return;
-    remove_model(call, out);
-    throw NoResultError(
-        fmt::format("the catalogue is written, and no model: the flights are of several aircraft: {}; "
-                    "--exclude flights, or fit all as if they were of one with --mix-aircraft",
-                    mix));
+    FittedBatch fitted{batch::fit_flights(samples, options), {}, {}};
+    auto& fit = fitted.fit;
+    if (kind == cli::ModelKind::physical) fitted.physical = cli::fit_motion(call, measured, fit.model);
+    for (std::size_t i = 0; i < measured.size(); ++i) measured[i].samples = std::move(samples[i]);
+    if (kind == cli::ModelKind::best) cli::add_best_power(measured, options, fit.model);
+    fit.copies = std::move(copies);
+    fit.excluded = batch.load.excluded;
+    fit.keep = batch.load.keep;
+    fitted.table = cli::model_table(fit.model, published);
+    for (const auto* name : batch::table_names)
+        write_file_atomically(batch.out / name, cli::table_text(fitted.table, name),
+                              batch.out / batch::temporary_folder);
+    write_batch_fit(fit, batch.out);
+    return fitted;
 }
 
 }  // namespace
@@ -173,23 +170,6 @@ std::string flights_text(const cli::StageCall& call, const batch::BatchFlights& 
     return text;
 }
 
-batch::BatchOptions batch_options(const cli::StageCall& call, const BatchArguments& arguments) {
-    if (!call.output) throw UsageError("no folder given: expected -o FOLDER");
-    batch::BatchOptions options;
-    options.out = *call.output;
-    options.load = arguments.flights.load;
-    options.min_samples = mechanical::min_samples(arguments.model.fit.phases.order);
-    return options;
-}
-
-/// Writes the model and its Table I as files.
-void write_model(const batch::BatchFit& fit, const TextTable& table, const batch::BatchOptions& options) {
-    for (const auto* name : batch::table_names) {
-        write_file_atomically(options.out / name, cli::table_text(table, name), options.out / batch::temporary_folder);
-    }
-    write_batch_fit(fit, options.out);
-}
-
 /// 3 if a log of this run was rejected.
 int exit_code(const cli::StageCall& call, const batch::Totals& totals) {
     if (totals.rejected_of_this_run == 0) return cli::ok;
@@ -202,60 +182,34 @@ int exit_code(const cli::StageCall& call, const batch::Totals& totals) {
 /// code.
 int finish(const cli::StageCall& call, const BatchArguments& arguments, batch::BatchFlights flights,
            const batch::BatchOptions& options, const std::optional<mechanical::MechanicalModel>& published) {
-    const auto made_from = fingerprint_of(arguments, flights, options, published);
-    const bool shows_physical = arguments.model.kind == cli::ModelKind::physical;  // how it came about is not kept
-    const bool is_known = !arguments.no_fit && !shows_physical && batch::is_fit_current(options.out, made_from);
-    auto known = is_known ? std::optional(known_fit(options.out)) : std::nullopt;
-    auto copies = find_duplicates(flights);
+    const auto copies = find_duplicates(flights);
     exclude_duplicates(flights, copies);
     report_notes(call, flights);
     write_file_atomically(options.out / batch::catalogue_name, catalogue_csv(flights),
                           options.out / batch::temporary_folder);
     const auto shown = flights_text(call, flights, options);
-    const auto totals = totals_of(flights);
+    std::optional<FittedBatch> fitted;
     try {
-        if (totals.accepted == 0) {
-            remove_model(call, options.out);
-            throw InputError(
-                {}, fmt::format("all {} logs were rejected or left out, so there is nothing to fit", flights.size()));
-        }
-        if (totals.with_power == 0 || arguments.no_fit) {
-            remove_model(call, options.out);
-            if (totals.with_power == 0) {
-                cli::warn(call, "no flight has measured power: nothing was fitted, and there is no model");
-            } else {
-                cli::note(call, fmt::format("nothing was fitted; next: flightwatt fit {} -o MODEL.toml",
-                                            cli::shell_quoted(options.out.string())));
-            }
-            if (call.json)
-                cli::print_json(call, BatchOutput{nullptr, &flights});
-            else
-                cli::print(shown);
-            return exit_code(call, totals);
-        }
-        if (!arguments.flights.mix_aircraft) refuse_mix(call, flights, options.out);
-        auto [fit, physical] = known ? *std::move(known) : fit_batch(call, arguments, flights, options);
-        fit.copies = std::move(copies);
-        fit.excluded = options.load.excluded;
-        fit.keep = options.load.keep;
-        fit.input_fingerprint = made_from;
-        const auto table = cli::model_table(fit.model, published);
-        if (is_known) cli::note(call, "nothing has changed: the model is as it was");
-        if (!is_known) write_model(fit, table, options);
-        warn_of_model(call, fit.model);
-        if (call.json) {
-            const cli::FitOutput output{&fit.model, physical ? &*physical : nullptr};
-            cli::print_json(call, BatchOutput{&output, &flights});
-        } else {
-            const auto screen = screen_of(call);
-            cli::print(shown + "\n" + screen_text(table, screen, {"Table I", {}}) +
-                       (physical ? "\n" + cli::physical_text(*physical, screen) : ""));
-        }
+        fitted = fit_batch(call, arguments, flights, options, copies, published);
     } catch (const std::exception&) {
+        remove_model(call, options.out);
         if (!call.json) cli::print(shown);
         throw;
     }
-    return exit_code(call, totals);
+    if (fitted)
+        warn_of_model(call, fitted->fit.model);
+    else
+        remove_model(call, options.out);
+    const auto* physical = fitted && fitted->physical ? &*fitted->physical : nullptr;
+    if (call.json) {
+        const auto fit = fitted ? std::optional(cli::FitOutput{&fitted->fit.model, physical}) : std::nullopt;
+        cli::print_json(call, BatchOutput{fit ? &*fit : nullptr, &flights});
+    } else {
+        const auto screen = screen_of(call);
+        cli::print(shown + (fitted ? "\n" + screen_text(fitted->table, screen, {"Table I", {}}) : "") +
+                   (physical != nullptr ? "\n" + cli::physical_text(*physical, screen) : ""));
+    }
+    return exit_code(call, totals_of(flights));
 }
 
 std::vector<batch::LogFile> chosen_logs(const cli::StageCall& call, const cli::FlightFilter& filter,
@@ -314,7 +268,11 @@ void tell_plan(const cli::StageCall& call, const batch::BatchPlan& plan) {
 }
 
 int run_over_logs(const cli::StageCall& call, const BatchArguments& arguments) {
-    auto options = batch_options(call, arguments);
+    if (!call.output) throw UsageError("no folder given: expected -o FOLDER");
+    batch::BatchOptions options;
+    options.out = *call.output;
+    options.load = arguments.flights.load;
+    options.min_samples = mechanical::min_samples(arguments.model.fit.phases.order);
     const auto published = read_published(arguments.model);
     make_directories(options.out);
     const batch::FolderLock lock(options.out);
@@ -323,7 +281,6 @@ int run_over_logs(const cli::StageCall& call, const BatchArguments& arguments) {
     tell_plan(call, plan);
     prepare_folder(plan, options.out);
     const batch::RemoveIfEmpty unfinished{options.out / batch::temporary_folder};
-    batch::end_at_signals(call.program);
     cli::ProgressBar bar("logs");
     auto flights = run_batch(plan.logs, options, progress_of(call, bar));
     bar.hide();
@@ -339,12 +296,11 @@ int flightwatt::stages::batch_stage(int argc, char** argv) {
 time, and fits them: OUT/model.toml, OUT/table1.txt, .csv, .md, and OUT/flights.csv, a row a flight and
 phase. Logs whose results are up to date are not done again. A log that cannot be used is reported and the
 others are processed; the exit code is then 3. Flights of earlier runs into OUT stay, also those whose log is missing;
---prune drops what is not among the logs that are given. Nothing in OUT is replaced or removed but what
-OUT/batch.json lists as the batch's. Logs of a folder below FOLDER that holds a file not-fitted.txt are
+--prune drops what is not among the logs that are given. A folder that has files of these names, but no
+OUT/batch.json, is refused. Logs of a folder below FOLDER that holds a file not-fitted.txt are
 listed and excluded from the fit; its first line states the reason.
 
-SIGINT (Ctrl-C), SIGTERM and SIGHUP end it within a second, with exit code 130, 143 and 129. After
-any end, the same command continues where it stopped, with the same results.)"};
+It may be ended at any time (Ctrl-C): the same command continues where it stopped, with the same results.)"};
     stage.examples = {"flightwatt batch logs -o my",
                       "flightwatt batch logs -o my --aircraft 5 --since 2020-07-01 --prune"};
     stage.min_inputs = 0;  // or --files-from

@@ -61,57 +61,18 @@ std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call, c
     return records;
 }
 
-/// How the capacity that was given agrees with the one that the flights indicate.
-void compare_capacity(const cli::StageCall& call, const battery::Battery& pack) {
-    if (const auto warning = capacity_warning(pack); !warning.empty())
-        cli::warn(call, warning);
-    else
-        cli::note(call, cli::describe_given_capacity(pack));
-}
-
-void note_limits(const cli::StageCall& call, const battery::BatteryIdentification& identified) {
-    if (const auto warning = cli::cells_warning(identified); !warning.empty()) cli::warn(call, warning);
-    for (const auto& limit : cli::curve_limits(identified)) cli::note(call, limit);
-    for (const auto& flight : identified.flights) {
-        if (flight.link)
-            cli::note(call, cli::describe_link(flight) + "; --no-pack-links treats each flight's pack as another one");
-    }
-    if (!identified.battery.intervals.resistance_scatter)
-        cli::note(
-            call,
-            "how the series resistance differs between flights is not known, as fewer than two flights have one of "
-            "their own: missions draw it by its interval alone");
-    if (identified.trend) cli::note(call, cli::describe(*identified.trend));
-    if (identified.capacity.origin == battery::CapacityOrigin::given) compare_capacity(call, identified.battery);
-    if (identified.capacity.origin == battery::CapacityOrigin::chart) {
-        cli::warn(call, fmt::format("the flights do not determine the capacity, as none runs empty: {}; give the "
-                                    "capacity on the label with --capacity",
-                                    cli::describe(identified.capacity)));
-    }
-    if (identified.fit.rc_resistance_ohm == 0.0) {
-        cli::warn(call, "no RC pair explains anything: the battery has none");
-    } else if (identified.errors.rc_resistance_ohm.low == 0.0) {
-        cli::warn(call, "the RC pair may be none: its resistance's interval reaches down to 0");
-    }
-}
-
-/// Identification on all records, and leave-one-out on each.
-std::pair<battery::BatteryIdentification, std::vector<battery::LeaveOneOutCheck>> identify_and_check(
-    const std::vector<battery::DischargeRecord>& records, const battery::IdentificationOptions& options,
-    std::size_t folds) {
-    cli::ProgressBar identifying("identifications");
-    auto identified = identify_battery(records, options);
-    const auto show = [&](std::size_t done, std::size_t all) { identifying.show(done + 1, all + 1); };
-    return {std::move(identified), leave_one_out(records, options, show, folds)};
-}
-
 int identify(const cli::StageCall& call, const BatteryArguments& arguments) {
     const auto options = identification_options(call, arguments);
     const auto folds = arguments.folds;
     const auto records = read_records(call, arguments.flights);
     cli::note_folds(call, records.size(), folds);
-    const auto [identified, left_out] = identify_and_check(records, options, folds);
-    note_limits(call, identified);
+    cli::ProgressBar identifying("identifications");
+    const auto identified = identify_battery(records, options);
+    const auto show = [&](std::size_t done, std::size_t all) { identifying.show(done + 1, all + 1); };
+    const auto left_out = leave_one_out(records, options, show, folds);
+    identifying.clear();
+    for (const auto& [text, is_warning] : cli::battery_remarks(identified))
+        is_warning ? cli::warn(call, text) : cli::note(call, text);
     if (left_out.empty()) cli::note(call, "a single flight: there is no other one to check the battery with");
     cli::write_result(call, cli::provenance(identified) + to_toml(identified.battery));
     if (call.json) {

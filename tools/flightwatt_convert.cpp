@@ -94,25 +94,6 @@ std::vector<std::string> warnings_of(const ConvertedLog& log, const std::string&
     return warnings;
 }
 
-/// Frames of a message by its number.
-struct FrameCount {
-    int message_class = 0;
-    int id = 0;
-    std::size_t frames = 0;
-};
-
-Fields<FrameCount> record_fields(const FrameCount*) {
-    using R = FrameCount;
-    return {field("class", &R::message_class, "class of the message"), field("id", &R::id, "id of the message"),
-            field("frames", &R::frames, "number of frames")};
-}
-
-std::vector<FrameCount> frame_counts(const std::map<std::uint16_t, std::size_t>& ids) {
-    std::vector<FrameCount> all;
-    for (const auto& [number, frames] : ids) all.push_back({number / 256, number % 256, frames});
-    return all;
-}
-
 /// JSON of the stage.
 struct ConvertOutput {
     const flight::FlightFile* file = nullptr;
@@ -134,9 +115,9 @@ Fields<ConvertOutput> record_fields(const ConvertOutput*) {
             field("bytes", at(&R::log, &L::counts, &C::bytes), "bytes of the log"),
             field("frames", at(&R::log, &L::counts, &C::frames), "frames with a valid checksum"),
             field("messages", at(&R::log, &L::lines), "messages written"),
-            field("unknown", at(&R::log, &L::counts, &C::unknown_ids, frame_counts), "undefined messages"),
-            field("length_mismatches", at(&R::log, &L::counts, &C::other_length_ids, frame_counts),
-                  "messages with another length than defined"),
+            field("unknown_frames", at(&R::log, &L::counts, &C::unknown), "frames of undefined messages"),
+            field("length_mismatches", at(&R::log, &L::counts, &C::length_mismatches),
+                  "frames with another length than defined"),
             field("non_message_frames", at(&R::log, &L::counts, &C::non_message_frames), "as an XBee's status"),
             field("skipped_bytes", at(&R::log, &L::counts, &C::skipped_bytes), "bytes outside of frames"),
             field("skipped_runs", at(&R::log, &L::counts, &C::skipped_runs), "runs of such bytes"),
@@ -157,20 +138,6 @@ std::optional<std::filesystem::path> log_to_write(const cli::StageCall& call, co
     std::error_code error;
     if (std::filesystem::equivalent(target, *own, error)) return std::nullopt;
     return target;
-}
-
-/// The .log first: no text stands without its definitions. Where the text cannot be written no .log is left of it.
-void write_both(const cli::StageCall& call, const std::string& text,
-                const std::optional<std::filesystem::path>& log_file, const flight::FlightFile& file) {
-    std::error_code error;
-    const bool is_new = log_file && !std::filesystem::exists(*log_file, error);
-    if (log_file) write_file_atomically(*log_file, file.log_text().value());
-    try {
-        cli::write_result(call, text);
-    } catch (const OutputError&) {
-        if (is_new) std::filesystem::remove(*log_file, error);
-        throw;
-    }
 }
 
 void print_summary(const cli::StageCall& call, const flight::FlightFile& file, const ConvertedLog& log) {
@@ -206,7 +173,8 @@ int convert(const cli::StageCall& call, const ConvertArguments& arguments) {
         }
     }
     const auto converted = convert_log(file);
-    write_both(call, converted.text, log_file, file);
+    if (log_file) write_file_atomically(*log_file, file.log_text().value());  // first: no text without definitions
+    cli::write_result(call, converted.text);
     auto warnings = warnings_of(converted, file.log_file().string());
     if (!file.log_error().empty()) warnings.push_back(file.log_error());
     for (const auto& warning : warnings) cli::warn(call, fmt::format("{}: {}", path.string(), warning));

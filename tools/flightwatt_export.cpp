@@ -50,11 +50,6 @@ struct ExportArguments {
     flight::LoadOptions load;
 };
 
-struct ExportRequest {
-    std::string format;  ///< "geojson"
-    std::vector<ExportInput> inputs;
-};
-
 constexpr std::array kind_names{"log or series", "mechanical model", "battery", "mission", "folder"};
 
 std::string name_of(ExportKind kind) { return kind_names.at(static_cast<std::size_t>(kind)); }
@@ -165,39 +160,18 @@ void require_few(const std::vector<ExportInput>& inputs, const Format& format) {
                                               : ""));
 }
 
-/// The format by --format or the ending of --output's file, and the inputs. Throws UsageError for no such format, for
-/// options or a number of inputs that the format does not take; InputError for inputs that it is not made of.
-ExportRequest read_export_request(const cli::StageCall& call, const ExportArguments& arguments) {
-    const auto& format = format_of(call, arguments.format);
-    refuse_idle_options(call, format);
-    ExportRequest request{format.name, {}};
-    for (const auto& file : call.inputs) request.inputs.push_back({file, kind_of(file)});
-    for (const auto& input : request.inputs) require_fitting(input, format);
-    require_few(request.inputs, format);
-    return request;
-}
-
 /// The result, and its JSON.
 struct Exported {
     std::string text;
     std::vector<std::string> notes = {};
-    std::optional<std::size_t> points = {};
-    std::optional<std::size_t> segments = {};
-    std::optional<std::string> clock = {};
-    std::optional<std::size_t> rows = {};
     std::vector<std::string> inputs = {};
     std::string format = {};
 };
 
 Fields<Exported> record_fields(const Exported*) {
     using R = Exported;
-    return {field("inputs", &R::inputs, "files"),
-            field("export_format", &R::format, "format, as of `--format`"),
-            field("notes", &R::notes, "what is missing or assumed"),
-            field("points", &R::points, "of a track: positions", optional_key{}),
-            field("parts", &R::segments, "of a track: lines", optional_key{}),
-            field("clock", &R::clock, "of a track: origin of the date, `log`, `name` or `none`", optional_key{}),
-            field("rows", &R::rows, "of `csv`: rows", optional_key{})};
+    return {field("inputs", &R::inputs, "files"), field("export_format", &R::format, "format, as of `--format`"),
+            field("notes", &R::notes, "what is missing or assumed")};
 }
 
 Exported export_track(const cli::StageCall& call, const ExportArguments& arguments, const std::string& file,
@@ -209,10 +183,6 @@ Exported export_track(const cli::StageCall& call, const ExportArguments& argumen
     const auto track = exchange::flown_track(loaded.series, loaded.phases);
     Exported result;
     result.text = format == "geojson" ? to_geojson(track) : format == "kml" ? to_kml(track) : to_gpx(track);
-    constexpr std::array clocks{"log", "name", "none"};
-    result.points = track.points.size();
-    result.segments = phase_segments(track).size();
-    result.clock = clocks.at(static_cast<std::size_t>(track.clock));
     if (track.clock == exchange::TrackClock::name)
         result.notes.push_back(file + ": no .log contains the date: that of its name is used, as UTC");
     if (track.clock == exchange::TrackClock::none)
@@ -230,14 +200,12 @@ Exported export_columns(const cli::StageCall& call, const ExportArguments& argum
         if (!table.left_out.empty())
             result.notes.push_back(
                 fmt::format("{}: {} holds no numbers in {}", file, *message, short_list(table.left_out)));
-        result.rows = table.rows;
         result.text = std::move(table.csv);
         return result;
     }
     options.flight_required = false;
     options.power_required = false;
     result.text = exchange::series_table(cli::load_flight(call, file, options).series);
-    result.rows = static_cast<std::size_t>(std::ranges::count(result.text, '\n') - 1);
     return result;
 }
 
@@ -292,13 +260,13 @@ Exported export_latex(const cli::StageCall& call, const ExportArguments& argumen
     request.with_replay = arguments.with_replay;
     for (const auto& input : inputs) {
         if (input.kind == ExportKind::batch)
-            request.outs.emplace_back(input.file);
+            request.out = input.file;
         else
             request.missions.push_back(mission::read_mission(input.file, {true, std::nullopt}));
     }
-    if (request.with_replay && (request.outs.empty() || request.missions.empty()))
+    if (request.with_replay && (request.out.empty() || request.missions.empty()))
         throw UsageError("--replay needs a folder of flightwatt batch and missions");
-    if (arguments.capacity_ah && request.outs.empty())
+    if (arguments.capacity_ah && request.out.empty())
         throw UsageError("--capacity is that of the flights' battery: add a folder of flightwatt batch");
     const auto content = make_report(request, {[&](const std::string& text) { cli::warn(call, text); }});
     Exported result;
@@ -322,13 +290,18 @@ Exported exported(const cli::StageCall& call, const ExportArguments& arguments, 
 }
 
 int export_inputs(const cli::StageCall& call, const ExportArguments& arguments) {
-    const auto [format, inputs] = read_export_request(call, arguments);
-    auto result = exported(call, arguments, inputs, format);
+    const auto& format = format_of(call, arguments.format);
+    refuse_idle_options(call, format);
+    std::vector<ExportInput> inputs;
+    for (const auto& file : call.inputs) inputs.push_back({file, kind_of(file)});
+    for (const auto& input : inputs) require_fitting(input, format);
+    require_few(inputs, format);
+    auto result = exported(call, arguments, inputs, format.name);
     cli::write_result(call, result.text);
     for (const auto& note : result.notes) cli::note(call, note);
     if (!call.json) return cli::ok;
     result.inputs = call.inputs;
-    result.format = format;
+    result.format = format.name;
     cli::print_json(call, result);
     return cli::ok;
 }

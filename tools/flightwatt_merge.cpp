@@ -6,6 +6,7 @@
 #include "batch/merge.h"
 #include "batch/write_guard.h"
 #include "cli/screen_table.h"
+#include "cli/output/json_document.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
 #include "mechanical/validation.h"
@@ -13,26 +14,26 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+namespace flightwatt::batch {
+
+Fields<DuplicateFlight> record_fields(const DuplicateFlight*) {
+    using R = DuplicateFlight;
+    return {field("flight", &R::flight, "a duplicate, which is not fitted"),
+            field("same_as", &R::same_as, "the flight that is fitted")};
+}
+
+}  // namespace flightwatt::batch
+
 namespace {
 
 using namespace flightwatt;
-
-struct MergedBatch {
-    std::string folder;
-    std::size_t flights = 0;
-};
-
-Fields<MergedBatch> record_fields(const MergedBatch*) {
-    using R = MergedBatch;
-    return {field("folder", &R::folder, "folder of the batch", column{"batch"}),
-            field("flights", &R::flights, "its flights", column{})};
-}
 
 struct RenamedFlight {
     std::string folder;
@@ -46,34 +47,21 @@ Fields<RenamedFlight> record_fields(const RenamedFlight*) {
             field("flight", &R::flight, "new name")};
 }
 
-struct CopiedFlight {
-    std::string flight;
-    std::string same_as;
-};
-
-Fields<CopiedFlight> record_fields(const CopiedFlight*) {
-    using R = CopiedFlight;
-    return {field("flight", &R::flight, "a duplicate, which is not fitted"),
-            field("same_as", &R::same_as, "the flight that is fitted")};
-}
-
 /// JSON of the stage.
 struct MergeOutput {
     std::string folder;
-    std::vector<MergedBatch> batches = {};
     std::size_t flights = 0;
     std::size_t accepted = 0;
     std::size_t rejected = 0;
     std::size_t already_there = 0;
     std::vector<RenamedFlight> renamed = {};
     std::size_t repeated_logs = 0;
-    std::vector<CopiedFlight> copies = {};
+    std::vector<batch::DuplicateFlight> copies = {};
 };
 
 Fields<MergeOutput> record_fields(const MergeOutput*) {
     using R = MergeOutput;
     return {field("folder", &R::folder, "folder of all flights"),
-            field("batches", &R::batches, "the merged batches"),
             field("flights", &R::flights, "flights of the folder"),
             field("accepted", &R::accepted, "usable logs"),
             field("rejected", &R::rejected, "rejected logs"),
@@ -94,22 +82,16 @@ MergeOutput merge_output(const cli::StageCall& call, const batch::MergePlan& pla
         if (before != name) output.renamed.push_back({from, before, name});
     }
     output.rejected = flights.size() - output.accepted;
-    for (std::size_t i = 0; i < plan.flights_per_batch.size(); ++i)
-        output.batches.push_back({call.inputs[i], plan.flights_per_batch[i]});
-    for (const auto& [flight, same_as, has_power] : copies)
-        if (has_power) output.copies.push_back({flight, same_as});
+    std::ranges::copy_if(copies, std::back_inserter(output.copies), &batch::DuplicateFlight::has_power);
     return output;
 }
 
-/// The same as text.
-std::string text_of(const cli::StageCall& call, const MergeOutput& output) {
-    auto folders = output.batches;
-    folders.push_back({output.folder, output.flights});
-    return screen_text(table_of(folders), screen_of(call), {"merged", {}}) +
-           fmt::format(
-               "{} accepted, {} rejected; {} renamed, {} were there already, {} of logs that were in another "
-               "batch too\n",
-               output.accepted, output.rejected, output.renamed.size(), output.already_there, output.repeated_logs);
+std::string text_of(const MergeOutput& output) {
+    return fmt::format(
+        "{}: {} flights; {} accepted, {} rejected; {} renamed, {} were there already, {} of logs that were in another "
+        "batch too\n",
+        output.folder, output.flights, output.accepted, output.rejected, output.renamed.size(), output.already_there,
+        output.repeated_logs);
 }
 
 /// Removes a model in the folder: it was fitted to other flights.
@@ -134,7 +116,6 @@ int merge(const cli::StageCall& call, bool prune) {
     batch::prepare_folder(plan.folder, out);
     remove_model(call, out);
     cli::ProgressBar progress("flights");
-    batch::end_at_signals(call.program);
     const auto needed = mechanical::min_samples(mechanical::ModelFitOptions{}.phases.order);
     auto flights = batch::merge_flights(
         plan, out, needed, [&](std::size_t done, std::size_t all, const auto&) { progress.show(done, all); });
@@ -153,7 +134,7 @@ int merge(const cli::StageCall& call, bool prune) {
     if (call.json)
         cli::print_json(call, output);
     else
-        cli::print(text_of(call, output));
+        cli::print(text_of(output));
     cli::note(call, fmt::format("next: flightwatt fit {} -o MODEL.toml", cli::shell_quoted(out.string())));
     return cli::ok;
 }
@@ -168,9 +149,8 @@ records, and flights.csv of all, as one batch of all logs would have written the
 from and in whatever order they were joined. The logs are not read. Files are hard links where the
 file system has them, else copies. A log that is in several folders is taken once; flights of one
 name get the names NAME, NAME_2, ... by the paths of their logs. Nothing is fitted: flightwatt fit does that.
-Nothing in OUT is replaced or removed but what OUT/batch.json lists as a batch's.)"};
+A folder that has files of these names, but no OUT/batch.json, is refused.)"};
     stage.json_schema = cli::document_schema<MergeOutput>;
-    stage.shows_table = true;
     stage.output_help = "the folder of the results";
     stage.examples = {"flightwatt merge part1 part2 -o all", "flightwatt merge part* -o all --prune"};
     stage.uses_threads = true;

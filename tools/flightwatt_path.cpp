@@ -53,18 +53,6 @@ Fields<FlightPathOutput> record_fields(const FlightPathOutput*) {
 
 constexpr int digits = 10;
 
-void print_summary(const cli::StageCall& call, const mission::MissionSetup& mission, double length_m) {
-    const auto& cruise = *mission.cruise_path;
-    const double duration_s = path::duration_s(cruise);
-    const double energy_wh = units::wh_from_joule(energy_j(cruise));
-    if (!call.json) {
-        cli::note(call, fmt::format("{}: {:.2f} km over ground in {}; {:.3f} Wh, {:.2f} W on average", mission.name,
-                                    length_m / 1000.0, duration_text(duration_s), energy_wh, mean_power_w(cruise)));
-        return;
-    }
-    cli::print_json(call, PathOutput{mission.name, length_m, duration_s, energy_wh, mean_power_w(cruise)});
-}
-
 int show_path(const cli::StageCall& call) {
     mission::MissionReadOptions reading;
     reading.allow_unplanned = true;
@@ -85,7 +73,14 @@ int show_path(const cli::StageCall& call) {
         length_m += leg.length_m.value_or(0.0);
     }
     write_csv_result(call, csv.text(), {setup.name, {"leg", "start_s", "duration_s", "length_m", "mechanical_w"}});
-    print_summary(call, setup, length_m);
+    const double duration_s = path::duration_s(*setup.cruise_path);
+    const double energy_wh = units::wh_from_joule(energy_j(*setup.cruise_path));
+    const double mean_w = mean_power_w(*setup.cruise_path);
+    if (call.json)
+        cli::print_json(call, PathOutput{setup.name, length_m, duration_s, energy_wh, mean_w});
+    else
+        cli::note(call, fmt::format("{}: {:.2f} km over ground in {}; {:.3f} Wh, {:.2f} W on average", setup.name,
+                                    length_m / 1000.0, duration_text(duration_s), energy_wh, mean_w));
     return cli::ok;
 }
 

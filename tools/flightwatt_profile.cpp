@@ -79,18 +79,12 @@ int check_interpolation(const cli::StageCall& call, const ProfileArguments& argu
     return cli::ok;
 }
 
-/// How far the runs have come.
-struct RunsDone {
-    std::size_t done = 0;
-    std::size_t all = 0;
-};
-
-void note_run(const cli::StageCall& call, const compute::ProfileRun& run, const RunsDone& runs) {
+void note_run(const cli::StageCall& call, const compute::ProfileRun& run, std::size_t done, std::size_t all) {
     const auto name = run.configuration.empty() ? run.component : run.component + " " + run.configuration;
     const auto what = run.is_from_earlier_run                ? "up to date"
                       : run.status == compute::RunStatus::ok ? fmt::format("{:.4g} W", run.estimate.power_w)
                                                              : std::string(to_string(run.status));
-    cli::note(call, fmt::format("[{}/{}] {} repeat {}: {}{}", runs.done, runs.all, name, run.repeat, what,
+    cli::note(call, fmt::format("[{}/{}] {} repeat {}: {}{}", done, all, name, run.repeat, what,
                                 run.note.empty() ? "" : ": " + run.note));
 }
 
@@ -128,18 +122,18 @@ int profile_components(const cli::StageCall& call, const ProfileArguments& argum
     const auto specification = compute::read_profile_specification(call.inputs.front());
     const SignalWatch signals;
     auto options = options_of(call, signals);
-    RunsDone runs;
+    std::string runs = "no runs";
     options.progress = [&](const compute::ProfileRun& run, std::size_t done, std::size_t all) {
-        runs = {done, all};
-        note_run(call, run, runs);
+        runs = fmt::format("{} of {} runs", done, all);
+        note_run(call, run, done, all);
     };
     make_directories(options.folder);
     const batch::FolderLock lock(options.folder);
     try {
         return conclude(call, profile(specification, options), specification);
     } catch (const compute::Interrupted& interrupted) {
-        cli::note(call, fmt::format("stopped by {} after {} of {} runs; the same command continues from there",
-                                    signal_name(interrupted.signal), runs.done, runs.all));
+        cli::note(call, fmt::format("stopped by {} after {}; the same command continues from there",
+                                    signal_name(interrupted.signal), runs));
         return killed_by_signal + interrupted.signal;
     }
 }

@@ -58,7 +58,9 @@ report::ReportInput read_inputs(const cli::StageCall& call, const ReportArgument
             cli::warn_of_setup(call, setup_of(inputs.missions.back()));
             continue;
         }
-        inputs.outs.emplace_back(input);
+        if (!inputs.out.empty())
+            throw UsageError("give one folder of flightwatt batch: it takes the logs of several folders");
+        inputs.out = input;
     }
     return inputs;
 }
@@ -96,7 +98,7 @@ report::ReportLog log_of(const cli::StageCall& call) {
 
 int write_page(const cli::StageCall& call, const ReportArguments& arguments) {
     auto input = read_inputs(call, arguments);
-    if (input.with_replay && (input.outs.empty() || input.missions.empty()))
+    if (input.with_replay && (input.out.empty() || input.missions.empty()))
         throw UsageError(
             "--replay flies missions on a batch's flights: give a folder of flightwatt batch and missions");
     const bool wants_page = call.output || (!call.json && !arguments.figures);
@@ -124,10 +126,9 @@ int write_page(const cli::StageCall& call, const ReportArguments& arguments) {
 
 int flightwatt::stages::report_stage(int argc, char** argv) {
     cli::StageDefinition stage{
-        "report", "[OUT...] [MISSION.toml...] -o report.html",
+        "report", "[OUT] [MISSION.toml...] -o report.html",
         R"(Writes one HTML page, to be opened offline, of the folder OUT of flightwatt batch (flights, model,
-validation, battery; of several folders each its own) and of missions (software, schedules, quality
-of service, plan). Its figures are Vega-Lite specifications with their data; --figures writes them as files
+validation, battery) and of missions (software, schedules, quality of service, plan). Its figures are Vega-Lite specifications with their data; --figures writes them as files
 for papers: .vl.json, .svg (by node) and .pdf (where rsvg-convert is). The model is the batch's own, with
 the bands that the batch stored.)"};
     stage.json_schema = [] { return cli::json_schema({report::summary_schema()}); };

@@ -7,7 +7,6 @@
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "report/batch_content.h"
-#include "report/page.h"
 #include "report/trends_section.h"
 #include "stages.h"
 
@@ -28,7 +27,6 @@ using namespace flightwatt;
 
 struct TrendsArguments {
     std::optional<double> capacity_ah;
-    std::optional<std::string> figures;
     cli::FlightFilter filter;
     cli::FlightArguments flights;
 };
@@ -79,34 +77,9 @@ Fields<FlightTrendData> record_fields(const FlightTrendData*) {
         std::move(quantities),
         field("resistance_ohm_interval_95", at(&R::resistance, &battery::FlightResistance::interval_ohm), "",
               csv_column{}),
+        field("capacity_ah", &R::capacity_ah, "of the pack", csv_column{}),
         field("capacity_ah_interval_95", capacity, "without the error of the level", csv_column{}),
         field("charge_ah", &R::charge_ah, "drawn from the pack", csv_column{}));
-}
-
-Fields<AircraftTrend> record_fields(const AircraftTrend*) {
-    using R = AircraftTrend;
-    using T = batch::Trend;
-    using A = batch::TrendResult;
-    const auto interval = [](const T& trend) { return Interval{trend.low_per_day, trend.high_per_day}; };
-    const auto absolute = [](const R& row) { return row.level_is_guess ? std::nullopt : row.answer.trend; };
-    const auto relative = [](const R& row) {
-        return row.answer.trend ? relative_trend(*row.answer.trend) : std::nullopt;
-    };
-    const auto of = [](auto trend, auto step) {
-        return [=](const R& row) { return record_detail::follow(trend(row), step); };
-    };
-    return {field("aircraft_id", &R::aircraft_id, "id of the aircraft"),
-            field("aircraft_name", &R::aircraft_name, "name of the aircraft"),
-            field("quantity", &R::quantity, "key of `flights[]`"),
-            field("dated_flights", at(&R::answer, &A::trend, &T::flights), "flights of the trend"),
-            field("median", at(&R::answer, &A::trend, &T::median), "of these flights"),
-            field("per_day", of(absolute, &T::per_day), "slope; null if `level_is_guess`"),
-            field("per_day_interval_95", of(absolute, interval)),
-            field("percent_per_day", of(relative, &T::per_day), "slope over the median"),
-            field("percent_per_day_interval_95", of(relative, interval)),
-            field("level_is_guess", &R::level_is_guess, "of a capacity: its level is from the chart"),
-            field("significant", at(&R::answer, &A::trend, batch::is_significant), "the interval excludes 0"),
-            field("no_trend_reason", at(&R::answer, &A::no_trend_reason), "reason without a trend")};
 }
 
 }  // namespace flightwatt::report
@@ -140,11 +113,11 @@ void note_trends(const cli::StageCall& call, const std::vector<report::FlightTre
         if (!trend) continue;
         ++tested;
         if (!is_significant(*trend)) continue;
-        const auto [slope, low, high, unit] = shown_slope(row);
-        const auto [least, most] = std::minmax({std::abs(low), std::abs(high)});
-        changing.push_back(fmt::format("{} of {} {} by {:.3g}{} in 30 days ({:.3g} to {:.3g}{})", row.quantity,
-                                       row.aircraft, trend_direction(row), std::abs(slope),
-                                       unit.empty() ? "" : " % of its level", least, most, unit));
+        const auto shown = [](double per_day) { return report::shown_days * std::abs(per_day); };
+        const auto [least, most] = std::minmax({shown(trend->low_per_day), shown(trend->high_per_day)});
+        changing.push_back(fmt::format("{} of {} {} by {:.3g} in {} days ({:.3g} to {:.3g})", row.quantity,
+                                       row.aircraft, trend_direction(row), shown(trend->per_day), report::shown_days,
+                                       least, most));
     }
     for (const auto& text : changing) cli::note(call, text);
     if (tested == 0)
@@ -156,22 +129,7 @@ void note_trends(const cli::StageCall& call, const std::vector<report::FlightTre
                                     tested));
 }
 
-void write_figure_files(const cli::StageCall& call, const std::string& folder,
-                        const std::vector<report::AircraftTrend>& trends, const report::WebFiles& web) {
-    const auto section = trends_section(trends);
-    if (!section) {
-        cli::note(call, "there is no figure, as there is no trend");
-        return;
-    }
-    const auto files = report::write_figures({*section}, web, folder);
-    cli::note(call, fmt::format("{} figure{} in {}: .vl.json{}{}", files.figures, files.figures == 1 ? "" : "s", folder,
-                                files.has_svg ? ", .svg" : "", files.has_pdf ? ", .pdf" : ""));
-    if (!files.has_svg) cli::warn(call, "node is not there: no figure was rendered");
-}
-
 int show_trends(const cli::StageCall& call, const TrendsArguments& arguments) {
-    std::optional<report::WebFiles> web;  // read first: missing files are an error before any work
-    if (arguments.figures) web = report::read_web_files(report::web_folder());
     auto flights = read_flights(call, arguments);
     if (flights.empty()) throw InputError({}, "no flight is left", "see the reasons above");
     std::ranges::stable_sort(flights, {}, [](const auto& flight) {
@@ -188,9 +146,8 @@ int show_trends(const cli::StageCall& call, const TrendsArguments& arguments) {
     if (call.json)
         cli::print_json(call, TrendsOutput{&flights, &trends});
     else if (call.output || screen.is_terminal)
-        cli::print(screen_text(trend_table(trends), screen, {"trends", {"quantity", "trend", "in 30 days"}}));
+        cli::print(screen_text(table_of(trends), screen, {"trends", {"quantity", "trend", "in 30 days"}}));
     note_trends(call, flights, trends);
-    if (web) write_figure_files(call, *arguments.figures, trends, *web);
     return cli::ok;
 }
 
@@ -205,17 +162,13 @@ determine it, and the charge drawn, as CSV; and their trends over the flights' d
 each aircraft. A flight that is in two folders of batch counts once.)" +
             std::string(cli::several_flights_text)};
     stage.json_schema = cli::document_schema<TrendsOutput>;
-    stage.examples = {"flightwatt trends my -o trends.csv",
-                      "flightwatt trends season1 season2 --capacity 2.2 --figures figures"};
+    stage.examples = {"flightwatt trends my -o trends.csv", "flightwatt trends season1 season2 --capacity 2.2"};
     stage.reads_logs = stage.uses_threads = stage.shows_table = true;
     TrendsArguments arguments;
     auto& options = stage.options;
     cli::add_capacity_option(
         options, arguments.capacity_ah,
-        "the pack's capacity, the mean over these flights; default: trends of capacities are in percent "
-        "where no flight determines their level");
-    options.add("figures", arguments.figures, cli::output_file("DIR"),
-                "draw each aircraft's trends into DIR, as flightwatt report --figures does");
+        "the pack's capacity, the mean over these flights; default: by the flights, or a guess from charts");
     cli::add_filter_options(options, arguments.filter);
     cli::add_flight_options(options, arguments.flights);
     return cli::run_stage(argc, argv, stage, [&](const auto& call) { return show_trends(call, arguments); });

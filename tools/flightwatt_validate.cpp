@@ -55,12 +55,6 @@ std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call,
     });
 }
 
-std::vector<mechanical::ValidatedFlight> validate(const std::vector<mechanical::MeasuredFlight>& flights,
-                                                  const mechanical::ModelFitOptions& options, std::size_t folds) {
-    cli::ProgressBar fitting("fits");
-    return leave_one_out(flights, options, fitting.callback(), folds);
-}
-
 struct ValidateArguments {
     mechanical::ModelFitOptions fit;
     std::optional<double> at_s;
@@ -72,7 +66,9 @@ int validate_flights(const cli::StageCall& call, const ValidateArguments& argume
     const auto& [options, at_s, folds, flight_arguments] = arguments;
     const auto flights = read_flights(call, flight_arguments, mechanical::min_samples(options.phases.order), at_s);
     cli::note_folds(call, flights.size(), folds);
-    auto validated = validate(flights, options, folds);
+    cli::ProgressBar fitting("fits");
+    auto validated = leave_one_out(flights, options, fitting.callback(), folds);
+    fitting.clear();
     if (const auto rejected = remove_rejected(validated); !rejected.empty()) cli::note(call, rejected);
     const auto screen = call.output ? cli::Screen() : screen_of(call);
     cli::write_result(call, cli::validation_text(validated, screen));

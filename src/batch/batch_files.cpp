@@ -20,7 +20,7 @@ namespace {
 
 /// The flights that the batch's manifest lists and that have a record.
 std::vector<LogFile> stored_flights(const std::filesystem::path& out) {
-    auto flights = read_manifest(out).flights;
+    auto flights = read_manifest(out);
     std::error_code none;
     std::erase_if(flights, [&](const LogFile& flight) {
         return !std::filesystem::exists(result_path(out, flight.flight, record_suffix), none);
@@ -86,7 +86,20 @@ StoredFlight read_recorded(const std::filesystem::path& out, const LogFile& list
     return flight;
 }
 
-std::vector<StoredFlight> read_stored(const std::filesystem::path& out, bool with_series) {
+}  // namespace
+
+std::string results_fingerprint(std::string_view series_csv, std::string_view phases_csv) {
+    Fingerprint fingerprint;
+    fingerprint.add(series_csv);
+    fingerprint.add(phases_csv);
+    return fingerprint.hex();
+}
+
+FlightRecord read_verified_record(const std::filesystem::path& out, const std::string& flight) {
+    return read_intact(out, flight).record;
+}
+
+std::vector<StoredFlight> read_stored_flights(const std::filesystem::path& out, bool with_series) {
     const auto folder = out / "flights";
     std::error_code none;
     if (!std::filesystem::exists(out / manifest_name, none)) {
@@ -106,22 +119,5 @@ std::vector<StoredFlight> read_stored(const std::filesystem::path& out, bool wit
     }
     return flights;
 }
-
-}  // namespace
-
-std::string results_fingerprint(std::string_view series_csv, std::string_view phases_csv) {
-    Fingerprint fingerprint;
-    fingerprint.add(series_csv);
-    fingerprint.add(phases_csv);
-    return fingerprint.hex();
-}
-
-FlightRecord read_verified_record(const std::filesystem::path& out, const std::string& flight) {
-    return read_intact(out, flight).record;
-}
-
-std::vector<StoredFlight> read_stored_flights(const std::filesystem::path& out) { return read_stored(out, true); }
-
-std::vector<StoredFlight> read_stored_records(const std::filesystem::path& out) { return read_stored(out, false); }
 
 }  // namespace flightwatt::batch

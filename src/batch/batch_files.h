@@ -26,9 +26,7 @@ struct StoredFlight {
 
 /// The flights in OUT by name. Throws InputError where OUT is not a batch's folder, or files of a flight are missing,
 /// damaged or changed; if its log is missing too, the flight has a damage_reason instead.
-std::vector<StoredFlight> read_stored_flights(const std::filesystem::path& out);
-
-/// The same without series and phases, which are verified nevertheless.
-std::vector<StoredFlight> read_stored_records(const std::filesystem::path& out);
+/// Without `with_series` they have neither series nor phases, which are verified nevertheless.
+std::vector<StoredFlight> read_stored_flights(const std::filesystem::path& out, bool with_series = true);
 
 }  // namespace flightwatt::batch

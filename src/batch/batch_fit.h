@@ -21,16 +21,7 @@ struct BatchFit {
     std::vector<DuplicateFlight> copies = {};  ///< duplicates of other flights
     mechanical::MechanicalModel model;         ///< with its errors
     flight::PerPhase<mechanical::CurveBand> bands;
-    std::string input_fingerprint;  ///< see fit_fingerprint; empty: unknown
 };
-
-/// Fingerprint of the recorded and selected flights, before duplicates are excluded, and of the options: equal
-/// fingerprints give equal models. Empty for a flight whose name fit.json cannot hold.
-std::string fit_fingerprint(const BatchFlights& flights, const mechanical::ModelFitOptions& options,
-                            const std::string& more);
-
-/// Whether the fit in OUT has this fingerprint, and its files and tables are unchanged.
-bool is_fit_current(const std::filesystem::path& out, const std::string& made_from);
 
 /// Fits, and computes errors and bands. Throws what fit_model throws.
 BatchFit fit_flights(std::span<const mechanical::FlightSamples> flights, const mechanical::ModelFitOptions& options);

@@ -5,6 +5,7 @@
 #include "base/fingerprint.h"
 #include "base/overwrite_guard.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "batch/batch_files.h"
 #include "batch/manifest.h"
 #include "flight/load_flight.h"
@@ -73,11 +74,6 @@ std::optional<FlightRecord> stored_result(const BatchOptions& options, const Log
     }
 }
 
-std::string describe(const InputError& error) {
-    return fmt::format("{}: {}{}{}", to_string(error.where()), error.what(), error.hint().empty() ? "" : "; ",
-                       error.hint());
-}
-
 /// Reads, segments and writes one log. Throws InputError where it cannot be used.
 FlightRecord do_accepted(const flight::FlightFile& file, const LogFile& log, const BatchOptions& options) {
     auto load = options.load;
@@ -94,15 +90,14 @@ FlightRecord do_accepted(const flight::FlightFile& file, const LogFile& log, con
     return record;
 }
 
-/// Writes the record of a log, and changes it to what later runs read.
+/// Completes the record of a log, writes it, and changes it to what later runs read.
 void conclude(FlightRecord& record, const LogFile& log, const std::string& fingerprint, const BatchOptions& options) {
     record.flight = log.flight;
     record.log = log.path;
     record.fingerprint = fingerprint;
     const auto text = to_json_text(record);
     write_result(options, log.flight, record_suffix, text);
-    constexpr std::string_view replacement_character = "\xEF\xBF\xBD";
-    if (text.find(replacement_character) == std::string::npos) return;
+    if (valid_utf8(log.flight) == log.flight) return;
     record = record_from_json(text).value();  // a name that is not UTF-8 changes in JSON
     record.flight = log.flight;
 }
@@ -140,7 +135,8 @@ std::string why_rejected(const LogFile& log, std::string& fingerprint) {
     } catch (const UsageError&) {
         throw;
     } catch (const InputError& error) {
-        return describe(error);
+        return fmt::format("{}: {}{}{}", to_string(error.where()), error.what(), error.hint().empty() ? "" : "; ",
+                           error.hint());
     } catch (const std::bad_alloc&) {
         fingerprint.clear();  // may succeed with more memory
         return log.path + ": needs more memory than there is";
@@ -156,7 +152,7 @@ std::string why_rejected(const LogFile& log, std::string& fingerprint) {
 BatchFlight reject(const LogFile& log, const std::string& why, bool is_of_other_aircraft,
                    const std::string& fingerprint, const BatchOptions& options) {
     BatchFlight rejected;
-    rejected.record.error = why;
+    rejected.record.error = valid_utf8(why);  // as it is read back
     rejected.record.is_of_other_aircraft = is_of_other_aircraft;
     rejected.record.flight = log.flight;
     rejected.record.log = log.path;

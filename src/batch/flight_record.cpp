@@ -1,13 +1,10 @@
 #include "batch/flight_record.h"
 
 #include "base/fingerprint.h"
-#include "flight/edge_events.h"
 #include "flight/power_check.h"
 #include "flight/selected_track.h"
 #include "mechanical/flight_bins.h"
 
-#include <array>
-#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -82,88 +79,50 @@ Fields<PhaseSamples> record_fields(const PhaseSamples*) {
 namespace batch {
 namespace {
 
-/// A phase of a sortie as it is fitted.
-struct StoredPhase {
-    mechanical::PhaseSamples samples;
-    std::optional<double> energy_wh;
-    std::optional<double> counter_energy_wh;
-};
+using OptionalNumber = JsonType<std::optional<double>>;
 
-struct StoredPhases {
-    std::optional<StoredPhase> takeoff, cruise, landing;
-};
-
-struct StoredSortie {
-    std::string flight;
-    std::size_t sortie = 0;
-    StoredPhases phases;
-    mechanical::BinnedFlight motion;
-};
-
-struct StoredMeasurement {
-    std::vector<StoredSortie> flights;
-    std::vector<mechanical::Exclusion> excluded;
-};
-
-Fields<StoredPhase> record_fields(const StoredPhase*) {
-    using R = StoredPhase;
-    return list_fields<R>(embedded(&R::samples), field("energy_wh", &R::energy_wh),
-                          field("counter_energy_wh", &R::counter_energy_wh));
-}
-
-Fields<StoredPhases> record_fields(const StoredPhases*) {
-    using R = StoredPhases;
-    return {field("takeoff", &R::takeoff, "samples of the take-off", optional_key{}),
-            field("cruise", &R::cruise, "samples of the cruise", optional_key{}),
-            field("landing", &R::landing, "samples of the landing", optional_key{})};
-}
-
-Fields<StoredSortie> record_fields(const StoredSortie*) {
-    using R = StoredSortie;
-    return {field("flight", &R::flight), field("sortie", &R::sortie), field("phases", &R::phases),
-            field("motion", &R::motion)};
-}
-
-Fields<StoredMeasurement> record_fields(const StoredMeasurement*) {
-    using R = StoredMeasurement;
-    return {field("flights", &R::flights), field("excluded", &R::excluded)};
-}
-
-constexpr std::array stored_phases{&StoredPhases::takeoff, &StoredPhases::cruise, &StoredPhases::landing};
-
-StoredMeasurement stored(const mechanical::MeasuredFlights& measured) {
-    StoredMeasurement all{{}, measured.exclusions};
-    for (std::size_t i = 0; i < measured.flights.size(); ++i) {
-        const auto& flight = measured.flights[i];
-        auto& sortie =
-            all.flights.emplace_back(StoredSortie{flight.samples.flight, measured.sorties[i], {}, flight.motion});
-        for (const auto phase : flight::all_phases)
-            if (const auto& samples = flight.samples.phases[phase])
-                sortie.phases.*stored_phases.at(static_cast<std::size_t>(phase)) =
-                    StoredPhase{*samples, flight.energy_wh[phase], flight.counter_energy_wh[phase]};
+Json json_of(const mechanical::MeasuredFlight& flight, std::size_t sortie) {
+    auto phases = Json::object();
+    for (const auto phase : flight::all_phases) {
+        const auto& samples = flight.samples.phases[phase];
+        if (!samples) continue;
+        auto& json = phases[std::string(to_string(phase))];
+        json = record_json(*samples);
+        json["energy_wh"] = OptionalNumber::write(flight.energy_wh[phase]);
+        json["counter_energy_wh"] = OptionalNumber::write(flight.counter_energy_wh[phase]);
     }
-    return all;
+    return {{"flight", flight.samples.flight},
+            {"sortie", sortie},
+            {"phases", std::move(phases)},
+            {"motion", record_json(flight.motion)}};
 }
 
-mechanical::MeasuredFlights measured_flights(StoredMeasurement all) {
-    mechanical::MeasuredFlights measured;
-    measured.exclusions = std::move(all.excluded);
-    for (auto& sortie : all.flights) {
+Json json_of(const mechanical::MeasuredFlights& measured) {
+    auto flights = Json::array();
+    for (std::size_t i = 0; i < measured.flights.size(); ++i)
+        flights.push_back(json_of(measured.flights[i], measured.sorties[i]));
+    return {{"flights", std::move(flights)}, {"excluded", json_list<mechanical::Exclusion>(measured.exclusions)}};
+}
+
+/// Throws std::exception for JSON of another type.
+void read_measured(const Json& json, mechanical::MeasuredFlights& measured) {
+    JsonType<std::vector<mechanical::Exclusion>>::read(json.at("excluded"), measured.exclusions);
+    for (const auto& stored : json.at("flights")) {
         auto& flight = measured.flights.emplace_back();
-        flight.samples.flight = sortie.flight;
+        stored.at("flight").get_to(flight.samples.flight);
+        JsonType<std::size_t>::read(stored.at("sortie"), measured.sorties.emplace_back());
         for (const auto phase : flight::all_phases) {
-            auto& stored = sortie.phases.*stored_phases.at(static_cast<std::size_t>(phase));
-            if (!stored) continue;
-            stored->samples.flight = sortie.flight;
-            flight.samples.phases[phase] = std::move(stored->samples);
-            flight.energy_wh[phase] = stored->energy_wh;
-            flight.counter_energy_wh[phase] = stored->counter_energy_wh;
+            const auto of_phase = stored.at("phases").find(std::string(to_string(phase)));
+            if (of_phase == stored.at("phases").end()) continue;
+            auto& samples = flight.samples.phases[phase].emplace();
+            read_record(*of_phase, samples);
+            samples.flight = flight.samples.flight;
+            OptionalNumber::read(of_phase->at("energy_wh"), flight.energy_wh[phase]);
+            OptionalNumber::read(of_phase->at("counter_energy_wh"), flight.counter_energy_wh[phase]);
         }
-        flight.motion = std::move(sortie.motion);
-        flight.motion.flight = sortie.flight;
-        measured.sorties.push_back(sortie.sortie);
+        read_record(stored.at("motion"), flight.motion);
+        flight.motion.flight = flight.samples.flight;
     }
-    return measured;
 }
 
 constexpr std::string_view seal_key = ",\n \"seal\": \"";
@@ -173,14 +132,6 @@ std::string seal_of(std::string_view text) {
     Fingerprint fingerprint;
     fingerprint.add(text);
     return fmt::format("{}{}\"\n}}\n", seal_key, fingerprint.hex());
-}
-
-/// The best autopilot event of an edge, and whether it agrees.
-std::string edge_check(const flight::EdgeReport& explained) {
-    if (explained.matching_events.empty()) return explained.agreement;
-    const auto& best = explained.matching_events.front();
-    const bool agrees = std::abs(best.after_s) <= flight::agreement_s;
-    return fmt::format("{} {} {} ({:+.1f} s)", explained.agreement, agrees ? "with" : "from", best.what, best.after_s);
 }
 
 }  // namespace
@@ -197,11 +148,6 @@ Fields<RecordedPhase> record_fields(const RecordedPhase*) {
         field("complete", &R::complete, "false: the log begins or ends in the phase", csv_column{}));
 }
 
-Fields<RecordedEdgeCheck> record_fields(const RecordedEdgeCheck*) {
-    using R = RecordedEdgeCheck;
-    return {field("time_s", &R::time_s), field("verdict", &R::text)};
-}
-
 Fields<FlightRecord> record_fields(const FlightRecord*) {
     using R = FlightRecord;
     return {field("flight", &R::flight, "name of the flight", csv_column{}),
@@ -216,18 +162,13 @@ Fields<FlightRecord> record_fields(const FlightRecord*) {
             field("error", &R::error, "reason of a rejected log", csv_column{}),
             field("current_origin", &R::current_origin),
             field("phases", &R::phases),
-            field("verdicts", &R::edge_checks),
             field("warnings", &R::warnings),
             field("power_faults", &R::power_faults),
             field("lacks_power", &R::no_power_reason),
             field("why_not_fitted", &R::not_fitted_reason),
             field(
-                "measured", [](const R& record) { return stored(record.measured); }, "data of the fit")
-                .reading([](const Json& json, R& record) {
-                    StoredMeasurement all;
-                    read_record(json, all);
-                    record.measured = measured_flights(std::move(all));
-                }),
+                "measured", [](const R& record) { return json_of(record.measured); }, "data of the fit")
+                .reading([](const Json& json, R& record) { read_measured(json, record.measured); }),
             field("content", &R::content)};
 }
 
@@ -246,12 +187,8 @@ FlightRecord record_of(const flight::LoadedFlight& loaded) {
     record.power_faults = loaded.power.power_faults;
     record.no_power_reason = loaded.lacks_power;
     if (record.no_power_reason.empty()) record.measured = mechanical::extract_flights(series, phases, 0);
-    const flight::SelectedTracks tracks(series);
     const flight::PowerStatistics power(series);
     for (const auto& sortie : phases.sorties) {
-        for (const auto& edge : compare_edges_with_events(tracks, sortie)) {
-            record.edge_checks.push_back({edge.edge.time_s, edge_check(edge)});
-        }
         for (const auto& span : sortie.phases) {
             record.phases.push_back({sortie.number, span.phase, span.start.time_s, span.end.time_s, span.start.gap_s,
                                      span.end.gap_s, span.complete, power.between(span.start.time_s, span.end.time_s)});

@@ -29,12 +29,6 @@ struct RecordedPhase {
     flight::PhaseStatistics statistics;
 };
 
-/// An edge of a phase compared with the autopilot's events.
-struct RecordedEdgeCheck {
-    double time_s = 0.0;  ///< of the edge
-    std::string text;     ///< "agrees with TAKEOFF (-0.4 s)"
-};
-
 /// Result of one log, which is not read again for a fit or a report.
 struct FlightRecord {
     std::string flight;
@@ -49,7 +43,6 @@ struct FlightRecord {
     std::string power_source;
     std::string current_origin;  ///< see CurrentOrigin
     std::vector<RecordedPhase> phases;
-    std::vector<RecordedEdgeCheck> edge_checks;
     std::vector<std::string> warnings;
     std::vector<std::string> power_faults;  ///< see PowerReport
     std::string no_power_reason;            ///< empty: power was measured

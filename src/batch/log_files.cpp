@@ -14,7 +14,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace flightwatt::batch {
 namespace {
@@ -156,12 +155,7 @@ std::vector<LogFile> find_logs(const std::vector<std::string>& inputs, const std
     for (const auto& path : listed) add(path, false);
     logs = each_once(std::move(logs));
     if (logs.empty()) {
-        constexpr std::size_t max_named = 3;
-        auto named = inputs;
-        named.insert(named.end(), listed.begin(), listed.end());
-        const bool are_more = named.size() > max_named;
-        named.resize(std::min(named.size(), max_named));
-        throw InputError({}, fmt::format("no log in {}{}", fmt::join(named, ", "), are_more ? ", ..." : ""),
+        throw InputError({}, "no log in " + short_list(inputs.empty() ? listed : inputs),
                          "expected *.data, *.LOG or *.tlm, also .gz, .bz2, .xz or .zst");
     }
     UniqueNames names;

@@ -5,11 +5,9 @@
 #include "base/overwrite_guard.h"
 #include "base/text.h"
 #include "base/toml_reader.h"
-#include "batch/flight_record.h"
 
 #include <algorithm>
 #include <iterator>
-#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <unordered_map>
@@ -18,25 +16,22 @@
 
 #include <boost/algorithm/hex.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace flightwatt::batch {
 namespace {
 
-using ManifestJson = nlohmann::ordered_json;
-
 /// File names need not be UTF-8.
-ManifestJson bytes_json(const std::string& bytes) {
+Json bytes_json(const std::string& bytes) {
     if (valid_utf8(bytes) == bytes) return bytes;
     return {{"hex", boost::algorithm::hex(bytes)}};
 }
 
-std::string bytes_from(const ManifestJson& json) {
+std::string bytes_from(const Json& json) {
     return json.is_object() ? boost::algorithm::unhex(json.at("hex").get<std::string>()) : json.get<std::string>();
 }
 
 /// Throws std::exception for an invalid flight.
-LogFile flight_from(const ManifestJson& json) {
+LogFile flight_from(const Json& json) {
     LogFile flight{bytes_from(json.at("log")), bytes_from(json.at("flight")), bytes_from(json.at("why_not_fitted"))};
     flight.place = bytes_from(json.at("place"));
     constexpr std::string_view in_no_name("/\0", 2);
@@ -46,7 +41,7 @@ LogFile flight_from(const ManifestJson& json) {
     return flight;
 }
 
-ManifestJson json_of(const LogFile& flight) {
+Json json_of(const LogFile& flight) {
     return {{"flight", bytes_json(flight.flight)},
             {"log", bytes_json(flight.path)},
             {"place", bytes_json(flight.place)},
@@ -97,76 +92,40 @@ std::unordered_set<std::string_view> name_logs(std::vector<LogFile>& logs, const
     return known;
 }
 
-/// Whether a flight without its log has a usable result; a damaged record may be one.
-bool was_usable(const std::filesystem::path& out, const std::string& flight) {
-    const OverwriteExemption own;
-    const auto file = result_path(out, flight, record_suffix);
-    std::error_code none;
-    if (!std::filesystem::is_regular_file(file, none)) return false;
-    const auto record = record_from_json(read_file(file));
-    return !record || record->accepted;
-}
-
 /// An earlier flight that is not among this run's logs.
-void add_earlier(LogFile flight, const std::filesystem::path& out, bool prune, BatchPlan& plan,
-                 std::vector<LogFile>& logs) {
+void add_earlier(LogFile flight, bool prune, BatchPlan& plan, std::vector<LogFile>& logs) {
     if (canonical_path(flight.path) != flight.place) flight.path = flight.place;  // run from another folder
     flight.is_of_this_run = false;
     flight.is_missing = !is_there(flight.path);
     const auto state = flight.is_missing ? "is missing" : "is not in this batch";
-    if (prune) {
+    if (prune)
         plan.dropped.push_back({flight.flight, fmt::format("its log {} {}", flight.path, state)});
-    } else if (flight.is_missing && !was_usable(out, flight.flight)) {
-        plan.dropped.push_back({flight.flight, fmt::format("its log {} is missing, no results", flight.path)});
-    } else {
+    else
         logs.push_back(std::move(flight));
-    }
-}
-
-void refuse_if_in_the_way(const std::filesystem::path& file, bool is_listed) {
-    std::error_code none;
-    const auto type = std::filesystem::symlink_status(file, none).type();
-    using Type = std::filesystem::file_type;
-    // A batch makes no links; a folder cannot be overwritten.
-    const bool is_foreign = !is_listed && type != Type::not_found && type != Type::none && type != Type::directory;
-    if (type != Type::symlink && !is_foreign) return;
-    throw UsageError(
-        fmt::format("{} is not of a batch (see {}) and would be replaced; move it away, or choose another folder "
-                    "with -o",
-                    file.string(), manifest_name));
-}
-
-/// Throws UsageError for links in OUT, which would replace or remove files of another folder.
-void refuse_links(const std::filesystem::path& out) {
-    for (const auto* name : {manifest_name, temporary_folder}) refuse_if_in_the_way(out / name, true);
-    std::error_code unknown;
-    const auto flights = std::filesystem::weakly_canonical(out / "flights", unknown);
-    if (unknown || flights == std::filesystem::weakly_canonical(out, unknown) / "flights") return;
-    if (!is_there(flights.parent_path() / manifest_name)) return;  // a link to a larger disk
-    throw UsageError(
-        fmt::format("{} leads into another batch, {}, whose flights would be lost; remove that link, or "
-                    "choose another folder with -o",
-                    (out / "flights").string(), flights.parent_path().string()));
-}
-
-void remove_unfinished(const std::filesystem::path& folder) {
-    std::error_code ignored;
-    std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
-        if (is_temporary_name(entry.path().filename().string())) files.push_back(entry.path());
-    }
-    for (const auto& file : files) std::filesystem::remove(file, ignored);
 }
 
 }  // namespace
 
-nlohmann::ordered_json parse_json(const std::string& text) {
-    using Json = nlohmann::ordered_json;
-    return Json::parse(text, [](int depth, Json::parse_event_t /*event*/, Json& /*parsed*/) {
-        constexpr int deepest = 20;
-        if (depth > deepest) throw std::runtime_error("nested too deep");
-        return true;
-    });
+void read_batch_json(const std::filesystem::path& file, const std::string& text, const char* problem,
+                     const std::string& hint, const std::function<void(const Json&)>& read) {
+    try {
+        const auto json = Json::parse(text, [](int depth, Json::parse_event_t /*event*/, Json& /*parsed*/) {
+            constexpr int deepest = 20;
+            if (depth > deepest) throw std::runtime_error("nested too deep");
+            return true;
+        });
+        if (json.at("format").get<double>() > format_version) {
+            throw InputError(
+                {file.string()},
+                fmt::format("its format is newer than this program, which reads formats up to {}", format_version),
+                "use a newer FlightWatt, or " + hint);
+        }
+        read(json);
+    } catch (const InputError&) {
+        throw;
+    } catch (const std::exception&) {
+        throw InputError({file.string()}, problem, hint);
+    }
 }
 
 std::filesystem::path result_path(const std::filesystem::path& out, std::string_view flight, const char* ending) {
@@ -178,96 +137,81 @@ void remove_results(const std::filesystem::path& out, const std::string& flight)
     for (const auto* ending : result_suffixes) std::filesystem::remove(result_path(out, flight, ending), ignored);
 }
 
-Manifest read_manifest(const std::filesystem::path& out) {
+std::vector<LogFile> read_manifest(const std::filesystem::path& out) {
     const OverwriteExemption own;
     const auto file = out / manifest_name;
     std::error_code none;
-    if (std::filesystem::symlink_status(file, none).type() == std::filesystem::file_type::not_found) return {};
-    try {
-        Manifest manifest;
-        const auto json = parse_json(read_file(file));
-        if (json.at("format").get<double>() > format_version) {
-            throw InputError(
-                {file.string()},
-                fmt::format("its format is newer than this program, which reads formats up to {}", format_version),
-                "use a newer FlightWatt, or another folder with -o");
-        }
-        manifest.files = json.at("files").get<std::set<std::string>>();
-        const auto& flights = json.at("flights");
-        if (!flights.is_array()) throw std::invalid_argument("no list of flights");
-        manifest.flights.reserve(flights.size());
-        std::ranges::transform(flights, std::back_inserter(manifest.flights), flight_from);
-        if (names_of(manifest.flights).size() < manifest.flights.size()) throw std::invalid_argument("a name twice");
-        return manifest;
-    } catch (const InputError&) {
-        throw;
-    } catch (const std::exception&) {
-        throw InputError({file.string()}, "not a manifest of a batch, or damaged", "choose another folder with -o");
-    }
+    std::vector<LogFile> logs;
+    if (std::filesystem::symlink_status(file, none).type() == std::filesystem::file_type::not_found) return logs;
+    read_batch_json(file, read_file(file), "not a manifest of a batch, or damaged", "choose another folder with -o",
+                    [&](const Json& json) {
+                        const auto& flights = json.at("flights");
+                        if (!flights.is_array()) throw std::invalid_argument("no list of flights");
+                        std::ranges::transform(flights, std::back_inserter(logs), flight_from);
+                        if (names_of(logs).size() < logs.size()) throw std::invalid_argument("a name twice");
+                    });
+    return logs;
 }
 
-void write_manifest(const Manifest& manifest, const std::filesystem::path& out) {
-    auto flights = ManifestJson::array();
-    for (const auto& flight : manifest.flights) flights.push_back(json_of(flight));
-    ManifestJson json{{"format", format_version}, {"files", manifest.files}, {"unfinished", temporary_folder}};
+void write_manifest(const std::vector<LogFile>& logs, const std::filesystem::path& out) {
+    auto flights = Json::array();
+    for (const auto& flight : logs) flights.push_back(json_of(flight));
+    auto files = std::set<std::string>(model_names.begin(), model_names.end());
+    files.insert(catalogue_name);
+    Json json{{"format", format_version}, {"files", files}, {"unfinished", temporary_folder}};
     json["flights"] = std::move(flights);
-    const OverwriteExemption own;  // written before the work and after
+    const OverwriteExemption own;
     write_file_atomically(out / manifest_name, json.dump(1, ' ') + "\n", out / temporary_folder);
 }
 
 BatchPlan plan_batch(std::vector<LogFile> logs, const std::filesystem::path& out, bool prune) {
     BatchPlan plan;
     plan.earlier = read_manifest(out);
-    const auto& earlier = plan.earlier.flights;
     for (auto& log : logs)
         if (log.place.empty()) log.place = canonical_path(log.path);
-    const auto known = name_logs(logs, earlier, prune);
-    for (const auto& flight : earlier)
-        if (!known.contains(flight.flight)) add_earlier(flight, out, prune, plan, logs);
+    const auto known = name_logs(logs, plan.earlier, prune);
+    for (const auto& flight : plan.earlier)
+        if (!known.contains(flight.flight)) add_earlier(flight, prune, plan, logs);
     std::ranges::stable_sort(logs, {}, [](const LogFile& log) { return std::filesystem::path(log.path); });
-    plan.manifest.files = {model_names.begin(), model_names.end()};
-    plan.manifest.files.insert(catalogue_name);
     // A log with a problem leaves no file.
-    std::ranges::copy_if(logs, std::back_inserter(plan.manifest.flights),
+    std::ranges::copy_if(logs, std::back_inserter(plan.flights),
                          [](const LogFile& log) { return log.problem.empty(); });
-    std::ranges::stable_sort(plan.manifest.flights, {}, &LogFile::flight);
+    std::ranges::stable_sort(plan.flights, {}, &LogFile::flight);
     plan.logs = std::move(logs);
     return plan;
 }
 
 void refuse_foreign_files(const BatchPlan& plan, const std::filesystem::path& out) {
-    for (const auto& name : plan.manifest.files) {
-        register_output(out / name);
-        refuse_if_in_the_way(out / name, plan.earlier.files.contains(name));
-    }
+    std::vector<std::filesystem::path> files;
+    for (const auto* name : model_names) files.push_back(out / name);
+    files.push_back(out / catalogue_name);
+    for (const auto& file : files) register_output(file);
     register_output(out / manifest_name);
-    refuse_links(out);
-    for (const auto& dropped : plan.dropped)
-        for (const auto* ending : result_suffixes) check_overwrite(result_path(out, dropped.flight, ending));
-    const auto earlier = names_of(plan.earlier.flights);
-    for (const auto& flight : plan.manifest.flights) {
-        for (const auto* ending : result_suffixes) {
-            const auto file = result_path(out, flight.flight, ending);
-            check_overwrite(file);
-            refuse_if_in_the_way(file, earlier.contains(flight.flight));
-        }
+    for (const auto* ending : result_suffixes) {
+        for (const auto& dropped : plan.dropped) check_overwrite(result_path(out, dropped.flight, ending));
+        for (const auto& flight : plan.flights) files.push_back(result_path(out, flight.flight, ending));
+    }
+    for (const auto& file : files) check_overwrite(file);
+    if (is_there(out / manifest_name)) return;
+    for (const auto& file : files) {
+        std::error_code none;
+        if (!is_there(file) || std::filesystem::is_directory(file, none)) continue;  // that cannot be overwritten
+        throw UsageError(
+            fmt::format("{} is not of a batch, as there is no {}, and would be replaced; move it away, or choose "
+                        "another folder with -o",
+                        file.string(), manifest_name));
     }
 }
 
 void prepare_folder(const BatchPlan& plan, const std::filesystem::path& out) {
+    std::error_code ignored;
+    std::filesystem::remove_all(out / temporary_folder, ignored);
     make_directories(out / "flights");
     make_directories(out / temporary_folder);
-    remove_unfinished(out / temporary_folder);
-    const auto stay = names_of(plan.manifest.flights);
-    auto listed = plan.manifest;
-    std::ranges::copy_if(plan.earlier.flights, std::back_inserter(listed.flights),
-                         [&](const LogFile& flight) { return !stay.contains(flight.flight); });
-    if (listed.flights.size() > plan.manifest.flights.size()) {
-        write_manifest(listed, out);
-        for (const auto& dropped : plan.dropped)
-            if (!stay.contains(dropped.flight)) remove_results(out, dropped.flight);
-    }
-    write_manifest(plan.manifest, out);
+    const auto stay = names_of(plan.flights);
+    for (const auto& dropped : plan.dropped)
+        if (!stay.contains(dropped.flight)) remove_results(out, dropped.flight);
+    write_manifest(plan.flights, out);
 }
 
 }  // namespace flightwatt::batch

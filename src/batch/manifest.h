@@ -1,17 +1,16 @@
 #pragma once
 
 #include "batch/log_files.h"
+#include "record/json_type.h"
 
 #include <array>
 #include <filesystem>
-#include <set>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
-/// List of the files of a batch, which alone it replaces and removes.
+/// List of the flights of a batch, whose files it replaces and removes.
 namespace flightwatt::batch {
 
 inline constexpr auto manifest_name = "batch.json";
@@ -39,18 +38,15 @@ std::filesystem::path result_path(const std::filesystem::path& out, std::string_
 /// Removes the files of a flight.
 void remove_results(const std::filesystem::path& out, const std::string& flight);
 
-/// Parses a JSON file of a batch. Throws std::exception for invalid or deeply nested JSON.
-nlohmann::ordered_json parse_json(const std::string& text);
+/// Reads a JSON file of a batch. Throws InputError for a newer format, and with `problem` and `hint` for text that is
+/// not JSON, is nested deeply, or that `read` throws a std::exception for.
+void read_batch_json(const std::filesystem::path& file, const std::string& text, const char* problem,
+                     const std::string& hint, const std::function<void(const Json&)>& read);
 
-struct Manifest {
-    std::set<std::string> files;   ///< in OUT itself
-    std::vector<LogFile> flights;  ///< by name
-};
+/// The flights of OUT/batch.json by name; none without the file. Throws InputError for a damaged file or a newer format.
+std::vector<LogFile> read_manifest(const std::filesystem::path& out);
 
-/// Reads OUT/batch.json, if it exists. Throws InputError for a damaged file or a newer format.
-Manifest read_manifest(const std::filesystem::path& out);
-
-void write_manifest(const Manifest& manifest, const std::filesystem::path& out);
+void write_manifest(const std::vector<LogFile>& flights, const std::filesystem::path& out);
 
 /// A flight of an earlier run that is dropped from the folder.
 struct DroppedFlight {
@@ -62,19 +58,18 @@ struct DroppedFlight {
 struct BatchPlan {
     std::vector<LogFile> logs;  ///< this run's and those of earlier runs, by path
     std::vector<DroppedFlight> dropped;
-    Manifest manifest;  ///< after the run
-    Manifest earlier;
+    std::vector<LogFile> flights;  ///< in the manifest after the run, by name
+    std::vector<LogFile> earlier;  ///< in the manifest before it
 };
 
 /// Adds this run's logs to those of earlier runs. A log keeps its name; others of one name are NAME, NAME_2, ...
-/// Earlier flights with a missing log are kept if they are usable; `prune` drops all earlier flights without a log.
+/// Earlier flights that are not among the logs are kept, or dropped with `prune`.
 BatchPlan plan_batch(std::vector<LogFile> logs, const std::filesystem::path& out, bool prune);
 
-/// Throws UsageError if a file of the run would replace one that no batch wrote.
+/// Throws UsageError if a file of the run would replace an input, or, in a folder without batch.json, any file.
 void refuse_foreign_files(const BatchPlan& plan, const std::filesystem::path& out);
 
-/// Makes the folders, lists the files of the run in batch.json, and removes dropped and incomplete files. A run that is
-/// killed leaves only listed files.
+/// Makes the folders, lists the flights of the run in batch.json, and removes dropped and incomplete files.
 void prepare_folder(const BatchPlan& plan, const std::filesystem::path& out);
 
 }  // namespace flightwatt::batch

@@ -33,9 +33,7 @@ std::vector<ListedFlight> flights_of(const std::filesystem::path& batch) {
                          "make it with: flightwatt batch LOGS --no-fit -o FOLDER");
     }
     std::vector<ListedFlight> flights;
-    auto manifest = read_manifest(batch);
-    flights.reserve(manifest.flights.size());
-    for (auto& listed : manifest.flights) {
+    for (auto& listed : read_manifest(batch)) {
         if (!std::filesystem::exists(result_path(batch, listed.flight, record_suffix), none)) {
             throw InputError({batch.string()},
                              fmt::format("this batch was not finished: {} has no record", listed.flight),
@@ -46,15 +44,13 @@ std::vector<ListedFlight> flights_of(const std::filesystem::path& batch) {
     return flights;
 }
 
-/// Fingerprint of the log's content and the options.
-std::string fingerprint_in(const ListedFlight& flight) {
-    const OverwriteExemption own;
-    return read_verified_record(flight.from, flight.listed.flight).fingerprint;
-}
-
 /// Throws InputError if the log or the options differ in the second batch.
 void require_same(const ListedFlight& one, const ListedFlight& other) {
-    if (fingerprint_in(one) == fingerprint_in(other)) return;
+    const OverwriteExemption own;
+    const auto fingerprint = [](const ListedFlight& flight) {
+        return read_verified_record(flight.from, flight.listed.flight).fingerprint;
+    };
+    if (fingerprint(one) == fingerprint(other)) return;
     throw InputError(
         {one.listed.place},
         fmt::format("the batches {} and {} read this log differently: it has changed, or their options differ",
@@ -83,7 +79,7 @@ std::size_t keep_each_once(std::vector<ListedFlight>& flights) {
 
 /// Throws UsageError for a flight of `out` that is in none of the batches and is not to be dropped.
 void drop_others(const std::set<std::string>& places, const std::filesystem::path& out, bool prune, BatchPlan& plan) {
-    for (const auto& flight : plan.earlier.flights) {
+    for (const auto& flight : plan.earlier) {
         if (places.contains(flight.place)) continue;
         plan.dropped.push_back({flight.flight, fmt::format("its log {} is in none of the batches", flight.path)});
     }
@@ -182,15 +178,11 @@ MergePlan plan_merge(const std::vector<std::filesystem::path>& batches, const st
         if (std::filesystem::equivalent(batch, out, none)) {
             throw UsageError(fmt::format("{} would be read and written; choose another folder with -o", out.string()));
         }
-        auto of_batch = flights_of(batch);
-        plan.flights_per_batch.push_back(of_batch.size());
-        std::ranges::move(of_batch, std::back_inserter(flights));
+        std::ranges::move(flights_of(batch), std::back_inserter(flights));
     }
     plan.duplicate_logs = keep_each_once(flights);
     auto& folder = plan.folder;
     folder.earlier = read_manifest(out);
-    folder.manifest.files = {model_names.begin(), model_names.end()};
-    folder.manifest.files.insert(catalogue_name);
     UniqueNames names;
     std::set<std::string> places;
     for (auto& [from, listed] : flights) {
@@ -199,8 +191,8 @@ MergePlan plan_merge(const std::vector<std::filesystem::path>& batches, const st
         listed.flight = names.assign(listed.path);
         folder.logs.push_back(std::move(listed));
     }
-    folder.manifest.flights = folder.logs;
-    std::ranges::stable_sort(folder.manifest.flights, {}, &LogFile::flight);
+    folder.flights = folder.logs;
+    std::ranges::stable_sort(folder.flights, {}, &LogFile::flight);
     drop_others(places, out, prune, folder);
     return plan;
 }

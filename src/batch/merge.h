@@ -18,10 +18,9 @@ struct MergedFlight {
 };
 
 struct MergePlan {
-    BatchPlan folder;                            ///< contents of OUT
-    std::vector<MergedFlight> sources;           ///< of `folder.logs`
-    std::vector<std::size_t> flights_per_batch;  ///< flights of each batch
-    std::size_t duplicate_logs = 0;              ///< repeated logs of several batches
+    BatchPlan folder;                   ///< contents of OUT
+    std::vector<MergedFlight> sources;  ///< of `folder.logs`
+    std::size_t duplicate_logs = 0;     ///< repeated logs of several batches
 };
 
 /// Joins the lists of several batches: each log once, by path, named as by find_logs, independent of the partition.

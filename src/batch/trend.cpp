@@ -1,7 +1,6 @@
 #include "batch/trend.h"
 
 #include "base/statistics.h"
-#include "base/units.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,13 +49,6 @@ std::size_t outside(std::span<const DatedValue> values, std::size_t pairs) {
 }
 
 }  // namespace
-
-std::optional<Trend> relative_trend(const Trend& trend) {
-    if (!(trend.median > 0.0)) return std::nullopt;
-    const auto percent = [&](double value) { return units::percentage(value, trend.median); };
-    return Trend{trend.flights, units::percent_per_whole, percent(trend.per_day), percent(trend.low_per_day),
-                 percent(trend.high_per_day)};
-}
 
 TrendResult estimate_trend(std::span<const DatedValue> values) {
     if (values.size() < min_trend_flights)

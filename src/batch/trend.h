@@ -25,10 +25,6 @@ struct Trend {
 /// Whether the interval excludes 0.
 inline bool is_significant(const Trend& trend) { return trend.low_per_day > 0.0 || trend.high_per_day < 0.0; }
 
-/// The same in percent of the median, which a common factor of all values does not change. std::nullopt for a median of
-/// 0 or less.
-std::optional<Trend> relative_trend(const Trend& trend);
-
 /// A trend, or the reason without one.
 struct TrendResult {
     std::optional<Trend> trend;

@@ -1,9 +1,8 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 
-/// Protection of a folder of results against other runs and signals.
+/// Protection of a folder of results against other runs.
 namespace flightwatt::batch {
 
 /// Locks a folder against other runs of batch or profile (flock; ignored by file systems without locks). Throws
@@ -24,9 +23,5 @@ struct RemoveIfEmpty {
     std::filesystem::path folder;
     ~RemoveIfEmpty();
 };
-
-/// SIGINT, SIGTERM and SIGHUP then end `program` at once with a note on the standard error and exit code 128 + signal.
-/// Signals that are ignored (nohup) stay ignored.
-void end_at_signals(const std::string& program);
 
 }  // namespace flightwatt::batch

@@ -11,9 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <map>
-#include <set>
-#include <unordered_map>
 #include <utility>
 
 #include <boost/geometry/algorithms/distance.hpp>
@@ -21,55 +18,9 @@
 #include <boost/geometry/strategies/geographic/distance.hpp>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace flightwatt::report {
 namespace {
-
-/// The folders' names, or their paths where names are equal.
-std::vector<std::string> folder_names(std::span<const std::filesystem::path> outs) {
-    std::vector<std::string> names;
-    std::vector<std::string> paths;
-    for (const auto& out : outs) {
-        const auto path = (out / "").lexically_normal().parent_path();
-        paths.push_back(path.string());
-        names.push_back(path.filename().string());
-    }
-    return std::set<std::string>(names.begin(), names.end()).size() == names.size() ? names : paths;
-}
-
-void rename(BatchContent& batch, ReportFlight& flight) {
-    const auto renamed = fmt::format("{} ({})", flight.name, batch.folder);
-    for (auto& measured : batch.measured) {
-        auto& name = measured.samples.flight;
-        if (name == flight.name || name.starts_with(flight.name + "#")) name.replace(0, flight.name.size(), renamed);
-    }
-    for (auto& text : flight.exclusions)
-        if (text.starts_with(flight.name + ": ")) text.replace(0, flight.name.size(), renamed);
-    flight.name = flight.series.flight = renamed;
-}
-
-/// Marks flights that an earlier folder has too, and renames other flights with a name of an earlier folder.
-void merge_flights(std::vector<BatchContent>& batches) {
-    std::unordered_map<std::uint64_t, ReportFlight*> known;  // by fingerprint of the content
-    std::set<std::string> names;
-    for (auto& batch : batches) {
-        for (auto& flight : batch.flights) {
-            flight.folders = {batch.folder};
-            const auto fingerprint = flight.rejected.empty() ? flight::content_of(flight.series).fingerprint : 0;
-            const auto same = known.find(fingerprint);
-            if (same != known.end() && same->second->batch != flight.batch) {
-                auto& first = *same->second;
-                flight.is_shown_elsewhere = true;
-                first.folders.push_back(flight.name == first.name ? batch.folder
-                                                                  : fmt::format("{} as {}", batch.folder, flight.name));
-                continue;
-            }
-            if (fingerprint != 0) known.emplace(fingerprint, &flight);
-            if (!names.insert(flight.name).second) rename(batch, flight);
-        }
-    }
-}
 
 std::optional<double> start_clock_s(const ReportFlight& flight) {
     const auto& logged_s = flight.series.start_clock_s;
@@ -144,7 +95,6 @@ BatchContent read_batch_content(const std::filesystem::path& out) {
             }
             for (const auto& exclusion : selection.exclusions) flight.exclusions.push_back(to_string(exclusion));
             std::move(selection.flights.begin(), selection.flights.end(), std::back_inserter(content.measured));
-            flight.edge_checks = record.edge_checks;
             flight.unusable_power = batch::exclusion_reason(record, load);
             if (copy != nullptr) flight.unusable_power = batch::duplicate_reason(*copy);
             flight.series = std::move(series);
@@ -176,32 +126,6 @@ std::string aircraft_mix(const BatchContent& content) {
         flown.push_back({flight.name, flight.series.aircraft_id, flight.series.aircraft_name});
     }
     return content.fit ? "" : describe_mixed_aircraft(flown);
-}
-
-std::vector<BatchContent> read_batch_contents(std::span<const std::filesystem::path> outs) {
-    const auto names = folder_names(outs);
-    std::set<std::filesystem::path> seen;
-    std::vector<BatchContent> batches;
-    for (std::size_t b = 0; b < outs.size(); ++b) {
-        if (!seen.insert(std::filesystem::weakly_canonical(outs[b] / "")).second)
-            throw UsageError(fmt::format("the folder {} is given twice", outs[b].string()));
-        batches.push_back(read_batch_content(outs[b]));
-        batches.back().folder = outs.size() > 1 ? names[b] : "";
-        for (auto& flight : batches.back().flights) flight.batch = b;
-    }
-    if (outs.size() > 1) merge_flights(batches);
-    return batches;
-}
-
-std::vector<ReportFlight> take_shown_flights(std::vector<BatchContent>& batches) {
-    std::vector<ReportFlight> flights;
-    for (auto& batch : batches) {
-        std::erase_if(batch.flights, [](const auto& flight) { return flight.is_shown_elsewhere; });
-        std::ranges::move(batch.flights, std::back_inserter(flights));
-        batch.flights.clear();
-    }
-    std::ranges::stable_sort(flights, {}, [](const auto& flight) { return !flight.unusable_power.empty(); });
-    return flights;
 }
 
 FlightSummary summarize_flight(const ReportFlight& flight, std::optional<std::size_t> sortie) {

@@ -6,7 +6,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,11 +21,7 @@ struct ReportFlight {
     flight::FlightPhases phases;  ///< with their edges
     std::vector<std::string> warnings;
     std::vector<std::string> exclusions;  ///< parts outside of the fit, with reasons
-    std::vector<batch::RecordedEdgeCheck> edge_checks = {};
-    std::string unusable_power = {};        ///< reason for not using its power record; empty if used
-    std::size_t batch = 0;                  ///< index of its folder
-    std::vector<std::string> folders = {};  ///< that have it, if the page has several
-    bool is_shown_elsewhere = false;        ///< in an earlier folder
+    std::string unusable_power = {};      ///< reason for not using its power record; empty if used
 };
 
 /// Use of the flight in the fit: "all", "in part" or "no".
@@ -34,7 +29,6 @@ std::string_view fitted_part(const ReportFlight& flight);
 
 /// Flights and model of a batch's folder.
 struct BatchContent {
-    std::string folder;  ///< its name, if the page has several
     std::vector<ReportFlight> flights;
     std::vector<mechanical::MeasuredFlight> measured;  ///< the input of the fit
     std::optional<batch::BatchFit> fit;                ///< absent if the batch could not fit
@@ -44,13 +38,6 @@ struct BatchContent {
 /// The folder's flights, those with a usable power record first. Throws InputError as read_stored_flights and
 /// read_batch_fit.
 BatchContent read_batch_content(const std::filesystem::path& out);
-
-/// The folders for one page. A flight of several folders is shown under the first one; another flight of an earlier
-/// name is renamed "NAME (FOLDER)". Throws UsageError for a folder that is given twice, and as read_batch_content.
-std::vector<BatchContent> read_batch_contents(std::span<const std::filesystem::path> outs);
-
-/// Moves the flights to be shown out of the batches, those with a usable power record first.
-std::vector<ReportFlight> take_shown_flights(std::vector<BatchContent>& batches);
 
 /// The flights of each aircraft, if there are several and the batch was not run with --mix-aircraft; else empty.
 std::string aircraft_mix(const BatchContent& content);

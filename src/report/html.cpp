@@ -73,20 +73,16 @@ std::string table_html(const TextTable& table, std::string_view caption, const H
     return html + "</tbody></table></div>\n";
 }
 
-std::string figure_html(const Figure& figure, const VegaJson& spec) {
+void add_figure(Section& section, Figure figure) {
     // A figure with parameters zooms, by the keyboard too.
     const auto* keys = figure.spec.contains("params") ? " data-zoom=\"zoom_time_s\" data-scale=\"x\"" : "";
-    return fmt::format(
+    section.html += fmt::format(
         "<figure>\n<div class=\"figure\" tabindex=\"0\" role=\"group\" aria-label=\"{0}\" "
         "data-spec=\"spec-{1}\" "
         "data-name=\"{1}\"{2}></div>\n"
         "<script type=\"application/json\" id=\"spec-{1}\">{3}</script>\n"
         "<figcaption>{4}</figcaption>\n</figure>\n",
-        html_escaped(figure.description), figure.id, keys, script_json(spec), html_escaped(figure.caption));
-}
-
-void add_figure(Section& section, Figure figure) {
-    section.html += figure_html(figure, figure.spec);
+        html_escaped(figure.description), figure.id, keys, script_json(figure.spec), html_escaped(figure.caption));
     section.figures.push_back(std::move(figure));
 }
 

@@ -22,22 +22,8 @@ struct HtmlTableOptions {
 /// A table with a caption for screen readers; columns of numbers (or '-') are right-aligned.
 std::string table_html(const TextTable& table, std::string_view caption, const HtmlTableOptions& options = {});
 
-/// A figure with its caption and `spec`, its specification or packed_tables() of it, which the page's script draws.
-std::string figure_html(const Figure& figure, const VegaJson& spec);
-
 /// Receives the progress of long work, from any thread.
 using Progress = std::function<void(std::size_t done, std::size_t all)>;
-
-/// The folder of a section, where a page has several; else empty.
-struct SectionScope {
-    std::string folder = {};
-    std::string id_ending = {};  ///< "-2"
-
-    std::string id(std::string_view name) const { return std::string(name) + id_ending; }
-    std::string title(std::string_view name) const {
-        return std::string(name) + (folder.empty() ? "" : " (" + folder + ")");
-    }
-};
 
 /// A section of the page. Its HTML contains the figures and tables; figures and LaTeX can also be written as files.
 struct Section {

@@ -27,99 +27,71 @@ struct Draft {
     const ReportLog& log;
     ReportContent content = {};
     PageSummary answers = {};
-    std::vector<ReportFlight> flights = {};
-    std::vector<mechanical::MechanicalModel> models = {};  ///< of the folders that have one
+    std::vector<mechanical::MechanicalModel> models = {};  ///< the batch's, if it has one
 };
 
-/// "There is no model of these flights", with the folder where there are several.
-std::string of_folder(const SectionScope& of, const std::string& text) {
-    return of.folder.empty() ? text : of.folder + ": " + text;
-}
-
-std::string origin_of_model(const BatchContent& content, const SectionScope& of) {
-    const auto& options = content.fit->options;
-    auto text = fmt::format("Fitted by flightwatt batch to the flights {}above (order {}, weights: {}).",
-                            of.folder.empty() ? "" : fmt::format("of {} ", of.folder), options.phases.order,
-                            to_string(options.weighting));
-    return any_synthetic(content.flights) ? text + " SYNTHETIC flights are simulated, not flown." : text;
+std::string origin_of_model(const BatchContent& batch) {
+    const auto& options = batch.fit->options;
+    return fmt::format("Fitted by flightwatt batch to the flights above (order {}, weights: {}).{}",
+                       options.phases.order, to_string(options.weighting),
+                       any_synthetic(batch.flights) ? " SYNTHETIC flights are simulated, not flown." : "");
 }
 
 /// The flights' model with its validation.
-void add_model(Draft& page, const BatchContent& content, const SectionScope& of) {
+void add_model(Draft& page, const BatchContent& batch) {
     auto& notes = page.answers.notes;
     auto& sections = page.content.sections;
-    if (!content.fit) {
-        notes.push_back(of_folder(of, "There is no model of these flights: the batch could not fit them."));
+    if (!batch.fit) {
+        notes.emplace_back("There is no model of these flights: the batch could not fit them.");
         return;
     }
-    page.models.push_back(content.fit->model);
-    for (const auto& warning : model_warnings(content.fit->model))
-        page.answers.warnings.push_back(of_folder(of, warning));
+    const auto& fitted = batch.fit->model;
+    page.models.push_back(fitted);
+    page.answers.warnings = model_warnings(fitted);
     const auto& published = page.input.published_file;
-    ReportModel model{content.fit->model, origin_of_model(content, of), content.fit->bands};
+    ReportModel model{fitted, origin_of_model(batch), batch.fit->bands};
     model.table_one = cli::model_table(
-        content.fit->model, published ? std::optional(mechanical::read_mechanical_model(*published)) : std::nullopt,
+        fitted, published ? std::optional(mechanical::read_mechanical_model(*published)) : std::nullopt,
         mechanical::TableIntervals::present);
-    sections.push_back(model_section(model, page.input.figures, of.id("model")));
-    sections.back().title = of.title(sections.back().title);
-    sections.back().latex = model_latex(content.fit->model);
-    if (content.measured.size() < 2 || content.measured.size() > max_validation_flights) {
+    sections.push_back(model_section(model, page.input.figures, "model"));
+    sections.back().latex = model_latex(fitted);
+    if (batch.measured.size() < 2 || batch.measured.size() > max_validation_flights) {
         notes.push_back(
-            of_folder(of, fmt::format("The model is not validated: it needs 2 to {} flights and has {}; use "
-                                      "flightwatt validate.",
-                                      max_validation_flights, content.measured.size())));
+            fmt::format("The model is not validated: it needs 2 to {} flights and has {}; use flightwatt validate.",
+                        max_validation_flights, batch.measured.size()));
         return;
     }
-    if (auto section = physical_section(content.measured, of)) sections.push_back(std::move(*section));
-    auto validated = leave_one_out(content.measured, content.fit->options, page.log.progress("fits"));
-    if (const auto rejected = remove_rejected(validated); !rejected.empty())
-        notes.push_back(of_folder(of, rejected + "."));
-    const bool synthetic = any_synthetic(content.flights);
-    page.answers.validated.push_back({of.folder, std::move(validated), synthetic});
-    sections.push_back(validation_section(page.answers.validated.back().flights, synthetic, of));
+    if (auto section = physical_section(batch.measured)) sections.push_back(std::move(*section));
+    auto& validated = page.answers.validated;
+    validated = leave_one_out(batch.measured, batch.fit->options, page.log.progress("fits"));
+    if (const auto rejected = remove_rejected(validated); !rejected.empty()) notes.push_back(rejected + ".");
+    sections.push_back(validation_section(validated, any_synthetic(batch.flights)));
 }
 
-/// Flights, and of each folder model, validation and battery.
-void add_batches(Draft& page, std::vector<BatchContent>& batches) {
-    const auto& input = page.input;
-    battery::IdentificationOptions identification;
-    identification.capacity_ah = input.capacity_ah;
-    std::vector<std::future<std::optional<ReportBattery>>> batteries;
-    std::vector<std::string> mixes;
-    for (const auto& content : batches) {
-        for (const auto& damaged : content.damaged) page.log.warn(damaged);
-        mixes.push_back(aircraft_mix(content));
-        // Of many flights, it takes as long as their figures do.
-        batteries.push_back(std::async(std::launch::async, [&, is_mix = !mixes.back().empty()] {
-            return is_mix ? std::nullopt
-                          : std::optional(identify_for_report(content.flights, identification, max_battery_flights,
-                                                              input.missions));
-        }));
-    }
+/// Flights, model, validation and battery.
+void add_batch(Draft& page, const BatchContent& batch) {
+    for (const auto& damaged : batch.damaged) page.log.warn(damaged);
+    const auto mix = aircraft_mix(batch);
+    std::future<ReportBattery> battery;
+    if (mix.empty())  // of many flights, it takes as long as their figures do
+        battery = std::async(std::launch::async, [&] {
+            battery::IdentificationOptions options;
+            options.capacity_ah = page.input.capacity_ah;
+            return identify_for_report(batch.flights, options, max_battery_flights, page.input.missions);
+        });
     auto& sections = page.content.sections;
-    const auto at = static_cast<std::ptrdiff_t>(sections.size());
-    const auto add_flights = [&](std::span<const ReportFlight> flights) {
-        sections.insert(sections.begin() + at, flights_section(flights, batches, page.log.progress("flights")));
-    };
-    if (batches.size() == 1) add_flights(batches.front().flights);
-    for (std::size_t i = 0; i < batches.size(); ++i) {
-        const SectionScope of{batches[i].folder, i == 0 ? "" : fmt::format("-{}", i + 1)};
-        add_model(page, batches[i], of);
-        if (const auto identified = batteries[i].get()) {
-            sections.push_back(battery_section(*identified, of));
-        } else {
-            page.answers.notes.push_back(
-                of_folder(of, "There is no battery of flights of several aircraft: " + mixes[i] + "."));
-        }
-    }
-    page.flights = take_shown_flights(batches);
-    if (batches.size() > 1) add_flights(page.flights);
+    sections.push_back(flights_section(batch, page.log.progress("flights")));
+    add_model(page, batch);
+    if (mix.empty())
+        sections.push_back(battery_section(battery.get()));
+    else
+        page.answers.notes.push_back("There is no battery of flights of several aircraft: " + mix + ".");
 }
 
 /// Trends of aircraft and packs over their flights' dates, where there are any.
-void add_trends(Draft& page) {
+void add_trends(Draft& page, const BatchContent& batch) {
     std::vector<const ReportFlight*> usable;
-    for (const auto& flight : page.flights)
+    for (const auto& flight : batch.flights)
         if (flight.rejected.empty() && flight.unusable_power.empty()) usable.push_back(&flight);
     std::vector<FlightTrendData> flights(usable.size());
     for_each_in_parallel(usable.size(), [&](std::size_t i) { flights[i] = extract_trend_data(*usable[i]); });
@@ -128,14 +100,6 @@ void add_trends(Draft& page) {
     auto section = trends_section(trends_of(flights));
     section->html += list_html(notes);
     page.content.sections.push_back(std::move(*section));
-}
-
-/// "3 logs, from out; 5 logs, from other".
-std::string origin_of_flights(std::span<const std::filesystem::path> outs, std::span<const BatchContent> batches) {
-    std::vector<std::string> origins;
-    for (std::size_t i = 0; i < outs.size(); ++i)
-        origins.push_back(fmt::format("{} logs, from {}", batches[i].flights.size(), outs[i].string()));
-    return fmt::format("{}", fmt::join(origins, "; "));
 }
 
 void add_missions(Draft& page) {
@@ -156,23 +120,15 @@ void add_missions(Draft& page) {
                       std::back_inserter(page.content.sections));
 }
 
-/// The missions on the power that the flights of the batches measured.
-std::vector<mission::Replay> replay_missions(const ReportInput& input, std::span<const BatchContent> batches,
+/// The missions on the power that the batch's flights measured.
+std::vector<mission::Replay> replay_missions(const ReportInput& input, const BatchContent& batch,
                                              const ReportLog& log) {
-    std::vector<mission::Replay> replays;
-    for (const auto& content : batches) {
-        mission::ReplayOptions options;
-        if (content.fit) options.fit = content.fit->options;
-        auto flights = flights_with_power(content);
-        for (const auto& shown : content.flights)
-            if (shown.is_shown_elsewhere)
-                std::erase_if(flights, [&](const auto& flight) { return flight.samples.flight == shown.name; });
-        auto result = replay_flights(input.missions, flights, options);
-        for (const auto& skipped : result.not_replayed)
-            log.warn(fmt::format("{}: {} is not replayed on it: {}", skipped.flight, skipped.mission, skipped.reason));
-        std::ranges::move(result.replays, std::back_inserter(replays));
-    }
-    return replays;
+    mission::ReplayOptions options;
+    if (batch.fit) options.fit = batch.fit->options;
+    auto result = replay_flights(input.missions, flights_with_power(batch), options);
+    for (const auto& skipped : result.not_replayed)
+        log.warn(fmt::format("{}: {} is not replayed on it: {}", skipped.flight, skipped.mission, skipped.reason));
+    return std::move(result.replays);
 }
 
 struct FigureOutput {
@@ -206,11 +162,11 @@ Fields<PageOutput> record_fields(const PageOutput*) {
             field("figures", &R::figures, "figures")};
 }
 
-Json summary_json(const Draft& page) {
+Json summary_json(const Draft& page, const BatchContent& batch) {
     PageOutput output{.title = {},
                       .missions = {},
-                      .aircraft = aircraft_lines(page.flights),
-                      .prediction = fmt::format("{}", fmt::join(prediction_lines(page.answers.validated), "; ")),
+                      .aircraft = aircraft_lines(batch.flights),
+                      .prediction = prediction_line(page.answers.validated, any_synthetic(batch.flights)),
                       .warnings = page.answers.warnings,
                       .notes = page.answers.notes,
                       .figures = {}};
@@ -227,20 +183,23 @@ Json summary_json(const Draft& page) {
 ReportContent make_report(const ReportInput& input, const ReportLog& log) {
     Draft page{input, log};
     auto& [facts, sections, summary] = page.content;
-    auto batches = read_batch_contents(input.outs);
+    BatchContent batch;
+    if (!input.out.empty()) {
+        batch = read_batch_content(input.out);
+        facts.emplace_back("flights", fmt::format("{} logs, from {}", batch.flights.size(), input.out.string()));
+    }
     std::vector<mission::Replay> replays;
-    if (input.with_replay) replays = replay_missions(input, batches, log);
-    if (!batches.empty()) {
-        facts.emplace_back("flights", origin_of_flights(input.outs, batches));
-        add_batches(page, batches);
-        add_trends(page);
+    if (input.with_replay) replays = replay_missions(input, batch, log);
+    if (!input.out.empty()) {
+        add_batch(page, batch);
+        add_trends(page, batch);
     }
     if (!input.missions.empty()) add_missions(page);
     if (!replays.empty()) sections.push_back(replay_section(replays));
     if (input.with_replay && replays.empty())
         page.answers.notes.emplace_back("There is no replay: no mission could be replayed on any flight.");
-    sections.insert(sections.begin(), summary_section(page.answers, page.flights));
-    summary = summary_json(page);
+    sections.insert(sections.begin(), summary_section(page.answers, batch.flights));
+    summary = summary_json(page, batch);
     return std::move(page.content);
 }
 

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-/// Folders of flightwatt batch and missions as the sections of a page, and as LaTeX tables.
+/// A folder of flightwatt batch and missions as the sections of a page, and as LaTeX tables.
 namespace flightwatt::report {
 
 /// Receives the report's warnings and progress.
@@ -29,7 +29,7 @@ inline constexpr std::size_t max_validation_flights = 30;
 inline constexpr std::size_t max_battery_flights = 12;
 
 struct ReportInput {
-    std::vector<std::filesystem::path> outs = {};  ///< folders of flightwatt batch
+    std::filesystem::path out = {};  ///< the folder of flightwatt batch, or empty
     std::vector<mission::MissionVariant> missions = {};
     std::optional<std::string> published_file = {};  ///< of a model, for Table I
     PublishedFigures figures = {};
@@ -43,7 +43,7 @@ struct ReportContent {
     Json summary;                                            ///< of --json, with an empty title
 };
 
-/// Throws InputError and UsageError as read_batch_contents, and UsageError for a capacity that flights contradict.
+/// Throws InputError as read_batch_content, and UsageError for a capacity that flights contradict.
 ReportContent make_report(const ReportInput& input, const ReportLog& log);
 
 /// Table I and the constants of the physical model.

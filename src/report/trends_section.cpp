@@ -33,7 +33,7 @@ constexpr std::array<TrendQuantity, 6> quantities{{
     {"cruise_power_w", "cruise [W]", [](const FlightTrendData& f) { return f.facts.cruise_power_w; }},
     {"resistance_ohm", "pack [ohm]",
      [](const FlightTrendData& f) { return f.resistance ? std::optional(f.resistance->value_ohm) : std::nullopt; }},
-    {"capacity_ah", "pack [Ah]", [](const FlightTrendData& f) { return f.capacity_ah; }},
+    {"capacity_percent", "pack [% of its mean]", [](const FlightTrendData& f) { return f.capacity_percent; }},
 }};
 
 std::set<std::string> aircraft_names(std::span<const FlightTrendData> flights) {
@@ -58,7 +58,6 @@ std::string add_health_of(std::span<FlightTrendData* const> flights, std::size_t
     } catch (const NoResultError& error) {
         return fmt::format("no resistances and no capacities: {}", error.what());
     }
-    const bool is_guess = identified.capacity.origin == battery::CapacityOrigin::chart;
     std::size_t unknown = 0;
     for (std::size_t i = 0; i < flights.size(); ++i) {
         auto& flight = *flights[i];
@@ -69,25 +68,22 @@ std::string add_health_of(std::span<FlightTrendData* const> flights, std::size_t
             continue;
         }
         const double mean_ah = identified.capacity.value_ah;
+        flight.capacity_percent = units::percentage(capacity->ratio, 1.0);
         flight.capacity_ah = mean_ah * capacity->ratio;
-        flight.capacity_level_is_guess = is_guess;
         flight.capacity_interval_ah = {mean_ah * capacity->ratio_interval.low, mean_ah * capacity->ratio_interval.high};
     }
     if (flights.size() == 1) return unknown > 0 ? "a single flight does not determine a capacity" : "";
     if (unknown > 0)
         return fmt::format("no capacity of {} of {} flights: their charge does not determine it within 15 %", unknown,
                            flights.size());
-    return is_guess ? "the mean capacity is a guess from charts of lithium cells, trends are in percent of it; give it "
-                      "with --capacity"
-                    : "";
+    const bool is_guess = identified.capacity.origin == battery::CapacityOrigin::chart;
+    return is_guess ? "the mean capacity is a guess from charts of lithium cells; give it with --capacity" : "";
 }
 
 constexpr double ms_per_day = 86400.0 * 1000.0;
 
 std::string title_of(const AircraftTrend& trend) {
-    const auto all = trend_quantities();
-    const std::string title = std::ranges::find(all, trend.quantity, &TrendQuantity::name)->title;
-    return trend.level_is_guess ? title + ", level a guess" : title;
+    return std::ranges::find(quantities, trend.quantity, &TrendQuantity::name)->title;
 }
 
 /// Flights as points, the slope as a line through their middle, with the ends of its interval.
@@ -120,10 +116,10 @@ Figure trend_figure(std::span<const AircraftTrend> trends, const std::string& ai
     auto panels = VegaJson::array();
     for (const auto& trend : trends) {
         if (trend.aircraft != aircraft || !trend.answer.trend) continue;
-        const auto [slope, low, high, unit] = shown_slope(trend);
-        description +=
-            fmt::format(" {}: {:.3g}, {:+.3g}{} in 30 days ({:+.3g}{} to {:+.3g}{}), {}.", title_of(trend),
-                        trend.answer.trend->median, slope, unit, low, unit, high, unit, trend_direction(trend));
+        const auto& slope = *trend.answer.trend;
+        description += fmt::format(" {}: {:.3g}, {:+.3g} in {} days ({:+.3g} to {:+.3g}), {}.", title_of(trend),
+                                   slope.median, shown_days * slope.per_day, shown_days, shown_days * slope.low_per_day,
+                                   shown_days * slope.high_per_day, trend_direction(trend));
         panels.push_back(trend_panel(trend));
     }
     return new_figure("trends", id,
@@ -171,17 +167,13 @@ std::vector<AircraftTrend> trends_of(std::span<const FlightTrendData> flights) {
     for (const auto& aircraft : aircraft_names(flights)) {
         for (const auto& [name, title, of] : quantities) {
             AircraftTrend trend{aircraft, name, {}, {}};
-            const bool is_capacity = std::string_view(name) == "capacity_ah";
             for (const auto& flight : flights) {
+                if (flight.aircraft != aircraft) continue;
                 const auto value = of(flight);
-                if (flight.aircraft == aircraft) {
-                    trend.aircraft_id = flight.aircraft_id;
-                    trend.aircraft_name = flight.aircraft_name;
-                }
-                if (flight.aircraft == aircraft && flight.facts.start_clock_s && value)
+                trend.aircraft_id = flight.aircraft_id;
+                trend.aircraft_name = flight.aircraft_name;
+                if (flight.facts.start_clock_s && value)
                     trend.values.push_back({*flight.facts.start_clock_s / seconds_per_day, *value});
-                trend.level_is_guess = trend.level_is_guess ||
-                                       (is_capacity && flight.aircraft == aircraft && flight.capacity_level_is_guess);
             }
             trend.answer = estimate_trend(trend.values);
             if (trend.values.empty()) trend.answer.no_trend_reason = "no dated flight has this quantity";
@@ -198,33 +190,33 @@ std::string trend_direction(const AircraftTrend& trend) {
     return slope->per_day > 0.0 ? "rises" : "falls";
 }
 
-ShownSlope shown_slope(const AircraftTrend& trend) {
-    constexpr double days = 30.0;
-    const auto& slope = trend.answer.trend.value();
-    const auto relative = trend.level_is_guess ? relative_trend(slope) : std::nullopt;
-    const auto shown = relative.value_or(slope);
-    return {days * shown.per_day, days * shown.low_per_day, days * shown.high_per_day, relative ? " %" : ""};
+Fields<AircraftTrend> record_fields(const AircraftTrend*) {
+    using R = AircraftTrend;
+    using T = batch::Trend;
+    using A = batch::TrendResult;
+    const auto interval = [](const T& trend) { return Interval{trend.low_per_day, trend.high_per_day}; };
+    const auto change = [](const T& trend) { return shown_days * trend.per_day; };
+    const auto change_interval = [](const T& trend) {
+        return Interval{shown_days * trend.low_per_day, shown_days * trend.high_per_day};
+    };
+    return {field("aircraft", &R::aircraft, "", column{}, not_in_json{}),
+            field("aircraft_id", &R::aircraft_id, "id of the aircraft"),
+            field("aircraft_name", &R::aircraft_name, "name of the aircraft"),
+            field("quantity", &R::quantity, "key of `flights[]`", column{}),
+            field("dated_flights", at(&R::answer, &A::trend, &T::flights), "flights of the trend", column{"flights"}),
+            field("median", at(&R::answer, &A::trend, &T::median), "of these flights", column{"median", ".3g"}),
+            field("per_day", at(&R::answer, &A::trend, &T::per_day), "slope"),
+            field("per_day_interval_95", at(&R::answer, &A::trend, interval)),
+            field("change", at(&R::answer, &A::trend, change), "", column{"in 30 days", ".3g"}, not_in_json{}),
+            field("change_interval_95", at(&R::answer, &A::trend, change_interval), "", column{"low|high", ".3g"},
+                  not_in_json{}),
+            field("significant", at(&R::answer, &A::trend, batch::is_significant), "the interval excludes 0"),
+            field("no_trend_reason", at(&R::answer, &A::no_trend_reason), "reason without a trend"),
+            field(
+                "trend", [](const R& trend) { return trend_direction(trend); }, "", column{}, not_in_json{})};
 }
 
-TextTable trend_table(std::span<const AircraftTrend> trends) {
-    TextTable table{{"aircraft", "quantity", "flights", "median", "in 30 days", "low", "high", "trend"}, {}};
-    for (const auto& row : trends) {
-        std::vector<std::string> cells{row.aircraft, row.quantity};
-        if (const auto& trend = row.answer.trend) {
-            cells.push_back(fmt::format("{}", trend->flights));
-            const auto [slope, low, high, unit] = shown_slope(row);
-            cells.push_back(fmt::format("{:.3g}", trend->median));
-            for (const double value : {slope, low, high}) cells.push_back(fmt::format("{:.3g}{}", value, unit));
-        } else {
-            cells.insert(cells.end(), 5, "-");
-        }
-        cells.push_back(trend_direction(row));
-        table.rows.push_back(std::move(cells));
-    }
-    return table;
-}
-
-std::optional<Section> trends_section(std::span<const AircraftTrend> trends) {
+std::optional<Section> trends_section(const std::vector<AircraftTrend>& trends) {
     std::set<std::string> aircraft;
     for (const auto& trend : trends)
         if (trend.answer.trend) aircraft.insert(trend.aircraft);
@@ -237,7 +229,7 @@ std::optional<Section> trends_section(std::span<const AircraftTrend> trends) {
         if (aircraft.size() > 1) section.html += heading(name);
         add_figure(section, trend_figure(trends, name, fmt::format("trends-{}", section.figures.size() + 1)));
     }
-    add_table(section, {trend_table(trends), "Trends over the dates of flights", "tab:trends"}, {.sortable = true});
+    add_table(section, {table_of(trends), "Trends over the dates of flights", "tab:trends"}, {.sortable = true});
     return section;
 }
 

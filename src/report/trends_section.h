@@ -1,10 +1,10 @@
 #pragma once
 
 #include "base/statistics.h"
-#include "base/text_table.h"
 #include "batch/trend.h"
 #include "battery/discharge_record.h"
 #include "battery/identification.h"
+#include "record/record.h"
 #include "report/batch_content.h"
 #include "report/html.h"
 
@@ -28,8 +28,8 @@ struct FlightTrendData {
     std::optional<battery::FlightResistance> resistance;
     std::optional<double> capacity_ah;  ///< of the pack, where the flight determines it
     Interval capacity_interval_ah;
-    bool capacity_level_is_guess = false;  ///< the common level of a pack's flights; their ratios are measured
-    std::optional<double> charge_ah;       ///< drawn from the pack, also on the ground
+    std::optional<double> capacity_percent;  ///< of the mean of the flights, which may be a guess
+    std::optional<double> charge_ah;         ///< drawn from the pack, also on the ground
 };
 
 /// Of an accepted flight.
@@ -57,7 +57,6 @@ struct AircraftTrend {
     std::string quantity;
     std::vector<batch::DatedValue> values;  ///< days since 1970
     batch::TrendResult answer;
-    bool level_is_guess = false;  ///< the slope is known in percent only
     std::string aircraft_id = {};
     std::string aircraft_name = {};
 };
@@ -65,24 +64,15 @@ struct AircraftTrend {
 /// All quantities of each aircraft.
 std::vector<AircraftTrend> trends_of(std::span<const FlightTrendData> flights);
 
-/// Slope and 95 % interval over 30 days, in the quantity's unit or, where the level is a guess, in percent.
-struct ShownSlope {
-    double slope = 0.0;
-    double low = 0.0;
-    double high = 0.0;
-    std::string unit;  ///< " %" or empty
-};
+Fields<AircraftTrend> record_fields(const AircraftTrend*);
 
-/// `trend` has a slope.
-ShownSlope shown_slope(const AircraftTrend& trend);
+/// Trends are shown as changes in so many days.
+inline constexpr double shown_days = 30.0;
 
 /// "rises", "falls", "not significant", or "unknown" with the reason.
 std::string trend_direction(const AircraftTrend& trend);
 
-/// A row for each aircraft and quantity.
-TextTable trend_table(std::span<const AircraftTrend> trends);
-
 /// Figures of the known trends, and the table of all; std::nullopt without any.
-std::optional<Section> trends_section(std::span<const AircraftTrend> trends);
+std::optional<Section> trends_section(const std::vector<AircraftTrend>& trends);
 
 }  // namespace flightwatt::report

@@ -38,22 +38,6 @@ TEST(Trend, OfAStraightLineIsItsSlope) {
     EXPECT_TRUE(is_significant(*answer.trend));
 }
 
-TEST(Trend, InPercentIsThatOfItsLevel) {
-    std::vector<DatedValue> values;
-    for (const double day : {0.0, 1.0, 2.0, 3.0, 4.0}) values.push_back({day, 10.0 - 0.5 * day});
-    const auto of = [&](double factor) {
-        auto scaled = values;
-        for (auto& value : scaled) value.value *= factor;
-        return relative_trend(*estimate_trend(scaled).trend);
-    };
-    EXPECT_DOUBLE_EQ(of(1.0)->per_day, -100.0 * 0.5 / 9.0);
-    EXPECT_DOUBLE_EQ(of(1.0)->low_per_day, -100.0 * 0.5 / 9.0);
-    // A factor on all values, which nothing measured, leaves it as it is.
-    EXPECT_NEAR(of(0.8)->per_day, of(1.0)->per_day, 1e-12);
-    EXPECT_FALSE(of(0.0));
-    EXPECT_FALSE(of(-1.0));
-}
-
 // By hand: of five flights one order in 120 has no inversion, and 4 in 120 one, which is more than 2.5 %. So the
 // interval goes from the least of the ten slopes to the greatest.
 TEST(Trend, OfFiveFlightsReachesToTheOutermostSlopes) {

@@ -49,55 +49,6 @@ TEST(FittedPart, FollowsExclusionsAndThePowerRecord) {
     EXPECT_EQ(fitted_part(flight), "no");
 }
 
-/// Batches of the samples' flights with these numbers, named by letters.
-std::vector<std::filesystem::path> batches_of(const std::vector<std::string>& numbers) {
-    const auto folder = test::scratch_dir();
-    const auto logs = test::shell_quoted(test::source_dir() / "logs");
-    std::vector<std::filesystem::path> outs;
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        const std::string out(1, static_cast<char>('a' + i));
-        const auto run = test::run_shell(
-            "flightwatt batch " + logs + "/opterra_synthetic_0[" + numbers[i] + "].data -o " + out, folder);
-        EXPECT_EQ(run.code, 0) << run.err;
-        outs.push_back(folder / out);
-    }
-    return outs;
-}
-
-TEST(BatchContents, ShowsAFlightOfTwoFoldersOnce) {
-    auto batches = read_batch_contents(batches_of({"12", "23"}));
-    ASSERT_EQ(batches.size(), 2U);
-    EXPECT_EQ(batches[0].measured.size(), 2U);
-    EXPECT_EQ(batches[1].measured.size(), 2U) << "each model is that of all its flights";
-    const auto flights = take_shown_flights(batches);
-    ASSERT_EQ(flights.size(), 3U);
-    EXPECT_EQ(flights[0].folders, std::vector<std::string>{"a"});
-    EXPECT_EQ(flights[1].folders, (std::vector<std::string>{"a", "b"}));
-    EXPECT_EQ(flights[2].name, "opterra_synthetic_03");
-    EXPECT_EQ(flights[2].batch, 1U);
-}
-
-TEST(BatchContents, OfOneFolderAreAsTheyAre) {
-    const auto outs = batches_of({"12"});
-    const auto batches = read_batch_contents(outs);
-    EXPECT_TRUE(batches.front().folder.empty());
-    EXPECT_TRUE(batches.front().flights.front().folders.empty());
-    EXPECT_THROW(read_batch_contents(std::vector{outs.front(), outs.front() / ""}), UsageError);
-}
-
-TEST(BatchContents, RenameAnotherFlightOfTheSameName) {
-    const auto outs = batches_of({"1"});
-    const auto folder = outs[0].parent_path();
-    const auto log = (test::source_dir() / "logs/opterra_synthetic_02").string();
-    for (const auto* ending : {".data", ".log"})
-        std::filesystem::copy_file(log + ending, folder / (std::string("opterra_synthetic_01") + ending));
-    ASSERT_EQ(test::run_shell("flightwatt batch opterra_synthetic_01.data --order 2 -o namesake", folder).code, 0);
-    const auto batches = read_batch_contents(std::vector{outs[0], folder / "namesake"});
-    EXPECT_EQ(batches[0].flights.front().name, "opterra_synthetic_01");
-    EXPECT_EQ(batches[1].flights.front().name, "opterra_synthetic_01 (namesake)");
-    EXPECT_EQ(batches[1].measured.front().samples.flight, "opterra_synthetic_01 (namesake)");
-}
-
 flight::Track track(const std::string& name, std::vector<double> time_s, std::vector<double> value) {
     return {name, "TEST", "", 0.0, std::move(time_s), std::move(value)};
 }

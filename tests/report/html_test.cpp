@@ -28,7 +28,9 @@ TEST(FigureHtml, TellsWhatTheFigureSays) {
     figure.caption = "A & B";
     figure.description = "27 W \"on average\"";
     figure.spec = {{"description", "</script>"}};
-    const auto html = figure_html(figure, figure.spec);
+    Section section{"s", "S"};
+    add_figure(section, figure);
+    const auto& html = section.html;
     EXPECT_NE(html.find("aria-label=\"27 W &quot;on average&quot;\""), std::string::npos);
     EXPECT_NE(html.find("<figcaption>A &amp; B</figcaption>"), std::string::npos);
     EXPECT_NE(html.find("\\u003c/script>"), std::string::npos);

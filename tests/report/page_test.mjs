@@ -278,26 +278,6 @@ for (const scheme of ["light", "dark"]) {
   });
 }
 
-test("two folders: one table of flights that names the folder, a model of each", inCheck, async () => {
-  const { page, faults } = await open("folders.html");
-  await drawAll(page);
-  const seen = await page.evaluate(() => {
-    const rows = [...document.querySelectorAll("#flights table")][0].rows;
-    const column = [...rows[0].cells].findIndex((cell) => cell.textContent.trim().startsWith("folder"));
-    return {
-      folders: [...rows].slice(1).map((row) => row.cells[column].textContent.trim()),
-      models: [...document.querySelectorAll("section h2")].map((head) => head.textContent).filter((text) => text.startsWith("Mechanical model: batch")),
-      ids: [...document.querySelectorAll("[id]")].map((element) => element.id),
-    };
-  });
-  assert.deepEqual(seen.folders, ["first", "first, second", "second"]);
-  assert.deepEqual(seen.models, ["Mechanical model: batch (first)", "Mechanical model: batch (second)"]);
-  assert.equal(new Set(seen.ids).size, seen.ids.length, "no id is there twice");
-  assert.deepEqual(await withoutMarks(page), []);
-  assert.deepEqual(faults, []);
-  await page.context().close();
-});
-
 test("names with markup, quotes, unicode and 300 characters break nothing", inCheck, async () => {
   const { page, faults } = await open("hostile.html");
   await drawAll(page);

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes the pages of page_test.mjs and opens them in Chromium: page_test.sh BIN WEB SCRATCH [FLIGHTS]. Without FLIGHTS that
-# is a page of six flights; with it also pages of 30 and of FLIGHTS flights, of two folders and of hostile names, on every
+# is a page of six flights; with it also pages of 30 and of FLIGHTS flights and of hostile names, on every
 # screen and on paper. Exits with 77 (skipped) where node, its modules or Chromium are missing.
 set -euo pipefail
 bin=$1
@@ -33,11 +33,6 @@ if ((flights == 0)); then
     browse
     exit
 fi
-
-# Two folders on one page: one flight is in both.
-quiet "$bin/flightwatt-batch" "$source"/logs/opterra_synthetic_0[1-2].data -o "$pages/first"
-quiet "$bin/flightwatt-batch" "$source"/logs/opterra_synthetic_0[2-3].data --order 2 -o "$pages/second"
-quiet "$bin/flightwatt-report" "$pages/first" "$pages/second" "$source"/missions/paper/phased.toml -o "$pages/folders.html"
 
 # Names that a page must not believe.
 log=$source/logs/opterra_synthetic_01

@@ -57,21 +57,19 @@ TEST(TrendsStudy, HoldTheAgeingThatIsThere) {
         auto flights = flown(test::aged_flights(ageing, seed), power_part_a_day, seed);
         add_state_of_health(flights, 60);
         for (const auto& flight : flights) EXPECT_TRUE(flight.capacity_ah) << flight.name << " of seed " << seed;
-        // The capacity's level is the chart's guess: what the flights tell is the part of it a day.
         const double mean_part = 1.0 - ageing.part_a_day * ageing.days / 2.0;
         const std::map<std::string, double> truth{{"cruise_power_w", power_part_a_day * fresh_w},
                                                   {"resistance_ohm", ageing.ohm_a_day},
-                                                  {"capacity_ah", -100.0 * ageing.part_a_day / mean_part}};
+                                                  {"capacity_percent", -100.0 * ageing.part_a_day / mean_part}};
         const auto trends = told(trends_of(flights));
         for (const auto& [quantity, per_day] : truth) {
             ASSERT_TRUE(trends.contains(quantity)) << quantity << " of seed " << seed;
-            auto trend = trends.at(quantity);
-            if (quantity == "capacity_ah") trend = batch::relative_trend(trend).value();
+            const auto& trend = trends.at(quantity);
             held[quantity] += trend.low_per_day <= per_day && per_day <= trend.high_per_day ? 1 : 0;
             found[quantity] += is_significant(trend) && trend.per_day * per_day > 0.0 ? 1 : 0;
         }
     }
-    for (const auto* quantity : {"cruise_power_w", "resistance_ohm", "capacity_ah"}) {
+    for (const auto* quantity : {"cruise_power_w", "resistance_ohm", "capacity_percent"}) {
         EXPECT_GE(held[quantity], seeds - 3) << quantity;
         EXPECT_GE(found[quantity], seeds - 1) << quantity;
     }
@@ -111,26 +109,17 @@ TEST(Trends, AreDrawnFromFiveFlightsOnThreeDaysOn) {
     EXPECT_THAT(section->html, HasSubstr("rises"));
 }
 
-/// Five flights a day apart, whose capacity falls by 2 % of the middle one's a day.
-std::vector<FlightTrendData> with_capacities(bool level_is_guess) {
+TEST(Trends, OfCapacitiesAreInPercentOfTheirMean) {
     std::vector<FlightTrendData> flights(5);
     for (std::size_t f = 0; f < flights.size(); ++f) {
         flights[f].aircraft = "7 Wing";
         flights[f].facts.start_clock_s = seconds_per_day * static_cast<double>(f);
-        flights[f].capacity_ah = 5.0 - 0.1 * (static_cast<double>(f) - 2.0);
-        flights[f].capacity_level_is_guess = level_is_guess;
+        flights[f].capacity_percent = 100.0 - 2.0 * (static_cast<double>(f) - 2.0);
     }
-    return flights;
-}
-
-TEST(Trends, OfAGuessedLevelAreInPercentOfIt) {
-    const auto guessed = trends_of(with_capacities(true));
-    EXPECT_THAT(to_text(trend_table(guessed)), HasSubstr("-60 %"));
-    EXPECT_THAT(trends_section(guessed)->figures.front().description,
-                HasSubstr("pack [Ah], level a guess: 5, -60 % in 30 days (-60 % to -60 %), falls"));
-    const auto known = trends_of(with_capacities(false));
-    EXPECT_THAT(to_text(trend_table(known)), testing::Not(HasSubstr("%")));
-    EXPECT_THAT(trends_section(known)->figures.front().description, HasSubstr("pack [Ah]: 5, -3 in 30 days"));
+    const auto trends = trends_of(flights);
+    EXPECT_THAT(to_text(table_of(trends)), HasSubstr("-60"));
+    EXPECT_THAT(trends_section(trends)->figures.front().description,
+                HasSubstr("pack [% of its mean]: 100, -60 in 30 days (-60 to -60), falls"));
 }
 
 TEST(PackWear, TakesTheCapacityThatIsKnown) {
@@ -142,8 +131,7 @@ TEST(PackWear, TakesTheCapacityThatIsKnown) {
     EXPECT_TRUE(add_state_of_health(known, 60, mean_ah).empty());
     double logarithms = 0.0;
     for (std::size_t f = 0; f < known.size(); ++f) {
-        EXPECT_TRUE(guessed[f].capacity_level_is_guess);
-        EXPECT_FALSE(known[f].capacity_level_is_guess);
+        EXPECT_NE(guessed[f].capacity_ah, known[f].capacity_ah);
         logarithms += std::log(known[f].capacity_ah.value() / mean_ah);
     }
     EXPECT_NEAR(logarithms, 0.0, 0.01);

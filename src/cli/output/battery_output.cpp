@@ -5,6 +5,7 @@
 #include "cli/stage.h"
 
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -125,6 +126,56 @@ Fields<CheckedFlight> record_fields(const CheckedFlight*) {
     return list_fields<R>(embedded(at(&R::flight)), embedded(at(&R::check), {"flight"}));
 }
 
+/// "using the given capacity of 3.2 Ah; the flights indicate 5.4 Ah (2.45 to 11.5 Ah in 95 %)".
+std::string describe_given_capacity(const battery::Battery& pack) {
+    const auto text = fmt::format("using the given capacity of {:.4g} Ah; the flights ", pack.capacity_ah);
+    if (!pack.flight_estimate) return text + "drew too little to estimate it";
+    const auto& [low, high] = pack.flight_estimate->capacity_interval_ah;
+    return text + fmt::format("indicate {:.3g} Ah ({:.3g} to {:.3g} Ah in 95 %)", pack.flight_estimate->capacity_ah,
+                              low, high);
+}
+
+/// Warning of an implausible number of cells, or empty.
+std::string cells_warning(const battery::BatteryIdentification& identified) {
+    return battery::cells_warning(highest_resting_v(identified), identified.cells, identified.cells_are_given);
+}
+
+/// Why a flight is assigned to the pack of another one, or empty.
+std::string describe_link(const battery::IdentifiedFlight& flight) {
+    if (!flight.link) return "";
+    return fmt::format(
+        "{}: assumed to be on the pack of {}, as it begins {:.0f} min after that one ends, {}rests lower by the charge "
+        "drawn, and its voltage under load agrees",
+        flight.flight, flight.same_pack_as, units::minute_from_second(flight.link->pause_s),
+        flight.link->counter_continues ? "its charge counter continues, it " : "");
+}
+
+/// "series resistance over 6 flights: +0.40 mohm per flight, ...".
+std::string describe(const battery::ResistanceTrend& trend) {
+    const auto& [low, high] = trend.interval_ohm_a_flight;
+    return fmt::format("series resistance over {} flights: {:+.2f} mohm a flight, {:+.2f} to {:+.2f} in 95 %{}",
+                       trend.flights, units::mohm_from_ohm(trend.ohm_per_flight), units::mohm_from_ohm(low),
+                       units::mohm_from_ohm(high), low <= 0.0 && high >= 0.0 ? ": no significant trend" : "");
+}
+
+/// Limits of the measured open-circuit curve, a sentence each for below and above.
+std::vector<std::string> curve_limits(const battery::BatteryIdentification& identified) {
+    std::vector<std::string> limits;
+    if (identified.observed_min_soc_percent > 0.0)
+        limits.push_back(fmt::format(
+            "no data below {:.1f} % ({:.3f} Ah drawn): the open-circuit voltage is extrapolated parallel to the chart "
+            "of {} {} cells; a deeper flight would measure it",
+            identified.observed_min_soc_percent, identified.fit.knots_ah.back(), identified.cells,
+            to_string(identified.chemistry)));
+    if (identified.curve_start_depletion_ah > 0.0)
+        limits.push_back(fmt::format(
+            "no flight begins full: the fullest rests at {:.3f} V, {:.1f} % by the usual chart of {} {} cells{}",
+            highest_resting_v(identified), identified.observed_max_soc_percent, identified.cells,
+            to_string(identified.chemistry),
+            identified.flights.size() == 1 ? "; one flight does not determine both capacity and initial charge" : ""));
+    return limits;
+}
+
 }  // namespace
 
 Fields<BatteryOutput> record_fields(const BatteryOutput*) {
@@ -140,34 +191,6 @@ std::string describe(const battery::Capacity& capacity) {
     return text +
            fmt::format(", {:.3g} to {:.3g} Ah in 95 % if packs differ from their chart by {:.0f} mV a cell (1 sd)",
                        capacity.interval_ah->low, capacity.interval_ah->high, units::mv_from_v(battery::chart_sd_v));
-}
-
-std::string describe_given_capacity(const battery::Battery& pack) {
-    const auto text = fmt::format("using the given capacity of {:.4g} Ah; the flights ", pack.capacity_ah);
-    if (!pack.flight_estimate) return text + "drew too little to estimate it";
-    const auto& [low, high] = pack.flight_estimate->capacity_interval_ah;
-    return text + fmt::format("indicate {:.3g} Ah ({:.3g} to {:.3g} Ah in 95 %)", pack.flight_estimate->capacity_ah,
-                              low, high);
-}
-
-std::string cells_warning(const battery::BatteryIdentification& identified) {
-    return battery::cells_warning(highest_resting_v(identified), identified.cells, identified.cells_are_given);
-}
-
-std::string describe_link(const battery::IdentifiedFlight& flight) {
-    if (!flight.link) return "";
-    return fmt::format(
-        "{}: assumed to be on the pack of {}, as it begins {:.0f} min after that one ends, {}rests lower by the charge "
-        "drawn, and its voltage under load agrees",
-        flight.flight, flight.same_pack_as, units::minute_from_second(flight.link->pause_s),
-        flight.link->counter_continues ? "its charge counter continues, it " : "");
-}
-
-std::string describe(const battery::ResistanceTrend& trend) {
-    const auto& [low, high] = trend.interval_ohm_a_flight;
-    return fmt::format("series resistance over {} flights: {:+.2f} mohm a flight, {:+.2f} to {:+.2f} in 95 %{}",
-                       trend.flights, units::mohm_from_ohm(trend.ohm_per_flight), units::mohm_from_ohm(low),
-                       units::mohm_from_ohm(high), low <= 0.0 && high >= 0.0 ? ": no significant trend" : "");
 }
 
 TextTable pack_table(const battery::Battery& pack) {
@@ -198,21 +221,36 @@ TextTable flights_table(const battery::BatteryIdentification& identified,
     return table_of(flights);
 }
 
-std::vector<std::string> curve_limits(const battery::BatteryIdentification& identified) {
-    std::vector<std::string> limits;
-    if (identified.observed_min_soc_percent > 0.0)
-        limits.push_back(fmt::format(
-            "no data below {:.1f} % ({:.3f} Ah drawn): the open-circuit voltage is extrapolated parallel to the chart "
-            "of {} {} cells; a deeper flight would measure it",
-            identified.observed_min_soc_percent, identified.fit.knots_ah.back(), identified.cells,
-            to_string(identified.chemistry)));
-    if (identified.curve_start_depletion_ah > 0.0)
-        limits.push_back(fmt::format(
-            "no flight begins full: the fullest rests at {:.3f} V, {:.1f} % by the usual chart of {} {} cells{}",
-            highest_resting_v(identified), identified.observed_max_soc_percent, identified.cells,
-            to_string(identified.chemistry),
-            identified.flights.size() == 1 ? "; one flight does not determine both capacity and initial charge" : ""));
-    return limits;
+std::vector<BatteryRemark> battery_remarks(const battery::BatteryIdentification& identified) {
+    std::vector<BatteryRemark> remarks;
+    const auto warn = [&](std::string text) {
+        if (!text.empty()) remarks.push_back({std::move(text), true});
+    };
+    const auto note = [&](std::string text) { remarks.push_back({std::move(text)}); };
+    warn(cells_warning(identified));
+    for (auto& limit : curve_limits(identified)) note(std::move(limit));
+    for (const auto& flight : identified.flights)
+        if (flight.link) note(describe_link(flight) + "; --no-pack-links treats each flight's pack as another one");
+    if (!identified.battery.intervals.resistance_scatter)
+        note(
+            "how the series resistance differs between flights is not known, as fewer than two flights have one of "
+            "their own: missions draw it by its interval alone");
+    if (identified.trend) note(describe(*identified.trend));
+    if (identified.capacity.origin == battery::CapacityOrigin::given) {
+        auto warning = capacity_warning(identified.battery);
+        if (warning.empty()) note(describe_given_capacity(identified.battery));
+        warn(std::move(warning));
+    }
+    if (identified.capacity.origin == battery::CapacityOrigin::chart)
+        warn(
+            fmt::format("the flights do not determine the capacity, as none runs empty: {}; give the capacity on the "
+                        "label with --capacity",
+                        describe(identified.capacity)));
+    if (identified.fit.rc_resistance_ohm == 0.0)
+        warn("no RC pair explains anything: the battery has none");
+    else if (identified.errors.rc_resistance_ohm.low == 0.0)
+        warn("the RC pair may be none: its resistance's interval reaches down to 0");
+    return remarks;
 }
 
 std::string provenance(const battery::BatteryIdentification& identified) {

@@ -52,7 +52,7 @@ std::vector<SeriesFile> series_of_batch(const StageCall& call, const std::filesy
     const auto fit = batch::read_batch_fit(out);
     auto own = options;
     if (fit) own.keep.insert(fit->keep.begin(), fit->keep.end());
-    for (const auto& stored : batch::read_stored_records(out)) {
+    for (const auto& stored : batch::read_stored_flights(out, false)) {
         const auto& record = stored.record;
         const auto left_out = options.keep.contains(record.flight) ? "" : why_batch_left_out(fit, record.flight);
         if (!stored.damage_reason.empty()) {

@@ -48,15 +48,6 @@ bool is_end_of_log(const flight::Track& clock, double time_s) {
     return time_s - clock.time_s.front() < near_s || clock.time_s.back() - time_s < near_s;
 }
 
-/// Recorded agreement of the autopilot's events with the edge.
-std::string agreement_at(const ReportFlight& flight, double time_s) {
-    constexpr double same_edge_s = 2e-3;  // edges are rounded to the millisecond
-    for (const auto& check : flight.edge_checks) {
-        if (std::abs(check.time_s - time_s) < same_edge_s) return check.text;
-    }
-    return "-";
-}
-
 constexpr std::size_t power_columns = 250;
 constexpr int decimals = 2;  // of times and values
 
@@ -73,8 +64,8 @@ FigureData phase_rows(const flight::FlightPhases& phases) {
 }
 
 FigureData edge_rows(const ReportFlight& flight) {
-    FigureData data({"time_s"}, {"edge", "evidence", "agreement"});
-    for (const auto& edge : edges_of(flight)) data.add({edge.time_s}, {edge.name, edge.evidence, edge.agreement});
+    FigureData data({"time_s"}, {"edge", "evidence"});
+    for (const auto& edge : edges_of(flight)) data.add({edge.time_s}, {edge.name, edge.evidence});
     return data;
 }
 
@@ -133,7 +124,7 @@ std::vector<NamedEdge> edges_of(const ReportFlight& flight) {
                 const bool cut = !span.complete && is_end_of_log(clock, edge.time_s);
                 edges.push_back({edge.time_s,
                                  cut ? (begin ? "the log begins" : "the log ends") : edge_name(span, begin),
-                                 describe_edge(edge), agreement_at(flight, edge.time_s)});
+                                 describe_edge(edge)});
             };
             if (!continues) add(span.start, true);
             add(span.end, false);

@@ -23,7 +23,6 @@ struct NamedEdge {
     double time_s = 0.0;
     std::string name;
     std::string evidence;
-    std::string agreement;  ///< with the autopilot's events
 };
 
 /// The edges of a flight's phases; the common edge of two phases once.

@@ -23,17 +23,6 @@ Figure profile_figure(const compute::ComputeModel& compute, const std::string& i
 Figure schedule_figure(std::span<const SimulatedMission> missions, const PublishedFigures& published,
                        const std::string& id);
 
-/// Utility and final state of charge of a schedule.
-struct UtilityPoint {
-    std::string mission;
-    double soc_percent = 0.0;
-    double utility = 0.0;
-    bool planned = false;
-};
-
-/// Utility over final state of charge, a point a mission, with the planned one's reserve and proven bound; not empty.
-Figure utility_figure(const SimulatedMission& planned, const std::vector<UtilityPoint>& points, const std::string& id);
-
 /// Time since the start of the mission in which a component runs with one quality of service.
 struct RunInterval : flight::TimeInterval {
     std::size_t component = 0;

@@ -5,9 +5,7 @@
 #include "mission/simulation.h"
 #include "report/figures/mission_figures.h"
 
-#include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -106,15 +104,6 @@ VegaJson published_rows(const std::vector<PublishedCell>& cells) {
     return data.json();
 }
 
-/// Range of the finite values; both 0 without any.
-std::pair<double, double> range_of(const QosMap& map) {
-    std::vector<double> known;
-    std::ranges::copy_if(map.soc_percent, std::back_inserter(known), [](double soc) { return std::isfinite(soc); });
-    if (known.empty()) return {0.0, 0.0};
-    const auto [min_percent, max_percent] = std::ranges::minmax_element(known);
-    return {*min_percent, *max_percent};
-}
-
 /// RMS difference from the published cells; std::nullopt if one is not a cell of the map.
 std::optional<double> rms_to_published(const QosMap& map, const std::vector<PublishedCell>& cells) {
     const auto index = [](const std::vector<double>& nodes, double middle) -> std::optional<std::size_t> {
@@ -175,18 +164,6 @@ VegaJson panel_of(const compute::Component& component, VegaJson panel) {
         {{"nodes", node_rows(profile).json()}, {"parameter", parameter}, {"component", valid_utf8(component.name)}});
 }
 
-std::string profile_caption(const compute::ComputeModel& compute) {
-    const auto any = [&](const auto& holds) {
-        return std::ranges::any_of(compute.components,
-                                   [&](const compute::Component& component) { return holds(component.profile); });
-    };
-    std::string text = "Points were profiled; lines are interpolated.";
-    if (any([](const auto& profile) { return !profile.standard_error_w.empty(); })) text += " Bars are 95 % intervals.";
-    if (any([](const auto& profile) { return profile.standard_error_w.empty(); }))
-        text += " Profiles without bars are without standard errors.";
-    return text + " In a mission, the powers of the running components add up.";
-}
-
 }  // namespace
 
 std::optional<QosMap> qos_map(const mission::MissionSetup& mission) {
@@ -235,7 +212,6 @@ std::string map_key(const mission::MissionSetup& mission) {
 
 Figure qos_map_figure(const QosMap& map, std::span<const SimulatedMission> missions,
                       const std::vector<PublishedCell>& published, const std::string& id) {
-    const auto [min_percent, max_percent] = range_of(map);
     std::string caption =
         "Final state of charge if one configuration runs throughout. A cell is the mean of its corners; diamonds are "
         "the configurations of the missions.";
@@ -247,24 +223,24 @@ Figure qos_map_figure(const QosMap& map, std::span<const SimulatedMission> missi
     }
     const auto x = valid_utf8(map.x.name);
     const auto y = valid_utf8(map.y.name);
-    return new_figure(
-        "quality", id, caption,
-        fmt::format("Final state of charge over {} and {}: from {:.1f} % to {:.1f} % where one configuration runs "
-                    "throughout.",
-                    map.x.name, map.y.name, min_percent, max_percent),
-        {{"x", x},
-         {"x_from", x + " from"},
-         {"x_domain", {map.x.nodes.front(), map.x.nodes.back()}},
-         {"y", y},
-         {"y_from", y + " from"},
-         {"y_domain", {map.y.nodes.front(), map.y.nodes.back()}},
-         {"cells", cell_rows(map)},
-         {"published", rms ? published_rows(published) : VegaJson()},
-         {"markers", marker_rows(map, missions)}});
+    return new_figure("quality", id, caption,
+                      fmt::format("Final state of charge over {} and {}, where one configuration runs throughout.",
+                                  map.x.name, map.y.name),
+                      {{"x", x},
+                       {"x_from", x + " from"},
+                       {"x_domain", {map.x.nodes.front(), map.x.nodes.back()}},
+                       {"y", y},
+                       {"y_from", y + " from"},
+                       {"y_domain", {map.y.nodes.front(), map.y.nodes.back()}},
+                       {"cells", cell_rows(map)},
+                       {"published", rms ? published_rows(published) : VegaJson()},
+                       {"markers", marker_rows(map, missions)}});
 }
 
 Figure profile_figure(const compute::ComputeModel& compute, const std::string& id) {
-    auto figure = new_figure("profile", id, profile_caption(compute),
+    auto figure = new_figure("profile", id,
+                             "Points were profiled, with 95 % intervals where standard errors are known; lines are "
+                             "interpolated. In a mission, the powers of the running components add up.",
                              "Profiled power of on-board software over its quality of service.");
     auto panels = VegaJson::array();
     for (const auto& component : compute.components) panels.push_back(panel_of(component, figure.spec["concat"][0]));

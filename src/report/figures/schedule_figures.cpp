@@ -125,51 +125,6 @@ Figure schedule_figure(Missions missions, const PublishedFigures& published, con
 
 namespace {
 
-VegaJson point_rows(const std::vector<UtilityPoint>& points) {
-    FigureData data({"soc_percent", "utility"}, {"mission", "kind"});
-    for (const bool planned : {true, false}) {  // a planned one is drawn below an equal given one
-        for (const auto& point : points) {
-            if (point.planned != planned) continue;
-            data.add({point.soc_percent, point.utility}, {point.mission, planned ? "planned" : "given"});
-        }
-    }
-    return data.json();
-}
-
-/// Points within 2 % of the range get a common name.
-std::vector<UtilityPoint> merge_neighbours(const std::vector<UtilityPoint>& points) {
-    constexpr double near_fraction = 0.02;
-    const auto [min_soc, max_soc] = std::ranges::minmax(points, {}, &UtilityPoint::soc_percent);
-    const auto [min_utility, max_utility] = std::ranges::minmax(points, {}, &UtilityPoint::utility);
-    const double near_percent = near_fraction * (max_soc.soc_percent - min_soc.soc_percent);
-    const double near_utility = near_fraction * (max_utility.utility - min_utility.utility);
-    std::vector<UtilityPoint> merged;
-    for (const auto& point : points) {
-        const auto twin = std::ranges::find_if(merged, [&](const UtilityPoint& other) {
-            return std::abs(other.soc_percent - point.soc_percent) <= near_percent &&
-                   std::abs(other.utility - point.utility) <= near_utility;
-        });
-        if (twin == merged.end())
-            merged.push_back(point);
-        else
-            twin->mission += ", " + point.mission;
-    }
-    return merged;
-}
-
-/// Names to the right of their points, at the right end of the figure to the left.
-VegaJson name_rows(const std::vector<UtilityPoint>& points) {
-    FigureData data({"soc_percent", "utility"}, {"mission", "side"});
-    constexpr double right_end = 0.65;
-    double max_percent = 0.0;
-    for (const auto& point : points) max_percent = std::max(max_percent, point.soc_percent);
-    for (const auto& point : merge_neighbours(points)) {
-        data.add({point.soc_percent, point.utility},
-                 {point.mission, point.soc_percent > right_end * max_percent ? "left" : "right"});
-    }
-    return data.json();
-}
-
 VegaJson bar_rows(const mission::Mission& mission) {
     FigureData data({"from_s", "to_s", "middle_s", "power_w", "long_s"}, {"component", "runs"});
     for (const auto& running : run_intervals(mission)) {
@@ -206,25 +161,6 @@ std::vector<RunInterval> run_intervals(const mission::Mission& mission) {
 
 std::string describe_qos(const compute::Component& component, const std::vector<double>& qos) {
     return qos.empty() ? "on" : compute::format_qos(component.profile.parameters, qos, " ", ", ");
-}
-
-Figure utility_figure(const SimulatedMission& planned, const std::vector<UtilityPoint>& points, const std::string& id) {
-    std::string description = "Utility over final state of charge.";
-    for (const auto& point : points) {
-        description += fmt::format(" {}: {:.4g} at {:.2f} %.", point.mission, point.utility, point.soc_percent);
-    }
-    auto figure = new_figure(
-        "utility", id,
-        "Utility of the schedules, by that of the planned mission, over final state of charge. Schedules to the "
-        "left of the reserve do not keep it; none that keeps it exceeds the bound. Software has no utility after "
-        "the battery's end.",
-        description,
-        {{"reserve", planned.simulation.summary.reserve_soc_percent},
-         {"bound", planned.planned->bound},
-         {"points", point_rows(points)},
-         {"names", name_rows(points)}});
-    if (!planned.planned->feasible) figure.spec["layer"].erase(1);  // the bound
-    return figure;
 }
 
 Figure strip_figure(const SimulatedMission& planned, const std::string& id) {

@@ -64,29 +64,18 @@ std::string describe_basis(const ReportBattery& battery) {
     return text;
 }
 
-void add_identified(Section& section, const ReportBattery& battery, const SectionScope& of) {
+void add_identified(Section& section, const ReportBattery& battery) {
     const auto& identified = *battery.identified;
     section.html += paragraph(describe_basis(battery));
-    const auto warn = [&](const std::string& warning) {
-        if (!warning.empty()) section.html += paragraph("Warning: " + warning + ".", "warning");
-    };
-    if (identified.capacity.origin == battery::CapacityOrigin::given) {
-        const auto warning = capacity_warning(identified.battery);
-        warn(warning);
-        if (warning.empty()) section.html += paragraph(cli::describe_given_capacity(identified.battery) + ".");
-    }
-    warn(cli::cells_warning(identified));
-    if (identified.capacity.origin == battery::CapacityOrigin::chart)
-        warn(
-            "the flights do not determine the capacity, as none empties the pack. The value is a guess from charts of "
-            "lithium cells; give the capacity of the pack with --capacity");
-    if (identified.fit.rc_resistance_ohm == 0.0) {
-        section.html += paragraph("No RC pair: it does not reduce the error.");
-    } else if (identified.errors.rc_resistance_ohm.low == 0.0) {
-        section.html += paragraph("The RC pair is not significant: the interval of its resistance includes 0.");
+    std::vector<std::string> notes;
+    for (const auto& [text, is_warning] : cli::battery_remarks(identified)) {
+        if (is_warning)
+            section.html += paragraph("Warning: " + text + ".", "warning");
+        else
+            notes.push_back(text + ".");
     }
     add_table(section, {parameters_table(identified), "Parameters of the battery", "tab:identified-battery"});
-    add_figure(section, voltage_figure(identified, battery.records, of.id("battery-voltage")));
+    add_figure(section, voltage_figure(identified, battery.records, "battery-voltage"));
     add_table(section,
               {cli::flights_table(identified, battery.leave_one_out), "Flights in the fit of the battery",
                "tab:battery-flights"},
@@ -96,11 +85,8 @@ void add_identified(Section& section, const ReportBattery& battery, const Sectio
         "this flight alone, with its interval. Leave-one-out: RMS error of this flight's voltage by the battery of the "
         "other flights; beyond the others: fraction of its samples with more charge drawn than in any other flight.",
         "soft");
-    for (const auto& flight : identified.flights)
-        if (flight.link) section.html += paragraph(cli::describe_link(flight) + ".", "soft");
-    if (identified.trend)
-        section.html += paragraph("State of health: " + cli::describe(*identified.trend) + ".", "soft");
-    add_figure(section, open_circuit_figure(identified, of.id("battery-open-circuit")));
+    section.html += list_html(notes, "soft");
+    add_figure(section, open_circuit_figure(identified, "battery-open-circuit"));
     if (!battery.leave_one_out.empty()) return;
     section.html += paragraph(battery.no_result_reason.empty()
                                   ? "A single flight: there is no other one to check the battery with."
@@ -169,10 +155,10 @@ ReportBattery identify_for_report(std::span<const ReportFlight> flights, const b
     }
 }
 
-Section battery_section(const ReportBattery& battery, const SectionScope& of) {
-    Section section{of.id("battery"), of.title("Battery")};
+Section battery_section(const ReportBattery& battery) {
+    Section section{"battery", "Battery"};
     if (battery.identified)
-        add_identified(section, battery, of);
+        add_identified(section, battery);
     else
         section.html += paragraph("The battery was not identified: " + battery.no_result_reason + ".", "warning");
     section.html += list_html(battery.notes);

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <utility>
-#include <vector>
 
 #include <boost/archive/iterators/base64_from_binary.hpp>
 #include <boost/archive/iterators/transform_width.hpp>
@@ -40,34 +38,26 @@ std::string base64(const std::string& bytes) {
     return text;
 }
 
-/// [name, decimals, steps], or [name, numbers] with exponents or more digits than a double.
+/// [name, decimals, steps].
 VegaJson packed_numbers(const std::string& name, const std::vector<std::string>& cells) {
-    constexpr std::size_t max_digits = 15;  // of a double, also in JavaScript
-    std::size_t whole = 0;
     std::size_t decimals = 0;
-    bool are_decimal = true;
-    for (const auto& cell : cells) {
-        const auto point = std::min(cell.find('.'), cell.size());
-        whole = std::max(whole, point);
-        if (point < cell.size()) decimals = std::max(decimals, cell.size() - point - 1);
-        are_decimal = are_decimal && cell.find('e') == std::string::npos;
-    }
-    are_decimal = are_decimal && whole + decimals <= max_digits;
-    const double scale = are_decimal ? std::pow(10.0, static_cast<double>(decimals)) : 1.0;
-    VegaJson::array_t packed;
+    for (const auto& cell : cells)
+        if (const auto point = cell.find('.'); point != std::string::npos && cell.find('e') == std::string::npos)
+            decimals = std::max(decimals, cell.size() - point - 1);
+    const double scale = std::pow(10.0, static_cast<double>(decimals));
+    VegaJson::array_t steps;
     std::int64_t last = 0;
     for (const auto& cell : cells) {
-        if (cell.empty()) {
-            packed.emplace_back(nullptr);
-        } else if (const double number = parse_number(cell).value(); are_decimal) {
-            const auto digits = std::llround(number * scale);
-            packed.emplace_back(digits - last);
-            last = digits;
-        } else {
-            packed.emplace_back(number);
+        const auto number = parse_number(cell);
+        if (!number) {
+            steps.emplace_back(nullptr);
+            continue;
         }
+        const auto now = std::llround(*number * scale);
+        steps.emplace_back(now - last);
+        last = now;
     }
-    return are_decimal ? VegaJson::array_t{name, decimals, packed} : VegaJson::array_t{name, packed};
+    return VegaJson::array_t{name, decimals, steps};
 }
 
 VegaJson packed_table(const std::string& csv, const VegaJson& parse) {
@@ -89,18 +79,12 @@ VegaJson packed_table(const std::string& csv, const VegaJson& parse) {
 
 std::string compressed_block(std::string_view html) { return base64(deflated(html)); }
 
-VegaJson packed_tables(const VegaJson& spec) {
+VegaJson packed_tables(VegaJson spec) {
     if (!spec.is_structured()) return spec;
     if (spec.is_object() && spec.contains("format") && spec.contains("values"))  // FigureData::json()
         return packed_table(spec["values"].get_ref<const std::string&>(), spec["format"]["parse"]);
-    if (spec.is_array()) {
-        VegaJson::array_t packed;
-        for (const auto& part : spec) packed.push_back(packed_tables(part));
-        return packed;
-    }
-    VegaJson::object_t packed;
-    for (const auto& [key, part] : spec.get_ref<const VegaJson::object_t&>()) packed.emplace(key, packed_tables(part));
-    return packed;
+    for (auto& part : spec) part = packed_tables(std::move(part));
+    return spec;
 }
 
 }  // namespace flightwatt::report

@@ -21,8 +21,6 @@
 namespace flightwatt::report {
 namespace {
 
-std::string folders_of(const ReportFlight& flight) { return fmt::format("{}", fmt::join(flight.folders, ", ")); }
-
 std::vector<std::string> cells_of(const ReportFlight& flight, std::size_t sortie) {
     const auto& phases = flight.phases.sorties[sortie].phases;
     const flight::PowerStatistics power(flight.series);
@@ -39,7 +37,6 @@ std::vector<std::string> cells_of(const ReportFlight& flight, std::size_t sortie
     const bool has_closure = facts.energy_wh && counter_wh && *counter_wh > 0.0;
     using enum flight::Phase;
     return {flight.phases.sorties.size() > 1 ? fmt::format("{}, sortie {}", flight.name, sortie + 1) : flight.name,
-            folders_of(flight),
             flight::describe_aircraft(flight.series.aircraft_id, flight.series.aircraft_name),
             facts.date.empty() ? "-" : facts.date,
             fixed(facts.energy_wh, 3),
@@ -74,8 +71,8 @@ std::vector<std::string> flight_ids(std::span<const ReportFlight> flights) {
 
 TextTable flights_table(std::span<const ReportFlight> flights) {
     // The most important columns first: narrow screens hide those on the right.
-    TextTable table{{"flight", "folder", "aircraft", "date", "energy [Wh]", "cruise [W]", "cruise [s]", "warnings",
-                     "fitted", "distance [km]", "height [m]", "take\u2011off [s]", "landing [s]", "take\u2011off [W]",
+    TextTable table{{"flight", "aircraft", "date", "energy [Wh]", "cruise [W]", "cruise [s]", "warnings", "fitted",
+                     "distance [km]", "height [m]", "take\u2011off [s]", "landing [s]", "take\u2011off [W]",
                      "landing [W]", "counter [Wh]", "closure [%]", "gaps"},
                     {}};
     std::vector<std::vector<std::vector<std::string>>> rows(flights.size());
@@ -84,9 +81,6 @@ TextTable flights_table(std::span<const ReportFlight> flights) {
         for (std::size_t s = 0; s < flights[f].phases.sorties.size(); ++s) rows[f].push_back(cells_of(flights[f], s));
     });
     for (auto& of_flight : rows) std::ranges::move(of_flight, std::back_inserter(table.rows));
-    if (std::ranges::any_of(flights, [](const auto& flight) { return !flight.folders.empty(); })) return table;
-    table.header.erase(table.header.begin() + 1);
-    for (auto& row : table.rows) row.erase(row.begin() + 1);
     return table;
 }
 
@@ -117,9 +111,8 @@ void add_excluded(Section& section, std::span<const ReportFlight> flights) {
 
 /// Edges of a flight's phases with their evidence.
 std::string edges_html(const ReportFlight& flight) {
-    TextTable table{{"edge", "time [s]", "evidence", "the autopilot"}, {}};
-    for (const auto& edge : edges_of(flight))
-        table.rows.push_back({edge.name, fixed(edge.time_s, 1), edge.evidence, edge.agreement});
+    TextTable table{{"edge", "time [s]", "evidence"}, {}};
+    for (const auto& edge : edges_of(flight)) table.rows.push_back({edge.name, fixed(edge.time_s, 1), edge.evidence});
     return table_html(table, "Edges of the phases");
 }
 
@@ -131,7 +124,6 @@ std::string summary_of(const ReportFlight& flight) {
     text += ", " + duration_text(facts.in_air_s) + " in the air";
     if (facts.distance_m) text += fmt::format(", {:.2f} km", *facts.distance_m / 1000.0);
     if (facts.height_m) text += fmt::format(", up to {:.0f} m", *facts.height_m);
-    if (!flight.folders.empty()) text += ", in " + folders_of(flight);
     return text;
 }
 
@@ -148,8 +140,10 @@ struct FlightPart {
 Section contents_of(const ReportFlight& flight, const mechanical::MechanicalModel* model, const FlightPart& part) {
     Section section;
     const auto add = [&](Figure figure) {
-        section.html += figure_html(figure, part.is_compressed ? packed_tables(figure.spec) : figure.spec);
-        section.figures.push_back(std::move(figure));
+        const auto spec = figure.spec;
+        if (part.is_compressed) figure.spec = packed_tables(spec);
+        add_figure(section, std::move(figure));
+        section.figures.back().spec = spec;  // of its file
     };
     section.html += paragraph("From " + flight.log, "soft") + list_html(flight.warnings, "warning");
     const bool has_power = !power_track(flight.series).empty();
@@ -171,8 +165,10 @@ Section flight_section(const ReportFlight& flight, const mechanical::MechanicalM
 }
 
 /// The accepted flights; the first one is open.
-std::vector<Section> flight_sections(std::span<const ReportFlight> flights, std::span<const BatchContent> batches,
-                                     const std::vector<std::string>& ids, const Progress& progress) {
+std::vector<Section> flight_sections(const BatchContent& batch, const std::vector<std::string>& ids,
+                                     const Progress& progress) {
+    const auto& flights = batch.flights;
+    const auto* model = batch.fit ? &batch.fit->model : nullptr;
     std::vector<Section> sections(flights.size());
     const auto first = static_cast<std::size_t>(
         std::ranges::find_if(flights, [](const auto& flight) { return flight.rejected.empty(); }) - flights.begin());
@@ -181,8 +177,6 @@ std::vector<Section> flight_sections(std::span<const ReportFlight> flights, std:
     for_each_in_parallel(flights.size(), [&](std::size_t f) {
         if (progress) progress(done++, flights.size());
         if (!flights[f].rejected.empty()) return;
-        const auto* batch = flights[f].batch < batches.size() ? &batches[flights[f].batch] : nullptr;
-        const auto* model = batch != nullptr && batch->fit ? &batch->fit->model : nullptr;
         sections[f] = flight_section(flights[f], model, {ids[f], f == first, are_many && f != first});
     });
     return sections;
@@ -213,8 +207,8 @@ TextTable exclusions_table(std::span<const Exclusion> exclusions) {
     return table;
 }
 
-Section flights_section(std::span<const ReportFlight> flights, std::span<const BatchContent> batches,
-                        const Progress& progress) {
+Section flights_section(const BatchContent& batch, const Progress& progress) {
+    const auto& flights = batch.flights;
     Section section{"flights", "Flights"};
     const auto rejected =
         std::ranges::count_if(flights, [](const ReportFlight& flight) { return !flight.rejected.empty(); });
@@ -232,7 +226,7 @@ Section flights_section(std::span<const ReportFlight> flights, std::span<const B
         section.html +=
             "<noscript><p class=\"warning\">The flights below are compressed: they open with JavaScript "
             "only.</p></noscript>\n";
-    for (auto& part : flight_sections(flights, batches, ids, progress)) {
+    for (auto& part : flight_sections(batch, ids, progress)) {
         section.html += part.html;
         std::ranges::move(part.figures, std::back_inserter(section.figures));
     }

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <map>
 #include <set>
 
 #include <fmt/format.h>
@@ -28,25 +27,16 @@ std::vector<const SimulatedMission*> first_of_each(Missions missions,
     return firsts;
 }
 
-/// Text of the drawn parts of a model: without errors, and of a validated one without its power over time.
-std::string drawn_text(mechanical::MechanicalModel model) {
-    for (auto& phase : model.phases.values) {
-        phase.errors.reset();
-        phase.spread.reset();
-        if (!model.validation) continue;
-        phase.fourier = {};
-        phase.open_frequency = phase.not_negative = false;
-    }
-    if (model.validation) model.flights.clear();
-    return to_toml(model);
-}
-
 std::vector<Section> model_sections(Missions missions, const PublishedFigures& published,
                                     std::span<const mechanical::MechanicalModel> shown) {
     std::vector<Section> sections;
     for (const auto* simulated : first_of_each(missions, model_key)) {
         const auto& mechanical = simulated->mission.setup.mechanical;
-        const auto is_this = [&](const auto& other) { return drawn_text(*mechanical) == drawn_text(other); };
+        const auto is_this = [&](const auto& other) {  // the batch has its errors, a mission may use its means alone
+            return other.name == mechanical->name && std::ranges::all_of(flight::all_phases, [&](auto phase) {
+                       return other.phases[phase].duration_s == mechanical->phases[phase].duration_s;
+                   });
+        };
         if (!mechanical || std::ranges::any_of(shown, is_this)) continue;
         ReportModel model{*mechanical, "The missions' model."};
         model.table_one = table_one(*mechanical);
@@ -121,19 +111,6 @@ Section map_section(Missions missions, const PublishedFigures& published) {
     return section;
 }
 
-/// The missions with the flight, software and battery of the planned one, by its utilities.
-std::vector<UtilityPoint> utility_points(const SimulatedMission& planned, Missions missions) {
-    std::vector<UtilityPoint> points;
-    for (const auto& other : missions) {
-        const auto& summary = other.simulation.summary;
-        if (map_key(planned.mission.setup) != map_key(other.mission.setup) || !summary.final_soc_percent) continue;
-        const auto utility = mean_utility(planned.mission.setup, other.mission.schedule, powered_end_s(summary));
-        if (!utility) continue;
-        points.push_back({other.title, *summary.final_soc_percent, *utility, other.planned.has_value()});
-    }
-    return points;
-}
-
 /// Upper bound of the utility that the plan misses [%].
 std::optional<double> gap_percent(const SimulatedMission& simulated) {
     const auto& planned = *simulated.planned;
@@ -158,41 +135,15 @@ TextTable plans_table(Missions missions) {
     return table;
 }
 
-void add_plan(Section& section, const SimulatedMission& planned, Missions missions, std::size_t number) {
+void add_plan(Section& section, const SimulatedMission& planned, std::size_t number) {
     section.html += heading(planned.title);
     if (!planned.planned->feasible)
         section.html += paragraph(
             "No schedule that keeps the reserve was found: this one needs the least energy. flightwatt plan has the "
             "limiting factor.",
             "warning");
-    if (planned.mission.setup.compute.components.empty()) return;
-    add_figure(section, strip_figure(planned, fmt::format("plan-{}-strip", number)));
-    const auto points = utility_points(planned, missions);
-    if (points.size() > 1) add_figure(section, utility_figure(planned, points, fmt::format("plan-{}-utility", number)));
-}
-
-/// Utility over final state of charge, a point for each flight and schedule.
-Figure replay_figure(const std::vector<const mission::Replay*>& replays, const std::string& id) {
-    FigureData data({"soc", "utility"}, {"flight", "schedule"});
-    auto description =
-        fmt::format("{}: utility and final state of charge of each schedule on each flight.", replays.front()->mission);
-    double reserve_percent = 0.0;
-    for (const auto* replay : replays) {
-        for (const auto& replayed : replay->schedules) {
-            const auto& summary = replayed.summary;
-            if (!summary.final_soc_percent || !summary.utility) continue;
-            reserve_percent = summary.reserve_soc_percent;
-            const auto way = to_string(replayed.way);
-            data.add({*summary.final_soc_percent, *summary.utility}, {replay->flight, way});
-            description += fmt::format(" {}, {}: {:.4g} at {:.2f} %.", replay->flight, way, *summary.utility,
-                                       *summary.final_soc_percent);
-        }
-    }
-    return new_figure(
-        "replay", id,
-        "Utility over final state of charge, by schedule and flight; the line is the reserve. Software has no "
-        "utility after the battery's end.",
-        description, {{"points", data.json()}, {"reserve", reserve_percent}});
+    if (!planned.mission.setup.compute.components.empty())
+        add_figure(section, strip_figure(planned, fmt::format("plan-{}-strip", number)));
 }
 
 }  // namespace
@@ -207,7 +158,7 @@ Section plan_section(Missions missions) {
     add_table(section, {plans, "Planned missions", "tab:plans"});
     std::size_t number = 0;
     for (const auto& simulated : missions)
-        if (simulated.planned) add_plan(section, simulated, missions, ++number);
+        if (simulated.planned) add_plan(section, simulated, ++number);
     return section;
 }
 
@@ -226,13 +177,6 @@ Section replay_section(std::span<const mission::Replay> replays) {
     section.html += paragraph(
         "The missions' schedules on the measured power of the flights. Plans use a model of the other flights; "
         "hindsight plans with the measured power, and regret is its surplus of utility.");
-    std::map<std::string, std::vector<const mission::Replay*>> planned;
-    for (const auto& replay : replays)
-        if (replay.schedules.size() > 2) planned[replay.mission].push_back(&replay);
-    for (const auto& [name, of_mission] : planned) {
-        section.html += heading(name);
-        add_figure(section, replay_figure(of_mission, fmt::format("replay-{}", section.figures.size() + 1)));
-    }
     section.html += list_html(cli::replay_sentences(replays));
     add_table(section, {cli::replay_table(replays), "Results of each schedule on each flight", "tab:replay"},
               {.sortable = true});

@@ -33,10 +33,9 @@ Section model_section(const ReportModel& model, const PublishedFigures& publishe
     return section;
 }
 
-Section validation_section(const std::vector<mechanical::ValidatedFlight>& flights, bool synthetic,
-                           const SectionScope& of) {
-    Section section{of.id("validation"), of.title("Validation against the baselines") +
-                                             std::string(synthetic ? " (SYNTHETIC flights)" : "")};
+Section validation_section(const std::vector<mechanical::ValidatedFlight>& flights, bool synthetic) {
+    Section section{"validation",
+                    std::string("Validation against the baselines") + (synthetic ? " (SYNTHETIC flights)" : "")};
     if (synthetic) {
         section.html +=
             paragraph("SYNTHETIC flights vary by their generator's model: these errors are not valid for real flights.",
@@ -46,7 +45,7 @@ Section validation_section(const std::vector<mechanical::ValidatedFlight>& fligh
         "Leave-one-out: the model is fitted to all flights but one and predicts the energy of that one from its "
         "durations. Baselines: the mean power of each phase and, where airspeed was measured, power by airspeed and climb "
         "(physical).");
-    add_figure(section, validation_figure(flights, of.id("validation-errors")));
+    add_figure(section, validation_figure(flights, "validation-errors"));
     add_table(
         section,
         {cli::scores_table(flights), "Errors of the models on flights that they were not fitted to", "tab:validation"},
@@ -60,7 +59,7 @@ Section validation_section(const std::vector<mechanical::ValidatedFlight>& fligh
     return section;
 }
 
-std::optional<Section> physical_section(std::span<const mechanical::MeasuredFlight> flights, const SectionScope& of) {
+std::optional<Section> physical_section(std::span<const mechanical::MeasuredFlight> flights) {
     std::vector<mechanical::BinnedFlight> binned;
     for (const auto& flight : flights)
         if (!flight.motion.bins.empty()) binned.push_back(flight.motion);
@@ -70,10 +69,10 @@ std::optional<Section> physical_section(std::span<const mechanical::MeasuredFlig
     } catch (const NoResultError&) {
         return std::nullopt;
     }
-    Section section{of.id("physical"), of.title("Power from airspeed and climb")};
+    Section section{"physical", "Power from airspeed and climb"};
     section.html += paragraph(
         "Power as a sum of physical terms, fitted to the flights with airspeed and altitude, in bins of about 30 s.");
-    add_figure(section, physical_figure(fit.model, binned, of.id("physical-power")));
+    add_figure(section, physical_figure(fit.model, binned, "physical-power"));
     add_table(section, {cli::constants_table(fit.model), "Constants of the physical model", "tab:physical"});
     if (fit.model.level_sd) section.html += paragraph("+- is half the 95 % interval.", "soft");
     add_table(section,

@@ -49,11 +49,10 @@ ReportBattery identify_for_report(std::span<const ReportFlight> flights, const b
                                   std::size_t max_flights, std::span<const mission::MissionVariant> missions = {});
 
 /// Parameters with intervals, voltages, errors of leave-one-out, open-circuit curve; or the reason for no battery.
-Section battery_section(const ReportBattery& battery, const SectionScope& of = {});
+Section battery_section(const ReportBattery& battery);
 
-/// A table with a row for each sortie, exclusions, and a part for each flight, with the model of its batch.
-Section flights_section(std::span<const ReportFlight> flights, std::span<const BatchContent> batches,
-                        const Progress& progress = {});
+/// A table with a row for each sortie, exclusions, and a part for each flight, with the model of the batch.
+Section flights_section(const BatchContent& batch, const Progress& progress = {});
 
 /// A mechanical model for a section.
 struct ReportModel {
@@ -68,42 +67,32 @@ Section model_section(const ReportModel& model, const PublishedFigures& publishe
 
 /// Errors of predictions by leave-one-out, compared with the baselines. `flights` is not empty; a warning is for
 /// `synthetic` ones.
-Section validation_section(const std::vector<mechanical::ValidatedFlight>& flights, bool synthetic = false,
-                           const SectionScope& of = {});
+Section validation_section(const std::vector<mechanical::ValidatedFlight>& flights, bool synthetic = false);
 
 /// Power from airspeed and climb: figure, constants and trials. std::nullopt where it cannot be fitted.
-std::optional<Section> physical_section(std::span<const mechanical::MeasuredFlight> flights,
-                                        const SectionScope& of = {});
+std::optional<Section> physical_section(std::span<const mechanical::MeasuredFlight> flights);
 
 /// Each mechanical model that is not in `shown` and each software once, schedules as Fig. 3 with the ranking, maps over
 /// the quality of service as Fig. 4, and plans. `missions` is not empty.
 std::vector<Section> mission_sections(std::span<const SimulatedMission> missions, const PublishedFigures& published,
                                       std::span<const mechanical::MechanicalModel> shown = {});
 
-/// Schedules of planned missions, and their utility compared with other missions of the same flight, software and
-/// battery. No figures without a planned mission.
+/// Schedules of planned missions. No figures without one.
 Section plan_section(std::span<const SimulatedMission> missions);
 
 /// Schedules of missions on the flights' measured power. `replays` is not empty.
 Section replay_section(std::span<const mission::Replay> replays);
 
-/// Validation of one folder's model.
-struct ValidatedBatch {
-    std::string folder;  ///< empty if the page has one
-    std::vector<mechanical::ValidatedFlight> flights;
-    bool has_synthetic = false;
-};
-
 /// Contents of the first section.
 struct PageSummary {
     std::vector<SimulatedMission> missions;
     std::vector<MissionAssessment> answers;  ///< one a mission
-    std::vector<ValidatedBatch> validated;
+    std::vector<mechanical::ValidatedFlight> validated;
     std::vector<std::string> warnings;  ///< of the fits
     std::vector<std::string> notes;     ///< missing parts of the page, with reasons
 };
 
-/// A card for each mission; a line for each aircraft and validated model; warnings. `flights` may be empty.
+/// A card for each mission; a line for each aircraft and the validated model; warnings. `flights` may be empty.
 Section summary_section(const PageSummary& answers, std::span<const ReportFlight> flights);
 
 /// "20 Faulty: 3 flights, 1 h 6 min in the air, 26.1 Wh" of each aircraft, with SYNTHETIC.
@@ -112,16 +101,15 @@ std::vector<std::string> aircraft_lines(std::span<const ReportFlight> flights);
 /// Whether any of the accepted flights is synthetic.
 bool any_synthetic(std::span<const ReportFlight> flights);
 
-/// Mean errors of the models by leave-one-out, the best first, a line a folder.
-std::vector<std::string> prediction_lines(std::span<const ValidatedBatch> batches);
+/// Mean errors of the models by leave-one-out, the best first; empty without any.
+std::string prediction_line(std::span<const mechanical::ValidatedFlight> validated, bool synthetic);
 
 /// `html` as zlib's deflate (RFC 1950) in base64 (RFC 4648), which the page opens by DecompressionStream("deflate").
 std::string compressed_block(std::string_view html);
 
 /// A specification with its inline CSV tables as {"packed": [[name, decimals, [first, step, step ...]], [name, [text,
-/// text ...]]]}: a step leads to the next number, in units of the last decimal; null is an empty cell. [name, [number
-/// ...]] where numbers have exponents or too many digits. unpacked() in web/blocks.js makes the same rows. Named
-/// datasets are kept.
-VegaJson packed_tables(const VegaJson& spec);
+/// text ...]]]}: a step leads to the next number, in units of the last decimal; null is an empty cell. unpacked() in
+/// web/blocks.js makes the same rows. Named datasets are kept.
+VegaJson packed_tables(VegaJson spec);
 
 }  // namespace flightwatt::report

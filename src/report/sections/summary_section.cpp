@@ -100,27 +100,23 @@ bool any_synthetic(std::span<const ReportFlight> flights) {
     });
 }
 
-std::vector<std::string> prediction_lines(std::span<const ValidatedBatch> batches) {
-    std::vector<std::string> lines;
-    for (const auto& batch : batches) {
-        std::vector<std::pair<double, std::string>> errors;
-        std::size_t flights = 0;
-        for (const auto& model : mechanical::model_names(batch.flights)) {
-            const auto score = score_of(batch.flights, model, std::nullopt);
-            if (!score || !score->mean_absolute_error_percent) continue;
-            const double error_percent = *score->mean_absolute_error_percent;
-            errors.emplace_back(error_percent, fmt::format("{:.1f} % ({}{})", error_percent, model,
-                                                           model == "physical" ? ", airspeed known" : ""));
-            flights = std::max(flights, score->flights);
-        }
-        if (errors.empty()) continue;
-        std::ranges::stable_sort(errors, {}, &std::pair<double, std::string>::first);
-        lines.push_back(fmt::format(
-            "{}Mean error of the energy of a flight that is not in the fit: {}; over {}, each left out in turn{}",
-            batch.folder.empty() ? "" : batch.folder + ": ", fmt::join(errors | std::views::values, ", "),
-            plural(flights, "flight"), batch.has_synthetic ? " (SYNTHETIC flights)" : ""));
+std::string prediction_line(std::span<const mechanical::ValidatedFlight> validated, bool synthetic) {
+    std::vector<std::pair<double, std::string>> errors;
+    std::size_t flights = 0;
+    for (const auto& model : mechanical::model_names(validated)) {
+        const auto score = score_of(validated, model, std::nullopt);
+        if (!score || !score->mean_absolute_error_percent) continue;
+        const double error_percent = *score->mean_absolute_error_percent;
+        errors.emplace_back(error_percent, fmt::format("{:.1f} % ({}{})", error_percent, model,
+                                                       model == "physical" ? ", airspeed known" : ""));
+        flights = std::max(flights, score->flights);
     }
-    return lines;
+    if (errors.empty()) return "";
+    std::ranges::stable_sort(errors, {}, &std::pair<double, std::string>::first);
+    return fmt::format(
+        "Mean error of the energy of a flight that is not in the fit: {}; over {}, each left out in turn{}",
+        fmt::join(errors | std::views::values, ", "), plural(flights, "flight"),
+        synthetic ? " (SYNTHETIC flights)" : "");
 }
 
 Section summary_section(const PageSummary& answers, std::span<const ReportFlight> flights) {
@@ -136,7 +132,7 @@ Section summary_section(const PageSummary& answers, std::span<const ReportFlight
         if (!text.empty()) facts += fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, html_escaped(text));
     };
     for (const auto& line : aircraft_lines(flights)) add("Aircraft", line);
-    for (const auto& line : prediction_lines(answers.validated)) add("Prediction", line);
+    add("Prediction", prediction_line(answers.validated, any_synthetic(flights)));
     add("Warnings", warned_line(flights));
     if (!facts.empty()) section.html += "<dl>\n" + facts + "</dl>\n";
     auto warnings = answers.warnings;

@@ -27,8 +27,9 @@ TEST(FlightsSection, NamesEveryReasonOnceWithItsFlights) {
         flight->unusable_power = "made for <segmentation>";
         flight->exclusions = {flight->name + ": it is excluded: made for <segmentation>"};
     }
-    const std::vector<ReportFlight> flights{whole, one, two};
-    const auto section = flights_section(flights, {});
+    BatchContent batch;
+    batch.flights = {whole, one, two};
+    const auto section = flights_section(batch);
     EXPECT_THAT(section.html, HasSubstr("hazard_01_run-up, hazard_01_two-sorties"));
     EXPECT_THAT(section.html, HasSubstr(">it is excluded: made for &lt;segmentation&gt;<"));
     EXPECT_THAT(section.html, HasSubstr(">no</td>"));
@@ -44,9 +45,11 @@ std::size_t count_of(const std::string& text, const std::string& part) {
 }
 
 TEST(FlightsSection, CompressesManyFlightsButTheFirst) {
-    std::vector<ReportFlight> flights(20, sample_flight("logs/opterra_synthetic_01"));
+    BatchContent batch;
+    auto& flights = batch.flights;
+    flights.assign(20, sample_flight("logs/opterra_synthetic_01"));
     for (std::size_t f = 0; f < flights.size(); ++f) flights[f].name = "flight_" + std::to_string(f);
-    const auto few = flights_section(flights, {});
+    const auto few = flights_section(batch);
     EXPECT_THAT(few.html, Not(HasSubstr("class=\"block\"")));
     EXPECT_EQ(count_of(few.html, "data-spec="), 40U);
 
@@ -54,7 +57,7 @@ TEST(FlightsSection, CompressesManyFlightsButTheFirst) {
     rejected.name = "flight_20";
     rejected.rejected = "it is made up";
     flights.insert(flights.begin(), rejected);
-    const auto many = flights_section(flights, {});
+    const auto many = flights_section(batch);
     EXPECT_EQ(count_of(many.html, "<details class=\"flight\""), 20U);
     EXPECT_EQ(count_of(many.html, "class=\"block\""), 19U) << "the first one shown is open, and plain";
     EXPECT_EQ(count_of(many.html, "data-spec="), 2U);

@@ -51,7 +51,7 @@ TEST(SummarySection, WarnsOfFlightsAndOfWhatIsMissing) {
     EXPECT_THAT(html, Not(HasSubstr("class=\"cards\""))) << "no missions";
 }
 
-TEST(PredictionLines, HaveTheBestModelFirst) {
+TEST(PredictionLine, HasTheBestModelFirst) {
     const auto predicted = [](const std::string& model, double wh) {
         mechanical::FlightPrediction prediction{model, {}};
         prediction.phases[flight::Phase::cruise] = mechanical::EnergyEstimate{wh};
@@ -59,11 +59,13 @@ TEST(PredictionLines, HaveTheBestModelFirst) {
     };
     mechanical::ValidatedFlight flight{"f", {}, {}, {predicted("fourier", 12.0), predicted("physical", 10.5)}};
     flight.measured_wh[flight::Phase::cruise] = 10.0;
-    const std::vector<ValidatedBatch> batches{{"", {flight}, true}, {"b", {flight}, false}, {"c", {}, false}};
+    const std::vector flights{flight};
     const std::string errors =
         "Mean error of the energy of a flight that is not in the fit: 5.0 % (physical, airspeed known), 20.0 % "
         "(fourier); over 1 flight, each left out in turn";
-    EXPECT_THAT(prediction_lines(batches), ElementsAre(errors + " (SYNTHETIC flights)", "b: " + errors));
+    EXPECT_EQ(prediction_line(flights, true), errors + " (SYNTHETIC flights)");
+    EXPECT_EQ(prediction_line(flights, false), errors);
+    EXPECT_EQ(prediction_line({}, false), "");
 }
 
 }  // namespace
