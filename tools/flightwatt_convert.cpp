@@ -116,7 +116,7 @@ Fields<ConvertOutput> record_fields(const ConvertOutput*) {
             field("frames", at(&R::log, &L::counts, &C::frames), "frames with a valid checksum"),
             field("messages", at(&R::log, &L::lines), "messages written"),
             field("unknown_frames", at(&R::log, &L::counts, &C::unknown), "frames of undefined messages"),
-            field("length_mismatches", at(&R::log, &L::counts, &C::length_mismatches),
+            field("length_mismatch_frames", at(&R::log, &L::counts, &C::length_mismatches),
                   "frames with another length than defined"),
             field("non_message_frames", at(&R::log, &L::counts, &C::non_message_frames), "as an XBee's status"),
             field("skipped_bytes", at(&R::log, &L::counts, &C::skipped_bytes), "bytes outside of frames"),

@@ -128,9 +128,9 @@ int flightwatt::stages::report_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "report", "[OUT] [MISSION.toml...] -o report.html",
         R"(Writes one HTML page, to be opened offline, of the folder OUT of flightwatt batch (flights, model,
-validation, battery) and of missions (software, schedules, quality of service, plan). Its figures are Vega-Lite specifications with their data; --figures writes them as files
-for papers: .vl.json, .svg (by node) and .pdf (where rsvg-convert is). The model is the batch's own, with
-the bands that the batch stored.)"};
+validation, battery) and of missions (software, schedules, quality of service, plan). Its figures are
+Vega-Lite specifications with their data; --figures writes them as files for papers: .vl.json, .svg (by node)
+and .pdf (where rsvg-convert is). The model is the batch's own, with the bands that the batch stored.)"};
     stage.json_schema = [] { return cli::json_schema({report::summary_schema()}); };
     stage.examples = {"flightwatt report my missions/first.toml -o report.html",
                       "flightwatt report my --figures figures --figure-width 3.5in"};

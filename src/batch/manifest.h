@@ -43,7 +43,7 @@ void remove_results(const std::filesystem::path& out, const std::string& flight)
 void read_batch_json(const std::filesystem::path& file, const std::string& text, const char* problem,
                      const std::string& hint, const std::function<void(const Json&)>& read);
 
-/// The flights of OUT/batch.json by name; none without the file. Throws InputError for a damaged file or a newer format.
+/// The flights of OUT/batch.json by name; none without the file. Throws InputError as read_batch_json.
 std::vector<LogFile> read_manifest(const std::filesystem::path& out);
 
 void write_manifest(const std::vector<LogFile>& flights, const std::filesystem::path& out);

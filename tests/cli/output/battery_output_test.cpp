@@ -23,6 +23,13 @@ class BatteryTables : public testing::Test {
         identified_ = identify_battery(records_, options);
         checks_ = leave_one_out(records_, options);
     }
+    /// A line each.
+    std::string remarks() const {
+        std::string text;
+        for (const auto& remark : battery_remarks(identified_))
+            text += (remark.is_warning ? "warning: " : "") + remark.text + "\n";
+        return text;
+    }
     std::vector<battery::DischargeRecord> records_;
     battery::BatteryIdentification identified_;
     std::vector<battery::LeaveOneOutCheck> checks_;
@@ -41,13 +48,13 @@ TEST_F(BatteryTables, HasARowAParameterAndAFlight) {
 }
 
 TEST_F(BatteryTables, SaysWhosePackWasAssumed) {
-    EXPECT_EQ(describe_link(identified_.flights[1]), "");
+    EXPECT_THAT(remarks(), testing::Not(HasSubstr("assumed to be on the pack")));
     const auto columns = flights_table(identified_, {}).header.size();
     auto& flight = identified_.flights[1];
     flight.link = battery::PackLink{0, 0.4, 0.01, 1380.0, false};
     flight.same_pack_as = "synthetic_1";
     flight.air_temperature_c = 21.5;
-    EXPECT_THAT(describe_link(flight),
+    EXPECT_THAT(remarks(),
                 HasSubstr("synthetic_2: assumed to be on the pack of synthetic_1, as it begins 23 min after"));
     const auto table = flights_table(identified_, {});
     EXPECT_EQ(table.header.size(), columns + 2);
@@ -64,9 +71,10 @@ TEST_F(BatteryTables, SaysWhosePackWasAssumed) {
 }
 
 TEST_F(BatteryTables, SaysWhetherTheResistanceGoesOn) {
-    EXPECT_THAT(describe({4, 0.001, {0.0005, 0.0015}}),
-                HasSubstr("over 4 flights: +1.00 mohm a flight, +0.50 to +1.50"));
-    EXPECT_THAT(describe({4, 0.001, {-0.0005, 0.0025}}), HasSubstr("no significant trend"));
+    identified_.trend = battery::ResistanceTrend{4, 0.001, {0.0005, 0.0015}};
+    EXPECT_THAT(remarks(), HasSubstr("over 4 flights: +1.00 mohm a flight, +0.50 to +1.50"));
+    identified_.trend = battery::ResistanceTrend{4, 0.001, {-0.0005, 0.0025}};
+    EXPECT_THAT(remarks(), HasSubstr("no significant trend"));
 }
 
 TEST_F(BatteryTables, HasNoRowOfAnAbsentRcPair) {
@@ -86,9 +94,8 @@ TEST_F(BatteryTables, IsNullInJsonWhereNothingIsKnown) {
 
 TEST_F(BatteryTables, ComparesAGivenCapacity) {
     auto& pack = identified_.battery;
-    const auto as_given = describe_given_capacity(pack);
-    EXPECT_THAT(as_given, testing::AllOf(HasSubstr("using the given capacity of 2.4 Ah; the flights indicate "),
-                                         HasSubstr(" Ah in 95 %)")));
+    EXPECT_THAT(remarks(), testing::AllOf(HasSubstr("using the given capacity of 2.4 Ah; the flights indicate "),
+                                          HasSubstr(" Ah in 95 %)")));
     EXPECT_THAT(provenance(identified_), testing::Not(HasSubstr("Warning")));
     EXPECT_EQ(record_json(cli::BatteryOutput{&identified_, &checks_})["flight_estimate_ah"],
               pack.flight_estimate->capacity_ah);
@@ -98,16 +105,15 @@ TEST_F(BatteryTables, ComparesAGivenCapacity) {
     EXPECT_THAT(provenance(identified_), HasSubstr("\n# Warning: the capacity of 50 Ah contradicts the flights"));
     EXPECT_THAT(pack_table(pack).rows, testing::Contains(testing::Contains("capacity by its flights [Ah]")));
     pack.flight_estimate.reset();
-    EXPECT_EQ(describe_given_capacity(pack),
-              "using the given capacity of 50 Ah; the flights drew too little to estimate it");
+    EXPECT_THAT(remarks(),
+                HasSubstr("using the given capacity of 50 Ah; the flights drew too little to estimate it\n"));
     EXPECT_TRUE(record_json(cli::BatteryOutput{&identified_, &checks_})["flight_estimate_ah"].is_null());
 }
 
 TEST_F(BatteryTables, WarnsOfAVoltageThatCellsDoNotHave) {
-    EXPECT_EQ(cells_warning(identified_), "");
+    EXPECT_THAT(remarks(), testing::Not(HasSubstr("cells rest")));
     identified_.cells = 4;
-    EXPECT_THAT(cells_warning(identified_),
-                HasSubstr("4 cells rest at 3.09 V each before take-off, below an empty LiPo cell"));
+    EXPECT_THAT(remarks(), HasSubstr("warning: 4 cells rest at 3.09 V each before take-off, below an empty LiPo cell"));
     EXPECT_THAT(provenance(identified_), HasSubstr("\n# Warning: 4 cells rest"));
 }
 
