@@ -33,9 +33,6 @@ bool write_all(int file, std::string_view content) {
     return true;
 }
 
-constexpr std::string_view unfinished_prefix = ".flightwatt-";
-constexpr std::size_t unfinished_digits = 16;
-
 /// Target of a result of that name.
 struct Destination {
     std::filesystem::path file;              ///< behind all links
@@ -69,7 +66,7 @@ Destination destination_of(const std::filesystem::path& path) {
 
 std::filesystem::path unfinished_name(const std::filesystem::path& folder) {
     std::random_device random;
-    return folder / fmt::format("{}{:08x}{:08x}", unfinished_prefix, random(), random());
+    return folder / fmt::format(".flightwatt-{:08x}{:08x}", random(), random());
 }
 
 /// Copies permissions and owner of the replaced file.
@@ -161,11 +158,6 @@ void link_or_copy_file(const std::filesystem::path& source, const std::filesyste
 bool file_holds(const std::filesystem::path& path, std::string_view text) {
     std::ifstream stream(path, std::ios::binary);
     return stream && std::string(std::istreambuf_iterator<char>(stream), {}) == text;
-}
-
-bool is_temporary_name(std::string_view name) {
-    return name.starts_with(unfinished_prefix) && name.size() == unfinished_prefix.size() + unfinished_digits &&
-           name.find_first_not_of("0123456789abcdef", unfinished_prefix.size()) == std::string_view::npos;
 }
 
 void make_directories(const std::filesystem::path& path) {

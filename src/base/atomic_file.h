@@ -32,9 +32,6 @@ void link_or_copy_file(const std::filesystem::path& source, const std::filesyste
 /// Whether the file holds this text already. It is no input for that.
 bool file_holds(const std::filesystem::path& path, std::string_view text);
 
-/// The name of a file that write_file_atomically has not renamed yet: ".flightwatt-" and sixteen hexadecimal digits.
-bool is_temporary_name(std::string_view name);
-
 /// Makes the folder and those above it. Throws OutputError.
 void make_directories(const std::filesystem::path& path);
 
