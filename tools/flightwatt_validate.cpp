@@ -68,7 +68,7 @@ int validate_flights(const cli::StageCall& call, const ValidateArguments& argume
     cli::note_folds(call, flights.size(), folds);
     cli::ProgressBar fitting("fits");
     auto validated = leave_one_out(flights, options, fitting.callback(), folds);
-    fitting.clear();
+    fitting.hide();
     if (const auto rejected = remove_rejected(validated); !rejected.empty()) cli::note(call, rejected);
     const auto screen = call.output ? cli::Screen() : screen_of(call);
     cli::write_result(call, cli::validation_text(validated, screen));
