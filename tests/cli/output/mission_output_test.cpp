@@ -44,8 +44,10 @@ TEST(ComparisonTable, HasRareColumnsWhereAMissionHasThem) {
     cut_off.schedule = mission::ScheduleOrigin::planned;
     const auto table = table_of(ranked_missions({outcome("lasts", 2.0), cut_off, outcome("early", 0.0, 100.0)}));
     EXPECT_EQ(table.header.back(), "cut off at [s]");
+    EXPECT_EQ(table.header[2], "schedule");
     EXPECT_EQ(table.rows[1].back(), "500.0");
-    EXPECT_EQ(table.rows[1][1], "cut off (planned)");
+    EXPECT_EQ(table.rows[1][1], "cut off");
+    EXPECT_EQ(table.rows[1][2], "planned");
     EXPECT_EQ(table.rows[2].back(), "-");
 }
 
