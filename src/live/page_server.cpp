@@ -33,7 +33,7 @@ constexpr std::chrono::seconds max_request{10}, max_write{20};
 constexpr std::size_t max_request_bytes = 16'384;
 constexpr std::size_t max_unsent_bytes = 2'000'000;  // of a browser that has not read for minutes
 
-constexpr int ok = 200, forbidden = 403, not_found = 404, not_allowed = 405;
+constexpr int ok = 200, forbidden = 403, not_found = 404, not_allowed = 405, too_many = 503;
 
 std::string_view text_of(boost::beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -76,7 +76,7 @@ std::string head_of(int status, std::string_view type, std::string_view more) {
 }
 
 std::string response_of(const Request& request, int status, std::string_view type, std::string_view body) {
-    const auto* more = status == not_allowed ? "Allow: GET, HEAD\r\n" : "";
+    const auto* more = status == not_allowed ? "Allow: GET, HEAD\r\n" : status == too_many ? "Retry-After: 30\r\n" : "";
     auto text = head_of(status, type, fmt::format("Content-Length: {}\r\n{}", body.size(), more));
     if (request.method() != http::verb::head) text += body;
     return text;
@@ -85,6 +85,7 @@ std::string response_of(const Request& request, int status, std::string_view typ
 std::string_view error_text(int status) {
     if (status == forbidden) return "Use an address of this machine or localhost, and this server's own page.\n";
     if (status == not_allowed) return "Only GET and HEAD are supported.\n";
+    if (status == too_many) return "The maximum number of pages is open.\n";
     return "Only /, /state and /events exist.\n";
 }
 
@@ -161,13 +162,7 @@ class PageServer::Server {
 
   private:
     void accept(tcp::socket socket) {
-        if (sessions_.size() >= max_connections) {
-            // The oldest one that is not a listener was answered, or has sent no request.
-            const auto oldest =
-                std::ranges::find_if(sessions_, [](const auto& session) { return !session->is_listener; });
-            if (oldest == sessions_.end()) return;
-            (*oldest)->stream.close();
-        }
+        if (sessions_.size() >= 2 * max_connections) close_oldest_request();
         const auto session = sessions_.emplace_back(std::make_shared<Session>(std::move(socket)));
         asio::co_spawn(context_, serve(*session),
                        [this, session](const std::exception_ptr&) { sessions_.remove(session); });
@@ -203,6 +198,7 @@ class PageServer::Server {
         if (target == "/") return response_of(request, status, "text/html; charset=utf-8", page_);
         if (target == "/state") return response_of(request, status, "application/json", state_ + "\n");
         if (request.method() == http::verb::head) return head_of(status, "text/event-stream", "");
+        if (listeners() >= max_connections) return response_of(request, too_many, plain, error_text(too_many));
         session.is_listener = true;
         return head_of(status, "text/event-stream", "") + first_events();
     }
@@ -212,6 +208,17 @@ class PageServer::Server {
         return "retry: 1000\n\n" +
                event_of("begin", fmt::format(R"({{"run":"{}","points":[{}]}})", run_, fmt::join(points_, ","))) +
                event_of("state", state_);
+    }
+
+    std::size_t listeners() const {
+        return static_cast<std::size_t>(
+            std::ranges::count_if(sessions_, [](const auto& session) { return session->is_listener; }));
+    }
+
+    /// Oldest connection that is not a listener: it was answered, or has sent no request.
+    void close_oldest_request() {
+        const auto oldest = std::ranges::find_if(sessions_, [](const auto& session) { return !session->is_listener; });
+        if (oldest != sessions_.end()) (*oldest)->stream.close();
     }
 
     const std::string page_;

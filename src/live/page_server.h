@@ -14,7 +14,7 @@ class PageServer {
   public:
     /// Points kept for pages opened later; beyond, every second one is removed.
     static constexpr std::size_t max_points = 1800;
-    static constexpr std::size_t max_connections = 64;
+    static constexpr std::size_t max_connections = 32;
 
     /// `at`: "8080" (this machine only) or "ADDRESS:PORT". Throws UsageError for any other text, InputError where it
     /// cannot listen.
