@@ -23,14 +23,12 @@ using namespace flightwatt;
 struct BatteryArguments {
     battery::IdentificationOptions identification;
     cli::FlightArguments flights;
-    bool no_pack_links = false;
     std::optional<std::string> name;
     std::size_t folds = battery::max_battery_folds;
 };
 
 battery::IdentificationOptions identification_options(const cli::StageCall& call, const BatteryArguments& arguments) {
     auto options = arguments.identification;
-    options.link_packs = !arguments.no_pack_links;
     options.name =
         arguments.name.value_or(call.output ? std::filesystem::path(*call.output).stem().string() : "identified");
     return options;
@@ -98,9 +96,8 @@ int flightwatt::stages::battery_stage(int argc, char** argv) {
 state of charge, series resistance and one RC pair, with 95 % intervals, for missions (model =
 "thevenin"). The battery goes to the standard output as TOML; with -o it goes to the file, and its
 parameters and flights are shown: how well each flight's voltage is met, and how well the others
-predict it. What was missing from the pack when a flight began is estimated with it, and a flight that
-follows another, apparently on the same pack, is linked to it. Each flight's own resistance shows
-the pack's state of health. Flights whose current was computed from throttle are refused.)" +
+predict it. What was missing from the pack when a flight began is estimated with it. Each flight's own
+resistance shows the pack's state of health. Flights whose current was computed from throttle are refused.)" +
             std::string(cli::several_flights_text)};
     stage.json_schema = cli::document_schema<cli::BatteryOutput>;
     stage.examples = {"flightwatt battery my --capacity 2.2 -o pack.toml",
@@ -115,8 +112,6 @@ the pack's state of health. Flights whose current was computed from throttle are
     options.add("cells", arguments.identification.cells, {.value = "N", .min = 1, .max = 24},
                 "cells in series, checked against the voltage at rest; default: by the highest resting voltage");
     cli::add_folds_option(options, arguments.folds);
-    options.add("no-pack-links", arguments.no_pack_links,
-                "treat each flight's pack as another one than the flight before it", {.old_name = "no-chain"});
     options.add("name", arguments.name, {.value = "NAME"}, "the battery's name; default: FILE's");
     cli::add_flight_options(options, arguments.flights);
     return cli::run_stage(argc, argv, stage, [&](const auto& call) { return identify(call, arguments); });

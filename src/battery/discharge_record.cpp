@@ -126,8 +126,6 @@ void fill_record(const flight::SelectedTracks& tracks, const PackRecord& part, D
     mark_used(part.throttle_percent, record);
     add_rest(series, record);
     record.resolution_v = min_difference(record.voltage_v);
-    if (series.start_clock_s) record.start_clock_s = *series.start_clock_s + record.time_s.front();
-    if (!part.counter_ah.empty()) record.counter_ah = Interval{part.counter_ah.front(), part.counter_ah.back()};
     const auto temperature_c = sample_selected_track(tracks, "air_temperature_c", record.time_s);
     if (!temperature_c.empty()) record.air_temperature_c = mean(temperature_c);
 }

@@ -13,7 +13,6 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
-#include <numeric>
 #include <utility>
 
 namespace flightwatt::battery {
@@ -25,23 +24,13 @@ double highest_resting_v(std::span<const DischargeRecord> records) {
     return std::ranges::max_element(records, {}, &DischargeRecord::resting_voltage_v)->resting_voltage_v;
 }
 
-/// A circuit whose flights are chained.
-struct Chained {
+/// A circuit with its errors, and what each flight adds.
+struct FittedFlights {
     JointCircuitFit aligned;
     CircuitErrors errors;
     std::vector<std::optional<FlightResistance>> resistances;
     std::vector<std::optional<FlightCapacity>> capacities;
 };
-
-/// By the counters, along all links from where the record's pack was first flown.
-double counted_error_ah(const PackLinks& links, std::size_t record) {
-    double squares_ah2 = 0.0;
-    for (std::size_t steps = 0; steps < links.size() && links[record]; ++steps) {
-        squares_ah2 += std::pow(links[record]->error_ah, 2);
-        record = links[record]->earlier;
-    }
-    return std::sqrt(squares_ah2);
-}
 
 /// From three flights on the resistance's interval is at least that of the mean of the flights' own.
 void widen_by_flights(std::span<const std::optional<FlightResistance>> resistances, double fitted_ohm,
@@ -56,90 +45,52 @@ void widen_by_flights(std::span<const std::optional<FlightResistance>> resistanc
     interval_ohm.high = std::max(interval_ohm.high, fitted_ohm + half_ohm);
 }
 
-void add_errors(Chained& chained, bool with_capacities) {
-    chained.resistances.clear();
-    chained.capacities.clear();
-    chained.errors = circuit_errors(chained.aligned);
-    auto& errors_ah = chained.errors.initial_charge_error_ah;
-    const auto health = estimate_state_of_health(chained.aligned, with_capacities);
+FittedFlights fitted_flights(std::span<const DischargeRecord> records, int cells, bool with_capacities,
+                             std::span<const double> begin_ah) {
+    FittedFlights fitted;
+    fitted.aligned = fit_circuit_jointly(records, cells, begin_ah);
+    fitted.errors = circuit_errors(fitted.aligned);
+    auto& errors_ah = fitted.errors.initial_charge_error_ah;
+    const auto health = estimate_state_of_health(fitted.aligned, with_capacities);
     for (std::size_t f = 0; f < health.size(); ++f) {
-        chained.resistances.push_back(health[f].resistance);
-        chained.capacities.push_back(health[f].capacity);
-        errors_ah[f] = std::hypot(std::max(errors_ah[f], health[f].initial_charge_error_ah),
-                                  counted_error_ah(chained.aligned.links, f));
+        fitted.resistances.push_back(health[f].resistance);
+        fitted.capacities.push_back(health[f].capacity);
+        errors_ah[f] = std::max(errors_ah[f], health[f].initial_charge_error_ah);
     }
-    widen_by_flights(chained.resistances, chained.aligned.fit.resistance_ohm, chained.errors.resistance_ohm);
+    widen_by_flights(fitted.resistances, fitted.aligned.fit.resistance_ohm, fitted.errors.resistance_ohm);
+    return fitted;
 }
 
-/// Whether the initial charges, which fit the voltage under load, agree with the link.
-bool agrees(const Chained& free, std::size_t later, const PackLink& link) {
-    const auto& records = free.aligned.records;
-    const double apart_ah = records[later].initial_charge_ah - records[link.earlier].initial_charge_ah - link.charge_ah;
-    const double error_ah = std::hypot(free.errors.initial_charge_error_ah[later],
-                                       free.errors.initial_charge_error_ah[link.earlier], link.error_ah);
-    constexpr double z_score = 3.0;
-    constexpr double model_error_fraction = 0.05;  // of the charge shown
-    return std::abs(apart_ah) < z_score * error_ah + model_error_fraction * free.aligned.fit.knots_ah.back();
-}
-
-/// The circuit with a pack for every flight; then with chains of flights on one pack, where that agrees.
-Chained chained_fit(std::span<const DischargeRecord> records, int cells, const IdentificationOptions& options,
-                    std::span<const double> begin_ah) {
-    Chained chained;
-    chained.aligned = fit_circuit_jointly(records, cells, {}, begin_ah);
-    add_errors(chained, options.with_capacities);
-    PackLinks links(records.size());
-    for (std::size_t f = 0; options.link_packs && f < records.size(); ++f) {
-        const auto link = find_pack_link(records[f], chained.aligned.records, chained.aligned.fit);
-        if (link && agrees(chained, f, *link)) links[f] = link;
-    }
-    if (std::ranges::none_of(links, [](const auto& link) { return link.has_value(); })) return chained;
-    chained.aligned = fit_circuit_jointly(records, cells, std::move(links), begin_ah);
-    add_errors(chained, options.with_capacities);
-    return chained;
-}
-
-/// Indices of the records in the order of their clocks, or as given where one has none.
-std::vector<std::size_t> order_in_time(std::span<const AlignedRecord> records) {
-    std::vector<std::size_t> order(records.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    if (std::ranges::all_of(records, [](const auto& aligned) { return aligned.record->start_clock_s.has_value(); }))
-        std::ranges::stable_sort(order, {}, [&](std::size_t i) { return *records[i].record->start_clock_s; });
-    return order;
-}
-
-ObservedOcv shown_curve(const Chained& chained) {
-    const auto& fit = chained.aligned.fit;
-    const auto& reference = chained.aligned.records[chained.aligned.reference];
+ObservedOcv shown_curve(const FittedFlights& fitted) {
+    const auto& fit = fitted.aligned.fit;
+    const auto& reference = fitted.aligned.records[fitted.aligned.reference];
     return {fit.knots_ah,
             fit.open_circuit_v,
-            chained.errors.open_circuit_covariance_v2,
+            fitted.errors.open_circuit_covariance_v2,
             reference.initial_charge_ah,
             reference.record->resting_voltage_v,
             fit.weights.cells};
 }
 
-std::vector<IdentifiedFlight> identified_flights(const Chained& chained, std::span<const CapacityHypothesis> posterior,
-                                                 double missing_ah) {
+std::vector<IdentifiedFlight> identified_flights(const FittedFlights& fitted,
+                                                 std::span<const CapacityHypothesis> posterior, double missing_ah) {
     std::vector<IdentifiedFlight> flights;
-    for (std::size_t f = 0; f < chained.aligned.records.size(); ++f) {
-        const auto* record = chained.aligned.records[f].record;
-        const double offset_ah = chained.aligned.records[f].initial_charge_ah;
+    for (std::size_t f = 0; f < fitted.aligned.records.size(); ++f) {
+        const auto* record = fitted.aligned.records[f].record;
+        const double offset_ah = fitted.aligned.records[f].initial_charge_ah;
         IdentifiedFlight flight;
         flight.flight = record->flight;
         flight.resting_voltage_v = record->resting_voltage_v;
-        const double error_ah = chained.errors.initial_charge_error_ah[f];
+        const double error_ah = fitted.errors.initial_charge_error_ah[f];
         const auto& [low_ah, high_ah] = flight.initial_charge_interval_ah =
             depletion_interval_ah(posterior, offset_ah, error_ah);
         flight.initial_depletion_ah = std::clamp(missing_ah + offset_ah, low_ah, high_ah);
         flight.drawn_ah = record->charge_ah.back();
-        flight.link = chained.aligned.links[f];
-        if (flight.link) flight.same_pack_as = chained.aligned.records[flight.link->earlier].record->flight;
-        flight.resistance = chained.resistances[f];
-        flight.capacity = chained.capacities[f];
+        flight.resistance = fitted.resistances[f];
+        flight.capacity = fitted.capacities[f];
         flight.air_temperature_c = record->air_temperature_c;
         flight.samples = record->time_s.size();
-        const auto residual_v = rows_of(chained.aligned, f, linear_only).residual_v;
+        const auto residual_v = rows_of(fitted.aligned, f, linear_only).residual_v;
         flight.unused = flight.samples - static_cast<std::size_t>(residual_v.size());
         flight.voltage_rms_v = residual_v.norm() / std::sqrt(static_cast<double>(residual_v.size()));
         flights.push_back(std::move(flight));
@@ -150,7 +101,7 @@ std::vector<IdentifiedFlight> identified_flights(const Chained& chained, std::sp
 /// The results common to all flights, with their intermediate fits.
 struct IdentificationResult {
     BatteryIdentification identification;
-    Chained chained;
+    FittedFlights fitted;
     std::vector<CapacityHypothesis> posterior;
 };
 
@@ -160,12 +111,12 @@ IdentificationResult identify_common(std::span<const DischargeRecord> records, c
     if (records.empty()) throw NoResultError("no flight is left to identify a battery from");
     const int cells = options.cells.value_or(lipo_cells(highest_resting_v(records)));
     IdentificationResult common;
-    common.chained = chained_fit(records, cells, options, begin_ah);
-    common.posterior = capacity_posterior(shown_curve(common.chained), options.capacity_ah);
-    const auto& [identification, chained, posterior] = common;
+    common.fitted = fitted_flights(records, cells, options.with_capacities, begin_ah);
+    common.posterior = capacity_posterior(shown_curve(common.fitted), options.capacity_ah);
+    const auto& [identification, fitted, posterior] = common;
     auto& result = common.identification;
-    const auto& fit = result.fit = chained.aligned.fit;
-    const auto& errors = result.errors = chained.errors;
+    const auto& fit = result.fit = fitted.aligned.fit;
+    const auto& errors = result.errors = fitted.errors;
     result.cells = cells;
     result.cells_are_given = options.cells.has_value();
     result.capacity = estimate_capacity(fit.knots_ah.back(), posterior, options.capacity_ah);
@@ -184,7 +135,7 @@ IdentificationResult identify_common(std::span<const DischargeRecord> records, c
     battery.intervals.capacity_ah = result.capacity.interval_ah;
     battery.intervals.resistance_ohm = errors.resistance_ohm;
     battery.intervals.open_circuit_standard_error_v = extended.standard_error_v;
-    battery.intervals.resistance_scatter = resistance_scatter(chained.resistances, fit.resistance_ohm);
+    battery.intervals.resistance_scatter = resistance_scatter(fitted.resistances, fit.resistance_ohm);
     if (fit.rc_resistance_ohm > 0.0) {
         battery.intervals.rc_resistance_ohm = errors.rc_resistance_ohm;
         battery.intervals.rc_time_constant_s = errors.rc_time_constant_s;
@@ -194,13 +145,13 @@ IdentificationResult identify_common(std::span<const DischargeRecord> records, c
 
 /// The capacity that the flights indicate without a given one; nullptr where they drew too little.
 std::shared_ptr<const FlightEstimate> flight_estimate(const IdentificationResult& common) {
-    const auto& [identification, chained, posterior] = common;
+    const auto& [identification, fitted, posterior] = common;
     const auto& fit = identification.fit;
     const bool is_given = identification.capacity.origin == CapacityOrigin::given;
     auto estimate = std::make_shared<FlightEstimate>();
-    for (const auto& aligned : chained.aligned.records) estimate->flights.push_back(aligned.record->flight);
+    for (const auto& aligned : fitted.aligned.records) estimate->flights.push_back(aligned.record->flight);
     try {
-        const auto free = is_given ? capacity_posterior(shown_curve(chained), std::nullopt) : posterior;
+        const auto free = is_given ? capacity_posterior(shown_curve(fitted), std::nullopt) : posterior;
         const auto capacity = estimate_capacity(fit.knots_ah.back(), free, std::nullopt);
         estimate->capacity_ah = capacity.value_ah;
         estimate->capacity_interval_ah = capacity.interval_ah.value();
@@ -236,22 +187,6 @@ struct VoltageErrors {
     double load_v2 = 0.0;  ///< from the first load on
 };
 
-PredictedVoltage predict_from_settled(const Battery& battery, const DischargeRecord& record,
-                                      std::span<const double> settled_a, double initial_charge_ah) {
-    const auto& circuit = battery.thevenin.value();
-    PredictedVoltage predicted;
-    predicted.soc_percent.reserve(record.time_s.size());
-    predicted.voltage_v.reserve(record.time_s.size());
-    for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-        const double drawn_ah = initial_charge_ah + record.charge_ah[i];
-        const BatteryState state{units::percent_per_whole - units::percentage(drawn_ah, battery.capacity_ah),
-                                 circuit.rc_resistance_ohm * settled_a[i]};
-        predicted.soc_percent.push_back(state.soc_percent);
-        predicted.voltage_v.push_back(terminal_voltage_v(battery, state, record.current_a[i]));
-    }
-    return predicted;
-}
-
 /// Before the first load the voltage is `above_v` above the curve.
 VoltageErrors errors_of(const PredictedVoltage& predicted, const DischargeRecord& record, double above_v) {
     double rest_squares = 0.0;
@@ -277,34 +212,16 @@ double beyond_percent(const BatteryIdentification& identified, const DischargeRe
     return units::percentage(beyond, static_cast<double>(used_sample_count(record)));
 }
 
-/// The initial charge with which the record's voltage under load is met best.
-void add_best_charge(const Battery& battery, const DischargeRecord& record, LeaveOneOutCheck& check) {
-    const auto settled_a = rc_branch_current_a(record, battery.thevenin.value().rc_time_constant_s);
-    const auto error_at = [&](double tried_ah) {
-        return errors_of(predict_from_settled(battery, record, settled_a, tried_ah), record, 0.0).load_v2;
-    };
-    check.best_offset_ah = grid_minimum(error_at, 0.0, battery.capacity_ah);
-    check.best_offset_load_rms_v = std::sqrt(error_at(check.best_offset_ah));
-}
-
-LeaveOneOutCheck checked(const IdentificationResult& common, const DischargeRecord& record, bool chain) {
+LeaveOneOutCheck checked(const IdentificationResult& common, const DischargeRecord& record) {
     const auto& identified = common.identification;
     LeaveOneOutCheck check;
     check.flight = record.flight;
-    const auto& aligned = common.chained.aligned;
-    double charge_ah = resting_charge_ah(record, aligned);
-    if (const auto link = chain ? find_pack_link(record, aligned.records, aligned.fit) : std::nullopt) {
-        const auto& earlier = aligned.records[link->earlier];
-        check.pack_of = earlier.record->flight;
-        charge_ah = earlier.initial_charge_ah + link->charge_ah;
-    }
-    check.initial_charge_ah = identified.curve_start_depletion_ah + charge_ah;
+    check.initial_charge_ah = identified.curve_start_depletion_ah + resting_charge_ah(record, common.fitted.aligned);
     const auto errors = errors_of(predict_voltage(identified.battery, record, check.initial_charge_ah), record,
                                   identified.fit.common_rest_offset_v);
     check.voltage_rms_v = std::sqrt(errors.all_v2);
     check.load_rms_v = std::sqrt(errors.load_v2);
     check.extrapolated_percent = beyond_percent(identified, record, check.initial_charge_ah);
-    add_best_charge(identified.battery, record, check);
     return check;
 }
 
@@ -313,19 +230,27 @@ LeaveOneOutCheck checked(const IdentificationResult& common, const DischargeReco
 BatteryIdentification identify_battery(std::span<const DischargeRecord> records, const IdentificationOptions& options) {
     if (options.cells && !records.empty()) require_possible_cells(highest_resting_v(records), *options.cells);
     const auto common = identify_common(records, options);
-    const auto& [identification, chained, posterior] = common;
+    const auto& [identification, fitted, posterior] = common;
     auto result = identification;
-    result.flights = identified_flights(chained, posterior, result.curve_start_depletion_ah);
+    result.flights = identified_flights(fitted, posterior, result.curve_start_depletion_ah);
     result.battery.flight_estimate = flight_estimate(common);
-    std::vector<std::optional<FlightResistance>> in_order;
-    for (const auto f : order_in_time(chained.aligned.records)) in_order.push_back(chained.resistances[f]);
-    result.trend = resistance_trend(in_order);
     return result;
 }
 
 PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& record, double initial_charge_ah) {
-    const auto settled_a = rc_branch_current_a(record, battery.thevenin.value().rc_time_constant_s);
-    return predict_from_settled(battery, record, settled_a, initial_charge_ah);
+    const auto& circuit = battery.thevenin.value();
+    const auto settled_a = rc_branch_current_a(record, circuit.rc_time_constant_s);
+    PredictedVoltage predicted;
+    predicted.soc_percent.reserve(record.time_s.size());
+    predicted.voltage_v.reserve(record.time_s.size());
+    for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+        const double drawn_ah = initial_charge_ah + record.charge_ah[i];
+        const BatteryState state{units::percent_per_whole - units::percentage(drawn_ah, battery.capacity_ah),
+                                 circuit.rc_resistance_ohm * settled_a[i]};
+        predicted.soc_percent.push_back(state.soc_percent);
+        predicted.voltage_v.push_back(terminal_voltage_v(battery, state, record.current_a[i]));
+    }
+    return predicted;
 }
 
 std::vector<LeaveOneOutCheck> leave_one_out(std::span<const DischargeRecord> records,
@@ -334,7 +259,7 @@ std::vector<LeaveOneOutCheck> leave_one_out(std::span<const DischargeRecord> rec
                                             std::size_t max_folds) {
     if (records.size() < 2) return {};
     const auto folds = make_folds(records.size(), std::max<std::size_t>(2, max_folds));
-    const auto all = identify_common(records, options).chained.aligned;
+    const auto all = identify_common(records, options).fitted.aligned;
     auto of_others = options;
     of_others.cells = all.fit.weights.cells;
     std::vector<LeaveOneOutCheck> checks(records.size());
@@ -349,7 +274,7 @@ std::vector<LeaveOneOutCheck> leave_one_out(std::span<const DischargeRecord> rec
             begin_ah.push_back(all.records[f].initial_charge_ah);
         }
         const auto common = identify_common(others, of_others, begin_ah);
-        for (const auto k : folds[fold]) checks[k] = checked(common, records[k], options.link_packs);
+        for (const auto k : folds[fold]) checks[k] = checked(common, records[k]);
         if (!progress) return;
         const std::lock_guard lock(mutex);
         progress(++done, folds.size());

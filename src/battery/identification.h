@@ -16,11 +16,10 @@ struct IdentificationOptions {
     std::optional<int> cells;  ///< default: from the highest resting voltage
     std::string name = "identified";
     bool with_capacities = false;  ///< of each flight too, in the same least squares as its resistance
-    bool link_packs = true;        ///< recognise flights on the pack of the flight before them (find_pack_link)
 };
 
-/// Identifies the Thévenin circuit of a battery from flights, with the charge missing at the start of each and the
-/// chain of flights on one pack (aligned_fit.h). Capacity, and the charge missing from the fullest flight, come from
+/// Identifies the Thévenin circuit of a battery from flights, with the charge missing at the start of each
+/// (aligned_fit.h). Capacity, and the charge missing from the fullest flight, come from
 /// charts (chart_match.h); the flights' own estimate of the capacity is added even if another is given. Throws
 /// NoResultError where the flights determine no such circuit, and as estimate_capacity and require_possible_cells.
 BatteryIdentification identify_battery(std::span<const DischargeRecord> records, const IdentificationOptions& options);
@@ -38,8 +37,7 @@ PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& 
 inline constexpr std::size_t max_battery_folds = 20;
 
 /// Identifies the battery without each record in turn (or each of `max_folds` groups) and predicts that record from its
-/// current, and its pack or resting voltage before take-off; and with its best initial charge, which shows the error of
-/// the predicted one. Empty for a single record. `progress` gets the numbers of done and of all folds.
+/// current and its resting voltage before take-off. Empty for a single record. `progress` gets the numbers of done and of all folds.
 std::vector<LeaveOneOutCheck> leave_one_out(std::span<const DischargeRecord> records,
                                             const IdentificationOptions& options,
                                             const std::function<void(std::size_t, std::size_t)>& progress = {},

@@ -68,17 +68,6 @@ struct CircuitErrors {
     std::vector<double> open_circuit_standard_error_v;
     Eigen::MatrixXd open_circuit_covariance_v2;   ///< of the knots
     std::vector<double> initial_charge_error_ah;  ///< of each record against the reference; standard error
-    std::size_t blocks = 0;                       ///< of time, in the jackknife
-    double block_s = 0.0;                         ///< their mean length
-};
-
-/// Evidence that a record is of the pack of an earlier one.
-struct PackLink {
-    std::size_t earlier = 0;
-    double charge_ah = 0.0;          ///< drawn by the earlier one
-    double error_ah = 0.0;           ///< of that: 2 % and 5 mAh, of the counter and the time after the log
-    double pause_s = 0.0;            ///< from the end of the earlier record
-    bool counter_continues = false;  ///< the autopilot's counter was not reset: the pack stayed in
 };
 
 /// The series resistance of one flight.
@@ -98,16 +87,6 @@ double resistance_scatter_ohm(std::span<const std::optional<FlightResistance>> r
 std::optional<ResistanceScatter> resistance_scatter(std::span<const std::optional<FlightResistance>> resistances,
                                                     double fitted_ohm);
 
-/// Trend of a pack's resistance over its flights: a straight line by least squares, with Student's t of the residuals.
-struct ResistanceTrend {
-    std::size_t flights = 0;
-    double ohm_per_flight = 0.0;
-    Interval interval_ohm_a_flight;  ///< 95 %
-};
-
-/// In the order given; std::nullopt for fewer than three resistances.
-std::optional<ResistanceTrend> resistance_trend(std::span<const std::optional<FlightResistance>> in_order);
-
 /// The charge of one flight for the same fall of the open-circuit voltage, relative to the mean flight.
 struct FlightCapacity {
     double ratio = 1.0;       ///< of the pack's capacity in this flight to that of the mean flight
@@ -121,8 +100,6 @@ struct IdentifiedFlight {
     double initial_depletion_ah = 0.0;  ///< missing from the full pack when it began
     Interval initial_charge_interval_ah;
     double drawn_ah = 0.0;
-    std::string same_pack_as;      ///< the earlier flight on the same pack; empty: none is known
-    std::optional<PackLink> link;  ///< its evidence; `earlier` is an index of the flights
     std::optional<FlightResistance> resistance;
     std::optional<FlightCapacity> capacity;  ///< with_capacities, where the flight determines it
     std::optional<double> air_temperature_c;
@@ -134,13 +111,10 @@ struct IdentifiedFlight {
 /// Prediction of a flight's voltage by the others. Under load is from the first load on.
 struct LeaveOneOutCheck {
     std::string flight;
-    double voltage_rms_v = 0.0;           ///< of all samples, predicted before take-off
-    double load_rms_v = 0.0;              ///< of those under load
-    double initial_charge_ah = 0.0;       ///< missing from the full pack, by the others and its rest before take-off
-    std::string pack_of;                  ///< by which flight's pack; empty: by its resting voltage
-    double best_offset_load_rms_v = 0.0;  ///< with the initial charge that fits its voltage best
-    double best_offset_ah = 0.0;          ///< that initial charge
-    double extrapolated_percent = 0.0;    ///< of its samples: with more charge drawn than in any other flight
+    double voltage_rms_v = 0.0;         ///< of all samples, predicted before take-off
+    double load_rms_v = 0.0;            ///< of those under load
+    double initial_charge_ah = 0.0;     ///< missing from the full pack, by the others and its rest before take-off
+    double extrapolated_percent = 0.0;  ///< of its samples: with more charge drawn than in any other flight
 };
 
 struct BatteryIdentification {
@@ -155,7 +129,6 @@ struct BatteryIdentification {
     double observed_min_soc_percent = 0.0;    ///< state of charge; below, the curve is the chart's
     double observed_max_soc_percent = 100.0;  ///< above, likewise
     std::vector<IdentifiedFlight> flights;
-    std::optional<ResistanceTrend> trend;  ///< over the flights in the order of their clocks, else as given
 };
 
 /// [V] of the fullest flight.

@@ -91,19 +91,12 @@ struct PhaseSpan {
     double duration_s() const { return to_millisecond(end.time_s - start.time_s); }
 };
 
-/// A height above the ground that was held, after which the aircraft did not return to a greater one.
-struct HeldAltitude : TimeInterval {
-    double height_m = 0.0;
-    bool of_landing = false;  ///< held too briefly for work: a step of the landing
-};
-
 /// From lift-off to touchdown.
 struct Sortie {
     std::size_t number = 1;         ///< from 1, in the log
     std::vector<PhaseSpan> phases;  ///< in order; incomplete if the log begins or ends in the air
     double ground_altitude_m = 0.0;
-    double height_m = 0.0;           ///< median of the upper half of the height above the ground
-    std::vector<HeldAltitude> held;  ///< in order; landing begins at the end of the last one not of_landing
+    double height_m = 0.0;  ///< median of the upper half of the height above the ground
 
     double start_s() const { return phases.front().start.time_s; }
     double end_s() const { return phases.back().end.time_s; }

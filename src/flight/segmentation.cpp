@@ -55,7 +55,6 @@ Sortie make_sortie(const FlightCandidate& flown) {
     Sortie sortie;
     sortie.ground_altitude_m = flown.heights.ground_m;
     sortie.height_m = flown.heights.cruise_height_m;
-    sortie.held = edges.held;
     const auto add = [&](Phase phase, double start_s, double end_s, bool complete) {
         if (end_s <= start_s) return;
         sortie.phases.push_back(

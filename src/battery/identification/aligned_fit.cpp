@@ -3,12 +3,9 @@
 #include "base/error.h"
 #include "base/piecewise_linear.h"
 #include "base/statistics.h"
-#include "base/units.h"
-#include "flight/flight_identity.h"
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -25,36 +22,6 @@ constexpr double min_segment_samples = 20.0;
 constexpr double straight_cell_v = 0.01;  // a cell; a curve with smaller deviations has one segment
 constexpr int time_constants_tried = 12;
 constexpr double max_record_fraction = 0.25;  // a slower RC pair resembles the open-circuit voltage
-
-constexpr double max_pause_s = 6.0 * units::seconds_per_hour;
-constexpr double counter_error = 0.02;
-constexpr double min_error_ah = 0.005;
-constexpr double counted_ah = 0.01;         // a counter that begins above was not reset
-constexpr double unreadable_cell_v = 0.01;  // a cell; a smaller fall shows nothing
-constexpr double max_z_score = 2.5;         // of a resting voltage
-
-/// From the last sample of one record to the first of another; negative if they overlap.
-std::optional<double> pause_s(const DischargeRecord& earlier, const DischargeRecord& later) {
-    const double length_s = earlier.time_s.back() - earlier.time_s.front();
-    if (earlier.start_clock_s && later.start_clock_s) return *later.start_clock_s - *earlier.start_clock_s - length_s;
-    const auto from = flight::start_in_name(earlier.flight);
-    const auto to = flight::start_in_name(later.flight);
-    if (!from || !to) return std::nullopt;
-    const auto seconds = [](auto time) { return std::chrono::duration<double>(time.time_since_epoch()).count(); };
-    return seconds(*to) + later.time_s.front() - seconds(*from) - earlier.time_s.back();
-}
-
-bool is_fallen_as_drawn(const DischargeRecord& later, const AlignedRecord& earlier, const CircuitFit& fit) {
-    const double from_ah = earlier.initial_charge_ah;
-    const double to_ah = from_ah + earlier.record->charge_ah.back();
-    const double drawn_v = interpolate_clamped(fit.knots_ah, fit.open_circuit_v, from_ah) -
-                           interpolate_clamped(fit.knots_ah, fit.open_circuit_v, to_ah);
-    const double fallen_v = earlier.record->resting_voltage_v - later.resting_voltage_v;
-    const double readable_v = std::max(unreadable_cell_v * fit.weights.cells, later.resolution_v);
-    const double reach_v =
-        max_z_score * std::hypot(charged_rest_sd_v * fit.weights.cells, lower_rest_fraction * drawn_v);
-    return drawn_v > 2.0 * readable_v && fallen_v > drawn_v / 2.0 && fallen_v < drawn_v + reach_v;
-}
 
 /// Whether all knots are near the straight line between the first and the last one.
 bool is_straight(const CircuitFit& fit) {
@@ -97,6 +64,25 @@ double effective_error_v(const JointCircuitFit& joint) {
     const double r = squares > 0.0 ? std::clamp(products / squares, 0.0, max_correlation) : 0.0;
     constexpr double min_v = 1e-6;
     return std::max(min_v, std::sqrt(squares / count * (1.0 + r) / (1.0 - r)));
+}
+
+/// The minimum of a function between two values: by a grid, then by Brent's method around its lowest point.
+template <typename Function>
+double grid_minimum(const Function& function, double low, double high) {
+    constexpr int points = 50;
+    const double step = (high - low) / points;
+    double at = low;
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i <= points; ++i) {
+        const double value = function(low + step * i);
+        if (value >= least) continue;
+        least = value;
+        at = low + step * i;
+    }
+    constexpr int half_the_digits = std::numeric_limits<double>::digits / 2;
+    const auto [minimum_at, value] = boost::math::tools::brent_find_minima(function, std::max(low, at - step),
+                                                                           std::min(high, at + step), half_the_digits);
+    return value < least ? minimum_at : at;
 }
 
 /// The initial charge with which the last record's voltage under load fits the curve best.
@@ -157,21 +143,14 @@ std::vector<std::size_t> fullest_first(std::span<const DischargeRecord> records)
 }
 
 /// Initial charges of records that are aligned one by one, the fullest first.
-std::vector<double> aligned_one_by_one(std::span<const DischargeRecord> records, const FitWeights& weights,
-                                       const PackLinks& links) {
+std::vector<double> aligned_one_by_one(std::span<const DischargeRecord> records, const FitWeights& weights) {
     JointCircuitFit growing;
     growing.fit.weights = weights;
-    growing.links.resize(records.size());
     std::vector<double> initial_ah(records.size(), 0.0);
     for (const auto at : fullest_first(records)) {
-        const auto& link = links[at];
         auto& aligned = growing.records.emplace_back(AlignedRecord{&records[at], 0.0, 0.0, 0.0, 0.0});
         aligned.resistance_ohm = growing.fit.resistance_ohm;
-        if (link && records[link->earlier].resting_voltage_v >= records[at].resting_voltage_v) {
-            aligned.initial_charge_ah = initial_ah[link->earlier] + link->charge_ah;
-        } else if (growing.records.size() > 1) {
-            aligned.initial_charge_ah = best_initial_charge_ah(growing);
-        }
+        if (growing.records.size() > 1) aligned.initial_charge_ah = best_initial_charge_ah(growing);
         initial_ah[at] = aligned.initial_charge_ah;
         place_knots(growing, max_segments);
         // The time constant is searched for again at every doubling; in between it is known well enough.
@@ -193,60 +172,16 @@ void begin_at_zero(JointCircuitFit& joint) {
 
 }  // namespace
 
-double grid_minimum(const std::function<double(double)>& function, double low, double high) {
-    constexpr int points = 50;
-    const double step = (high - low) / points;
-    double at = low;
-    double least = std::numeric_limits<double>::infinity();
-    for (int i = 0; i <= points; ++i) {
-        const double value = function(low + step * i);
-        if (value >= least) continue;
-        least = value;
-        at = low + step * i;
-    }
-    constexpr int half_the_digits = std::numeric_limits<double>::digits / 2;
-    const auto [minimum_at, value] = boost::math::tools::brent_find_minima(function, std::max(low, at - step),
-                                                                           std::min(high, at + step), half_the_digits);
-    return value < least ? minimum_at : at;
-}
-
-std::optional<PackLink> find_pack_link(const DischargeRecord& later, std::span<const AlignedRecord> known,
-                                       const CircuitFit& fit) {
-    if (later.is_other_pack) return std::nullopt;
-    PackLink link;
-    link.pause_s = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < known.size(); ++i) {
-        if (known[i].record == &later) continue;
-        const auto pause = pause_s(*known[i].record, later);
-        if (!pause || *pause < 0.0 || *pause >= link.pause_s) continue;
-        link.pause_s = *pause;
-        link.earlier = i;
-    }
-    if (!(link.pause_s <= max_pause_s)) return std::nullopt;
-    const auto& earlier = known[link.earlier];
-    if (earlier.record->counter_ah && later.counter_ah && later.counter_ah->low > counted_ah) {
-        const double apart_ah = later.counter_ah->low - earlier.record->counter_ah->high;
-        if (std::abs(apart_ah) > 2.0 * counted_ah) return std::nullopt;
-        link.counter_continues = true;
-    }
-    if (!is_fallen_as_drawn(later, earlier, fit)) return std::nullopt;
-    link.charge_ah = earlier.record->charge_ah.back();
-    link.error_ah = std::hypot(min_error_ah, counter_error * link.charge_ah);
-    return link;
-}
-
-JointCircuitFit fit_circuit_jointly(std::span<const DischargeRecord> records, int cells, PackLinks links,
+JointCircuitFit fit_circuit_jointly(std::span<const DischargeRecord> records, int cells,
                                     std::span<const double> begin_ah) {
-    links.resize(records.size());
     JointCircuitFit rough;
     rough.reference = fullest_first(records).front();
     rough.fit.weights.cells = cells;
     rough.fit.weights.fullest_rest_v = records[rough.reference].resting_voltage_v;
     std::vector<double> initial_ah(begin_ah.begin(), begin_ah.end());
-    if (begin_ah.empty()) initial_ah = aligned_one_by_one(records, rough.fit.weights, links);
+    if (begin_ah.empty()) initial_ah = aligned_one_by_one(records, rough.fit.weights);
     for (std::size_t r = 0; r < records.size(); ++r)
         rough.records.push_back({&records[r], initial_ah[r], 0.0, 0.0, 0.0});
-    rough.links = std::move(links);
     place_knots(rough, max_segments);
     search_time_constant(rough);
     rough.fit.weights.sample_error_v = effective_error_v(rough);

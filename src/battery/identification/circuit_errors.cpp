@@ -41,10 +41,6 @@ CircuitErrors circuit_errors(const JointCircuitFit& joint) {
     const Eigen::VectorXd half_width = t * found.standard_error + moved_by_finer_curve(joint, places).cwiseAbs();
     const auto around = [](double value, double half) { return Interval{std::max(0.0, value - half), value + half}; };
     CircuitErrors errors;
-    errors.blocks = problem.blocks.size();
-    for (const auto& aligned : records)
-        errors.block_s += aligned.record->time_s.back() - aligned.record->time_s.front();
-    errors.block_s /= static_cast<double>(errors.blocks);
     errors.resistance_ohm = around(fit.resistance_ohm, half_width[places.resistance]);
     if (fit.rc_resistance_ohm > 0.0) {
         errors.rc_resistance_ohm = around(fit.rc_resistance_ohm, half_width[places.rc_resistance]);

@@ -19,7 +19,6 @@ constexpr int max_halvings = 6;
 constexpr double min_block_s = 15.0;
 constexpr double blocks_of_each = 12.0;
 constexpr double more_blocks_of_one = 18.0;
-constexpr double tied_ah = 0.001;  // the counter has precedence over the voltage, which relaxes slower than the circuit
 // Weak priors: relative to the common resistance, and of a capacity's logarithm.
 constexpr double own_resistance_sd_fraction = 1.0;
 constexpr double log_capacity_sd = 0.3;
@@ -111,11 +110,6 @@ void add_records_prior(const JointCircuitFit& joint, const FreeParameters& free,
         const double rest_sd_v = std::hypot(charged_rest_sd_v * fit.weights.cells, lower_rest_fraction * lower_v);
         add_prior(problem, {{own.rest, 1.0}, {places.common_rest, -1.0}},
                   fit.common_rest_offset_v - aligned.rest_offset_v, rest_sd_v / error_v);
-        if (const auto& link = joint.links[r]) {
-            const double from_ah = joint.records[link->earlier].initial_charge_ah;
-            add_prior(problem, {{own.initial_charge, 1.0}, {places.own[link->earlier].initial_charge, -1.0}},
-                      from_ah + link->charge_ah - aligned.initial_charge_ah, tied_ah / error_v);
-        }
         if (free.own_resistances) {
             add_prior(problem, {{own.resistance, 1.0}}, fit.resistance_ohm - aligned.resistance_ohm,
                       own_resistance_sd_fraction * fit.resistance_ohm / error_v);

@@ -21,13 +21,9 @@ struct AlignedRecord {
     double log_capacity = 0.0;       ///< against the mean record; 0 but for the state of health
 };
 
-/// One a record: the earlier one whose pack it was flown on, if that is known.
-using PackLinks = std::vector<std::optional<PackLink>>;
-
 /// A circuit, and its records with their own parameters.
 struct JointCircuitFit {
     std::vector<AlignedRecord> records;
-    PackLinks links;
     CircuitFit fit;
     std::size_t reference = 0;       ///< the record with the highest resting voltage, with which others are aligned
     Interval time_constants_s = {};  ///< range of an RC pair's that records can determine

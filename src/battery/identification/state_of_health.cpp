@@ -51,29 +51,6 @@ std::optional<ResistanceScatter> resistance_scatter(std::span<const std::optiona
     return ResistanceScatter{resistance_scatter_ohm(resistances, fitted_ohm), flights};
 }
 
-std::optional<ResistanceTrend> resistance_trend(std::span<const std::optional<FlightResistance>> in_order) {
-    std::vector<double> number;
-    std::vector<double> value_ohm;
-    for (std::size_t i = 0; i < in_order.size(); ++i) {
-        if (!in_order[i]) continue;
-        number.push_back(static_cast<double>(i));
-        value_ohm.push_back(in_order[i]->value_ohm);
-    }
-    if (number.size() < 3) return std::nullopt;
-    const auto as_array = [](const std::vector<double>& values) -> Eigen::ArrayXd {
-        return Eigen::Map<const Eigen::ArrayXd>(values.data(), std::ssize(values)) - mean(values);
-    };
-    const auto x = as_array(number);
-    const auto y = as_array(value_ohm);
-    ResistanceTrend trend{number.size(), (x * y).sum() / x.square().sum(), {}};
-    const double degrees_of_freedom = static_cast<double>(number.size()) - 2.0;
-    const double residual_ohm2 = (y - trend.ohm_per_flight * x).square().sum();
-    const double half =
-        student_t_half_width(degrees_of_freedom) * std::sqrt(residual_ohm2 / degrees_of_freedom / x.square().sum());
-    trend.interval_ohm_a_flight = {trend.ohm_per_flight - half, trend.ohm_per_flight + half};
-    return trend;
-}
-
 std::vector<FlightHealth> estimate_state_of_health(JointCircuitFit joint, bool with_capacity) {
     const FreeParameters free{true, false, true, with_capacity && joint.records.size() > 1};
     const auto problem = least_squares(joint, free);

@@ -10,25 +10,10 @@
 #include <fmt/format.h>
 
 namespace flightwatt::battery {
-namespace {
-
-std::optional<std::string> optional_text(const std::string& text) {
-    return text.empty() ? std::nullopt : std::optional(text);
-}
-
-}  // namespace
-
 Fields<ResistanceScatter> record_fields(const ResistanceScatter*) {
     using R = ResistanceScatter;
     return {field("sd_ohm", &R::sd_ohm, "standard deviation between flights"),
             field("flights", &R::flights, "flights with a resistance of their own")};
-}
-
-Fields<ResistanceTrend> record_fields(const ResistanceTrend*) {
-    using R = ResistanceTrend;
-    return {field("flights", &R::flights, "flights with a resistance of their own"),
-            field("ohm_per_flight", &R::ohm_per_flight, "change per flight, in the order of the clocks"),
-            field("ohm_per_flight_interval_95", &R::interval_ohm_a_flight, "its interval")};
 }
 
 Fields<IdentifiedFlight> record_fields(const IdentifiedFlight*) {
@@ -44,10 +29,7 @@ Fields<IdentifiedFlight> record_fields(const IdentifiedFlight*) {
             field("samples", &R::samples, "samples of the fit", column{}),
             field("unused_samples", &R::unused, "samples with a current that is not the motor's", column{"unused"}),
             field("voltage_rms_mv", at(&R::voltage_rms_v, units::mv_from_v), "residual", column{"fitted mV"}),
-            field("air_temperature_c", &R::air_temperature_c, "mean air temperature", column_if_any("air C")),
-            field("pack_of", at(&R::same_pack_as, optional_text), "earlier flight on the same pack",
-                  column_if_any("pack of")),
-            field("pause_s", at(&R::link, &PackLink::pause_s), "from the end of that flight")};
+            field("air_temperature_c", &R::air_temperature_c, "mean air temperature", column_if_any("air C"))};
 }
 
 Fields<LeaveOneOutCheck> record_fields(const LeaveOneOutCheck*) {
@@ -55,13 +37,9 @@ Fields<LeaveOneOutCheck> record_fields(const LeaveOneOutCheck*) {
     return {
         field("flight", &R::flight, "flight that is predicted by the others"),
         field("initial_depletion_ah", &R::initial_charge_ah, "missing charge as known before take-off"),
-        field("pack_of", at(&R::pack_of, optional_text), "flight that determines it; null: the resting voltage"),
         field("voltage_rms_mv", at(&R::voltage_rms_v, units::mv_from_v), "error", column_if_any("leave-one-out mV")),
         field("load_voltage_rms_mv", at(&R::load_rms_v, units::mv_from_v), "error from the first load on",
               column_if_any("under load mV")),
-        field("best_offset_ah", &R::best_offset_ah, "missing charge that fits the voltage under load best"),
-        field("best_offset_load_voltage_rms_mv", at(&R::best_offset_load_rms_v, units::mv_from_v),
-              "error from the first load on with that charge", column_if_any("best offset mV")),
         field("extrapolated_percent", &R::extrapolated_percent, "part of its charge that no other flight reached",
               column_if_any("extrapolated %", ".0f"))};
 }
@@ -106,8 +84,7 @@ Fields<BatteryIdentification> record_fields(const BatteryIdentification*) {
                        "known_down_to_ah", [](const R& r) { return r.fit.knots_ah.back(); },
                        "the same as charge from the beginning of the curve")}),
         field("voltage_rms_mv", at(&R::fit, &Fit::rms_v, units::mv_from_v), "residual of all flights"),
-        field("flights", &R::flights, "flights of the fit"),
-        field("resistance_trend", &R::trend, "null: fewer than three flights")};
+        field("flights", &R::flights, "flights of the fit")};
 }
 
 }  // namespace flightwatt::battery
@@ -138,24 +115,6 @@ std::string describe_given_capacity(const battery::Battery& pack) {
 /// Warning of an implausible number of cells, or empty.
 std::string cells_warning(const battery::BatteryIdentification& identified) {
     return battery::cells_warning(highest_resting_v(identified), identified.cells, identified.cells_are_given);
-}
-
-/// Why a flight is assigned to the pack of another one, or empty.
-std::string describe_link(const battery::IdentifiedFlight& flight) {
-    if (!flight.link) return "";
-    return fmt::format(
-        "{}: assumed to be on the pack of {}, as it begins {:.0f} min after that one ends, {}rests lower by the charge "
-        "drawn, and its voltage under load agrees",
-        flight.flight, flight.same_pack_as, units::minute_from_second(flight.link->pause_s),
-        flight.link->counter_continues ? "its charge counter continues, it " : "");
-}
-
-/// "series resistance over 6 flights: +0.40 mohm per flight, ...".
-std::string describe(const battery::ResistanceTrend& trend) {
-    const auto& [low, high] = trend.interval_ohm_a_flight;
-    return fmt::format("series resistance over {} flights: {:+.2f} mohm a flight, {:+.2f} to {:+.2f} in 95 %{}",
-                       trend.flights, units::mohm_from_ohm(trend.ohm_per_flight), units::mohm_from_ohm(low),
-                       units::mohm_from_ohm(high), low <= 0.0 && high >= 0.0 ? ": no significant trend" : "");
 }
 
 /// Limits of the measured open-circuit curve, a sentence each for below and above.
@@ -229,13 +188,10 @@ std::vector<BatteryRemark> battery_remarks(const battery::BatteryIdentification&
     const auto note = [&](std::string text) { remarks.push_back({std::move(text)}); };
     warn(cells_warning(identified));
     for (auto& limit : curve_limits(identified)) note(std::move(limit));
-    for (const auto& flight : identified.flights)
-        if (flight.link) note(describe_link(flight) + "; --no-pack-links treats each flight's pack as another one");
     if (!identified.battery.intervals.resistance_scatter)
         note(
             "how the series resistance differs between flights is not known, as fewer than two flights have one of "
             "their own: missions draw it by its interval alone");
-    if (identified.trend) note(describe(*identified.trend));
     if (identified.capacity.origin == battery::CapacityOrigin::given) {
         auto warning = capacity_warning(identified.battery);
         if (warning.empty()) note(describe_given_capacity(identified.battery));
@@ -259,9 +215,7 @@ std::string provenance(const battery::BatteryIdentification& identified) {
     text += fmt::format(".\n# {}; {} cells.\n", describe(identified.capacity), identified.cells);
     for (const auto& warning : {capacity_warning(identified.battery), cells_warning(identified)})
         if (!warning.empty()) text += fmt::format("# Warning: {}.\n", warning);
-    text += fmt::format("# Voltages are met within {:.1f} mV RMS; intervals rest on {} blocks of {:.0f} s.\n",
-                        units::mv_from_v(identified.fit.rms_v), identified.errors.blocks, identified.errors.block_s);
-    return text;
+    return text + fmt::format("# Voltages are met within {:.1f} mV RMS.\n", units::mv_from_v(identified.fit.rms_v));
 }
 
 }  // namespace flightwatt::cli

@@ -20,7 +20,7 @@ struct BatteryRemark {
     bool is_warning = false;
 };
 
-/// What limits the identification: capacity, cells, curve, RC pair; packs of several flights, and the trend.
+/// What limits the identification: capacity, cells, curve and RC pair.
 std::vector<BatteryRemark> battery_remarks(const battery::BatteryIdentification& identified);
 
 /// Capacity, voltage and resistances of a battery file with their 95 % intervals.

@@ -1,6 +1,6 @@
 #include "cli/output/segment_output.h"
 
-#include "base/duration_text.h"
+#include "base/units.h"
 #include "batch/flight_record.h"
 #include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
@@ -12,35 +12,6 @@
 #include <fmt/format.h>
 
 namespace flightwatt::flight {
-
-Fields<EdgeEvent> record_fields(const EdgeEvent*) {
-    using R = EdgeEvent;
-    return {field("what", &R::what, "event"), field("time_s", &R::time_s, "time of the event"),
-            field("after_s", &R::after_s, "after the edge")};
-}
-
-Fields<EdgeReport> record_fields(const EdgeReport*) {
-    using R = EdgeReport;
-    return {field("edge", &R::kind, "name of the edge"),
-            field(
-                "time_s", [](const R& edge) { return edge.edge.time_s; }, "time of the edge"),
-            field(
-                "altitude_m", [](const R& edge) { return edge.edge.altitude_m; }, "altitude"),
-            field("height_percent", &R::height_percent, "of the flight's height"),
-            field("matching_events", &R::matching_events, "autopilot events that mark the edge"),
-            field("other_events", &R::other_events, "other autopilot events near it"),
-            field("agreement", &R::agreement, "agreement with the events")};
-}
-
-Fields<HeldAltitude> record_fields(const HeldAltitude*) {
-    using R = HeldAltitude;
-    return {field("height_m", &R::height_m, "above the ground"),
-            field(
-                "start_s", [](const R& r) { return r.start_s; }, "start"),
-            field(
-                "end_s", [](const R& r) { return r.end_s; }, "end"),
-            field("of_landing", &R::of_landing, "a step of the landing")};
-}
 
 Fields<GroundEvent> record_fields(const GroundEvent*) {
     using R = GroundEvent;
@@ -97,11 +68,10 @@ Fields<PhaseSpanOutput> record_fields(const PhaseSpanOutput*) {
                           field("complete", at(&R::span, &P::complete), "false: the log begins or ends in the phase"));
 }
 
-/// A sortie with its phases and edges.
+/// A sortie with its phases.
 struct SortieOutput {
     flight::Sortie sortie;
     std::vector<PhaseSpanOutput> phases;
-    std::vector<flight::EdgeReport> edges;
 };
 
 Fields<SortieOutput> record_fields(const SortieOutput*) {
@@ -109,16 +79,14 @@ Fields<SortieOutput> record_fields(const SortieOutput*) {
     using S = flight::Sortie;
     return {field("ground_altitude_m", at(&R::sortie, &S::ground_altitude_m), "altitude of the ground"),
             field("height_m", at(&R::sortie, &S::height_m), "height of the cruise above the ground"),
-            field("held_heights", at(&R::sortie, &S::held), "heights that were held"),
-            field("phases", &R::phases, "phases"), field("edges", &R::edges, "edges of the phases")};
+            field("phases", &R::phases, "phases")};
 }
 
 std::vector<SortieOutput> sortie_outputs(const SegmentedFlight& flight) {
-    const flight::SelectedTracks tracks(*flight.series);
     const flight::PowerStatistics power(*flight.series);
     std::vector<SortieOutput> all;
     for (const auto& sortie : flight.phases->sorties) {
-        auto& output = all.emplace_back(SortieOutput{sortie, {}, compare_edges_with_events(tracks, sortie)});
+        auto& output = all.emplace_back(SortieOutput{sortie, {}});
         for (const auto& span : sortie.phases)
             output.phases.push_back({span, power.has_power()
                                                ? std::optional(power.between(span.start.time_s, span.end.time_s))
@@ -127,29 +95,7 @@ std::vector<SortieOutput> sortie_outputs(const SegmentedFlight& flight) {
     return all;
 }
 
-/// The heights that were held, a line each.
-std::string heights_text(const flight::Sortie& sortie) {
-    std::string text;
-    for (const auto& hold : sortie.held) {
-        text += fmt::format("sortie {}: held {:.1f} m from {:.1f} to {:.1f} s ({}): {}\n", sortie.number, hold.height_m,
-                            hold.start_s, hold.end_s, duration_text(hold.duration_s()),
-                            hold.of_landing ? "a step of the landing" : "cruise");
-    }
-    return text;
-}
-
 }  // namespace
-
-std::string events_text(const flight::EdgeReport& edge) {
-    std::string text;
-    const auto add = [&](const flight::EdgeEvent& event, const char* how) {
-        text += fmt::format("{}{}{} at {:.1f} s ({:+.1f} s)", text.empty() ? "" : "; ", how, event.what, event.time_s,
-                            event.after_s);
-    };
-    for (const auto& event : edge.matching_events) add(event, "");
-    for (const auto& event : edge.other_events) add(event, "nearby: ");
-    return text.empty() ? "-" : text;
-}
 
 std::string describe_flight(const flight::FlightSeries& series, const flight::FlightPhases& phases) {
     const auto sorties = phases.sorties.size();
@@ -160,15 +106,27 @@ std::string describe_flight(const flight::FlightSeries& series, const flight::Fl
 
 TextTable edges_table(const flight::FlightSeries& series, const flight::FlightPhases& phases) {
     TextTable table{
-        {"sortie", "edge", "time s", "altitude m", "height %", "throttle %", "gap s", "agreement", "events"}, {}};
-    const flight::SelectedTracks tracks(series);
-    for (std::size_t s = 0; s < phases.sorties.size(); ++s) {
-        for (const auto& explained : compare_edges_with_events(tracks, phases.sorties[s])) {
-            const auto& edge = explained.edge;
-            table.rows.push_back({fmt::format("{}", s + 1), std::string(to_string(explained.kind)),
-                                  fixed(edge.time_s, 1), fixed(edge.altitude_m, 1), fixed(explained.height_percent, 1),
-                                  fixed(edge.throttle_percent, 0), fixed(edge.gap_s, 1), explained.agreement,
-                                  events_text(explained)});
+        {"sortie", "edge", "time s", "altitude m", "height %", "throttle %", "gap s", "mode", "block", "TAKEOFF s"},
+        {}};
+    const auto whole = [](const std::optional<int>& number) { return number ? fmt::format("{}", *number) : "-"; };
+    const auto block_name = [&](const std::optional<int>& block) {
+        const auto found = block ? series.block_names.find(*block) : series.block_names.end();
+        return found == series.block_names.end() ? whole(block) : found->second;
+    };
+    for (const auto& sortie : phases.sorties) {
+        const auto add = [&](const char* name, const flight::PhaseEdge& edge) {
+            const double height_percent =
+                units::percentage(edge.altitude_m - sortie.ground_altitude_m, sortie.height_m);
+            table.rows.push_back({fmt::format("{}", sortie.number), name, fixed(edge.time_s, 1),
+                                  fixed(edge.altitude_m, 1), fixed(height_percent, 1), fixed(edge.throttle_percent, 0),
+                                  fixed(edge.gap_s, 1), whole(edge.mode), block_name(edge.block),
+                                  fixed(edge.takeoff_after_s, 1)});
+        };
+        for (const auto& span : sortie.phases) {
+            const bool takes_off = span.phase == flight::Phase::takeoff;
+            if (span.phase == flight::Phase::cruise) continue;
+            if (span.complete || !takes_off) add(takes_off ? "lift-off" : "start of landing", span.start);
+            if (span.complete || takes_off) add(takes_off ? "end of take-off" : "touchdown", span.end);
         }
     }
     return table;
@@ -177,9 +135,10 @@ TextTable edges_table(const flight::FlightSeries& series, const flight::FlightPh
 std::string explanation(const flight::FlightSeries& series, const flight::FlightPhases& phases,
                         const flight::PowerReport& power, const Screen& screen) {
     const ScreenTable shown{describe_flight(series, phases),
-                            {"sortie", "edge", "time s", "agreement", "altitude m", "events"}};
+                            {"sortie", "edge", "time s", "altitude m", "height %", "throttle %"}};
     std::string text = screen_text(edges_table(series, phases), screen, shown);
-    for (const auto& sortie : phases.sorties) text += heights_text(sortie);
+    for (const auto& other : phases.ground_events)
+        text += fmt::format("no flight from {:.0f} to {:.0f} s: {}\n", other.start_s, other.end_s, other.what);
     if (!phases.motor_source.empty()) text += fmt::format("motor signal: {}\n", phases.motor_source);
     return text + (power_track(series).empty()
                        ? "power: not measured\n"

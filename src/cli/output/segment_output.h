@@ -1,8 +1,6 @@
 #pragma once
 
 #include "cli/screen_table.h"
-#include "cli/stage.h"
-#include "flight/edge_events.h"
 #include "flight/power_check.h"
 #include "flight/segmentation.h"
 
@@ -12,13 +10,10 @@
 /// Output of segment.
 namespace flightwatt::cli {
 
-/// Autopilot events of an edge: those that mark it, then others nearby; '-' for none.
-std::string events_text(const flight::EdgeReport& edge);
-
 /// Title of a flight's tables: its name, aircraft and number of sorties.
 std::string describe_flight(const flight::FlightSeries& series, const flight::FlightPhases& phases);
 
-/// A row an edge: time, altitude, throttle, autopilot events.
+/// A row an edge that the log has: time, altitude, throttle, and mode, block and TAKEOFF message of the autopilot.
 TextTable edges_table(const flight::FlightSeries& series, const flight::FlightPhases& phases);
 
 /// Output of `segment --explain`: edges, rejected activities and findings on the power record.

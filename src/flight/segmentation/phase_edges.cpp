@@ -136,18 +136,17 @@ std::vector<Hold> holds_before_landing(const Flown& flown) {
     return holds;
 }
 
-/// Marks the holds that are steps of the landing; returns the index of the first other one, at whose end landing
-/// begins.
-std::size_t mark_landing_steps(const Flown& flown, std::vector<HeldAltitude>& held) {
-    for (std::size_t i = 0; i + 1 < held.size(); ++i) {
-        double max_s = 0.0;
-        for (auto k = i + 1; k < held.size(); ++k) max_s = std::max(max_s, held[k].duration_s());
-        const bool is_high = held[i].height_m > 0.5 * flown.heights.cruise_height_m;
-        const double duration_s = held[i].duration_s();
-        if (duration_s >= min_work_hold_s || (is_high && duration_s >= min_work_hold_fraction * max_s)) return i;
-        held[i].of_landing = true;
+/// The last hold that is no step of the landing, after which landing begins: held long enough for work, or as long as
+/// half of an earlier hold in the upper half of the height.
+const Hold& last_work_hold(const Flown& flown, const std::vector<Hold>& holds) {
+    const auto duration_s = [&](const Hold& hold) { return flown.time_s(hold.end) - flown.time_s(hold.begin); };
+    for (auto hold = holds.begin(); hold + 1 != holds.end(); ++hold) {
+        const bool is_high = hold->height_m > 0.5 * flown.heights.cruise_height_m;
+        const double max_s = duration_s(*std::ranges::max_element(hold + 1, holds.end(), {}, duration_s));
+        if (duration_s(*hold) >= min_work_hold_s || (is_high && duration_s(*hold) >= min_work_hold_fraction * max_s))
+            return *hold;
     }
-    return held.size() - 1;
+    return holds.back();
 }
 
 }  // namespace
@@ -221,15 +220,14 @@ SortieEdges find_edges(const ResampledFlight& grid, const Activity& activity, co
     const double reached = options.cruise_fraction * height_after_takeoff(flown);
     std::size_t takeoff_end = lift_off;
     while (takeoff_end < touchdown && flown.height(takeoff_end) < reached) ++takeoff_end;
-    const auto holds = holds_before_landing(flown);
-    for (const auto& hold : holds) {
-        edges.held.push_back(
-            {{flown.time_s(std::max(hold.begin, takeoff_end)), flown.time_s(std::max(hold.end, takeoff_end))},
-             hold.height_m});
+    auto holds = holds_before_landing(flown);
+    for (auto& hold : holds) {
+        hold.begin = std::max(hold.begin, takeoff_end);
+        hold.end = std::max(hold.end, takeoff_end);
     }
-    const auto& last_height = holds[mark_landing_steps(flown, edges.held)];
+    const auto& last_height = last_work_hold(flown, holds);
     const double left = options.cruise_fraction * last_height.height_m;
-    std::size_t landing_start = std::max(last_height.end, takeoff_end);
+    std::size_t landing_start = last_height.end;
     // A log that begins (or ends) in the air, and not low, begins (or ends) in cruise, even if it climbs (or descends).
     if (!edges.lift_off_s && flown.height(lift_off) >= flown.airborne_m()) takeoff_end = lift_off;
     if (!edges.touchdown_s && flown.height(touchdown) >= flown.airborne_m()) landing_start = touchdown;
@@ -238,7 +236,6 @@ SortieEdges find_edges(const ResampledFlight& grid, const Activity& activity, co
         const bool below = flown.height(landing_start + 1) < left && flown.height(landing_start) >= left;
         edges.landing_start_s = below ? crossing_s(flown, landing_start, left) : flown.time_s(landing_start);
     }
-    std::ranges::reverse(edges.held);
     return edges;
 }
 

@@ -53,7 +53,6 @@ struct SortieEdges {
     std::optional<double> takeoff_end_s;
     std::optional<double> landing_start_s;
     std::optional<double> touchdown_s;
-    std::vector<HeldAltitude> held;  ///< see Sortie
 };
 
 SortieEdges find_edges(const ResampledFlight& grid, const Activity& activity, const Heights& heights,

@@ -1,6 +1,5 @@
 #include "report/figures/flight_figures.h"
 
-#include "flight/edge_events.h"
 #include "flight/selected_track.h"
 
 #include <algorithm>
@@ -23,11 +22,13 @@
 namespace flightwatt::report {
 namespace {
 
+constexpr double max_event_distance_s = 60.0;
+
 /// Evidence of an edge.
 std::string describe_edge(const flight::PhaseEdge& edge) {
     auto text = fmt::format("altitude {:.1f} m", edge.altitude_m);
     if (edge.throttle_percent) text += fmt::format(", throttle {:.0f} %", *edge.throttle_percent);
-    if (edge.takeoff_after_s && std::abs(*edge.takeoff_after_s) < flight::max_event_distance_s) {
+    if (edge.takeoff_after_s && std::abs(*edge.takeoff_after_s) < max_event_distance_s) {
         text += fmt::format(", nearest TAKEOFF message {:.1f} s {}", std::abs(*edge.takeoff_after_s),
                             *edge.takeoff_after_s < 0.0 ? "before" : "after");
     }

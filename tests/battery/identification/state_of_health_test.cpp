@@ -40,20 +40,6 @@ TEST(FlightResistance, DiffersOfTwoFlightsOrMore) {
     EXPECT_FALSE(resistance_scatter(std::vector{resistance(0.08), std::optional<FlightResistance>()}, 0.1));
 }
 
-TEST(FlightResistance, HasATrendFromThreeFlightsOn) {
-    EXPECT_FALSE(resistance_trend(std::vector{resistance(0.08), std::optional<FlightResistance>(), resistance(0.09)}));
-    const auto rising = resistance_trend(
-        std::vector{resistance(0.080), resistance(0.0825), resistance(0.0845), resistance(0.087), resistance(0.089)});
-    ASSERT_TRUE(rising);
-    EXPECT_EQ(rising->flights, 5U);
-    EXPECT_NEAR(rising->ohm_per_flight, 0.00225, 1e-4);
-    EXPECT_GT(rising->interval_ohm_a_flight.low, 0.0);
-    const auto level = resistance_trend(std::vector{resistance(0.08), resistance(0.10), resistance(0.08)});
-    ASSERT_TRUE(level);
-    EXPECT_LT(level->interval_ohm_a_flight.low, 0.0);
-    EXPECT_GT(level->interval_ohm_a_flight.high, 0.0);
-}
-
 TEST(StateOfHealth, HasTheResistanceOfTheFlight) {
     std::vector<DischargeRecord> records;
     const std::vector<double> true_ohm{0.06, 0.08, 0.12};

@@ -44,37 +44,18 @@ TEST_F(BatteryTables, HasARowAParameterAndAFlight) {
     const auto flights = flights_table(identified_, checks_);
     ASSERT_EQ(flights.rows.size(), 2U);
     EXPECT_EQ(flights.rows[0].size(), flights.header.size());
-    EXPECT_EQ(flights_table(identified_, {}).header.size() + 4, flights.header.size());
+    EXPECT_EQ(flights_table(identified_, {}).header.size() + 3, flights.header.size());
 }
 
-TEST_F(BatteryTables, SaysWhosePackWasAssumed) {
-    EXPECT_THAT(remarks(), testing::Not(HasSubstr("assumed to be on the pack")));
+TEST_F(BatteryTables, HasTheTemperatureOfTheAirWhereItWasLogged) {
     const auto columns = flights_table(identified_, {}).header.size();
-    auto& flight = identified_.flights[1];
-    flight.link = battery::PackLink{0, 0.4, 0.01, 1380.0, false};
-    flight.same_pack_as = "synthetic_1";
-    flight.air_temperature_c = 21.5;
-    EXPECT_THAT(remarks(),
-                HasSubstr("synthetic_2: assumed to be on the pack of synthetic_1, as it begins 23 min after"));
+    identified_.flights[1].air_temperature_c = 21.5;
     const auto table = flights_table(identified_, {});
-    EXPECT_EQ(table.header.size(), columns + 2);
-    EXPECT_THAT(table.rows[1], testing::IsSupersetOf({"synthetic_1", "21.5"}));
+    EXPECT_EQ(table.header.size(), columns + 1);
+    EXPECT_THAT(table.rows[1], testing::Contains("21.5"));
     EXPECT_THAT(table.rows[0], testing::Contains("-"));
     const auto json = record_json(cli::BatteryOutput{&identified_, &checks_});
-    EXPECT_EQ(json["flights"][1]["pack_of"], "synthetic_1");
-    EXPECT_EQ(json["flights"][1]["pause_s"], 1380.0);
-    EXPECT_TRUE(json["flights"][0]["pack_of"].is_null());
     EXPECT_EQ(json["leave_one_out"][1]["load_voltage_rms_mv"], 1e3 * checks_[1].load_rms_v);
-    EXPECT_LE(json["leave_one_out"][1]["best_offset_load_voltage_rms_mv"],
-              json["leave_one_out"][1]["load_voltage_rms_mv"]);
-    EXPECT_TRUE(json["resistance_trend"].is_null()) << "two flights have none";
-}
-
-TEST_F(BatteryTables, SaysWhetherTheResistanceGoesOn) {
-    identified_.trend = battery::ResistanceTrend{4, 0.001, {0.0005, 0.0015}};
-    EXPECT_THAT(remarks(), HasSubstr("over 4 flights: +1.00 mohm a flight, +0.50 to +1.50"));
-    identified_.trend = battery::ResistanceTrend{4, 0.001, {-0.0005, 0.0025}};
-    EXPECT_THAT(remarks(), HasSubstr("no significant trend"));
 }
 
 TEST_F(BatteryTables, HasNoRowOfAnAbsentRcPair) {

@@ -33,25 +33,17 @@ TEST(PhaseEdges, LandingBeginsWhereTheCruiseIsLeftForGood) {
     for (const double low_m : {25.0, 31.0, 35.0}) {
         const auto sortie = flown({{450, low_m, 30}, {490, low_m, 40}, {500, 0, 0}});
         EXPECT_NEAR(landing_start_s(sortie), 435.0, 4.0) << low_m;
-        ASSERT_EQ(sortie.held.size(), 2u);
-        EXPECT_FALSE(sortie.held[0].of_landing);
-        EXPECT_NEAR(sortie.held[0].height_m, 60.0, 0.5);
-        EXPECT_TRUE(sortie.held[1].of_landing);
-        EXPECT_NEAR(sortie.held[1].height_m, low_m, 3.5);
-        EXPECT_NEAR(sortie.held[1].end_s, 490.0, 3.0);
     }
 }
 
 TEST(PhaseEdges, LandingTakesSeveralSteps) {
     const auto sortie = flown({{440, 44, 30}, {480, 44, 40}, {490, 32, 30}, {530, 32, 40}, {540, 0, 0}});
     EXPECT_NEAR(landing_start_s(sortie), 434.0, 3.0);
-    EXPECT_EQ(sortie.held.size(), 3u);
 }
 
 TEST(PhaseEdges, ASurveyInStagesIsACruise) {
     const auto sortie = flown({{440, 45, 40}, {590, 45, 60}, {600, 32, 40}, {750, 32, 60}, {765, 0, 0}}, 280.0);
     EXPECT_NEAR(landing_start_s(sortie), 751.0, 3.0);
-    for (const auto& held : sortie.held) EXPECT_FALSE(held.of_landing);
     // Short stages too, if they are alike.
     const auto quick =
         flown({{170, 60, 60}, {180, 47, 40}, {220, 47, 60}, {230, 35, 40}, {270, 35, 60}, {285, 0, 0}}, 160.0);
