@@ -68,7 +68,7 @@ int identify(const cli::StageCall& call, const BatteryArguments& arguments) {
     const auto identified = identify_battery(records, options);
     const auto show = [&](std::size_t done, std::size_t all) { identifying.show(done + 1, all + 1); };
     const auto left_out = leave_one_out(records, options, show, folds);
-    identifying.clear();
+    identifying.hide();
     for (const auto& [text, is_warning] : cli::battery_remarks(identified))
         is_warning ? cli::warn(call, text) : cli::note(call, text);
     if (left_out.empty()) cli::note(call, "a single flight: there is no other one to check the battery with");

@@ -6,7 +6,6 @@
 #include "batch/merge.h"
 #include "batch/write_guard.h"
 #include "cli/screen_table.h"
-#include "cli/output/json_document.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
 #include "mechanical/validation.h"

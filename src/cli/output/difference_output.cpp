@@ -104,8 +104,7 @@ Fields<Differences> record_fields(const Differences*) {
         constexpr std::array kinds{"models", "batches", "missions"};
         return std::string(kinds.at(static_cast<std::size_t>(r.kind)));
     };
-    return {field("kind", kind, "`models`, `batches` or `missions`"),
-            field("differences", &R::rows, "quantities")};
+    return {field("kind", kind, "`models`, `batches` or `missions`"), field("differences", &R::rows, "quantities")};
 }
 
 void note_differences(const StageCall& call, const std::vector<Difference>& rows) {
