@@ -80,7 +80,7 @@ bool is_constant(const Track& track);
 
 using telemetry::CurrentOrigin;
 
-/// The log's clock restarts: another recording follows.
+/// The log's clock restarts: another recording follows, or overlaps the first.
 struct ClockRestart {
     double visible_from_s = 0.0;  ///< a log that ends before this time shows no restart
     double from_s = 0.0;

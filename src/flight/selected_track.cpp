@@ -3,6 +3,8 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
+#include "flight/checks/runs.h"
+#include "flight/flight_phases.h"
 #include "flight/sources/derived_tracks.h"
 #include "flight/sources/device_check.h"
 #include "flight/sources/device_sum.h"
@@ -32,9 +34,10 @@ void prepend(std::vector<std::string>& notes, const std::vector<std::string>& ea
 
 /// The candidate without outliers.
 Choice cleaned_choice(const FlightSeries& series, const Track& candidate) {
-    auto choice = remove_outliers(candidate);
+    const bool is_current = candidate.name == "current_a";
+    auto choice = remove_outliers(candidate, {}, is_current ? dropout_throttle(series, candidate) : Track{});
     // Contradictions within a message are noted with its power.
-    if (candidate.name == "voltage_v" || candidate.name == "current_a")
+    if (candidate.name == "voltage_v" || is_current)
         erase_times(choice.track, contradicted_times(series, candidate.source));
     return choice;
 }
@@ -63,22 +66,33 @@ Choice first_of(const FlightSeries& series, std::string_view name) {
     return {};
 }
 
-/// Whether a throttle is logged as 0 to 1: it has values between, which whole percents have not.
-bool is_fraction(const Track& throttle) {
-    constexpr std::ptrdiff_t enough = 10;
+/// Whether a throttle is logged as 0 to 1: the motor takes power at such values, or they are not whole percents.
+bool is_fraction(const Track& throttle, const FlightSeries& series) {
+    constexpr std::size_t enough = 10;
     constexpr double idle = 0.05;
     constexpr double runs = 0.2;
     constexpr double full = 1.5;
     if (throttle.empty()) return false;
     const auto [low, high] = std::ranges::minmax(throttle.value);
+    if (high < runs || high > full || low < -idle) return false;
+    const auto power = select_power(series).track;
+    std::vector<double> idle_w;
+    std::vector<double> running_w;
+    for (std::size_t i = 0; i < power.time_s.size(); ++i) {
+        const double fraction = value_at(throttle, power.time_s[i]);
+        if (fraction <= idle) idle_w.push_back(power.value[i]);
+        if (fraction >= runs) running_w.push_back(power.value[i]);
+    }
+    if (!is_constant(power) && idle_w.size() >= enough && running_w.size() >= enough)
+        return median_high(std::move(running_w)) >= 3.0 * std::max(median_high(std::move(idle_w)), 0.0) + 1.0;
     const auto is_between = [](double value) { return value > idle && value != 1.0; };
-    return high >= runs && high <= full && low >= -idle && std::ranges::count_if(throttle.value, is_between) >= enough;
+    return std::ranges::count_if(throttle.value, is_between) >= static_cast<std::ptrdiff_t>(enough);
 }
 
 /// Converts a fraction to percent.
-void scale_fraction(Choice& throttle) {
+void scale_fraction(const FlightSeries& series, Choice& throttle) {
     auto& track = throttle.track;
-    if (!is_fraction(track)) return;
+    if (!is_fraction(track, series)) return;
     const auto [low, high] = std::ranges::minmax(track.value);
     throttle.removal_notes.push_back(
         fmt::format("the throttle ({}) is {:.3g} to {:.3g}: it is read as a fraction, {:.0f} to {:.0f} %", track.source,
@@ -86,9 +100,51 @@ void scale_fraction(Choice& throttle) {
     for (auto& value : track.value) value = units::percentage(value, 1.0);
 }
 
+/// The commands, if they are those of a throttle, or nullptr.
+const Track* commands_of(const FlightSeries& series) {
+    const auto found = std::ranges::find(series.tracks, commanded_throttle, &Track::source);
+    const bool is_throttle = found != series.tracks.end() && !found->empty() &&
+                             std::ranges::none_of(found->value, [](double percent) { return percent < 0.0; });
+    return is_throttle ? &*found : nullptr;
+}
+
+/// Replaces an idle throttle by the commands in runs where these are not idle for half a minute (manual mode).
+void follow_commands(const FlightSeries& series, Choice& throttle) {
+    constexpr SegmentationOptions limits;
+    const auto* commands = commands_of(series);
+    auto& track = throttle.track;
+    if (commands == nullptr || track.empty() || track.source == commanded_throttle) return;
+    const auto percent = resample(*commands, track.time_s);
+    const auto idles = [&](std::size_t i) { return track.value[i] <= limits.idle_throttle_percent; };
+    const auto runs = [&](std::size_t i) { return commands->value[i] >= limits.flight_throttle_percent; };
+    const auto first_after = [](const std::vector<double>& times_s, double time_s) {
+        return static_cast<std::size_t>(std::ranges::upper_bound(times_s, time_s) - times_s.begin());
+    };
+    const double gap_s = gap_threshold_s(commands->time_s);
+    double together_s = 0.0;
+    std::optional<double> first_s;
+    for (const auto& run : runs_of({0, track.time_s.size()}, idles)) {
+        const auto first = std::ranges::lower_bound(commands->time_s, track.time_s[run.begin]);
+        const IndexSpan sent{static_cast<std::size_t>(first - commands->time_s.begin()),
+                             first_after(commands->time_s, track.time_s[run.end - 1])};
+        const double running_s = time_where(commands->time_s, sent, gap_s, runs);
+        if (running_s < contradicted_s) continue;
+        const auto last = first_after(track.time_s, commands->time_s[sent.end - 1]);  // after it no command is known
+        std::copy(percent.begin() + static_cast<std::ptrdiff_t>(run.begin),
+                  percent.begin() + static_cast<std::ptrdiff_t>(last),
+                  track.value.begin() + static_cast<std::ptrdiff_t>(run.begin));
+        together_s += running_s;
+        if (!first_s) first_s = track.time_s[run.begin];
+    }
+    if (!first_s) return;
+    throttle.removal_notes.push_back(
+        fmt::format("{} is idle while {} is not for {:.0f} s, first from {:.0f} s: the latter is used there",
+                    track.source, commanded_throttle, together_s, *first_s));
+}
+
 Choice throttle(const FlightSeries& series) {
     constexpr double max_interval_s = 2.0;  // rarer commands are used only without a power
-    const auto* commands = throttle_commands(series);
+    const auto* commands = commands_of(series);
     const bool counts = commands != nullptr &&
                         (median_interval_s(commands->time_s) <= max_interval_s || select_power(series).track.empty());
     const auto is_thrust = [](const Track& track) { return track.source == "ROTORCRAFT_FP.thrust"; };
@@ -100,7 +156,8 @@ Choice throttle(const FlightSeries& series) {
         prepend(thrust.removal_notes, found.removal_notes);
         found = std::move(thrust);
     }
-    scale_fraction(found);
+    scale_fraction(series, found);
+    follow_commands(series, found);
     return found;
 }
 
@@ -137,13 +194,6 @@ Choice choose(const FlightSeries& series, std::string_view name) {
 }
 
 }  // namespace
-
-const Track* throttle_commands(const FlightSeries& series) {
-    const auto found = std::ranges::find(series.tracks, commanded_throttle, &Track::source);
-    const bool is_throttle = found != series.tracks.end() && !found->empty() &&
-                             std::ranges::none_of(found->value, [](double percent) { return percent < 0.0; });
-    return is_throttle ? &*found : nullptr;
-}
 
 Track select_track(const FlightSeries& series, std::string_view name) { return choose(series, name).track; }
 

@@ -37,8 +37,8 @@ class SelectedTracks {
 std::vector<double> sample_selected_track(const SelectedTracks& tracks, std::string_view name,
                                           const std::vector<double>& time_s);
 
-/// The commands to the motor; nullptr without any, and if they are negative (not those of a throttle).
-const Track* throttle_commands(const FlightSeries& series);
+/// An idle throttle is contradicted by power, or by commands to the motor, for at least this time [s].
+inline constexpr double contradicted_s = 30.0;
 
 /// The power samples, whose clock is that of most calculations.
 inline Track power_track(const FlightSeries& series) { return select_track(series, "power_w"); }

@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
-#include <set>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -16,14 +17,84 @@
 namespace flightwatt::flight {
 namespace {
 
-constexpr double restart_s = 20.0;  // no line is delayed for longer
+constexpr double restart_s = 60.0;
+constexpr double late_s = 2.0;
+constexpr std::size_t enough_late_rows = 10;
+constexpr double hole_intervals = 1.5;
+constexpr std::size_t min_intervals = 5;
+constexpr std::size_t max_intervals = 100;
 
-bool has_late_rows(const telemetry::MessageTable& table) {
+bool has_late_rows(const telemetry::MessageTable& table, double later_than_s) {
     double latest_s = -std::numeric_limits<double>::infinity();
     return std::ranges::any_of(table.time_s, [&](double time_s) {
         latest_s = std::max(latest_s, time_s);
-        return latest_s - time_s > restart_s;
+        return latest_s - time_s > later_than_s;
     });
+}
+
+/// A row seen before in the file, and the earliest time that shows it to be late (infinite: none).
+struct SeenRow {
+    std::size_t row;
+    double late_by_s;
+};
+using SeenRows = std::multimap<double, SeenRow>;
+
+bool differ(const telemetry::MessageTable& table, std::size_t a, std::size_t b) {
+    return std::ranges::any_of(table.columns, [&](const telemetry::Column& column) {
+        const double left = column.values[a];
+        const double right = column.values[b];
+        return left != right && !(std::isnan(left) && std::isnan(right));
+    });
+}
+
+/// Whether a row is between rows of the file before it that lack none, considering only times up to `known_s`, so that
+/// a log which ends there gives the same result.
+bool is_overlap(const telemetry::MessageTable& table, std::size_t row, const SeenRows& seen, double known_s) {
+    const double time_s = table.time_s[row];
+    const auto counts = [&](SeenRows::const_iterator at) { return at->second.late_by_s > known_s; };
+    auto above = seen.lower_bound(time_s);
+    while (above != seen.end() && !counts(above)) ++above;
+    if (above == seen.end()) return false;
+    if (above->first == time_s) return differ(table, row, above->second.row);
+    std::vector<double> before_s;
+    for (auto at = seen.lower_bound(time_s); at != seen.begin() && before_s.size() <= max_intervals;) {
+        --at;
+        if (counts(at)) before_s.push_back(at->first);
+    }
+    if (before_s.size() <= min_intervals) return false;
+    std::vector<double> intervals_s;
+    for (std::size_t i = 1; i < before_s.size(); ++i) intervals_s.push_back(before_s[i - 1] - before_s[i]);
+    const auto low = intervals_s.begin() + static_cast<std::ptrdiff_t>(intervals_s.size() / 10);
+    std::nth_element(intervals_s.begin(), low, intervals_s.end());
+    return above->first - before_s.front() < hole_intervals * *low;
+}
+
+/// Restarts and overlapping rows of one message.
+struct ClockFaults {
+    std::optional<ClockRestart> restart;
+    std::vector<ClockRestart> overlaps;
+};
+
+void add_faults(const telemetry::MessageTable& table, ClockFaults& faults) {
+    if (!has_late_rows(table, late_s)) return;
+    // Several devices report at one time and in any order.
+    const bool may_overlap = table.message != "ESC" && table.message != "POWER_DEVICE";
+    SeenRows seen;
+    for (std::size_t row = 0; row < table.time_s.size(); ++row) {
+        const double time_s = table.time_s[row];
+        const auto shows = [&](double later_s) {
+            const auto at = seen.upper_bound(time_s + later_s);
+            return at == seen.end() ? std::numeric_limits<double>::infinity() : at->first;
+        };
+        const double restart_from_s = shows(restart_s);
+        auto& restart = faults.restart;
+        if (std::isfinite(restart_from_s) && (!restart || restart_from_s < restart->visible_from_s))
+            restart = {restart_from_s, seen.rbegin()->first, time_s, table.message};
+        const double known_s = shows(late_s);
+        if (may_overlap && std::isfinite(known_s) && is_overlap(table, row, seen, known_s))
+            faults.overlaps.push_back({known_s, known_s, time_s, table.message});
+        seen.emplace(time_s, SeenRow{row, known_s});
+    }
 }
 
 using units::Quantity;
@@ -134,18 +205,14 @@ void add_configuration(FlightSeries& series, const telemetry::TelemetryLog& log)
 }  // namespace
 
 std::optional<ClockRestart> find_clock_restart(const telemetry::SenderLog& sender) {
-    std::optional<ClockRestart> restart;
-    for (const auto& table : sender.tables) {
-        if (!has_late_rows(table)) continue;
-        std::set<double> seen_s;
-        for (const double time_s : table.time_s) {
-            const auto later_s = seen_s.upper_bound(time_s + restart_s);
-            if (later_s != seen_s.end() && (!restart || *later_s < restart->visible_from_s))
-                restart = {*later_s, *seen_s.rbegin(), time_s, table.message};
-            seen_s.insert(time_s);
-        }
-    }
-    return restart;
+    ClockFaults faults;
+    for (const auto& table : sender.tables) add_faults(table, faults);
+    const auto& first = faults.restart;
+    if (faults.overlaps.size() < enough_late_rows) return first;
+    std::ranges::sort(faults.overlaps, {},
+                      [](const ClockRestart& at) { return std::tuple(at.visible_from_s, at.to_s, at.message); });
+    const auto& shown = faults.overlaps[enough_late_rows - 1];
+    return first && first->visible_from_s <= shown.visible_from_s ? first : shown;
 }
 
 std::vector<telemetry::MessageRequest> flight_messages() {

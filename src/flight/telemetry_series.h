@@ -9,7 +9,10 @@
 
 namespace flightwatt::flight {
 
-/// The first restart of a sender's clock: a row of a message more than 20 s before a row that precedes it in the file.
+/// The first restart of a sender's clock: a row more than a minute before a row that precedes it in the file (another
+/// recording), or ten rows more than 2 s before (an overlapping recording). The latter count only between neighbours
+/// closer than 1.5 times the lower decile of up to a hundred intervals before: lines out of order fill the holes that
+/// they left, and repeated lines are equal.
 std::optional<ClockRestart> find_clock_restart(const telemetry::SenderLog& sender);
 
 /// The messages and fields of a FlightSeries.

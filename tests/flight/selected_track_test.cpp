@@ -21,6 +21,31 @@ FlightSeries series_of(const std::string& text) {
     return flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), "20");
 }
 
+/// Throttle 50 %, but for `manual_s` 0 as in manual mode, while the commands go on.
+FlightSeries with_commands(double manual_s, const std::string& commands, int until_s = 200) {
+    std::string text;
+    for (int i = 0; i <= 200; ++i) {
+        text += fmt::format("{} 20 ENERGY {} 11. 2. 22. 0.1 1.\n", i, i < 100 || i > 100 + manual_s ? 50 : 0);
+        if (i % 5 == 0 && i <= until_s) text += fmt::format("{} 20 COMMANDS {}\n", i, commands);
+    }
+    return series_of(text);
+}
+
+TEST(SelectedThrottle, IsTheCommandsWhereItIdlesInManualMode) {
+    const auto lowest = [](const FlightSeries& series) {
+        const auto throttle = select_track(series, "throttle_percent");
+        return *std::ranges::min_element(throttle.value);
+    };
+    const auto manual = with_commands(30.0, "4800,-20,30");
+    EXPECT_EQ(lowest(manual), 50.0);
+    EXPECT_THAT(warnings_of(manual), Contains(HasSubstr("ENERGY.throttle is idle while COMMANDS.throttle is not for "
+                                                        "30 s, first from 100 s: the latter is used there")));
+    EXPECT_EQ(lowest(with_commands(29.0, "4800,-20,30")), 0.0) << "half a minute";
+    EXPECT_EQ(lowest(with_commands(40.0, "4800,-20,30", 125)), 0.0) << "what stopped says nothing";
+    EXPECT_EQ(lowest(with_commands(40.0, "1900,-20,30")), 0.0) << "less than any flight takes";
+    EXPECT_NEAR(lowest(with_commands(40.0, "1930,-20,30")), 20.1, 0.01);
+}
+
 TEST(SelectedThrottle, IsTheFirstCommandWhereItIsNeverNegative) {
     const auto series_with = [](int first) {
         std::string text;
@@ -78,6 +103,12 @@ TEST(SelectedThrottle, IsAFractionWhereItRunsToOneAndIsOftenNoWholePercent) {
     EXPECT_FALSE(is_fraction({{0.5, 10}, {1.51, 1}}));
     EXPECT_TRUE(is_fraction({{-0.045, 1}, {0.5, 10}}));
     EXPECT_FALSE(is_fraction({{-0.055, 1}, {0.5, 10}}));
+}
+
+TEST(SelectedThrottle, IsAFractionWherePowerRisesToThreeTimesThatAtIdleAndAWattWithIt) {
+    EXPECT_TRUE(is_fraction({{0.0, 10, 2.0}, {0.9, 10, 7.1}}));
+    EXPECT_FALSE(is_fraction({{0.0, 10, 2.0}, {0.9, 10, 6.9}}));
+    EXPECT_TRUE(is_fraction({{0.0, 9, 2.0}, {0.9, 10, 6.9}})) << "not known";
 }
 
 }  // namespace

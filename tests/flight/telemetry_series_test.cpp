@@ -31,10 +31,18 @@ std::string with_jump(double from_s, double by_s) {
 }
 
 TEST(ClockCheck, RefusesAClockThatRunsBackByLessThanAMinute) {
-    for (const double by_s : {-25.0, -50.0, -59.0}) {
+    for (const double by_s : {-8.0, -20.0, -50.0, -59.0}) {
         SCOPED_TRACE(by_s);
         EXPECT_THAT(test::rejected([&] { test::examined(with_jump(300.0, by_s)); }), HasSubstr("the clock runs back"));
     }
+}
+
+TEST(ClockCheck, RefusesAStretchThatLiesOverAnother) {
+    const auto text = test::damaged_sample([](test::Words& words) {
+        const double time_s = number_or_nan(words[0]);
+        if (time_s > 300.0 && time_s < 330.0) words[0] = fmt::format("{:.3f}", time_s + 30.0);
+    });
+    EXPECT_THAT(test::rejected([&] { test::examined(text); }), HasSubstr("the clock runs back"));
 }
 
 TEST(ClockCheck, TakesDoubledLinesAndLinesOutOfOrderAsTheyAre) {
@@ -65,10 +73,10 @@ TEST(ClockCheck, TakesDoubledLinesAndLinesOutOfOrderAsTheyAre) {
 }
 
 TEST(ClockCheck, KnowsNothingOfWhatComesLater) {
-    const auto text = with_jump(300.0, -30.0);
+    const auto text = with_jump(300.0, -20.0);
     const auto series = test::all_series(text, std::nullopt).at(0);
     ASSERT_TRUE(series.clock_restart);
-    for (const double until_s : {275.0, 285.0, 290.0, 296.0, 300.0, 400.0}) {
+    for (const double until_s : {283.0, 285.0, 290.0, 296.0, 300.0, 400.0}) {
         const auto cut = test::all_series(test::cut_log(text, until_s).before, std::nullopt).at(0);
         EXPECT_EQ(cut.clock_restart, truncate_series(series, until_s).clock_restart) << until_s;
     }
@@ -85,13 +93,57 @@ void add(std::vector<double>& time_s, int count, double from_s, double interval_
     for (int i = 0; i < count; ++i) time_s.push_back(from_s + interval_s * i);
 }
 
-TEST(ClockCheck, TakesOneRowOfMoreThanTwentySecondsBeforeForARestart) {
+TEST(ClockCheck, TakesOneRowOfMoreThanAMinuteBeforeForARestart) {
     std::vector<double> time_s;
     add(time_s, 101, 0.0, 1.0);
-    time_s.push_back(80.5);
-    EXPECT_FALSE(runs_back(time_s)) << "19.5 s";
-    time_s.back() = 79.5;
-    EXPECT_TRUE(runs_back(time_s)) << "20.5 s";
+    time_s.push_back(40.5);
+    EXPECT_FALSE(runs_back(time_s)) << "59.5 s";
+    time_s.back() = 39.5;
+    EXPECT_TRUE(runs_back(time_s)) << "60.5 s";
+}
+
+TEST(ClockCheck, TakesTenRowsOfMoreThanTwoSecondsBeforeForAnOverlap) {
+    const auto with_late = [](int rows, double by_s) {
+        std::vector<double> time_s;
+        add(time_s, 30, 0.0, 0.1);
+        for (int i = 0; i < rows; ++i) {
+            add(time_s, 10, 3.0 + i, 0.1);
+            time_s.push_back(3.9 + i - by_s);
+        }
+        return runs_back(time_s);
+    };
+    EXPECT_TRUE(with_late(10, 2.05));
+    EXPECT_FALSE(with_late(9, 2.05));
+    EXPECT_FALSE(with_late(10, 1.95));
+}
+
+TEST(ClockCheck, TakesRowsForAnOverlapWhereNoneWasMissing) {
+    const auto in_pauses_of = [](double pause_s) {
+        std::vector<double> time_s;
+        for (int i = 0; i < 15; ++i) add(time_s, 6, (2.5 + pause_s) * i, 0.5);
+        add(time_s, 10, 5.0 + 1.5 * pause_s, 2.5 + pause_s);
+        return runs_back(time_s);
+    };
+    EXPECT_TRUE(in_pauses_of(0.7)) << "1.4 intervals";
+    EXPECT_FALSE(in_pauses_of(0.8));
+    const auto after_rows = [](int rows) {
+        std::vector<double> time_s;
+        add(time_s, 20, 0.0, 1.0);
+        add(time_s, 10, rows - 0.5, 0.01);
+        return runs_back(time_s);
+    };
+    EXPECT_FALSE(after_rows(5)) << "the interval is not known";
+    EXPECT_TRUE(after_rows(6));
+    // The interval is that which a tenth of the last hundred do not exceed.
+    const auto after_slow_rows = [](int rows) {
+        std::vector<double> time_s;
+        add(time_s, 51, 0.0, 0.1);
+        add(time_s, rows + 5, 6.0, 1.0);
+        add(time_s, 10, 5.5 + rows, 0.01);
+        return runs_back(time_s);
+    };
+    EXPECT_FALSE(after_slow_rows(89));
+    EXPECT_TRUE(after_slow_rows(90));
 }
 
 using testing::Contains;

@@ -29,12 +29,6 @@ double resolution_of(const Track& counter) {
     return unit;
 }
 
-/// Difference of a counter between two times.
-double counted(const PowerRecord& record, const OnBoardCounter& counter, double start_s, double end_s) {
-    return interpolate_clamped(record.time_s, counter.value, end_s) -
-           interpolate_clamped(record.time_s, counter.value, start_s);
-}
-
 /// Compares the integral of `rate` over all sorties with the counter, if that counted.
 void close(const PowerRecord& record, const std::vector<double>& rate, OnBoardCounter& counter) {
     if (rate.empty() || counter.value.empty()) return;
@@ -188,6 +182,11 @@ void add_facts(PowerRecord& record, const std::vector<std::size_t>& resting) {
     record.smooth_w = running_median<11>(record.power_w);
     record.smooth_percent = running_median<11>(record.throttle_percent);
     add_sums(record);
+}
+
+double counted(const PowerRecord& record, const OnBoardCounter& counter, double start_s, double end_s) {
+    return interpolate_clamped(record.time_s, counter.value, end_s) -
+           interpolate_clamped(record.time_s, counter.value, start_s);
 }
 
 std::vector<SampleGap> gaps_in(const std::vector<double>& time_s, const std::vector<Sortie>& sorties) {

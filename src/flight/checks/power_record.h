@@ -28,6 +28,8 @@ struct OnBoardCounter {
 
 /// Above this the throttle counts as open [%].
 inline constexpr double open_throttle_percent = 30.0;
+/// A larger difference of an integral from its counter is a fault [%].
+inline constexpr double max_counter_difference_percent = 10.0;
 
 /// Input of the rules: power and related tracks on the clock of the power samples; empty if not logged.
 struct PowerRecord {
@@ -82,6 +84,9 @@ PowerRecord make_power_record(const SelectedTracks& tracks, const FlightPhases& 
 
 /// `resting`: indices of the samples at rest with the motor off (without a throttle: at rest outside of the sorties).
 void add_facts(PowerRecord& record, const std::vector<std::size_t>& resting);
+
+/// Difference of a counter between two times.
+double counted(const PowerRecord& record, const OnBoardCounter& counter, double start_s, double end_s);
 
 /// The gaps within sorties or at their edges.
 std::vector<SampleGap> gaps_in(const std::vector<double>& time_s, const std::vector<Sortie>& sorties);

@@ -11,10 +11,18 @@
 namespace flightwatt::flight {
 namespace {
 
-constexpr double compared_power_w = 1.0;     // below, rounding and offsets dominate
-constexpr double large_gap_fraction = 0.02;  // links are interrupted for seconds all the time
+constexpr double compared_power_w = 1.0;      // below, rounding and offsets dominate
+constexpr double max_phase_fraction = 0.10;   // of the phase's energy,
+constexpr double max_phase_of_flight = 0.02;  // and of the flight's
+constexpr double large_gap_fraction = 0.02;   // links are interrupted for seconds all the time
 constexpr double max_large_gaps_fraction = 0.04;
 constexpr double max_gaps_fraction = 0.05;  // all gaps together, beyond usual intervals
+constexpr std::size_t powerless_samples = 3;
+constexpr double idle_fraction = 0.1;  // of the upper quartile in flight
+
+double measured_wh(const PowerRecord& record, double start_s, double end_s) {
+    return units::wh_from_joule(integrated(record.time_s, record.power_w, start_s, end_s));
+}
 
 /// Sum of a counter's falls in flight over that of its rises. On the ground a pack may be changed.
 double return_of(const std::vector<double>& counter, const std::vector<IndexSpan>& flown) {
@@ -90,6 +98,27 @@ Findings counter_difference(const PowerRecord& record) {
     return findings;
 }
 
+Findings phase_difference(const PowerRecord& record) {
+    Findings findings;
+    const auto& counter = record.energy_wh;
+    if (!counter.closure_percent || std::abs(*counter.closure_percent) > max_counter_difference_percent)
+        return findings;
+    const double flight_wh = units::wh_from_joule(record.energy_j);
+    for (const auto& sortie : record.sorties) {
+        for (const auto& span : sortie.phases) {
+            const double measured = measured_wh(record, span.start.time_s, span.end.time_s);
+            const double count_wh = counted(record, record.energy_wh, span.start.time_s, span.end.time_s);
+            const double difference_wh = std::abs(measured - count_wh);
+            if (difference_wh <= max_phase_of_flight * flight_wh) continue;
+            const double limit_wh = max_phase_fraction * std::abs(count_wh) + 2.0 * record.energy_wh.resolution;
+            findings.push_back(
+                {difference_wh / limit_wh, fmt::format("{} at {:.0f} s: {:.3f} Wh were measured and {:.3f} Wh counted",
+                                                       to_string(span.phase), span.start.time_s, measured, count_wh)});
+        }
+    }
+    return findings;
+}
+
 Findings rest_current_drift(const PowerRecord& record) {
     Findings findings;
     for (std::size_t s = 0; s < record.sorties.size() && record.has_current(); ++s) {
@@ -104,6 +133,18 @@ Findings rest_current_drift(const PowerRecord& record) {
                                         before->mean_a, record.sorties[s].number, after->mean_a, mean_a)});
     }
     return findings;
+}
+
+Findings altitude_gaps(const PowerRecord& record) {
+    if (record.is_counted()) return {};
+    const auto& time_s = record.altitude_time_s;
+    const auto sum = sum_of(
+        gaps_in(time_s, record.sorties), median_interval_s(time_s), [](const SampleGap& gap) { return gap.is_within; },
+        [&](const SampleGap&) { return record.energy_j / record.duration_s; });
+    return {{sum.carried_j / record.energy_j,
+             fmt::format("{} gaps in the altitude in flight, {:.0f} s in all: no message came, or the clock jumped; "
+                         "{:.0f} % of the energy is in them, and no counter confirms it",
+                         sum.gaps, sum.together_s, units::percentage(sum.carried_j, record.energy_j))}};
 }
 
 /// Large gaps, or many short ones beyond usual intervals. A gap at the edge of a sortie hides the time of the edge, so
@@ -125,6 +166,31 @@ Findings power_gaps(const PowerRecord& record) {
                          "energy is interpolated across, and no counter confirms it",
                          sum.gaps, sum.gaps == 1 ? "" : "s", sum.together_s, sum.longest.duration_s,
                          sum.longest.start_s, units::percentage(sum.carried_j, record.energy_j))}};
+}
+
+Findings powerless_climb(const PowerRecord& record) {
+    Findings findings;
+    if (record.altitude_m.empty()) return findings;
+    const auto& sorties = record.sorties;
+    for (std::size_t s = 0; s < sorties.size(); ++s) {
+        const auto flown = record.in_flight[s];
+        const auto& lift_off = sorties[s].phases.front();
+        if (lift_off.phase != Phase::takeoff || !lift_off.complete || flown.size() < 2) continue;
+        const auto power_w = part_of(record.power_w, flown);
+        std::vector<double> sorted(power_w.begin(), power_w.end());
+        std::ranges::sort(sorted);
+        const double idle_w = idle_fraction * quantile(sorted, 0.75);
+        const auto powered = static_cast<std::size_t>(
+            std::ranges::find_if(power_w, [&](double watts) { return watts >= idle_w; }) - power_w.begin());
+        if (powered < powerless_samples) continue;
+        const auto last_idle = flown.begin + powered - 1;
+        const double climbed_m = record.altitude_m[last_idle] - sorties[s].ground_altitude_m;
+        findings.push_back(
+            {climbed_m, fmt::format("sortie {} climbs to {:.0f} m above its ground from {:.1f} to {:.1f} "
+                                    "s without power: was it towed, or is the power logged late?",
+                                    sorties[s].number, climbed_m, lift_off.start.time_s, record.time_s[last_idle])});
+    }
+    return findings;
 }
 
 }  // namespace flightwatt::flight

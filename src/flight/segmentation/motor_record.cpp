@@ -17,8 +17,7 @@
 namespace flightwatt::flight {
 namespace {
 
-constexpr double contradicted_s = 30.0;  // of an idle throttle, by other evidence
-constexpr double glitch_s = 10.0;        // throttle without power for a shorter time is an error of the record
+constexpr double glitch_s = 10.0;  // throttle without power for a shorter time is an error of the record
 
 double quantile_of(std::vector<double> values, double probability) {
     std::ranges::sort(values);
@@ -128,7 +127,7 @@ std::string follow_evidence(const SelectedTracks& tracks, Track& throttle, const
                        throttle.source, running(mean_percent), together_s, *first_s);
 }
 
-/// Uses the power if its levels are known, else the motor's speed or the commands to it.
+/// Uses the power if its levels are known, else the motor's speed.
 std::string follow_motor(const SelectedTracks& tracks, Track& throttle, const std::optional<PowerLevels>& levels,
                          double idle_percent) {
     if (levels) {
@@ -141,16 +140,13 @@ std::string follow_motor(const SelectedTracks& tracks, Track& throttle, const st
         });
     }
     const auto speed = record_of_motor_speed(tracks);
-    const auto* commands = throttle_commands(tracks.series());
-    if (speed.percent.empty() && commands == nullptr) return "";
+    if (speed.percent.empty()) return "";
     const SegmentationOptions limits;
-    return follow_evidence(tracks, throttle,
-                           {resample(speed.percent.empty() ? *commands : speed.percent, throttle.time_s),
-                            limits.idle_throttle_percent, limits.flight_throttle_percent},
-                           idle_percent, [&](double percent) {
-                               return fmt::format("the motor turns at {:.0f} % ({})", percent,
-                                                  speed.percent.empty() ? commands->source : speed.evidence);
-                           });
+    return follow_evidence(
+        tracks, throttle,
+        {resample(speed.percent, throttle.time_s), limits.idle_throttle_percent, limits.flight_throttle_percent},
+        idle_percent,
+        [&](double percent) { return fmt::format("the motor turns at {:.0f} % ({})", percent, speed.evidence); });
 }
 
 }  // namespace

@@ -6,11 +6,16 @@
 #include "flight/sources/device_sum.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <iterator>
 #include <numeric>
+#include <set>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::flight {
 namespace {
@@ -47,92 +52,130 @@ DeviceTable table_of(const std::vector<Device>& devices) {
     return table;
 }
 
-/// The samples of a table in which a device repeats one of its reported values.
-std::vector<bool> repeated_samples(const DeviceTable& table, const std::vector<Track>& reported) {
-    std::vector<bool> is_stuck(table.time_s.size(), false);
-    for (const auto& track : reported) {
-        for (const auto& run : runs_of_equal(track.value, stuck_reports)) {
-            const auto first = std::ranges::lower_bound(table.time_s, track.time_s[run.begin]) - table.time_s.begin();
-            const auto last = std::ranges::upper_bound(table.time_s, track.time_s[run.end - 1]) - table.time_s.begin();
-            std::fill(is_stuck.begin() + first, is_stuck.begin() + std::max(first, last), true);
-        }
-    }
-    return is_stuck;
-}
+/// One device compared with the others, sample by sample.
+struct DeviceComparison {
+    const std::vector<double>& own_w;
+    std::vector<double> median_w;  ///< of the others
+    std::vector<double> sum_w;     ///< of the others
+    std::vector<bool> is_stuck;
+};
 
-/// Samples of a device unlike the others': stuck, or of a motor almost without power while the others run.
-std::vector<bool> suspect_samples(const DeviceTable& table, std::size_t device, const std::vector<Track>& reported,
-                                  bool is_motor) {
-    auto suspect = repeated_samples(table, reported);
-    if (!is_motor) return suspect;
-    std::vector<double> median_w;  // of the others
+DeviceComparison compare_with_others(const DeviceTable& table, std::size_t device, const std::vector<Track>& reported) {
+    DeviceComparison compared{table.power_w[device], {}, {}, std::vector<bool>(table.time_s.size(), false)};
     for (std::size_t i = 0; i < table.time_s.size(); ++i) {
         std::vector<double> others;
         for (std::size_t d = 0; d < table.power_w.size(); ++d)
             if (d != device) others.push_back(table.power_w[d][i]);
-        median_w.push_back(median(std::move(others)));
+        compared.sum_w.push_back(std::reduce(others.begin(), others.end()));
+        compared.median_w.push_back(median(std::move(others)));
     }
-    auto sorted = median_w;
-    std::ranges::sort(sorted);
-    const double running_w = motor_on_fraction * quantile(sorted, 0.75);
-    for (std::size_t i = 0; i < suspect.size(); ++i)
-        if (median_w[i] > running_w && table.power_w[device][i] < off_fraction * median_w[i]) suspect[i] = true;
+    for (const auto& track : reported) {
+        for (const auto& run : runs_of_equal(track.value, stuck_reports)) {
+            const auto first = std::ranges::lower_bound(table.time_s, track.time_s[run.begin]) - table.time_s.begin();
+            const auto last = std::ranges::upper_bound(table.time_s, track.time_s[run.end - 1]) - table.time_s.begin();
+            std::fill(compared.is_stuck.begin() + first, compared.is_stuck.begin() + std::max(first, last), true);
+        }
+    }
+    return compared;
+}
+
+/// Suspect samples of one device: their times, its energy, and its expected energy.
+struct SuspectInterval {
+    double own_j = 0.0;
+    double expected_j = 0.0;
+    double lasts_s = 0.0;
+    double from_s = 0.0;
+    double to_s = 0.0;
+};
+
+template <typename IsSuspect, typename Expected>
+SuspectInterval suspect_samples(const DeviceTable& table, const DeviceComparison& compared, const IsSuspect& is_suspect,
+                                const Expected& expected_w) {
+    SuspectInterval suspect;
+    for (std::size_t i = 0; i < table.time_s.size(); ++i) {
+        if (!is_suspect(i)) continue;
+        if (suspect.lasts_s == 0.0) suspect.from_s = table.time_s[i] - table.step_s[i];
+        suspect.to_s = table.time_s[i];
+        suspect.lasts_s += table.step_s[i];
+        suspect.own_j += compared.own_w[i] * table.step_s[i];
+        suspect.expected_j += expected_w(i) * table.step_s[i];
+    }
     return suspect;
 }
 
-/// Energies of a device and of the others in some samples, and the duration of these.
-struct EnergyShare {
-    double own_j = 0.0;
-    double others_j = 0.0;
-    double lasts_s = 0.0;
-};
-
-EnergyShare share_where(const DeviceTable& table, std::size_t device, const std::vector<bool>& samples, bool value) {
-    EnergyShare share;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        if (samples[i] != value) continue;
-        share.lasts_s += table.step_s[i];
-        for (std::size_t d = 0; d < table.power_w.size(); ++d)
-            (d == device ? share.own_j : share.others_j) += table.power_w[d][i] * table.step_s[i];
-    }
-    return share;
+/// A motor that is stuck, or almost without power while the others run; expected is their median.
+SuspectInterval check_motor(const DeviceTable& table, const DeviceComparison& compared) {
+    auto sorted = compared.median_w;
+    std::ranges::sort(sorted);
+    const double running_w = motor_on_fraction * quantile(sorted, 0.75);
+    const auto others_w = [&](std::size_t i) { return compared.median_w[i]; };
+    const auto idles = [&](std::size_t i) {
+        return others_w(i) > running_w && compared.own_w[i] < off_fraction * others_w(i);
+    };
+    return suspect_samples(
+        table, compared, [&](std::size_t i) { return idles(i) || compared.is_stuck[i]; }, others_w);
 }
 
-/// A device that is off or stuck for a significant part of the energy: expected is its share of the others' power at
-/// other times, or an equal share if these are too few. Empty without one.
-std::string check_device(const DeviceTable& table, std::size_t device, const std::vector<Track>& reported,
-                         bool is_motor, double all_j) {
+/// A circuit that is stuck; expected is its share of the others' power at other times, or an equal share if these are
+/// too few.
+SuspectInterval check_circuit(const DeviceTable& table, const DeviceComparison& compared,
+                              const std::vector<Track>& reported, double all_j) {
     const bool is_steady_load = std::ranges::any_of(
         reported, [](const Track& track) { return is_constant(track) && track.value.front() != 0.0; });
-    if (!is_motor && is_steady_load && table.energy_j(table.power_w[device]) < small_load_fraction * all_j) return "";
-    const auto suspect = suspect_samples(table, device, reported, is_motor);
-    const auto usual = share_where(table, device, suspect, false);
-    const auto [own_j, others_j, lasts_s] = share_where(table, device, suspect, true);
-    const bool is_known = usual.others_j > min_reference_fraction * (usual.others_j + others_j);
-    const double share = is_known ? usual.own_j / usual.others_j : 1.0 / static_cast<double>(table.power_w.size() - 1);
-    const double missing_j = share * others_j - own_j;
-    if (std::abs(missing_j) <= suspect_energy_fraction * std::abs(all_j)) return "";
-    const auto first = std::ranges::find(suspect, true) - suspect.begin();
-    return fmt::format(
-        "reports {} ({:.2f} W) for {:.0f} s, first at {:.1f} s, unlike the others: is it off, or its "
-        "sensor damaged? With their power the energy would change by {:+.0f} %",
-        own_j < off_fraction * share * others_j ? "almost no power" : "a constant value", own_j / lasts_s, lasts_s,
-        table.time_s[static_cast<std::size_t>(first)], units::percentage(missing_j, all_j));
+    if (is_steady_load && table.energy_j(compared.own_w) < small_load_fraction * all_j) return {};
+    const auto others_w = [&](std::size_t i) { return compared.sum_w[i]; };
+    const auto moving = suspect_samples(
+        table, compared, [&](std::size_t i) { return !compared.is_stuck[i]; }, others_w);
+    const bool is_known = moving.expected_j > min_reference_fraction * table.energy_j(compared.sum_w);
+    const double share =
+        is_known ? moving.own_j / moving.expected_j : 1.0 / static_cast<double>(table.power_w.size() - 1);
+    return suspect_samples(
+        table, compared, [&](std::size_t i) { return compared.is_stuck[i]; },
+        [&](std::size_t i) { return share * others_w(i); });
 }
 
-/// Whether a device's power is the sum of all others', of which two or more take part.
-bool is_sum_of_others(const DeviceTable& table, std::size_t device) {
-    const auto& own_w = table.power_w[device];
-    const double own_j = table.energy_j(own_w);
-    std::vector<double> difference_w(own_w.size());
-    for (std::size_t i = 0; i < own_w.size(); ++i) {
-        double others_w = -own_w[i];
-        for (const auto& power_w : table.power_w) others_w += power_w[i];
-        difference_w[i] = std::abs(own_w[i] - others_w);
+/// A device that reduces the sum, or is the sum of the others; empty otherwise.
+std::string check_share(const DeviceTable& table, const DeviceComparison& compared, double all_j) {
+    const double own_j = table.energy_j(compared.own_w);
+    if (own_j < -suspect_energy_fraction * std::abs(all_j)) {
+        return fmt::format("reports negative power, {:.0f} % of the sum: is it a source, or is its sensor reversed?",
+                           units::percentage(own_j, all_j));
     }
+    std::vector<double> difference_w(compared.sum_w.size());
+    std::ranges::transform(compared.own_w, compared.sum_w, difference_w.begin(),
+                           [](double own_w, double others_w) { return std::abs(own_w - others_w); });
     const auto is_part = [&](const auto& power_w) { return table.energy_j(power_w) > same_power_fraction * own_j; };
-    return std::ranges::count_if(table.power_w, is_part) > 2 &&  // itself, and two others
-           table.energy_j(difference_w) < same_power_fraction * own_j;
+    const bool are_parts = std::ranges::count_if(table.power_w, is_part) > 2;  // itself, and two others
+    if (are_parts && table.energy_j(difference_w) < same_power_fraction * own_j)
+        return "reports the sum of all others: if it is the pack, the energy is counted twice";
+    return "";
+}
+
+/// Ids that are missing between others; of "node/motor" those of the motor, if all differ.
+std::string missing_ids(const std::vector<Device>& devices, std::string_view message) {
+    std::set<int> ids;
+    for (const auto& device : devices) {
+        int id = 0;
+        const auto* const end = device.id.data() + device.id.size();
+        const auto parsed = std::from_chars(device.id.data() + device.id.rfind('/') + 1, end, id);
+        if (parsed.ec != std::errc() || parsed.ptr != end || !ids.insert(id).second) return "";
+    }
+    std::vector<int> missing;
+    for (int id = *ids.begin(); id < *ids.rbegin() && missing.size() < ids.size(); ++id)
+        if (!ids.contains(id)) missing.push_back(id);
+    if (missing.empty() || missing.size() == ids.size()) return "";  // numbered otherwise
+    return fmt::format("{} {} {} missing between {} and {}: the sum is without {}", message, fmt::join(missing, ", "),
+                       missing.size() > 1 ? "are" : "is", *std::prev(ids.lower_bound(missing.front())),
+                       *ids.upper_bound(missing.back()), missing.size() > 1 ? "their power" : "its power");
+}
+
+std::string describe(const SuspectInterval& suspect, std::string_view message, const std::string& id, double all_j) {
+    const bool is_off = suspect.own_j < off_fraction * suspect.expected_j;
+    return fmt::format(
+        "{} {} reports {} ({:.2f} W) for {:.0f} s from {:.1f} to {:.1f} s, unlike the others: is it off, or its sensor "
+        "damaged? With their power the energy would change by {:+.0f} %",
+        message, id, is_off ? "almost no power" : "a constant value", suspect.own_j / suspect.lasts_s, suspect.lasts_s,
+        suspect.from_s, suspect.to_s, units::percentage(suspect.expected_j - suspect.own_j, all_j));
 }
 
 }  // namespace
@@ -141,9 +184,14 @@ std::vector<std::string> find_suspect_devices(const FlightSeries& series, std::s
     std::vector<std::string> findings;
     auto devices = devices_of(series, "power_w", message);
     if (devices.empty()) return findings;
+    if (auto missing = missing_ids(devices, message); !missing.empty()) findings.push_back(std::move(missing));
     const auto max_reports = devices.front().track.time_s.size();
     std::erase_if(devices, [&](const Device& device) { return reports_rarely(device, max_reports); });
-    if (devices.size() < 2 || devices.size() > max_compared_devices || max_reports < stuck_reports) return findings;
+    if (devices.size() < 2 || max_reports < stuck_reports) return findings;
+    if (devices.size() > max_compared_devices) {
+        findings.push_back(fmt::format("{} {} devices: too many to compare them", devices.size(), message));
+        return findings;
+    }
     const auto currents = devices_of(series, "current_a", message);
     const auto table = table_of(devices);
     double all_j = 0.0;
@@ -152,17 +200,13 @@ std::vector<std::string> find_suspect_devices(const FlightSeries& series, std::s
         std::vector<Track> reported{devices[d].track};
         const auto current = std::ranges::find(currents, devices[d].id, &Device::id);
         if (current != currents.end()) reported.push_back(current->track);
-        if (const auto finding = check_device(table, d, reported, message == "ESC", all_j); !finding.empty())
+        const auto compared = compare_with_others(table, d, reported);
+        const auto suspect =
+            message == "ESC" ? check_motor(table, compared) : check_circuit(table, compared, reported, all_j);
+        if (std::abs(suspect.expected_j - suspect.own_j) > suspect_energy_fraction * std::abs(all_j))
+            findings.push_back(describe(suspect, message, devices[d].id, all_j));
+        if (const auto finding = check_share(table, compared, all_j); !finding.empty())
             findings.push_back(fmt::format("{} {} {}", message, devices[d].id, finding));
-        const double own_j = table.energy_j(table.power_w[d]);
-        if (own_j < -suspect_energy_fraction * std::abs(all_j))
-            findings.push_back(fmt::format("{} {} reports negative power, {:.0f} % of the sum: is its sensor reversed?",
-                                           message, devices[d].id, units::percentage(own_j, all_j)));
-        if (is_sum_of_others(table, d))
-            findings.push_back(
-                fmt::format("{} {} reports the sum of all others: if it is the pack, the energy is "
-                            "counted twice",
-                            message, devices[d].id));
     }
     return findings;
 }

@@ -8,8 +8,8 @@
 
 namespace flightwatt::flight {
 
-/// Findings about the devices of `message`, at most 32 (docs/methods.md): a device that is stuck or, of motors, reports
-/// almost nothing while the others run, and one that is negative or reports the sum of the others.
+/// Findings about the devices of `message` (docs/methods.md): a device that is stuck or reports almost nothing while
+/// the others run, one that is negative or reports the sum of the others, and ids that are missing between others.
 std::vector<std::string> find_suspect_devices(const FlightSeries& series, std::string_view message);
 
 /// Why voltage and current of POWER_DEVICE are not the pack's: "the circuits have 5.0 to 12.3 V ...". Empty if their

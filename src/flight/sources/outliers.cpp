@@ -36,6 +36,9 @@ constexpr double spike_factor = 3.0;
 constexpr double neighbour_factor = 2.0;
 constexpr double voltage_step = 0.30;
 constexpr double counter_step = 0.01;
+constexpr std::size_t max_dropout = 3;
+constexpr double dropout_throttle_percent = 30.0;
+constexpr double running_fraction = 0.25;
 
 /// The largest magnitude that was held for three samples.
 double held_magnitude(const std::vector<double>& values) {
@@ -104,6 +107,31 @@ std::vector<double> spike_times(const Track& track) {
     return times_s;
 }
 
+/// The times of dropouts of power or current: up to three samples at exactly 0 with the throttle above 30 %, between
+/// samples with such a throttle and more than a quarter of its median. A motor that is cut has its throttle closed.
+std::vector<double> dropout_times(const Track& track, const Track& throttle) {
+    const auto& value = track.value;
+    std::vector<double> times_s;
+    if (throttle.empty() || std::ranges::find(value, 0.0) == value.end()) return times_s;
+    const auto percent = resample(throttle, track.time_s);
+    std::vector<double> running;
+    for (std::size_t i = 0; i < value.size(); ++i)
+        if (percent[i] > dropout_throttle_percent) running.push_back(value[i]);
+    if (running.empty()) return times_s;
+    const double running_level = running_fraction * median_high(std::move(running));
+    const auto runs = [&](std::size_t i) { return percent[i] > dropout_throttle_percent; };
+    const auto is_running = [&](std::size_t i) { return runs(i) && value[i] > 0.0 && value[i] > running_level; };
+    for (std::size_t i = 1; i + 1 < value.size(); ++i) {
+        if (value[i] != 0.0 || !is_running(i - 1)) continue;
+        const auto first = i;
+        while (i < value.size() && value[i] == 0.0 && runs(i)) ++i;
+        if (i == value.size() || i - first > max_dropout || !is_running(i)) continue;
+        times_s.insert(times_s.end(), track.time_s.begin() + static_cast<std::ptrdiff_t>(first),
+                       track.time_s.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    return times_s;
+}
+
 /// Whether all values are within the bounds.
 bool is_plausible(const Track& track) {
     const auto bounds = physical_bounds(track.name);
@@ -136,7 +164,8 @@ std::size_t erase_times(Track& track, const std::vector<double>& times_s) {
     });
 }
 
-TrackSelection remove_outliers(const Track& candidate, const std::vector<double>& contradicted_s) {
+TrackSelection remove_outliers(const Track& candidate, const std::vector<double>& contradicted_s,
+                               const Track& throttle) {
     TrackSelection selection;
     std::vector<std::string> reasons;
     const auto all = candidate.value.size();
@@ -154,6 +183,7 @@ TrackSelection remove_outliers(const Track& candidate, const std::vector<double>
             reasons.push_back(fmt::format("{} {}", removed, reason));
     };
     remove(contradicted_s, "where power is not voltage times current");
+    remove(dropout_times(selection.track, throttle), "at 0 for up to three samples with the throttle open");
     remove(spike_times(selection.track),
            is_counter(candidate) ? "out of the counter's order" : "far beyond the neighbouring samples");
     if (!reasons.empty()) {

@@ -1,6 +1,7 @@
 #include "flight/sources/power_source.h"
 
 #include "base/statistics.h"
+#include "flight/sources/derived_tracks.h"
 #include "flight/sources/device_sum.h"
 #include "flight/sources/outliers.h"
 
@@ -109,8 +110,9 @@ bool measures_something(const Track& power) {
 }
 
 /// Selects a candidate if it measures something, or notes why not.
-bool take(const Track& candidate, TrackSelection& choice, const std::vector<double>& contradicted_s = {}) {
-    auto cleaned = remove_outliers(candidate, contradicted_s);
+bool take(const FlightSeries& series, const Track& candidate, TrackSelection& choice,
+          const std::vector<double>& contradicted_s = {}) {
+    auto cleaned = remove_outliers(candidate, contradicted_s, dropout_throttle(series, candidate));
     if (measures_something(cleaned.track)) {
         choice.track = std::move(cleaned.track);
         choice.removal_notes = std::move(cleaned.removal_notes);
@@ -138,31 +140,39 @@ std::vector<double> contradicted_times(const FlightSeries& series, std::string_v
     return inconsistent_times(*power, *product);
 }
 
+Track dropout_throttle(const FlightSeries& series, const Track& candidate) {
+    if (std::ranges::find(candidate.value, 0.0) == candidate.value.end()) return {};
+    const auto* throttle = find_track(series, "throttle_percent", [](const Track& track) {
+        return track.device.empty() && track.source != commanded_throttle && !is_constant(track);
+    });
+    return throttle == nullptr ? Track{} : within_bounds(*throttle);
+}
+
 TrackSelection select_power(const FlightSeries& series) {
     TrackSelection choice;
     if (const auto* plain = find_plain(series, "power_w")) {
         // Accepted even if it is 0 throughout.
-        return remove_outliers(*plain, contradicted_times(series, plain->source));
+        return remove_outliers(*plain, contradicted_times(series, plain->source), dropout_throttle(series, *plain));
     }
     const auto* product = find_product(series, "ENERGY.");
     if (const auto* power = find_source(series, "ENERGY.power")) {
         if (product != nullptr && contradicts(*power, *product)) {
             choice.rejected_sources.emplace_back("ENERGY.power is not voltage times current");
-        } else if (take(*power, choice, contradicted_times(series, power->source))) {
+        } else if (take(series, *power, choice, contradicted_times(series, power->source))) {
             return choice;
         }
     }
-    if (product != nullptr && take(*product, choice)) return choice;
+    if (product != nullptr && take(series, *product, choice)) return choice;
     const auto is_bat = [](const Track& track) { return track.source.starts_with("BAT."); };
     if (std::ranges::any_of(series.tracks, is_bat)) {
         const auto* bat = find_product(series, "BAT.");
         if (bat == nullptr) choice.rejected_sources.emplace_back("BAT has no current");
-        if (bat != nullptr && take(*bat, choice)) return choice;
+        if (bat != nullptr && take(series, *bat, choice)) return choice;
     }
     for (const auto* message : {"ESC", "POWER_DEVICE"}) {
         auto sum = sum_over_devices(series, "power_w", message);
         if (!sum.ambiguity.empty()) choice.rejected_sources.push_back(std::move(sum.ambiguity));
-        if (sum.track.source.empty() || !take(sum.track, choice)) continue;
+        if (sum.track.source.empty() || !take(series, sum.track, choice)) continue;
         std::ranges::move(sum.notes, std::back_inserter(choice.removal_notes));
         return choice;
     }

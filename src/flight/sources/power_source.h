@@ -16,4 +16,7 @@ TrackSelection select_power(const FlightSeries& series);
 /// is not its voltage times its current.
 std::vector<double> contradicted_times(const FlightSeries& series, std::string_view source);
 
+/// The throttle for detecting dropouts of power or current; empty without one, and if the track is never 0.
+Track dropout_throttle(const FlightSeries& series, const Track& candidate);
+
 }  // namespace flightwatt::flight

@@ -271,6 +271,28 @@ TEST(PowerRules, OfCountersThatRunBackOrContradict) {
     EXPECT_THAT(away(3.5, 1.0).warnings, IsEmpty());
 }
 
+TEST(PowerRules, OfPhasesThatDifferFromTheCounter) {
+    const auto differs = [](double takeoff_s, double in_takeoff, double in_cruise, double resolution_wh = 0.0) {
+        auto record = sound_record();
+        double counted_wh = 0.0;
+        for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+            const double since_s = record.time_s[i] - record.time_s[first];
+            counted_wh += record.power_w[i] / (since_s <= takeoff_s ? in_takeoff : in_cruise) / 3600.0;
+            record.energy_wh.value.push_back(counted_wh);
+        }
+        record.energy_wh.closure_percent = 0.0;
+        record.energy_wh.resolution = resolution_wh;
+        record.sorties = {sortie_of(record, takeoff_s)};
+        return found_in(std::move(record)).warnings;
+    };
+    EXPECT_THAT(differs(0.0, 1.0, 1.11), Contains(HasSubstr("cruise at 100 s: ")));
+    EXPECT_THAT(differs(0.0, 1.0, 1.09), IsEmpty());
+    EXPECT_THAT(differs(70.0, 1.5, 1.0), Contains(HasSubstr("takeoff at 100 s: "))) << "2.3 % of the flight";
+    EXPECT_THAT(differs(50.0, 1.5, 1.0), IsEmpty()) << "1.7 % of the flight";
+    EXPECT_THAT(differs(0.0, 1.0, 1.2, 0.225), testing::SizeIs(1)) << "0.46 Wh more than 10 %";
+    EXPECT_THAT(differs(0.0, 1.0, 1.2, 0.238), IsEmpty());
+}
+
 TEST(PowerRules, OfACurrentAtRestThatDrifts) {
     const auto drifts = [](double by_a) {
         auto record = sound_record();
@@ -287,16 +309,21 @@ TEST(PowerRules, OfACurrentAtRestThatDrifts) {
     EXPECT_THAT(drifts(0.09), Not(does_drift));
 }
 
-TEST(PowerRules, OfAltitudesThatGoOnForLonger) {
-    const auto with_altitudes = [](double from_s) {
+TEST(PowerRules, OfAltitudesThatPauseOrGoOnForLonger) {
+    const auto with_altitudes = [](double from_s, double pause_s) {
         auto record = sound_record();
         record.sorties = {sortie_of(record)};
-        for (double t = from_s; t < 1200.0; t += 1.0) record.altitude_time_s.push_back(t);
+        for (double t = from_s; t < 1200.0; t += 1.0)
+            if (t <= 500.0 || t >= 500.0 + pause_s) record.altitude_time_s.push_back(t);
         return found_in(std::move(record)).warnings;
     };
-    EXPECT_THAT(with_altitudes(-65.0),
+    EXPECT_THAT(with_altitudes(0.0, 62.0),
+                Contains("1 gaps in the altitude in flight, 62 s in all: no message came, or the clock jumped; 6 % of "
+                         "the energy is in them, and no counter confirms it"));
+    EXPECT_THAT(with_altitudes(0.0, 60.0), IsEmpty());
+    EXPECT_THAT(with_altitudes(-65.0, 0.0),
                 Contains("power is logged from 0 s, altitude from -65 s: earlier power is missing"));
-    EXPECT_THAT(with_altitudes(-62.0), IsEmpty()) << "5 % of the log";
+    EXPECT_THAT(with_altitudes(-62.0, 0.0), IsEmpty()) << "5 % of the log";
     const auto in_short_log = [](double from_s) {
         auto record = sound_record(300);
         for (double t = from_s; t < 500.0; t += 1.0) record.altitude_time_s.push_back(t);
@@ -304,6 +331,26 @@ TEST(PowerRules, OfAltitudesThatGoOnForLonger) {
     };
     EXPECT_THAT(in_short_log(-31.0), testing::SizeIs(1));
     EXPECT_THAT(in_short_log(-29.0), IsEmpty());
+}
+
+TEST(PowerRules, OfAClimbWithoutPower) {
+    const auto towed = [](std::size_t samples, double power_w, double climb_m_per_s, std::size_t strong = 0) {
+        auto record = sound_record();
+        for (std::size_t i = last - strong; i < last; ++i) record.power_w[i] *= 2.0;
+        record.sorties = {sortie_of(record, 60.0)};
+        for (std::size_t i = first; i < last; ++i)
+            record.altitude_m[i] = climb_m_per_s * static_cast<double>(i - first);
+        for (std::size_t i = first; i < first + samples; ++i) record.power_w[i] = power_w;
+        return found_in(std::move(record)).warnings;
+    };
+    const auto is_towed = Contains(HasSubstr("without power: was it towed"));
+    EXPECT_THAT(towed(5, 1.9, 2.6), is_towed) << "10.4 m";
+    EXPECT_THAT(towed(5, 1.9, 2.4), Not(is_towed)) << "9.6 m";
+    EXPECT_THAT(towed(5, 2.1, 2.6), Not(is_towed)) << "a tenth of the power";
+    EXPECT_THAT(towed(3, 1.9, 20.0), is_towed);
+    EXPECT_THAT(towed(2, 1.9, 20.0), Not(is_towed));
+    EXPECT_THAT(towed(5, 3.9, 2.6, 260), is_towed) << "a tenth of the upper quartile";
+    EXPECT_THAT(towed(5, 3.9, 2.6, 240), Not(is_towed));
 }
 
 /// With gaps of so many seconds more than usual from sample 600 on, each 20 samples, and the counter's closure.

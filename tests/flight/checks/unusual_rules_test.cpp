@@ -140,6 +140,17 @@ TEST(PowerWarnings, TellOfACurrentThatHangsOrIsSaturated) {
     EXPECT_THAT(saturated.warnings, testing::Contains(HasSubstr("the current is 2.4 A, its highest, in ")));
 }
 
+TEST(PowerWarnings, LeaveOutShortDropoutsWhileTheThrottleIsOpen) {
+    for (const int length : {1, 2, 3}) {
+        const auto loaded = with_energy(false, [&](test::Words& words, int number) {
+            if (number % 20 < length) words[power] = words[current] = "0";
+        });
+        EXPECT_NEAR(test::energy_in_flight_wh(loaded), sound_energy_wh(), 0.02 * sound_energy_wh()) << length;
+        EXPECT_THAT(test::said_of(loaded), HasSubstr("at 0 for up to three samples with the throttle open")) << length;
+        EXPECT_EQ(select_track(loaded.series, "current_a").time_s, power_track(loaded.series).time_s);
+    }
+}
+
 TEST(PowerWarnings, LeaveAMotorThatIsCutForShort) {
     const auto loaded = with_energy(false, [](test::Words& words, int number) {
         if (number % 40 < 2) words[power] = words[current] = words[throttle] = "0";
@@ -190,6 +201,15 @@ TEST(PowerWarnings, TellOfManyShortGapsTogether) {
     EXPECT_THAT(test::said_of(test::examined(text)), HasSubstr("gaps in the power, "));
 }
 
+TEST(PowerWarnings, TellOfJumpsOfTheClockThatLeaveNoGapInThePower) {
+    const auto text = test::damaged_sample([](test::Words& words) {
+        if (words[2] == "ENERGY") words[charge] = words[energy] = "0";
+        const double time_s = number_or_nan(words[0]);
+        words[time] = fmt::format("{:.3f}", time_s + 2.0 * std::clamp(std::floor((time_s - 64.0) / 20.0), 0.0, 30.0));
+    });
+    EXPECT_THAT(test::said_of(test::examined(text)), HasSubstr("no message came, or the clock jumped"));
+}
+
 TEST(PowerWarnings, TellOfACurrentThatDrifts) {
     const auto drifts = with_energy(false, [](test::Words& words, int) {
         const double drift_a = 0.0005 * std::max(0.0, value(words, time) - 64.0);
@@ -197,6 +217,12 @@ TEST(PowerWarnings, TellOfACurrentThatDrifts) {
         set(words, current, value(words, current) + drift_a);
     });
     EXPECT_THAT(test::said_of(drifts), HasSubstr("does its sensor drift?"));
+}
+
+TEST(PowerWarnings, TellOfAClimbWithoutPower) {
+    const auto late = with_energy(
+        false, [](test::Words& words, int) { words[time] = fmt::format("{:.3f}", value(words, time) + 10.0); });
+    EXPECT_THAT(test::said_of(late), HasSubstr("without power: was it towed, or is the power logged late?"));
 }
 
 TEST(PowerWarnings, TellOfTheCounterFromThreePercentOn) {
@@ -245,6 +271,21 @@ TEST(PowerWarnings, TellOfDevicesThatAllReportNothingInFlight) {
     EXPECT_THAT(dead_for(40.0).warnings, dead);
     EXPECT_THAT(dead_for(8.0).warnings, Not(dead)) << "2 % of the flight";
     EXPECT_THAT(dead_for(0.0).warnings, Not(dead)) << "it glides down with its motor off";
+}
+
+TEST(PowerWarnings, CompareEachPhaseWithItsCounterAlsoWhereTheWholeIsDoubtful) {
+    const auto lacking = [](double in_takeoff) {
+        return with_energy(true, [in_takeoff](test::Words& words, int) {
+            const double by = value(words, time) < 92.0 ? in_takeoff : 0.95;
+            scale(words, power, by);
+            scale(words, current, by);
+            words[charge] = "0";
+        });
+    };
+    const auto whole = testing::Contains(HasSubstr("away from the on-board energy counter"));
+    const auto phase = testing::Contains(testing::ContainsRegex("takeoff at .* Wh were measured and .* Wh counted"));
+    EXPECT_THAT(lacking(0.5).warnings, testing::AllOf(whole, phase));
+    EXPECT_THAT(lacking(0.95).warnings, testing::AllOf(whole, Not(phase)));
 }
 
 TEST(PowerWarnings, KnowACounterByItsDecimalsHoweverSeldomItIsLogged) {

@@ -2,9 +2,7 @@
 
 #include "flight/segmentation.h"
 #include "flight/selected_track.h"
-#include "flight/telemetry_series.h"
 #include "helpers/flown_points.h"
-#include "telemetry/telemetry_log.h"
 
 #include <algorithm>
 #include <random>
@@ -212,24 +210,6 @@ TEST(MotorRecord, TakesTheMotorsSpeedWhereTheThrottleIdlesAndPowerTellsNothing) 
         testing::AllOf(HasSubstr("is idle while the motor turns at"), HasSubstr("the latter is used there")));
     EXPECT_THAT(turning_for(28.0), Not(counts));
     EXPECT_THAT(turning_for(33.0), counts);
-}
-
-TEST(MotorRecord, TakesTheCommandsWhereTheThrottleIdlesAndNothingElseIsKnown) {
-    // Throttle 50 %, but for `manual_s` 0 as in manual mode, while the commands go on.
-    const auto lowest = [](double manual_s, const std::string& command) {
-        std::string text;
-        for (int i = 0; i <= 200; ++i) {
-            text += fmt::format("{} 20 ENERGY {} 11. 2. 22. 0.1 1.\n", i, i < 100 || i > 100 + manual_s ? 50 : 0);
-            if (i % 5 == 0) text += fmt::format("{} 20 COMMANDS {},-20,30\n", i, command);
-        }
-        const auto series =
-            flight_series(telemetry::parse_telemetry(text, "x.data", std::nullopt, flight_messages()), "20");
-        return std::ranges::min(motor_record(series, {}).percent.value);
-    };
-    EXPECT_EQ(lowest(30.0, "4800"), 50.0);
-    EXPECT_EQ(lowest(28.0, "4800"), 0.0) << "half a minute";
-    EXPECT_EQ(lowest(40.0, "1900"), 0.0) << "less than any flight takes";
-    EXPECT_EQ(lowest(40.0, "-100"), 0.0) << "a roll command";
 }
 
 struct Section {

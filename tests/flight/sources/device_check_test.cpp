@@ -241,7 +241,8 @@ TEST(DeviceDoubts, AreNotLookedForAmongMoreThan32) {
     const auto alike = [](int count) {
         return doubts_of("ESC", count, [](int motor, int second) { return motor == 5 ? 0.0 : wavering_a(second); });
     };
-    EXPECT_THAT(alike(33), testing::IsEmpty());
+    EXPECT_THAT(alike(33), testing::ElementsAre("33 ESC devices: too many to compare them"));
+    EXPECT_THAT(alike(32), testing::IsEmpty()) << "one of 32 draws 3.1 %";
     EXPECT_THAT(alike(20), testing::ElementsAre(HasSubstr("ESC 5 reports almost no power")));
 }
 
@@ -255,6 +256,24 @@ TEST(DeviceDoubts, TakeVoltagesForDifferentFromATenthOn) {
     };
     EXPECT_EQ(reason_at(13.1), "");
     EXPECT_THAT(reason_at(13.3), HasSubstr("have 12.0 to 13.3 V"));
+}
+
+TEST(DeviceDoubts, NameIdsThatAreMissingBetweenOthers) {
+    const auto doubts_with = [](const std::vector<std::string>& ids) {
+        std::string text;
+        for (int k = 0; k < 60; ++k)
+            for (const auto& id : ids)
+                text += fmt::format("{} 7 POWER_DEVICE {} {:.3f} 12.0\n", k, id, 2.0 + 0.1 * std::sin(0.1 * k));
+        return find_suspect_devices(
+            flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), "7"), "POWER_DEVICE");
+    };
+    EXPECT_THAT(doubts_with({"1 0", "1 2", "1 3"}),
+                testing::ElementsAre("POWER_DEVICE 1 is missing between 0 and 2: the sum is without its power"));
+    EXPECT_THAT(doubts_with({"1 0", "1 3", "1 4", "1 5"}),
+                testing::ElementsAre(HasSubstr("1, 2 are missing between 0 and 3")));
+    EXPECT_THAT(doubts_with({"1 0", "1 1", "1 2"}), testing::IsEmpty());
+    EXPECT_THAT(doubts_with({"1 5", "1 9"}), testing::IsEmpty()) << "numbered by other rules";
+    EXPECT_THAT(doubts_with({"1 0", "2 0", "3 0"}), testing::IsEmpty()) << "one circuit a node";
 }
 
 }  // namespace

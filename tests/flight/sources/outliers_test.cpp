@@ -81,7 +81,9 @@ TEST(PhysicalBounds, AreKeptByTheChosenTrack) {
               "1 of 100 samples of altitude_m (ESTIMATOR.z) are removed: 1 beyond physical bounds");
 }
 
-std::size_t removed(const Track& track) { return track.value.size() - remove_outliers(track).track.value.size(); }
+std::size_t removed(const Track& track, const Track& throttle = {}) {
+    return track.value.size() - remove_outliers(track, {}, throttle).track.value.size();
+}
 
 TEST(Outliers, AreSpikesOfPowerAndCurrent) {
     EXPECT_EQ(removed(track_with("power_w", 20.0, {{50, 66.0}, {51, 66.0}})), 2U) << "three times 20 W, and 5 W";
@@ -117,6 +119,18 @@ TEST(Outliers, AreSamplesOutOfTheOrderOfACounter) {
     EXPECT_EQ(removed(counter(-0.18)), 0U) << "less than 1 % below the one before";
     EXPECT_EQ(removed(counter(0.21)), 1U);
     EXPECT_EQ(removed(counter(0.18)), 0U);
+}
+
+TEST(Outliers, AreDropoutsWhileTheThrottleIsOpen) {
+    const auto throttle = [](double percent) { return track_with("throttle_percent", percent, {}); };
+    const auto dropout = track_with("power_w", 20.0, {{50, 0.0}, {51, 0.0}, {52, 0.0}});
+    EXPECT_EQ(removed(dropout, throttle(31.0)), 3U);
+    EXPECT_EQ(removed(dropout, throttle(29.0)), 0U);
+    EXPECT_EQ(removed(dropout), 0U) << "no throttle is known";
+    EXPECT_EQ(removed(track_with("power_w", 20.0, {{50, 0.0}, {51, 0.0}, {52, 0.0}, {53, 0.0}}), throttle(50.0)), 0U);
+    EXPECT_EQ(removed(track_with("power_w", 20.0, {{49, 4.9}, {50, 0.0}}), throttle(50.0)), 0U)
+        << "beside less than a quarter of the median";
+    EXPECT_EQ(removed(track_with("power_w", 20.0, {{49, 5.1}, {50, 0.0}}), throttle(50.0)), 1U);
 }
 
 }  // namespace
