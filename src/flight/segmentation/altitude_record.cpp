@@ -29,7 +29,7 @@ constexpr std::size_t passes = 10;    // a removal may create further excursions
 constexpr std::size_t returns = 100;  // jumps among which the return is searched
 
 /// Samples of long runs of one value.
-std::vector<bool> stuck_samples(const Track& track) {
+std::vector<bool> stuck_altitudes(const Track& track) {
     std::vector<bool> stuck(track.value.size(), false);
     for (const auto& run : runs_of_equal(track.value, stuck_count))
         if (track.time_s[run.end - 1] - track.time_s[run.begin] >= stuck_s) set_part(stuck, run, true);
@@ -42,7 +42,7 @@ bool is_beyond(const Track& track, std::size_t i, std::size_t j, double step_m, 
 
 /// The pieces between jumps, in order.
 std::vector<IndexSpan> pieces_of(const Track& track) {
-    const auto stuck = stuck_samples(track);
+    const auto stuck = stuck_altitudes(track);
     const auto continues = [&](std::size_t i) {
         const bool has_fix = !stuck[i - 1] && !stuck[i];
         return (has_fix || !is_beyond(track, i - 1, i, fix_jump_m, fix_jump_m_per_s)) &&
@@ -64,7 +64,7 @@ std::vector<std::size_t> jumps_of(const Track& track) {
 std::size_t remove_excursions(Track& track) {
     const auto jumps = jumps_of(track);
     std::vector<bool> out(track.time_s.size(), false);
-    const auto stuck = stuck_samples(track);
+    const auto stuck = stuck_altitudes(track);
     std::size_t after = 0;  // the first sample after the last removal
     for (std::size_t a = 0; a < jumps.size(); ++a) {
         const auto first = jumps[a];
@@ -95,7 +95,7 @@ std::size_t remove_short_pieces(Track& track) {
 
 /// Whether an altitude that moves for a while on both sides jumps further than an estimator that gets a fix.
 bool jumps_too_far(const Track& track) {
-    const auto stuck = stuck_samples(track);
+    const auto stuck = stuck_altitudes(track);
     const auto pieces = pieces_of(track);
     const auto lasts = [&](const IndexSpan& piece) {
         return track.time_s[piece.end - 1] - track.time_s[piece.begin] >= long_piece_s;

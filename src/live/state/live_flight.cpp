@@ -46,9 +46,8 @@ class LiveFlight::Impl {
         ++messages_;
         arrival_s_ = arrival_s;
         const auto sender = message.text.substr(0, message.text.find(' '));
-        if (followed_.empty()) followed_ = sender;
-        if (sender == followed_) heard_s_ = arrival_s;
         if (messages_of_.size() < max_senders || messages_of_.contains(sender)) ++messages_of_[sender];
+        if (followed_.empty() || sender == followed_) heard_s_ = arrival_s;
         if (!message.time_s) message.time_s = arrival_s;
         const bool is_known = clocks_.contains(sender);
         const auto name = is_known || clocks_.size() < max_senders ? sender : std::string();
@@ -72,9 +71,14 @@ class LiveFlight::Impl {
         ended_ = true;
     }
 
+    /// Before the aircraft is known, the latest of all.
     std::optional<double> clock_s() const {
-        const auto followed = clocks_.find(followed_);
-        return followed == clocks_.end() ? std::nullopt : std::optional(followed->second.latest_s());
+        if (const auto followed = clocks_.find(followed_); followed != clocks_.end())
+            return followed->second.latest_s();
+        std::optional<double> latest_s;
+        for (const auto& [sender, clock] : clocks_)
+            latest_s = std::max(latest_s.value_or(clock.latest_s()), clock.latest_s());
+        return latest_s;
     }
 
     LiveState update(double silent_s);
@@ -120,7 +124,7 @@ class LiveFlight::Impl {
     std::map<std::string, ClockFilter, std::less<>> clocks_;  ///< of the senders
     std::map<std::string, std::size_t, std::less<>> messages_of_;  ///< the senders
     std::string aircraft_;                                         ///< empty: not known yet
-    std::string followed_;    ///< the aircraft; before one is known, the first sender
+    std::string followed_;    ///< the aircraft of the last update; empty: not known yet
     double arrival_s_ = 0.0;  ///< of the last message, and of the aircraft's last one
     double heard_s_ = 0.0;
     std::vector<IncomingMessage> accepted_;  ///< of the last message; a member to reuse its memory

@@ -21,7 +21,7 @@ TEST(Explanation, GivesTheReasonsOfEveryEdgeAndThePowerRecord) {
     const auto table = edges_table(series, phases);
     ASSERT_EQ(table.rows.size(), 4U);
     EXPECT_EQ(table.rows[2][1], "start of landing");
-    EXPECT_EQ(table.rows[2][8], "Survey");
+    EXPECT_EQ(table.rows[2][8], "Land Right AF-TD");
     EXPECT_EQ(table.rows[0][0], "1");
     EXPECT_EQ(table.rows[0][2], fmt::format("{:.1f}", phases.sorties[0].phases[0].start.time_s));
     auto text = explanation(series, phases, power, {});

@@ -147,7 +147,7 @@ TEST(ReplaySection, ShowsTablesAndSentences) {
     const std::vector replays{planned_replay("one"), planned_replay("two")};
     const auto section = replay_section(replays);
     EXPECT_THAT(section.html, HasSubstr("better on 2"));
-    EXPECT_THAT(section.html, HasSubstr("It keeps the reserve on"));
+    EXPECT_THAT(section.html, HasSubstr("it keeps the reserve on 2"));
     EXPECT_THAT(section.html, HasSubstr("&lt;below&gt;"));
     EXPECT_THAT(section.html, HasSubstr("were not aboard"));
 }
