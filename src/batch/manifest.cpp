@@ -182,9 +182,8 @@ BatchPlan plan_batch(std::vector<LogFile> logs, const std::filesystem::path& out
 }
 
 void refuse_foreign_files(const BatchPlan& plan, const std::filesystem::path& out) {
-    std::vector<std::filesystem::path> files;
-    for (const auto* name : model_names) files.push_back(out / name);
-    files.push_back(out / catalogue_name);
+    std::vector<std::filesystem::path> files{out / catalogue_name};
+    for (const auto* name : model_names) files.emplace_back(out / name);
     for (const auto& file : files) register_output(file);
     register_output(out / manifest_name);
     for (const auto* ending : result_suffixes) {

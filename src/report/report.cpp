@@ -105,6 +105,7 @@ void add_trends(Draft& page, const BatchContent& batch) {
 void add_missions(Draft& page) {
     const auto& missions = page.input.missions;
     std::vector<std::string> names;
+    names.reserve(missions.size());
     for (const auto& mission : missions) names.push_back(setup_of(mission).file);
     page.content.facts.emplace_back("missions", fmt::format("{}", fmt::join(names, ", ")));
     page.answers.missions = simulate_for_report(missions, page.log.progress("missions"));

@@ -90,6 +90,7 @@ std::string log_text(const SyntheticFlight& flight, const std::vector<PeriodicMe
                             {4, "Standby"},  {5, "Survey"},   {6, "Land Right AF-TD"}};
     aircraft.current_origin = telemetry::CurrentOrigin::sensor;
     std::vector<telemetry::MessageDefinition> messages;
+    messages.reserve(reports.size() + 2);
     for (const auto& report : reports) messages.push_back(report.definition);
     messages.push_back({"TAKEOFF", {{"cpu_time", "uint16", "s", "", {}}}, ".log"});
     messages.push_back({"INFO_MSG", {{"msg", "char[]", "", "", {}}}, ".log"});

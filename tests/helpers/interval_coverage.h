@@ -81,11 +81,11 @@ inline Coverage coverage_of(flight::Phase phase, const CoverageCase& made, unsig
         const double freedom = analysis.errors.degrees_of_freedom;
         double width_w = 0.0;
         double square_w2 = 0.0;
-        for (std::size_t i = 0; i < taus.size(); ++i) {
-            const double true_w = power_w(truth.fourier, taus[i] * truth.duration_s);
-            const double found_w = power_w(mean.fourier, taus[i] * mean.duration_s);
+        for (const double tau : taus) {
+            const double true_w = power_w(truth.fourier, tau * truth.duration_s);
+            const double found_w = power_w(mean.fourier, tau * mean.duration_s);
             const auto [low_w, high_w] =
-                mechanical::student_t_interval(found_w, curve_standard_error_w(analysis, taus[i]), freedom);
+                mechanical::student_t_interval(found_w, curve_standard_error_w(analysis, tau), freedom);
             coverage.covered += low_w <= true_w && true_w <= high_w ? 1.0 : 0.0;
             width_w += (high_w - low_w) / points;
             square_w2 += std::pow(found_w - true_w, 2) / points;

@@ -70,6 +70,7 @@ double phase_energy_wh(const mission::SocCurve& curve, mission::Phase phase) {
 std::vector<Difference> mission_difference(const mission::Simulation& a, const mission::Simulation& b,
                                            const std::optional<mission::SampledDifference>& drawn) {
     std::vector<Difference> all;
+    all.reserve(2 * mission::all_phases.size());
     for (const auto phase : mission::all_phases) {
         all.push_back(computed(std::string(to_string(phase)), "energy_wh", "Wh", phase_energy_wh(a.curve, phase),
                                phase_energy_wh(b.curve, phase)));

@@ -171,6 +171,7 @@ void note_power_model(const StageCall& call, const mission::MissionSetup& missio
 
 std::vector<RankedMission> ranked_missions(const std::vector<mission::MissionSummary>& ranked) {
     std::vector<RankedMission> missions;
+    missions.reserve(ranked.size());
     for (const auto& summary : ranked) missions.push_back({missions.size() + 1, summary});
     return missions;
 }

@@ -38,6 +38,7 @@ double standard_error_of(const std::vector<double>& values) {
     if (values.size() < 2) return std::numeric_limits<double>::quiet_NaN();
     const double average = mean(values);
     std::vector<double> deviations;
+    deviations.reserve(values.size());
     for (const double value : values) deviations.push_back(value - average);
     return std::sqrt(sample_variance(values) / static_cast<double>(values.size()) * correlation_time(deviations));
 }

@@ -105,7 +105,7 @@ void add_derived(std::vector<Track>& tracks, const SenderLog& sender, const Deri
         for (std::size_t c = 0; c < columns.size(); ++c) row[c] = columns[c]->values[i];
         values[i] = derived.compute(row);
     }
-    tracks.push_back(make_candidate(derived.name, derived.source, *table, std::move(values), Merge::mean));
+    tracks.push_back(make_candidate(derived.name, derived.source, *table, values, Merge::mean));
 }
 
 /// Latitude and longitude from UTM coordinates.
@@ -124,8 +124,8 @@ void add_utm_position(std::vector<Track>& tracks, const SenderLog& sender) {
         latitude_deg[i] = position.latitude_deg;
         longitude_deg[i] = position.longitude_deg;
     }
-    tracks.push_back(make_candidate("latitude_deg", "GPS.utm", *table, std::move(latitude_deg), Merge::mean));
-    tracks.push_back(make_candidate("longitude_deg", "GPS.utm", *table, std::move(longitude_deg), Merge::mean));
+    tracks.push_back(make_candidate("latitude_deg", "GPS.utm", *table, latitude_deg, Merge::mean));
+    tracks.push_back(make_candidate("longitude_deg", "GPS.utm", *table, longitude_deg, Merge::mean));
 }
 
 /// The first of `fields` with the given quantity, or nullptr.
@@ -188,7 +188,7 @@ void add_device(std::vector<Track>& tracks, const std::string& id, const Track& 
         values[report].push_back(value);
     }
     for (std::size_t r = 0; r < reports.size(); ++r) {
-        tracks.push_back(make_candidate(as.name, as.source, reports[r], std::move(values[r]), Merge::mean));
+        tracks.push_back(make_candidate(as.name, as.source, reports[r], values[r], Merge::mean));
         tracks.back().device = r == 0 ? id : fmt::format("{}{}{}", id, report_separator, r + 1);
     }
 }
@@ -229,8 +229,8 @@ void add_device_message(std::vector<Track>& tracks, const MessageTable* table,
 }  // namespace
 
 Track make_candidate(const std::string& name, const std::string& source, const MessageTable& table,
-                     std::vector<double> values, Merge merge) {
-    auto track = make_track(table.time_s, std::move(values), merge);
+                     const std::vector<double>& values, Merge merge) {
+    auto track = make_track(table.time_s, values, merge);
     track.name = name;
     track.source = source;
     const bool is_whole = track.time_s.size() == table.time_s.size();  // in the order of time
@@ -244,7 +244,7 @@ void add_derived_tracks(std::vector<Track>& tracks, const SenderLog& sender) {
     add_utm_position(tracks, sender);
     if (const auto* takeoff = sender.table("TAKEOFF"); takeoff != nullptr && !takeoff->empty()) {
         std::vector<double> ones(takeoff->time_s.size(), 1.0);
-        tracks.push_back(make_candidate("takeoff", "TAKEOFF", *takeoff, std::move(ones), Merge::latest));
+        tracks.push_back(make_candidate("takeoff", "TAKEOFF", *takeoff, ones, Merge::latest));
     }
     add_device_message(tracks, sender.table("ESC"), {"node_id", "motor_id"});
     add_device_message(tracks, sender.table("POWER_DEVICE"), {"node_id", "circuit"});

@@ -270,7 +270,7 @@ void LiveFlight::Impl::predict_battery(LiveState& state, Diagnostics& remarks) c
                                           ? "the telemetry begins in the air: the state of charge is by the "
                                             "autopilot's counter, from --initial-soc or the mission"
                                           : "the telemetry begins in the air: the state of charge is by the voltage");
-    state.prediction->battery = std::move(result);
+    state.prediction->battery = result;
 }
 
 /// What follows from the battery's state and the prediction.

@@ -234,7 +234,7 @@ TermSelection select_terms(std::span<const BinnedFlight> flights, const PowerReg
     auto best = first_term(of);
     if (best) trial_of(best->term).rms_after_w = best->error.rms_w();
     while (best) {
-        const auto chosen = *std::move(best);
+        const auto chosen = *best;
         best.reset();
         trial_of(chosen.term).kept = true;
         trial_of(chosen.term).reason.clear();

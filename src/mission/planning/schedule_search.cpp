@@ -302,7 +302,7 @@ SearchResult search_schedule(const ScheduleProblem& problem, const SearchLimits&
     }
     SearchResult result;
     result.feasible = std::isfinite(search.best.utility);
-    result.best = result.feasible ? std::move(search.best) : least;
+    result.best = result.feasible ? search.best : least;
     if (result.feasible) result.bound = std::max(search.bound, result.best.utility);
     return result;
 }

@@ -196,6 +196,7 @@ TextTable exclusions_table(std::span<const Exclusion> exclusions) {
     TextTable table{{"flights", "number", "excluded", "reason"}, {}};
     for (const auto& group : groups) {
         std::vector<std::string> names;
+        names.reserve(group.size());
         for (const auto* exclusion : group) names.push_back(exclusion->flight);
         if (names.size() > max_names) {
             names.resize(max_names);

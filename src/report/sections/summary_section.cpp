@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <ranges>
 #include <set>
 
 #include <fmt/format.h>
@@ -113,10 +112,12 @@ std::string prediction_line(std::span<const mechanical::ValidatedFlight> validat
     }
     if (errors.empty()) return "";
     std::ranges::stable_sort(errors, {}, &std::pair<double, std::string>::first);
+    std::vector<std::string> texts;
+    texts.reserve(errors.size());
+    for (const auto& [error_percent, text] : errors) texts.push_back(text);
     return fmt::format(
         "Mean error of the energy of a flight that is not in the fit: {}; over {}, each left out in turn{}",
-        fmt::join(errors | std::views::values, ", "), plural(flights, "flight"),
-        synthetic ? " (SYNTHETIC flights)" : "");
+        fmt::join(texts, ", "), plural(flights, "flight"), synthetic ? " (SYNTHETIC flights)" : "");
 }
 
 Section summary_section(const PageSummary& answers, std::span<const ReportFlight> flights) {
