@@ -1,8 +1,10 @@
-// The path of a mission as it is flown, leg by leg; or the path that was flown in a log, as waypoints for a mission.
+// The path of a mission as it is flown, leg by leg; the blocks of a plan; or the path that was flown in a log, as
+// waypoints for a mission.
 
 #include "base/csv.h"
 #include "base/duration_text.h"
 #include "base/error.h"
+#include "base/input_file.h"
 #include "base/units.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/mission_output.h"
@@ -11,13 +13,43 @@
 #include "flight/flown_path.h"
 #include "mission/mission_file.h"
 #include "path/cruise_path.h"
+#include "path/plan_files.h"
 #include "stages.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace {
 
 using namespace flightwatt;
+
+/// JSON of the blocks of a plan.
+struct PlanFileOutput {
+    std::string plan;
+    std::vector<path::PlanBlock> blocks;
+};
+
+}  // namespace
+
+namespace flightwatt::path {
+
+Fields<PlanBlock> record_fields(const PlanBlock*) {
+    using R = PlanBlock;
+    return {field("block", &R::name, "name of the block; `mission` of a plan that has none"),
+            field("line", &R::line, "of the file; 0: unknown"),
+            field("flown", &R::flown, "number of legs, circles and holds; empty: nothing"),
+            field("length_m", &R::length_m, "of legs and circles over ground"),
+            field("not_flown", &R::not_flown, "what is not flown, and why")};
+}
+
+}  // namespace flightwatt::path
+
+namespace {
+
+Fields<PlanFileOutput> record_fields(const PlanFileOutput*) {
+    using R = PlanFileOutput;
+    return {field("plan", &R::plan, "its file"), field("blocks", &R::blocks, "in the order of the file")};
+}
 
 /// JSON of a mission's path.
 struct PathOutput {
@@ -52,6 +84,23 @@ Fields<FlightPathOutput> record_fields(const FlightPathOutput*) {
 }
 
 constexpr int digits = 10;
+
+int list_plan(const cli::StageCall& call, std::string_view text, std::optional<double> radius_m) {
+    const auto& file = call.inputs.front();
+    const PlanFileOutput plan{file, path::parse_plan(text, file, {radius_m})};
+    CsvWriter csv({"block", "line", "flown", "length_m", "not_flown"}, digits);
+    std::size_t flown = 0;
+    for (const auto& block : plan.blocks) {
+        csv.add(block.name, block.line, block.flown, block.length_m,
+                fmt::format("{}", fmt::join(block.not_flown, "; ")));
+        if (!block.flown.empty()) ++flown;
+    }
+    write_csv_result(call, csv.text(), {file, {"block", "flown", "length_m", "not_flown"}});
+    if (call.json) cli::print_json(call, plan);
+    cli::note(call, fmt::format("{}: {} of {} blocks are flown by a mission that names them", file, flown,
+                                plan.blocks.size()));
+    return cli::ok;
+}
 
 int show_path(const cli::StageCall& call) {
     mission::MissionReadOptions reading;
@@ -122,32 +171,43 @@ int take_path(const cli::StageCall& call, flight::LoadOptions options, const std
 
 struct PathArguments {
     std::optional<std::string> log;
+    std::optional<double> radius_m;
     flight::LoadOptions load;
 };
 
 int show_or_take_path(const cli::StageCall& call, const PathArguments& arguments) {
     if (arguments.log.has_value() == !call.inputs.empty())
-        throw UsageError("give a mission, or a log with --path-from");
-    return arguments.log ? take_path(call, arguments.load, *arguments.log) : show_path(call);
+        throw UsageError("give a mission or a plan, or a log with --path-from");
+    if (arguments.log) return take_path(call, arguments.load, *arguments.log);
+    const auto text = read_file(call.inputs.front());
+    if (path::plan_format(text) != path::PlanFormat::none) return list_plan(call, text, arguments.radius_m);
+    if (arguments.radius_m) throw UsageError("--radius belongs to a plan: a mission has radius_m in [path]");
+    return show_path(call);
 }
 
 }  // namespace
 
 int flightwatt::stages::path_stage(int argc, char** argv) {
     cli::StageDefinition stage{
-        "path", "[MISSION.toml]",
+        "path", "[MISSION.toml|PLAN]",
         R"(Shows how the cruise of a mission with a [path] is flown, an element a row: leg, kind, start_s, duration_s,
 length_m, course_deg, airspeed_m_per_s, climb_m_per_s, load_factor, mechanical_w.
+Of a plan (flight plan of Paparazzi, .plan of QGroundControl, .waypoints of ArduPilot) the blocks: what of each
+a mission flies (flight_plan and blocks, or waypoints, in [path]), its length, and what is not flown.
 With --path-from the path of a log's cruise instead, as waypoints for a mission (waypoints = "FILE" in
 [path]): a place every 30 s, with the airspeed on the way there and how long it took.)"};
-    stage.json_schema = cli::document_schema<PathOutput, FlightPathOutput>;
+    stage.json_schema = cli::document_schema<PathOutput, PlanFileOutput, FlightPathOutput>;
     stage.min_inputs = 0;
     stage.max_inputs = 1;
-    stage.examples = {"flightwatt path mission.toml", "flightwatt path --path-from flight.data -o waypoints.csv"};
+    stage.examples = {"flightwatt path mission.toml", "flightwatt path flight_plan.xml --radius 80",
+                      "flightwatt path --path-from flight.data -o waypoints.csv"};
     stage.shows_table = true;
     PathArguments arguments;
     stage.options.add("path-from", arguments.log, cli::input_file("LOG"),
                       "write the path that was flown in LOG as waypoints");
+    stage.options.add("radius", arguments.radius_m,
+                      {.value = "M", .min = path::min_radius_m, .max = path::max_radius_m, .excludes = {"path-from"}},
+                      "of circles for which a plan states none [m]");
     cli::add_flight_options(stage.options, arguments.load, {"path-from"});
     return cli::run_stage(argc, argv, stage, [&](const auto& call) { return show_or_take_path(call, arguments); });
 }

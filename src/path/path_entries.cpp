@@ -13,13 +13,29 @@ namespace {
 constexpr double max_m = 300e3;  // of a place from the start: beyond, coordinates were mistaken
 constexpr double same_place_m = 1e-6;
 
+/// Of the plane in which a geographic path is flown.
+std::optional<GeodeticPosition> origin_of(const std::vector<PathEntry>& entries, const PathDefaults& defaults) {
+    if (defaults.geographic_start || defaults.start) return defaults.geographic_start;
+    for (const auto& entry : entries) {
+        if (entry.geographic) return entry.geographic;
+        if (entry.place) break;
+    }
+    return std::nullopt;
+}
+
 /// Follows the aircraft from entry to entry.
 class PathBuilder {
   public:
-    explicit PathBuilder(const PathDefaults& defaults, const std::optional<GeodeticPosition>& origin)
-        : defaults_(defaults), origin_(origin), altitude_m_(defaults.altitude_m) {
+    PathBuilder(const PathDefaults& defaults, const std::vector<PathEntry>& entries)
+        : defaults_(defaults), origin_(origin_of(entries, defaults)), altitude_m_(defaults.altitude_m) {
         if (defaults.start) place_ = *defaults.start;
+        if (defaults.starts_at_first_place && !defaults.start && !defaults.geographic_start && !entries.empty()) {
+            const auto& first = entries.front();
+            if (first.place) place_ = *first.place;
+            if (first.circles && !first.is_turn) place_ = moved(place_, *first.radius_m, 0.0);
+        }
         start_ = place_;
+        start_altitude_m_ = altitude_m_;
     }
 
     void add(const PathEntry& entry) {
@@ -40,7 +56,7 @@ class PathBuilder {
             PathEntry home;
             home.name = "return to start";
             home.where = defaults_.where;
-            home.altitude_m = defaults_.altitude_m;
+            home.altitude_m = start_altitude_m_;
             home.place = start_;
             change_m_ = altitude_change_m(home);
             fly_to(home, start_);
@@ -80,7 +96,7 @@ class PathBuilder {
 
     double altitude_change_m(const PathEntry& entry) {
         if (!entry.altitude_m) return 0.0;
-        if (!altitude_m_ && is_at_start(entry)) altitude_m_ = entry.altitude_m;
+        if (is_at_start(entry)) start_altitude_m_ = altitude_m_ = entry.altitude_m;
         if (!altitude_m_) {
             refuse(entry, "states an altitude, and the path has none at its start",
                    "add altitude_m to [path]: that of the cruise as it begins");
@@ -90,9 +106,11 @@ class PathBuilder {
         return change_m;
     }
 
-    /// A first waypoint at the start defines its altitude.
+    /// A first waypoint at the start defines its altitude, unless the aircraft has a rate or a time to change it.
     bool is_at_start(const PathEntry& entry) const {
         if (!path_.elements.empty() || entry.circles || entry.length_m) return false;
+        if (altitude_m_ && (entry.hold_s || entry.duration_s || rate(entry, *entry.altitude_m > *altitude_m_)))
+            return false;
         const auto place = place_of(entry);
         return place && std::hypot(place->east_m - place_.east_m, place->north_m - place_.north_m) <= same_place_m;
     }
@@ -167,10 +185,14 @@ class PathBuilder {
     }
 
     std::optional<double> rate_of(const PathEntry& entry) const {
-        if (change_m_ == 0.0) return std::nullopt;
-        if (change_m_ > 0.0)
-            return entry.rates.climb_m_per_s ? entry.rates.climb_m_per_s : defaults_.rates.climb_m_per_s;
-        return entry.rates.descent_m_per_s ? entry.rates.descent_m_per_s : defaults_.rates.descent_m_per_s;
+        return change_m_ == 0.0 ? std::nullopt : rate(entry, change_m_ > 0.0);
+    }
+
+    /// Of a way whose time was measured its own alone: by the path's it would take another time.
+    std::optional<double> rate(const PathEntry& entry, bool is_up) const {
+        const auto own = is_up ? entry.rates.climb_m_per_s : entry.rates.descent_m_per_s;
+        if (own || entry.duration_s) return own;
+        return is_up ? defaults_.rates.climb_m_per_s : defaults_.rates.descent_m_per_s;
     }
 
     /// On the spot: the place was reached already.
@@ -186,22 +208,13 @@ class PathBuilder {
     const PathDefaults& defaults_;
     std::optional<GeodeticPosition> origin_;
     std::optional<double> altitude_m_;
+    std::optional<double> start_altitude_m_;
     LocalPosition start_;
     LocalPosition place_;
     double course_deg_ = 0.0;
     double change_m_ = 0.0;  ///< of the height, that the entry's elements have not flown yet
     FlightPath path_;
 };
-
-/// Of the plane in which a geographic path is flown.
-std::optional<GeodeticPosition> origin_of(const std::vector<PathEntry>& entries, const PathDefaults& defaults) {
-    if (defaults.geographic_start || defaults.start) return defaults.geographic_start;
-    for (const auto& entry : entries) {
-        if (entry.geographic) return entry.geographic;
-        if (entry.place) break;
-    }
-    return std::nullopt;
-}
 
 }  // namespace
 
@@ -214,7 +227,7 @@ LocalPosition to_local(const GeodeticPosition& place, const GeodeticPosition& or
 }
 
 FlightPath path_of(const std::vector<PathEntry>& entries, const PathDefaults& defaults) {
-    PathBuilder builder(defaults, origin_of(entries, defaults));
+    PathBuilder builder(defaults, entries);
     for (const auto& entry : entries) builder.add(entry);
     auto path = builder.finish();
     if (path.elements.empty()) throw InputError(defaults.where, "the path leads nowhere", "add legs or waypoints");

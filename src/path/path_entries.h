@@ -39,6 +39,7 @@ struct PathEntry {
     std::optional<double> circles;  ///< around the place, or from where the aircraft is
     std::optional<double> radius_m;
     bool to_right = true;
+    bool is_turn = false;  ///< circles that are a part of a pattern, and not flown more often
     std::optional<double> hold_s;
 };
 
@@ -49,6 +50,7 @@ struct PathDefaults {
     ClimbRates rates;
     std::optional<LocalPosition> start;  ///< none: the origin, or the first entry if that is geographic
     std::optional<GeodeticPosition> geographic_start;
+    bool starts_at_first_place = false;  ///< without a start; at the edge of circles
     bool return_to_start = false;
     Location where;
 };

@@ -2,16 +2,14 @@
 
 #include "base/atomic_file.h"
 #include "base/csv.h"
-#include "base/number.h"
 #include "base/toml_reader.h"
+#include "path/plans/json_text.h"
 
 #include <algorithm>
 #include <cctype>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
-#include <pugixml.hpp>
 
 namespace flightwatt::path {
 namespace {
@@ -69,17 +67,10 @@ void refuse_other_columns(const CsvTable& table) {
     }
 }
 
-using Json = nlohmann::json;
-
-[[noreturn]] void refuse_geojson(const PathEntry& entry, const std::string& message) {
-    throw InputError(entry.where, entry.name.empty() ? message : entry.name + " " + message,
-                     "expected GeoJSON: Points and LineStrings, alone, as features or in a FeatureCollection");
-}
-
-/// Collects the points of GeoJSON objects.
+/// Collects the points of GeoJSON objects, or the corners of one area.
 class GeoJsonReader {
   public:
-    explicit GeoJsonReader(const std::string& file) { at_.where = {file}; }
+    explicit GeoJsonReader(const std::string& file, bool is_area = false) : is_area_(is_area) { at_.where = {file}; }
 
     void read(const Json& object) {
         const auto type = type_of(object);
@@ -88,7 +79,7 @@ class GeoJsonReader {
             std::size_t number = 0;
             for (const auto& feature : member(object, "features", "an array", &Json::is_array)) {
                 at_.name = fmt::format("feature {}", ++number);
-                if (type_of(feature) != "Feature") refuse_geojson(at_, "is no Feature");
+                if (type_of(feature) != "Feature") refuse("is no Feature");
                 read_feature(feature);
             }
         } else if (type == "Feature") {
@@ -99,25 +90,32 @@ class GeoJsonReader {
     }
 
     std::vector<PathEntry> entries;
+    bool has_holes = false;
 
   private:
+    [[noreturn]] void refuse(const std::string& message) const {
+        throw InputError(at_.where, at_.name.empty() ? message : at_.name + " " + message,
+                         is_area_ ? "expected GeoJSON: one Polygon, alone, as feature or in a FeatureCollection"
+                                  : "expected GeoJSON: Points and LineStrings, alone, as features or in a "
+                                    "FeatureCollection; a Polygon is an area of [path]");
+    }
+
     std::string type_of(const Json& object) const {
-        if (!object.is_object()) refuse_geojson(at_, "is no object");
+        if (!object.is_object()) refuse("is no object");
         return member(object, "type", "a text", &Json::is_string).get<std::string>();
     }
 
     const Json& member(const Json& object, const char* name, const char* kind,
                        bool (Json::*is)() const noexcept) const {
         const auto found = object.find(name);
-        if (found == object.end() || !((*found).*is)())
-            refuse_geojson(at_, fmt::format("has no '{}' that is {}", name, kind));
+        if (found == object.end() || !((*found).*is)()) refuse(fmt::format("has no '{}' that is {}", name, kind));
         return *found;
     }
 
     void refuse_other_reference(const Json& object) const {
         if (object.contains("crs") && object["crs"].dump().find("CRS84") == std::string::npos &&
             object["crs"].dump().find("4326") == std::string::npos)
-            refuse_geojson(at_, "has coordinates of another reference than WGS84");
+            refuse("has coordinates of another reference than WGS84");
     }
 
     void read_feature(const Json& feature) {
@@ -128,7 +126,7 @@ class GeoJsonReader {
         for (const auto* name : waypoint_values) {
             const auto value = properties->find(name);
             if (value == properties->end() || value->is_null()) continue;
-            if (!value->is_number()) refuse_geojson(at_, fmt::format("has a '{}' that is no number", name));
+            if (!value->is_number()) refuse(fmt::format("has a '{}' that is no number", name));
             for (std::size_t i = first; i < entries.size(); ++i)
                 set_value(entries[i], name, value->get<double>(), at_.where);
         }
@@ -136,8 +134,9 @@ class GeoJsonReader {
 
     void read_geometry(const Json& geometry) {
         const auto type = type_of(geometry);
+        if (is_area_) return read_area(geometry, type);
         if (type != "Point" && type != "LineString" && type != "MultiPoint")
-            refuse_geojson(at_, fmt::format("is a {}, which is no path", type));
+            refuse(fmt::format("is a {}, which is no path", type));
         const auto& coordinates = member(geometry, "coordinates", "an array", &Json::is_array);
         if (type == "Point") {
             read_position(coordinates);
@@ -146,12 +145,20 @@ class GeoJsonReader {
         }
     }
 
+    void read_area(const Json& geometry, const std::string& type) {
+        if (type != "Polygon") refuse(fmt::format("is a {}, which is no area", type));
+        if (!entries.empty()) refuse("is a second area");
+        const auto& rings = member(geometry, "coordinates", "an array", &Json::is_array);
+        if (rings.empty() || !rings.front().is_array()) refuse("has no outer ring");
+        for (const auto& position : rings.front()) read_position(position);
+        has_holes = rings.size() > 1;
+    }
+
     /// Longitude comes first.
     void read_position(const Json& position) {
         const bool is_position = position.is_array() && (position.size() == 2 || position.size() == 3) &&
                                  std::ranges::all_of(position, [](const Json& part) { return part.is_number(); });
-        if (!is_position)
-            refuse_geojson(at_, "has a position that is not [longitude, latitude] or [longitude, latitude, altitude]");
+        if (!is_position) refuse("has a position that is not [longitude, latitude] or [longitude, latitude, altitude]");
         PathEntry entry;
         entry.where = at_.where;
         entry.name = fmt::format("waypoint {}", entries.size() + 1);
@@ -161,81 +168,7 @@ class GeoJsonReader {
     }
 
     PathEntry at_;  ///< where it reads: file and feature
-};
-
-std::size_t line_at(std::string_view text, std::size_t offset) {
-    const auto until = text.substr(0, std::min(offset, text.size()));
-    return 1 + static_cast<std::size_t>(std::ranges::count(until, '\n'));
-}
-
-/// A flight plan's waypoints.
-class FlightPlanReader {
-  public:
-    FlightPlanReader(std::string_view text, const std::string& file) : text_(text), file_(file) {
-        const auto parsed = document_.load_buffer(text.data(), text.size());
-        if (!parsed) {
-            const auto offset = static_cast<std::size_t>(std::max<std::ptrdiff_t>(parsed.offset, 0));
-            throw InputError({file_, line_at(text_, offset)}, fmt::format("is not XML: {}", parsed.description()));
-        }
-        plan_ = document_.child("flight_plan");
-        if (!plan_) throw InputError({file_}, "has no <flight_plan>", "expected a flight plan of Paparazzi");
-        for (const auto& waypoint : plan_.child("waypoints").children("waypoint"))
-            names_.emplace_back(waypoint.attribute("name").value());
-    }
-
-    PathEntry waypoint(const std::string& name) const {
-        const auto found = plan_.child("waypoints").find_child_by_attribute("waypoint", "name", name.c_str());
-        if (!found) {
-            throw InputError({file_}, fmt::format("has no waypoint '{}'", name),
-                             names_.empty() ? "it has no waypoints at all" : "it has " + short_list(names_));
-        }
-        if (std::ranges::count(names_, name) > 1) {
-            throw InputError(where(found), fmt::format("there are several waypoints '{}'", name),
-                             "give each a name of its own");
-        }
-        PathEntry entry;
-        entry.name = fmt::format("waypoint {}", name);
-        entry.where = where(found);
-        if (has(found, "x") && has(found, "y")) {
-            entry.place = LocalPosition{number(found, "x"), number(found, "y")};
-        } else if (has(found, "lat") && has(found, "lon")) {
-            const auto origin = geographic_place(number(plan_, "lat0"), number(plan_, "lon0"), where(plan_));
-            entry.place = to_local(geographic_place(number(found, "lat"), number(found, "lon"), entry.where), origin);
-        } else {
-            throw InputError(entry.where, entry.name + " has no place", "expected x and y, or lat and lon");
-        }
-        if (const auto altitude_m = altitude_of(found)) set_value(entry, "altitude_m", *altitude_m, entry.where);
-        return entry;
-    }
-
-  private:
-    static bool has(const pugi::xml_node& node, const char* name) { return !node.attribute(name).empty(); }
-
-    Location where(const pugi::xml_node& node) const {
-        return {file_, line_at(text_, static_cast<std::size_t>(std::max<std::ptrdiff_t>(node.offset_debug(), 0)))};
-    }
-
-    double number(const pugi::xml_node& node, const char* name) const {
-        const std::string_view value = node.attribute(name).value();
-        if (const auto parsed = parse_number(value)) return *parsed;
-        throw InputError(where(node), fmt::format("{} of <{}> is no number: '{}'", name, node.name(), value),
-                         "expected decimal degrees or metres");
-    }
-
-    /// Above the sea: its own, its height above the plan's ground, or the plan's.
-    std::optional<double> altitude_of(const pugi::xml_node& node) const {
-        if (has(node, "alt")) return number(node, "alt");
-        if (has(node, "height") && has(plan_, "ground_alt"))
-            return number(plan_, "ground_alt") + number(node, "height");
-        if (has(plan_, "alt")) return number(plan_, "alt");
-        return std::nullopt;
-    }
-
-    std::string_view text_;
-    std::string file_;
-    pugi::xml_document document_;
-    pugi::xml_node plan_;
-    std::vector<std::string> names_;
+    bool is_area_;
 };
 
 }  // namespace
@@ -267,43 +200,56 @@ std::vector<PathEntry> parse_waypoint_csv(std::string_view text, const std::stri
     return entries;
 }
 
-std::vector<PathEntry> parse_geojson(std::string_view text, const std::string& file) {
-    GeoJsonReader reader(file);
+Json parse_json(std::string_view text, const std::string& file, const std::string& hint) {
+    const auto location_at = [&](std::size_t offset) {
+        const auto until = text.substr(0, std::min(offset, text.size()));
+        return Location{file, 1 + static_cast<std::size_t>(std::ranges::count(until, '\n'))};
+    };
     try {
-        reader.read(Json::parse(text));
+        return Json::parse(text);
     } catch (const Json::parse_error& error) {
-        throw InputError({file, line_at(text, error.byte == 0 ? 0 : error.byte - 1)}, "is not JSON",
-                         "expected GeoJSON: Points and LineStrings");
+        throw InputError(location_at(error.byte == 0 ? 0 : error.byte - 1), "is not JSON", hint);
     } catch (const Json::out_of_range& error) {  // names the number in quotation marks, and no place
         std::string number = error.what();
         number = number.substr(number.find('\'') + 1);
         number = number.substr(0, number.find('\''));
-        throw InputError({file, line_at(text, std::min(text.find(number), text.size()))},
-                         fmt::format("a number is out of range: '{}'", number), "expected a coordinate");
+        throw InputError(location_at(text.find(number)), fmt::format("a number is out of range: '{}'", number),
+                         "expected a coordinate");
     }
+}
+
+std::vector<PathEntry> parse_geojson(std::string_view text, const std::string& file) {
+    GeoJsonReader reader(file);
+    reader.read(parse_json(text, file, "expected GeoJSON: Points and LineStrings"));
     if (reader.entries.empty()) throw InputError({file}, "has no waypoints");
     return std::move(reader.entries);
 }
 
-std::vector<PathEntry> read_waypoints(const std::filesystem::path& path) {
+Outline geojson_outline(std::string_view text, const std::string& file) {
+    GeoJsonReader reader(file, true);
+    reader.read(parse_json(text, file, "expected GeoJSON: a Polygon"));
+    Outline outline;
+    for (const auto& corner : reader.entries) outline.corners.push_back(*corner.geographic);
+    outline.has_holes = reader.has_holes;
+    return outline;
+}
+
+PlanEntries read_waypoints(const std::filesystem::path& path, const AutopilotSettings& settings) {
     auto ending = path.extension().string();
     std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     const auto text = read_file(path);
-    return ending == ".geojson" || ending == ".json" ? parse_geojson(text, path.string())
-                                                     : parse_waypoint_csv(text, path.string());
-}
-
-std::vector<PathEntry> parse_flight_plan(std::string_view text, const std::string& file,
-                                         const std::vector<std::string>& names) {
-    const FlightPlanReader reader(text, file);
-    std::vector<PathEntry> entries;
-    entries.reserve(names.size());
-    for (const auto& name : names) entries.push_back(reader.waypoint(name));
-    return entries;
-}
-
-std::vector<PathEntry> read_flight_plan(const std::filesystem::path& path, const std::vector<std::string>& names) {
-    return parse_flight_plan(read_file(path), path.string(), names);
+    if (ending == ".geojson" || ending == ".json") return {parse_geojson(text, path.string())};
+    switch (plan_format(text)) {
+        case PlanFormat::qgroundcontrol:
+            return parse_qgc_plan(text, path.string(), settings);
+        case PlanFormat::ardupilot:
+            return parse_wpl(text, path.string(), settings);
+        case PlanFormat::flight_plan:
+            throw InputError({path.string()}, "is XML, and no list of waypoints",
+                             "a flight plan of Paparazzi is the path's flight_plan with blocks, KML its area");
+        default:
+            return {parse_waypoint_csv(text, path.string())};
+    }
 }
 
 }  // namespace flightwatt::path

@@ -35,7 +35,9 @@ class NewMissions : public testing::Test {
         write_file_atomically(folder / "flight_plan.xml",
                               "<flight_plan lat0=\"43.46223\" lon0=\"1.27289\" alt=\"260\"><waypoints>"
                               "<waypoint name=\"1\" x=\"300\" y=\"10\"/><waypoint name=\"2\" x=\"500\" y=\"90\"/>"
-                              "<waypoint name=\"STDBY\" x=\"40\" y=\"70\"/></waypoints></flight_plan>\n");
+                              "<waypoint name=\"STDBY\" x=\"40\" y=\"70\"/></waypoints><blocks><block name=\"Survey\">"
+                              "<oval p1=\"1\" p2=\"2\" radius=\"nav_radius\"/></block></blocks></flight_plan>\n");
+        copy("missions/synthetic/field.geojson");
     }
 
     /// The mission, with the schedule planned or given.

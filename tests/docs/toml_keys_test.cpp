@@ -58,7 +58,8 @@ void write(const std::filesystem::path& file, const std::string& text) {
 /// A folder with all examples as files, KIND_NUMBER.toml, and what they name.
 std::vector<std::filesystem::path> write_examples(const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> files;
-    std::filesystem::create_directory_symlink(source_dir() / "fits", folder / "fits");
+    for (const auto* files : {"fits", "missions"})
+        std::filesystem::create_directory_symlink(source_dir() / files, folder / files);
     for (const auto& page : pages()) {
         for (const auto& example : page.examples) {
             if (!sections.contains(example.kind)) continue;

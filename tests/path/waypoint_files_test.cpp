@@ -60,7 +60,7 @@ TEST(WaypointFiles, AreGeoJson) {
 TEST(WaypointFiles, AreToldApartByTheirEndingInAnyCase) {
     const auto file = test::scratch_dir() / "FIELD.GEOJSON";
     std::ofstream(file) << R"({"type": "LineString", "coordinates": [[1.5, 43.5], [1.51, 43.5]]})";
-    EXPECT_EQ(read_waypoints(file).size(), 2U);
+    EXPECT_EQ(read_waypoints(file, {}).entries.size(), 2U);
 }
 
 TEST(WaypointFiles, RefuseOtherJson) {
@@ -79,6 +79,18 @@ TEST(WaypointFiles, RefuseOtherJson) {
     EXPECT_NE(refusal(R"({"type": "LineString", "coordinates": []})").find("has no waypoints"), std::string::npos);
     EXPECT_NE(refusal(R"({"type": "FeatureCollection", "crs": {"name": "EPSG:2154"}, "features": []})")
                   .find("another reference than WGS84"),
+              std::string::npos);
+}
+
+TEST(WaypointFiles, OfAutopilotsAreRecognisedByTheirContent) {
+    const auto folder = test::scratch_dir();
+    std::ofstream(folder / "a.txt") << "QGC WPL 110\n0 1 0 16 0 0 0 0 47 8 100 1\n1 0 3 16 0 0 0 0 47.01 8 60 1\n";
+    EXPECT_EQ(read_waypoints(folder / "a.txt", {}).entries.size(), 1U);
+    std::ofstream(folder / "a.plan") << R"({"fileType": "Plan", "version": 3})";
+    EXPECT_EQ(rejected([&] { read_waypoints(folder / "a.plan", {}); }, folder),
+              "a.plan: the plan has version 3; expected version 1");
+    std::ofstream(folder / "a.xml") << "<flight_plan/>";
+    EXPECT_NE(rejected([&] { read_waypoints(folder / "a.xml", {}); }).find("flight_plan with blocks"),
               std::string::npos);
 }
 
@@ -106,9 +118,8 @@ TEST(WaypointFiles, AreFlightPlansWithNamesInOrder) {
     const auto refusal = [](std::string_view text, const std::string& name) {
         return rejected([&] { parse_flight_plan(text, "p.xml", {name}); });
     };
-    EXPECT_EQ(refusal(flight_plan, "3"), "p.xml: has no waypoint '3'; it has HOME, 1, 2, bad");
-    EXPECT_EQ(refusal(flight_plan, "bad"),
-              "p.xml:7: x of <waypoint> is no number: 'a'; expected decimal degrees or metres");
+    EXPECT_EQ(refusal(flight_plan, "3"), "p.xml: there is no waypoint '3'; the plan has HOME, 1, 2, bad");
+    EXPECT_EQ(refusal(flight_plan, "bad"), "p.xml:7: x of <waypoint> is no number: 'a'; expected metres");
     EXPECT_NE(refusal("<flight_plan>", "1").find("p.xml:1: is not XML"), std::string::npos);
     EXPECT_NE(refusal("<plan/>", "1").find("has no <flight_plan>"), std::string::npos);
 }

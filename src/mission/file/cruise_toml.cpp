@@ -1,10 +1,15 @@
+#include "base/input_file.h"
 #include "mission/file/mission_tables.h"
 #include "path/cruise_path.h"
 #include "path/path_entries.h"
+#include "path/plan_files.h"
 #include "path/trajectory.h"
 #include "path/waypoint_files.h"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -111,26 +116,63 @@ path::PathDefaults read_defaults(const TomlTable& path) {
     return defaults;
 }
 
-/// Those of a file first, then the legs.
-std::vector<path::PathEntry> read_entries(const TomlTable& path) {
-    std::vector<path::PathEntry> entries;
-    const bool has_waypoints = path.has("waypoints");
-    if (has_waypoints && path.has("flight_plan"))
-        throw InputError(path.where("flight_plan"), "waypoints and flight_plan are two paths", "give one");
-    if (path.has("flight_plan") != path.has("waypoint_order")) {
-        throw InputError(
-            path.where(), "flight_plan and waypoint_order belong together",
-            "a flight plan's blocks are not executed: list the waypoints in the order in which they are flown, "
-            "waypoint_order = [\"1\", \"2\"]");
+/// Throws InputError where the path names two files, or has a key of a file that it does not name.
+void require_one_file(const TomlTable& path) {
+    std::string named;
+    for (const auto* file : {"waypoints", "flight_plan", "area"}) {
+        if (!path.has(file)) continue;
+        if (!named.empty())
+            throw InputError(path.where(file), fmt::format("{} and {} are two paths", named, file), "give one");
+        named = file;
     }
-    if (has_waypoints) entries = path::read_waypoints(file_of(path, "waypoints"));
-    if (path.has("flight_plan"))
-        entries = path::read_flight_plan(file_of(path, "flight_plan"), path.strings("waypoint_order"));
+    constexpr std::array<std::pair<const char*, const char*>, 5> keys{{{"blocks", "flight_plan"},
+                                                                       {"waypoint_order", "flight_plan"},
+                                                                       {"radius_m", "flight_plan or waypoints"},
+                                                                       {"spacing_m", "area"},
+                                                                       {"heading_deg", "area"}}};
+    for (const auto& [key, file] : keys)
+        if (path.has(key) && (named.empty() || std::string_view(file).find(named) == std::string_view::npos))
+            throw InputError(path.where(key), fmt::format("{} belongs to {}", key, file), "add it, or leave this out");
+}
+
+/// Movements of the file that the path names; none without one.
+path::PlanEntries read_planned(const TomlTable& path, double airspeed_m_per_s) {
+    require_one_file(path);
+    const path::AutopilotSettings settings{
+        optional_number_in(between(path::min_radius_m, path::max_radius_m), path, "radius_m"), airspeed_m_per_s};
+    if (path.has("waypoints")) return path::read_waypoints(file_of(path, "waypoints"), settings);
+    if (path.has("area")) {
+        const auto file = file_of(path, "area");
+        const double spacing_m = number_in(between(path::min_radius_m, path::max_radius_m), path, "spacing_m");
+        return path::parse_area(read_file(file), file.string(), spacing_m,
+                                number_in(between(-360.0, 360.0), path, "heading_deg"));
+    }
+    if (!path.has("flight_plan")) return {};
+    if (path.has("blocks") == path.has("waypoint_order")) {
+        throw InputError(path.where("flight_plan"), "flight_plan needs blocks, or waypoint_order",
+                         "give one: blocks = [\"Survey\"] or waypoint_order = [\"1\", \"2\"], in the order of the "
+                         "flight; `flightwatt path PLAN.xml` lists the blocks");
+    }
+    const auto file = file_of(path, "flight_plan");
+    const auto text = read_file(file);
+    if (path.has("waypoint_order"))
+        return {path::parse_flight_plan(text, file.string(), path.strings("waypoint_order"))};
+    return path::parse_plan_blocks(text, file.string(), path.strings("blocks"), settings);
+}
+
+/// Those of a file first, then the legs. A file's first altitude is that of the start unless the path states one.
+std::vector<path::PathEntry> read_entries(const TomlTable& path, path::PathDefaults& defaults, MissionSetup& mission) {
+    auto plan = read_planned(path, defaults.airspeed_m_per_s);
+    for (const auto& text : plan.not_flown) mission.notes.push_back("path: " + text);
+    auto& entries = plan.entries;
+    defaults.starts_at_first_place = plan.starts_at_first_place;
+    const auto first = std::ranges::find_if(entries, [](const auto& entry) { return !!entry.altitude_m; });
+    if (!defaults.altitude_m && first != entries.end()) defaults.altitude_m = first->altitude_m;
     std::size_t number = 0;
     for (const auto& leg : path.tables("leg")) entries.push_back(read_leg(leg, ++number));
     if (entries.empty())
-        throw InputError(path.where(), "the path has no legs", "add [[path.leg]], waypoints or flight_plan");
-    return entries;
+        throw InputError(path.where(), "the path has no legs", "add [[path.leg]], waypoints, flight_plan or area");
+    return std::move(entries);
 }
 
 void refuse_what_the_path_decides(const TomlTable& root) {
@@ -157,17 +199,19 @@ const mechanical::PhysicalModel& power_model(const TomlTable& path, const Missio
     return physical_of(*mission.mechanical, path.where());
 }
 
-/// The entry whose circles may be repeated: the last that has some.
+/// The entry whose circles may be repeated: the last that has some, and is no turn between lines.
 path::PathEntry* repeated_circles(std::vector<path::PathEntry>& entries) {
-    const auto last = std::find_if(entries.rbegin(), entries.rend(), [](const auto& entry) { return !!entry.circles; });
+    const auto last = std::find_if(entries.rbegin(), entries.rend(),
+                                   [](const auto& entry) { return entry.circles && !entry.is_turn; });
     return last == entries.rend() ? nullptr : &*last;
 }
 
-path::FlightPath read_path(const TomlTable& table, const MissionReadOptions& reading) {
+path::FlightPath read_path(const TomlTable& table, const MissionReadOptions& reading, MissionSetup& mission) {
     table.refuse_keys_except({"airspeed_m_per_s", "altitude_m", "climb_m_per_s", "descent_m_per_s", "start",
-                              "return_to_start", "waypoints", "flight_plan", "waypoint_order", "leg"});
-    const auto defaults = read_defaults(table);
-    auto entries = read_entries(table);
+                              "return_to_start", "waypoints", "flight_plan", "waypoint_order", "blocks", "radius_m",
+                              "area", "spacing_m", "heading_deg", "leg"});
+    auto defaults = read_defaults(table);
+    auto entries = read_entries(table, defaults, mission);
     if (reading.circles) {
         auto* repeated = repeated_circles(entries);
         if (repeated == nullptr) throw NoResultError("the path has no circles");
@@ -214,7 +258,7 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
     if (reading.cruise_s) throw NoResultError("the duration of the cruise follows from its path");
     refuse_what_the_path_decides(mission_table);
     path::PlannedPath plan;
-    plan.path = read_path(*table, reading);
+    plan.path = read_path(*table, reading, mission);
     plan.wind = read_wind(mission_table);
     plan.power = power_model(*table, mission);
     const auto flown = compute_trajectory(plan.path, plan.wind);

@@ -191,13 +191,56 @@ TEST(PathToml, ReadsWaypointsFromFiles) {
     const std::string plan = "altitude_m = 200\nflight_plan = \"plan.xml\"\nwaypoint_order = [\"A\", \"B\"]\n";
     EXPECT_NEAR(read(folder, "wing.toml", path + plan).setup.duration_s[Phase::cruise], 1150.0 / 13.0, 1e-9);
     EXPECT_NE(rejected([&] {
-                  read(folder, "wing.toml", path + "flight_plan = \"plan.xml\"\n");
-              }).find("flight_plan and waypoint_order belong together"),
-              std::string::npos);
-    EXPECT_NE(rejected([&] {
                   read(folder, "wing.toml", path + "waypoints = \"none.csv\"\n");
               }).find("m.toml:5:1: waypoints: there is no file"),
               std::string::npos);
+}
+
+TEST(PathToml, FliesPlansFromTheirFirstPlaceAndAltitude) {
+    const auto folder = path_folder();
+    write_text(folder / "plan.xml", R"(<flight_plan lat0="43" lon0="1" alt="200"><waypoints>
+        <waypoint name="A" x="500" y="0"/><waypoint name="B" x="500" y="650" alt="230"/></waypoints><blocks>
+        <block name="There"><go wp="A"/><go wp="B"/><exception cond="x" deroute="Home"/></block>
+        <block name="Round"><circle wp="A" radius="nav_radius" until="NavCircleCount() > 2"/></block>
+        </blocks></flight_plan>)");
+    write_text(folder / "field.geojson", R"({"type": "Polygon", "coordinates":
+        [[[8.0, 47.0], [8.00526, 47.0], [8.00526, 47.0036], [8.0, 47.0036], [8.0, 47.0]]]})");
+    const std::string path = "[path]\nairspeed_m_per_s = 13\n";
+    const auto length_m = [&](const std::string& keys) {
+        return 13.0 * read(folder, "wing.toml", path + keys).setup.duration_s[Phase::cruise];
+    };
+    const std::string plan = "flight_plan = \"plan.xml\"\nblocks = ";
+    EXPECT_NEAR(length_m(plan + "[\"There\"]\n"), 650.0, 1.0);
+    EXPECT_NEAR(length_m(plan + "[\"Round\", \"There\"]\nradius_m = 60\n"), 4.0 * 3.14159 * 60.0 + 60.0 + 650.0, 2.0);
+    EXPECT_EQ(read(folder, "wing.toml", path + plan + "[\"There\"]\n").setup.notes,
+              std::vector<std::string>{"path: block 'There': not followed: exceptions to 'Home'"});
+    const std::string area = "area = \"field.geojson\"\nspacing_m = 50\nheading_deg = 0\n";
+    EXPECT_NEAR(length_m(area), 8.0 * 400.0 + 7.0 * 78.54, 15.0);
+    const auto refusal = [&](const std::string& keys) {
+        return rejected([&] { read(folder, "wing.toml", path + keys); }, folder);
+    };
+    EXPECT_EQ(refusal(plan + "[\"there\"]\n"),
+              "plan.xml: there is no block 'there'; did you mean 'There'? the plan "
+              "has There, Round");
+    EXPECT_NE(refusal("flight_plan = \"plan.xml\"\n").find("flight_plan needs blocks, or waypoint_order"),
+              std::string::npos);
+    EXPECT_NE(refusal(plan + "[\"There\"]\n" + area).find("flight_plan and area are two paths"), std::string::npos);
+    EXPECT_NE(refusal(area + "radius_m = 50\n").find("radius_m belongs to"), std::string::npos);
+    EXPECT_THROW(read(folder, "wing.toml", path + area, {.circles = 7.0}), NoResultError);
+}
+
+TEST(PathToml, FliesWaypointsOfALogWithWhateverElseThePathStates) {
+    const auto folder = path_folder();
+    write_text(folder / "w.csv",
+               "east_m,north_m,altitude_m,airspeed_m_per_s,duration_s\n0,0,280,,\n"
+               "130,0,284,13,10\n260,0,281,13,10\n");
+    for (const auto* keys :
+         {"", "altitude_m = 100\n", "climb_m_per_s = 0.1\n", "altitude_m = 90\ndescent_m_per_s = 0.1\n"})
+        EXPECT_NEAR(
+            read(folder, "wing.toml", std::string("[path]\nairspeed_m_per_s = 13\nwaypoints = \"w.csv\"\n") + keys)
+                .setup.duration_s[Phase::cruise],
+            20.0, 1e-9)
+            << keys;
 }
 
 TEST(PathToml, FliesOtherExtents) {

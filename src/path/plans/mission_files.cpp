@@ -1,0 +1,367 @@
+#include "base/number.h"
+#include "base/toml_reader.h"
+#include "path/plan_files.h"
+#include "path/plans/json_text.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <sstream>
+
+#include <fmt/format.h>
+
+namespace flightwatt::path {
+namespace {
+
+/// A command of MAVLink (MAV_CMD) with its frame (MAV_FRAME) and parameters; NaN for those that are not given.
+struct MissionItem {
+    int command = 0;
+    int frame = 0;
+    std::array<double, 7> parameters = {};
+    std::string name;
+    Location where;
+};
+
+struct MissionItems {
+    std::array<double, 3> home = {};  ///< latitude, longitude and altitude above the sea, or NaN
+    std::vector<MissionItem> items;
+    Location where;
+};
+
+// MAV_CMD, and an item without one
+constexpr int not_understood = 0, nav_waypoint = 16, nav_loiter_unlimited = 17, nav_loiter_turns = 18,
+              nav_loiter_time = 19, nav_return = 20, nav_land = 21, nav_takeoff = 22, nav_loiter_to_altitude = 31,
+              nav_spline = 82, nav_vtol_takeoff = 84, nav_vtol_land = 85, nav_delay = 93, jump = 177,
+              change_speed = 178;
+
+/// None for latitude and longitude 0 or none: where the aircraft is.
+std::optional<GeodeticPosition> place_at(double latitude_deg, double longitude_deg, const std::string& name,
+                                         const Location& where) {
+    if (std::isnan(latitude_deg) || std::isnan(longitude_deg) || (latitude_deg == 0.0 && longitude_deg == 0.0))
+        return std::nullopt;
+    if (std::abs(latitude_deg) <= 90.0 && std::abs(longitude_deg) <= 180.0)
+        return GeodeticPosition{latitude_deg, longitude_deg};
+    throw InputError(where, fmt::format("{} is at latitude {}, longitude {}", name, latitude_deg, longitude_deg),
+                     "expected degrees");
+}
+
+/// Follows the items of a mission.
+class ItemReader {
+  public:
+    ItemReader(const MissionItems& mission, const AutopilotSettings& settings)
+        : settings_(settings), home_(place_at(mission.home[0], mission.home[1], "home", mission.where)) {
+        if (std::isfinite(mission.home[2])) home_altitude_m_ = mission.home[2];
+    }
+
+    void read(const MissionItem& item) {
+        const auto& parameters = item.parameters;
+        switch (item.command) {
+            case nav_spline:
+                report(item, "a spline is flown as a straight line");
+                [[fallthrough]];
+            case nav_waypoint:
+                return fly_to(item, parameters[0]);
+            case nav_delay:
+                return hold(item, parameters[0]);
+            case nav_takeoff:
+            case nav_vtol_takeoff:
+                return take_off(item);
+            case nav_loiter_unlimited:
+                report(item, "the circle has no end: it is flown once");
+                return circle(item, 1.0, false);
+            case nav_loiter_turns:
+                return circle(item, parameters[0], false);
+            case nav_loiter_time:
+                return circle(item, parameters[0], true);
+            case nav_loiter_to_altitude:
+                report(item, "the circles until an altitude is reached are not flown: the way there changes it");
+                return fly_to(item, 0.0);
+            case nav_return:
+                return go_home(item);
+            case nav_land:
+            case nav_vtol_land:
+                report(item, "the way to the landing is flown level; the descent is the mission's landing");
+                return fly_level_to(item);
+            case change_speed:
+                return set_speed(item);
+            case jump:
+                return report(item, fmt::format("the jump to item {:.0f} is not flown", parameters[0]));
+            case not_understood:
+                return report(item, "not flown");
+            default:
+                report(item, fmt::format("command {} is not flown", item.command));
+        }
+    }
+
+    PlanEntries finish(const Location& where) {
+        PlanEntries plan{std::move(entries_), {}, true};
+        for (const auto& [text, items] : reports_)
+            plan.not_flown.push_back(fmt::format(
+                "{}{}: {}", items.first, items.count == 1 ? "" : fmt::format(" and {} more", items.count - 1), text));
+        if (!plan.entries.empty()) return plan;
+        throw InputError(where, "no item of the mission can be flown",
+                         plan.not_flown.empty() ? "it has no items" : plan.not_flown.front());
+    }
+
+  private:
+    /// Adds a text to what is not flown; the same text of several items is added once, with their number.
+    void report(const MissionItem& item, const std::string& text) {
+        auto& items = reports_.try_emplace(text, ReportedItems{item.name, 0}).first->second;
+        ++items.count;
+    }
+
+    PathEntry entry_of(const MissionItem& item) const {
+        PathEntry entry;
+        entry.name = item.name;
+        entry.where = item.where;
+        entry.airspeed_m_per_s = airspeed_m_per_s_;
+        entry.geographic = place_at(item.parameters[4], item.parameters[5], item.name, item.where);
+        return entry;
+    }
+
+    PathEntry entry_at_altitude(const MissionItem& item) {
+        auto entry = entry_of(item);
+        entry.altitude_m = altitude_of(item);
+        return entry;
+    }
+
+    /// Above home; frames are MAV_FRAME.
+    std::optional<double> altitude_of(const MissionItem& item) {
+        const double altitude_m = item.parameters[6];
+        if (std::isnan(altitude_m) || item.frame == 2) return std::nullopt;  // 2: a command without a place
+        if (item.frame == 0 || item.frame == 5) return altitude_m - home_altitude_m_;
+        if (item.frame == 10 || item.frame == 11)
+            report(item, "the altitude above the terrain is flown as one above home");
+        else if (item.frame != 3 && item.frame != 6)
+            throw InputError(item.where, fmt::format("{} has its altitude in frame {}", item.name, item.frame),
+                             "expected 0 (above the sea), 3 (above home) or 10 (above the terrain)");
+        return altitude_m;
+    }
+
+    void fly_to(const MissionItem& item, double hold_s) {
+        auto entry = entry_at_altitude(item);
+        if (hold_s > 0.0) entry.hold_s = hold_s;
+        if (!entry.geographic && !entry.hold_s) return report(item, "there is no place: not flown");
+        entries_.push_back(entry);
+    }
+
+    void fly_level_to(const MissionItem& item) {
+        if (const auto entry = entry_of(item); entry.geographic) entries_.push_back(entry);
+    }
+
+    void hold(const MissionItem& item, double time_s) {
+        if (!(time_s > 0.0)) return report(item, "the delay has no time: not flown");
+        entries_.push_back(entry_of(item));
+        entries_.back().geographic.reset();
+        entries_.back().hold_s = time_s;
+    }
+
+    /// Where the path starts.
+    void take_off(const MissionItem& item) {
+        auto entry = entry_at_altitude(item);
+        if (!entry.geographic) entry.geographic = home_;
+        if (!entries_.empty() || !entry.geographic) return report(item, "the take-off is not flown");
+        entries_.push_back(entry);
+    }
+
+    void go_home(const MissionItem& item) {
+        auto entry = entry_of(item);
+        entry.geographic = home_;
+        if (!home_) return report(item, "the return is not flown: the plan states no home");
+        entries_.push_back(entry);
+    }
+
+    void circle(const MissionItem& item, double amount, bool is_time) {
+        const double stated_m = item.parameters[2];
+        const bool is_stated = std::isfinite(stated_m) && std::abs(stated_m) >= min_radius_m;
+        if (!is_stated && !settings_.radius_m) {
+            report(item, "the circle has no radius: only the way there is flown; radius_m in [path] states it");
+            return fly_to(item, is_time ? amount : 0.0);
+        }
+        const double radius_m = is_stated ? stated_m : *settings_.radius_m;
+        const double airspeed = airspeed_m_per_s_.value_or(settings_.airspeed_m_per_s);
+        double turns = amount;
+        if (is_time) turns = airspeed > 0.0 ? amount * airspeed / (2.0 * std::numbers::pi * std::abs(radius_m)) : 1.0;
+        if (!(turns > 0.0)) return fly_to(item, 0.0);
+        require_in(between(0.0, largest_circle_count), turns, "the number of circles", item.where);
+        require_in(between(-max_radius_m, max_radius_m), radius_m, "the radius", item.where);
+        auto entry = entry_at_altitude(item);
+        entry.circles = turns;
+        entry.radius_m = std::abs(radius_m);
+        entry.to_right = radius_m > 0.0;
+        entries_.push_back(entry);
+    }
+
+    void set_speed(const MissionItem& item) {
+        const bool is_airspeed = item.parameters[0] == 0.0;
+        const double speed = item.parameters[1];
+        if (!is_airspeed || !(speed > 0.0 && speed <= max_m_per_s))
+            return report(item, "the change of speed is not flown: it states no airspeed");
+        airspeed_m_per_s_ = speed;
+    }
+
+    struct ReportedItems {
+        std::string first;
+        std::size_t count = 0;
+    };
+
+    const AutopilotSettings& settings_;
+    std::optional<GeodeticPosition> home_;
+    double home_altitude_m_ = 0.0;
+    std::optional<double> airspeed_m_per_s_;
+    std::vector<PathEntry> entries_;
+    std::map<std::string, ReportedItems> reports_;
+};
+
+PlanEntries fly_items(const MissionItems& mission, const AutopilotSettings& settings) {
+    ItemReader reader(mission, settings);
+    for (const auto& item : mission.items) reader.read(item);
+    return reader.finish(mission.where);
+}
+
+/// Reads the objects of a .plan. Its own checks throw InputError; a key that is missing, or of another type, is the
+/// exception of the library.
+class QgcReader {
+  public:
+    explicit QgcReader(const std::string& file) { mission_.where = {file}; }
+
+    MissionItems read(const Json& plan) {
+        if (!plan.is_object() || plan.value("fileType", Json()) != "Plan")
+            refuse("has no \"fileType\": \"Plan\"", "expected a plan of QGroundControl");
+        require_version(plan, 1, 1, "the plan");
+        if (!plan.contains("mission")) refuse("has no mission", "add items in QGroundControl");
+        const auto& mission = plan["mission"];
+        name_ = "the mission";
+        try {
+            require_version(mission, 2, 2, name_);
+            copy_numbers(mission, "plannedHomePosition", mission_.home);
+            read_items(mission.at("items"), "item", false);
+        } catch (const Json::exception& error) {  // "[json.exception.type_error.302] type must be array"
+            const std::string text = error.what();
+            refuse(fmt::format("{}: {}", name_, text.substr(text.find(']') + 2)));
+        }
+        return std::move(mission_);
+    }
+
+  private:
+    [[noreturn]] void refuse(const std::string& message, const std::string& hint = "save the plan again") const {
+        throw InputError(mission_.where, message, hint);
+    }
+
+    void require_version(const Json& object, int min, int max, const std::string& name) const {
+        const auto version = object.value("version", Json());
+        if (version.is_number_integer() && version >= min && version <= max) return;
+        refuse(fmt::format("{} has version {}", name, version.dump()),
+               min == max ? fmt::format("expected version {}", max) : fmt::format("expected at most {}", max));
+    }
+
+    /// null is NaN.
+    template <std::size_t N>
+    void copy_numbers(const Json& object, const char* key, std::array<double, N>& to) const {
+        const auto& values = object.at(key);
+        if (!values.is_array() || values.size() != N)
+            refuse(fmt::format("{} has {} {}", name_, values.size(), key), fmt::format("expected {}", N));
+        std::ranges::transform(values, to.begin(),
+                               [](const Json& value) { return value.is_null() ? std::nan("") : value.get<double>(); });
+    }
+
+    void read_items(const Json& items, const std::string& name, bool is_inner) {
+        if (!items.is_array()) refuse(fmt::format("{} has no items", name_));
+        std::size_t number = 0;
+        for (const auto& json : items) {
+            name_ = fmt::format("{} {}", name, ++number);
+            const auto type = json.at("type").get<std::string>();
+            if (type == "ComplexItem" && !is_inner)
+                read_complex(json);
+            else if (type == "SimpleItem")
+                read_simple(json);
+            else
+                refuse(fmt::format("{} has type {}", name_, type), "expected SimpleItem");
+        }
+    }
+
+    void read_simple(const Json& json) {
+        MissionItem item{0, 0, {}, name_, mission_.where};
+        const auto integer = [&](const char* key) {
+            constexpr double max_command = 65535.0;
+            const auto& value = json.at(key);
+            if (!value.is_number_integer() || std::abs(value.get<double>()) > max_command)
+                refuse(fmt::format("{} has no {} that is a whole number", name_, key));
+            return value.get<int>();
+        };
+        item.command = integer("command");
+        item.frame = integer("frame");
+        copy_numbers(json, "params", item.parameters);
+        mission_.items.push_back(std::move(item));
+    }
+
+    /// Surveys and corridors carry the items that they consist of.
+    void read_complex(const Json& json) {
+        name_ += fmt::format(" ({})", json.at("complexItemType").get<std::string>());
+        constexpr int max_version = 5;  // of QGroundControl 4
+        require_version(json, 1, max_version, name_);
+        if (json.contains("TransectStyleComplexItem"))
+            read_items(json["TransectStyleComplexItem"].at("Items"), name_ + ", item", true);
+        else
+            mission_.items.push_back({0, 0, {}, name_, mission_.where});
+    }
+
+    MissionItems mission_;
+    std::string name_;  ///< of the object that is read
+};
+
+/// The numbers of a line, 12 or none.
+std::vector<double> item_numbers(const std::string& line, const Location& where) {
+    constexpr std::size_t columns = 12;
+    std::istringstream words(line);
+    std::vector<double> values;
+    for (std::string word; words >> word;) {
+        const auto value = parse_number(word);
+        if (!value)
+            throw InputError(where, fmt::format("'{}' is no number", truncated(word)),
+                             fmt::format("expected {} numbers", columns));
+        values.push_back(*value);
+    }
+    if (values.empty() || values.size() == columns) return values;
+    throw InputError(where, fmt::format("has {} numbers", values.size()),
+                     fmt::format("expected {}: is the file cut off?", columns));
+}
+
+}  // namespace
+
+PlanEntries parse_qgc_plan(std::string_view text, const std::string& file, const AutopilotSettings& settings) {
+    return fly_items(QgcReader(file).read(parse_json(text, file, "expected a plan of QGroundControl")), settings);
+}
+
+PlanEntries parse_wpl(std::string_view text, const std::string& file, const AutopilotSettings& settings) {
+    std::istringstream lines{std::string(text)};
+    std::string line;
+    std::getline(lines, line);
+    constexpr std::string_view version = "QGC WPL 110";
+    if (!line.starts_with(version))
+        throw InputError({file, 1}, fmt::format("begins with '{}'", truncated(line)),
+                         fmt::format("expected \"{}\"", version));
+    MissionItems mission;
+    for (std::size_t number = 2; std::getline(lines, line); ++number) {
+        const auto values = item_numbers(line, {file, number});
+        if (values.empty()) continue;
+        if (mission.where.line == 0) {  // the first item is home
+            mission.where = {file, number};
+            std::copy_n(values.begin() + 8, mission.home.size(), mission.home.begin());
+            continue;
+        }
+        MissionItem item{static_cast<int>(std::clamp(values[3], -1.0, 1e6)),
+                         static_cast<int>(std::clamp(values[2], -1.0, 1e6)),
+                         {},
+                         fmt::format("item {} (line {})", values[0], number),
+                         {file, number}};
+        std::copy_n(values.begin() + 4, item.parameters.size(), item.parameters.begin());
+        mission.items.push_back(std::move(item));
+    }
+    if (mission.where.line == 0) throw InputError({file}, "has no items", "expected home and waypoints");
+    return fly_items(mission, settings);
+}
+
+}  // namespace flightwatt::path

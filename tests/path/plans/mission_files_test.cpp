@@ -1,0 +1,123 @@
+#include "base/atomic_file.h"
+#include "helpers/rejected.h"
+#include "path/plan_files.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::path {
+namespace {
+
+using test::rejected;
+
+/// A plan of QGroundControl with these items; home is at 100 m above the sea.
+std::string qgc(const std::string& items) {
+    return fmt::format(R"({{"fileType": "Plan", "version": 1, "mission": {{"version": 2,
+"plannedHomePosition": [47.0, 8.0, 100], "items": [{}]}}}})",
+                       items);
+}
+
+std::string item(int command, int frame, const std::string& parameters) {
+    return fmt::format(R"({{"type": "SimpleItem", "command": {}, "frame": {}, "params": [{}]}})", command, frame,
+                       parameters);
+}
+
+TEST(MissionFiles, FlyWaypointsInEitherFrame) {
+    const auto text =
+        qgc(item(22, 3, "15, 0, 0, null, 0, 0, 50") + "," + item(16, 3, "0, 0, 0, null, 47.001, 8.0, 60") + "," +
+            item(16, 0, "5, 0, 0, null, 47.002, 8.0, 170") + "," + item(20, 2, "0, 0, 0, 0, 0, 0, 0"));
+    const auto plan = parse_qgc_plan(text, "q.plan", {});
+    ASSERT_EQ(plan.entries.size(), 4U);
+    EXPECT_DOUBLE_EQ(plan.entries[0].geographic->latitude_deg, 47.0);
+    EXPECT_EQ(plan.entries[0].altitude_m, std::optional(50.0));
+    EXPECT_EQ(plan.entries[1].altitude_m, std::optional(60.0));
+    EXPECT_EQ(plan.entries[2].altitude_m, std::optional(70.0));
+    EXPECT_EQ(plan.entries[2].hold_s, std::optional(5.0));
+    EXPECT_NEAR(parse_plan(text, "q.plan", {}).front().length_m, 4.0 * 111.18,
+                0.5);  // 0.001 degrees of latitude at 47 degrees
+    EXPECT_TRUE(plan.not_flown.empty());
+}
+
+TEST(MissionFiles, FlyCirclesAndChangeTheAirspeed) {
+    const auto plan = parse_qgc_plan(
+        qgc(item(178, 2, "0, 14, -1, 0, 0, 0, 0") + "," + item(18, 3, "3, 0, -70, 1, 47.001, 8.0, 60") + "," +
+            item(19, 3, "60, 0, 0, 1, 47.002, 8.0, 60") + "," + item(17, 3, "0, 0, 80, 1, 47.002, 8.0, 60")),
+        "q.plan", {.radius_m = 50.0, .airspeed_m_per_s = 12.0});
+    EXPECT_EQ(plan.entries[0].circles, std::optional(3.0));
+    EXPECT_EQ(plan.entries[0].radius_m, std::optional(70.0));
+    EXPECT_FALSE(plan.entries[0].to_right);
+    EXPECT_EQ(plan.entries[0].airspeed_m_per_s, std::optional(14.0));
+    EXPECT_NEAR(*plan.entries[1].circles, 60.0 * 14.0 / 314.159, 1e-3);
+    EXPECT_EQ(plan.entries[2].circles, std::optional(1.0));
+    EXPECT_EQ(plan.not_flown, std::vector<std::string>{"item 4: the circle has no end: it is flown once"});
+}
+
+TEST(MissionFiles, ReportUnknownCommandsAndJumps) {
+    const auto plan =
+        parse_qgc_plan(qgc(item(16, 3, "0, 0, 0, null, 47.001, 8.0, 60") + "," + item(177, 2, "1, 5, 0, 0, 0, 0, 0") +
+                           "," + item(4242, 2, "0, 0, 0, 0, 0, 0, 0") + "," + item(4242, 2, "0, 0, 0, 0, 0, 0, 0") +
+                           "," + item(2000, 2, "0, 0, 1, 0, 0, 0, 0")),
+                       "q.plan", {});
+    EXPECT_EQ(plan.not_flown, (std::vector<std::string>{"item 5: command 2000 is not flown",
+                                                        "item 3 and 1 more: command 4242 is not flown",
+                                                        "item 2: the jump to item 1 is not flown"}));
+}
+
+TEST(MissionFiles, OfBrokenPlansAreErrors) {
+    const auto refusal = [](const std::string& text) { return rejected([&] { parse_qgc_plan(text, "q.plan", {}); }); };
+    EXPECT_EQ(refusal("{\n1"), "q.plan:2: is not JSON; expected a plan of QGroundControl");
+    EXPECT_EQ(refusal(R"({"type": "Polygon"})"),
+              "q.plan: has no \"fileType\": \"Plan\"; expected a plan of QGroundControl");
+    EXPECT_EQ(refusal(qgc(R"({"type": "SimpleItem", "command": 1e9, "frame": 3, "params": []})")),
+              "q.plan: item 1 has no command that is a whole number; save the plan again");
+    EXPECT_EQ(refusal(qgc(R"({"type": "Other"})")), "q.plan: item 1 has type Other; expected SimpleItem");
+    EXPECT_NE(refusal(qgc(item(18, 3, "1e9, 0, 70, 1, 47.001, 8.0, 60"))).find("the number of circles = 1"),
+              std::string::npos);
+    EXPECT_EQ(refusal(R"({"fileType": "Plan", "version": 42})"), "q.plan: the plan has version 42; expected version 1");
+    EXPECT_EQ(refusal(R"({"fileType": "Plan", "version": 1})"), "q.plan: has no mission; add items in QGroundControl");
+    EXPECT_EQ(refusal(qgc(item(16, 3, "0, 0, 0"))), "q.plan: item 1 has 3 params; expected 7");
+    EXPECT_EQ(refusal(qgc(item(16, 3, "0, 0, 0, 0, 97, 8, 5"))),
+              "q.plan: item 1 is at latitude 97, longitude 8; expected degrees");
+    EXPECT_EQ(refusal(qgc(item(16, 99, "0, 0, 0, 0, 47, 8, 5"))),
+              "q.plan: item 1 has its altitude in frame 99; expected 0 (above the sea), 3 (above home) or 10 (above "
+              "the terrain)");
+    EXPECT_EQ(refusal(qgc("")), "q.plan: no item of the mission can be flown; it has no items");
+}
+
+TEST(MissionFiles, OfWaypointFilesHaveTheirLine) {
+    const std::string home = "QGC WPL 110\n0\t1\t0\t16\t0\t0\t0\t0\t47.0\t8.0\t100\t1\n";
+    const auto plan =
+        parse_wpl(home +
+                      "1\t0\t3\t16\t0\t0\t0\t0\t47.001\t8\t60\t1\n"
+                      "2\t0\t0\t16\t0\t0\t0\t0\t47.002\t8\t170\t1\n3\t0\t3\t177\t1\t-1\t0\t0\t0\t0\t0\t1\n",
+                  "w.waypoints", {});
+    ASSERT_EQ(plan.entries.size(), 2U);
+    EXPECT_EQ(plan.entries[1].altitude_m, std::optional(70.0));
+    EXPECT_EQ(plan.not_flown, std::vector<std::string>{"item 3 (line 5): the jump to item 1 is not flown"});
+    const auto refusal = [](const std::string& text) { return rejected([&] { parse_wpl(text, "w", {}); }); };
+    EXPECT_EQ(refusal("east_m\n"), "w:1: begins with 'east_m'; expected \"QGC WPL 110\"");
+    EXPECT_EQ(refusal(home + "1\t0\t3\n"), "w:3: has 3 numbers; expected 12: is the file cut off?");
+    EXPECT_EQ(refusal(home + "1\tx\n"), "w:3: 'x' is no number; expected 12 numbers");
+    EXPECT_EQ(refusal("QGC WPL 110\n"), "w: has no items; expected home and waypoints");
+}
+
+TEST(MissionFiles, OfRealPlansAreFlownOrRefused) {
+    FLIGHTWATT_NEEDS_SHARED();
+    const auto folder = test::shared_dir() / "plans";
+    const auto length_of = [&](const std::string& name) {
+        return parse_plan(read_file(folder / name), name, {60.0, 15.0}).front().length_m;
+    };
+    EXPECT_GT(length_of("qgroundcontrol/qgroundcontrol_sample.plan"), 200.0);
+    EXPECT_GT(length_of("qgroundcontrol/qgroundcontrol_sample_with_survey.plan"), 100.0);
+    EXPECT_GT(length_of("ardupilot/Plockton.waypoints"), 50e3);
+    for (const auto* broken : {"with_survey_wrong_version", "with_survey_missing_items", "wrong_mission_version",
+                               "without_mission", "wrong_overall_version"}) {
+        const auto name = fmt::format("qgroundcontrol/qgroundcontrol_sample_{}.plan", broken);
+        EXPECT_THROW(length_of(name), InputError) << name;
+    }
+}
+
+}  // namespace
+}  // namespace flightwatt::path
