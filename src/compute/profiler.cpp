@@ -31,6 +31,7 @@ ComponentRun execute(const ProfileRun& run, const ProfileSpecification& specific
     } else if (!is_recorded) {
         timing.duration_s = specification.idle_s;  // a recording counts as a whole
     }
+    for (auto& command : configuration.commands) command.front() = program_path(settings.folder, command.front());
     if (!is_recorded) return run_component(configuration.commands, timing, frame);
     const auto interval_s = settings.interval_is_given ? std::optional(settings.interval_s) : std::nullopt;
     return run_of_recording(read_power_trace(configuration.recording, interval_s), timing, settings.interval_s);

@@ -49,8 +49,8 @@ PlanEntries parse_plan_blocks(std::string_view text, const std::string& file, co
 std::vector<PathEntry> parse_flight_plan(std::string_view text, const std::string& file,
                                          const std::vector<std::string>& names);
 
-/// The items of a QGroundControl plan (.plan, version 1, mission version 2) or of a waypoint file of ArduPilot ("QGC WPL
-/// 110"), altitudes above home. Unknown commands and jumps are not flown. Throws InputError, placed in the file.
+/// The items of a plan of QGroundControl (.plan, version 1, mission version 2) or ArduPilot (.waypoints, "QGC WPL 110"),
+/// altitudes above home. Unknown commands and jumps are not flown. Throws InputError, placed in the file.
 PlanEntries parse_qgc_plan(std::string_view text, const std::string& file, const AutopilotSettings& settings);
 PlanEntries parse_wpl(std::string_view text, const std::string& file, const AutopilotSettings& settings);
 

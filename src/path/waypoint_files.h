@@ -9,8 +9,8 @@
 
 namespace flightwatt::path {
 
-/// The waypoints of a file, in its order: GeoJSON by its ending (.geojson, .json), plans of QGroundControl and ArduPilot
-/// by their content, else CSV (docs/formats.md, Waypoints). Throws InputError, placed in the file.
+/// The waypoints of a file, in its order: GeoJSON by its ending (.geojson, .json), plans of QGroundControl and
+/// ArduPilot by their content, else CSV (docs/formats.md, Waypoints). Throws InputError, placed in the file.
 PlanEntries read_waypoints(const std::filesystem::path& path, const AutopilotSettings& settings);
 
 /// CSV and GeoJSON from text.

@@ -101,6 +101,19 @@ TEST_F(Profiler, GoesOnPastThoseThatFail) {
     EXPECT_EQ(test::processes_with(marker), 0);
 }
 
+TEST_F(Profiler, StartsProgramsFromTheFolderOfTheSpecification) {
+    std::filesystem::create_directories(folder / "spec");
+    write("spec/watts.sh", "#!/bin/sh\nwhile :; do echo 2; sleep 0.02; done\n");
+    write("spec/load.sh", "#!/bin/sh\nsleep 60\n");
+    for (const auto* name : {"spec/watts.sh", "spec/load.sh"})
+        std::filesystem::permissions(folder / name, std::filesystem::perms::owner_all);
+    write("spec/p.toml",
+          "idle_s = 0\nduration_s = 1\n[sampler]\ninterval_s = 0.02\ncommand = ['./watts.sh']\n"
+          "[components.load]\ncommand = ['./load.sh']\n");
+    EXPECT_EQ(profile("spec/p.toml"), 0) << text("stderr");
+    EXPECT_NEAR(power_w(read_power_profile(folder / "out/load.csv"), {}), 2.0, 1e-9);
+}
+
 TEST_F(Profiler, ReplacesResultsOfAProfileAlone) {
     write("p.toml", std::string(meter) + "[components.good]\ncommand = ['sleep', '60']\n");
     for (const auto* name : {"out/good.csv", "out/idle.csv", "out/runs.csv"}) {

@@ -21,6 +21,7 @@ class CommandSampler {
   public:
     explicit CommandSampler(const SamplerSettings& settings)
         : command_(settings.command), interval_s_(settings.interval_s) {
+        command_.front() = program_path(settings.folder, command_.front());
         start();
     }
     ~CommandSampler() { stop(); }

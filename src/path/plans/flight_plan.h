@@ -42,13 +42,13 @@ struct FlightPlan {
 /// Throws InputError for a text that is not XML, or no flight plan.
 FlightPlan load_flight_plan(std::string_view text, const std::string& file);
 
-/// An attribute, whose name may be in capitals (older plans); empty if there is none.
+/// An attribute, whose name may be in capitals (older plans); empty without it.
 std::string attribute(const pugi::xml_node& node, const std::string& name);
 
 Location where(const FlightPlan& plan, const pugi::xml_node& node);
 
-/// The number of a waypoint, named with or without the prefix "WP_". Throws InputError at `asking` if there is none,
-/// or several of the name.
+/// The number of a waypoint, named with or without the prefix "WP_". Throws InputError at `asking` unless one has the
+/// name.
 std::size_t waypoint_number(const FlightPlan& plan, std::string_view name, const Location& asking);
 
 /// Its place in metres from lat0 and lon0, and its altitude above the sea. Throws InputError for a waypoint without.

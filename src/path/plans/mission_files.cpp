@@ -17,7 +17,7 @@ namespace {
 
 /// A command of MAVLink (MAV_CMD) with its frame (MAV_FRAME) and parameters; NaN for those that are not given.
 struct MissionItem {
-    int command = 0;
+    int command = 0;  ///< 0: without one
     int frame = 0;
     std::array<double, 7> parameters = {};
     std::string name;
@@ -30,11 +30,10 @@ struct MissionItems {
     Location where;
 };
 
-// MAV_CMD, and an item without one
-constexpr int not_understood = 0, nav_waypoint = 16, nav_loiter_unlimited = 17, nav_loiter_turns = 18,
-              nav_loiter_time = 19, nav_return = 20, nav_land = 21, nav_takeoff = 22, nav_loiter_to_altitude = 31,
-              nav_spline = 82, nav_vtol_takeoff = 84, nav_vtol_land = 85, nav_delay = 93, jump = 177,
-              change_speed = 178;
+// MAV_CMD
+constexpr int nav_waypoint = 16, nav_loiter_unlimited = 17, nav_loiter_turns = 18, nav_loiter_time = 19,
+              nav_return = 20, nav_land = 21, nav_takeoff = 22, nav_loiter_to_altitude = 31, nav_spline = 82,
+              nav_vtol_takeoff = 84, nav_vtol_land = 85, nav_delay = 93, jump = 177, change_speed = 178;
 
 /// None for latitude and longitude 0 or none: where the aircraft is.
 std::optional<GeodeticPosition> place_at(double latitude_deg, double longitude_deg, const std::string& name,
@@ -88,10 +87,8 @@ class ItemReader {
                 return set_speed(item);
             case jump:
                 return report(item, fmt::format("the jump to item {:.0f} is not flown", parameters[0]));
-            case not_understood:
-                return report(item, "not flown");
             default:
-                report(item, fmt::format("command {} is not flown", item.command));
+                report(item, item.command == 0 ? "not flown" : fmt::format("command {} is not flown", item.command));
         }
     }
 

@@ -102,12 +102,12 @@ void add_survey(const std::vector<SurveyLine>& lines, double spacing_m, const Lo
 
 void add_oval(const LocalPosition& first, const LocalPosition& second, double radius_m, double rounds,
               const PathEntry& like, std::vector<PathEntry>& entries) {
-    const auto beside = moved(second, 2.0 * radius_m, course_between(second, first) + 90.0);
+    const auto opposite = moved(second, 2.0 * radius_m, course_between(second, first) + 90.0);
     for (double round = 0.0; round < rounds; round += 1.0) {
         entries.push_back(leg_to(second, like));
         entries.push_back(leg_to(first, like));
         entries.push_back(arc(0.5, radius_m, like));
-        entries.push_back(leg_to(beside, like));
+        entries.push_back(leg_to(opposite, like));
         entries.push_back(arc(0.5, radius_m, like));
     }
 }

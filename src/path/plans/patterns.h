@@ -28,7 +28,7 @@ void add_survey(const std::vector<SurveyLine>& lines, double spacing_m, const Lo
 /// Patterns of Paparazzi's autopilots (sw/airborne/modules/nav), appended to `entries`; radii and spacings more than 0
 /// are to the right in arcs and ovals, to the left for Zamboni surveys.
 
-/// From `second` to `first`, half a circle, back beside it, half a circle; `rounds` times, the last one whole.
+/// From `second` to `first`, half a circle, back on a parallel, half a circle; `rounds` times, the last one whole.
 void add_oval(const LocalPosition& first, const LocalPosition& second, double radius_m, double rounds,
               const PathEntry& like, std::vector<PathEntry>& entries);
 

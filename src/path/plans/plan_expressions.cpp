@@ -12,7 +12,8 @@
 namespace flightwatt::path {
 namespace {
 
-/// Without blanks: expression = term {(+|-) term}, term = factor {(*|/) factor}, factor = [-] (number | name[(...)] | (expression)).
+/// Without blanks: expression = term {(+|-) term}, term = factor {(*|/) factor},
+/// factor = [-] (number | name[(...)] | (expression)).
 class Expression {
   public:
     Expression(std::string_view text, const NamedValues& value_of) : rest_(text), value_of_(value_of) {}
