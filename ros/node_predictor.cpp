@@ -57,7 +57,9 @@ std::string prediction_json(const live::PredictorState& now, double start_s) {
         {"alarms", Json::array()},
         {"dropped", now.dropped},
     };
-    for (const auto& alarm : now.alarms) json["alarms"].push_back({{"kind", alarm.kind}, {"text", alarm.text}});
+    for (const auto& alarm : now.alarms)
+        json["alarms"].push_back(
+            {{"kind", alarm.kind}, {"grade", alarm.grade}, {"text", alarm.text}, {"action", alarm.action}});
     return json.dump();
 }
 

@@ -87,6 +87,11 @@ class LivePage {
         const auto web = report::read_live_web_files(report::web_folder());
         server_.emplace(*address, report::live_page_html(web));
         cli::note(call, "the page is at " + server_->address());
+        if (!server_->is_local())
+            cli::warn(call,
+                      fmt::format("--serve {0}: every device that reaches this address can read the page, without "
+                                  "a password; --serve PORT serves it to this machine only",
+                                  *address));
         if (web.libraries.empty())
             cli::warn(call, "the page has no charts: what draws them is not installed (scripts/install_dependencies)");
     }

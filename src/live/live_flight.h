@@ -73,6 +73,8 @@ struct LiveState {
     std::size_t messages = 0;
     std::size_t restarts = 0;  ///< of the clock
     double time_since_message_s = 0.0;
+    double silence_threshold_s = 0.0;             ///< above: the link counts as lost
+    std::optional<double> reserve_soc_percent;    ///< of the mission
     std::map<std::string, std::size_t> unusable;  ///< lines and values by reason
     std::size_t rows = 0;                         ///< in memory
 };

@@ -243,6 +243,8 @@ std::string PageServer::address() const {
     return "http://" + boost::lexical_cast<std::string>(at) + "/";
 }
 
+bool PageServer::is_local() const { return server_->endpoint().address().is_loopback(); }
+
 void PageServer::publish(std::string state, std::string point) { server_->publish(std::move(state), std::move(point)); }
 
 }  // namespace flightwatt::live

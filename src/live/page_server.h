@@ -25,6 +25,8 @@ class PageServer {
 
     /// "http://127.0.0.1:8080/"
     std::string address() const;
+    /// Only this machine can connect.
+    bool is_local() const;
 
     /// The current state, and its point in the charts (empty: none): JSON on one line.
     void publish(std::string state, std::string point);

@@ -41,7 +41,8 @@ void warn_of_level(const mechanical::PhysicalModel& model, double level, Diagnos
         units::percentage(level, 1.0), units::percentage(sd, 1.0)));
 }
 
-/// The position on the path: by the aircraft's positions, by the time since the cruise began, or by --remaining.
+/// The position on the path: by the aircraft's positions, by the time since the cruise began, or by --remaining; at most
+/// its end.
 double seconds_on_path(const PredictionInput& input, const FlightProgress& flown, const std::optional<PathFix>& fix) {
     const auto& path = input.path->flown();
     if (input.remaining_s) {
@@ -49,15 +50,21 @@ double seconds_on_path(const PredictionInput& input, const FlightProgress& flown
         throw UsageError(fmt::format("--remaining {:g}: the mission's path takes only {:.1f} s", *input.remaining_s,
                                      path.duration_s));
     }
-    if (fix && fix->path_time_s) {
-        if (*fix->path_time_s < path.duration_s) return *fix->path_time_s;
-        throw NoResultError("the mission's path is completed: give the remaining cruise with --remaining");
-    }
-    if (flown.cruise_s() <= path.duration_s) return flown.cruise_s();
-    throw NoResultError(
-        fmt::format("the cruise has taken {:.1f} s and the mission's path takes {:.1f} s: give the remaining cruise "
-                    "with --remaining",
-                    flown.cruise_s(), path.duration_s));
+    return std::min(fix && fix->path_time_s ? *fix->path_time_s : flown.cruise_s(), path.duration_s);
+}
+
+/// A cruise that continues beyond the mission's, at its mean power until now.
+mechanical::RemainingCruise predict_overtime(const FlightProgress& flown, double overtime_s, Prediction& prediction,
+                                             Diagnostics& remarks) {
+    mechanical::RemainingCruise rest;
+    rest.measured_w = units::joule_from_wh(flown.cruise_energy_wh) / flown.cruise_s();
+    rest.remaining_mean_w = rest.measured_w;
+    prediction.overtime_s = std::max(overtime_s, 0.0);
+    remarks.warnings.push_back(
+        fmt::format("the mission's cruise was completed {:.0f} s ago: the charge at landing is that of a landing from "
+                    "now, and the time to the reserve is at the mean power of this cruise, {:.1f} W",
+                    *prediction.overtime_s, rest.measured_w));
+    return rest;
 }
 
 void remark_on(const PathFix& fix, double cruise_s, Diagnostics& remarks) {
@@ -85,6 +92,9 @@ mechanical::RemainingCruise predict_along_path(const PredictionInput& input, con
                                                Diagnostics& remarks) {
     prediction.on_path_s = seconds_on_path(input, flown, fix);
     prediction.is_from_position = fix && fix->path_time_s;
+    const double path_s = input.path->flown().duration_s;
+    if (!input.remaining_s && *prediction.on_path_s >= path_s)
+        return predict_overtime(flown, flown.cruise_s() - path_s, prediction, remarks);
     if (fix) remark_on(*fix, flown.cruise_s(), remarks);
     const auto rest = input.path->predict(flown, position_at(input.path->flown(), *prediction.on_path_s));
     if (rest.infeasible_fraction > 0.0) {
@@ -106,13 +116,9 @@ mechanical::RemainingCruise predict_cruise(const PredictionInput& input, const F
         remarks.warnings.push_back(
             fmt::format("the deviation of this flight from the model is unknown: {}", flown.motion.no_bins_reason));
     if (input.path) return predict_along_path(input, flown, fix, prediction, remarks);
-    prediction.remaining_s = input.remaining_s ? *input.remaining_s : input.cruise_s.value() - flown.cruise_s();
-    if (prediction.remaining_s < 0.0) {
-        throw NoResultError(
-            fmt::format("the cruise takes {:.0f} s longer than the mission's {:.0f} s: give the remaining cruise with "
-                        "--remaining",
-                        -prediction.remaining_s, *input.cruise_s));
-    }
+    const double overtime_s = input.remaining_s ? -*input.remaining_s : flown.cruise_s() - input.cruise_s.value();
+    if (overtime_s > 0.0) return predict_overtime(flown, overtime_s, prediction, remarks);
+    prediction.remaining_s = -overtime_s;
     if (!input.motion)
         return predict_remaining_cruise(forecast_of(input.model, flight::Phase::cruise), flown, prediction.remaining_s,
                                         input.level.value_or(mechanical::CruisePrior::curve));
@@ -156,10 +162,12 @@ PredictionInput unchecked_input(const mission::MissionSetup& setup) {
     return input;
 }
 
-/// The flight home from a time on the path; std::nullopt where the wind is too strong.
-std::optional<ConstantLoad> flight_home(const path::PathForecast& path, double on_path_s, double power_factor) {
-    const auto& plan = path.plan();
-    const auto position = position_at(path.flown(), on_path_s);
+/// The flight home from a time on the path; std::nullopt where the wind is too strong. Without a path the landing begins
+/// where the aircraft is.
+std::optional<ConstantLoad> flight_home(const PredictionInput& input, double on_path_s, double power_factor) {
+    if (!input.path) return ConstantLoad{};
+    const auto& plan = input.path->plan();
+    const auto position = position_at(input.path->flown(), on_path_s);
     const auto at = local_position_at(plan.path, position);
     const double distance_m = std::hypot(at.east_m, at.north_m);
     const auto& element = plan.path.elements[std::min(position.element, plan.path.elements.size() - 1)];
@@ -303,8 +311,13 @@ ReturnDeadline latest_return(const PredictionInput& input, const Prediction& pre
     }
     const double planned_j = energy_j(prediction.remaining_power);
     const double power_factor = planned_j > 0.0 ? energy_j(ahead) / planned_j : 1.0;
+    if (prediction.overtime_s) {
+        const double cruise_w = prediction.cruise.remaining_mean_w;
+        ahead = {{cruise_w, 0.0}};
+        ahead.front().duration_s = forecast_landing(*input.battery, now, ahead, cruise_w, input.limits).endurance_s;
+    }
     const auto keeps_reserve_after = [&](double in_s) {
-        const auto home = flight_home(*input.path, prediction.on_path_s.value() + in_s, power_factor);
+        const auto home = flight_home(input, prediction.on_path_s.value_or(0.0) + in_s, power_factor);
         if (!home) return false;
         const std::vector<ConstantLoad> loads{*home, landing};
         return forecast_landing(*input.battery, now, loads, 0.0, input.limits).keeps_reserve;
@@ -315,9 +328,9 @@ ReturnDeadline latest_return(const PredictionInput& input, const Prediction& pre
     double in_s = 0.0;
     while (keeps_reserve_after(in_s)) {
         deadline.latest_in_s = in_s;
-        deadline.path_can_be_flown = in_s >= total_s;
+        deadline.path_can_be_flown = in_s >= total_s && !prediction.overtime_s;
         const double next_s = std::min(in_s + step_s, total_s);
-        if (deadline.path_can_be_flown || !advance(input, next_s - in_s, ahead, now)) break;
+        if (in_s >= total_s || !advance(input, next_s - in_s, ahead, now)) break;
         in_s = next_s;
     }
     return deadline;

@@ -49,7 +49,8 @@ struct Prediction {
     std::optional<double> on_path_s = {};  ///< position on the path, as its planned time
     bool is_from_position = false;         ///< of `on_path_s`: by the aircraft's positions, not by the time
     double remaining_s = 0.0;
-    bool uses_physical_model = false;  ///< for the cruise; else the curve
+    std::optional<double> overtime_s = {};  ///< of the cruise beyond the mission's: then the landing begins now
+    bool uses_physical_model = false;       ///< for the cruise; else the curve
     mechanical::RemainingCruise cruise;
     std::vector<battery::ConstantLoad> remaining_power = {};  ///< planned, along the path; empty: constant
     mechanical::EnergyEstimate landing;
@@ -78,9 +79,9 @@ double initial_soc_percent(const PredictionInput& input, const battery::Discharg
 /// By the resting voltage only.
 double initial_soc_by_voltage_percent(const PredictionInput& input, const battery::DischargeRecord& flown);
 
-/// Predicts the remaining flight from its progress and its series until now. Throws NoResultError where the moment
-/// allows none (path completed, more charge drawn than available), UsageError for a remaining time longer than the
-/// path, and as mechanical::predict_remaining_cruise and battery::discharge_records.
+/// Predicts the remaining flight from its progress and its series until now; of a cruise beyond the mission's, a landing
+/// from now. Throws NoResultError where more charge was drawn than available, UsageError for a remaining time longer
+/// than the path, and as mechanical::predict_remaining_cruise and battery::discharge_records.
 Prediction predict_flight(const PredictionInput& input, const mechanical::FlightProgress& flown,
                           const flight::FlightSeries& series, Diagnostics& remarks);
 
@@ -103,12 +104,13 @@ BatteryPrediction forecast_battery(const battery::Battery& battery, const batter
 
 struct ReturnDeadline {
     std::optional<double> latest_in_s;  ///< none: the reserve cannot be kept any more
-    bool path_can_be_flown = false;     ///< to its end, and home from there: `latest_in_s` is the end
+    bool path_can_be_flown = false;     ///< or the cruise, to its end, and home from there: `latest_in_s` is the end
 };
 
 /// The latest moment to leave the path and fly straight home, level, at the path's current airspeed and in the plan's
-/// wind, so that the landing keeps the reserve at the high end of the energy's interval. Evaluated every 10 s, or at
-/// 40 moments. The input has a path and a battery; `now`: its state.
+/// wind, or without a path to begin the landing, so that it keeps the reserve at the high end of the energy's interval.
+/// A cruise beyond the mission's continues at its mean power. Evaluated every 10 s, or at 40 moments. The input has a
+/// battery; `now`: its state.
 ReturnDeadline latest_return(const PredictionInput& input, const Prediction& prediction, battery::BatteryState now);
 
 struct TimeCurve {

@@ -63,7 +63,7 @@ struct LandingPrediction {
     std::optional<double> fails_in_s = {};            ///< expected: empty, cut off or overloaded
     std::optional<double> reserve_in_s = {};          ///< time to the reserve in a continued cruise
     std::optional<double> chance_below_reserve = {};  ///< probability at landing, 0 to 1
-    std::optional<double> turn_home_in_s = {};        ///< with a path: the latest moment to leave it for home
+    std::optional<double> turn_home_in_s = {};        ///< latest moment to leave the path for home, or to land
 };
 
 /// The mission's schedule, or with `replan` the current plan.
@@ -83,8 +83,10 @@ struct ComponentState {
 };
 
 struct Alarm {
-    std::string kind;  ///< "reserve", "model", "silence" or "voltage"
-    std::string text;
+    std::string kind;    ///< "reserve", "model", "silence" or "voltage"
+    std::string grade;   ///< "caution" or "alarm"
+    std::string text;    ///< the finding
+    std::string action;  ///< recommended, with the time left
 };
 
 /// The state at a moment.

@@ -42,9 +42,9 @@ std::string filled_page(std::string_view name, const std::map<std::string_view, 
 
 /// Style, theme, scripts and, unless one is missing, libraries. Throws InputError for a missing one if
 /// `needs_libraries`.
-WebFiles read_files(const std::filesystem::path& folder, std::initializer_list<const char*> scripts,
+WebFiles read_files(const std::filesystem::path& folder, const char* style, std::initializer_list<const char*> scripts,
                     bool needs_libraries) {
-    WebFiles files{folder, read_file(folder / "page.css"), read_file(folder / "theme.json"), "", ""};
+    WebFiles files{folder, read_file(folder / style), read_file(folder / "theme.json"), "", ""};
     for (const std::string library : {"vega", "vega-lite", "vega-embed"}) {
         const auto path = folder / "node_modules" / library / "build" / (library + ".min.js");
         if (!open_error(path)) {
@@ -101,10 +101,12 @@ std::string standalone(const Figure& figure, const VegaJson& light_theme) {
 std::filesystem::path web_folder() { return data_folder("web", "FLIGHTWATT_WEB", "the report's web files"); }
 
 WebFiles read_web_files(const std::filesystem::path& folder) {
-    return read_files(folder, {"fit_width.js", "blocks.js", "page.js"}, true);
+    return read_files(folder, "page.css", {"fit_width.js", "blocks.js", "page.js"}, true);
 }
 
-WebFiles read_live_web_files(const std::filesystem::path& folder) { return read_files(folder, {"watch.js"}, false); }
+WebFiles read_live_web_files(const std::filesystem::path& folder) {
+    return read_files(folder, "watch.css", {"watch.js"}, false);
+}
 
 std::string page_html(const PageHead& head, const std::vector<Section>& sections, const WebFiles& web) {
     std::string contents;
@@ -131,12 +133,11 @@ std::string page_html(const PageHead& head, const std::vector<Section>& sections
 }
 
 std::string live_page_html(const WebFiles& web) {
-    std::string charts = "<h2>Charts</h2>\n";
+    std::string charts;
     for (const auto* id : {"charge", "power", "altitude"})
-        charts += fmt::format(
-            "<figure><div class=\"figure\" id=\"{0}\" role=\"img\" aria-label=\"{0} over time\"></div></figure>\n", id);
+        charts += fmt::format("<div class=\"chart\" id=\"{0}\" role=\"img\" aria-label=\"{0} over time\"></div>\n", id);
     if (web.libraries.empty())
-        charts = paragraph("No charts: their libraries are not installed (scripts/install_dependencies).", "warning");
+        charts = "<p>No charts: their libraries are not installed (scripts/install_dependencies).</p>\n";
     return filled_page("watch", {{"version", FLIGHTWATT_VERSION},
                                  {"style", web.style},
                                  {"charts", charts},

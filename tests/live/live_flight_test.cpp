@@ -191,7 +191,7 @@ TEST(LiveFlight, ALogThatEndsOrFallsSilentOnTheGroundHasLanded) {
     EXPECT_TRUE(flight.update().landed);
 }
 
-TEST(LiveFlight, ACruiseThatTakesLongerThanPlannedHasNoEndThatIsKnown) {
+TEST(LiveFlight, ACruiseThatTakesLongerThanPlannedIsPredictedAsALandingFromNow) {
     const auto log = test::sample(1);
     auto basis = test::wing_basis();
     basis.remaining_s.reset();
@@ -201,11 +201,49 @@ TEST(LiveFlight, ACruiseThatTakesLongerThanPlannedHasNoEndThatIsKnown) {
     ASSERT_TRUE(flight.update().prediction);
     test::receive_all(flight, test::messages_of(log, 400.0, 200.001));
     const auto state = flight.update();
-    EXPECT_FALSE(state.prediction);
-    EXPECT_THAT(state.no_prediction_reason, testing::HasSubstr("longer than the mission's 150 s"));
-    EXPECT_GT(state.battery->time_to_reserve_s.value(), 100.0);
-    EXPECT_FALSE(state.battery->probability_below_reserve);
-    EXPECT_GT(state.expected_power_w.value(), 10.0);
+    ASSERT_TRUE(state.prediction) << state.no_prediction_reason;
+    EXPECT_NEAR(state.prediction->overtime_s.value(), state.prediction->flown.cruise_s() - 150.0, 1e-9);
+    EXPECT_EQ(state.prediction->remaining_s, 0.0);
+    EXPECT_EQ(state.prediction->remaining_energy.energy_wh, state.prediction->landing.energy_wh);
+    EXPECT_NEAR(state.expected_power_w.value(),
+                3600.0 * state.prediction->flown.cruise_energy_wh / state.prediction->flown.cruise_s(), 1e-9);
+    EXPECT_THAT(state.warnings, testing::Contains(testing::HasSubstr("at the mean power of this cruise")));
+    // It can land until shortly before the reserve is reached at that power.
+    const double reserve_s = state.battery->time_to_reserve_s.value();
+    EXPECT_GT(reserve_s, 1000.0);
+    EXPECT_LT(state.turn_home->latest_in_s.value(), reserve_s);
+    EXPECT_GT(state.turn_home->latest_in_s.value(), 0.9 * reserve_s);
+    EXPECT_FALSE(state.turn_home->path_can_be_flown);
+    EXPECT_LT(state.battery->probability_below_reserve.value(), 0.01);
+}
+
+TEST(LiveFlight, AStartInTheAirAfterThePlannedCruiseIsALandingFromNow) {
+    const auto log = test::sample(1);
+    auto basis = test::wing_basis();
+    basis.remaining_s.reset();
+    basis.cruise_s = 100.0;
+    LiveFlight flight(test::options_of(log), basis, nullptr);
+    test::receive_all(flight, test::messages_of(log, 420.0, 200.0));
+    const auto state = flight.update();
+    ASSERT_TRUE(state.prediction) << state.no_prediction_reason;
+    EXPECT_TRUE(state.prediction->began_in_air);
+    EXPECT_GT(state.prediction->overtime_s.value(), 50.0);
+}
+
+TEST(LiveFlight, ACompletedPathIsPredictedAsALandingFromNow) {
+    const auto log = test::sample(1);
+    auto basis = test::wing_basis();
+    basis.remaining_s.reset();
+    basis.model.physical = test::made_up_wing();
+    const auto cruise_s = mechanical::progress_at(flight::read_flight(log), 300.0).cruise_start_s;
+    basis.path = path_of(log, cruise_s, cruise_s + 100.0);
+    LiveFlight flight(test::options_of(log), basis, nullptr);
+    test::receive_all(flight, test::messages_of(log, 420.0));
+    const auto state = flight.update();
+    ASSERT_TRUE(state.prediction) << state.no_prediction_reason;
+    EXPECT_GT(state.prediction->overtime_s.value(), 100.0);
+    EXPECT_EQ(state.prediction->on_path_s, basis.path->flown().duration_s);
+    EXPECT_GT(state.turn_home->latest_in_s.value(), 100.0);
 }
 
 TEST(LiveFlight, MemoryIsBoundedAndSeveralSortiesAreCounted) {

@@ -83,9 +83,11 @@ TEST_F(PageServerTest, RefusesOtherHostsOriginsMethodsAndPaths) {
                 StartsWith("HTTP/1.1 403"));
     EXPECT_THAT(answer_to("GET /events", "Host: localhost\r\nSec-Fetch-Site: cross-site\r\n"),
                 StartsWith("HTTP/1.1 403"));
-    const auto post = answer_to("POST /");
-    EXPECT_THAT(post, StartsWith("HTTP/1.1 405"));
-    EXPECT_THAT(post, HasSubstr("Allow: GET, HEAD"));
+    for (const auto* command : {"POST /", "PUT /state", "DELETE /events", "PATCH /state", "OPTIONS /"}) {
+        const auto answer = answer_to(command);
+        EXPECT_THAT(answer, StartsWith("HTTP/1.1 405")) << command;
+        EXPECT_THAT(answer, HasSubstr("Allow: GET, HEAD"));
+    }
     EXPECT_THAT(answer_to("GET /../etc/passwd"), StartsWith("HTTP/1.1 404"));
     EXPECT_THAT(answer_to("GET /", "Host: localhost\r\nX: " + std::string(20'000, 'x') + "\r\n"),
                 Not(HasSubstr("200 OK")));
@@ -152,6 +154,12 @@ TEST(PageServer, IsRefusedWhereItCannotListen) {
     EXPECT_THROW(PageServer(std::to_string(port), ""), InputError);
     for (const auto* wrong : {"", "0", "x", "localhost:1", "127.0.0.1:"})
         EXPECT_THROW(PageServer(wrong, ""), UsageError) << wrong;
+}
+
+TEST(PageServer, KnowsWhetherOtherMachinesCanConnect) {
+    EXPECT_TRUE(PageServer(std::to_string(test::free_udp_port()), "").is_local()) << "by default";
+    EXPECT_TRUE(PageServer(fmt::format("127.0.0.1:{}", test::free_udp_port()), "").is_local());
+    EXPECT_FALSE(PageServer(fmt::format("0.0.0.0:{}", test::free_udp_port()), "").is_local());
 }
 
 TEST(PageServer, CanTakeItsPortAgainAtOnce) {

@@ -188,6 +188,34 @@ TEST(TurnHome, SaysWhereThePathCanBeFlownAndWhereItIsTooLate) {
     EXPECT_FALSE(trial.turn(100.0).latest_in_s) << "the landing counts";
 }
 
+TEST(TurnHome, WithoutAPathItIsTheLatestLanding) {
+    Trial trial;
+    trial.prediction.landing_s = 50.0;
+    trial.prediction.landing.energy_wh = 10.0 * 50.0 / 3600.0;
+    const auto land = [&] { return latest_return(trial.input, trial.prediction, trial.now); };
+    trial.charge_for(260.0);
+    EXPECT_TRUE(land().path_can_be_flown) << "200 s of cruise and the landing";
+    trial.charge_for(155.0);
+    EXPECT_EQ(land().latest_in_s, 100.0) << "in steps of 10 s";
+    EXPECT_FALSE(land().path_can_be_flown);
+    trial.charge_for(40.0);
+    EXPECT_FALSE(land().latest_in_s);
+}
+
+TEST(TurnHome, ACruiseBeyondTheMissionsContinuesToTheReserve) {
+    Trial trial;
+    trial.prediction.remaining_power.clear();
+    trial.prediction.cruise.energy.energy_wh = 0.0;
+    trial.prediction.cruise.remaining_mean_w = 20.0;
+    trial.prediction.overtime_s = 30.0;
+    trial.prediction.landing_s = 50.0;
+    trial.prediction.landing.energy_wh = 10.0 * 50.0 / 3600.0;
+    trial.charge_for(250.0);
+    const auto land = latest_return(trial.input, trial.prediction, trial.now);
+    EXPECT_EQ(land.latest_in_s, 100.0) << "200 s at 10 W are 100 s at 20 W";
+    EXPECT_FALSE(land.path_can_be_flown);
+}
+
 TEST(TurnHome, AWindThatForbidsTheWayHomeIsTooLate) {
     Trial trial;
     trial.charge_for(300.0);

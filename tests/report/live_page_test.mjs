@@ -50,7 +50,7 @@ test("charts move while a flight is played, and the page outlives its server", a
   await eventually("the log is there", () => existsSync(growing));
   const first = watch();
   await eventually("the server answers", answers);
-  const page = await (await browser.newContext({ viewport: { width: 1100, height: 900 } })).newPage();
+  const page = await (await browser.newContext({ viewport: { width: 390, height: 844 } })).newPage();
   page.setDefaultTimeout(0);
   const faults = [];
   let serverIsDown = false;
@@ -71,7 +71,12 @@ test("charts move while a flight is played, and the page outlives its server", a
     assert.ok(lines > 0, `#${id} draws nothing`);
     await eventually(`#${id} gets more`, async () => (await points(id)) > before);
   }
-  await eventually("the cruise is seen and predicted", async () => /95|Wh \(/.test(await page.locator("#landing").innerText()));
+  await eventually("the cruise is seen and predicted", async () => /Charge at landing/.test(await page.locator("#answers").innerText()));
+  assert.match(await page.title(), /^Battery lasts/);
+  assert.equal(await page.locator("button, input, select, form, a").count(), 0, "the page offers no command");
+  const sizes = await page.locator("#answers .number").evaluateAll((numbers) => numbers.map((of) => parseFloat(getComputedStyle(of).fontSize)));
+  assert.ok(sizes.length === 3 && sizes.every((size) => size >= 48), `three numbers of 48 px or more: ${sizes}`);
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth), "it scrolls sideways");
   await page.screenshot({ path: path.join(SCRATCH, "live.png"), fullPage: true });
   await page.evaluate(axe.source);
   const { violations } = await page.evaluate(() => window.axe.run());
@@ -80,9 +85,11 @@ test("charts move while a flight is played, and the page outlives its server", a
   serverIsDown = true; // the browser itself notes requests that fail
   first.kill("SIGTERM");
   await first.ended;
-  await eventually("the page reports it", async () => /No connection/.test(await page.locator("#connection").innerText()));
+  await eventually("the page reports it", async () => /NO CONNECTION/.test(await page.locator("#status").innerText()));
+  await eventually("its numbers are old", async () => /[0-9] s old/.test(await page.locator("#answers").innerText()));
+  assert.match(await page.title(), /^NO CONNECTION/);
   watch();
-  await eventually("the page is back", async () => (await page.locator("#connection").innerText()) === "");
+  await eventually("the page is back", async () => !/NO CONNECTION/.test(await page.locator("#status").innerText()));
   serverIsDown = false;
   const then = await time();
   await eventually("it goes on", async () => (await time()) > then);

@@ -48,6 +48,7 @@ TEST(LivePage, ListensToItsServerAlone) {
     EXPECT_THAT(html, HasSubstr("default-src 'none'"));
     EXPECT_THAT(html, HasSubstr("connect-src 'self'"));
     EXPECT_THAT(html, HasSubstr("id=\"charge\""));
+    for (const auto* command : {"<form", "<button", "<input", "<a "}) EXPECT_THAT(html, Not(HasSubstr(command)));
     EXPECT_THAT(html, Not(HasSubstr("http://")));
     EXPECT_THAT(html, Not(HasSubstr("https://")));
     EXPECT_THAT(page_html({"t", {}}, {}, small_files()), Not(HasSubstr("connect-src")));
@@ -55,7 +56,7 @@ TEST(LivePage, ListensToItsServerAlone) {
 
 TEST(LivePage, SaysThatItHasNoChartsWhereTheLibrariesAreMissing) {
     const auto folder = test::scratch_dir();
-    for (const auto* file : {"page.css", "theme.json", "watch.js"}) write_file_atomically(folder / file, "{}\n");
+    for (const auto* file : {"watch.css", "theme.json", "watch.js"}) write_file_atomically(folder / file, "{}\n");
     const auto web = read_live_web_files(folder);
     EXPECT_EQ(web.libraries, "");
     EXPECT_EQ(web.script, "{}\n");

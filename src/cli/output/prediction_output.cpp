@@ -73,7 +73,7 @@ std::string battery_text(const std::optional<BatteryPrediction>& battery) {
 
 /// Whether the power so far is known from the model: of a physical one only with the flight's airspeed.
 bool is_expected(const Prediction& prediction) {
-    return !prediction.uses_physical_model || !prediction.flown.motion.bins.empty();
+    return !prediction.overtime_s && (!prediction.uses_physical_model || !prediction.flown.motion.bins.empty());
 }
 
 std::string expectation_text(const Prediction& prediction) {
@@ -111,17 +111,21 @@ std::vector<ScoreRow> score_rows(const std::vector<mechanical::ValidatedFlight>&
 }  // namespace
 
 std::string text_of(const Prediction& prediction) {
-    const auto& [flown, began_in_air, on_path_s, is_sighted, remaining_s, by_motion, cruise, power_ahead, landing,
-                 landing_s, rest, interval, battery] = prediction;
+    const auto& [flown, began_in_air, on_path_s, is_sighted, remaining_s, overtime_s, by_motion, cruise, power_ahead,
+                 landing, landing_s, rest, interval, battery] = prediction;
+    const auto cruise_text =
+        overtime_s ? fmt::format("completed {} ago; so far {:.2f} W", duration_text(*overtime_s), cruise.measured_w)
+                   : fmt::format("{:.3f} Wh in {} more: {:.2f} W; so far {:.2f} W, {}", cruise.energy.energy_wh,
+                                 duration_text(remaining_s), cruise.remaining_mean_w, cruise.measured_w,
+                                 expectation_text(prediction));
     return fmt::format(
                "flown      {:.3f} Wh from {} at {:.1f} s to {:.1f} s of the log ({})\n"
-               "cruise     {:.3f} Wh in {} more: {:.2f} W; so far {:.2f} W, {}\n"
+               "cruise     {}\n"
                "landing    {:.3f} Wh in {}, as in the model\n"
                "remaining  {:.3f} Wh, 95 % interval {:.3f} to {:.3f} Wh\n"
                "total      {:.3f} Wh\n",
                flown.energy_wh, began_in_air ? "the first message" : "lift-off", flown.lift_off_s, flown.until_s,
-               duration_text(flown.until_s - flown.lift_off_s), cruise.energy.energy_wh, duration_text(remaining_s),
-               cruise.remaining_mean_w, cruise.measured_w, expectation_text(prediction), landing.energy_wh,
+               duration_text(flown.until_s - flown.lift_off_s), cruise_text, landing.energy_wh,
                duration_text(landing_s), rest.energy_wh, interval.low_wh, interval.high_wh,
                flown.energy_wh + rest.energy_wh) +
            battery_text(battery);
@@ -236,6 +240,7 @@ Fields<Prediction> record_fields(const Prediction*) {
         field("until_s", at(&R::flown, &Flown::until_s), "time of the prediction, in the log's time"),
         object<R>("cruise", "the cruise",
                   {field("remaining_s", &R::remaining_s, "remaining time"),
+                   field("overtime_s", &R::overtime_s, "beyond the mission's: lands now", optional_key{}),
                    field("energy_wh", at(&R::cruise, &Cruise::energy, &Energy::energy_wh), "of that time"),
                    field("flown_mean_w", at(&R::cruise, &Cruise::measured_w), "measured so far"),
                    field("expected_mean_w", expected_w, "by the model for the same time"),

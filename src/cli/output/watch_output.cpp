@@ -15,13 +15,15 @@ namespace flightwatt::live {
 
 Fields<Alarm> record_fields(const Alarm*) {
     return {field("kind", &Alarm::kind, "`reserve`, `model`, `silence` or `voltage`"),
-            field("text", &Alarm::text, "text of the alarm")};
+            field("grade", &Alarm::grade, "`caution` or `alarm`"), field("text", &Alarm::text, "the finding"),
+            field("action", &Alarm::action, "recommended action, with the time left")};
 }
 
 Fields<ReturnDeadline> record_fields(const ReturnDeadline*) {
     using R = ReturnDeadline;
-    return {field("latest_in_s", &R::latest_in_s, "time until the latest return; null: too late"),
-            field("path_can_be_flown", &R::path_can_be_flown, "the path to its end, and the way home from there")};
+    return {
+        field("latest_in_s", &R::latest_in_s, "time until then; null: too late"),
+        field("path_can_be_flown", &R::path_can_be_flown, "the path or cruise to its end, and the landing from there")};
 }
 
 Fields<LiveBattery> record_fields(const LiveBattery*) {
@@ -95,10 +97,12 @@ std::string with_unit(const std::optional<double>& value, int decimals, const ch
 
 /// "34.1 % and 10.92 V (30.2 % at the high end)"
 std::string landing_line(const live::LiveState& state) {
+    if (state.landed) return "";
     if (!state.prediction) return "no prediction: " + state.no_prediction_reason;
     const auto& prediction = *state.prediction;
-    auto text = fmt::format("{:.2f} Wh to the landing ({:.2f} to {:.2f})", prediction.remaining_energy.energy_wh,
-                            prediction.interval.low_wh, prediction.interval.high_wh);
+    auto text = fmt::format("{:.2f} Wh {} ({:.2f} to {:.2f})", prediction.remaining_energy.energy_wh,
+                            prediction.overtime_s ? "if it lands now" : "to the landing", prediction.interval.low_wh,
+                            prediction.interval.high_wh);
     if (!prediction.battery) return text;
     const auto& expected = prediction.battery->expected;
     const auto& worst = prediction.battery->worst;
@@ -115,9 +119,10 @@ std::string reserve_line(const live::LiveState& state) {
     if (const auto& probability = state.battery->probability_below_reserve)
         text += fmt::format(", probability of landing below it {:.1f} %", units::percentage(*probability, 1.0));
     if (const auto& turn = state.turn_home) {
-        text += !turn->latest_in_s        ? ", too late to turn home with it"
-                : turn->path_can_be_flown ? ", home from anywhere on the path"
-                                          : fmt::format(", turn home within {:.1f} min", *turn->latest_in_s / 60.0);
+        const auto* way = state.prediction && !state.prediction->on_path_s ? "land" : "turn home";
+        text += !turn->latest_in_s ? fmt::format(", too late to {} with it", way)
+                                   : fmt::format(", {} within {:.1f} min{}", way, *turn->latest_in_s / 60.0,
+                                                 turn->path_can_be_flown ? " or finish as planned" : "");
     }
     return text;
 }
@@ -189,16 +194,18 @@ Fields<WatchState> record_fields(const WatchState*) {
             of("voltage_v", &S::voltage_v, "measured"),
             of("current_a", &S::current_a, "measured"),
             of("altitude_m", &S::altitude_m, "measured"),
+            of("reserve_soc_percent", &S::reserve_soc_percent, "of the mission"),
             of("battery", &S::battery, "the battery"),
             of("prediction", &S::prediction, "as of `predict`"),
             field("no_prediction_reason", reason, "null: there is a prediction"),
-            of("turn_home", &S::turn_home, "latest return from a path"),
+            of("turn_home", &S::turn_home, "latest return from the path, or without one latest landing"),
             field("decision", decision, "the schedule"),
             of("alarms", &S::alarms, "active alarms"),
             of("warnings", &S::warnings, "of battery, record and prediction"),
             of("messages", &S::messages, "received messages"),
             of("restarts", &S::restarts, "restarts of the telemetry's clock"),
             of("time_since_message_s", &S::time_since_message_s, "since the latest message"),
+            of("silence_threshold_s", &S::silence_threshold_s, "silence after which the link counts as lost"),
             of("others", &S::other_senders, "messages of other senders"),
             of("unusable", &S::unusable, "ignored lines and values by reason")};
 }
@@ -212,6 +219,9 @@ Fields<WatchEnd> record_fields(const WatchEnd*) {
 PageEvent page_event(const live::LiveState& state, const compute::ComputeModel& compute, const live::TimeCurve& ahead) {
     const auto soc = state.battery ? state.battery->soc_percent : std::nullopt;
     const auto by_voltage = state.battery ? state.battery->soc_by_voltage_percent : std::nullopt;
+    const auto at_landing = state.prediction && state.prediction->battery
+                                ? std::optional(state.prediction->battery->expected.soc_percent)
+                                : std::nullopt;
     const auto known = [](const auto& value) { return JsonType<std::optional<double>>::write(value); };
     const Json point{{"t", state.time_s},
                      {"phase", phase_text(state)},
@@ -219,7 +229,8 @@ PageEvent page_event(const live::LiveState& state, const compute::ComputeModel& 
                      {"soc_by_voltage", known(by_voltage)},
                      {"power", known(state.power_w)},
                      {"expected", known(state.expected_power_w)},
-                     {"altitude", known(state.altitude_m)}};
+                     {"altitude", known(state.altitude_m)},
+                     {"at_landing", known(at_landing)}};
     auto json = record_json(WatchState{&state, &compute});
     json["ahead"] = {{"time_s", ahead.time_s}, {"soc_percent", ahead.value}};
     json["point"] = point;
@@ -228,11 +239,15 @@ PageEvent page_event(const live::LiveState& state, const compute::ComputeModel& 
 
 std::vector<std::string> screen_of(const live::LiveState& state, const compute::ComputeModel& compute) {
     std::vector<std::string> lines{
-        fmt::format("{:.0f} s  {} {:.0f} s  {}  {}", state.time_s, phase_text(state), state.flight_time_s,
-                    with_unit(state.energy_wh, 3, "Wh"), with_unit(state.power_w, 1, "W")),
+        fmt::format("{:.0f} s  {} {:.0f} s  {}  {}{}  {}  {}", state.time_s, phase_text(state), state.flight_time_s,
+                    with_unit(state.energy_wh, 3, "Wh"), with_unit(state.power_w, 1, "W"),
+                    state.expected_power_w ? fmt::format(" ({:.1f} W expected)", *state.expected_power_w) : "",
+                    with_unit(state.voltage_v, 2, "V"), with_unit(state.altitude_m, 0, "m")),
         charge_text(state), landing_line(state), reserve_line(state), schedule_line(state, compute)};
     std::erase(lines, "");
-    for (const auto& alarm : state.alarms) lines.push_back(fmt::format("ALARM {}: {}", alarm.kind, alarm.text));
+    for (const auto& alarm : state.alarms)
+        lines.push_back(
+            fmt::format("{}: {} ({})", alarm.grade == "alarm" ? "ALARM" : "Caution", alarm.action, alarm.text));
     for (auto& line : lines) line = one_line(line);
     return lines;
 }

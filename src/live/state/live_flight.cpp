@@ -4,6 +4,7 @@
 #include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
 #include "flight/selected_track.h"
+#include "live/state/alarms.h"
 #include "live/state/clock_filter.h"
 #include "live/state/moment.h"
 #include "live/state/telemetry_store.h"
@@ -102,6 +103,7 @@ class LiveFlight::Impl {
         rejected_.clear();
         checked_s_.reset();
         warnings_.clear();
+        alarms_.clear();
         if (schedule_) schedule_->reset();
     }
 
@@ -137,6 +139,7 @@ class LiveFlight::Impl {
     std::optional<double> checked_s_;        ///< time of the last check of the record
     std::optional<double> updated_s_;
     bool ended_ = false;
+    std::vector<Alarm> alarms_;                  ///< of the last update
     std::vector<std::string> warnings_;          ///< of the last check
     std::vector<std::string> battery_warnings_;  ///< of its file
     flight::FlightPhases phases_;
@@ -149,6 +152,8 @@ LiveState LiveFlight::Impl::update(double silent_s) {
     LiveState state;
     state.messages = messages_;
     state.restarts = restarts_;
+    state.silence_threshold_s = options_.silence_threshold_s;
+    if (input_ && input_->battery) state.reserve_soc_percent = input_->limits.reserve_soc_percent;
     if (auto busiest = store_.busiest_sender(); !busiest.empty()) aircraft_ = std::move(busiest);
     auto series = aircraft_.empty() ? flight::FlightSeries() : store_.series(aircraft_);
     if (!aircraft_.empty() && aircraft_ != std::exchange(followed_, aircraft_)) heard_s_ = arrival_s_;
@@ -173,7 +178,7 @@ LiveState LiveFlight::Impl::update(double silent_s) {
     }
     decide(state);
     add_warnings(state);
-    state.alarms = alarms_of(state, input_, options_.silence_threshold_s);
+    alarms_ = state.alarms = alarms_of(state, input_, alarms_);
     trim(state);
     state.rows = store_.rows();
     if (state.prediction) last_predicted_ = state;
@@ -284,7 +289,7 @@ void LiveFlight::Impl::forecast(LiveState& state) const {
         forecast_landing(*input_->battery, now, at_once, cruise_w, input_->limits).endurance_s;
     if (!state.prediction) return;
     state.battery->probability_below_reserve = probability_below_reserve(*input_, *state.prediction, *state.battery);
-    if (input_->path && !input_->remaining_s && state.phase == flight::Phase::cruise)
+    if (!(input_->path && input_->remaining_s) && state.phase == flight::Phase::cruise)
         state.turn_home = latest_return(*input_, *state.prediction, now);
 }
 

@@ -1,7 +1,6 @@
 #include "live/state/moment.h"
 
 #include "base/error.h"
-#include "base/statistics.h"
 #include "base/units.h"
 #include "flight/phase_statistics.h"
 #include "flight/segmentation.h"
@@ -32,50 +31,6 @@ bool has_stayed(const flight::Track& altitude_m, double touchdown_s, double now_
     if (from >= last) return false;
     const auto [low, high] = std::minmax_element(altitude_m.value.begin() + from, altitude_m.value.begin() + last);
     return *high - *low <= rest.rest_height_m;
-}
-
-/// [V] of a pack below the battery's model: a cell at 3.7 V would be at 3.4 V, nearly empty.
-constexpr double failing_cell_v = 0.3;
-
-std::string reserve_text(const BatteryPrediction& battery, const std::optional<double>& probability) {
-    const auto& landing = battery.expected.keeps_reserve ? battery.worst : battery.expected;
-    const auto* at = battery.expected.keeps_reserve ? "at the high end of the energy's interval " : "";
-    auto text = landing.fails_after_s ? fmt::format("{}the battery fails in {:.1f} min, before the landing", at,
-                                                    *landing.fails_after_s / 60.0)
-                                      : fmt::format("{}{:.1f} % at landing, short of the reserve of {:g} %", at,
-                                                    landing.soc_percent, battery.limits.reserve_soc_percent);
-    if (probability)
-        text += fmt::format("; probability of landing below it {:.0f} %", units::percentage(*probability, 1.0));
-    return text;
-}
-
-/// The deviation of the cruise from the model, where it is outside the 95 % interval; else empty.
-std::string model_text(const Prediction& prediction, const PredictionInput& input) {
-    if (prediction.uses_physical_model) {
-        const auto& model = input.model.physical.value();
-        const double level = prediction.cruise.gain;
-        if (!model.level_sd || prediction.flown.motion.bins.empty()) return "";
-        const double reach = *model.level_sd * student_t_half_width(model.degrees_of_freedom);
-        if (std::abs(level) <= reach) return "";
-        return fmt::format(
-            "the power of this flight differs from the model by {:+.1f} %, 95 of 100 flights by {:.1f} %",
-            units::percentage(level, 1.0), units::percentage(reach, 1.0));
-    }
-    const auto cruise_s = prediction.flown.cruise_s();
-    const auto expected = predict_before_flight(forecast_of(input.model, flight::Phase::cruise), cruise_s);
-    const auto interval = interval_95(expected);
-    const double measured_wh = prediction.flown.cruise_energy_wh;
-    if (!interval || interval->contains(measured_wh)) return "";
-    return fmt::format("the cruise so far took {:.3f} Wh; 95 of 100 flights of the model take {:.3f} to {:.3f} Wh",
-                       measured_wh, interval->low_wh, interval->high_wh);
-}
-
-/// The longest remaining cruise after `received_s` of it.
-double max_remaining_s(const PredictionInput& input, double received_s) {
-    const double whole_s = input.path ? input.path->flown().duration_s : input.cruise_s.value();
-    if (received_s < whole_s) return whole_s - received_s;
-    throw NoResultError(fmt::format(
-        "the cruise takes longer than the mission's {:.0f} s: give the remaining cruise with --remaining", whole_s));
 }
 
 }  // namespace
@@ -138,9 +93,10 @@ Prediction predict_airborne_start(const PredictionInput& input, const mechanical
                                   Diagnostics& remarks) {
     auto ahead = input;
     if (!ahead.level) ahead.level = mechanical::CruisePrior::constant;  // the position on the curve is not known
-    const bool is_remaining_known = input.remaining_s || has_cruise_start;
-    const double max_s = is_remaining_known ? 0.0 : max_remaining_s(input, flown.cruise_s());
-    if (!is_remaining_known) {
+    double max_s = 0.0;
+    if (!input.remaining_s && !has_cruise_start)
+        max_s = (input.path ? input.path->flown().duration_s : input.cruise_s.value()) - flown.cruise_s();
+    if (max_s > 0.0) {
         ahead.remaining_s = 0.5 * max_s;
         remarks.warnings.push_back(
             fmt::format("the telemetry begins in the air: 0 to {:.0f} s of the mission's cruise may remain; half of "
@@ -149,7 +105,7 @@ Prediction predict_airborne_start(const PredictionInput& input, const mechanical
     }
     auto prediction = predict_energy(ahead, flown, fix, remarks);
     prediction.began_in_air = true;
-    if (is_remaining_known) return prediction;
+    if (!(max_s > 0.0)) return prediction;
     constexpr double uniform_variance = 1.0 / 12.0;
     constexpr double degrees_of_freedom = 1e9;  // known exactly
     const double energy_wh = units::wh_from_joule(prediction.cruise.remaining_mean_w * max_s);
@@ -168,26 +124,6 @@ void estimate_soc_from_counter(const flight::Track& charge_ah, double capacity_a
     result.initial_soc_percent = initial_soc_percent;
     result.soc_percent = left_percent;
     result.state = battery::BatteryState{left_percent, 0.0};
-}
-
-std::vector<Alarm> alarms_of(const LiveState& state, const std::optional<PredictionInput>& input, double silence_s) {
-    std::vector<Alarm> alarms;
-    if (state.time_since_message_s >= silence_s) {
-        alarms.push_back({"silence", fmt::format("nothing was received for {:.0f} s", state.time_since_message_s)});
-    }
-    if (state.prediction) {
-        if (const auto& battery = state.prediction->battery; battery && !battery->worst.keeps_reserve)
-            alarms.push_back({"reserve", reserve_text(*battery, state.battery->probability_below_reserve)});
-        if (auto text = model_text(*state.prediction, *input); !text.empty())
-            alarms.push_back({"model", std::move(text)});
-    }
-    if (state.phase && state.battery && state.battery->voltage_residual_v.value_or(0.0) < -failing_cell_v) {
-        alarms.push_back(
-            {"voltage", fmt::format("the voltage is {:.2f} V below the battery's model: a failing cell, or "
-                                    "another pack",
-                                    -*state.battery->voltage_residual_v)});
-    }
-    return alarms;
 }
 
 }  // namespace flightwatt::live

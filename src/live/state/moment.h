@@ -6,9 +6,8 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
-/// Functions of LiveFlight at one moment: phase, battery, start in the air, alarms.
+/// Functions of LiveFlight at one moment: phase, battery, start in the air.
 namespace flightwatt::live {
 
 /// Sets phase and times from the last sortie. A climb that has not held its height yet is a take-off. Landed: the
@@ -50,9 +49,5 @@ Prediction predict_airborne_start(const PredictionInput& input, const mechanical
 /// known otherwise.
 void estimate_soc_from_counter(const flight::Track& charge_ah, double capacity_ah, double initial_soc_percent,
                                LiveBattery& result);
-
-/// Alarms: reserve not kept at the high end of the energy's interval, power outside the model's 95 % interval, silent
-/// link, voltage below the battery's model.
-std::vector<Alarm> alarms_of(const LiveState& state, const std::optional<PredictionInput>& input, double silence_s);
 
 }  // namespace flightwatt::live

@@ -1,0 +1,136 @@
+// Alarms of states made by hand.
+
+#include "live/state/alarms.h"
+
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::live {
+namespace {
+
+/// In cruise, with a battery and a reserve of 20 %.
+LiveState flying(double probability, const std::optional<double>& latest_in_s = 500.0) {
+    LiveState state;
+    state.phase = flight::Phase::cruise;
+    state.silence_threshold_s = 30.0;
+    state.battery.emplace();
+    state.battery->probability_below_reserve = probability;
+    state.turn_home = ReturnDeadline{latest_in_s, false};
+    state.prediction.emplace();
+    state.prediction->uses_physical_model = true;
+    state.prediction->on_path_s = 100.0;
+    state.prediction->battery.emplace();
+    state.prediction->battery->limits.reserve_soc_percent = 20.0;
+    state.prediction->battery->expected.soc_percent = 23.4;
+    return state;
+}
+
+/// The model has no variability, and raises no alarm.
+PredictionInput input() {
+    PredictionInput input;
+    input.model.physical.emplace();
+    return input;
+}
+
+TEST(AlarmsOf, AGradeEndsAtHalfOfItsThreshold) {
+    std::vector<Alarm> alarms;
+    std::vector<std::string> grades;
+    for (const double probability :
+         {0.01, 0.04, 0.06, 0.03, 0.06, 0.02, 0.04, 0.05, 0.19, 0.20, 0.12, 0.21, 0.09, 0.15, 0.024, 0.3, 0.0}) {
+        alarms = alarms_of(flying(probability), input(), alarms);
+        grades.push_back(alarms.empty() ? "-" : alarms.front().grade);
+    }
+    EXPECT_THAT(grades, testing::ElementsAre("-", "-", "caution", "caution", "caution", "-", "-", "caution", "caution",
+                                             "alarm", "alarm", "alarm", "caution", "caution", "-", "alarm", "-"));
+}
+
+TEST(AlarmsOf, AProbabilityThatVariesAroundAThresholdRaisesOneAlarm) {
+    std::vector<Alarm> alarms;
+    int changes = 0;
+    for (int second = 0; second < 600; ++second) {
+        const bool had = !alarms.empty();
+        alarms = alarms_of(flying(0.05 + (second % 2 == 0 ? 0.02 : -0.02)), input(), alarms);
+        changes += had != !alarms.empty() ? 1 : 0;
+    }
+    EXPECT_EQ(changes, 1);
+}
+
+std::string action_of(const LiveState& state) {
+    const auto alarms = alarms_of(state, input(), {});
+    return alarms.empty() ? "" : alarms.front().action;
+}
+
+TEST(AlarmsOf, TheActionStatesTheTimeLeft) {
+    EXPECT_EQ(action_of(flying(0.97, 175.0)), "Turn home within 2 min: the reserve will be missed");
+    EXPECT_EQ(action_of(flying(0.97, 50.0)), "Turn home within 50 s: the reserve will be missed");
+    EXPECT_EQ(action_of(flying(0.97, std::nullopt)), "Turn home now: the reserve will be missed");
+    EXPECT_EQ(action_of(flying(0.16)), "Turn home within 8 min: 16 of 100 flights miss the reserve");
+    auto state = flying(0.3);
+    state.turn_home->path_can_be_flown = true;
+    EXPECT_EQ(action_of(state), "Shorten the cruise: the reserve will be missed");
+    state = flying(0.3);
+    state.prediction->on_path_s.reset();
+    EXPECT_EQ(action_of(state), "Land within 8 min: the reserve will be missed");
+    state.prediction->battery->limits.reserve_soc_percent = 0.0;
+    EXPECT_EQ(action_of(state), "Land within 8 min: the battery will be empty");
+    state.turn_home.reset();
+    EXPECT_EQ(action_of(state), "Land now: the battery will be empty");
+    EXPECT_EQ(alarms_of(flying(0.97), input(), {}).front().text,
+              "23.4 % at landing, reserve 20 %; probability of missing it 97 %");
+}
+
+TEST(AlarmsOf, WithoutAProbabilityTheExpectedLandingDecides) {
+    auto state = flying(0.0);
+    state.battery->probability_below_reserve.reset();
+    EXPECT_EQ(action_of(state), "");
+    state.prediction->battery->expected.keeps_reserve = false;
+    EXPECT_EQ(alarms_of(state, input(), {}).front().grade, "alarm");
+}
+
+TEST(AlarmsOf, ACruiseBeyondTheMissionsWarnsBeforeItIsTooLate) {
+    auto state = flying(0.0, 130.0);
+    state.prediction->overtime_s = 60.0;
+    EXPECT_EQ(action_of(state), "");
+    state.turn_home->latest_in_s = 110.0;
+    EXPECT_EQ(alarms_of(state, input(), {}).front().grade, "caution");
+}
+
+TEST(AlarmsOf, OtherKindsHaveGradesAndActions) {
+    auto state = flying(0.06);
+    state.time_since_message_s = 31.0;
+    state.battery->voltage_residual_v = -0.4;
+    const auto alarms = alarms_of(state, input(), {});
+    std::vector<std::string> kinds;
+    for (const auto& alarm : alarms) {
+        kinds.push_back(alarm.grade + " " + alarm.kind);
+        EXPECT_THAT(alarm.action, testing::Not(testing::IsEmpty()));
+    }
+    EXPECT_THAT(kinds, testing::ElementsAre("alarm silence", "alarm voltage", "caution reserve"));
+    state.battery->voltage_residual_v = -0.2;
+    EXPECT_EQ(alarms_of(state, input(), alarms).size(), 3U) << "above half of the threshold";
+    EXPECT_EQ(alarms_of(state, input(), {}).size(), 2U);
+    LiveState ground;
+    ground.time_since_message_s = 31.0;
+    ground.silence_threshold_s = 30.0;
+    EXPECT_EQ(alarms_of(ground, {}, {}).front().grade, "caution") << "the aircraft was switched off";
+}
+
+TEST(AlarmsOf, APowerOutsideTheModelsIntervalIsACaution) {
+    auto state = flying(0.0);
+    auto model = input();
+    model.model.physical->level_sd = 0.05;
+    model.model.physical->degrees_of_freedom = 1e6;
+    state.prediction->flown.motion.bins.resize(1);
+    state.prediction->cruise.gain = 0.09;
+    EXPECT_TRUE(alarms_of(state, model, {}).empty());
+    state.prediction->cruise.gain = 0.11;
+    const auto alarms = alarms_of(state, model, {});
+    ASSERT_EQ(alarms.size(), 1U);
+    EXPECT_EQ(alarms.front().grade + " " + alarms.front().kind, "caution model");
+}
+
+}  // namespace
+}  // namespace flightwatt::live
