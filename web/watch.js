@@ -190,7 +190,7 @@
   }
   const charts = {
     charge: { title: "Charge [%]", height: 190, unit: "%", values: () => [...series("soc", "flown"), ...ahead()] },
-    power: { title: "Power [W], mean of 10 s; dotted: expected", height: 100, unit: "W", values: () => [...means(series("power", "flown")), ...series("expected", "predicted")] },
+    power: { title: "Power [W], mean of 10 s; dotted: expected", height: 100, unit: "W", values: () => [...means(series("power", "flown")), ...means(series("expected", "predicted"))] },
     altitude: { title: "Altitude [m]", height: 80, unit: "m", values: () => series("altitude", "flown") },
   };
   // The last point of each line, with its value.
@@ -223,6 +223,7 @@
       encoding: { x: label, y: { ...y, title: null, axis: { tickCount: 4, labelFontSize: 12 } } } });
     return {
       width, height, autosize: { type: "fit-x", contains: "padding" }, background: null, padding: { left: 0, right: 8, top: 2, bottom: 2 },
+      description: title,
       title: { text: title, anchor: "start", fontSize: 14, fontWeight: "normal", color: colour("--ink2"), offset: 4 },
       params: Object.entries(domains(id, values)).map(([name, value]) => ({ name, value })),
       layer: [
@@ -233,7 +234,7 @@
         { data: { name: "ends" }, mark: { type: "point", filled: true, opacity: 1, size: 80, color: ink }, encoding: { x, y } },
         { data: { name: "ends" }, mark: { ...text, color: page, stroke: page, strokeWidth: 4 }, encoding: { x, y, text: { field: "label" } } },
         { data: { name: "ends" }, mark: { ...text, color: ink }, encoding: { x, y, text: { field: "label" } } },
-      ],
+      ].map((layer) => ({ ...layer, mark: { ...layer.mark, aria: false } })), // the description is read instead
     };
   }
   const datasets = (id, values) => ({ values, ends: ends(id, values), reserve: id === "charge" && state?.reserve_soc_percent > 0 ? [{ value: state.reserve_soc_percent, label: `reserve ${number(state.reserve_soc_percent, 0)} %` }] : [] });

@@ -41,8 +41,8 @@ void warn_of_level(const mechanical::PhysicalModel& model, double level, Diagnos
         units::percentage(level, 1.0), units::percentage(sd, 1.0)));
 }
 
-/// The position on the path: by the aircraft's positions, by the time since the cruise began, or by --remaining; at most
-/// its end.
+/// The position on the path, at most its end: by the aircraft's positions, by the time since the cruise began, or by
+/// --remaining.
 double seconds_on_path(const PredictionInput& input, const FlightProgress& flown, const std::optional<PathFix>& fix) {
     const auto& path = input.path->flown();
     if (input.remaining_s) {
@@ -162,8 +162,8 @@ PredictionInput unchecked_input(const mission::MissionSetup& setup) {
     return input;
 }
 
-/// The flight home from a time on the path; std::nullopt where the wind is too strong. Without a path the landing begins
-/// where the aircraft is.
+/// The flight home from a time on the path; std::nullopt where the wind is too strong. Without a path the landing
+/// begins where the aircraft is.
 std::optional<ConstantLoad> flight_home(const PredictionInput& input, double on_path_s, double power_factor) {
     if (!input.path) return ConstantLoad{};
     const auto& plan = input.path->plan();

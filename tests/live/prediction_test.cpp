@@ -210,9 +210,9 @@ TEST(TurnHome, ACruiseBeyondTheMissionsContinuesToTheReserve) {
     trial.prediction.overtime_s = 30.0;
     trial.prediction.landing_s = 50.0;
     trial.prediction.landing.energy_wh = 10.0 * 50.0 / 3600.0;
-    trial.charge_for(250.0);
+    trial.charge_for(255.0);
     const auto land = latest_return(trial.input, trial.prediction, trial.now);
-    EXPECT_EQ(land.latest_in_s, 100.0) << "200 s at 10 W are 100 s at 20 W";
+    EXPECT_EQ(land.latest_in_s, 100.0) << "205 s at 10 W are 102.5 s at 20 W, in steps of 10 s";
     EXPECT_FALSE(land.path_can_be_flown);
 }
 
