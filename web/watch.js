@@ -125,6 +125,7 @@
     const before = document.body.dataset.kind;
     document.body.dataset.kind = kind;
     document.body.className = old ? `${kind} old` : kind;
+    if (palette !== document.body.className) drawSoon();
     element("sign").firstElementChild.setAttribute("d", signs[kind]);
     write("status", headline);
     write("action", action);
@@ -199,7 +200,7 @@
     const last = id === "charge" ? values.findLast(({ of }) => of === "predicted") : null;
     const width = values.reduce((most, { t }) => Math.max(most, t), 0);
     const isNear = last && last.t - flown.t < 0.25 * width;
-    return [flown && { ...flown, label: hasLanded() || isNear ? "" : `now ${number(flown.value, 0)} ${charts[id].unit}` },
+    return [flown && { ...flown, label: hasLanded() || isNear ? "" : `${id === "power" ? "" : "now "}${number(flown.value, 0)} ${charts[id].unit}` },
       last && { ...last, label: `${number(last.value, 0)} % at landing` }].filter(Boolean)
       .map((end) => ({ ...end, align: end.t < 0.3 * width ? "left" : "right", dy: id !== "charge" ? -12 : end.value > 35 ? 17 : (end.value - 35) * 1.6 }));
   }
@@ -208,7 +209,7 @@
   function domains(id, values) {
     const all = values.map(({ value }) => value);
     const low = id === "altitude" ? Math.min(...all) : 0;
-    return { across: [0, Math.max(1, ...values.map(({ t }) => t))], up: id === "charge" ? [0, 100] : [low, Math.max(low + 1, ...all)] };
+    return { across: [0, Math.max(1, ...values.map(({ t }) => t))], up: id === "charge" ? [0, 100] : [low, low + 1.25 * Math.max(1, Math.max(...all) - low)] }; // with room for a label
   }
   const between = (name) => [{ expr: `${name}[0]` }, { expr: `${name}[1]` }];
   function specification(id, values, width) {
@@ -222,7 +223,7 @@
       data: { name: "values" }, transform: [{ filter: `datum.of === '${of}'` }], mark: { type: "line", clip: true, strokeWidth: 2.5, strokeDash: dashes, color },
       encoding: { x: label, y: { ...y, title: null, axis: { tickCount: 4, labelFontSize: 12 } } } });
     return {
-      width, height, autosize: { type: "fit-x", contains: "padding" }, background: null, padding: { left: 0, right: 8, top: 2, bottom: 2 },
+      width, height, autosize: { type: "fit-x", contains: "padding" }, background: null, padding: { left: 0, right: 22, top: 2, bottom: 2 },
       description: title,
       title: { text: title, anchor: "start", fontSize: 14, fontWeight: "normal", color: colour("--ink2"), offset: 4 },
       params: Object.entries(domains(id, values)).map(([name, value]) => ({ name, value })),

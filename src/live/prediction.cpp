@@ -288,7 +288,8 @@ BatteryPrediction forecast_battery(const battery::Battery& battery, const batter
                                    const Prediction& prediction) {
     const auto forecast = [&](const battery::Battery& pack, double factor) {
         return battery::forecast_landing(pack, state_of(pack), remaining_power(prediction, factor),
-                                         prediction.cruise.remaining_mean_w * factor, limits);
+                                         prediction.cruise.remaining_mean_w * (prediction.overtime_s ? 1.0 : factor),
+                                         limits);
     };
     auto smaller = battery;
     BatteryPrediction result;

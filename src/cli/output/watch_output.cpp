@@ -219,7 +219,7 @@ Fields<WatchEnd> record_fields(const WatchEnd*) {
 PageEvent page_event(const live::LiveState& state, const compute::ComputeModel& compute, const live::TimeCurve& ahead) {
     const auto soc = state.battery ? state.battery->soc_percent : std::nullopt;
     const auto by_voltage = state.battery ? state.battery->soc_by_voltage_percent : std::nullopt;
-    const auto at_landing = state.prediction && state.prediction->battery
+    const auto at_landing = state.prediction && state.prediction->battery && !state.prediction->overtime_s
                                 ? std::optional(state.prediction->battery->expected.soc_percent)
                                 : std::nullopt;
     const auto known = [](const auto& value) { return JsonType<std::optional<double>>::write(value); };
