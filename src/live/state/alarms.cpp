@@ -59,13 +59,13 @@ std::string return_text(const LiveState& state) {
 
 std::string reserve_text(const BatteryPrediction& battery, double probability) {
     const auto& landing = battery.expected;
-    auto text = landing.fails_after_s
-                    ? fmt::format("the battery fails in {:.1f} min, before the landing", *landing.fails_after_s / 60.0)
-                    : fmt::format("{:.1f} % at landing, reserve {:g} %", landing.soc_percent,
-                                  battery.limits.reserve_soc_percent);
     const double percent = units::percentage(probability, 1.0);
-    return text + (percent > 99.0 ? std::string("; probability of missing it over 99 %")
-                                  : fmt::format("; probability of missing it {:.0f} %", percent));
+    const auto text = percent > 99.0 ? std::string("over 99 %") : fmt::format("{:.0f} %", percent);
+    if (landing.fails_after_s)
+        return fmt::format("the battery fails in {:.1f} min, before the landing; probability {}",
+                           *landing.fails_after_s / 60.0, text);
+    return fmt::format("{:.1f} % at landing, reserve {:g} %; probability of missing it {}", landing.soc_percent,
+                       battery.limits.reserve_soc_percent, text);
 }
 
 void add_reserve_alarm(const LiveState& state, std::string_view before, std::vector<Alarm>& alarms) {
