@@ -31,6 +31,7 @@ struct FitStageArguments {
     std::optional<std::string> table_file;
     std::optional<std::string> constants_file;
     std::optional<std::string> curves_file;
+    double headwind_m_per_s = 0.0;
     bool with_errors = false;
     bool with_intervals = false;
 };
@@ -49,7 +50,9 @@ int fit(const cli::StageCall& call, FitStageArguments arguments) {
     check_table_file(table_file);
     check_table_file(constants_file);
     const bool with_motion = kind == cli::ModelKind::physical;
-    if (constants_file && !with_motion) throw UsageError("--constants goes with --model-kind physical");
+    for (const auto* option : {"constants", "headwind"})
+        if (call.has(option) && !with_motion)
+            throw UsageError(fmt::format("--{} goes with --model-kind physical", option));
     const auto published = read_published(arguments.model);
     const auto measured =
         cli::measured_flights(cli::with_chosen_flights(call, arguments.filter, arguments.flights.load),
@@ -65,11 +68,12 @@ int fit(const cli::StageCall& call, FitStageArguments arguments) {
         fitted.model, published,
         arguments.with_intervals ? mechanical::TableIntervals::present : mechanical::TableIntervals::absent);
     std::optional<mechanical::PhysicalFit> physical;
-    if (with_motion) physical = cli::fit_motion(call, measured, fitted.model);
+    if (with_motion) physical = cli::fit_motion(call, measured, fitted.model, arguments.headwind_m_per_s);
     if (kind == cli::ModelKind::best) cli::add_best_power(measured, options, fitted.model);
     if (table_file) write_file_atomically(*table_file, cli::table_text(table, *table_file));
     if (constants_file)
-        write_file_atomically(*constants_file, cli::table_text(cli::constants_table(physical->model), *constants_file));
+        write_file_atomically(*constants_file, cli::table_text(cli::constants_table(physical->model), *constants_file,
+                                                               "Constants of the physical model, with 95 % intervals"));
     if (curves_file) write_file_atomically(*curves_file, curves_csv(fitted, analyses));
     cli::write_result(call, to_toml(fitted.model));
     warn_of_model(call, fitted.model);
@@ -112,6 +116,10 @@ as TOML; with -o it goes to the file and Table I is shown.)" +
     options.add("intervals", arguments.with_intervals, "Table I with 95 % intervals; implies --errors");
     options.add("curves", arguments.curves_file, cli::output_file("FILE.csv"),
                 "write the curves with their band and the flights' envelope; implies --errors");
+    constexpr double max_wind_m_per_s = 100.0;
+    options.add("headwind", arguments.headwind_m_per_s,
+                {.value = "M_PER_S", .min = -max_wind_m_per_s, .max = max_wind_m_per_s, .unit = "m/s"},
+                "speed to fly of the physical model also in this headwind; below 0: tailwind");
     cli::add_filter_options(options, arguments.filter);
     cli::add_flight_options(options, arguments.flights);
     return cli::run_stage(argc, argv, stage, [&](const auto& call) { return fit(call, arguments); });

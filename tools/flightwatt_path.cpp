@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/mission_output.h"
+#include "cli/output/physical_output.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "flight/flown_path.h"
@@ -58,6 +59,7 @@ struct PathOutput {
     double duration_s = 0.0;
     double mechanical_energy_wh = 0.0;
     double mechanical_w = 0.0;
+    std::optional<path::PathSpeed> speed;
 };
 
 Fields<PathOutput> record_fields(const PathOutput*) {
@@ -66,7 +68,10 @@ Fields<PathOutput> record_fields(const PathOutput*) {
             field("length_m", &R::length_m, "of legs and circles over ground"),
             field("duration_s", &R::duration_s, "duration of the cruise"),
             field("mechanical_energy_wh", &R::mechanical_energy_wh, "energy of the cruise"),
-            field("mechanical_w", &R::mechanical_w, "mean power of the cruise")};
+            field("mechanical_w", &R::mechanical_w, "mean power of the cruise"),
+            field("best_speed", at(&R::speed, &path::PathSpeed::best),
+                  "one airspeed with the least energy; null: the model has no induced drag"),
+            field("planned_energy_wh", at(&R::speed, &path::PathSpeed::planned_wh), "as planned, by the same model")};
 }
 
 /// JSON of --path-from.
@@ -125,11 +130,17 @@ int show_path(const cli::StageCall& call) {
     const double duration_s = path::duration_s(*setup.cruise_path);
     const double energy_wh = units::wh_from_joule(energy_j(*setup.cruise_path));
     const double mean_w = mean_power_w(*setup.cruise_path);
-    if (call.json)
-        cli::print_json(call, PathOutput{setup.name, length_m, duration_s, energy_wh, mean_w});
-    else
+    const auto& plan = *setup.cruise_path->plan;
+    const auto speed = best_path_speed(plan);
+    if (call.json) {
+        cli::print_json(call, PathOutput{setup.name, length_m, duration_s, energy_wh, mean_w, speed});
+    } else {
         cli::note(call, fmt::format("{}: {:.2f} km over ground in {}; {:.3f} Wh, {:.2f} W on average", setup.name,
                                     length_m / 1000.0, duration_text(duration_s), energy_wh, mean_w));
+        if (speed)
+            cli::note(call, fmt::format("{}: {}; {:.4g} Wh as planned", speed->best.purpose,
+                                        describe(speed->best, plan.power.airspeed_m_per_s), speed->planned_wh));
+    }
     return cli::ok;
 }
 

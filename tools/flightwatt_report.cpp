@@ -33,6 +33,8 @@ using namespace flightwatt;
 struct ReportArguments {
     std::optional<std::string> figures;
     std::optional<std::string> figure_width;
+    std::optional<std::string> figure_height;
+    bool figures_are_serif = false;
     std::optional<std::string> published;
     std::optional<std::string> reference_figures;
     std::optional<std::string> title;
@@ -40,15 +42,18 @@ struct ReportArguments {
     bool with_replay = false;
 };
 
-std::optional<double> figure_width_pt(const ReportArguments& arguments) {
-    return arguments.figure_width ? std::optional(report::parse_figure_width_pt(*arguments.figure_width))
-                                  : std::nullopt;
+report::FigureLayout figure_layout(const ReportArguments& arguments) {
+    const auto length_pt = [](const std::string& option, const std::optional<std::string>& text) {
+        return text ? std::optional(report::parse_figure_length_pt(option, *text)) : std::nullopt;
+    };
+    return {length_pt("figure-width", arguments.figure_width), length_pt("figure-height", arguments.figure_height),
+            arguments.figures_are_serif};
 }
 
 report::ReportInput read_inputs(const cli::StageCall& call, const ReportArguments& arguments) {
     report::ReportInput inputs;
     inputs.capacity_ah = arguments.capacity_ah;
-    figure_width_pt(arguments);  // a bad one is refused before any work
+    figure_layout(arguments);  // a bad one is refused before any work
     inputs.published_file = arguments.published;
     inputs.with_replay = arguments.with_replay;
     for (const auto& input : call.inputs) {
@@ -81,7 +86,7 @@ void write_figure_files(const cli::StageCall& call, const ReportArguments& argum
                         const std::vector<report::Section>& sections, const report::WebFiles& web) {
     const auto& folder = arguments.figures;
     if (!folder) return;
-    const auto files = write_figures(sections, web, *folder, figure_width_pt(arguments));
+    const auto files = write_figures(sections, web, *folder, figure_layout(arguments));
     cli::note(call, fmt::format("{} figures in {}: .vl.json{}{}", files.figures, *folder, files.has_svg ? ", .svg" : "",
                                 files.has_pdf ? ", .pdf" : ""));
     if (!files.has_svg) cli::warn(call, "node is not there: no figure was rendered");
@@ -140,6 +145,10 @@ and .pdf (where rsvg-convert is). The model is the batch's own, with the bands t
     options.add("figures", arguments.figures, cli::output_file("DIR"), "write every figure to DIR");
     options.add("figure-width", arguments.figure_width, {.value = "WIDTH", .needs = {"figures"}},
                 "of those files: 3.5in, 89mm ...; their type is then set at 8 points");
+    options.add("figure-height", arguments.figure_height, {.value = "HEIGHT", .needs = {"figures"}},
+                "at most, of those files; default: 4.5in with --figure-width");
+    options.add_choice<bool>("figure-font", arguments.figures_are_serif, {{"sans", false}, {"serif", true}},
+                             {.value = "FONT", .needs = {"figures"}}, "of those files");
     options.add("published", arguments.published, cli::input_file("MODEL.toml"), "show Table I next to this model's");
     options.add("reference-figures", arguments.reference_figures, cli::input_file("DIR"),
                 "show the paper's figures, digitised, next to ours: fig2_cruise.csv and others");

@@ -1,8 +1,8 @@
 // Fits a figure into a width [px]: panels side by side are stacked where they would be too narrow, every panel with `width`
 // gets the available width (squares remain squares), and names at the side and legends are limited. Used by the page and
-// by render.mjs.
-function fitWidth(spec, width) {
-  const minPanel = 165;
+// by render.mjs. As many panels are side by side as `whole` has room for.
+function fitWidth(spec, width, whole = width) {
+  const minPanel = 150; // three panels fit into 7 inches
   const legendColumn = 205;
   const asked = spec.usermeta?.margin_px || 62; // y axis with its names and title
   const margin = Math.min(asked, Math.max(62, 0.3 * width));
@@ -12,17 +12,18 @@ function fitWidth(spec, width) {
     const fitted = Object.fromEntries(Object.entries(part).map(([key, value]) => [key, fitNames(value)]));
     if (fitted.legend?.columns) fitted.legend.columns = Math.max(1, Math.min(fitted.legend.columns, Math.floor(width / legendColumn)));
     // A name above a panel has the panel's width, one at its side less.
-    const room = fitted.baseline === "alphabetic" ? Math.max(minPanel, 0.22 * width) : 0.22 * width;
+    const above = width < 2 * (minPanel + margin) ? width - margin : Math.max(minPanel, 0.22 * width);
+    const room = fitted.baseline === "alphabetic" ? above : 0.22 * width;
     if (fitted.type === "text" && fitted.limit) fitted.limit = Math.min(fitted.limit, room);
     if (fitted.axis?.labelLimit) fitted.axis.labelLimit = Math.min(fitted.axis.labelLimit, margin - 20);
     return fitted;
   };
-  const fit = (part, room) => {
+  const fit = (part, room, all) => {
     if (part.concat) {
-      const columns = Math.max(1, Math.min(part.columns || part.concat.length, Math.floor(room / (minPanel + margin))));
-      return { ...part, columns, concat: part.concat.map((panel) => fit(panel, room / columns)) };
+      const columns = Math.max(1, Math.min(part.columns || part.concat.length, Math.floor(all / (minPanel + margin))));
+      return { ...part, columns, concat: part.concat.map((panel) => fit(panel, room / columns, all / columns)) };
     }
-    if (part.vconcat) return { ...part, vconcat: part.vconcat.map((panel) => fit(panel, room)) };
+    if (part.vconcat) return { ...part, vconcat: part.vconcat.map((panel) => fit(panel, room, all)) };
     const wide = Math.max(120, Math.floor(room - margin));
     if (part.width !== undefined && part.width === part.height) {
       const side = Math.min(wide, part.width);
@@ -30,7 +31,7 @@ function fitWidth(spec, width) {
     }
     return part.width === undefined ? part : { ...part, width: wide };
   };
-  const fitted = fit(fitNames(spec), width);
+  const fitted = fit(fitNames(spec), width, whole);
   if (width >= 2 * legendColumn) return fitted;
   return { ...fitted, config: { ...fitted.config, legend: { ...fitted.config?.legend, columns: 1 } } };
 }

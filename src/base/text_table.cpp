@@ -75,7 +75,6 @@ std::string_view latex_of(char c) {
 
 std::string latex_cell(std::string_view cell) {
     if (cell == "-") return "--";
-    if (cell.size() > 1 && cell.front() == '$' && cell.back() == '$') return std::string(cell);
     if (const auto ends = interval_ends(cell))
         return fmt::format("$[{},\\, {}]$", latex_number(ends->first), latex_number(ends->second));
     return parse_number(cell) ? fmt::format("${}$", latex_number(cell)) : latex_escaped(cell);
@@ -156,16 +155,22 @@ std::string latex_escaped(std::string_view text) {
     constexpr char32_t first_latin = 0xA0;
     constexpr char32_t last_latin = 0x17F;
     constexpr char32_t fixed_hyphen = 0x2011;
+    constexpr char32_t plus_minus = 0xB1;
     std::string result;
     while (!text.empty()) {
         const auto [code, bytes] = first_character(text);
         const char c = text.front();
-        if (code >= first_latin && code <= last_latin) {
+        if (code == plus_minus) {
+            result += "$\\pm$";
+        } else if (code >= first_latin && code <= last_latin) {
             result += text.substr(0, bytes);
         } else if (code == fixed_hyphen) {
             result += '-';
         } else if (code > 0x7E || code < 0x20) {
             result += code == '\t' || code == '\n' ? ' ' : '?';
+        } else if (c == '^' && text.size() > 1 && text[1] >= '0' && text[1] <= '9') {  // of a unit: m/s^2
+            result += fmt::format("$^{}$", text[1]);
+            text.remove_prefix(1);
         } else {
             const auto spelt = latex_of(c);
             result += spelt.empty() ? std::string_view(&c, 1) : spelt;

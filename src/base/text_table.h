@@ -32,14 +32,14 @@ std::string to_text(TextTable table);
 std::string to_markdown(TextTable table);
 std::string to_csv(const TextTable& table);
 
-/// Text with TeX's special characters escaped; characters beyond ASCII and Latin become '?'.
+/// Text with TeX's special characters escaped, "^3" as a superscript; characters beyond ASCII and Latin become '?'.
 std::string latex_escaped(std::string_view text);
 
 /// A number as mathematical mode takes it: 1.5 \times 10^{-5} for "1.5e-05".
 std::string latex_number(std::string_view number);
 
 /// A table environment with the rules of the package booktabs. Columns that are all numbers, intervals ("0.5 to 2") or
-/// '-' stand to the right; a cell between two '$' is TeX already.
+/// '-' stand to the right.
 std::string to_latex(const TextTable& table, std::string_view caption, std::string_view label);
 
 /// The same of several, an empty line apart; tables without rows are left out.

@@ -165,7 +165,8 @@ void require_term(const TomlTable& table, const std::vector<TermRow>& rows, std:
 }
 
 /// Symmetric, with variances of 0 or more.
-void require_covariance(const PhysicalModel& model, const TomlTable& table) {
+template <typename Model>
+void require_covariance(const Model& model, const TomlTable& table) {
     constexpr double rounding = 1e-6;
     for (std::size_t i = 0; i < model.terms.size(); ++i) {
         const auto& row = model.covariance[i];
@@ -179,14 +180,16 @@ void require_covariance(const PhysicalModel& model, const TomlTable& table) {
     }
 }
 
-void list_terms(TomlFields& fields, PhysicalModel& model) {
+/// Of a PhysicalModel, or of SpeedTerms.
+template <typename Model>
+void list_terms(TomlFields& fields, Model& model) {
     std::vector<TermRow> rows;
     for (std::size_t i = 0; i < model.terms.size(); ++i)
         rows.push_back({model.terms[i], model.coefficients[model.terms[i]], model.covariance[i]});
     const auto* table = fields.source();
     const auto count = table != nullptr ? table->tables("terms").size() : rows.size();
     if (table != nullptr && count == 0)
-        throw InputError(table->where(), "[physical] has no terms", "expected [[physical.terms]]");
+        throw InputError(table->where(), "there are no terms", "expected a table [[...terms]] for each");
     fields.tables("terms", rows, [&](TomlFields& of, TermRow& row) {
         of.name("term", row.term, read_term_name);
         if (of.source() == nullptr)
@@ -224,6 +227,13 @@ void list_physical(TomlFields& fields, PhysicalModel& model) {
         drift.real("degrees_of_freedom", of.drift_degrees_of_freedom, at_least(1.0));
     });
     list_terms(fields, model);
+    fields.optional_table(
+        "speed_terms", model.speed_terms,
+        [](TomlFields& of, SpeedTerms& speed) {
+            of.real("degrees_of_freedom", speed.degrees_of_freedom, at_least(0.0));
+            list_terms(of, speed);
+        },
+        TomlLayout::section);
 }
 
 void list_model(TomlFields& fields, MechanicalModel& model) {

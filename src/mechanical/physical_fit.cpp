@@ -128,6 +128,19 @@ PhysicalModel fit_terms(std::span<const BinnedFlight> flights, const PowerRegres
     return model;
 }
 
+/// Drag and induced drag with the model's other terms; std::nullopt where the model contains both, or the flights do
+/// not determine them.
+std::optional<SpeedTerms> fit_speed_terms(std::span<const BinnedFlight> flights, const PowerRegression& regression,
+                                          std::vector<PowerTerm> terms) {
+    const auto chosen = terms.size();
+    for (const auto term : {PowerTerm::drag, PowerTerm::induced})
+        if (std::ranges::find(terms, term) == terms.end()) terms.push_back(term);
+    if (terms.size() == chosen) return std::nullopt;
+    if (!regression.posterior(columns_of(terms))) return std::nullopt;
+    const auto model = fit_terms(flights, regression, terms);
+    return SpeedTerms{model.terms, model.coefficients, model.covariance, model.degrees_of_freedom};
+}
+
 }  // namespace
 
 PhysicalModel fit_power_terms(std::span<const BinnedFlight> flights, const std::vector<PowerTerm>& terms) {
@@ -167,6 +180,8 @@ PhysicalFit fit_physical_model(std::span<const BinnedFlight> flights) {
     fit.folds_are_flights = moving.size() > 1;
     fit.phases_decided = choice.phases_decided;
     fit.model = fit_terms(moving, regression, choice.terms);
+    fit.model.speed_terms = fit_speed_terms(moving, regression, choice.terms);
+    fit.speeds = speed_to_fly(fit.model);
     return fit;
 }
 

@@ -2,6 +2,7 @@
 
 #include "mechanical/flight_bins.h"
 #include "mechanical/physical_model.h"
+#include "mechanical/speed_to_fly.h"
 
 #include <optional>
 #include <span>
@@ -23,6 +24,7 @@ struct PhysicalFit {
     bool folds_are_flights = true;  ///< false: blocks of a single flight's time
     bool phases_decided = true;     ///< false: trials have the error of bins, not of whole phases
     std::size_t folds = 0;
+    std::optional<SpeedToFly> speeds = {};  ///< in calm air; absent where the flights do not determine drag
 };
 
 /// Fits power to the motion of flights of one aircraft (docs/methods.md, Power from airspeed and climb), with terms

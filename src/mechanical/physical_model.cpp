@@ -16,17 +16,6 @@ constexpr std::array<std::string_view, power_term_count> power_term_units{"W s^3
 
 bool is_within(const FlownRange& range, double value) { return range.low <= value && value <= range.high; }
 
-/// Of the sum of the terms, in W^2.
-double coefficient_variance_w2(const PhysicalModel& model, const TermValues& values) {
-    double variance_w2 = 0.0;
-    for (std::size_t i = 0; i < model.terms.size(); ++i) {
-        for (std::size_t j = 0; j < model.terms.size(); ++j) {
-            variance_w2 += values[model.terms[i]] * model.covariance[i][j] * values[model.terms[j]];
-        }
-    }
-    return std::max(variance_w2, 0.0);
-}
-
 }  // namespace
 
 std::string_view to_string(PowerTerm term) { return power_term_names[static_cast<std::size_t>(term)]; }
@@ -62,6 +51,16 @@ double sum_of_terms_w(const PhysicalModel& model, const TermValues& values) {
     double power = 0.0;
     for (const auto term : model.terms) power += model.coefficients[term] * values[term];
     return power;
+}
+
+double coefficient_variance_w2(const PhysicalModel& model, const TermValues& values) {
+    double variance_w2 = 0.0;
+    for (std::size_t i = 0; i < model.terms.size(); ++i) {
+        for (std::size_t j = 0; j < model.terms.size(); ++j) {
+            variance_w2 += values[model.terms[i]] * model.covariance[i][j] * values[model.terms[j]];
+        }
+    }
+    return std::max(variance_w2, 0.0);
 }
 
 double power_w(const PhysicalModel& model, const FlightState& motion) {

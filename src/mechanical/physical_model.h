@@ -58,6 +58,15 @@ struct FlownRange {
     double high = 0.0;
 };
 
+/// Coefficients for the speed to fly: of a model's terms with drag and induced drag, also where their fit predicts no
+/// better (docs/methods.md, Speed to fly).
+struct SpeedTerms {
+    std::vector<PowerTerm> terms;
+    TermValues coefficients;
+    std::vector<std::vector<double>> covariance;
+    double degrees_of_freedom = 0.0;  ///< 0: of a single flight, without intervals
+};
+
 /// Mechanical power from the motion through the air, fitted to flights of one aircraft:
 ///     power(t) = (1 + level) * sum over the terms of coefficient * value  +  drift(t)       [W]
 /// level: of a flight, the same throughout; drift: within a flight, with exponential correlation.
@@ -85,6 +94,8 @@ struct PhysicalModel {
     double mean_airspeed_m_per_s = 0.0;  ///< of the flights' cruises, each counting the same
     /// The root of their mean cube, at which drag takes its mean power; absent in files of 0.2.
     std::optional<double> cubic_mean_airspeed_m_per_s = {};
+    /// Absent where `terms` contain drag and induced drag or the flights do not determine them, and in older files.
+    std::optional<SpeedTerms> speed_terms = {};
 };
 
 /// The power of a motion [W], 0 where the terms sum to less: the motor does not regenerate energy. Throws as
@@ -93,6 +104,9 @@ double power_w(const PhysicalModel& model, const FlightState& motion);
 
 /// The sum of the terms [W], which may be below 0: the means over a time of the terms give the mean power.
 double sum_of_terms_w(const PhysicalModel& model, const TermValues& values);
+
+/// The variance [W^2] of that sum by the coefficients' covariance.
+double coefficient_variance_w2(const PhysicalModel& model, const TermValues& values);
 
 /// A mean power and its uncertainty.
 struct ConstantPower {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 
 namespace flightwatt::mechanical {
@@ -85,7 +86,10 @@ TextTable build_table(const MechanicalModel* published, const MechanicalModel& m
     const auto order = std::max(model_order(model), published ? model_order(*published) : 0);
     TextTable table;
     auto names = row_names(order);
-    if (published) names.insert(names.end(), {"duration_s", "curve RMS difference [W]", "a0 difference [%]"});
+    std::vector<std::string> row_units(names.size(), "W");
+    row_units.back() = "rad";  // xi
+    if (published) names.insert(names.end(), {"duration", "curve RMS difference", "a0 difference"});
+    if (published) row_units.insert(row_units.end(), {"s", "W", "%"});
     add_column(table, "coefficient", names);
     for (const auto phase : flight::all_phases) {
         const auto& is = model.phases[phase];
@@ -106,6 +110,7 @@ TextTable build_table(const MechanicalModel* published, const MechanicalModel& m
         interval_cells.resize(cells.size(), "-");
         add_column(table, fmt::format("{} {}", column_names[phase], interval_heading), interval_cells);
     }
+    add_column(table, "unit", row_units);
     return table;
 }
 
@@ -128,7 +133,7 @@ TextTable table_one_comparison(const MechanicalModel& published, const Mechanica
     return build_table(&published, regenerated, intervals);
 }
 
-std::string to_latex(const TextTable& table) {
+std::string to_latex(const TextTable& table, std::string_view label) {
     auto cells = table;
     std::string caption = "Constants for the mechanical energy model";
     cells.header.front().clear();
@@ -137,8 +142,10 @@ std::string to_latex(const TextTable& table) {
         heading.clear();
         caption = "Constants for the mechanical energy model (in brackets: 95 % intervals)";
     }
-    for (auto& row : cells.rows) row.front() = row_name(row.front());
-    return flightwatt::to_latex(cells, caption, "tab:mechanical-energy-model");
+    auto text = flightwatt::to_latex(cells, caption, label);
+    for (const auto& row : cells.rows)
+        boost::replace_first(text, "\n" + row.front() + " & ", "\n" + row_name(row.front()) + " & ");
+    return text;
 }
 
 }  // namespace flightwatt::mechanical

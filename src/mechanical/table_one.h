@@ -4,6 +4,7 @@
 #include "mechanical/mechanical_model.h"
 
 #include <string>
+#include <string_view>
 
 namespace flightwatt::mechanical {
 
@@ -11,8 +12,8 @@ namespace flightwatt::mechanical {
 /// errors, or none for the frequency.
 enum class TableIntervals { absent, present };
 
-/// The model as the paper's Table I: rows a0, a1, b1, ... and xi, a column a phase, four significant digits,
-/// coefficients in W. xi is the paper's: the angular frequency on a time axis of 28 units a phase,
+/// The model as the paper's Table I: rows a0, a1, b1, ... and xi, a column a phase with four significant digits, and
+/// their units. xi is the paper's: the angular frequency on a time axis of 28 units a phase,
 /// omega * duration / 28. '-' where a phase has a lower order than another.
 TextTable table_one(const MechanicalModel& model, TableIntervals intervals = TableIntervals::absent);
 
@@ -23,6 +24,6 @@ TextTable table_one_comparison(const MechanicalModel& published, const Mechanica
 
 /// Table I as a LaTeX table environment like the paper's: its caption on top, coefficients as $a_0$ ...
 /// $\xi$, numbers in mathematical mode, 95 % intervals in brackets.
-std::string to_latex(const TextTable& table);
+std::string to_latex(const TextTable& table, std::string_view label = "tab:mechanical-energy-model");
 
 }  // namespace flightwatt::mechanical

@@ -119,6 +119,28 @@ mechanical::TermValues mean_terms(const mechanical::PhysicalModel& model, const 
     return sums;
 }
 
+std::optional<PathSpeed> best_path_speed(const PlannedPath& plan) {
+    const auto model = mechanical::speed_model(plan.power);
+    if (!model) return std::nullopt;
+    const auto terms_wh = [&](const FlightPath& path) {
+        const auto flown = compute_trajectory(path, plan.wind);
+        auto terms = mean_terms(*model, flown);
+        for (auto& value : terms.values) value *= units::wh_from_joule(flown.duration_s);
+        return terms;
+    };
+    const auto at_airspeed = [&](double airspeed) -> std::optional<mechanical::TermValues> {
+        auto path = plan.path;
+        for (auto& element : path.elements) element.airspeed_m_per_s = airspeed;
+        try {
+            return terms_wh(path);
+        } catch (const InputError&) {  // the wind forbids an element, or a climb is too steep
+            return std::nullopt;
+        }
+    };
+    return PathSpeed{best_speed(*model, "least energy on this path", "Wh", at_airspeed),
+                     sum_of_terms_w(*model, terms_wh(plan.path))};
+}
+
 std::vector<std::string> path_warnings(const PlannedPath& plan, const PathTrajectory& flown) {
     constexpr double steep_load_factor = 2.0;  // a bank of 60 degrees
     constexpr double felt_load_factor = 1.1;   // a tenth more lift is a fifth more drag of lift

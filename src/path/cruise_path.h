@@ -2,6 +2,7 @@
 
 #include "flight/flight_phases.h"
 #include "mechanical/physical_model.h"
+#include "mechanical/speed_to_fly.h"
 #include "path/path.h"
 #include "path/trajectory.h"
 
@@ -63,6 +64,16 @@ std::vector<PathElementResult> path_element_results(const PlannedPath& plan);
 /// motor stands (power_w is 0) the terms count as zeros, so that their power is the mean power. Zeros for a path that
 /// takes no time.
 mechanical::TermValues mean_terms(const mechanical::PhysicalModel& model, const PathTrajectory& flown);
+
+/// One airspeed for all elements at which a path takes the least energy in its wind, and the energy as planned, by the
+/// same model. Measured times and climb rates are kept.
+struct PathSpeed {
+    mechanical::BestSpeed best;
+    double planned_wh = 0.0;
+};
+
+/// std::nullopt as mechanical::speed_model. Throws as compute_trajectory.
+std::optional<PathSpeed> best_path_speed(const PlannedPath& plan);
 
 /// Warnings of the first element outside of the model's flown range, and of a bank above 60 degrees.
 std::vector<std::string> path_warnings(const PlannedPath& plan, const PathTrajectory& flown);

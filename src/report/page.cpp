@@ -80,12 +80,13 @@ bool run_program(std::vector<std::string> command) {
 constexpr double px_per_pt = 96.0 / 72.0;
 constexpr double default_width_px = 720.0;
 
-/// The theme with all type at 8 points, for figures that are not scaled.
-VegaJson in_type_of_papers(const VegaJson& theme) {
+/// The theme for papers: with a width all type has 8 points, as figures are not scaled.
+VegaJson in_type_of_papers(const VegaJson& theme, const FigureLayout& layout) {
     constexpr double type_pt = 8.0;
     auto values = theme.flatten();
     for (auto& [path, value] : values.items())
-        if (path.ends_with("FontSize") || path.ends_with("/fontSize")) value = type_pt * px_per_pt;
+        if (layout.width_pt && (path.ends_with("FontSize") || path.ends_with("/fontSize"))) value = type_pt * px_per_pt;
+    if (layout.is_serif) values["/font"] = "'Times New Roman', 'Liberation Serif', 'DejaVu Serif', serif";
     return values.unflatten();
 }
 
@@ -147,19 +148,20 @@ std::string live_page_html(const WebFiles& web) {
 }
 
 FigureFiles write_figures(const std::vector<Section>& sections, const WebFiles& web,
-                          const std::filesystem::path& folder, const std::optional<double>& width_pt) {
+                          const std::filesystem::path& folder, const FigureLayout& layout) {
     std::vector<const Figure*> figures;
     for (const auto& section : sections)
         for (const auto& figure : section.figures) figures.push_back(&figure);
     for (const auto* figure : figures)
         for (const auto* ending : {".vl.json", ".svg", ".pdf"}) register_output(folder / (figure->id + ending));
     make_directories(folder);
-    auto theme = VegaJson::parse(web.theme).at("light");
-    if (width_pt) theme = in_type_of_papers(theme);
+    constexpr double default_height_pt = 4.5 * 72.0;
+    const auto theme = in_type_of_papers(VegaJson::parse(web.theme).at("light"), layout);
     FigureFiles files{figures.size()};
-    const double width_px = width_pt ? *width_pt * px_per_pt : default_width_px;
+    const double width_px = layout.width_pt ? *layout.width_pt * px_per_pt : default_width_px;
+    const double height_px = layout.height_pt.value_or(layout.width_pt ? default_height_pt : 0.0) * px_per_pt;
     std::vector<std::string> render{"node", (web.folder / "render.mjs").string(), folder.string(),
-                                    fmt::format("{}", width_px)};
+                                    fmt::format("{}", width_px), fmt::format("{}", height_px)};
     for (const auto* figure : figures) {
         write_file_atomically(folder / (figure->id + ".vl.json"), standalone(*figure, theme));
         render.push_back(figure->id);  // only these: the folder may contain others
@@ -174,7 +176,7 @@ FigureFiles write_figures(const std::vector<Section>& sections, const WebFiles& 
     return files;
 }
 
-double parse_figure_width_pt(const std::string& text) {
+double parse_figure_length_pt(const std::string& option, const std::string& text) {
     static const std::map<std::string, double> points_of{
         {"in", 72.0}, {"cm", 72.0 / 2.54}, {"mm", 7.2 / 2.54}, {"pt", 1.0}};
     constexpr double min_pt = 1.5 * 72.0;
@@ -184,11 +186,11 @@ double parse_figure_width_pt(const std::string& text) {
     const auto number = parse_number(std::string_view(text).substr(0, unit_at));
     if (!number || unit == points_of.end())
         throw UsageError(
-            fmt::format("--figure-width {}: expected a width with its unit: 3.5in, 89mm, 9cm or 252pt", text));
-    const double width_pt = *number * unit->second;
-    if (!(width_pt >= min_pt && width_pt <= max_pt))
-        throw UsageError(fmt::format("--figure-width {}: expected 1.5in to 20in", text));
-    return width_pt;
+            fmt::format("--{} {}: expected a length with its unit: 3.5in, 89mm, 9cm or 252pt", option, text));
+    const double length_pt = *number * unit->second;
+    if (!(length_pt >= min_pt && length_pt <= max_pt))
+        throw UsageError(fmt::format("--{} {}: expected 1.5in to 20in", option, text));
+    return length_pt;
 }
 
 }  // namespace flightwatt::report

@@ -49,13 +49,20 @@ struct FigureFiles {
     bool has_pdf = false;
 };
 
-/// Writes FOLDER/ID.vl.json of every figure, ID.svg by node and ID.pdf by rsvg-convert, where these programs are
-/// installed. `width_pt` is the width in points (1/72 inch), with type of 8 points. Throws OutputError where the folder
-/// cannot be written or a program fails.
-FigureFiles write_figures(const std::vector<Section>& sections, const WebFiles& web,
-                          const std::filesystem::path& folder, const std::optional<double>& width_pt = std::nullopt);
+/// Layout of figures for papers, in points (1/72 inch).
+struct FigureLayout {
+    std::optional<double> width_pt;   ///< with type of 8 points
+    std::optional<double> height_pt;  ///< maximum; panels keep 50 px. Default: 4.5 inches, if a width is given
+    bool is_serif = false;
+};
 
-/// "3.5in", "89mm", "9cm" or "252pt" in points. Throws UsageError for another text, or not 1.5 to 20 inches.
-double parse_figure_width_pt(const std::string& text);
+/// Writes FOLDER/ID.vl.json of every figure, ID.svg by node and ID.pdf by rsvg-convert, where these programs are
+/// installed. Throws OutputError where the folder cannot be written or a program fails.
+FigureFiles write_figures(const std::vector<Section>& sections, const WebFiles& web,
+                          const std::filesystem::path& folder, const FigureLayout& layout = {});
+
+/// "3.5in", "89mm", "9cm" or "252pt" in points. Throws UsageError "--OPTION TEXT: ..." for another text, or not 1.5 to
+/// 20 inches.
+double parse_figure_length_pt(const std::string& option, const std::string& text);
 
 }  // namespace flightwatt::report

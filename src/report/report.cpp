@@ -61,7 +61,12 @@ void add_model(Draft& page, const BatchContent& batch) {
                         max_validation_flights, batch.measured.size()));
         return;
     }
-    if (auto section = physical_section(batch.measured)) sections.push_back(std::move(*section));
+    if (auto section = physical_section(batch.measured)) {
+        auto curves = fitted;
+        curves.physical.reset();  // its constants are in that section
+        sections.back().latex = model_latex(curves);
+        sections.push_back(std::move(*section));
+    }
     auto& validated = page.answers.validated;
     validated = leave_one_out(batch.measured, batch.fit->options, page.log.progress("fits"));
     if (const auto rejected = remove_rejected(validated); !rejected.empty()) notes.push_back(rejected + ".");

@@ -44,14 +44,16 @@ a, b & $1.5$ \\
 \end{tabular}
 \end{table}
 )");
-    const TextTable odd{{"", "95 %"}, {{"$a_{0}$", "-0.012 to 3e-05"}}};
+    const TextTable odd{{"", "95 %"}, {{"$\\input{x}$", "-0.012 to 3e-05"}}};
     EXPECT_NE(to_latex(odd, "", "").find("{lr}\n\\toprule\n & 95 \\% \\\\\n"), std::string::npos);
-    EXPECT_NE(to_latex(odd, "", "").find("$a_{0}$ & $[-0.012,\\, 3 \\times 10^{-5}]$"), std::string::npos);
+    EXPECT_NE(to_latex(odd, "", "").find("\\$\\textbackslash{}input\\{x\\}\\$ & $[-0.012,\\, 3 \\times 10^{-5}]$"),
+              std::string::npos);
 }
 
 TEST(Latex, LeavesNoCharacterThatTexReadsOtherwise) {
     EXPECT_EQ(latex_escaped("a_b & 50 % {x} #1 $ ~ ^ \\"),
               "a\\_b \\& 50 \\% \\{x\\} \\#1 \\$ \\textasciitilde{} \\textasciicircum{} \\textbackslash{}");
+    EXPECT_EQ(latex_escaped("\u00B1 2 W s^3/m^3"), "$\\pm$ 2 W s$^3$/m$^3$");
     EXPECT_EQ(latex_escaped("[km] * <a> |\""), "{[}km] {*} \\textless{}a\\textgreater{} \\textbar{}{\\char34}");
     EXPECT_EQ(latex_escaped("take\u2011off \xC3\xA9 \u6c34 \xFF\n\x01"), "take-off \xC3\xA9 ? ? ?");
     EXPECT_EQ(latex_escaped("cut \xE6\xB0"), "cut ?") << "a character that ends too early";

@@ -13,11 +13,13 @@ namespace flightwatt::test {
 /// What the made-up flights obey.
 struct MotionTruth {
     double drag = 0.01;
+    double induced = 0.0;
     double climb = 12.0;
     double descent = -7.0;
     double level_sd = 0.05;  ///< of a flight's own factor
     double drift_sd_w = 3.0;
     double correlation_s = 60.0;
+    double mean_airspeed_m_per_s = 13.0;
 };
 
 struct MadeUpMotion {
@@ -31,7 +33,7 @@ inline MadeUpMotion made_up_motion(const std::string& name, std::size_t bins, co
                                    std::mt19937& random) {
     std::normal_distribution<double> normal;
     MadeUpMotion made{{name, {}, true, ""}, truth.level_sd * normal(random)};
-    const double own_speed = 13.0 + 1.2 * normal(random);
+    const double own_speed = truth.mean_airspeed_m_per_s + 1.2 * normal(random);
     const double kept = std::exp(-mechanical::default_bin_s / truth.correlation_s);
     double drift = truth.drift_sd_w * normal(random);
     double gust = normal(random);
@@ -47,6 +49,7 @@ inline MadeUpMotion made_up_motion(const std::string& name, std::size_t bins, co
         const double climb = first ? 3.0 : last ? -2.5 : 0.4 * normal(random);
         bin.values = mechanical::term_values({bin.airspeed_m_per_s, climb, 1.0 + 0.1 * std::abs(normal(random))});
         const double model_w = truth.drag * bin.values[mechanical::PowerTerm::drag] +
+                               truth.induced * bin.values[mechanical::PowerTerm::induced] +
                                truth.climb * bin.values[mechanical::PowerTerm::climb] +
                                truth.descent * bin.values[mechanical::PowerTerm::descent];
         bin.power_w = (1.0 + made.level) * model_w + drift;

@@ -41,6 +41,16 @@ void expect_rejected(const std::string& text, const std::string& because) {
     EXPECT_THAT(said, testing::StartsWith("model.toml:"));
 }
 
+TEST(PhysicalToml, KeepsTheTermsOfTheSpeedToFly) {
+    const auto model = fit_physical_model(test::made_up_motions(3, 20, {}, 1)).model;
+    const auto read = read_text(text_with(model)).physical.value();
+    EXPECT_EQ(text_with(read), text_with(model));
+    ASSERT_TRUE(read.speed_terms.has_value());
+    EXPECT_GT(read.speed_terms->terms.size(), read.terms.size());
+    EXPECT_EQ(read.speed_terms->covariance, model.speed_terms->covariance);
+    EXPECT_EQ(read.speed_terms->degrees_of_freedom, model.speed_terms->degrees_of_freedom);
+}
+
 TEST(PhysicalToml, LosesNothing) {
     const auto text = some_text();
     const auto read = read_text(text).physical.value();

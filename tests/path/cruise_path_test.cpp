@@ -50,6 +50,27 @@ TEST(CruisePath, HasTheMeanOfItsTerms) {
                 mean_power_w(test::made_up_cruise(up_and_on, {3.0, 45.0})), 1e-9);
 }
 
+/// There and back along a wind w: of k V^3 + d / V the energy is (k V^3 + d / V) 2 V / (V^2 - w^2) per metre.
+TEST(CruisePath, KnowsTheSpeedOfLeastEnergyInItsWind) {
+    auto model = test::made_up_wing();
+    EXPECT_FALSE(best_path_speed({up_and_on, {}, model}).has_value()) << "no induced drag";
+    model.terms = {mechanical::PowerTerm::drag, mechanical::PowerTerm::induced};
+    model.coefficients[mechanical::PowerTerm::drag] = 0.01;
+    model.coefficients[mechanical::PowerTerm::induced] = 300.0;
+    model.covariance = {{1e-8, 0.0}, {0.0, 1.0}};
+    const FlightPath path{{path_element(Leg{1000.0, 0.0}), path_element(Leg{1000.0, 180.0})}};
+    const auto energy_wh = [](double v, double w) {
+        return 1000.0 * (0.01 * v * v * v + 300.0 / v) * 2.0 * v / (v * v - w * w) / 3600.0;
+    };
+    const auto speed = best_path_speed({path, {5.0, 0.0}, model}).value();
+    const double best = speed.best.airspeed_m_per_s.value();
+    EXPECT_NEAR(speed.best.cost.value(), energy_wh(best, 5.0), 1e-9);
+    EXPECT_LT(energy_wh(best, 5.0), energy_wh(best - 0.05, 5.0));
+    EXPECT_LT(energy_wh(best, 5.0), energy_wh(best + 0.05, 5.0));
+    EXPECT_NEAR(speed.planned_wh, energy_wh(13.0, 5.0), 1e-9);
+    EXPECT_GT(best, best_path_speed({path, {}, model})->best.airspeed_m_per_s.value()) << "faster than in calm air";
+}
+
 TEST(CruisePath, WarnsOfWhatNobodyFlew) {
     const FlightPath path{
         {path_element(Leg{100.0, 0.0}), path_element(Leg{100.0, 0.0}, 18.0), path_element(Circles{9.0, 1.0})}};

@@ -129,7 +129,7 @@ TEST(WriteFigures, SetTypeAtEightPointsForAColumn) {
     web.theme =
         R"({"light": {"title": {"fontSize": 13}, "axis": {"labelFontSize": 11, "labelLimit": 90}}, "dark": {}})";
     const auto folder = test::scratch_dir() / "figures";
-    write_figures({section_with("one")}, web, folder, parse_figure_width_pt("3.5in"));
+    write_figures({section_with("one")}, web, folder, {parse_figure_length_pt("figure-width", "3.5in"), {}, true});
     const auto config = VegaJson::parse(read_file(folder / "one.vl.json"))["config"];
     EXPECT_NEAR(config["title"]["fontSize"].get<double>(), 32.0 / 3.0, 1e-9);
     EXPECT_NEAR(config["axis"]["labelFontSize"].get<double>(), 32.0 / 3.0, 1e-9);
@@ -137,12 +137,12 @@ TEST(WriteFigures, SetTypeAtEightPointsForAColumn) {
 }
 
 TEST(FigureWidth, IsReadWithItsUnit) {
-    EXPECT_DOUBLE_EQ(parse_figure_width_pt("3.5in"), 252.0);
-    EXPECT_DOUBLE_EQ(parse_figure_width_pt("252pt"), 252.0);
-    EXPECT_NEAR(parse_figure_width_pt("88.9mm"), 252.0, 1e-9);
-    EXPECT_NEAR(parse_figure_width_pt("8.89cm"), 252.0, 1e-9);
+    EXPECT_DOUBLE_EQ(parse_figure_length_pt("figure-width", "3.5in"), 252.0);
+    EXPECT_DOUBLE_EQ(parse_figure_length_pt("figure-width", "252pt"), 252.0);
+    EXPECT_NEAR(parse_figure_length_pt("figure-width", "88.9mm"), 252.0, 1e-9);
+    EXPECT_NEAR(parse_figure_length_pt("figure-width", "8.89cm"), 252.0, 1e-9);
     for (const auto* wrong : {"", "3.5", "in", "3.5 in", "-3in", "1in", "30in", "3.5inch", "3..5in"})
-        EXPECT_THROW(parse_figure_width_pt(wrong), UsageError) << wrong;
+        EXPECT_THROW(parse_figure_length_pt("figure-width", wrong), UsageError) << wrong;
 }
 
 TEST(WriteFigures, FailsWhereTheFolderIsAFile) {

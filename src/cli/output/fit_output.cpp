@@ -100,24 +100,27 @@ TextTable model_table(const mechanical::MechanicalModel& model,
 }
 
 TextTable mean_power_table(const mechanical::MechanicalModel& model) {
-    TextTable table{{"phase", "mean W", "low 95 %", "high 95 %", "flights", "samples"}, {}};
+    TextTable table{{"phase", "mean W", "low 95 %", "high 95 %", "RMS W", "R2", "flights", "samples"}, {}};
     for (const auto phase : flight::all_phases) {
         const auto power = mean_power(model, phase);
         if (!power) continue;
+        const auto& fitted = model.phases[phase];
+        const auto r2 = fitted.errors ? std::optional(fitted.errors->r2) : std::nullopt;
         const auto end = [&](double Interval::*of) { return power->interval ? fixed((*power->interval).*of, 2) : "-"; };
         table.rows.push_back({std::string(to_string(phase)), fixed(power->mean_w, 2), end(&Interval::low),
-                              end(&Interval::high), fmt::format("{}", power->flights),
-                              fmt::format("{}", power->samples)});
+                              end(&Interval::high), fixed(fitted.rms_w, 2), fixed(r2, 3),
+                              fmt::format("{}", power->flights), fmt::format("{}", power->samples)});
     }
     return table;
 }
 
-std::string table_text(const TextTable& table, const std::filesystem::path& file) {
+std::string table_text(const TextTable& table, const std::filesystem::path& file, std::string_view caption) {
     const auto ending = file.extension().string();
     if (ending == ".txt") return to_text(table);
     if (ending == ".csv") return to_csv(table);
     if (ending == ".md") return to_markdown(table);
-    if (ending == ".tex") return mechanical::to_latex(table);
+    const auto label = "tab:" + file.stem().string();
+    if (ending == ".tex") return caption.empty() ? mechanical::to_latex(table, label) : to_latex(table, caption, label);
     throw UsageError(fmt::format("{}: expected a name that ends in .txt, .csv, .md or .tex", file.string()));
 }
 

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::mechanical {
 
@@ -19,6 +20,32 @@ Fields<TermTrial> record_fields(const TermTrial*) {
             field("rms_without_w", &R::rms_before_w, "hold-out error without the term", column{"without W"}),
             field("rms_with_w", &R::rms_after_w, "hold-out error with the term", column{"with W"}),
             field("reason", &R::reason, "reason of a rejected term", column{})};
+}
+
+Fields<BestSpeed> record_fields(const BestSpeed*) {
+    using R = BestSpeed;
+    return {field("purpose", &R::purpose, "best endurance, best range, or least energy on a path"),
+            field("airspeed_m_per_s", &R::airspeed_m_per_s, "null: beyond the speeds searched"),
+            field("airspeed_low_m_per_s", &R::low_m_per_s, "low end of the 95 % interval; null: no bound"),
+            field("airspeed_high_m_per_s", &R::high_m_per_s, "high end of the 95 % interval; null: no bound"),
+            field("below_flown", &R::below_flown, "slower than the range flown: extrapolated"),
+            field("above_flown", &R::above_flown, "faster than the range flown: extrapolated"),
+            field("cost", &R::cost, "power or energy at that airspeed, in `unit`"),
+            field("unit", &R::unit, "`W`, `Wh/km` or `Wh`")};
+}
+
+Fields<SpeedTest> record_fields(const SpeedTest*) {
+    using R = SpeedTest;
+    return {field("airspeeds_m_per_s", &R::airspeed_m_per_s, "airspeed of each level leg"),
+            field("leg_s", &R::leg_s, "duration of a leg"),
+            field("induced_half_95_now", &R::induced_now, "half the 95 % interval of the induced term, in W m/s"),
+            field("induced_half_95_after", &R::induced_after, "the same, expected with these legs"),
+            field("endurance_after", &R::endurance_after, "best endurance, expected with these legs")};
+}
+
+Fields<SpeedToFly> record_fields(const SpeedToFly*) {
+    return {field("best", &SpeedToFly::best, "best speeds"),
+            field("test", &SpeedToFly::test, "flight that would determine the induced drag; null: not necessary")};
 }
 
 }  // namespace flightwatt::mechanical
@@ -63,9 +90,22 @@ TextTable constants_table(const mechanical::PhysicalModel& model) { return fligh
 
 TextTable trials_table(const mechanical::PhysicalFit& fit) { return flightwatt::table_of(fit.trials); }
 
+std::vector<std::string> speed_lines(const mechanical::SpeedToFly& speeds) {
+    const auto& flown = speeds.model.airspeed_m_per_s;
+    std::vector<std::string> lines;
+    for (const auto& best : speeds.best) lines.push_back(fmt::format("{}: {}", best.purpose, describe(best, flown)));
+    lines.push_back(fmt::format("flown: {:.1f} to {:.1f} m/s; * is extrapolated", flown.low, flown.high));
+    if (speeds.test) lines.push_back(describe(*speeds.test));
+    return lines;
+}
+
 std::string physical_text(const mechanical::PhysicalFit& fit, const Screen& screen) {
-    return "Power from the motion through the air\n" + screen_text(constants_table(fit.model), screen) +
-           values_text(record_json(fit)) + "\nRMS hold-out error by term\n" + screen_text(trials_table(fit), screen);
+    auto values = record_json(fit);
+    values.erase("speed_to_fly");
+    const auto text = "Power from the motion through the air\n" + screen_text(constants_table(fit.model), screen) +
+                      values_text(values) + "\nRMS hold-out error by term\n" + screen_text(trials_table(fit), screen);
+    if (!fit.speeds) return text;
+    return text + fmt::format("\nSpeed to fly\n{}\n", fmt::join(speed_lines(*fit.speeds), "\n"));
 }
 
 void add_best_power(std::span<const mechanical::MeasuredFlight> measured, const mechanical::ModelFitOptions& options,
@@ -75,13 +115,14 @@ void add_best_power(std::span<const mechanical::MeasuredFlight> measured, const 
 }
 
 mechanical::PhysicalFit fit_motion(const StageCall& call, std::span<const mechanical::MeasuredFlight> measured,
-                                   mechanical::MechanicalModel& model) {
+                                   mechanical::MechanicalModel& model, double headwind_m_per_s) {
     std::vector<mechanical::BinnedFlight> motions;
     motions.reserve(measured.size());
     for (const auto& flight : measured) motions.push_back(flight.motion);
     if (call.has("weights"))
         note(call, "--weights applies to the curves over time; [physical] estimates its own weights");
     auto physical = mechanical::fit_physical_model(motions);
+    if (headwind_m_per_s != 0.0) physical.speeds = speed_to_fly(physical.model, headwind_m_per_s);
     for (const auto& [flight, reason] : physical.skipped)
         warn(call, fmt::format("{} is not in the physical model: {}", flight, reason));
     if (!physical.model.level_sd)
@@ -114,7 +155,8 @@ Fields<PhysicalFit> record_fields(const PhysicalFit*) {
             field(
                 "hold_out", [](const R& fit) { return std::string(cli::error_basis(fit)); },
                 "`mean power of phases`, or `bins` of a single flight"),
-            field("trials", &R::trials, "terms that were tried")};
+            field("trials", &R::trials, "terms that were tried"),
+            field("speed_to_fly", &R::speeds, "null: the flights do not determine drag and induced drag")};
 }
 
 }  // namespace flightwatt::mechanical

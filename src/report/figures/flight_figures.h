@@ -44,8 +44,9 @@ Figure model_figure(const mechanical::MechanicalModel& model, const flight::PerP
 /// Errors of the predicted energy by leave-one-out: a point a flight, a row a model.
 Figure validation_figure(std::span<const mechanical::ValidatedFlight> flights, const std::string& id);
 
-/// Power over airspeed: a point a bin, coloured by its climb, and the model in level flight, climb and descent.
-Figure physical_figure(const mechanical::PhysicalModel& model, std::span<const mechanical::BinnedFlight> flights,
+/// Power over airspeed in level flight with its 95 % band, the flown range, the bins less the power of their climb and
+/// turns, and the best speeds with their intervals.
+Figure physical_figure(const mechanical::PhysicalFit& fit, std::span<const mechanical::BinnedFlight> flights,
                        const std::string& id);
 
 /// Terminal voltage over time, measured and modelled from the current, a panel a flight. `records` are those that were

@@ -74,36 +74,47 @@ FigureData error_rows(std::span<const mechanical::ValidatedFlight> flights) {
     return data;
 }
 
-constexpr int points_of_line = 41;
-
-FigureData bin_rows(std::span<const mechanical::BinnedFlight> flights) {
-    FigureData data({"airspeed_m_per_s", "power_w", "climb_m_per_s", "start_s"}, {"flight"});
+/// The power of each bin as if it had been flown level and straight.
+FigureData bin_rows(const mechanical::PhysicalModel& model, std::span<const mechanical::BinnedFlight> flights) {
+    using enum mechanical::PowerTerm;
+    FigureData data({"airspeed_m_per_s", "power_w", "climb_m_per_s", "measured_w", "start_s"}, {"flight"});
     for (const auto& flight : flights) {
         for (const auto& bin : flight.bins) {
-            data.add({bin.airspeed_m_per_s, bin.power_w, bin.values[mechanical::PowerTerm::climb], bin.start_s},
+            double power_w = bin.power_w;
+            for (const auto term : {climb, descent, turn}) power_w -= model.coefficients[term] * bin.values[term];
+            data.add({bin.airspeed_m_per_s, power_w, bin.values[climb], bin.power_w, bin.start_s},
                      {valid_utf8(flight.flight)});
         }
     }
     return data;
 }
 
-/// Drawn climb rates: 0, and half of the flown extremes.
-std::vector<double> drawn_climbs(const mechanical::PhysicalModel& model) {
-    std::vector<double> climbs{0.0};
-    if (model.climb_m_per_s.low < 0.0) climbs.insert(climbs.begin(), 0.5 * model.climb_m_per_s.low);
-    if (model.climb_m_per_s.high > 0.0) climbs.push_back(0.5 * model.climb_m_per_s.high);
-    return climbs;
+/// Level flight between two airspeeds, with the 95 % band where it is known.
+void add_level_rows(FigureData& data, const mechanical::PhysicalModel& model, const mechanical::FlownRange& range,
+                    std::string_view name) {
+    constexpr int steps = 40;
+    for (int i = 0; i <= steps; ++i) {
+        const double airspeed = std::lerp(range.low, range.high, static_cast<double>(i) / steps);
+        if (!(airspeed > 0.0)) continue;
+        const auto terms = mechanical::term_values({airspeed});
+        const double power_w = sum_of_terms_w(model, terms);
+        const double reach_w = model.level_sd ? student_t_half_width(model.degrees_of_freedom) *
+                                                    std::sqrt(coefficient_variance_w2(model, terms))
+                                              : std::nan("");
+        data.add({airspeed, power_w, power_w - reach_w, power_w + reach_w}, {name});
+    }
 }
 
-FigureData line_rows(const mechanical::PhysicalModel& model) {
-    FigureData data({"airspeed_m_per_s", "power_w", "climb_m_per_s"}, {"line"});
-    const auto& range = model.airspeed_m_per_s;
-    for (const double climb : drawn_climbs(model)) {
-        for (int i = 0; i < points_of_line; ++i) {
-            const double airspeed = range.low + (range.high - range.low) * i / (points_of_line - 1);
-            if (!(airspeed > 0.0)) continue;
-            data.add({airspeed, power_w(model, {airspeed, climb}), climb}, {fmt::format("{:+.1f} m/s", climb)});
-        }
+/// The best speeds; what is beyond the drawn airspeeds ends there.
+FigureData best_rows(const mechanical::SpeedToFly& speeds, const mechanical::FlownRange& drawn) {
+    FigureData data({"airspeed_m_per_s", "power_w", "low_m_per_s", "high_m_per_s"}, {"purpose"});
+    const auto inside = [&](double airspeed) { return std::clamp(airspeed, drawn.low, drawn.high); };
+    for (const auto& best : speeds.best) {
+        const double airspeed = best.airspeed_m_per_s.value_or(best.below_flown ? 0.0 : 2.0 * drawn.high);
+        const double power_w = mechanical::power_w(speeds.model, {inside(airspeed)});
+        data.add({airspeed == inside(airspeed) ? airspeed : std::nan(""), power_w,
+                  inside(best.low_m_per_s.value_or(drawn.low)), inside(best.high_m_per_s.value_or(drawn.high))},
+                 {best.purpose});
     }
     return data;
 }
@@ -139,14 +150,34 @@ Figure validation_figure(std::span<const mechanical::ValidatedFlight> flights, c
                       {{"errors", error_rows(flights).json()}});
 }
 
-Figure physical_figure(const mechanical::PhysicalModel& model, std::span<const mechanical::BinnedFlight> flights,
+Figure physical_figure(const mechanical::PhysicalFit& fit, std::span<const mechanical::BinnedFlight> flights,
                        const std::string& id) {
+    constexpr double slower = 0.75;  // of the slowest airspeed flown
+    const auto& flown = fit.model.airspeed_m_per_s;
+    const mechanical::FlownRange drawn{fit.speeds ? slower * flown.low : flown.low, flown.high};
+    const auto& model = fit.speeds ? fit.speeds->model : fit.model;
+    FigureData level({"airspeed_m_per_s", "power_w", "low_w", "high_w"}, {"range"});
+    add_level_rows(level, model, flown, "flown");
+    if (fit.speeds) add_level_rows(level, model, {drawn.low, flown.low}, "slower than flown");
+    auto description = fmt::format("Power over airspeed in level flight, with {} bins of {} flights.", fit.model.bins,
+                                   fit.model.flights.size());
+    VegaJson best = nullptr;
+    if (fit.speeds) {
+        best = best_rows(*fit.speeds, drawn).json();
+        for (const auto& speed : fit.speeds->best)
+            description += fmt::format(" {}: {}.", speed.purpose, describe(speed, flown));
+    }
     return new_figure(
         "physical", id,
-        "Power over airspeed. A ring is a bin of about 30 s of a flight; lines are the model in level flight, "
-        "climb and descent. The colour is the climb rate.",
-        fmt::format("Power over airspeed of {} bins of {} flights, and the model.", model.bins, model.flights.size()),
-        {{"bins", bin_rows(flights).json()}, {"lines", line_rows(model).json()}});
+        "Power over airspeed in level flight, dashed where it is slower than flown. A ring is a bin of about "
+        "30 s of a flight, less the power of its climb and turns. A bar is the 95 % interval of a best "
+        "speed.",
+        description,
+        {{"level", level.json()},
+         {"bins", bin_rows(fit.model, flights).json()},
+         {"best", best},
+         {"flown", {{"values", {{{"low", flown.low}, {"high", flown.high}}}}}},
+         {"domain", {drawn.low, drawn.high}}});
 }
 
 namespace {

@@ -72,9 +72,9 @@ std::optional<Section> physical_section(std::span<const mechanical::MeasuredFlig
     Section section{"physical", "Power from airspeed and climb"};
     section.html += paragraph(
         "Power as a sum of physical terms, fitted to the flights with airspeed and altitude, in bins of about 30 s.");
-    add_figure(section, physical_figure(fit.model, binned, "physical-power"));
+    add_figure(section, physical_figure(fit, binned, "physical-power"));
+    if (fit.speeds) section.html += heading("Speed to fly") + list_html(cli::speed_lines(*fit.speeds));
     add_table(section, {cli::constants_table(fit.model), "Constants of the physical model", "tab:physical"});
-    if (fit.model.level_sd) section.html += paragraph("+- is half the 95 % interval.", "soft");
     add_table(section,
               {cli::trials_table(fit), "Terms that were tried, with their hold-out error", "tab:physical-terms"});
     section.html += paragraph(

@@ -22,7 +22,8 @@ TEST(TableText, FollowsTheEndingOfTheFile) {
     EXPECT_EQ(table_text(small, "t.csv"), "name,a0\ncruise,24.5\n");
     EXPECT_EQ(table_text(small, "t.txt"), "name      a0\ncruise  24.5\n");
     EXPECT_THAT(table_text(small, "t.md"), HasSubstr("| cruise | 24.5 |"));
-    EXPECT_THAT(table_text(small, "folder.csv/t.tex"), HasSubstr("\\begin{tabular}"));
+    EXPECT_THAT(table_text(small, "folder.csv/t.tex"), HasSubstr("\\label{tab:t}"));
+    EXPECT_THAT(table_text(small, "c.tex", "Constants"), HasSubstr("\\caption{Constants}\n\\label{tab:c}"));
 }
 
 TEST(TableText, RefusesAnotherEnding) {
@@ -34,8 +35,8 @@ TEST(TableOf, StandsBesideAPublishedModelWhereThereIsOne) {
     const auto model = test::published_model();
     const auto alone = model_table(model, std::nullopt);
     const auto beside = model_table(model, model);
-    EXPECT_EQ(alone.header.size(), 4U) << "a name and three phases";
-    EXPECT_EQ(beside.header.size(), 7U);
+    EXPECT_EQ(alone.header.size(), 5U) << "a name, three phases and the unit";
+    EXPECT_EQ(beside.header.size(), 8U);
     EXPECT_GT(beside.rows.size(), alone.rows.size()) << "durations and differences stand below";
 }
 
