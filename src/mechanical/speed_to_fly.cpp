@@ -80,6 +80,10 @@ double induced_half_width(const PhysicalModel& model) {
     return half_width(model).value_or(0.0) * std::sqrt(coefficient_variance_w2(model, induced));
 }
 
+bool is_determined(const PhysicalModel& model) {
+    return model.coefficients[PowerTerm::induced] > induced_half_width(model);
+}
+
 /// With a level leg, flown in a flight of its own, that confirms the coefficients (Bayes' rule for normal errors).
 void add_leg(PhysicalModel& model, double airspeed_m_per_s, double leg_s) {
     const auto terms = level_terms(airspeed_m_per_s);
@@ -98,11 +102,14 @@ BestSpeed best_endurance(const PhysicalModel& model) { return best_speed(model, 
 
 SpeedTest speed_test(const PhysicalModel& model) {
     constexpr double leg_s = 120.0;
-    SpeedTest test{{}, leg_s, induced_half_width(model), 0.0};
+    constexpr int max_flights = 20;
+    SpeedTest test{{}, leg_s, 0, induced_half_width(model), 0.0};
+    for (const double part : {0.95, 0.875, 0.8}) test.airspeed_m_per_s.push_back(part * model.airspeed_m_per_s.low);
     auto after = model;
-    for (const double part : {0.95, 0.875, 0.8}) {
-        test.airspeed_m_per_s.push_back(part * model.airspeed_m_per_s.low);
-        add_leg(after, test.airspeed_m_per_s.back(), leg_s);
+    while (test.flights < max_flights && !is_determined(after)) {
+        ++test.flights;
+        after.degrees_of_freedom += 1.0;
+        for (const double airspeed : test.airspeed_m_per_s) add_leg(after, airspeed, leg_s);
     }
     test.induced_after = induced_half_width(after);
     test.endurance_after = best_endurance(after);
@@ -144,8 +151,7 @@ std::optional<SpeedToFly> speed_to_fly(const PhysicalModel& of, double headwind_
     if (!model) return std::nullopt;
     SpeedToFly speeds{*model, {best_endurance(*model), best_range(*model, 0.0)}, std::nullopt};
     if (headwind_m_per_s != 0.0) speeds.best.push_back(best_range(*model, headwind_m_per_s));
-    const bool is_determined = model->coefficients[PowerTerm::induced] > induced_half_width(*model);
-    if (model->level_sd && !is_determined) speeds.test = speed_test(*model);
+    if (model->level_sd && !is_determined(*model)) speeds.test = speed_test(*model);
     return speeds;
 }
 
@@ -172,10 +178,10 @@ std::string describe(const SpeedTest& test) {
     for (const double airspeed : test.airspeed_m_per_s) airspeeds.push_back(fmt::format("{:.1f}", airspeed));
     const auto& high = test.endurance_after.high_m_per_s;
     return fmt::format(
-        "The flights do not determine the induced drag. Level legs of {:.0f} min at {} m/s, if the aircraft is safe so "
-        "slowly, would: the 95 % interval of its term shrinks from ±{:.3g} to ±{:.3g} W m/s{}.",
-        test.leg_s / 60.0, fmt::join(airspeeds, ", "), test.induced_now, test.induced_after,
-        high ? fmt::format(", and best endurance is known to be at most {:.1f} m/s", *high) : "");
+        "The flights do not determine the induced drag (95 % interval ±{:.3g} W m/s). {} flight{} in calm air, each with "
+        "level legs of {:.0f} min at {} m/s, if the aircraft is safe so slowly, would narrow it to ±{:.3g} W m/s{}.",
+        test.induced_now, test.flights, test.flights == 1 ? "" : "s", test.leg_s / 60.0, fmt::join(airspeeds, ", "),
+        test.induced_after, high ? fmt::format(", and best endurance to at most {:.1f} m/s", *high) : "");
 }
 
 }  // namespace flightwatt::mechanical

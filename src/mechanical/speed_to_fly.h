@@ -25,10 +25,11 @@ struct BestSpeed {
 /// The terms of a cost at an airspeed; std::nullopt where it cannot be flown.
 using CostTerms = std::function<std::optional<TermValues>(double airspeed_m_per_s)>;
 
-/// Level legs that would determine the induced drag, and half the 95 % interval of its term [W m/s].
+/// Level legs that would determine the induced drag, or narrow its interval, and half of that [W m/s].
 struct SpeedTest {
     std::vector<double> airspeed_m_per_s;  ///< of the legs, slower than flown
     double leg_s = 0.0;
+    int flights = 0;  ///< each with all legs, until the interval excludes 0; at most 20
     double induced_now = 0.0;
     double induced_after = 0.0;   ///< with the legs
     BestSpeed endurance_after{};  ///< if the legs confirm the coefficients

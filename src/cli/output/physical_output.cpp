@@ -38,6 +38,7 @@ Fields<SpeedTest> record_fields(const SpeedTest*) {
     using R = SpeedTest;
     return {field("airspeeds_m_per_s", &R::airspeed_m_per_s, "airspeed of each level leg"),
             field("leg_s", &R::leg_s, "duration of a leg"),
+            field("flights", &R::flights, "number of flights, each with all legs"),
             field("induced_half_95_now", &R::induced_now, "half the 95 % interval of the induced term, in W m/s"),
             field("induced_half_95_after", &R::induced_after, "the same, expected with these legs"),
             field("endurance_after", &R::endurance_after, "best endurance, expected with these legs")};
