@@ -48,7 +48,7 @@ std::optional<PhysicalModel> speed_model(PhysicalModel model);
 BestSpeed best_speed(const PhysicalModel& model, const std::string& purpose, const std::string& unit,
                      const CostTerms& cost);
 
-/// Best endurance and best range; a headwind [m/s] below 0 is a tailwind, 0 is none. std::nullopt as speed_model.
+/// For a headwind [m/s] that is not 0 (below: tailwind) a third speed is added. std::nullopt as speed_model.
 std::optional<SpeedToFly> speed_to_fly(const PhysicalModel& model, double headwind_m_per_s = 0.0);
 
 /// "12.1 m/s (95 %: 11.0 to 13.2 m/s), 38.1 W"; '*' marks speeds outside of the flown range.

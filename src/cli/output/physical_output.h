@@ -24,7 +24,7 @@ TextTable constants_table(const mechanical::PhysicalModel& model);
 /// One row a term that was tried: hold-out error without and with it, and the result.
 TextTable trials_table(const mechanical::PhysicalFit& fit);
 
-/// A line a purpose: the best speed with its interval and power; then a flight test that would tell more.
+/// A line a purpose: the best speed with its interval; then the flights that would determine more.
 std::vector<std::string> speed_lines(const mechanical::SpeedToFly& speeds);
 
 /// Both tables, the data of the model and the speed to fly.
