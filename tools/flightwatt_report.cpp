@@ -10,6 +10,7 @@
 #include "mission/mission_file.h"
 #include "report/figure.h"
 #include "report/html.h"
+#include "report/outline.h"
 #include "report/page.h"
 #include "report/report.h"
 #include "stages.h"
@@ -38,6 +39,7 @@ struct ReportArguments {
     std::optional<std::string> published;
     std::optional<std::string> reference_figures;
     std::optional<std::string> title;
+    std::optional<std::string> outline;
     std::optional<double> capacity_ah;
     bool with_replay = false;
 };
@@ -56,6 +58,7 @@ report::ReportInput read_inputs(const cli::StageCall& call, const ReportArgument
     figure_layout(arguments);  // a bad one is refused before any work
     inputs.published_file = arguments.published;
     inputs.with_replay = arguments.with_replay;
+    if (arguments.outline) inputs.outlines = report::read_outlines(*arguments.outline);
     for (const auto& input : call.inputs) {
         std::error_code error;
         if (!std::filesystem::is_directory(input, error)) {
@@ -109,14 +112,16 @@ int write_page(const cli::StageCall& call, const ReportArguments& arguments) {
     const bool wants_page = call.output || (!call.json && !arguments.figures);
     std::optional<report::WebFiles> web;  // read first: missing files are an error before any work
     if (wants_page || arguments.figures) web = report::read_web_files(report::web_folder());
-    report::PageHead head{"FlightWatt report",
-                          {{"computed", time_of_report()}, {"by", "flightwatt " FLIGHTWATT_VERSION}}};
-    if (arguments.title) head.title = valid_utf8(*arguments.title);
+    report::PageHead head{.title = "",
+                          .name = "FlightWatt report",
+                          .facts = {{"computed", time_of_report()}, {"by", "flightwatt " FLIGHTWATT_VERSION}}};
     if (const auto& folder = arguments.reference_figures) {
         input.figures = report::read_published_figures(*folder);
         head.facts.emplace_back("reference", "the paper's Figs. 2 (c-e), 3 (a, b) and 4, digitised");
     }
     const auto content = make_report(input, log_of(call));
+    head.title = content.title;
+    if (arguments.title) head.title = head.name = valid_utf8(*arguments.title);
     std::ranges::copy(content.facts, std::back_inserter(head.facts));
     if (web) write_figure_files(call, arguments, content.sections, *web);
     if (wants_page) cli::write_result(call, page_html(head, content.sections, *web));
@@ -153,6 +158,8 @@ and .pdf (where rsvg-convert is). The model is the batch's own, with the bands t
     options.add("reference-figures", arguments.reference_figures, cli::input_file("DIR"),
                 "show the paper's figures, digitised, next to ours: fig2_cruise.csv and others");
     options.add("title", arguments.title, {.value = "TITLE"}, "of the page");
+    options.add("outline", arguments.outline, cli::input_file("FILE.geojson"),
+                "draw its lines and polygons below the flown tracks: a field, a coast, an airspace");
     cli::add_capacity_option(
         options, arguments.capacity_ah,
         "the capacity of the flights' battery; default: that of the missions' pack, if it is of these "

@@ -145,41 +145,15 @@
     });
   }
 
-  // A table without room for all its columns hides those on the right and names them; a click shows all.
-  const listHidden = (table, columns) => {
-    const box = table.parentElement;
-    const names = columns.map((column) => table.tHead.rows[0].cells[column].textContent);
-    const note = document.createElement("p");
-    note.className = "hidden-columns soft";
-    note.textContent = `Hidden columns: ${names.join(", ")}. `;
-    const button = document.createElement("button");
-    button.type = "button";
-    button.textContent = "Show all";
-    button.addEventListener("click", () => {
-      box.dataset.all = "yes";
-      fitColumns(table);
-      box.focus();
-    });
-    note.append(button);
-    box.after(note);
+  // A table without room for its columns shows each row as a block with its labels.
+  const fitTable = (table) => {
+    if (table.parentElement.clientWidth === 0) return; // in a closed part
+    table.classList.remove("blocks");
+    table.classList.toggle("blocks", window.innerWidth < 820 || table.scrollWidth > table.parentElement.clientWidth + 1);
   };
-  function fitColumns(table) {
-    const box = table.parentElement;
-    if (box.clientWidth === 0) return; // in a closed flight
-    if (box.nextElementSibling?.classList.contains("hidden-columns")) box.nextElementSibling.remove();
-    const rows = [...table.rows];
-    for (const row of rows) for (const cell of row.cells) cell.classList.remove("hidden");
-    if (box.dataset.all) return;
-    const columns = [...table.tHead.rows[0].cells].map((_, column) => column).slice(1).reverse();
-    const out = [];
-    for (const column of columns) {
-      if (box.scrollWidth <= box.clientWidth) break;
-      for (const row of rows) row.cells[column].classList.add("hidden");
-      out.push(column);
-    }
-    if (out.length > 0) listHidden(table, out.sort((a, b) => a - b));
-  }
-  const fitTables = (part = document) => part.querySelectorAll(".scroll > table").forEach(fitColumns);
+  const fitTables = (part = document) => part.querySelectorAll("table:not(.grid)").forEach(fitTable);
+  window.addEventListener("beforeprint", () => document.querySelectorAll("table.blocks").forEach((table) => table.classList.remove("blocks")));
+  window.addEventListener("afterprint", () => fitTables());
 
   // A flight's part may be a compressed block.
   const unfold = async (details) => {
@@ -204,13 +178,15 @@
       delete block.dataset.opening;
     }
   };
-  for (const details of document.querySelectorAll("details.flight"))
-    details.addEventListener("toggle", async () => details.open && (await unfold(details)) && fitTables(details));
+  const opened = async ({ target }) => target.open && (await unfold(target)) && fitTables(target);
+  document.addEventListener("toggle", opened, true); // of every <details>, also those that are unfolded later
 
   // A link to a flight opens it.
   const openTarget = () => {
     const target = location.hash ? document.getElementById(decodeURIComponent(location.hash.slice(1))) : null;
-    if (target?.tagName === "DETAILS") target.open = true;
+    if (target?.tagName !== "DETAILS") return;
+    target.open = true;
+    target.scrollIntoView();
   };
   window.addEventListener("hashchange", openTarget);
   openTarget();

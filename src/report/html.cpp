@@ -4,6 +4,7 @@
 #include "base/text.h"
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 
 #include <fmt/format.h>
@@ -51,10 +52,8 @@ std::string html_escaped(std::string_view text) {
 
 std::string table_html(const TextTable& table, std::string_view caption, const HtmlTableOptions& options) {
     const auto classes = column_classes(table);
-    auto html = fmt::format(
-        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\"><table{1} "
-        "aria-label=\"{0}\">\n<thead><tr>",
-        html_escaped(caption), options.sortable ? " class=\"sortable\"" : "");
+    auto html = fmt::format("<table{} aria-label=\"{}\">\n<thead><tr>", options.sortable ? " class=\"sortable\"" : "",
+                            html_escaped(caption));
     for (std::size_t c = 0; c < table.header.size(); ++c) {
         html += fmt::format("<th scope=\"col\"{}>{}</th>", classes[c], html_escaped(table.header[c]));
     }
@@ -66,11 +65,11 @@ std::string table_html(const TextTable& table, std::string_view caption, const H
             if (c == 0 && r < options.links.size() && !options.links[r].empty()) {
                 cell = fmt::format("<a href=\"#{}\">{}</a>", html_escaped(options.links[r]), cell);
             }
-            html += fmt::format("<td{}>{}</td>", classes[c], cell);
+            html += fmt::format("<td{} data-label=\"{}\">{}</td>", classes[c], html_escaped(table.header[c]), cell);
         }
         html += "</tr>\n";
     }
-    return html + "</tbody></table></div>\n";
+    return html + "</tbody></table>\n";
 }
 
 void add_figure(Section& section, Figure figure) {
@@ -90,6 +89,11 @@ void add_table(Section& section, const CaptionedTable& table, const HtmlTableOpt
     section.html += table_html(table.table, table.caption, options);
     if (table.label.empty() || table.table.rows.empty()) return;
     section.latex += (section.latex.empty() ? "" : "\n") + to_latex(table.table, table.caption, table.label);
+}
+
+std::string capitalized(std::string text) {
+    if (!text.empty()) text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+    return text;
 }
 
 std::string heading(std::string_view text) { return fmt::format("<h3>{}</h3>\n", html_escaped(text)); }

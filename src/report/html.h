@@ -25,6 +25,13 @@ std::string table_html(const TextTable& table, std::string_view caption, const H
 /// Receives the progress of long work, from any thread.
 using Progress = std::function<void(std::size_t done, std::size_t all)>;
 
+/// Where a section stands.
+enum class SectionPlace {
+    page,    ///< with its title as heading
+    front,   ///< the first screen, with a heading of its own
+    folded,  ///< below "How certain is this?", closed until it is opened
+};
+
 /// A section of the page. Its HTML contains the figures and tables; figures and LaTeX can also be written as files.
 struct Section {
     std::string id;
@@ -32,6 +39,7 @@ struct Section {
     std::string html = {};
     std::string latex = {};
     std::vector<Figure> figures = {};
+    SectionPlace place = SectionPlace::page;
 };
 
 /// Appends a figure.
@@ -39,6 +47,9 @@ void add_figure(Section& section, Figure figure);
 
 /// Appends a table to the HTML and, if it has a label and rows, to the LaTeX.
 void add_table(Section& section, const CaptionedTable& table, const HtmlTableOptions& options = {});
+
+/// The text with a capital first letter.
+std::string capitalized(std::string text);
 
 /// A subheading, a paragraph and a list of plain text; an empty list is no text.
 std::string heading(std::string_view text);

@@ -102,7 +102,7 @@ std::string standalone(const Figure& figure, const VegaJson& light_theme) {
 std::filesystem::path web_folder() { return data_folder("web", "FLIGHTWATT_WEB", "the report's web files"); }
 
 WebFiles read_web_files(const std::filesystem::path& folder) {
-    return read_files(folder, "page.css", {"fit_width.js", "blocks.js", "page.js"}, true);
+    return read_files(folder, "page.css", {"fit_width.js", "blocks.js", "drawings.js", "page.js"}, true);
 }
 
 WebFiles read_live_web_files(const std::filesystem::path& folder) {
@@ -112,18 +112,36 @@ WebFiles read_live_web_files(const std::filesystem::path& folder) {
 std::string page_html(const PageHead& head, const std::vector<Section>& sections, const WebFiles& web) {
     std::string contents;
     std::string html;
+    std::string folded;
+    const auto link = [&](std::string_view id, std::string_view title) {
+        contents += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", id, title);
+    };
     for (const auto& section : sections) {
         const auto title = html_escaped(section.title);
-        contents += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", section.id, title);
-        html += fmt::format("<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n<h2 id=\"{0}-title\">{1}</h2>\n",
-                            section.id, title);
+        if (section.place == SectionPlace::folded) {
+            folded += fmt::format("<details class=\"more\" id=\"{}\"><summary><h3>{}</h3></summary>\n{}</details>\n",
+                                  section.id, title, section.html);
+            continue;
+        }
+        link(section.id, title);
+        html += fmt::format("<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n", section.id);
+        if (section.place == SectionPlace::page)
+            html += fmt::format("<h2 id=\"{}-title\">{}</h2>\n", section.id, title);
         html += section.html + "</section>\n";
+    }
+    if (!folded.empty()) {
+        link("certain", "How certain?");
+        html +=
+            "<section id=\"certain\" aria-labelledby=\"certain-title\">\n<h2 id=\"certain-title\">How certain is "
+            "this?</h2>\n" +
+            folded + "</section>\n";
     }
     std::string facts;
     for (const auto& [name, value] : head.facts)
         facts += fmt::format("<dt>{}</dt><dd>{}</dd>\n", html_escaped(name), html_escaped(value));
     return filled_page("page", {{"version", FLIGHTWATT_VERSION},
                                 {"title", html_escaped(head.title)},
+                                {"name", html_escaped(head.name)},
                                 {"style", web.style},
                                 {"contents", contents},
                                 {"sections", html},

@@ -28,7 +28,8 @@ WebFiles read_web_files(const std::filesystem::path& folder);
 
 /// Title, and the facts at the end of a page.
 struct PageHead {
-    std::string title;
+    std::string title;                                       ///< of the tab
+    std::string name;                                        ///< in the bar at the top
     std::vector<std::pair<std::string, std::string>> facts;  ///< "computed" - "2026-01-01 12:00 UTC", ...
 };
 

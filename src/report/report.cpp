@@ -48,6 +48,7 @@ void add_model(Draft& page, const BatchContent& batch) {
     const auto& fitted = batch.fit->model;
     page.models.push_back(fitted);
     page.answers.warnings = model_warnings(fitted);
+    page.answers.model = fitted;
     const auto& published = page.input.published_file;
     ReportModel model{fitted, origin_of_model(batch), batch.fit->bands};
     model.table_one = cli::model_table(
@@ -86,11 +87,20 @@ void add_batch(Draft& page, const BatchContent& batch) {
         });
     auto& sections = page.content.sections;
     sections.push_back(flights_section(batch, page.log.progress("flights")));
+    const auto shown = sections.size();
     add_model(page, batch);
+    std::optional<ReportBattery> found;
     if (mix.empty())
-        sections.push_back(battery_section(battery.get()));
+        found = battery.get();
     else
         page.answers.notes.push_back("There is no battery of flights of several aircraft: " + mix + ".");
+    if (found) {
+        sections.push_back(battery_section(*found));
+        page.answers.pack = found->identified;
+    }
+    for (auto i = shown; i < sections.size(); ++i) sections[i].place = SectionPlace::folded;
+    if (auto tracks = tracks_section(batch, found ? &*found : nullptr, page.input.outlines))
+        sections.insert(sections.begin() + static_cast<std::ptrdiff_t>(shown), std::move(*tracks));
 }
 
 /// Trends of aircraft and packs over their flights' dates, where there are any.
@@ -104,7 +114,19 @@ void add_trends(Draft& page, const BatchContent& batch) {
     const auto notes = add_state_of_health(flights, max_battery_flights, page.input.capacity_ah);
     auto section = trends_section(trends_of(flights));
     section->html += list_html(notes);
+    section->place = SectionPlace::folded;
     page.content.sections.push_back(std::move(*section));
+}
+
+void sort_worst_first(PageSummary& answers) {
+    std::vector<SimulatedMission> missions;
+    std::vector<MissionAssessment> assessments;
+    for (const auto i : worst_first(answers.missions)) {
+        missions.push_back(std::move(answers.missions[i]));
+        assessments.push_back(std::move(answers.answers[i]));
+    }
+    answers.missions = std::move(missions);
+    answers.answers = std::move(assessments);
 }
 
 void add_missions(Draft& page) {
@@ -112,7 +134,10 @@ void add_missions(Draft& page) {
     std::vector<std::string> names;
     names.reserve(missions.size());
     for (const auto& mission : missions) names.push_back(setup_of(mission).file);
-    page.content.facts.emplace_back("missions", fmt::format("{}", fmt::join(names, ", ")));
+    std::vector<std::string> files;  // the page goes to others: without the folders
+    files.reserve(names.size());
+    for (const auto& name : names) files.push_back(std::filesystem::path(name).filename().string());
+    page.content.facts.emplace_back("missions", fmt::format("{}", fmt::join(files, ", ")));
     page.answers.missions = simulate_for_report(missions, page.log.progress("missions"));
     const auto progress = page.log.progress("answers");
     for (const auto& simulated : page.answers.missions) {
@@ -122,6 +147,7 @@ void add_missions(Draft& page) {
             return mission::read_mission(file, reading);
         }));
     }
+    sort_worst_first(page.answers);
     std::ranges::move(mission_sections(page.answers.missions, page.input.figures, page.models),
                       std::back_inserter(page.content.sections));
 }
@@ -172,7 +198,7 @@ Json summary_json(const Draft& page, const BatchContent& batch) {
     PageOutput output{.title = {},
                       .missions = {},
                       .aircraft = aircraft_lines(batch.flights),
-                      .prediction = prediction_line(page.answers.validated, any_synthetic(batch.flights)),
+                      .prediction = prediction_line(page.answers, any_synthetic(batch.flights)),
                       .warnings = page.answers.warnings,
                       .notes = page.answers.notes,
                       .figures = {}};
@@ -188,11 +214,13 @@ Json summary_json(const Draft& page, const BatchContent& batch) {
 
 ReportContent make_report(const ReportInput& input, const ReportLog& log) {
     Draft page{input, log};
-    auto& [facts, sections, summary] = page.content;
+    auto& [title, facts, sections, summary] = page.content;
     BatchContent batch;
     if (!input.out.empty()) {
         batch = read_batch_content(input.out);
-        facts.emplace_back("flights", fmt::format("{} logs, from {}", batch.flights.size(), input.out.string()));
+        facts.emplace_back("flights",
+                           fmt::format("{} logs, from {}", batch.flights.size(),
+                                       std::filesystem::absolute(input.out).lexically_normal().filename().string()));
     }
     std::vector<mission::Replay> replays;
     if (input.with_replay) replays = replay_missions(input, batch, log);
@@ -201,10 +229,18 @@ ReportContent make_report(const ReportInput& input, const ReportLog& log) {
         add_trends(page, batch);
     }
     if (!input.missions.empty()) add_missions(page);
-    if (!replays.empty()) sections.push_back(replay_section(replays));
+    if (!replays.empty()) {
+        sections.push_back(replay_section(replays));
+        sections.back().place = SectionPlace::folded;
+    }
     if (input.with_replay && replays.empty())
         page.answers.notes.emplace_back("There is no replay: no mission could be replayed on any flight.");
+    // What missions answer stands before the flights.
+    std::ranges::stable_partition(
+        sections, [](const Section& section) { return section.id == "curves" || section.id == "quality-of-service"; });
     sections.insert(sections.begin(), summary_section(page.answers, batch.flights));
+    if (auto notes = notes_section(page.answers)) sections.push_back(std::move(*notes));
+    title = page_title(batch.flights, page.answers.missions.size());
     summary = summary_json(page, batch);
     return std::move(page.content);
 }

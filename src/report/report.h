@@ -5,6 +5,7 @@
 #include "record/record.h"
 #include "report/batch_content.h"
 #include "report/html.h"
+#include "report/outline.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -35,9 +36,11 @@ struct ReportInput {
     PublishedFigures figures = {};
     std::optional<double> capacity_ah = {};  ///< of the flights' battery
     bool with_replay = false;                ///< of the missions on the flights
+    std::vector<Outline> outlines = {};      ///< below the flown tracks
 };
 
 struct ReportContent {
+    std::string title;                                       ///< aircraft, flights with their dates, missions
     std::vector<std::pair<std::string, std::string>> facts;  ///< "flights" - "3 logs, from out", ...
     std::vector<Section> sections;                           ///< the summary first
     Json summary;                                            ///< of --json, with an empty title

@@ -15,11 +15,12 @@ TEST(TableHtml, PutsTextsToTheLeftAndLinksTheFirstCell) {
                           {{"<a>", "5.0", "+0.1", "all"}, {"b", "-", "-0.2", "in part"}}};
     const auto html = table_html(table, "Flights", {true, {"flight-1", ""}});
     EXPECT_NE(html.find("<table class=\"sortable\""), std::string::npos);
-    EXPECT_NE(html.find("<td class=\"text short\"><a href=\"#flight-1\">&lt;a&gt;</a></td>"), std::string::npos);
-    EXPECT_NE(html.find("<td class=\"text short\">b</td>"), std::string::npos);
-    EXPECT_NE(html.find("<td>+0.1</td>"), std::string::npos);
-    EXPECT_NE(html.find("<td>-</td>"), std::string::npos);
-    EXPECT_NE(html.find("<td class=\"text short\">in part</td>"), std::string::npos);
+    EXPECT_NE(html.find("<td class=\"text short\" data-label=\"flight\"><a href=\"#flight-1\">&lt;a&gt;</a></td>"),
+              std::string::npos);
+    EXPECT_NE(html.find("<td class=\"text short\" data-label=\"flight\">b</td>"), std::string::npos);
+    EXPECT_NE(html.find("<td data-label=\"closure [%]\">+0.1</td>"), std::string::npos);
+    EXPECT_NE(html.find("<td data-label=\"energy [Wh]\">-</td>"), std::string::npos);
+    EXPECT_NE(html.find("<td class=\"text short\" data-label=\"state\">in part</td>"), std::string::npos);
 }
 
 TEST(FigureHtml, TellsWhatTheFigureSays) {

@@ -24,7 +24,7 @@ WebFiles small_files() {
 }
 
 TEST(PageHtml, HoldsTitleSectionsAndThenFacts) {
-    const PageHead head{"A <title>", {{"computed", "today & now"}}};
+    const PageHead head{"A <title>", "A name", {{"computed", "today & now"}}};
     const std::vector<Section> sections{{"flights", "Flights", "<p>one</p>\n", {}},
                                         {"plan", "Plan", "<p>two</p>\n", {}}};
     const auto html = page_html(head, sections, small_files());
@@ -35,8 +35,19 @@ TEST(PageHtml, HoldsTitleSectionsAndThenFacts) {
     EXPECT_LT(html.find("<p>two</p>"), html.find("<dt>computed</dt>"));
 }
 
+TEST(PageHtml, FoldsStatistics) {
+    Section model{"model", "Model", "<p>two</p>\n"};
+    model.place = SectionPlace::folded;
+    Section front{"missions", "Missions", "<h1 id=\"missions-title\">One runs empty</h1>\n"};
+    front.place = SectionPlace::front;
+    const auto html = page_html({"t", "n", {}}, {front, model, {"flights", "Flights", "<p>one</p>\n"}}, small_files());
+    EXPECT_LT(html.find("<p>one</p>"), html.find("How certain is this?"));
+    EXPECT_THAT(html, HasSubstr("<details class=\"more\" id=\"model\"><summary><h3>Model</h3></summary>\n<p>two</p>"));
+    EXPECT_THAT(html, Not(HasSubstr("<h2 id=\"missions-title\">")));
+}
+
 TEST(PageHtml, KeepsScriptsInTheirElementsAndOffTheNetwork) {
-    const auto html = page_html({"t", {}}, {}, small_files());
+    const auto html = page_html({"t", "n", {}}, {}, small_files());
     EXPECT_THAT(html, HasSubstr("var a = \"<\\/script>\";"));
     EXPECT_THAT(html, HasSubstr("default-src 'none'"));
     EXPECT_THAT(html, Not(HasSubstr("http://")));
@@ -51,7 +62,7 @@ TEST(LivePage, ListensToItsServerAlone) {
     for (const auto* command : {"<form", "<button", "<input", "<a "}) EXPECT_THAT(html, Not(HasSubstr(command)));
     EXPECT_THAT(html, Not(HasSubstr("http://")));
     EXPECT_THAT(html, Not(HasSubstr("https://")));
-    EXPECT_THAT(page_html({"t", {}}, {}, small_files()), Not(HasSubstr("connect-src")));
+    EXPECT_THAT(page_html({"t", "n", {}}, {}, small_files()), Not(HasSubstr("connect-src")));
 }
 
 TEST(LivePage, SaysThatItHasNoChartsWhereTheLibrariesAreMissing) {
@@ -72,7 +83,7 @@ TEST(WebFolder, IsThatOfTheProject) {
 
 TEST(ReadWebFiles, JoinsLibrariesAndScripts) {
     const auto folder = test::scratch_dir();
-    for (const auto* file : {"page.css", "theme.json", "fit_width.js", "blocks.js", "page.js"}) {
+    for (const auto* file : {"page.css", "theme.json", "fit_width.js", "blocks.js", "drawings.js", "page.js"}) {
         write_file_atomically(folder / file, std::string(file) + "\n");
     }
     EXPECT_THAT(
@@ -87,7 +98,7 @@ TEST(ReadWebFiles, JoinsLibrariesAndScripts) {
     EXPECT_EQ(files.style, "page.css\n");
     EXPECT_EQ(files.theme, "theme.json\n");
     EXPECT_EQ(files.libraries, "vega\nvega-lite\nvega-embed\n");
-    EXPECT_EQ(files.script, "fit_width.js\nblocks.js\npage.js\n");
+    EXPECT_EQ(files.script, "fit_width.js\nblocks.js\ndrawings.js\npage.js\n");
 }
 
 Section section_with(const std::string& id) {

@@ -4,19 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <vector>
 
-#include <boost/geometry/algorithms/append.hpp>
-#include <boost/geometry/algorithms/assign.hpp>
-#include <boost/geometry/algorithms/expand.hpp>
-#include <boost/geometry/algorithms/simplify.hpp>
-#include <boost/geometry/arithmetic/arithmetic.hpp>
-#include <boost/geometry/geometries/box.hpp>
-#include <boost/geometry/geometries/linestring.hpp>
-#include <boost/geometry/geometries/point.hpp>
-#include <boost/geometry/strategies/cartesian/distance_projected_point.hpp>
 #include <fmt/format.h>
 
 namespace flightwatt::report {
@@ -165,94 +155,6 @@ Figure flight_figure(const ReportFlight& flight, const mechanical::MechanicalMod
                     {"edges", edge_rows(flight).csv()}});
     figure.spec["vconcat"] = panels;
     return figure;
-}
-
-namespace {
-
-namespace bg = boost::geometry;
-using Point = bg::model::point<double, 3, bg::cs::cartesian>;  ///< east, north, height
-using Line = bg::model::linestring<Point>;
-
-constexpr int side_px = 380;  // of the panels
-
-struct TrackSegment {
-    flight::Phase phase = flight::Phase::cruise;
-    Line line;
-};
-
-/// The track of the phases at the times of the power samples, split at their gaps. Heights are above the ground at the
-/// first lift-off, 0 where they are unknown.
-std::vector<TrackSegment> track_segments(const ReportFlight& flight) {
-    const auto& series = flight.series;
-    const auto time_s = power_track(series).time_s;
-    const auto east_m = sample_selected_track(series, "east_m", time_s);
-    const auto north_m = sample_selected_track(series, "north_m", time_s);
-    std::vector<TrackSegment> segments;
-    if (east_m.empty() || north_m.empty() || flight.phases.sorties.empty()) return segments;
-    std::vector<double> height_m(time_s.size(), 0.0);
-    if (const auto altitude = select_track(series, "altitude_m"); !altitude.empty()) {
-        height_m = resample(altitude, time_s);
-        const double ground_m = value_at(altitude, flight.phases.sorties.front().phases.front().start.time_s);
-        for (auto& height : height_m) height -= ground_m;
-    }
-    const double gap_s = flight::gap_threshold_s(time_s);
-    for (const auto& sortie : flight.phases.sorties) {
-        for (const auto& span : sortie.phases) {
-            double last_s = -std::numeric_limits<double>::infinity();
-            for (std::size_t i = 0; i < time_s.size(); ++i) {
-                if (time_s[i] < span.start.time_s || time_s[i] > span.end.time_s) continue;
-                if (time_s[i] - last_s > gap_s) segments.push_back({span.phase, {}});
-                bg::append(segments.back().line, Point(east_m[i], north_m[i], height_m[i]));
-                last_s = time_s[i];
-            }
-        }
-    }
-    return segments;
-}
-
-/// Segments simplified within the tolerance.
-FigureData track_rows(const std::vector<TrackSegment>& segments, double tolerance_m) {
-    FigureData data({"east_m", "north_m", "height_m", "order", "piece"}, {"phase", "word"});
-    constexpr double steps = 4.0;  // of the tolerance
-    const int position_decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(tolerance_m / steps))));
-    data.round_to({position_decimals, position_decimals, 1, 0, 0});
-    double piece = 0.0;
-    for (const auto& [phase, line] : segments) {
-        ++piece;
-        Line simple;
-        bg::simplify(line, simple, tolerance_m);
-        double order = 0.0;
-        for (const auto& point : simple)
-            data.add({bg::get<0>(point), bg::get<1>(point), bg::get<2>(point), order++, piece},
-                     {to_string(phase), phase_word(phase)});
-    }
-    return data;
-}
-
-}  // namespace
-
-std::optional<Figure> track_figure(const ReportFlight& flight, const std::string& id) {
-    const auto segments = track_segments(flight);
-    if (segments.empty()) return std::nullopt;
-    bg::model::box<Point> box;
-    bg::assign_inverse(box);
-    for (const auto& segment : segments)
-        for (const auto& point : segment.line) bg::expand(box, point);
-    Point extent = box.max_corner();
-    bg::subtract_point(extent, box.min_corner());
-    constexpr double margin = 1.05;
-    const double half_m = std::max(1.0, margin * std::max(bg::get<0>(extent), bg::get<1>(extent)) / 2.0);
-    const double east_m = std::midpoint(bg::get<0>(box.min_corner()), bg::get<0>(box.max_corner()));
-    const double north_m = std::midpoint(bg::get<1>(box.min_corner()), bg::get<1>(box.max_corner()));
-    return new_figure(
-        "track", id,
-        "Ground track from above, coloured by phase and by height above the point of lift-off; broken where samples "
-        "are missing.",
-        fmt::format("Ground track of flight {}, within {:.0f} m from west to east and from south to north.",
-                    flight.name, 2.0 * half_m),
-        {{"track", track_rows(segments, half_m / side_px).json()},
-         {"east", {east_m - half_m, east_m + half_m}},
-         {"north", {north_m - half_m, north_m + half_m}}});
 }
 
 }  // namespace flightwatt::report

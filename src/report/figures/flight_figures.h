@@ -9,7 +9,6 @@
 #include "report/figure.h"
 
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,10 +30,6 @@ std::vector<NamedEdge> edges_of(const ReportFlight& flight);
 /// Altitude, throttle and power of an accepted flight over time, with phases, edges and the model's curve of each
 /// phase, scaled to its duration.
 Figure flight_figure(const ReportFlight& flight, const mechanical::MechanicalModel* model, const std::string& id);
-
-/// The ground track of a flight by phase and by height, metres east and north on equal scales; std::nullopt without
-/// positions.
-std::optional<Figure> track_figure(const ReportFlight& flight, const std::string& id);
 
 /// The mechanical model as the paper's Fig. 2, a panel a phase: curve, envelope of the flights and 95 % band of the
 /// mean (bands without times: unknown), and points of the digitised figure.

@@ -58,6 +58,22 @@ struct QosMap {
 /// std::nullopt with fewer than two parameters.
 std::optional<QosMap> qos_map(const mission::MissionSetup& mission);
 
+/// A configuration that runs throughout.
+struct QosCell {
+    mission::Simulation simulation;
+    std::optional<double> probability;  ///< of keeping the reserve; unknown without uncertainty
+};
+
+/// The profiled values of a mission's first two parameters, at most 8 each; others have their maximum.
+struct QosGrid {
+    QosAxis x;
+    QosAxis y;
+    std::vector<QosCell> cells;  ///< x runs fastest
+};
+
+/// std::nullopt with fewer than two parameters.
+std::optional<QosGrid> qos_grid(const mission::MissionSetup& mission);
+
 /// Equal for missions with the same mechanical model, profiled components, or map (flight, components and battery).
 std::string model_key(const mission::MissionSetup& mission);
 std::string software_key(const mission::MissionSetup& mission);

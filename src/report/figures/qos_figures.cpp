@@ -1,6 +1,9 @@
 #include "base/statistics.h"
 #include "base/text.h"
 #include "compute/qos_range.h"
+#include "mission/plan.h"
+#include "mission/prepared_mission.h"
+#include "mission/sampled_flights.h"
 #include "mission/schedule.h"
 #include "mission/simulation.h"
 #include "report/figures/mission_figures.h"
@@ -55,6 +58,14 @@ std::vector<mission::ScheduleSegment> throughout(const mission::MissionSetup& mi
         if (mission.duration_s[phase] > 0.0) schedule.push_back({phase, 0.0, mission.duration_s[phase], run});
     }
     return schedule;
+}
+
+/// At most `count` of the values, at equal steps, with the first and the last.
+std::vector<double> evenly_chosen(const std::vector<double>& values, std::size_t count) {
+    if (values.size() <= count) return values;
+    std::vector<double> chosen;
+    for (std::size_t i = 0; i < count; ++i) chosen.push_back(values[i * (values.size() - 1) / (count - 1)]);
+    return chosen;
 }
 
 double cell_soc(const QosMap& map, std::size_t i, std::size_t j) {
@@ -186,6 +197,33 @@ std::optional<QosMap> qos_map(const mission::MissionSetup& mission) {
         }
     }
     return map;
+}
+
+std::optional<QosGrid> qos_grid(const mission::MissionSetup& mission) {
+    constexpr std::size_t max_values = 8;
+    constexpr std::size_t flights_drawn = 200;
+    constexpr double rows = 40.0;
+    auto axes = axes_of(mission.compute);
+    if (axes.size() < 2) return std::nullopt;
+    QosGrid grid{axes[0], axes[1], {}};
+    for (auto* axis : {&grid.x, &grid.y})
+        axis->nodes =
+            evenly_chosen(mission.compute.components[axis->component].profile.axes[axis->parameter], max_values);
+    auto run = max_configuration(mission.compute);
+    mission::SimulationOptions steps;
+    steps.output_s = mission::timeline_of(mission.duration_s).duration_s / rows;
+    for (const double y : grid.y.nodes) {
+        run[grid.y.component].qos[grid.y.parameter] = y;
+        for (const double x : grid.x.nodes) {
+            run[grid.x.component].qos[grid.x.parameter] = x;
+            const mission::PreparedMission prepared{mission, throughout(mission, run), std::nullopt};
+            QosCell cell{simulate_prepared(prepared, steps).simulation, std::nullopt};
+            if (has_uncertainty(mission))
+                cell.probability = 1.0 - sample_flights(prepared, {}, {flights_drawn, 1}).probability_below_reserve;
+            grid.cells.push_back(std::move(cell));
+        }
+    }
+    return grid;
 }
 
 std::string model_key(const mission::MissionSetup& mission) {

@@ -107,20 +107,25 @@ Figure schedule_figure(Missions missions, const PublishedFigures& published, con
     const auto bands = band_rows(missions);
     const auto reserves = reserve_rows(missions);
     const auto points = published_rows(missions, published);
-    std::string caption = "A click on the legend hides a mission. Below: the schedules, coloured by their power.";
+    const bool has_software = std::ranges::any_of(
+        missions, [](const auto& mission) { return !mission.mission.setup.compute.components.empty(); });
+    std::string caption = "A click on the legend hides a mission.";
+    if (has_software) caption += " Below: the schedules, coloured by their power.";
     if (!bands.is_null()) caption += " Shaded: 5 to 95 % of the drawn flights.";
     if (!reserves.is_null()) caption += " Dashed horizontal lines: the reserve.";
     if (!points.is_null()) caption += " Points: the paper's Fig. 3, digitised.";
-    return new_figure("schedule", id, caption, description,
-                      {{"end_s", end_s},
-                       {"missions", titles},
-                       {"shown", shown},
-                       {"phases", common_phase_rows(missions)},
-                       {"bands", bands},
-                       {"reserves", reserves},
-                       {"curves", curve_rows(missions)},
-                       {"published", points},
-                       {"strip", strip_rows(missions)}});
+    auto figure = new_figure("schedule", id, caption, description,
+                             {{"end_s", end_s},
+                              {"missions", titles},
+                              {"shown", shown},
+                              {"phases", common_phase_rows(missions)},
+                              {"bands", bands},
+                              {"reserves", reserves},
+                              {"curves", curve_rows(missions)},
+                              {"published", points},
+                              {"strip", strip_rows(missions)}});
+    if (!has_software) figure.spec["vconcat"].erase(1);
+    return figure;
 }
 
 namespace {

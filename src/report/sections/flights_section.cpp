@@ -10,7 +10,9 @@
 #include "report/sections/sections.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <filesystem>
 #include <iterator>
 #include <regex>
 #include <set>
@@ -55,22 +57,7 @@ std::vector<std::string> cells_of(const ReportFlight& flight, std::size_t sortie
             power.has_power() ? fmt::format("{}", whole.gaps) : "-"};
 }
 
-/// "flight-20_07_03__12_17_45": unique names of files and anchors.
-std::vector<std::string> flight_ids(std::span<const ReportFlight> flights) {
-    constexpr std::size_t max_chars = 60;
-    static const std::regex other_chars("[^0-9A-Za-z_]+");
-    std::vector<std::string> ids;
-    std::set<std::string> taken;
-    for (const auto& flight : flights) {
-        auto id = "flight-" + std::regex_replace(flight.name.substr(0, max_chars), other_chars, "-");
-        if (!taken.insert(id).second) id += fmt::format("-{}", ids.size() + 1);
-        ids.push_back(std::move(id));
-    }
-    return ids;
-}
-
 TextTable flights_table(std::span<const ReportFlight> flights) {
-    // The most important columns first: narrow screens hide those on the right.
     TextTable table{{"flight", "aircraft", "date", "energy [Wh]", "cruise [W]", "cruise [s]", "warnings", "fitted",
                      "distance [km]", "height [m]", "take\u2011off [s]", "landing [s]", "take\u2011off [W]",
                      "landing [W]", "counter [Wh]", "closure [%]", "gaps"},
@@ -84,12 +71,33 @@ TextTable flights_table(std::span<const ReportFlight> flights) {
     return table;
 }
 
+/// The columns of the first look, from the columns of all.
+TextTable short_table(const TextTable& all) {
+    constexpr std::array<std::size_t, 9> shown{0, 2, 5, 8, 9, 12, 4, 13, 3};
+    TextTable table{{"Flight", "Date (UTC)", "Cruise [s]", "Distance [km]", "Height [m]", "Take\u2011off [W]",
+                     "Cruise [W]", "Landing [W]", "Energy [Wh]"},
+                    {}};
+    for (const auto& row : all.rows) {
+        table.rows.emplace_back();
+        for (const auto column : shown) table.rows.back().push_back(row[column]);
+    }
+    return table;
+}
+
 void add_flights_table(Section& section, std::span<const ReportFlight> flights, const std::vector<std::string>& ids) {
     HtmlTableOptions options{.sortable = true};
     for (std::size_t f = 0; f < flights.size(); ++f)
         if (flights[f].rejected.empty())
             options.links.insert(options.links.end(), flights[f].phases.sorties.size(), ids[f]);
-    add_table(section, {flights_table(flights), "Flights", "tab:flights"}, options);
+    const auto all = flights_table(flights);
+    add_table(section, {short_table(all), "Flights", ""}, options);
+    section.html += "<details class=\"more\"><summary>All measurements of the flights</summary>\n";
+    section.html += paragraph(
+        "Durations, mean power and energy are those of the power samples between lift-off and touchdown; counter is "
+        "the autopilot's energy counter over the same time, closure the difference of the integral from it.",
+        "soft");
+    add_table(section, {all, "All measurements of the flights", "tab:flights"}, options);
+    section.html += "</details>\n";
 }
 
 void add_excluded(Section& section, std::span<const ReportFlight> flights) {
@@ -101,11 +109,8 @@ void add_excluded(Section& section, std::span<const ReportFlight> flights) {
             exclusions.push_back(
                 {flight.name, "from the model", reason.starts_with(name) ? reason.substr(name.size()) : reason});
     }
-    if (exclusions.empty()) {
-        section.html += paragraph("Nothing was excluded.");
-        return;
-    }
-    section.html += heading("Excluded");
+    if (exclusions.empty()) return;
+    section.html += "<h3 id=\"excluded\">Excluded</h3>\n";
     add_table(section, {exclusions_table(exclusions), "Excluded flights and phases", "tab:excluded"});
 }
 
@@ -145,12 +150,12 @@ Section contents_of(const ReportFlight& flight, const mechanical::MechanicalMode
         add_figure(section, std::move(figure));
         section.figures.back().spec = spec;  // of its file
     };
-    section.html += paragraph("From " + flight.log, "soft") + list_html(flight.warnings, "warning");
+    const auto log = std::filesystem::path(flight.log).filename().string();  // the page goes to others
+    section.html += paragraph("From " + log, "soft") + list_html(flight.warnings, "warning");
     const bool has_power = !power_track(flight.series).empty();
     if (has_power) add(flight_figure(flight, model, part.id + "-power"));
-    section.html += edges_html(flight);
-    if (!has_power) return section;
-    if (auto track = track_figure(flight, part.id + "-track")) add(std::move(*track));
+    section.html +=
+        "<details class=\"more\"><summary>How the phases were found</summary>\n" + edges_html(flight) + "</details>\n";
     return section;
 }
 
@@ -184,6 +189,19 @@ std::vector<Section> flight_sections(const BatchContent& batch, const std::vecto
 
 }  // namespace
 
+std::vector<std::string> flight_ids(std::span<const ReportFlight> flights) {
+    constexpr std::size_t max_chars = 60;
+    static const std::regex other_chars("[^0-9A-Za-z_]+");
+    std::vector<std::string> ids;
+    std::set<std::string> taken;
+    for (const auto& flight : flights) {
+        auto id = "flight-" + std::regex_replace(flight.name.substr(0, max_chars), other_chars, "-");
+        if (!taken.insert(id).second) id += fmt::format("-{}", ids.size() + 1);
+        ids.push_back(std::move(id));
+    }
+    return ids;
+}
+
 TextTable exclusions_table(std::span<const Exclusion> exclusions) {
     constexpr std::size_t max_names = 10;
     std::vector<std::vector<const Exclusion*>> groups;
@@ -213,12 +231,10 @@ Section flights_section(const BatchContent& batch, const Progress& progress) {
     Section section{"flights", "Flights"};
     const auto rejected =
         std::ranges::count_if(flights, [](const ReportFlight& flight) { return !flight.rejected.empty(); });
-    section.html += paragraph(fmt::format(
-        "{} logs, {} of them rejected. Distance is over ground, height above the ground at lift-off, dates are UTC. "
-        "Durations, mean power and energy are those of the power samples between lift-off and touchdown; counter is "
-        "the autopilot's energy counter over the same time, closure the difference of the integral from it. A click on "
-        "a column sorts.",
-        flights.size(), rejected));
+    section.html += paragraph(
+        fmt::format("{} logs{}. Mean power of each phase; distance over ground, height above the ground at lift-off.",
+                    flights.size(), rejected > 0 ? fmt::format(", {} of them rejected", rejected) : ""),
+        "soft");
     const auto ids = flight_ids(flights);
     add_flights_table(section, flights, ids);
     add_excluded(section, flights);

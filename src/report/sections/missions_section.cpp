@@ -4,6 +4,7 @@
 #include "mechanical/table_one.h"
 #include "mission/mission_summary.h"
 #include "report/figures/mission_figures.h"
+#include "report/sections/page_data.h"
 #include "report/sections/sections.h"
 
 #include <algorithm>
@@ -66,16 +67,21 @@ TextTable ranking_table(Missions missions) {
 }
 
 Section schedule_section(Missions missions, const PublishedFigures& published) {
-    Section section{"schedules", "Schedules"};
+    Section section{"schedules", "Schedules, and what differs between drawn flights"};
     add_figure(section, schedule_figure(missions, published, "schedules-soc"));
     std::vector<std::string> failures;
-    std::vector<std::string> sources;
+    std::vector<std::pair<std::string, std::string>> sources;  ///< what is drawn, and the missions of which
     for (const auto& simulated : missions) {
         auto summary = simulated.simulation.summary;
         summary.mission = simulated.title;
         if (summary.undeliverable) failures.push_back(describe(summary));
-        if (summary.samples)
-            sources.push_back(fmt::format("{}: {}", simulated.title, describe(summary.samples->sources)));
+        if (!summary.samples) continue;
+        const auto text = describe(summary.samples->sources);
+        const auto same = std::ranges::find(sources, text, &std::pair<std::string, std::string>::first);
+        if (same == sources.end())
+            sources.emplace_back(text, simulated.title);
+        else
+            same->second += ", " + simulated.title;
     }
     add_table(section, {ranking_table(missions), "Missions by final state of charge", "tab:missions"},
               {.sortable = true});
@@ -84,12 +90,44 @@ Section schedule_section(Missions missions, const PublishedFigures& published) {
         "are of 1000 flights drawn from the uncertainty of the models and of [uncertainty], 200 for a policy that "
         "plans in flight: 95 % intervals of at most 3 or 7 percent points; \"-\": no uncertainty is known.",
         "soft");
-    section.html += list_html(sources, "soft") + list_html(failures, "warning");
+    std::vector<std::string> drawn;
+    drawn.reserve(sources.size());
+    for (const auto& [text, titles] : sources) drawn.push_back(fmt::format("{}: {}", titles, text));
+    section.html += list_html(failures, "warning") + list_html(drawn, "soft");
+    return section;
+}
+
+/// A grid of buttons for each flight, with the curve of the one that is selected.
+Section quality_section(Missions missions) {
+    Section section{"quality-of-service", "Quality of service"};
+    std::size_t number = 0;
+    for (const auto* simulated : first_of_each(missions, map_key)) {
+        const auto& setup = simulated->mission.setup;
+        const auto grid = qos_grid(setup);
+        if (!grid) continue;
+        std::vector<std::size_t> same;
+        for (std::size_t i = 0; i < missions.size(); ++i)
+            if (map_key(missions[i].mission.setup) == map_key(setup)) same.push_back(i);
+        const auto id = fmt::format("quality-{}", ++number);
+        section.html += heading(setup.mechanical ? "Flight and software" : "Software alone");
+        section.html += fmt::format(
+            "<div class=\"quality\"><div class=\"card drawn\" data-draw=\"grid\" data-from=\"{0}\"></div>\n<div "
+            "class=\"card drawn\" data-draw=\"cell\" data-from=\"{0}\" aria-live=\"polite\"></div></div>\n{1}",
+            id, data_block(id, quality_data(*grid, same, setup.reserve_soc_percent)));
+    }
+    if (section.html.empty()) return section;
+    section.html =
+        paragraph(
+            "Charge at landing with one setting of the software throughout, and how probably it keeps the "
+            "reserve (200 drawn flights a cell). Orange lands below the reserve, blue above. Select a cell to "
+            "see its flight.",
+            "soft") +
+        section.html;
     return section;
 }
 
 Section map_section(Missions missions, const PublishedFigures& published) {
-    Section section{"quality-of-service", "Quality of service"};
+    Section section{"quality-figures", "Quality of service, as the paper's Fig. 4"};
     for (const auto* simulated : first_of_each(missions, map_key)) {
         const auto& mission = simulated->mission.setup;
         const auto map = qos_map(mission);
@@ -169,6 +207,10 @@ std::vector<Section> mission_sections(Missions missions, const PublishedFigures&
                           map_section(missions, published), plan_section(missions)}) {
         if (!section.figures.empty()) sections.push_back(section);
     }
+    for (auto& section : sections) section.place = SectionPlace::folded;
+    if (auto quality = quality_section(missions); !quality.html.empty())
+        sections.insert(sections.begin(), std::move(quality));
+    if (missions.size() > 1) sections.insert(sections.begin(), curves_section(missions));
     return sections;
 }
 

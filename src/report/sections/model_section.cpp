@@ -9,6 +9,8 @@
 #include "report/figures/flight_figures.h"
 #include "report/sections/sections.h"
 
+#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -46,10 +48,11 @@ Section validation_section(const std::vector<mechanical::ValidatedFlight>& fligh
         "durations. Baselines: the mean power of each phase and, where airspeed was measured, power by airspeed and climb "
         "(physical).");
     add_figure(section, validation_figure(flights, "validation-errors"));
-    add_table(
-        section,
-        {cli::scores_table(flights), "Errors of the models on flights that they were not fitted to", "tab:validation"},
-        {.sortable = true});
+    auto scores = cli::scores_table(flights);
+    std::ranges::stable_partition(scores.rows, [](const auto& row) { return row.front() == "total"; });
+    add_table(section,
+              {std::move(scores), "Errors of the models on flights that they were not fitted to", "tab:validation"},
+              {.sortable = true});
     constexpr std::size_t few = 20;
     if (flights.size() < few)
         section.html +=

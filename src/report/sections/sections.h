@@ -11,6 +11,7 @@
 #include "report/batch_content.h"
 #include "report/figure.h"
 #include "report/html.h"
+#include "report/outline.h"
 #include "report/sections/simulated_mission.h"
 
 #include <cstddef>
@@ -85,15 +86,44 @@ Section replay_section(std::span<const mission::Replay> replays);
 
 /// Contents of the first section.
 struct PageSummary {
-    std::vector<SimulatedMission> missions;
+    std::vector<SimulatedMission> missions;  ///< the worst first
     std::vector<MissionAssessment> answers;  ///< one a mission
     std::vector<mechanical::ValidatedFlight> validated;
+    std::optional<mechanical::MechanicalModel> model;  ///< the batch's
+    std::optional<battery::BatteryIdentification> pack;
     std::vector<std::string> warnings;  ///< of the fits
     std::vector<std::string> notes;     ///< missing parts of the page, with reasons
 };
 
-/// A card for each mission; a line for each aircraft and the validated model; warnings. `flights` may be empty.
+/// The first screen: headline, a card for each mission of which one is shown, their table, and the aircraft.
+/// `flights` may be empty.
 Section summary_section(const PageSummary& answers, std::span<const ReportFlight> flights);
+
+/// Warnings of the fits, and missing contents; std::nullopt without any.
+std::optional<Section> notes_section(const PageSummary& answers);
+
+/// The missions' states of charge in one drawing.
+Section curves_section(std::span<const SimulatedMission> missions);
+
+/// Power by phase, energy of the cruise, error of predictions, pack, notes: HTML; empty without flights.
+std::string aircraft_panel(const PageSummary& answers, std::span<const ReportFlight> flights);
+
+/// "20 Faulty: 3 flights, 3 to 10 July 2020; 9 missions".
+std::string page_title(std::span<const ReportFlight> flights, std::size_t missions);
+
+/// "3 July 2020" (UTC).
+std::string day_text(double clock_s);
+
+/// "3 July 2020, 10:17", or the flight's name where its date is unknown.
+std::string flight_title(const ReportFlight& flight);
+
+/// "flight-20_07_03__12_17_45": unique names of files and anchors.
+std::vector<std::string> flight_ids(std::span<const ReportFlight> flights);
+
+/// A map for each flight with positions, on one scale: phases, charge every 5 minutes, and outlines below them.
+/// `battery` may be null; std::nullopt without positions.
+std::optional<Section> tracks_section(const BatchContent& batch, const ReportBattery* battery,
+                                      const std::vector<Outline>& outlines = {});
 
 /// "20 Faulty: 3 flights, 1 h 6 min in the air, 26.1 Wh" of each aircraft, with SYNTHETIC.
 std::vector<std::string> aircraft_lines(std::span<const ReportFlight> flights);
@@ -101,8 +131,9 @@ std::vector<std::string> aircraft_lines(std::span<const ReportFlight> flights);
 /// Whether any of the accepted flights is synthetic.
 bool any_synthetic(std::span<const ReportFlight> flights);
 
-/// Mean errors of the models by leave-one-out, the best first; empty without any.
-std::string prediction_line(std::span<const mechanical::ValidatedFlight> validated, bool synthetic);
+/// Mean error of the energy by leave-one-out: of the physical model, which knows the airspeed, and of the model that
+/// missions use without it; empty without validation.
+std::string prediction_line(const PageSummary& answers, bool synthetic);
 
 /// `html` as zlib's deflate (RFC 1950) in base64 (RFC 4648), which the page opens by DecompressionStream("deflate").
 std::string compressed_block(std::string_view html);

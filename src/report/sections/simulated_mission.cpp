@@ -1,20 +1,18 @@
 #include "report/sections/simulated_mission.h"
 
-#include "base/duration_text.h"
 #include "base/error.h"
 #include "base/text.h"
-#include "base/units.h"
 #include "cli/output/mission_output.h"
 #include "mission/plan.h"
 #include "mission/prepared_mission.h"
 #include "mission/sampled_flights.h"
-#include "report/figure.h"
 
-#include <cctype>
+#include <algorithm>
 #include <map>
+#include <numeric>
+#include <tuple>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace flightwatt::mission {
 
@@ -81,96 +79,12 @@ auto try_compute(const Compute& compute, std::string* reason = nullptr) -> std::
     return std::nullopt;
 }
 
-std::string describe_reach(const mission::Reach& reach) {
-    if (reach.unit == mission::ReachUnit::circles) return fmt::format("{:.0f} circles", reach.limit.value);
-    if (reach.unit == mission::ReachUnit::return_m)
-        return fmt::format("{:.2f} km out and back", reach.limit.value / 1000.0);
-    return duration_text(reach.limit.value) + " of cruise";
-}
-
-std::string modelled_landing(const mission::MissionSummary& summary) {
-    if (!summary.final_soc_percent) return "The battery cannot deliver the power";
-    const auto before_end = [&](double time_s) {
-        return fmt::format("{} in the air, {} before the end", duration_text(time_s),
-                           duration_text(summary.duration_s - time_s));
-    };
-    const double cut_off_s = summary.cut_off_at_s.value_or(summary.duration_s);
-    if (summary.cut_off_at_s && cut_off_s <= summary.depleted_at_s.value_or(summary.duration_s))
-        return fmt::format("Is cut off after {}", before_end(cut_off_s));
-    if (summary.depleted_at_s) return fmt::format("Runs empty after {}", before_end(*summary.depleted_at_s));
-    return fmt::format("Lands with {:.1f} %", *summary.final_soc_percent);
-}
-
-std::string landing_line(const mission::MissionSummary& summary) {
-    const auto landing = modelled_landing(summary);
-    return summary.by_flights ? fmt::format("{} ({})", landing, describe(*summary.by_flights, 1)) : landing;
-}
-
-std::string reserve_line(const mission::MissionSummary& summary) {
-    const bool has_reserve = summary.reserve_soc_percent > 0.0;  // else the battery has to last
-    const auto reserve = fmt::format("its reserve of {:.3g} %", summary.reserve_soc_percent);
-    const auto kept = has_reserve ? "Keeps " + reserve : "The battery lasts";
-    const auto missed = has_reserve ? "Does not keep " + reserve : "The battery does not last";
-    if (!summary.samples)
-        return (summary.keeps_reserve ? kept : missed) + " as modelled; no uncertainty is known, and so no probability";
-    const auto& samples = *summary.samples;
-    const auto& below = samples.probability_below_reserve_95;
-    return fmt::format("{} with a probability of {:.1f} % ({} flights drawn: 95 % interval {:.1f} to {:.1f})", kept,
-                       units::percentage(1.0 - samples.probability_below_reserve, 1.0), samples.samples,
-                       units::percentage(1.0 - below.high, 1.0), units::percentage(1.0 - below.low, 1.0));
-}
-
-std::string reach_line(const SimulatedMission& simulated, const MissionAssessment& answer) {
-    if (!answer.reach) return "Reach unknown: " + answer.no_reach_reason;
-    auto line = fmt::format("At most {}", describe_reach(*answer.reach));
-    if (answer.reach->unit == mission::ReachUnit::cruise_s)
-        line += fmt::format(" (now {})", duration_text(simulated.mission.setup.duration_s[flight::Phase::cruise]));
-    line += " as modelled";
-    if (answer.reach_at_95_percent)
-        line += fmt::format(", {} with a probability of {:.0f} %", describe_reach(*answer.reach_at_95_percent),
-                            units::percentage(reach_probability, 1.0));
-    if (answer.is_unplanned) line += ", with the minimum of software";
-    return line;
-}
-
-std::string utility_line(const SimulatedMission& simulated) {
-    const auto& summary = simulated.simulation.summary;
-    auto line = fmt::format("Utility {:.4g}", *summary.utility);
-    if (simulated.planned && simulated.planned->feasible)
-        line += fmt::format(", of at most {:.4g} for any schedule", simulated.planned->bound);
-    return line;
-}
-
-/// Whether a shorter flight keeps the reserve.
-bool shorter_helps(const SimulatedMission& simulated, const mission::Reach& reach) {
-    return reach.unit != mission::ReachUnit::cruise_s ||
-           reach.limit.value < simulated.mission.setup.duration_s[flight::Phase::cruise];
-}
-
-/// Ways to keep the reserve; empty without any.
-std::string remedy_line(const SimulatedMission& simulated, const MissionAssessment& answer) {
-    const auto& reach = answer.reach_at_95_percent ? answer.reach_at_95_percent : answer.reach;
-    const double capacity_ah = simulated.mission.setup.battery.capacity_ah;
-    std::vector<std::string> ways;
-    const bool shorter = reach && shorter_helps(simulated, *reach);
-    // A plan does not reach further than the minimum of software.
-    const bool is_in_reach = answer.reach_at_95_percent && (!shorter || reach->unit != mission::ReachUnit::cruise_s);
-    if (simulated.planned && is_in_reach) ways.emplace_back("plan it with --probability 0.95");
-    if (shorter) ways.push_back(fmt::format("fly {} at most", describe_reach(*reach)));
-    if (answer.capacity_ah)
-        ways.push_back(fmt::format("use a battery of {:.2f} Ah (now {:.4g})", *answer.capacity_ah, capacity_ah));
-    if (ways.empty()) return "";
-    const auto aim = answer.reach_at_95_percent
-                         ? fmt::format("For a probability of {:.0f} %", units::percentage(reach_probability, 1.0))
-                         : std::string("To keep it");
-    return fmt::format("{}: {}", aim, fmt::join(ways, ", or "));
-}
-
 /// With the mission's capacity.
-ReserveStatus modelled_status(const mission::MissionSummary& summary) {
-    if (!summary.keeps_reserve) return ReserveStatus::fails;
+Outcome modelled_outcome(const mission::MissionSummary& summary) {
+    if (!summary.feasible) return Outcome::fails;
+    if (!summary.keeps_reserve) return Outcome::misses;
     const bool is_likely = !summary.samples || summary.samples->probability_below_reserve <= 1.0 - reach_probability;
-    return is_likely ? ReserveStatus::keeps : ReserveStatus::may_keep;
+    return is_likely ? Outcome::keeps : Outcome::may_miss;
 }
 
 }  // namespace
@@ -204,7 +118,7 @@ MissionAssessment assess_mission(const SimulatedMission& simulated, const missio
     answer.reach = try_compute([&] { return find_reach(mission_of); }, &answer.no_reach_reason);
     if (answer.reach && simulated.simulation.summary.samples)
         answer.reach_at_95_percent = try_compute([&] { return find_reach(mission_of, reach_probability); });
-    if (modelled_status(simulated.simulation.summary) == ReserveStatus::keeps) return answer;
+    if (modelled_outcome(simulated.simulation.summary) == Outcome::keeps) return answer;
     const auto probability = answer.reach_at_95_percent ? std::optional(reach_probability) : std::nullopt;
     const auto capacity_ah = try_compute([&] { return min_capacity_ah(*mission, probability); }).value_or(std::nullopt);
     // It is that of the minimum of software, which the present pack may suffice for.
@@ -212,26 +126,24 @@ MissionAssessment assess_mission(const SimulatedMission& simulated, const missio
     return answer;
 }
 
-ReserveStatus reserve_status(const SimulatedMission& simulated) {
+Outcome outcome_of(const SimulatedMission& simulated) {
     const auto& summary = simulated.simulation.summary;
-    const auto status = modelled_status(summary);
+    const auto outcome = modelled_outcome(summary);
     const bool keeps_by_flights = !summary.by_flights || summary.by_flights->keeps_reserve;
-    return status == ReserveStatus::keeps && !keeps_by_flights ? ReserveStatus::may_keep : status;
+    return outcome == Outcome::keeps && !keeps_by_flights ? Outcome::may_miss : outcome;
 }
 
-std::vector<std::string> card_lines(const SimulatedMission& simulated, const MissionAssessment& answer) {
-    std::vector<std::string> lines{landing_line(simulated.simulation.summary),
-                                   reserve_line(simulated.simulation.summary), reach_line(simulated, answer)};
-    if (auto warning = capacity_warning(simulated.mission.setup.battery); !warning.empty())
-        lines.insert(lines.begin() + 1, "Warning: " + warning);
-    if (simulated.simulation.summary.utility) lines.push_back(utility_line(simulated));
-    if (const auto& model = simulated.mission.setup.power_model) {
-        lines.push_back(mission::describe(*model));
-        lines.back().front() = static_cast<char>(std::toupper(static_cast<unsigned char>(lines.back().front())));
-    }
-    if (modelled_status(simulated.simulation.summary) == ReserveStatus::keeps) return lines;
-    if (auto remedy = remedy_line(simulated, answer); !remedy.empty()) lines.push_back(std::move(remedy));
-    return lines;
+std::vector<std::size_t> worst_first(std::span<const SimulatedMission> missions) {
+    const auto rank = [&](std::size_t i) {
+        const auto& summary = missions[i].simulation.summary;
+        return std::tuple(-static_cast<int>(outcome_of(missions[i])),
+                          summary.samples ? -summary.samples->probability_below_reserve : 0.0,
+                          summary.final_soc_percent.value_or(-1.0));
+    };
+    std::vector<std::size_t> order(missions.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, {}, rank);
+    return order;
 }
 
 Fields<MissionOutput> record_fields(const MissionOutput*) {

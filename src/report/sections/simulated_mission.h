@@ -5,7 +5,9 @@
 #include "record/record.h"
 #include "report/html.h"
 
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,17 +47,44 @@ struct MissionAssessment {
 /// `mission_of` reads the mission's file.
 MissionAssessment assess_mission(const SimulatedMission& simulated, const mission::MissionLoader& mission_of);
 
-/// Whether a mission keeps its reserve.
-enum class ReserveStatus {
-    keeps,     ///< with a probability of 95 % or more, or as modelled without a known one
-    may_keep,  ///< as modelled, but with less probability, or not with the capacity by the pack's flights
-    fails
+/// How a mission ends, the best first.
+enum class Outcome {
+    keeps,     ///< the reserve, with a probability of 95 % or more, or as modelled without a known one
+    may_miss,  ///< as modelled it keeps it, but with less probability, or not with the capacity by the pack's flights
+    misses,    ///< lands below the reserve as modelled
+    fails,     ///< runs empty, is cut off, or asks for more power than the battery can deliver
 };
 
-ReserveStatus reserve_status(const SimulatedMission& simulated);
+Outcome outcome_of(const SimulatedMission& simulated);
 
-/// Lines of a card: landing, reserve, reach, utility, power model, and ways to keep a reserve that is not kept.
+/// A mission for readers.
+struct MissionCard {
+    Outcome outcome = Outcome::keeps;
+    std::string words;                    ///< of the outcome: "below reserve"
+    std::string lead;                     ///< "Lands with 16.2 % of its charge"
+    std::string runs;                     ///< its software: "detection 10 fps, encryption 240 key bits, all the time"
+    std::string landing;                  ///< charge: "16.2 %"
+    std::string probability;              ///< of keeping the reserve: "12 %"; "unknown" without uncertainty
+    std::string reach_name;               ///< "Longest cruise at 95 %"
+    std::string reach;                    ///< "19 min 22 s"
+    std::string planned;                  ///< "22 min"; empty for a path
+    std::string help;                     ///< what keeps the reserve, or what is spare; may be empty
+    std::vector<std::string> notes = {};  ///< warnings, utility, power model
+};
+
+MissionCard mission_card(const SimulatedMission& simulated, const MissionAssessment& answer);
+
+/// "keeps the reserve of 20 %", "the battery lasts".
+std::string describe_aim(double reserve_soc_percent);
+
+/// The card as sentences.
 std::vector<std::string> card_lines(const SimulatedMission& simulated, const MissionAssessment& answer);
+
+/// "12 %", "under 1 %", "over 99 %".
+std::string probability_text(double probability);
+
+/// Indices of the missions, the worst outcome first, then the least probable, then the lowest charge at landing.
+std::vector<std::size_t> worst_first(std::span<const SimulatedMission> missions);
 
 /// JSON of a mission.
 struct MissionOutput {

@@ -1,12 +1,9 @@
-#include "base/duration_text.h"
-#include "flight/flight_identity.h"
-#include "report/batch_content.h"
+#include "report/figures/mission_figures.h"
+#include "report/sections/page_data.h"
 #include "report/sections/sections.h"
 
 #include <algorithm>
 #include <array>
-#include <map>
-#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,132 +11,209 @@
 namespace flightwatt::report {
 namespace {
 
-/// Style and text of a status, for missions with and without a reserve.
-struct StatusText {
+/// Style, shape and words of a outcome; its words in the headline follow a number of missions.
+struct OutcomeLook {
     const char* css_class;
-    const char* of_reserve;
-    const char* of_battery;
+    const char* shape;  ///< of an SVG of 16 by 16
+    const char* of_one;
+    const char* of_several;
 };
 
-/// In the order of ReserveStatus.
-constexpr std::array<StatusText, 3> status_texts{{{"good", "keeps its reserve", "the battery lasts"},
-                                                  {"unsure", "may not keep its reserve", "the battery may not last"},
-                                                  {"bad", "does not keep its reserve", "the battery does not last"}}};
+constexpr auto triangle = "<path d=\"M8 1 15.5 15H.5z\"/><path class=\"sign\" d=\"M8 5.5v4.5M8 11.8v1.4\"/>";
 
-std::string card_html(const SimulatedMission& simulated, const MissionAssessment& answer) {
-    const auto& text = status_texts.at(static_cast<std::size_t>(reserve_status(simulated)));
-    const bool has_reserve = simulated.simulation.summary.reserve_soc_percent > 0.0;
-    auto html = fmt::format("<article class=\"card {}\">\n<h3>{}</h3>\n<p class=\"status\">{}</p>\n", text.css_class,
-                            html_escaped(simulated.title), has_reserve ? text.of_reserve : text.of_battery);
-    const auto lines = card_lines(simulated, answer);
-    html += fmt::format("<p class=\"lead\">{}</p>\n", html_escaped(lines.front()));
-    for (std::size_t i = 1; i < lines.size(); ++i)
-        html += paragraph(lines[i], lines[i].starts_with("Warning: ") ? "warning" : "");
-    return html + "</article>\n";
+/// In the order of Outcome.
+constexpr std::array<OutcomeLook, 4> looks{
+    {{"keeps", "<circle cx=\"8\" cy=\"8\" r=\"7.5\"/><path class=\"sign\" d=\"m4.5 8.3 2.4 2.4 4.6-5\"/>",
+      "lands as planned", "land as planned"},
+     {"may-miss", triangle, "may miss the reserve", "may miss the reserve"},
+     {"misses", triangle, "lands below the reserve", "land below the reserve"},
+     {"fails",
+      "<rect x=\".5\" y=\".5\" width=\"15\" height=\"15\" rx=\"3\"/><path class=\"sign\" d=\"m5 5 6 6m0-6-6 6\"/>",
+      "does not reach its end", "do not reach their end"}}};
+
+const OutcomeLook& look_of(Outcome outcome) { return looks.at(static_cast<std::size_t>(outcome)); }
+
+std::string mark_html(Outcome outcome) {
+    return fmt::format(
+        "<svg class=\"mark\" viewBox=\"0 0 16 16\" width=\"16\" height=\"16\" aria-hidden=\"true\">{}</svg>",
+        look_of(outcome).shape);
 }
 
-std::string plural(std::size_t number, std::string_view word) {
-    return fmt::format("{} {}{}", number, word, number == 1 ? "" : "s");
+std::string number_word(std::size_t number) {
+    constexpr std::array words{"no",    "one",   "two",  "three", "four",   "five",  "six",
+                               "seven", "eight", "nine", "ten",   "eleven", "twelve"};
+    return number < words.size() ? words.at(number) : fmt::format("{}", number);
 }
 
-std::string describe(const std::string& aircraft, const std::vector<FlightSummary>& flights) {
-    double in_air_s = 0.0;
-    double energy_wh = 0.0;
-    std::size_t without_energy = 0;
-    std::set<std::string> days;
-    for (const auto& flight : flights) {
-        in_air_s += flight.in_air_s;
-        energy_wh += flight.energy_wh.value_or(0.0);
-        if (!flight.energy_wh) ++without_energy;
-        if (!flight.date.empty()) days.insert(flight.date.substr(0, flight.date.find(' ')));
+/// The missions, the worst first, with their cards.
+struct RankedCards {
+    std::span<const SimulatedMission> missions;
+    std::vector<MissionCard> cards;
+};
+
+RankedCards ranked_cards(const PageSummary& answers) {
+    RankedCards ranked{answers.missions, {}};
+    for (std::size_t i = 0; i < answers.missions.size(); ++i)
+        ranked.cards.push_back(mission_card(answers.missions[i], answers.answers[i]));
+    return ranked;
+}
+
+/// "One of nine missions runs empty, two land below the reserve".
+std::string headline_of(const RankedCards& ranked, std::span<const ReportFlight> flights) {
+    const auto& cards = ranked.cards;
+    if (cards.empty()) {
+        const auto lines = aircraft_lines(flights);
+        return lines.empty() ? "No flights"
+                             : fmt::format("{} and no mission", lines.front().substr(0, lines.front().find(" \u00b7")));
     }
-    auto text = fmt::format("{}: {}", aircraft, plural(flights.size(), "flight"));
-    if (days.size() == 1) text += " on " + *days.begin();
-    if (days.size() > 1) text += fmt::format(" from {} to {}", *days.begin(), *days.rbegin());
-    text += ", " + duration_text(in_air_s) + " in the air";
-    if (without_energy < flights.size()) text += fmt::format(", {:.1f} Wh", energy_wh);
-    if (without_energy > 0) text += fmt::format(" ({} without measured power)", without_energy);
-    return text;
+    if (cards.size() == 1) return fmt::format("{}: {}", ranked.missions.front().title, cards.front().lead);
+    if (cards.front().outcome == Outcome::keeps)
+        return fmt::format("All {} missions land as planned", number_word(cards.size()));
+    std::vector<std::string> parts;
+    for (const auto outcome : {Outcome::fails, Outcome::misses, Outcome::may_miss}) {
+        const auto is_this = [&](const MissionCard& card) { return card.outcome == outcome; };
+        const auto count = static_cast<std::size_t>(std::ranges::count_if(cards, is_this));
+        if (count == 0 || (outcome == Outcome::may_miss && !parts.empty())) continue;
+        const bool run_empty = std::ranges::all_of(
+            cards, [&](const MissionCard& card) { return !is_this(card) || card.words == "runs empty"; });
+        const auto& look = look_of(outcome);
+        const std::string words =
+            run_empty ? (count == 1 ? "runs empty" : "run empty") : (count == 1 ? look.of_one : look.of_several);
+        const auto of_all = parts.empty() ? fmt::format(" of {} missions", number_word(cards.size())) : "";
+        parts.push_back(fmt::format("{}{} {}", number_word(count), of_all, words));
+    }
+    return capitalized(fmt::format("{}", fmt::join(parts, ", ")));
 }
 
-/// "2 flights of 6 (3 warnings); 1 log rejected".
-std::string warned_line(std::span<const ReportFlight> flights) {
-    std::size_t warned = 0;
-    std::size_t warnings = 0;
-    std::size_t rejected = 0;
-    for (const auto& flight : flights) {
-        if (!flight.rejected.empty()) ++rejected;
-        if (!flight.rejected.empty() || flight.warnings.empty()) continue;
-        ++warned;
-        warnings += flight.warnings.size();
+/// The best mission that keeps its reserve on the same flight and pack.
+std::string better_schedule(const RankedCards& ranked, std::size_t of) {
+    if (ranked.cards[of].outcome == Outcome::keeps) return "";
+    const auto& setup = ranked.missions[of].mission.setup;
+    for (std::size_t i = 0; i < ranked.cards.size(); ++i) {
+        const auto& other = ranked.missions[i];
+        const bool is_same = other.mission.setup.reserve_soc_percent == setup.reserve_soc_percent &&
+                             map_key(other.mission.setup) == map_key(setup);
+        if (ranked.cards[i].outcome == Outcome::keeps && is_same && other.simulation.summary.samples)
+            return fmt::format("\u201c{}\u201d keeps the reserve in {} of flights", other.title,
+                               ranked.cards[i].probability);
     }
-    std::string text;
-    if (warned > 0)
-        text = fmt::format("{} of {} ({})", plural(warned, "flight"), flights.size(), plural(warnings, "warning"));
-    if (rejected > 0) text += fmt::format("{}{} rejected", text.empty() ? "" : "; ", plural(rejected, "log"));
-    return text;
+    return "";
+}
+
+std::string number_row(std::string_view name, std::string_view note, std::string_view value) {
+    return fmt::format("<div><dt>{}{}</dt><dd>{}</dd></div>\n", html_escaped(name),
+                       note.empty() ? "" : fmt::format(" <small>{}</small>", html_escaped(note)), html_escaped(value));
+}
+
+std::string help_html(const RankedCards& ranked, std::size_t i) {
+    const auto& card = ranked.cards[i];
+    std::vector<std::string> ways;
+    if (!card.help.empty()) ways.push_back(card.help);
+    if (auto better = better_schedule(ranked, i); !better.empty()) ways.push_back(std::move(better));
+    std::string html;
+    if (!ways.empty())
+        html = fmt::format("<p class=\"help\">{}{}.</p>\n",
+                           card.outcome == Outcome::keeps ? "" : "<b>What would help:</b> ",
+                           html_escaped(fmt::format("{}", fmt::join(ways, ". "))));
+    if (!card.notes.empty())
+        html +=
+            fmt::format("<p class=\"soft\">{}.</p>\n", html_escaped(fmt::format("{}", fmt::join(card.notes, ". "))));
+    return html;
+}
+
+std::string card_html(const RankedCards& ranked, std::size_t i) {
+    const auto& card = ranked.cards[i];
+    const auto& mission = ranked.missions[i];
+    const double reserve_percent = mission.simulation.summary.reserve_soc_percent;
+    const auto count = number_word(ranked.cards.size());
+    const auto rank = ranked.cards.size() == 1 ? capitalized(card.words)
+                      : i == 0                 ? fmt::format("Worst of {}", count)
+                                               : fmt::format("{} of {}, worst first", i + 1, count);
+    auto html = fmt::format(
+        "<article class=\"card mission {}\" id=\"mission-{}\"{}>\n<div>\n<p class=\"outcome\">{}{}</p>\n<h2>{}</h2>\n"
+        "<p><b>{}</b><br><span class=\"soft\">{}</span></p>\n<dl class=\"numbers\">\n",
+        look_of(card.outcome).css_class, i, i == 0 ? "" : " hidden", mark_html(card.outcome), rank,
+        html_escaped(card.lead), html_escaped(mission.title), html_escaped(card.runs));
+    html += number_row("Charge at landing", "", card.landing);
+    html += number_row(capitalized(describe_aim(reserve_percent)), "", card.probability);
+    html +=
+        number_row(card.reach_name, card.planned.empty() ? "" : fmt::format("(planned: {})", card.planned), card.reach);
+    return html + fmt::format(
+                      "</dl>\n</div>\n<div class=\"drawn\" data-draw=\"mission\" data-mission=\"{}\"></div>\n"
+                      "<div class=\"below\">{}</div>\n</article>\n",
+                      i, help_html(ranked, i));
+}
+
+std::string table_row(const RankedCards& ranked, std::size_t i) {
+    const auto& card = ranked.cards[i];
+    const auto cell = [](std::string_view head, const std::string& html, std::string_view css_class = "") {
+        return fmt::format("<td data-label=\"{}\"{}>{}</td>", head,
+                           css_class.empty() ? "" : fmt::format(" class=\"{}\"", css_class), html);
+    };
+    auto html = fmt::format(
+        "<tr class=\"{}\"><th scope=\"row\">{}<button type=\"button\" data-select=\"{}\" aria-pressed=\"{}\">"
+        "{}</button><small>{}</small></th>",
+        look_of(card.outcome).css_class, mark_html(card.outcome), i, i == 0, html_escaped(ranked.missions[i].title),
+        html_escaped(card.runs));
+    html +=
+        cell("State of charge", fmt::format("<div class=\"drawn\" data-draw=\"spark\" data-mission=\"{}\"></div>", i));
+    html += cell("Charge at landing", fmt::format("<b>{}</b><small>{}</small>", card.landing, card.words), "state");
+    html += cell("Keeps the reserve", fmt::format("<b>{}</b>", card.probability), "state");
+    html += cell(card.reach_name, fmt::format("<b>{}</b>", html_escaped(card.reach)));
+    return html + cell("To keep the reserve", html_escaped(card.help), "help") + "</tr>\n";
+}
+
+std::string missions_table(const RankedCards& ranked) {
+    std::string html = "<table class=\"card missions\" aria-label=\"Missions, worst first\">\n<thead><tr>";
+    for (const auto* head : {"Mission, worst first", "State of charge", "Charge at landing", "Keeps the reserve",
+                             "Reach with 95&nbsp;%", "To keep the reserve in 95 of 100 flights"})
+        html += fmt::format("<th scope=\"col\">{}</th>", head);
+    html += "</tr></thead>\n<tbody>\n";
+    for (std::size_t i = 0; i < ranked.cards.size(); ++i) html += table_row(ranked, i);
+    return html + "</tbody></table>\n";
 }
 
 }  // namespace
 
-std::vector<std::string> aircraft_lines(std::span<const ReportFlight> flights) {
-    std::map<std::string, std::vector<FlightSummary>> of_aircraft;
-    for (const auto& flight : flights)
-        if (flight.rejected.empty())
-            of_aircraft[flight::describe_aircraft(flight.series.aircraft_id, flight.series.aircraft_name)].push_back(
-                summarize_flight(flight));
-    std::vector<std::string> lines;
-    for (const auto& [aircraft, summaries] : of_aircraft) lines.push_back(describe(aircraft, summaries));
-    return lines;
-}
-
-bool any_synthetic(std::span<const ReportFlight> flights) {
-    return std::ranges::any_of(flights, [](const ReportFlight& flight) {
-        return flight.rejected.empty() && flight::is_synthetic(flight.series.aircraft_name);
-    });
-}
-
-std::string prediction_line(std::span<const mechanical::ValidatedFlight> validated, bool synthetic) {
-    std::vector<std::pair<double, std::string>> errors;
-    std::size_t flights = 0;
-    for (const auto& model : mechanical::model_names(validated)) {
-        const auto score = score_of(validated, model, std::nullopt);
-        if (!score || !score->mean_absolute_error_percent) continue;
-        const double error_percent = *score->mean_absolute_error_percent;
-        errors.emplace_back(error_percent, fmt::format("{:.1f} % ({}{})", error_percent, model,
-                                                       model == "physical" ? ", airspeed known" : ""));
-        flights = std::max(flights, score->flights);
-    }
-    if (errors.empty()) return "";
-    std::ranges::stable_sort(errors, {}, &std::pair<double, std::string>::first);
-    std::vector<std::string> texts;
-    texts.reserve(errors.size());
-    for (const auto& [error_percent, text] : errors) texts.push_back(text);
-    return fmt::format(
-        "Mean error of the energy of a flight that is not in the fit: {}; over {}, each left out in turn{}",
-        fmt::join(texts, ", "), plural(flights, "flight"), synthetic ? " (SYNTHETIC flights)" : "");
-}
-
 Section summary_section(const PageSummary& answers, std::span<const ReportFlight> flights) {
-    Section section{"answers", "Answers"};
-    if (!answers.missions.empty()) {
-        section.html += "<div class=\"cards\">\n";
-        for (std::size_t i = 0; i < answers.missions.size(); ++i)
-            section.html += card_html(answers.missions[i], answers.answers[i]);
-        section.html += "</div>\n";
+    const auto ranked = ranked_cards(answers);
+    Section section{"missions", ranked.cards.empty() ? "Aircraft" : "Missions"};
+    section.place = SectionPlace::front;
+    for (const auto& line : aircraft_lines(flights)) {
+        const auto name = line.find(": ");
+        section.html += fmt::format("<p class=\"aircraft\"><b>{}</b> {}</p>\n", html_escaped(line.substr(0, name)),
+                                    html_escaped(line.substr(name + 2)));
     }
-    std::string facts;
-    const auto add = [&](std::string_view name, const std::string& text) {
-        if (!text.empty()) facts += fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, html_escaped(text));
-    };
-    for (const auto& line : aircraft_lines(flights)) add("Aircraft", line);
-    add("Prediction", prediction_line(answers.validated, any_synthetic(flights)));
-    add("Warnings", warned_line(flights));
-    if (!facts.empty()) section.html += "<dl>\n" + facts + "</dl>\n";
-    auto warnings = answers.warnings;
-    warnings.insert(warnings.end(), answers.notes.begin(), answers.notes.end());
-    section.html += list_html(warnings, "warning");
+    section.html += fmt::format("<h1 id=\"missions-title\">{}</h1>\n<div class=\"front\">\n",
+                                html_escaped(headline_of(ranked, flights)));
+    if (!ranked.cards.empty()) {
+        section.html += "<div>\n";
+        for (std::size_t i = 0; i < ranked.cards.size(); ++i) section.html += card_html(ranked, i);
+        if (ranked.cards.size() > 1) section.html += missions_table(ranked);
+        section.html += "</div>\n" + data_block("missions", missions_data(ranked.missions));
+    }
+    if (const auto panel = aircraft_panel(answers, flights); !panel.empty())
+        section.html += "<section class=\"card panel\" aria-label=\"The aircraft\">\n<h2>The aircraft</h2>\n" + panel +
+                        "</section>\n";
+    section.html += "</div>\n";
     return section;
+}
+
+std::optional<Section> notes_section(const PageSummary& answers) {
+    auto lines = answers.warnings;
+    lines.insert(lines.end(), answers.notes.begin(), answers.notes.end());
+    if (lines.empty()) return std::nullopt;
+    Section section{"notes", "Notes on models and contents", list_html(lines)};
+    section.place = SectionPlace::folded;
+    return section;
+}
+
+Section curves_section(std::span<const SimulatedMission> missions) {
+    return {
+        "curves", fmt::format("All {} missions", number_word(missions.size())),
+        "<p class=\"soft\">The colour of a line is its outcome: <b class=\"fails\">does not reach its end</b>, <b "
+        "class=\"misses\">lands below or may miss the reserve</b>, <b class=\"keeps\">keeps the reserve in 95 of 100 "
+        "flights</b>.</p>\n<div class=\"card\"><div class=\"drawn\" data-draw=\"curves\"></div></div>\n"};
 }
 
 }  // namespace flightwatt::report

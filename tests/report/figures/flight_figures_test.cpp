@@ -55,27 +55,8 @@ TEST(FlightFigure, SaysWhereTheLogEnds) {
 
 TEST(FlightFigure, DrawsNoChannelThatTheLogLacks) {
     auto flight = sample_flight();
-    std::erase_if(flight.series.tracks, [](const flight::Track& track) {
-        return track.name == "throttle_percent" || track.name == "east_m";
-    });
+    std::erase_if(flight.series.tracks, [](const flight::Track& track) { return track.name == "throttle_percent"; });
     EXPECT_EQ(flight_figure(flight, nullptr, "f").spec["vconcat"].size(), 2U);
-    EXPECT_FALSE(track_figure(flight, "t"));
-}
-
-TEST(TrackFigure, IsSquareAndBrokenAtGaps) {
-    const auto flight = sample_flight();
-    const auto figure = track_figure(flight, "t");
-    ASSERT_TRUE(figure);
-    const auto& encoding = figure->spec["concat"][1]["encoding"];
-    EXPECT_EQ(encoding["x"], figure->spec["concat"][0]["layer"][0]["encoding"]["x"]) << "two panels of one place";
-    const auto span = [&](const char* channel) {
-        const auto& domain = encoding[channel]["scale"]["domain"];
-        return domain[1].get<double>() - domain[0].get<double>();
-    };
-    EXPECT_NEAR(span("x"), span("y"), 1e-9);
-    const auto rows = figure->spec["data"]["values"].get<std::string>();
-    EXPECT_NE(rows.find(",10,landing"), std::string::npos) << "three phases and seven gaps are ten pieces";
-    EXPECT_EQ(rows.find(",11,landing"), std::string::npos);
 }
 
 }  // namespace

@@ -54,6 +54,35 @@ TEST(MissionSections, HaveEachModelAndSoftwareOnce) {
                 testing::ElementsAre("mission-model-1-curves", "profile-1", "schedules-soc", "quality-1", "quality-2"));
 }
 
+TEST(QosGrid, HasTheProfiledValuesWithTheirCurvesAndProbabilities) {
+    const auto mission = paper_mission("invariant-10fps-240bit");
+    const auto grid = qos_grid(mission.setup);
+    ASSERT_TRUE(grid);
+    EXPECT_EQ(grid->x.nodes, (std::vector<double>{5.8, 10.0, 25.0, 32.0}));
+    ASSERT_EQ(grid->cells.size(), grid->x.nodes.size() * grid->y.nodes.size());
+    const auto row = std::ranges::find(grid->y.nodes, 240.0) - grid->y.nodes.begin();
+    const auto& cell = grid->cells[static_cast<std::size_t>(row) * grid->x.nodes.size() + 1];
+    EXPECT_NEAR(*cell.simulation.summary.final_soc_percent, *simulate(mission).summary.final_soc_percent, 1e-3);
+    EXPECT_GE(cell.simulation.curve.rows.size(), 40U);
+    ASSERT_TRUE(cell.probability);
+    EXPECT_LT(grid->cells.back().probability, *grid->cells.front().probability);
+    EXPECT_FALSE(qos_grid(paper_mission("mechanical-only").setup));
+}
+
+TEST(MissionSections, AnswerFirstAndFoldStatistics) {
+    const auto missions = simulated({"phased", "computing-only"});
+    std::vector<std::string> open;
+    for (const auto& section : mission_sections(missions, {}))
+        if (section.place == SectionPlace::page) open.push_back(section.id);
+    EXPECT_THAT(open, testing::ElementsAre("curves", "quality-of-service"));
+}
+
+TEST(MissionSections, NameWhatIsDrawnOnce) {
+    std::string html;
+    for (const auto& section : mission_sections(simulated({"phased", "adaptive"}), {})) html += section.html;
+    EXPECT_THAT(html, HasSubstr("phased, adaptive: drawn: "));
+}
+
 TEST(MissionSections, ShowWhereTheBatteryCannotDeliver) {
     auto weak = paper_mission("phased");
     weak.setup.battery.resistance_ohm = 1.0;
@@ -96,7 +125,7 @@ TEST(PlanSection, ShowsThePlan) {
     ASSERT_EQ(section.figures.size(), 1U);
     EXPECT_EQ(section.figures[0].id, "plan-1-strip");
     EXPECT_THAT(section.html, HasSubstr("proven bound"));
-    EXPECT_THAT(section.html, HasSubstr("<td class=\"text short\">optimal</td>"));
+    EXPECT_THAT(section.html, HasSubstr("data-label=\"schedule\">optimal</td>"));
 }
 
 TEST(PlanSection, SaysWhereNoPlanKeepsTheReserve) {

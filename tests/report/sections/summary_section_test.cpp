@@ -1,4 +1,5 @@
 #include "flight/load_flight.h"
+#include "helpers/paper_missions.h"
 #include "helpers/test_paths.h"
 #include "report/sections/sections.h"
 
@@ -30,8 +31,8 @@ TEST(SummarySection, NamesSyntheticAircraftSo) {
     rejected.rejected = "it is empty";
     const std::vector<ReportFlight> flights{one, other, rejected};
     EXPECT_THAT(aircraft_lines(flights),
-                ElementsAre(StartsWith("7 Opterra_synthetic (SYNTHETIC): 1 flight on 2020-01-01, 10 min"),
-                            StartsWith("8 Twinstar: 1 flight on ")));
+                ElementsAre(StartsWith("7 Opterra_synthetic (SYNTHETIC): 1 flight, 1 January 2020 \u00b7 10 min"),
+                            StartsWith("8 Twinstar: 1 flight, ")));
     EXPECT_TRUE(any_synthetic(flights));
     EXPECT_FALSE(any_synthetic(std::span(flights).subspan(1)));
 }
@@ -44,27 +45,68 @@ TEST(SummarySection, WarnsOfFlightsAndOfWhatIsMissing) {
     PageSummary answers;
     answers.warnings = {"landing: below 0 W"};
     answers.notes = {"There is no model."};
-    const auto html = summary_section(answers, std::vector<ReportFlight>{flight, rejected}).html;
-    EXPECT_THAT(html, HasSubstr("1 flight of 2 (2 warnings); 1 log rejected"));
-    EXPECT_THAT(html, HasSubstr("<li>landing: below 0 W</li>"));
-    EXPECT_THAT(html, HasSubstr("<li>There is no model.</li>"));
-    EXPECT_THAT(html, Not(HasSubstr("class=\"cards\""))) << "no missions";
+    const std::vector<ReportFlight> flights{flight, rejected};
+    const auto html = summary_section(answers, flights).html;
+    EXPECT_THAT(html, HasSubstr("2 notes on 1 January 2020, 10:00</a>: a gap (and 1 more)"));
+    EXPECT_THAT(html, HasSubstr("1 log</a> rejected"));
+    EXPECT_THAT(html, HasSubstr("<a href=\"#notes\">2 notes</a>"));
+    EXPECT_THAT(html, Not(HasSubstr("<article"))) << "no missions";
+    const auto notes = notes_section(answers);
+    ASSERT_TRUE(notes);
+    EXPECT_THAT(notes->html, HasSubstr("<li>landing: below 0 W</li>\n<li>There is no model.</li>"));
+    EXPECT_FALSE(notes_section({}));
 }
 
-TEST(PredictionLine, HasTheBestModelFirst) {
+PageSummary answers_of(const std::vector<std::string>& names) {
+    std::vector<mission::MissionVariant> missions;
+    for (const auto& name : names) missions.emplace_back(test::paper_mission(name));
+    PageSummary answers;
+    answers.missions = simulate_for_report(missions);
+    answers.answers.resize(names.size());
+    return answers;
+}
+
+TEST(SummarySection, HasAHeadlineACardAndARowAMissionAndAllCurves) {
+    const auto answers = answers_of({"invariant-32fps-448bit", "phased", "computing-only"});
+    const auto html = summary_section(answers, {}).html;
+    EXPECT_THAT(html, HasSubstr(">One of three missions runs empty</h1>"));
+    EXPECT_THAT(html, HasSubstr("<article class=\"card mission fails\" id=\"mission-0\">"));
+    EXPECT_THAT(html, HasSubstr("<article class=\"card mission may-miss\" id=\"mission-1\" hidden>"));
+    EXPECT_THAT(html, HasSubstr("data-select=\"2\" aria-pressed=\"false\">computing-only</button>"));
+    const std::string begin = "<script type=\"application/json\" id=\"data-missions\">";
+    const auto at = html.find(begin) + begin.size();
+    const auto data = VegaJson::parse(html.substr(at, html.find("</script>", at) - at));
+    ASSERT_EQ(data.size(), 3U);
+    EXPECT_EQ(data[1]["title"], "phased");
+    EXPECT_EQ(data[1]["time_s"].size(), data[1]["soc"].size());
+    EXPECT_EQ(data[1]["band"]["low"].size(), data[1]["band"]["high"].size());
+    EXPECT_EQ(data[1]["phases"].size(), 3U);
+    EXPECT_TRUE(data[0]["landing"].is_null()) << "it runs empty";
+}
+
+TEST(PageTitle, HasAircraftDatesAndCounts) {
+    const auto flight = read_sample();
+    EXPECT_EQ(page_title(std::vector{flight, flight}, 2),
+              "7 Opterra_synthetic (SYNTHETIC): 2 flights, 1 January 2020; 2 missions");
+    EXPECT_EQ(page_title({}, 0), "FlightWatt report");
+}
+
+TEST(PredictionLine, HasTheErrorsWithAndWithoutAirspeed) {
     const auto predicted = [](const std::string& model, double wh) {
         mechanical::FlightPrediction prediction{model, {}};
         prediction.phases[flight::Phase::cruise] = mechanical::EnergyEstimate{wh};
         return prediction;
     };
-    mechanical::ValidatedFlight flight{"f", {}, {}, {predicted("fourier", 12.0), predicted("physical", 10.5)}};
+    mechanical::ValidatedFlight flight{"f", {}, {}, {predicted("constant_mean", 12.0), predicted("physical", 10.5)}};
     flight.measured_wh[flight::Phase::cruise] = 10.0;
-    const std::vector flights{flight};
-    const std::string errors =
-        "Mean error of the energy of a flight that is not in the fit: 5.0 % (physical, airspeed known), 20.0 % "
-        "(fourier); over 1 flight, each left out in turn";
-    EXPECT_EQ(prediction_line(flights, true), errors + " (SYNTHETIC flights)");
-    EXPECT_EQ(prediction_line(flights, false), errors);
+    PageSummary answers;
+    answers.validated = {flight};
+    EXPECT_EQ(prediction_line(answers, true),
+              "5 % off in total energy if the airspeed is known, 20 % if not. Each flight is predicted from the others "
+              "(SYNTHETIC flights).");
+    flight.predictions.pop_back();
+    answers.validated = {flight};
+    EXPECT_EQ(prediction_line(answers, false), "20 % off in total energy. Each flight is predicted from the others.");
     EXPECT_EQ(prediction_line({}, false), "");
 }
 

@@ -1,0 +1,64 @@
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "flight/load_flight.h"
+#include "helpers/rejected.h"
+#include "helpers/test_paths.h"
+#include "report/sections/page_data.h"
+#include "report/sections/sections.h"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::report {
+namespace {
+
+using testing::HasSubstr;
+
+BatchContent sample_batch() {
+    ReportFlight flight;
+    flight.series = flight::read_flight(test::source_dir() / "logs/opterra_synthetic_01.data");
+    flight.phases = segment(flight.series);
+    flight.name = flight.series.flight;
+    BatchContent batch;
+    batch.flights = {flight};
+    return batch;
+}
+
+VegaJson data_of(const Section& section) {
+    const std::string begin = "id=\"data-tracks\">";
+    const auto at = section.html.find(begin) + begin.size();
+    return VegaJson::parse(section.html.substr(at, section.html.find("</script>", at) - at));
+}
+
+TEST(TracksSection, DrawsPhasesBrokenAtGapsWithMarksEvery5Minutes) {
+    const auto section = tracks_section(sample_batch(), nullptr);
+    ASSERT_TRUE(section);
+    const auto data = data_of(*section)[0];
+    EXPECT_EQ(data["title"], "1 January 2020, 10:00");
+    EXPECT_EQ(data["lines"].size(), 12U) << "three phases and nine gaps";
+    EXPECT_EQ(data["lines"].front()["phase"], "take-off");
+    ASSERT_EQ(data["marks"].size(), 2U);
+    EXPECT_EQ(data["marks"][1]["text"], "10 min") << "no battery is known";
+    const double half_m = data["half_m"];
+    for (const auto& line : data["lines"])
+        for (const auto& point : line["points"]) EXPECT_LE(std::abs(point[0].get<double>()), half_m + 1.0);
+}
+
+TEST(TracksSection, ShowsTheChargeOfAnIdentifiedBattery) {
+    const auto batch = sample_batch();
+    const auto battery = identify_for_report(batch.flights, {}, 1);
+    if (!battery.identified) GTEST_SKIP() << battery.no_result_reason;
+    const auto data = data_of(*tracks_section(batch, &battery))[0];
+    EXPECT_THAT(data["marks"][1]["text"].get<std::string>(), testing::MatchesRegex("10 min: [0-9]+ %"));
+}
+
+TEST(TracksSection, IsAbsentWithoutPositions) {
+    auto batch = sample_batch();
+    std::erase_if(batch.flights[0].series.tracks, [](const flight::Track& track) { return track.name == "east_m"; });
+    EXPECT_FALSE(tracks_section(batch, nullptr));
+}
+
+}  // namespace
+}  // namespace flightwatt::report
