@@ -31,12 +31,15 @@ struct StageGroup {
 
 const std::vector<StageGroup>& stage_groups() {
     static const std::vector<StageGroup> groups{
-        {"Process flights",
+        {"Logs",
          {{"init", "a folder for an aircraft, with the five commands from logs to a report", stages::init_stage},
+          {"convert", "a binary log of an SD card or a link to text", stages::convert_stage},
           {"batch", "parse, segment and fit every log of a folder, incrementally", stages::batch_stage},
           {"parse", "a Paparazzi log to a table of its power samples (CSV)", stages::parse_stage},
           {"segment", "take-off, cruise and landing of every sortie in a log", stages::segment_stage},
-          {"report", "flights, model and missions as one page, and figures for papers", stages::report_stage}}},
+          {"merge", "join the folders of several batches into one", stages::merge_stage},
+          {"trends", "ageing of aircraft and pack: energy, power and resistance over the dates of flights",
+           stages::trends_stage}}},
         {"Models",
          {{"fit", "several flights to a mechanical power model and Table I", stages::fit_stage},
           {"validate", "leave-one-out: each flight's energy predicted by the others, next to simple baselines",
@@ -46,25 +49,21 @@ const std::vector<StageGroup>& stage_groups() {
           {"diff", "differences of two models, batches or missions, and their significance", stages::diff_stage}}},
         {"Missions",
          {{"new-mission", "a mission file to begin with, every key explained", stages::new_mission_stage},
+          {"path", "the path of a mission leg by leg; of a log as waypoints", stages::path_stage},
           {"simulate", "a mission file to its state of charge over time", stages::simulate_stage},
-          {"compare", "several missions, ranked by final state of charge", stages::compare_stage},
           {"plan", "the schedule of maximum utility that lands a mission with its reserve", stages::plan_stage},
+          {"compare", "several missions, ranked by final state of charge", stages::compare_stage},
           {"replay", "schedules on the power of measured flights: planned, replanned in flight, in hindsight",
            stages::replay_stage},
-          {"path", "the path of a mission leg by leg; of a log as waypoints", stages::path_stage}}},
+          {"report", "flights, model and missions as one page, and figures for papers", stages::report_stage}}},
         {"In the air",
          {{"predict", "the energy to the end of a flight that is in the air", stages::predict_stage},
           {"watch", "the same and more, once a second, from telemetry as it arrives", stages::watch_stage},
           {"play", "a log as live telemetry, over the links that watch listens to", stages::play_stage}}},
-        {"Exchange",
-         {{"convert", "a binary log of an SD card or a link to text", stages::convert_stage},
-          {"export", "flights, models and missions for other programs: maps, plots, autopilots, LaTeX",
+        {"For other programs",
+         {{"export", "flights, models and missions for other programs: maps, plots, autopilots, LaTeX",
            stages::export_stage},
-          {"synthesize", "synthetic Paparazzi logs of flights after a model", stages::synthesize_stage}}},
-        {"Archive",
-         {{"merge", "join the folders of several batches into one", stages::merge_stage},
-          {"trends", "ageing of aircraft and pack: energy, power and resistance over the dates of flights",
-           stages::trends_stage}}}};
+          {"synthesize", "synthetic Paparazzi logs of flights after a model", stages::synthesize_stage}}}};
     return groups;
 }
 

@@ -96,8 +96,7 @@ std::optional<FittedBatch> fit_batch(const cli::StageCall& call, const BatchArgu
         return std::nullopt;
     }
     if (arguments.no_fit) {
-        cli::note(call, fmt::format("nothing was fitted; next: flightwatt fit {} -o MODEL.toml",
-                                    cli::shell_quoted(batch.out.string())));
+        cli::note(call, "nothing was fitted");
         return std::nullopt;
     }
     if (const auto mix = mixed_aircraft_reason(flights); !mix.empty() && !arguments.flights.mix_aircraft)
@@ -268,7 +267,7 @@ void tell_plan(const cli::StageCall& call, const batch::BatchPlan& plan) {
 }
 
 int run_over_logs(const cli::StageCall& call, const BatchArguments& arguments) {
-    if (!call.output) throw UsageError("no folder given: expected -o FOLDER");
+    if (!call.output) throw UsageError("no folder for the results: expected -o DIR");
     batch::BatchOptions options;
     options.out = *call.output;
     options.load = arguments.flights.load;
@@ -304,12 +303,19 @@ It may be ended at any time (Ctrl-C): the same command continues where it stoppe
     stage.examples = {"flightwatt batch logs -o my",
                       "flightwatt batch logs -o my --aircraft 5 --since 2020-07-01 --prune"};
     stage.min_inputs = 0;  // or --files-from
+    stage.next = [](const auto& call) {
+        std::error_code none;
+        if (std::filesystem::exists(std::filesystem::path(*call.output) / "model.toml", none))
+            return "flightwatt battery {} --capacity AH -o pack.toml";
+        return call.has("no-fit") ? "flightwatt fit {} -o MODEL.toml" : "";
+    };
     stage.json_schema = [] {
         auto schema = cli::document_schema<BatchOutput>();
         schema["$defs"][batch::catalogue_name] = batch::catalogue_schema();
         return schema;
     };
     stage.uses_threads = stage.shows_table = true;
+    stage.output_value = "DIR";
     stage.output_help = "the folder of the results";
     BatchArguments arguments;
     arguments.model.kind = cli::ModelKind::best;

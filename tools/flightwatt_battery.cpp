@@ -99,6 +99,7 @@ parameters and flights are shown: how well each flight's voltage is met, and how
 predict it. What was missing from the pack when a flight began is estimated with it. Each flight's own
 resistance shows the pack's state of health. Flights whose current was computed from throttle are refused.)" +
             std::string(cli::several_flights_text)};
+    stage.next = [](const auto&) { return "flightwatt new-mission --model MODEL.toml --battery {} -o mission.toml"; };
     stage.json_schema = cli::document_schema<cli::BatteryOutput>;
     stage.examples = {"flightwatt battery my --capacity 2.2 -o pack.toml",
                       "flightwatt battery my/flights/*.csv --cells 3"};

@@ -195,6 +195,7 @@ int flightwatt::stages::convert_stage(int argc, char** argv) {
 of a serial line, of UDP or of an XBee (also .gz, .bz2, .xz, .zst). With -o NAME.data, NAME.log is
 written next to it if the log has one. All stages also read the binary log itself, with the same
 results.)"};
+    stage.next = [](const auto&) { return "flightwatt segment {}"; };
     stage.json_schema = cli::document_schema<ConvertOutput>;
     stage.max_inputs = 1;
     stage.examples = {"flightwatt convert flight.LOG -o flight.data",

@@ -33,9 +33,9 @@ std::string_view name_of(ComparedKind kind) {
 ComparedKind compared_kind(const std::string& input) {
     std::error_code none;
     if (std::filesystem::is_directory(input, none)) return ComparedKind::batches;
-    const auto file = parse_toml(read_file(input), input);
-    if (file.has("takeoff") && file.is_table("takeoff") && !file.has("battery")) return ComparedKind::models;
-    if (file.has("battery") || file.has("mechanical") || file.has("components")) return ComparedKind::missions;
+    const auto kind = kind_of_text(read_file(input));
+    if (kind == FileKind::mechanical_model) return ComparedKind::models;
+    if (kind == FileKind::mission) return ComparedKind::missions;
     throw InputError({input}, "is neither a mechanical model nor a mission",
                      "give two models, two folders of flightwatt batch, or two missions");
 }

@@ -1,7 +1,7 @@
 // flightwatt export: flights, models and missions in the forms that other programs read.
 
 #include "base/error.h"
-#include "base/toml_reader.h"
+#include "base/input_file.h"
 #include "base/units.h"
 #include "cli/options.h"
 #include "cli/output/battery_output.h"
@@ -97,10 +97,9 @@ ExportKind kind_of(const std::string& file) {
     std::error_code error;
     if (std::filesystem::is_directory(file, error)) return ExportKind::batch;
     if (std::filesystem::path(file).extension() != ".toml") return ExportKind::flight;
-    const auto root = read_toml(file);
-    if (root.has("battery") || root.has("mechanical")) return ExportKind::mission;
-    return root.has("resistance_ohm") || root.has("voltage_v") || root.has("capacity_ah") ? ExportKind::battery
-                                                                                          : ExportKind::model;
+    const auto kind = kind_of_text(read_file(file));
+    if (kind == FileKind::mission) return ExportKind::mission;
+    return kind == FileKind::battery ? ExportKind::battery : ExportKind::model;
 }
 
 std::string format_names() {
@@ -316,6 +315,11 @@ int flightwatt::stages::export_stage(int argc, char** argv) {
 autopilots' estimators (px4, inav, paparazzi, paparazzi-map), from a model and a battery or from a mission. Of models,
 missions and the folder OUT of flightwatt batch: tables (latex). The form is that of FILE's ending
 (.geojson, .kml, .gpx, .csv, .json, .h, .params: px4, .tex) or of --format.)"};
+    stage.next = [](const auto& call) {
+        const auto ending = std::filesystem::path(*call.output).extension();
+        if (ending == ".kml" || ending == ".gpx" || ending == ".geojson") return "open it in QGIS or Google Earth";
+        return ending == ".csv" ? "plotjuggler -d {}" : "";
+    };
     stage.json_schema = cli::document_schema<Exported>;
     stage.examples = {"flightwatt export flight.data -o flight.kml",
                       "flightwatt export model.toml pack.toml --format px4"};

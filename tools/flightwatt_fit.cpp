@@ -98,6 +98,7 @@ int flightwatt::stages::fit_stage(int argc, char** argv) {
 frequency for all flights, averaged over the flights with weights. The model goes to the standard output
 as TOML; with -o it goes to the file and Table I is shown.)" +
             std::string(cli::several_flights_text)};
+    stage.next = [](const auto&) { return "flightwatt new-mission --model {} --battery PACK.toml -o mission.toml"; };
     stage.json_schema = cli::document_schema<cli::FitOutput>;
     stage.examples = {"flightwatt fit my -o model.toml --table table1.tex",
                       "flightwatt fit my --since 2020-07-01 --model-kind physical -o model.toml"};

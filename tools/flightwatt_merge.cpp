@@ -101,7 +101,7 @@ void remove_model(const cli::StageCall& call, const std::filesystem::path& out) 
 }
 
 int merge(const cli::StageCall& call, bool prune) {
-    if (!call.output) throw UsageError("no folder given: expected -o FOLDER");
+    if (!call.output) throw UsageError("no folder for the results: expected -o DIR");
     const std::filesystem::path out = *call.output;
     const std::vector<std::filesystem::path> batches(call.inputs.begin(), call.inputs.end());
     make_directories(out);
@@ -134,7 +134,6 @@ int merge(const cli::StageCall& call, bool prune) {
         cli::print_json(call, output);
     else
         cli::print(text_of(output));
-    cli::note(call, fmt::format("next: flightwatt fit {} -o MODEL.toml", cli::shell_quoted(out.string())));
     return cli::ok;
 }
 
@@ -149,7 +148,9 @@ from and in whatever order they were joined. The logs are not read. Files are ha
 file system has them, else copies. A log that is in several folders is taken once; flights of one
 name get the names NAME, NAME_2, ... by the paths of their logs. Nothing is fitted: flightwatt fit does that.
 A folder that has files of these names, but no OUT/batch.json, is refused.)"};
+    stage.next = [](const auto&) { return "flightwatt fit {} -o MODEL.toml"; };
     stage.json_schema = cli::document_schema<MergeOutput>;
+    stage.output_value = "DIR";
     stage.output_help = "the folder of the results";
     stage.examples = {"flightwatt merge part1 part2 -o all", "flightwatt merge part* -o all --prune"};
     stage.uses_threads = true;

@@ -71,8 +71,6 @@ int write_new_mission(const cli::StageCall& call, const NewMissionArguments& arg
         throw OutputError(fmt::format("{} is there already and stays as it is: give another name", file.string()));
     }
     const auto folder = std::filesystem::absolute(file).parent_path();
-    if (!std::filesystem::is_directory(folder, none))
-        throw OutputError(fmt::format("{}: there is no folder {}: make it first", file.string(), folder.string()));
     mission::NewMission fresh;
     fresh.name = arguments.name.value_or(file.stem().string());
     fresh.mechanical = named_from(folder, mechanical);
@@ -98,8 +96,6 @@ int write_new_mission(const cli::StageCall& call, const NewMissionArguments& arg
         for (const auto& component : fresh.components) output.components.push_back(component.name);
         cli::print_json(call, output);
     } else if (call.output) {
-        cli::note(call, fmt::format("{} is written; next: flightwatt {} {}", file.string(),
-                                    fresh.is_planned ? "plan" : "simulate", cli::shell_quoted(file.string())));
         cli::note_power_model(call, setup_of(read));
     }
     return cli::ok;
@@ -113,6 +109,7 @@ int flightwatt::stages::new_mission_stage(int argc, char** argv) {
         R"(Writes a mission file to begin with, for that aircraft, pack and software. It simulates as it is: each
 component runs at the middle of what was profiled, and 20 % of charge are kept in reserve. It contains every other key of a
 mission as a comment, with its meaning and an example. An existing file is not replaced.)"};
+    stage.next = [](const auto& call) { return call.has("plan") ? "flightwatt plan {}" : "flightwatt simulate {}"; };
     stage.json_schema = cli::document_schema<NewMissionOutput>;
     stage.min_inputs = 0;
     stage.max_inputs = 0;

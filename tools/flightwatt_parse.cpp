@@ -86,6 +86,7 @@ int flightwatt::stages::parse_stage(int argc, char** argv) {
 writes its data on the flight as a series file (CSV): power, voltage, current, charge, energy, throttle,
 altitude, position, speeds, wind, attitude, mode and block, each at the times when it was logged.
 Any stage reads the series file as it reads the log, with the same results.)"};
+    stage.next = [](const auto&) { return "flightwatt segment {}"; };
     stage.json_schema = cli::document_schema<ParseOutput>;
     stage.max_inputs = 1;
     stage.examples = {"flightwatt parse flight.data -o flight.csv",

@@ -207,6 +207,9 @@ Of a plan (flight plan of Paparazzi, .plan of QGroundControl, .waypoints of Ardu
 a mission flies (flight_plan and blocks, or waypoints, in [path]), its length, and what is not flown.
 With --path-from the path of a log's cruise instead, as waypoints for a mission (waypoints = "FILE" in
 [path]): a place every 30 s, with the airspeed on the way there and how long it took.)"};
+    stage.next = [](const auto& call) {
+        return call.inputs.empty() ? "waypoints = \"{}\" in the [path] of a mission" : "flightwatt simulate {in}";
+    };
     stage.json_schema = cli::document_schema<PathOutput, PlanFileOutput, FlightPathOutput>;
     stage.min_inputs = 0;
     stage.max_inputs = 1;

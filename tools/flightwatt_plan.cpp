@@ -80,12 +80,12 @@ std::string describe(const mission::MissionPlan& plan, const mission::MissionSet
     const double gap = plan.plan.utility_bound > 0.0
                            ? units::percentage(plan.plan.utility_bound - utility, plan.plan.utility_bound)
                            : 0.0;
-    const auto bound = plan.plan.bound_is_proven ? fmt::format("at most {:.6g} is possible (gap {:.4f} %)",
+    const auto bound = plan.plan.bound_is_proven ? fmt::format("at most {:.6g} is possible (gap {:.2g} %)",
                                                                plan.plan.utility_bound, std::max(gap, 0.0))
                                                  : "no bound is known, as the battery is charged in flight";
-    auto text = fmt::format("{}: utility {:.6g}, {}; {:.4f} % left, reserve {:.4f} %", mission.name, utility, bound,
-                            *plan.summary.final_soc_percent, mission.reserve_soc_percent);
-    if (plan.sources) text += fmt::format(" and {:.4f} points of margin", plan.margin_percent);
+    auto text = fmt::format("{}: utility {:.6g}, {}; lands with {:.2f} % of its charge, reserve {:.2f} %", mission.name,
+                            utility, bound, *plan.summary.final_soc_percent, mission.reserve_soc_percent);
+    if (plan.sources) text += fmt::format(" and {:.2f} points of margin", plan.margin_percent);
     if (plan.summary.by_flights) text += fmt::format(" ({})", describe(*plan.summary.by_flights));
     return text;
 }
@@ -158,11 +158,11 @@ int print_limit(const cli::StageCall& call, const PlanArguments& arguments, cons
     if (call.json) {
         cli::print_json(call, PlanLimit{&mission, question, &most, arguments.probability});
     } else {
-        const auto kept = arguments.probability ? fmt::format("reserve {:.4f} % and {:.4f} points of margin",
+        const auto kept = arguments.probability ? fmt::format("reserve {:.2f} % and {:.2f} points of margin",
                                                               mission.reserve_soc_percent, most.margin_percent)
-                                                : fmt::format("reserve {:.4f} %", mission.reserve_soc_percent);
-        cli::note(call, fmt::format("{}: then {:.4f} % are left, {}{}", mission.name, most.final_soc_percent, kept,
-                                    beyond(most.limited_by)));
+                                                : fmt::format("reserve {:.2f} %", mission.reserve_soc_percent);
+        cli::note(call, fmt::format("{}: it then lands with {:.2f} % of its charge, {}{}", mission.name,
+                                    most.final_soc_percent, kept, beyond(most.limited_by)));
         cli::note_power_model(call, mission);
         if (most.sources) note_sources(call, arguments, mission, *most.sources);
     }
@@ -203,6 +203,9 @@ of any other. The result is the mission with that schedule, for simulate and com
 one that demands least energy. On a battery whose voltage falls with its charge (model = "thevenin"), or with a
 cut-off voltage, the battery is simulated for each candidate schedule.)"};
     stage.max_inputs = 1;
+    stage.next = [](const auto& call) {
+        return call.has("longest-cruise") || call.has("largest-payload") ? "" : "flightwatt simulate {}";
+    };
     stage.json_schema = cli::document_schema<cli::PlanOutput, PlanLimit>;
     stage.examples = {"flightwatt plan mission.toml -o planned.toml",
                       "flightwatt plan mission.toml --longest-cruise --probability 0.95"};

@@ -118,7 +118,7 @@ int conclude(const cli::StageCall& call, const compute::ProfileOutcome& outcome,
 int profile_components(const cli::StageCall& call, const ProfileArguments& arguments) {
     if (arguments.checks_interpolation) return check_interpolation(call, arguments);
     if (call.inputs.size() != 1) throw UsageError("expected one SPEC");
-    if (!call.output) throw UsageError("no folder given: expected -o DIR");
+    if (!call.output) throw UsageError("no folder for the results: expected -o DIR");
     const auto specification = compute::read_profile_specification(call.inputs.front());
     const SignalWatch signals;
     auto options = options_of(call, signals);
@@ -152,7 +152,13 @@ with it the command is ended when its time is over, whatever it does. Runs that 
 again while their part of SPEC is the same; remove DIR when a program itself has changed.
 
 Samplers: auto, ina3221, rapl, command, recorded.)"};
+    stage.output_value = "DIR";
     stage.output_help = "the folder of the results";
+    stage.next = [](const auto& call) {
+        return call.has("check-interpolation")
+                   ? ""
+                   : "flightwatt new-mission --model MODEL.toml --battery PACK.toml --profile {}/NAME.csv";
+    };
     stage.json_schema = cli::document_schema<cli::ProfileOutput, CheckOutput>;
     stage.examples = {"flightwatt profile detector.toml -o profiles",
                       "flightwatt profile --check-interpolation profiles/detector.csv"};

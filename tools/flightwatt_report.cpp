@@ -141,6 +141,7 @@ int flightwatt::stages::report_stage(int argc, char** argv) {
 validation, battery) and of missions (software, schedules, quality of service, plan). Its figures are
 Vega-Lite specifications with their data; --figures writes them as files for papers: .vl.json, .svg (by node)
 and .pdf (where rsvg-convert is). The model is the batch's own, with the bands that the batch stored.)"};
+    stage.next = [](const auto&) { return "open it in a browser"; };
     stage.json_schema = [] { return cli::json_schema({report::summary_schema()}); };
     stage.examples = {"flightwatt report my missions/first.toml -o report.html",
                       "flightwatt report my --figures figures --figure-width 3.5in"};

@@ -127,6 +127,7 @@ touchdown. TAKEOFF messages, mode and block are shown with each edge for compari
 A log without measured power is segmented too; its columns of power are then empty. Of several logs, or of
 a FOLDER of logs or of flightwatt batch, each row begins with its flight. A log that
 cannot be used is named and skipped, and the exit code is then 3.)"};
+    stage.next = [](const auto&) { return "flightwatt fit {in} -o MODEL.toml"; };
     stage.json_schema = cli::document_schema<cli::SegmentOutput>;
     stage.examples = {"flightwatt segment flight.data", "flightwatt segment logs --explain --aircraft 5 -o phases.csv"};
     stage.reads_logs = stage.shows_table = true;

@@ -85,6 +85,7 @@ delivered_energy_wh, depleted_at_s, cut_off_at_s (null: never), feasible, keeps_
 A mission with [policy] kind = "adaptive" is replanned in flight. --samples draws flights and reports
 their final state of charge; the CSV stays that of the mission as it is stated.)"};
     stage.max_inputs = 1;
+    stage.next = [](const auto&) { return "flightwatt report {in} -o report.html"; };
     stage.json_schema = cli::document_schema<mission::MissionSummary>;
     stage.shows_table = true;
     stage.examples = {"flightwatt simulate mission.toml -o soc.csv",
@@ -92,7 +93,8 @@ their final state of charge; the CSV stays that of the mission as it is stated.)
     stage.uses_threads = true;
     SimulateArguments arguments;
     auto& options = stage.options;
-    options.add("step", arguments.step_s, {.value = "S"}, "seconds between rows; jumps of power have additional rows");
+    options.add("step", arguments.step_s, {.value = "S", .min = 0.0, .above_min = true, .unit = "s"},
+                "seconds between rows; jumps of power have additional rows");
     options.add("schedule-out", arguments.schedule_file, cli::output_file("FILE"),
                 "write the mission with the schedule that was flown to FILE");
     add_sampling_options(options, arguments.sampling);

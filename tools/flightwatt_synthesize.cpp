@@ -88,7 +88,7 @@ using Anomalies = std::vector<std::string>;
 struct SynthesizeArguments {
     std::size_t flights = 6;
     std::uint64_t seed = 1;
-    std::string name = "opterra_synthetic";
+    std::optional<std::string> name;
     synthetic::SpreadOptions spread;
     synthetic::SyntheticSensors sensors;
     std::optional<double> cruise_s;
@@ -119,7 +119,7 @@ std::string log_name(const std::string& name, std::size_t number, const std::str
 void register_logs(const cli::StageCall& call, const SynthesizeArguments& arguments) {
     for (std::size_t i = 1; i <= arguments.flights; ++i) {
         for (const auto& anomaly : arguments.anomalies) {
-            const auto name = log_name(arguments.name, i, anomaly);
+            const auto name = log_name(*arguments.name, i, anomaly);
             const auto stem = (std::filesystem::path(*call.output) / name).string();
             for (const auto* ending : {".log", ".data", ".truth.csv"}) register_output(stem + ending);
         }
@@ -181,10 +181,12 @@ mechanical::MechanicalModel read_model(const cli::StageCall& call, const std::op
 }
 
 int synthesize(const cli::StageCall& call, SynthesizeArguments arguments) {
-    if (!call.output) throw UsageError("no folder given: expected -o FOLDER");
+    if (!call.output) throw UsageError("no folder for the results: expected -o DIR");
     const auto& [count, seed] = std::tie(arguments.flights, arguments.seed);
     arguments.sensors.sends_other_messages = !arguments.flight_messages_only;
     const auto model = read_model(call, arguments.cruise_s);
+    if (!arguments.name) arguments.name = model.name + "_synthetic";
+    check_name(*arguments.name);
     register_logs(call, arguments);
     make_directories(*call.output);
     const auto flights = draw_flights(model, count, seed, arguments.spread);
@@ -195,7 +197,7 @@ int synthesize(const cli::StageCall& call, SynthesizeArguments arguments) {
         const auto log_seed = random();
         for (const auto& anomaly : arguments.anomalies) {
             LogIdentity identity;
-            identity.name = log_name(arguments.name, i + 1, anomaly);
+            identity.name = log_name(*arguments.name, i + 1, anomaly);
             identity.made_by =
                 fmt::format("Made by flightwatt synthesize: model {}, flight {} of {}, seed {}{}{}.", model.name, i + 1,
                             count, seed, anomaly.empty() ? "" : ", anomaly ", anomaly);
@@ -215,8 +217,10 @@ int flightwatt::stages::synthesize_stage(int argc, char** argv) {
         R"(Writes synthetic Paparazzi logs (.log and .data) of flights whose power follows a mechanical model, with
 sensor noise, lost lines, durations and power that vary between flights. The files are marked as
 synthetic. The same seed gives the same files.)"};
+    stage.next = [](const auto&) { return "flightwatt batch {} -o OUT"; };
     stage.json_schema = cli::document_schema<SynthesizeOutput>;
     stage.max_inputs = 1;
+    stage.output_value = "DIR";
     stage.output_help = "the folder to write into";
     stage.examples = {"flightwatt synthesize model.toml -o logs --flights 12 --seed 7",
                       "flightwatt synthesize model.toml -o logs --anomaly two-sorties --truth"};
@@ -226,7 +230,8 @@ synthetic. The same seed gives the same files.)"};
     auto& options = stage.options;
     options.add("flights", arguments.flights, {.value = "N", .min = 1, .max = 1000}, "number of flights");
     options.add("seed", arguments.seed, {.value = "S"}, "seed of everything random");
-    options.add("name", arguments.name, {.value = "NAME"}, "beginning of the file names");
+    options.add("name", arguments.name, {.value = "NAME"},
+                "beginning of the file names; default: the model's name, and _synthetic");
     options.add("spread", arguments.spread.band_scale, {.value = "X", .min = 0.0, .max = 100.0},
                 "variability between flights, as a multiple of the paper's bands");
     options.add("current-noise", arguments.sensors.current_noise_a,
@@ -242,6 +247,5 @@ synthetic. The same seed gives the same files.)"};
         "an event of real logs that must not mislead the segmentation: estimator-starts-at-zero, "
         "dives-in-cruise, run-up, power-burst-after-landing, throttle-burst-before-touchdown, two-sorties, "
         "begins-in-the-air, ends-in-the-air, landing-in-steps, works-low, or all, a log each");
-    options.add_rule([&] { check_name(arguments.name); });
     return cli::run_stage(argc, argv, stage, [&](const auto& call) { return synthesize(call, arguments); });
 }

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -161,6 +162,7 @@ through the air, the mean power of its cruise, the pack's resistance, its capaci
 determine it, and the charge drawn, as CSV; and their trends over the flights' dates, with 95 % intervals, for
 each aircraft. A flight that is in two folders of batch counts once.)" +
             std::string(cli::several_flights_text)};
+    stage.next = [](const auto&) { return "flightwatt validate {in}"; };
     stage.json_schema = cli::document_schema<TrendsOutput>;
     stage.examples = {"flightwatt trends my -o trends.csv", "flightwatt trends season1 season2 --capacity 2.2"};
     stage.reads_logs = stage.uses_threads = stage.shows_table = true;

@@ -97,6 +97,7 @@ Errors in percent are parts of the phase's measured energy, the flown part inclu
 whose power is near zero. Bias is predicted less measured. physical is rejected, and not shown,
 where the mean power predicts better.)" +
             std::string(cli::several_flights_text)};
+    stage.next = [](const auto&) { return "flightwatt fit {in} -o MODEL.toml"; };
     stage.json_schema = cli::document_schema<cli::ValidationOutput>;
     stage.examples = {"flightwatt validate my", "flightwatt validate my --at 120 --json"};
     stage.reads_logs = stage.uses_threads = stage.shows_table = true;

@@ -19,8 +19,16 @@
 namespace flightwatt {
 namespace {
 
+std::string write_remedy(const std::filesystem::path& path, int error) {
+    if (error == ENOENT) return fmt::format("; make its folder first: mkdir -p {}", path.parent_path().string());
+    if (error == EISDIR) return "; name a file in it";
+    if (error == ENOTDIR || error == EEXIST) return "; a file is in the way: give another name";
+    return error == EACCES || error == EROFS ? "; choose a folder that you may write to" : "";
+}
+
 [[noreturn]] void fail(const std::filesystem::path& path, int error) {
-    throw OutputError(fmt::format("cannot write {}: {}", path.string(), std::strerror(error)));
+    throw OutputError(
+        fmt::format("cannot write {}: {}{}", path.string(), std::strerror(error), write_remedy(path, error)));
 }
 
 bool write_all(int file, std::string_view content) {
@@ -164,7 +172,8 @@ void make_directories(const std::filesystem::path& path) {
     std::error_code error;
     std::filesystem::create_directories(path, error);
     if (error) {
-        throw OutputError(fmt::format("cannot make the folder {}: {}", path.string(), error.message()));
+        throw OutputError(fmt::format("cannot make the folder {}: {}{}", path.string(), error.message(),
+                                      write_remedy(path, error.value())));
     }
 }
 

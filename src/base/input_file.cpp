@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <set>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -16,8 +17,28 @@
 namespace flightwatt {
 namespace {
 
+/// Files with the ending of a missing file, in its folder.
+std::string files_beside(const std::filesystem::path& path) {
+    const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+    std::set<std::string> names;
+    std::error_code error;
+    for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+        if (entry->path().extension() == path.extension()) names.insert(entry->path().filename().string());
+    if (error) return fmt::format("there is no folder {}", folder.string());
+    return names.empty() ? "" : "its folder has " + short_list({names.begin(), names.end()});
+}
+
 [[noreturn]] void cannot_read(const std::filesystem::path& path, int error) {
-    throw InputError({path.string()}, fmt::format("cannot be read: {}", std::strerror(error)));
+    throw InputError({path.string()}, fmt::format("cannot be read: {}", std::strerror(error)),
+                     error == ENOENT ? files_beside(path) : "");
+}
+
+[[noreturn]] void refuse_folder(const std::filesystem::path& path) {
+    std::error_code none;
+    if (std::filesystem::exists(path / "batch.json", none))
+        throw InputError({path.string()}, "is a folder of flightwatt batch, expected a file",
+                         "its model is model.toml in it, its flights are in flights/");
+    throw InputError({path.string()}, "is a folder, expected a file", "name a file in it");
 }
 
 /// A descriptor that the program was started with, such as the shell's <(COMMAND): who writes it is there.
@@ -49,7 +70,8 @@ InputFile::InputFile(const std::filesystem::path& path) : path_(path) {
     if (error == 0 && is_read && ::fcntl(descriptor_, F_SETFL, O_RDONLY) == 0) return;
     ::close(descriptor_);  // no destructor runs behind a constructor that throws
     if (error != 0) cannot_read(path, error);
-    const auto* const kind = S_ISDIR(status.st_mode) ? "folder" : S_ISFIFO(status.st_mode) ? "pipe" : "device";
+    if (S_ISDIR(status.st_mode)) refuse_folder(path);
+    const auto* const kind = S_ISFIFO(status.st_mode) ? "pipe" : "device";
     throw InputError({path.string()}, fmt::format("is a {}, expected a file", kind));
 }
 

@@ -39,6 +39,26 @@ class InputFile {
 std::string read_file(const std::filesystem::path& path, std::size_t max_bytes = max_file_bytes,
                       std::string_view hint = "is it the file that was meant?");
 
+/// Kinds of files that are taken for one another. A table may be a series or a profile.
+enum class FileKind {
+    unknown,
+    mission,
+    mechanical_model,
+    battery,
+    disturbances,
+    specification,
+    profile,
+    log,
+    table,
+    foreign
+};
+
+/// Kind of a file by its content, recognised also where it has errors.
+FileKind kind_of_text(std::string_view text);
+
+/// Throws InputError "is a log, not a mission", with the remedy, for the text of a file that is of another known kind.
+void require_kind(std::string_view text, FileKind expected, const std::string& file);
+
 /// Why a file cannot be opened for reading; no error where it can be. A pipe is not opened.
 std::error_code open_error(const std::filesystem::path& path);
 

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <map>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <toml++/toml.h>
 
 namespace flightwatt {
@@ -17,38 +18,25 @@ Location location_of(const std::string& file, const toml::source_region& region)
     return {file, region.begin.line, region.begin.column};
 }
 
+/// `example` is a value of the expected type.
 [[noreturn]] void wrong_type(const std::string& file, const toml::node& node, std::string_view key,
-                             std::string_view expected) {
+                             std::string_view expected, std::string_view example = "") {
     std::ostringstream type;
     type << node.type();
     throw InputError(location_of(file, node.source()),
-                     fmt::format("'{}' is a TOML {}, expected {}", key, type.str(), expected));
+                     fmt::format("'{}' is a TOML {}, expected {}", key, type.str(), expected),
+                     example.empty() ? "" : fmt::format("write it as {} = {}", key, example));
 }
 
 double finite_number(const std::string& file, const toml::node& node, std::string_view key) {
     const auto value = node.is_number() ? node.value<double>() : std::nullopt;
-    if (!value || !std::isfinite(*value)) wrong_type(file, node, key, "a finite number");
+    if (!value || !std::isfinite(*value)) wrong_type(file, node, key, "a finite number", "12.5");
     return *value;
 }
 
 std::string text_of(const std::string& file, const toml::node& node, std::string_view key) {
-    if (!node.is_string()) wrong_type(file, node, key, "a string");
+    if (!node.is_string()) wrong_type(file, node, key, "a string", "\"text\"");
     return *node.value<std::string>();
-}
-
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i;
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const auto substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-            diagonal = row[j];
-            row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
-        }
-    }
-    return row.back();
 }
 
 /// No file of ours nests deeper than five; the parser would end the program at some ten thousand (its stack).
@@ -109,6 +97,61 @@ void refuse_monsters(std::string_view text, const std::string& file) {
                      fmt::format("keys, arrays or tables are nested more than {} levels deep", deepest_nesting));
 }
 
+/// Other words for keys.
+std::string known_synonym(std::string_view word, const std::vector<std::string>& known) {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 5> synonyms{{{"model", "mechanical"},
+                                                                                     {"aircraft", "mechanical"},
+                                                                                     {"pack", "battery"},
+                                                                                     {"software", "components"},
+                                                                                     {"component", "components"}}};
+    for (const auto& [other, key] : synonyms)
+        if (word == other && std::ranges::find(known, key) != known.end()) return std::string(key);
+    return nearest_word(word, known);
+}
+
+}  // namespace
+
+struct UnknownKey {
+    Location where;
+    std::string key;
+    std::string near;   ///< what was probably meant; may be empty
+    std::string table;  ///< its path in the file
+    std::vector<std::string> known;
+};
+
+namespace {
+
+[[noreturn]] void refuse_keys(const std::vector<UnknownKey>& unknown) {
+    const auto& first = unknown.front();
+    std::vector<std::string> names;
+    std::map<std::string, std::string> known_keys;
+    for (const auto& [where, key, near, table, known] : unknown) {
+        const auto place = fmt::format(" in line {}", where.line);
+        const auto meant = near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near);
+        names.push_back(fmt::format("'{}'{}{}", truncated(key), place, meant));
+        if (near.empty())
+            known_keys[table] = fmt::format("known keys{}: {}", table.empty() ? "" : fmt::format(" of [{}]", table),
+                                            fmt::join(known, ", "));
+    }
+    std::vector<std::string> hints;
+    for (const auto& [table, hint] : known_keys) hints.push_back(hint);
+    if (unknown.size() > 1)
+        throw InputError(first.where, fmt::format("{} unknown keys: {}", unknown.size(), fmt::join(names, ", ")),
+                         fmt::format("{}", fmt::join(hints, "; ")));
+    throw InputError(first.where, fmt::format("unknown key '{}'", first.key),
+                     first.near.empty() ? hints.front() : fmt::format("did you mean '{}'?", first.near));
+}
+
+/// A remedy for errors of the TOML parser, which names the grammar alone.
+std::string remedy_of_syntax(std::string_view description) {
+    const auto has = [&](std::string_view part) { return description.find(part) != std::string_view::npos; };
+    if (has("could not determine value type")) return "texts are in quotes: name = \"text\"";
+    if (has("redefine")) return "it is there twice: remove one";
+    return has("expected a comment or newline, saw") || has("value-terminator")
+               ? "one value a line; decimals have a point: 12.5"
+               : "expected lines such as name = 12.5 and name = \"text\"";
+}
+
 std::set<RequestedKey>* recorded_keys = nullptr;
 
 std::string path_below(const std::string& path, std::string_view key) {
@@ -128,41 +171,36 @@ std::string describe(NumberRange range) {
 
 void record_requested_keys(std::set<RequestedKey>* asked) { recorded_keys = asked; }
 
-std::string nearest_word(std::string_view word, const std::vector<std::string>& known) {
-    constexpr std::size_t max_word = 100;
-    std::string nearest;
-    if (word.size() > max_word) return nearest;
-    std::size_t best = std::max<std::size_t>(2, word.size() / 3) + 1;
-    for (const auto& candidate : known) {
-        if (candidate.size() > max_word) continue;
-        const auto distance = edit_distance(word, candidate);
-        if (distance < best) {
-            best = distance;
-            nearest = candidate;
-        }
-    }
-    return nearest;
-}
+struct TomlTable::File {
+    toml::table table;
+    bool collects = false;
+    std::vector<UnknownKey> unknown = {};
+};
 
-TomlTable::TomlTable(std::shared_ptr<const toml::table> root, const toml::table* table, std::string file,
-                     std::string path)
+TomlTable::TomlTable(std::shared_ptr<File> root, const toml::table* table, std::string file, std::string path)
     : root_(std::move(root)),
       table_(table),
       file_(std::move(file)),
       path_(std::move(path)),
       asked_(std::make_shared<std::set<std::string, std::less<>>>()) {}
 
-TomlTable parse_toml(std::string_view text, const std::string& file) {
+TomlTable parse_toml(std::string_view text, const std::string& file, FileKind expected) {
+    if (expected != FileKind::unknown) require_kind(text, expected, file);
     refuse_monsters(text, file);
     try {
-        auto root = std::make_shared<const toml::table>(toml::parse(text, file));
-        return {root, root.get(), file, ""};
+        auto root = std::make_shared<TomlTable::File>();
+        root->table = toml::parse(text, file);
+        const auto* table = &root->table;
+        return {std::move(root), table, file, ""};
     } catch (const toml::parse_error& error) {
-        throw InputError(location_of(file, error.source()), fmt::format("is not TOML: {}", error.description()));
+        throw InputError(location_of(file, error.source()), fmt::format("is not TOML: {}", error.description()),
+                         remedy_of_syntax(error.description()));
     }
 }
 
-TomlTable read_toml(const std::filesystem::path& path) { return parse_toml(read_file(path), path.string()); }
+TomlTable read_toml(const std::filesystem::path& path, FileKind expected) {
+    return parse_toml(read_file(path), path.string(), expected);
+}
 
 void TomlTable::mark_used(std::string_view key) const {
     asked_->emplace(key);
@@ -202,13 +240,13 @@ std::optional<std::string> TomlTable::optional_string(std::string_view key) cons
 std::optional<bool> TomlTable::optional_boolean(std::string_view key) const {
     const auto* node = find(key);
     if (node == nullptr) return std::nullopt;
-    if (!node->is_boolean()) wrong_type(file_, *node, key, "true or false");
+    if (!node->is_boolean()) wrong_type(file_, *node, key, "true or false", "true");
     return node->value<bool>();
 }
 
 std::vector<double> TomlTable::numbers(std::string_view key) const {
     const auto& node = require(key);
-    if (!node.is_array()) wrong_type(file_, node, key, "an array of numbers");
+    if (!node.is_array()) wrong_type(file_, node, key, "an array of numbers", "[1, 2.5]");
     std::vector<double> values;
     for (const auto& element : *node.as_array()) values.push_back(finite_number(file_, element, key));
     return values;
@@ -216,7 +254,7 @@ std::vector<double> TomlTable::numbers(std::string_view key) const {
 
 std::vector<std::string> TomlTable::strings(std::string_view key) const {
     const auto& node = require(key);
-    if (!node.is_array()) wrong_type(file_, node, key, "an array of strings");
+    if (!node.is_array()) wrong_type(file_, node, key, "an array of strings", "[\"text\"]");
     std::vector<std::string> values;
     for (const auto& element : *node.as_array()) values.push_back(text_of(file_, element, key));
     return values;
@@ -224,12 +262,14 @@ std::vector<std::string> TomlTable::strings(std::string_view key) const {
 
 TomlTable TomlTable::table(std::string_view key) const {
     const auto& node = require(key);
-    if (!node.is_table()) wrong_type(file_, node, key, "a table");
+    if (!node.is_table()) wrong_type(file_, node, key, "a table", "{ ... }");
     return {root_, node.as_table(), file_, path_below(path_, key)};
 }
 
-std::optional<TomlTable> TomlTable::optional_table(std::string_view key) const {
-    return has(key) ? std::optional(table(key)) : std::nullopt;
+std::optional<TomlTable> TomlTable::optional_table(std::string_view key, std::string_view example) const {
+    const auto* node = find(key);
+    if (node != nullptr && !node->is_table() && !example.empty()) wrong_type(file_, *node, key, "a table", example);
+    return node != nullptr ? std::optional(table(key)) : std::nullopt;
 }
 
 std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
@@ -265,14 +305,23 @@ bool TomlTable::is_table(std::string_view key) const {
 }
 
 void TomlTable::refuse_unknown_keys() const {
-    for (const auto& name : keys()) {
-        if (asked_->contains(name)) continue;
-        const std::vector<std::string> known(asked_->begin(), asked_->end());
-        const auto near = nearest_word(name, known);
-        throw InputError(
-            where(name), fmt::format("unknown key '{}'", name),
-            near.empty() ? fmt::format("known keys: {}", short_list(known)) : fmt::format("did you mean '{}'?", near));
+    const std::vector<std::string> known(asked_->begin(), asked_->end());
+    std::vector<UnknownKey> unknown;
+    for (const auto& name : keys())
+        if (!asked_->contains(name)) unknown.push_back({where(name), name, known_synonym(name, known), path_, known});
+    if (unknown.empty()) return;
+    if (!root_->collects) refuse_keys(unknown);
+    root_->unknown.insert(root_->unknown.end(), unknown.begin(), unknown.end());
+}
+
+void TomlTable::collect_unknown_keys(const std::function<void()>& read) const {
+    root_->collects = true;
+    try {
+        read();
+    } catch (const std::exception&) {
+        if (root_->unknown.empty()) throw;
     }
+    if (!root_->unknown.empty()) refuse_keys(root_->unknown);
 }
 
 void TomlTable::refuse_keys_except(std::initializer_list<std::string_view> known) const {
@@ -327,26 +376,6 @@ std::uint64_t count_in(const TomlTable& table, std::string_view key, std::uint64
 std::uint64_t count_in_or(const TomlTable& table, std::string_view key, std::uint64_t least,
                           std::uint64_t default_value) {
     return table.has(key) ? count_in(table, key, least) : default_value;
-}
-
-void require_kind(const TomlTable& root, FileKind expected) {
-    struct Sign {
-        FileKind kind;
-        std::string_view key;  // that only this kind has, and always
-        std::string_view name;
-        std::string_view made_by;
-    };
-    constexpr std::array<Sign, 3> signs{
-        Sign{FileKind::mission, "battery", "a mission", "write one with `flightwatt new-mission`"},
-        Sign{FileKind::mechanical_model, "takeoff", "a mechanical model", "fit one with `flightwatt batch` or `fit`"},
-        Sign{FileKind::battery, "resistance_ohm", "a battery", "identify one with `flightwatt battery`"}};
-    const auto keys = root.keys();
-    const auto has = [&](const Sign& sign) { return std::ranges::find(keys, sign.key) != keys.end(); };
-    const auto& wanted = *std::ranges::find(signs, expected, &Sign::kind);
-    const auto found = std::ranges::find_if(signs, has);
-    if (found == signs.end() || has(wanted)) return;
-    throw InputError(root.where(found->key), fmt::format("is {}, not {}", found->name, wanted.name),
-                     std::string(wanted.made_by));
 }
 
 std::string format_line() { return fmt::format("format = {}\n", format_version); }

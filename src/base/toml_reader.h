@@ -1,10 +1,12 @@
 #pragma once
 
 #include "base/error.h"
+#include "base/input_file.h"
 
 #include <compare>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <initializer_list>
 #include <limits>
 #include <memory>
@@ -37,7 +39,8 @@ class TomlTable {
     std::vector<double> numbers(std::string_view key) const;
     std::vector<std::string> strings(std::string_view key) const;
     TomlTable table(std::string_view key) const;
-    std::optional<TomlTable> optional_table(std::string_view key) const;
+    /// `example` is what a table of this key holds, for the error: "{ cruise = 600 }".
+    std::optional<TomlTable> optional_table(std::string_view key, std::string_view example = "") const;
     /// An array of tables; empty if the key is not there.
     std::vector<TomlTable> tables(std::string_view key) const;
     /// Every key of this table, in the order of the file.
@@ -45,10 +48,13 @@ class TomlTable {
     bool is_number(std::string_view key) const;
     bool is_table(std::string_view key) const;
 
-    /// Throws InputError at the first key that was not read, with the nearest one that was.
+    /// Throws InputError for the keys that were not read, each with the nearest one that was, or all that were.
     void refuse_unknown_keys() const;
     /// The same before any key is read, so that a misspelt key is not reported as missing.
     void refuse_keys_except(std::initializer_list<std::string_view> known) const;
+    /// Calls `read`, which reads tables of this file: the unknown keys of all tables are reported together, before any
+    /// other error.
+    void collect_unknown_keys(const std::function<void()>& read) const;
 
     const std::string& file() const { return file_; }
     /// Location of this table, or of one of its keys.
@@ -56,14 +62,15 @@ class TomlTable {
     Location where(std::string_view key) const;
 
   private:
-    friend TomlTable parse_toml(std::string_view text, const std::string& file);
-    TomlTable(std::shared_ptr<const toml::table> root, const toml::table* table, std::string file, std::string path);
+    struct File;
+    friend TomlTable parse_toml(std::string_view text, const std::string& file, FileKind expected);
+    TomlTable(std::shared_ptr<File> root, const toml::table* table, std::string file, std::string path);
     void mark_used(std::string_view key) const;
 
     const toml::node& require(std::string_view key) const;
     const toml::node* find(std::string_view key) const;
 
-    std::shared_ptr<const toml::table> root_;
+    std::shared_ptr<File> root_;
     const toml::table* table_;
     std::string file_;
     std::string path_;  ///< of this table in the file: "", "components.detection", "schedule"
@@ -82,11 +89,12 @@ struct RequestedKey {
 /// the test that holds the documents to the readers; not while several threads read.
 void record_requested_keys(std::set<RequestedKey>* asked);
 
-/// Throws InputError with line and column where the text is not TOML.
-TomlTable read_toml(const std::filesystem::path& path);
-TomlTable parse_toml(std::string_view text, const std::string& file);
+/// Throws InputError with line and column where the text is not TOML, and for a file of another kind than expected.
+TomlTable read_toml(const std::filesystem::path& path, FileKind expected = FileKind::unknown);
+TomlTable parse_toml(std::string_view text, const std::string& file, FileKind expected = FileKind::unknown);
 
-/// The word among `known` that `word` was probably meant to be; empty if none is near.
+/// The word among `known` that `word` was probably meant to be: one that contains it or has few other letters; empty
+/// if none is near.
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known);
 
 /// The numbers that a key may have.
@@ -121,12 +129,6 @@ inline constexpr int format_version = 1;
 
 /// Its line of TOML, "format = 1\n".
 std::string format_line();
-
-/// The files of ours that are easily taken for one another.
-enum class FileKind { mechanical_model, battery, mission };
-
-/// Throws InputError where the keys of the file are those of another kind.
-void require_kind(const TomlTable& root, FileKind expected);
 
 /// Checks `format` of a file of ours, which may be absent (files of version 0.1 have none). Throws InputError
 /// for a newer or invalid format.

@@ -23,7 +23,6 @@ constexpr double joule_from_wh(double energy_wh) { return energy_wh * seconds_pe
 constexpr double coulomb_from_ah(double charge_ah) { return charge_ah * seconds_per_hour; }
 constexpr double ah_from_coulomb(double charge_as) { return charge_as / seconds_per_hour; }
 constexpr double mv_from_v(double voltage_v) { return voltage_v * 1000.0; }
-constexpr double mohm_from_ohm(double resistance_ohm) { return resistance_ohm * 1000.0; }
 constexpr double minute_from_second(double time_s) { return time_s / seconds_per_minute; }
 constexpr double percentage(double part, double whole) { return part / whole * percent_per_whole; }
 constexpr double amount_from_percent(double whole, double percent) { return whole * percent / percent_per_whole; }
@@ -39,11 +38,8 @@ constexpr double table_one_xi_from_rad(double theta_rad) { return theta_rad / ta
 constexpr double milli = 1e-3;
 constexpr double micro = 1e-6;
 constexpr double watt_from_milliwatt(double power_mw) { return power_mw * milli; }
-constexpr double watt_from_microwatt(double power_uw) { return power_uw * micro; }
 constexpr double volt_from_millivolt(double voltage_mv) { return voltage_mv * milli; }
-constexpr double volt_from_microvolt(double voltage_uv) { return voltage_uv * micro; }
 constexpr double ampere_from_milliampere(double current_ma) { return current_ma * milli; }
-constexpr double ampere_from_microampere(double current_ua) { return current_ua * micro; }
 constexpr double joule_from_microjoule(double energy_uj) { return energy_uj * micro; }
 
 /// Quantity of a declared unit; the base unit of each is the suffix used in names.

@@ -231,8 +231,7 @@ Battery battery_from(const TomlTable& table) {
 }
 
 Battery read_battery(const std::filesystem::path& path) {
-    const auto root = read_toml(path);
-    require_kind(root, FileKind::battery);
+    const auto root = read_toml(path, FileKind::battery);
     require_known_format(root);
     return battery_from(root);
 }

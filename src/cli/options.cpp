@@ -94,7 +94,9 @@ double parse_number_option(const Option& option, const std::string& text) {
     const bool fits = number && std::isfinite(*number) &&
                       (option.above_min ? *number > option.min : *number >= option.min) &&
                       (option.below_max ? *number < option.max : *number <= option.max);
-    if (!fits) refuse(option, text, range_text(option));
+    const auto range = range_text(option);
+    const bool lacks_number = !number && !range.starts_with("a number");
+    if (!fits) refuse(option, text, (lacks_number ? "a number without a unit, " : "") + range);
     return *number;
 }
 

@@ -18,6 +18,7 @@
 #include <iostream>
 #include <new>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -151,7 +152,7 @@ void add_common_options(StageDefinition& stage, CommonOptions& common) {
     constexpr double max_jobs = 256;
     auto& options = stage.options;
     options.begin_group("Common options");
-    options.add("output,o", common.output, {.value = "FILE", .file = FileRole::output}, stage.output_help);
+    options.add("output,o", common.output, {.value = stage.output_value, .file = FileRole::output}, stage.output_help);
     options.add("json", common.json, "print the summary as JSON");
     if (stage.shows_table) options.add("wide", common.wide, "on a terminal: all columns, also beyond its width");
     if (stage.uses_threads)
@@ -209,6 +210,15 @@ void check_input_count(const StageDefinition& stage, const std::vector<std::stri
         throw UsageError(fmt::format("unexpected argument '{}'; {}", inputs[stage.max_inputs], usage_line(stage)));
 }
 
+/// States what a stage wrote and what can follow.
+void note_written(const StageDefinition& stage, const StageCall& call) {
+    if (!stage.next || !call.output || call.json) return;
+    auto next = stage.next(call);
+    boost::algorithm::replace_first(next, "{}", shell_quoted(*call.output));
+    if (!call.inputs.empty()) boost::algorithm::replace_first(next, "{in}", shell_quoted(call.inputs.front()));
+    note(call, fmt::format("{} is written{}{}", *call.output, next.empty() ? "" : "; next: ", next));
+}
+
 int run(int argc, char** argv, StageDefinition& stage, const StageBody& body) {
     CommonOptions common;
     add_common_options(stage, common);
@@ -241,6 +251,8 @@ int run(int argc, char** argv, StageDefinition& stage, const StageBody& body) {
     }
     register_files(call, stage.options, given);
     const int code = body(call);
+    call.inputs = given.inputs;  // as they were typed
+    if (code == ok || code == input_rejected) note_written(stage, call);
     return code == ok && !call.skipped->empty() ? input_rejected : code;
 }
 

@@ -20,6 +20,8 @@ using flightwatt::Json;
 
 enum ExitCode : int { ok = 0, internal_error = 1, usage_error = 2, input_rejected = 3, no_answer = 4 };
 
+struct StageCall;
+
 /// Name and interface of a stage, beyond the options that every stage has (--help, --version, --json, --output, --quiet).
 struct StageDefinition {
     std::string name;                        ///< "fit"; the program is flightwatt-fit
@@ -33,6 +35,9 @@ struct StageDefinition {
     bool reads_logs = false;          ///< its inputs are logs: - is the standard input
     bool uses_threads = false;        ///< then --jobs is an option
     bool shows_table = false;         ///< on a terminal: then --wide is an option
+    /// What can follow on a result in --output ({}), with the input ({in}): "flightwatt simulate {}"; or empty.
+    std::function<std::string(const StageCall&)> next = nullptr;
+    std::string output_value = "FILE";
     std::string output_help = "write the result to FILE instead of the standard output";
 };
 

@@ -41,10 +41,6 @@ void refuse_foreign_key(const TomlTable& table, std::string_view key, SamplerKin
 
 std::string_view to_string(SamplerKind kind) { return kind_names[static_cast<std::size_t>(kind)]; }
 
-std::string program_path(const std::filesystem::path& folder, const std::string& program) {
-    return program.find('/') == std::string::npos ? program : (folder / program).string();
-}
-
 SamplerSettings read_sampler_settings(const TomlTable& root, const std::filesystem::path& folder) {
     SamplerSettings settings;
     settings.folder = folder;

@@ -52,9 +52,6 @@ struct SamplerSettings {
 /// Reads [sampler] of a profile's specification; paths are relative to `folder`. Throws InputError.
 SamplerSettings read_sampler_settings(const TomlTable& root, const std::filesystem::path& folder);
 
-/// A program as it is started: with a folder in its name relative to that of the specification, else along PATH.
-std::string program_path(const std::filesystem::path& folder, const std::string& program);
-
 /// Opens a live sampler: by its kind, or the first available one. Throws NoResultError if there is no sensor, with the
 /// searched paths.
 PowerSampler open_sampler(const SamplerSettings& settings);

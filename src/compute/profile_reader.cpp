@@ -1,6 +1,7 @@
 #include "compute/profile_reader.h"
 
 #include "base/csv.h"
+#include "base/input_file.h"
 #include "base/number.h"
 #include "base/statistics.h"
 #include "compute/powprofiler/powprofiler.h"
@@ -150,7 +151,9 @@ PowerProfile read_power_profile(const std::filesystem::path& path, const Profile
         return profile_of_combinations(path, naming);
     }
     // Read without header: the first row determines the format.
-    auto table = read_csv(path, CsvHeader::absent);
+    const auto text = read_file(path);
+    require_kind(text, FileKind::profile, path.string());
+    auto table = parse_csv(text, path.string(), CsvHeader::absent);
     const auto flags = powprofiler_columns(table);
     const auto first_line = table.rows.front().line;
     const auto& cells = table.rows.front().cells;

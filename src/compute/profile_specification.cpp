@@ -196,7 +196,7 @@ void add_together(const TomlTable& root, const std::vector<WrittenComponent>& wr
 }  // namespace
 
 ProfileSpecification parse_profile_specification(std::string_view text, const std::filesystem::path& path) {
-    const auto root = parse_toml(text, path.string());
+    const auto root = parse_toml(text, path.string(), FileKind::specification);
     root.refuse_keys_except({"format", "duration_s", "warm_up_s", "timeout_s", "repeats", "seed", "idle_s",
                              "above_idle", "sampler", "components", "together"});
     require_known_format(root);

@@ -12,11 +12,35 @@
 #include <chrono>
 #include <map>
 
+#include <boost/process/search_path.hpp>
 #include <fmt/format.h>
 #include <poll.h>
+#include <unistd.h>
 
 namespace flightwatt::compute {
 namespace {
+
+std::filesystem::path folder_of(const ProfileSpecification& specification) {
+    return std::filesystem::path(specification.file).parent_path();
+}
+
+/// Throws InputError for a program that is absent, before anything is measured.
+void require_programs(const ProfileSpecification& specification, const std::vector<ProfileRun>& runs) {
+    const auto folder = (std::filesystem::current_path() / folder_of(specification)).lexically_normal();
+    for (const auto& run : runs) {
+        if (run.is_done || run.component == idle_component) continue;
+        for (const auto& command : specification.components[run.index].configurations[run.node].commands) {
+            const auto& program = command.front();
+            const bool is_path = program.find('/') != std::string::npos;
+            const auto file = is_path ? (folder / program).string() : boost::process::search_path(program).string();
+            if (::access(file.c_str(), X_OK) == 0) continue;
+            throw InputError({specification.file},
+                             fmt::format("component {}: there is no program {} that can be executed {}", run.component,
+                                         program, is_path ? "in " + folder.string() : "along PATH"),
+                             "paths are relative to the specification, as in [\"./detector\"]");
+        }
+    }
+}
 
 ComponentRun execute(const ProfileRun& run, const ProfileSpecification& specification, const RunContext& frame) {
     const auto& settings = specification.sampler;
@@ -31,7 +55,6 @@ ComponentRun execute(const ProfileRun& run, const ProfileSpecification& specific
     } else if (!is_recorded) {
         timing.duration_s = specification.idle_s;  // a recording counts as a whole
     }
-    for (auto& command : configuration.commands) command.front() = program_path(settings.folder, command.front());
     if (!is_recorded) return run_component(configuration.commands, timing, frame);
     const auto interval_s = settings.interval_is_given ? std::optional(settings.interval_s) : std::nullopt;
     return run_of_recording(read_power_trace(configuration.recording, interval_s), timing, settings.interval_s);
@@ -42,9 +65,9 @@ void do_run(ProfileRun& run, const ProfileSpecification& specification, const Pr
     const auto path = options.folder / run.layer1;
     make_directories(path.parent_path());
     auto output = std::filesystem::path(path).replace_extension(".txt");
-    auto result =
-        execute(run, specification,
-                {&sampler, specification.sampler.interval_s, std::move(output), options.signal_fd, options.caught});
+    auto result = execute(run, specification,
+                          {&sampler, specification.sampler.interval_s, std::move(output), options.signal_fd,
+                           options.caught, 2.0, folder_of(specification)});
     run.status = result.status;
     run.note = std::move(result.note);
     run.trace = std::move(result.trace);
@@ -117,6 +140,7 @@ ProfileOutcome profile(const ProfileSpecification& specification, const Profiler
     load_completed_runs(outcome.runs, options.folder);
     const bool is_recorded = specification.sampler.kind == SamplerKind::recorded;
     PowerSampler sampler{SamplerKind::recorded, "recorded", {}};
+    if (!is_recorded) require_programs(specification, outcome.runs);
     if (!is_recorded) sampler = open_sampler(specification.sampler);
     if (options.on_sampler_opened) options.on_sampler_opened(sampler);
     outcome.sampler = to_string(sampler.kind);

@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/input_file.h"
 #include "base/overwrite_guard.h"
 #include "flight/flight_identity.h"
 #include "flight/selected_track.h"
@@ -191,9 +192,11 @@ FlightFile::FlightFile(const std::filesystem::path& path, std::size_t max_bytes,
     is_series_ = path.extension() == ".csv" && std::filesystem::is_regular_file(path, error);
     if (is_series_) {
         text_ = read_file(path, max_bytes, "if it is a series, --max-log-mb raises the limit");
+        require_kind(text_, FileKind::log, path.string());
         return;
     }
     text_ = telemetry::read_data_file(path, max_bytes);
+    require_kind(text_, FileKind::log, path.string());
     framing_ = telemetry::detect_binary_framing(text_);
     auto log = telemetry::find_log_file(path);
     if (log && messages) log_error_ = error_of_definitions(*log, framing_.has_value());

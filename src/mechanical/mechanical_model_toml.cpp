@@ -258,8 +258,7 @@ void list_model(TomlFields& fields, MechanicalModel& model) {
 }  // namespace
 
 MechanicalModel read_mechanical_model(const std::filesystem::path& path) {
-    const auto root = read_toml(path);
-    require_kind(root, FileKind::mechanical_model);
+    const auto root = read_toml(path, FileKind::mechanical_model);
     require_known_format(root);
     MechanicalModel model;
     TomlFields fields(root);

@@ -127,7 +127,7 @@ Disturbances rescale_to_flown_durations(Disturbances disturbances, const PerPhas
 }
 
 Disturbances read_disturbances(const std::filesystem::path& path, const PerPhase<double>& duration_s) {
-    const auto root = read_toml(path);
+    const auto root = read_toml(path, FileKind::disturbances);
     root.refuse_keys_except({"format", "disturbance"});
     require_known_format(root);
     Disturbances disturbances;

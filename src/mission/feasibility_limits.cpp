@@ -164,9 +164,7 @@ FeasibilityLimit longest_cruise(const MissionVariation& with_cruise_s, const std
     if (!search.find_end(1.0, longest_cruise_s)) {
         if (search.good())
             throw NoResultError(fmt::format("a cruise of {:.3g} s still lands with the reserve", *search.good()));
-        // as of a planned schedule, without `otherwise`
-        throw InputError(search.misfit()->where(), "the schedule fits one length of the cruise only",
-                         "use the mission that it was planned from, or add an entry with `otherwise = true`");
+        throw *search.misfit();
     }
     search.refine();
     if (!search.good())

@@ -138,12 +138,10 @@ std::optional<std::string> decompressed(std::string_view bytes, const std::files
 void require_regular_file(const std::filesystem::path& path) {
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
-    if (status.type() == std::filesystem::file_type::not_found) throw InputError({path.string()}, "does not exist");
+    if (status.type() == std::filesystem::file_type::not_found) return;  // InputFile reports it
     if (error) throw InputError({path.string()}, fmt::format("cannot be read: {}", error.message()));
-    if (std::filesystem::is_directory(status)) {
-        throw InputError({path.string()}, "is a folder, expected a Paparazzi .data file");
-    }
-    if (!std::filesystem::is_regular_file(status)) throw InputError({path.string()}, "is not a regular file");
+    if (!std::filesystem::is_directory(status) && !std::filesystem::is_regular_file(status))
+        throw InputError({path.string()}, "is not a regular file");
 }
 
 /// The bytes that the file had when it was opened. Throws InputError for more than `max_zeros` bytes in blocks of

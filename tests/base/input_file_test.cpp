@@ -9,6 +9,8 @@
 #include <string>
 #include <system_error>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -45,9 +47,9 @@ TEST_F(ReadFile, TakesFilesAndPipes) {
 
 TEST_F(ReadFile, SaysWhyItCannot) {
     std::filesystem::create_symlink("loop", folder / "loop");
-    EXPECT_EQ(reading(folder / "missing"), "missing: cannot be read: No such file or directory");
+    EXPECT_EQ(reading(folder / "missing"), "missing: cannot be read: No such file or directory; its folder has loop");
     EXPECT_EQ(reading(folder / "loop"), "loop: cannot be read: Too many levels of symbolic links");
-    EXPECT_EQ(reading(folder), folder.string() + ": is a folder, expected a file");
+    EXPECT_EQ(reading(folder), folder.string() + ": is a folder, expected a file; name a file in it");
     ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
     EXPECT_EQ(reading(folder / "pipe"), "pipe: is a pipe, expected a file") << "without waiting for a writer";
     EXPECT_EQ(reading("/dev/zero"), "/dev/zero: is a device, expected a file");
@@ -120,6 +122,47 @@ TEST(ProgramFiles, AreMissedWithTheirNameAndTheWayOut) {
     EXPECT_THAT(test::rejected([] { data_folder("absent", variable, "the pages"); }),
                 testing::AllOf(testing::HasSubstr("share/flightwatt/absent"),
                                testing::HasSubstr("the pages are not there"), testing::HasSubstr(variable)));
+}
+
+TEST(FileKinds, OneTakenForAnotherIsNamed) {
+    const auto refused = [](const std::string& text, FileKind expected) {
+        return test::rejected([&] { require_kind(text, expected, "f"); });
+    };
+    const std::string model = "name = \"m\"\n[takeoff]\n";
+    const std::string pack = "capacity_ah = 5\nresistance_ohm = 0.1\n";
+    const std::string mission = "mechanical = \"m.toml\"\nbattery = \"p.toml\"\n[[schedule]]\n";
+    EXPECT_EQ(refused(model, FileKind::battery),
+              "f: is a mechanical model, not a battery; identify one with `flightwatt battery`");
+    EXPECT_EQ(refused(mission, FileKind::log),
+              "f: is a mission, not a log; expected a .data log, a .LOG or .tlm of an SD card, or a series");
+    EXPECT_EQ(refused(pack, FileKind::mission),
+              "f: is a battery, not a mission; write one with `flightwatt new-mission`");
+    EXPECT_EQ(refused(" \n", FileKind::mission),
+              "f: is empty, expected a mission; write one with `flightwatt new-mission`");
+    EXPECT_EQ(refused(pack, FileKind::battery), "");
+    EXPECT_EQ(refused("unknown = 1", FileKind::battery), "") << "its reader says what is missing";
+    EXPECT_EQ(refused("time_s,power_w\n1,2\n", FileKind::log), "") << "a series";
+}
+
+TEST(FileKinds, AreKnownByTheirContent) {
+    const auto refusal_of = [](const std::string& text) {
+        return test::rejected([&] { require_kind(text, FileKind::mission, "f"); });
+    };
+    const std::vector<std::pair<std::string, std::string>> kinds{
+        {"garbage\n335.149 20 ENERGY 69 11.7 3.1\n", "a log"},
+        {"<!-- x -->\n<configuration>\n", "the definitions of a log (.log)"},
+        {"<!DOCTYPE flight_plan>\n<flight_plan alt=\"260\">", "a flight plan of Paparazzi"},
+        {"<!DOCTYPE html>\n<html>", "a web page"},
+        {"{ \"fileType\": \"Plan\" }", "a plan of QGroundControl"},
+        {"QGC WPL 110\n0 1 0 16", "a list of waypoints of ArduPilot"},
+        {"{ \"type\": \"FeatureCollection\" }", "a JSON file"},
+        {"# comment\n[[disturbance]]\n", "a list of disturbances"},
+        {"[sampler]\nkind = \"rapl\"", "a specification of flightwatt profile"},
+        {"# made by\ntime_s,soc_percent\n", "a table (CSV)"}};
+    for (const auto& [text, name] : kinds)
+        EXPECT_THAT(refusal_of(text), testing::HasSubstr("is " + name + ", not a mission; ")) << text;
+    for (const std::string text : {"hello", "a = 1\nb = [1, 2]\n", "\x01\x02"}) EXPECT_EQ(refusal_of(text), "") << text;
+    EXPECT_EQ(kind_of_text("# " + std::string(100000, ',')), FileKind::unknown) << "without end of the stack";
 }
 
 }  // namespace

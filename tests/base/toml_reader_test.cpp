@@ -123,6 +123,7 @@ TEST(TomlText, ReplacesWhatIsNotUtf8) {
 TEST(NearestWord, FindsMisspellingsAndNothingElse) {
     EXPECT_EQ(nearest_word("landng", {"takeoff", "cruise", "landing"}), "landing");
     EXPECT_EQ(nearest_word("elephant", {"takeoff", "cruise", "landing"}), "");
+    EXPECT_EQ(nearest_word("off", {"is_off_s", "off_duration_s", "offset"}), "offset");
 }
 
 const auto numbers = parse_toml("minus = -1\nzero = 0\nhalf = 0.5\nthree = 3\nhuge = 1e300\n", "m.toml");
@@ -170,25 +171,31 @@ std::string refusal(const std::string& text) {
     return test::rejected([&] { require_known_format(parse_toml(text, "m.toml")); });
 }
 
-TEST(FileKinds, OneTakenForAnotherIsNamed) {
-    const auto refused = [](const std::string& text, FileKind expected) {
-        return test::rejected([&] { require_kind(parse_toml(text, "f.toml"), expected); });
+TEST(UnknownKeys, OfAllTablesAreReportedTogether) {
+    const auto root = parse_toml("rest = 1\nx = 2\n[t]\ncruse = 3\n", "m.toml");
+    const auto read = [&] {
+        root.refuse_keys_except({"reserve", "rest_s", "t"});
+        root.table("t").refuse_keys_except({"cruise"});
+        root.number("missing");
     };
-    const std::string model = "name = \"m\"\n[takeoff]\n";
-    const std::string pack = "capacity_ah = 5\nresistance_ohm = 0.1\n";
-    const std::string mission = "mechanical = \"m.toml\"\nbattery = \"p.toml\"\n";
-    EXPECT_EQ(refused(model, FileKind::battery),
-              "f.toml:2:2: is a mechanical model, not a battery; identify one with `flightwatt battery`");
-    EXPECT_EQ(refused(pack, FileKind::mechanical_model),
-              "f.toml:2:1: is a battery, not a mechanical model; fit one with `flightwatt batch` or `fit`");
-    EXPECT_EQ(refused(mission, FileKind::battery),
-              "f.toml:2:1: is a mission, not a battery; identify one with `flightwatt battery`");
-    EXPECT_EQ(refused(pack, FileKind::mission),
-              "f.toml:2:1: is a battery, not a mission; write one with `flightwatt new-mission`");
-    EXPECT_EQ(refused(model, FileKind::mechanical_model), "");
-    EXPECT_EQ(refused(pack, FileKind::battery), "");
-    EXPECT_EQ(refused(mission, FileKind::mission), "");
-    EXPECT_EQ(refused("unknown = 1", FileKind::battery), "");  // its reader says what is missing
+    EXPECT_EQ(test::rejected([&] { root.collect_unknown_keys(read); }),
+              "m.toml:1:1: 3 unknown keys: 'rest' in line 1 (did you mean 'rest_s'?), 'x' in line 2, 'cruse' in line 4 "
+              "(did you mean 'cruise'?); known keys: reserve, rest_s, t");
+    EXPECT_EQ(test::rejected(read),
+              "m.toml:1:1: 2 unknown keys: 'rest' in line 1 (did you mean 'rest_s'?), 'x' in line 2; "
+              "known keys: reserve, rest_s, t");
+}
+
+TEST(UnknownKeys, AreNamedByPartsAndSynonyms) {
+    const auto refused = [](const std::string& key) {
+        const auto root = parse_toml(key + " = 1", "m.toml");
+        return test::rejected([&] {
+            root.refuse_keys_except({"mechanical", "reserve_soc_percent", "airspeed_m_per_s"});
+        });
+    };
+    EXPECT_THAT(refused("reserve"), HasSubstr("did you mean 'reserve_soc_percent'?"));
+    EXPECT_THAT(refused("speed"), HasSubstr("did you mean 'airspeed_m_per_s'?"));
+    EXPECT_THAT(refused("model"), HasSubstr("did you mean 'mechanical'?"));
 }
 
 TEST(FormatVersion, IsOptionalAndKnown) {

@@ -46,6 +46,7 @@ std::optional<std::string> name;
 
 StageDefinition definition() {
     StageDefinition stage;
+    stage.next = [](const StageCall&) { return "flightwatt show {in} {}"; };
     stage.name = "trial";
     stage.arguments = "FILE...";
     stage.description = "Tries things.";
@@ -235,10 +236,17 @@ TEST(WriteResult, GoesToTheFileOrTheStandardOutput) {
     std::filesystem::remove(file);
     EXPECT_EQ(run({"a", "-o", file.string()}, body).out, "");
     EXPECT_EQ(read_file(file), "result\n");
+    EXPECT_EQ(
+        run({"a b", "-o", file.string()}, body).err,
+        "flightwatt-trial: " + file.string() + " is written; next: flightwatt show 'a b' " + file.string() + "\n");
+    EXPECT_EQ(run({"a", "-o", file.string(), "--json"}, body).err, "");
+    EXPECT_EQ(run({"a", "-o", file.string(), "--quiet"}, body).err, "");
     std::filesystem::remove(file);
     const auto missing = run({"a", "-o", "/missing/folder/x"}, body);
     EXPECT_EQ(missing.code, 1);
-    EXPECT_EQ(missing.err, "flightwatt-trial: error: cannot write /missing/folder/x: No such file or directory\n");
+    EXPECT_EQ(missing.err,
+              "flightwatt-trial: error: cannot write /missing/folder/x: No such file or directory; "
+              "make its folder first: mkdir -p /missing/folder\n");
 }
 
 TEST(RunStage, ReadsALogFromTheStandardInput) {

@@ -83,7 +83,7 @@ class Failures(unittest.TestCase):
         with self.assertRaises(fw.FlightWattError) as caught:
             fw.fit("missing.data")
         self.assertEqual(caught.exception.exit_code, 3)
-        self.assertIn("does not exist", caught.exception.messages)
+        self.assertIn("No such file", caught.exception.messages)
 
     def test_a_bad_log_among_good_ones_is_a_warning(self):
         with warnings.catch_warnings(record=True) as caught:

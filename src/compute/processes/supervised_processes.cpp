@@ -14,6 +14,7 @@
 #include <boost/process/child.hpp>
 #include <boost/process/extend.hpp>
 #include <boost/process/posix.hpp>
+#include <boost/process/start_dir.hpp>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/epoll.h>
@@ -88,7 +89,9 @@ void SupervisedProcesses::start(const std::vector<std::string>& words, const Sup
     std::error_code error;
     bp::child process(words.front(), bp::args(std::vector<std::string>(words.begin() + 1, words.end())),
                       bp::posix::fd.bind(STDIN_FILENO, nothing), bp::posix::fd.bind(STDOUT_FILENO, to(options.output)),
-                      bp::posix::fd.bind(STDERR_FILENO, to(options.errors)), bp::extend::on_exec_setup(prepare), error);
+                      bp::posix::fd.bind(STDERR_FILENO, to(options.errors)),
+                      bp::start_dir(options.folder.empty() ? "." : options.folder.string()),
+                      bp::extend::on_exec_setup(prepare), error);
     ::close(nothing);
     if (error) return void(not_started_.push_back({error.value(), 0, Clock::now()}));
     const auto child = process.id();

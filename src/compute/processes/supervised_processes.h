@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@ struct SupervisionOptions {
     int output = -1;  ///< file descriptor for standard output; -1: /dev/null
     int errors = -1;  ///< for standard error
     std::chrono::milliseconds kill_timeout{2000};
+    std::filesystem::path folder = {};  ///< where the commands run; empty: the current one
 };
 
 /// Result of ending the commands.

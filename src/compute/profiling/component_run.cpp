@@ -165,7 +165,7 @@ ComponentRun run_component(const std::vector<std::vector<std::string>>& commands
     const OutputFile output(frame.output);
     const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(ticks(frame.kill_timeout_s));
     const auto start = Clock::now();  // before starting the commands: a delay does not shorten their run
-    SupervisedProcesses processes(commands, {output.file(), output.file(), patience});
+    SupervisedProcesses processes(commands, {output.file(), output.file(), patience, frame.folder});
     auto run = Watch(start, &processes, timing, frame).run();
     const bool by_itself = run.status != RunStatus::timed_out && (run.status != RunStatus::ok || !timing.duration_s);
     note_ending(processes.end(), by_itself, run);

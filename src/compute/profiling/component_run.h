@@ -25,6 +25,7 @@ struct RunContext {
     int signals = -1;                      ///< readable after a signal to end (SignalWatch)
     std::function<int()> received_signal;  ///< the signal
     double kill_timeout_s = 2.0;           ///< between SIGTERM and SIGKILL
+    std::filesystem::path folder = {};     ///< where the commands run
 };
 
 /// Runs the commands and samples power for the duration, or until the first of them ends; then ends their processes. No

@@ -20,8 +20,7 @@ using Clock = std::chrono::steady_clock;
 class CommandSampler {
   public:
     explicit CommandSampler(const SamplerSettings& settings)
-        : command_(settings.command), interval_s_(settings.interval_s) {
-        command_.front() = program_path(settings.folder, command_.front());
+        : command_(settings.command), folder_(settings.folder), interval_s_(settings.interval_s) {
         start();
     }
     ~CommandSampler() { stop(); }
@@ -59,7 +58,7 @@ class CommandSampler {
         pending_.clear();
         constexpr std::chrono::milliseconds patience(500);  // no cleanup to wait for
         running_.emplace(std::vector<std::vector<std::string>>{command_},
-                         SupervisionOptions{ends[1], STDERR_FILENO, patience});
+                         SupervisionOptions{ends[1], STDERR_FILENO, patience, folder_});
         ::close(ends[1]);
     }
 
@@ -108,6 +107,7 @@ class CommandSampler {
     }
 
     std::vector<std::string> command_;
+    std::filesystem::path folder_;
     double interval_s_;
     std::optional<SupervisedProcesses> running_;
     int output_ = -1;

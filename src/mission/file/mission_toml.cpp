@@ -1,5 +1,6 @@
 #include "base/atomic_file.h"
 #include "base/toml_reader.h"
+#include "base/units.h"
 #include "compute/profile_reader.h"
 #include "mission/file/mission_tables.h"
 #include "mission/file/schedule_toml.h"
@@ -67,7 +68,7 @@ void read_durations(const TomlTable& root, MissionSetup& mission) {
                          "add duration_s = { takeoff = ..., cruise = ..., landing = ... }");
     }
     double total_s = 0.0;
-    const auto given = root.optional_table("duration_s");
+    const auto given = root.optional_table("duration_s", "{ cruise = 600 }");
     for (const auto phase : all_phases) {
         const auto name = to_string(phase);
         if (given && (!mechanical || given->has(name))) {
@@ -171,10 +172,16 @@ void require_schedule(const TomlTable& root, bool lacks_schedule) {
                      "`flightwatt plan` makes one; without [plan], [[schedule]] is taken as complete");
 }
 
-/// The mission with its schedule, or the planning problem with the fixed part of it.
-MissionVariant with_read_schedule(const TomlTable& root, const MissionReadOptions& reading, MissionSetup setup) {
+/// The mission with its schedule, or the planning problem with the fixed part of it. A complete schedule, such as the
+/// result of flightwatt plan, is stretched to a cruise of another duration than `stated_s`.
+MissionVariant with_read_schedule(const TomlTable& root, const MissionReadOptions& reading,
+                                  const PerPhase<double>& stated_s, MissionSetup setup) {
     auto adaptive = read_adaptive_policy(root);
-    auto entries = read_schedule(root, setup.compute, setup.duration_s);
+    const auto has_otherwise = [](const TomlTable& entry) { return entry.has("otherwise"); };
+    const bool is_stretched = reading.cruise_s && stated_s[Phase::cruise] > 0.0 && !adaptive && !root.has("plan") &&
+                              std::ranges::none_of(root.tables("schedule"), has_otherwise);
+    const auto& entries_s = is_stretched ? stated_s : setup.duration_s;
+    auto entries = read_schedule(root, setup.compute, entries_s);
     const bool lacks_schedule = entries.empty() && !setup.compute.components.empty();
     if (!reading.allow_unplanned && !adaptive) require_schedule(root, lacks_schedule);
     if (lacks_schedule || root.has("plan") || adaptive) {
@@ -191,7 +198,8 @@ MissionVariant with_read_schedule(const TomlTable& root, const MissionReadOption
         nothing.where = root.where();
         entries.push_back(nothing);
     }
-    auto schedule = resolve_schedule(entries, setup.duration_s);
+    auto schedule = resolve_schedule(entries, entries_s);
+    if (is_stretched) schedule = rescale_to_flown_durations(std::move(schedule), stated_s, setup.duration_s);
     return Mission{std::move(setup), std::move(schedule)};
 }
 
@@ -211,10 +219,10 @@ std::filesystem::path file_of(const TomlTable& table, std::string_view key) {
     return path;
 }
 
-MissionVariant parse_mission(std::string_view text, const std::filesystem::path& path,
-                             const MissionReadOptions& reading) {
-    const auto root = parse_toml(text, path.string());
-    require_kind(root, FileKind::mission);
+namespace {
+
+MissionVariant mission_from(const TomlTable& root, const std::filesystem::path& path,
+                            const MissionReadOptions& reading) {
     if (root.is_table("conditions"))
         throw InputError(root.where("conditions"), "conditions are no longer read: a cruise follows its airspeed alone",
                          "leave them out, or state airspeed_m_per_s at the top of the mission, with a model of "
@@ -233,6 +241,7 @@ MissionVariant parse_mission(std::string_view text, const std::filesystem::path&
     read_durations(root, mission);
     read_cruise_path(root, reading, mission);
     find_power_model(root, mission);
+    const auto stated_s = mission.duration_s;
     if (reading.cruise_s) {
         mission.duration_s[Phase::cruise] = *reading.cruise_s;
         mission.duration_is_stated[Phase::cruise] = true;
@@ -240,11 +249,26 @@ MissionVariant parse_mission(std::string_view text, const std::filesystem::path&
     read_mission_battery(root, mission);
     mission.may_charge = root.optional_boolean("may_charge").value_or(false);
     read_components(root, mission);
-    mission.initial_soc_percent = number_in_or(more_than_up_to(0.0, 100.0), root, "initial_soc_percent", 100.0);
+    mission.initial_soc_percent = optional_number_in(between(1.0, 100.0), root, "initial_soc_percent",
+                                                     "a full pack is 100; a charge of 0.98 is 98 %")
+                                      .value_or(100.0);
     mission.cutoff_voltage_v = number_in_or(between(0.0, 1e6), root, "cutoff_voltage_v", 0.0);
     mission.reserve_soc_percent = number_in_or(between(0.0, 100.0), root, "reserve_soc_percent", 0.0);
+    if (const double percent = mission.reserve_soc_percent; percent > 0.0 && percent < 1.0)
+        mission.notes.push_back(fmt::format("reserve_soc_percent = {} is {} % of the charge; are {} % meant?", percent,
+                                            percent, units::percentage(percent, 1.0)));
     mission.uncertainty = read_uncertainty(root, mission.compute, mission.mechanical.has_value());
-    return with_read_schedule(root, reading, std::move(mission));
+    return with_read_schedule(root, reading, stated_s, std::move(mission));
+}
+
+}  // namespace
+
+MissionVariant parse_mission(std::string_view text, const std::filesystem::path& path,
+                             const MissionReadOptions& reading) {
+    const auto root = parse_toml(text, path.string(), FileKind::mission);
+    std::optional<MissionVariant> mission;
+    root.collect_unknown_keys([&] { mission = mission_from(root, path, reading); });
+    return std::move(*mission);
 }
 
 MissionVariant read_mission(const std::filesystem::path& path, const MissionReadOptions& reading) {
