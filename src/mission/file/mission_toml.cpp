@@ -173,7 +173,7 @@ void require_schedule(const TomlTable& root, bool lacks_schedule) {
 }
 
 /// The mission with its schedule, or the planning problem with the fixed part of it. A complete schedule, such as the
-/// result of flightwatt plan, is stretched to a cruise of another duration than `stated_s`.
+/// result of flightwatt plan, is scaled in time to a cruise of another duration than `stated_s`.
 MissionVariant with_read_schedule(const TomlTable& root, const MissionReadOptions& reading,
                                   const PerPhase<double>& stated_s, MissionSetup setup) {
     auto adaptive = read_adaptive_policy(root);
