@@ -10,9 +10,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <map>
 
-#include <boost/process/search_path.hpp>
+#include <boost/algorithm/string.hpp>
 #include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
@@ -24,6 +25,17 @@ std::filesystem::path folder_of(const ProfileSpecification& specification) {
     return std::filesystem::path(specification.file).parent_path();
 }
 
+/// Whether the program, a path or a name to be found along PATH, can be executed.
+bool is_executable(const std::string& program, const std::filesystem::path& folder) {
+    std::vector<std::string> places{folder.string()};
+    const char* const path = std::getenv("PATH");
+    if (program.find('/') == std::string::npos)
+        boost::split(places, path != nullptr ? path : "/usr/bin:/bin", boost::is_any_of(":"));
+    return std::ranges::any_of(places, [&](const std::filesystem::path& place) {
+        return ::access((place / program).c_str(), X_OK) == 0;
+    });
+}
+
 /// Throws InputError for a program that is absent, before anything is measured.
 void require_programs(const ProfileSpecification& specification, const std::vector<ProfileRun>& runs) {
     const auto folder = (std::filesystem::current_path() / folder_of(specification)).lexically_normal();
@@ -32,8 +44,7 @@ void require_programs(const ProfileSpecification& specification, const std::vect
         for (const auto& command : specification.components[run.index].configurations[run.node].commands) {
             const auto& program = command.front();
             const bool is_path = program.find('/') != std::string::npos;
-            const auto file = is_path ? (folder / program).string() : boost::process::search_path(program).string();
-            if (::access(file.c_str(), X_OK) == 0) continue;
+            if (is_executable(program, folder)) continue;
             throw InputError({specification.file},
                              fmt::format("component {}: there is no program {} that can be executed {}", run.component,
                                          program, is_path ? "in " + folder.string() : "along PATH"),
