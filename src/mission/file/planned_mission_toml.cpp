@@ -153,7 +153,8 @@ PlannedMissionText planned_mission_toml(std::string_view text, const std::filesy
             if (auto* table = component.as_table()) move_path(*table, "profile", from, to, renamed);
     }
     if (auto* cruise = root.get_as<toml::table>("path"))
-        for (const std::string_view key : {"waypoints", "flight_plan", "area"}) move_path(*cruise, key, from, to, renamed);
+        for (const std::string_view key : {"waypoints", "flight_plan", "area"})
+            move_path(*cruise, key, from, to, renamed);
     const auto schedule_below = schedule_text(compute, schedule);
     if (const auto kept = edit_keeping_comments(plain, renamed, root)) return {*kept + schedule_below, false};
     std::ostringstream out;
