@@ -164,19 +164,23 @@ std::string motion_fact(const mechanical::PhysicalModel& model) {
     return fact("Level flight and climb", fmt::format("{:.0f} W", level_w), text);
 }
 
-std::string pack_fact(const battery::BatteryIdentification& identified) {
-    const auto& pack = identified.battery;
-    std::string text = "by the flights.";
-    if (identified.capacity.origin == battery::CapacityOrigin::given) {
-        text = "as given.";
-        if (const auto& estimate = pack.flight_estimate)
-            text +=
-                fmt::format(" The flights indicate {:.2g} Ah, and allow {:.2g} to {:.2g} Ah.", estimate->capacity_ah,
-                            estimate->capacity_interval_ah.low, estimate->capacity_interval_ah.high);
-    } else if (const auto& interval = identified.capacity.interval_ah) {
-        text = fmt::format("by the flights, which allow {:.2g} to {:.2g} Ah.", interval->low, interval->high);
-    }
-    return fact("Pack", fmt::format("{:.3g} Ah", pack.capacity_ah), text);
+/// The pack of the missions, or else of the flights, and what the flights indicate.
+std::string pack_fact(const PageSummary& answers) {
+    const auto& pack = answers.pack;
+    if (answers.missions.empty() && !pack) return "";
+    const bool is_given = pack && pack->capacity.origin == battery::CapacityOrigin::given;
+    const double capacity_ah = answers.missions.empty() ? pack->battery.capacity_ah
+                                                        : answers.missions.front().mission.setup.battery.capacity_ah;
+    std::string text = !answers.missions.empty() ? "in the missions." : is_given ? "as given." : "by the flights.";
+    const auto add = [&](double indicated_ah, const Interval& interval_ah) {
+        text += fmt::format(" The flights indicate {:.2g} Ah, and allow {:.2g} to {:.2g} Ah.", indicated_ah,
+                            interval_ah.low, interval_ah.high);
+    };
+    if (pack && pack->battery.flight_estimate)
+        add(pack->battery.flight_estimate->capacity_ah, pack->battery.flight_estimate->capacity_interval_ah);
+    else if (pack && pack->capacity.interval_ah)
+        add(pack->capacity.value_ah, *pack->capacity.interval_ah);
+    return fact("Pack", fmt::format("{:.3g} Ah", capacity_ah), text);
 }
 
 /// The flights with warnings, and the rejected logs, each with a link.
@@ -260,7 +264,7 @@ std::string aircraft_panel(const PageSummary& answers, Flights flights) {
         const auto end = line.find(" in ");
         facts += fact("How well are new flights predicted?", line.substr(0, end), line.substr(end + 1));
     }
-    if (answers.pack) facts += pack_fact(*answers.pack);
+    facts += pack_fact(answers);
     if (!facts.empty()) html += "<dl>\n" + facts + "</dl>\n";
     html += flight_notes_html(flights);
     if (const auto count = answers.warnings.size() + answers.notes.size(); count > 0)

@@ -63,6 +63,11 @@ std::string describe_run(const compute::ComputeModel& compute, const compute::Co
     return parts.empty() ? "no software" : fmt::format("{}", fmt::join(parts, ", "));
 }
 
+/// "27 s", "2 min 3 s".
+std::string whole_seconds(double time_s) {
+    return time_s < units::seconds_per_minute ? fmt::format("{:.0f} s", time_s) : duration_text(time_s);
+}
+
 /// Its configurations, the longest first: two, and how many more.
 std::string describe_software(const SimulatedMission& simulated) {
     const auto& mission = simulated.mission;
@@ -79,7 +84,7 @@ std::string describe_software(const SimulatedMission& simulated) {
     if (runs.empty()) return text + "no software";
     text += runs.front().second;
     if (runs.size() == 1) return mission.setup.compute.components.empty() ? text : text + ", all the time";
-    text += fmt::format("; for {} {}", duration_text(std::round(runs[1].first)), runs[1].second);
+    text += fmt::format("; for {} {}", whole_seconds(std::round(runs[1].first)), runs[1].second);
     return runs.size() == 2 ? text : text + fmt::format("; and {} more", runs.size() - 2);
 }
 
@@ -107,13 +112,13 @@ std::string describe_help(const SimulatedMission& simulated, const MissionAssess
     const bool is_cruise = reach && reach->unit == ReachUnit::cruise_s;
     const double spare_s = is_cruise ? reach->limit.value - planned_cruise_s(simulated) : 0.0;
     if (outcome == Outcome::keeps)
-        return spare_s >= 1.0 ? duration_text(std::floor(spare_s)) + " of cruise to spare" : "";
+        return spare_s >= 1.0 ? whole_seconds(std::floor(spare_s)) + " of cruise to spare" : "";
     std::vector<std::string> ways;
     // A plan does not reach further than the minimum of software.
     if (simulated.planned && answer.reach_at_95_percent && (!is_cruise || spare_s >= 0.0))
         ways.emplace_back("plan it with --probability 0.95");
     if (is_cruise && spare_s < 0.0)
-        ways.push_back(fmt::format("{} less cruise", duration_text(std::max(1.0, std::ceil(-spare_s)))));
+        ways.push_back(fmt::format("{} less cruise", whole_seconds(std::max(1.0, std::ceil(-spare_s)))));
     if (reach && !is_cruise) ways.push_back(fmt::format("{} at most", describe_reach(*reach)));
     constexpr double steps_per_ah = 10.0;
     if (answer.capacity_ah)

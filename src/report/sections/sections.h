@@ -105,7 +105,7 @@ std::optional<Section> notes_section(const PageSummary& answers);
 /// The missions' states of charge in one drawing.
 Section curves_section(std::span<const SimulatedMission> missions);
 
-/// Power by phase, energy of the cruise, error of predictions, pack, notes: HTML; empty without flights.
+/// Power by phase, energy of the cruise, error of predictions, pack, notes: HTML; empty without flights and missions.
 std::string aircraft_panel(const PageSummary& answers, std::span<const ReportFlight> flights);
 
 /// "20 Faulty: 3 flights, 3 to 10 July 2020; 9 missions".

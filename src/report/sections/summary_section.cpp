@@ -94,7 +94,8 @@ std::string better_schedule(const RankedCards& ranked, std::size_t of) {
         const bool is_same = other.mission.setup.reserve_soc_percent == setup.reserve_soc_percent &&
                              map_key(other.mission.setup) == map_key(setup);
         if (ranked.cards[i].outcome == Outcome::keeps && is_same && other.simulation.summary.samples)
-            return fmt::format("\u201c{}\u201d keeps the reserve in {} of flights", other.title,
+            return fmt::format("With \u201c{}\u201d {} in {} of flights", other.title,
+                               setup.reserve_soc_percent > 0.0 ? "it keeps the reserve" : "the battery lasts",
                                ranked.cards[i].probability);
     }
     return "";
