@@ -57,7 +57,7 @@ TEST(PhysicalSection, ShowsConstantsTrialsAndFigure) {
     ASSERT_EQ(section->figures.size(), 1u);
     EXPECT_THAT(section->figures.front().description, HasSubstr("160 bins of 4 flights"));
     EXPECT_THAT(section->figures.front().description, HasSubstr("best range: "));
-    EXPECT_EQ(section->figures.front().spec["layer"].size(), 7u);
+    EXPECT_EQ(section->figures.front().spec["layer"].size(), 8u);
 }
 
 TEST(PhysicalSection, KeepsItsTables) {
