@@ -31,7 +31,7 @@ void require_few_decisions(const PlanningProblem& known) {
 /// A few labels follow the plan all the way; more near the end, where what is left is spent.
 SearchLimits effort_for(double slots_left) {
     constexpr double searched_slots = 8.0;
-    return {1e-4, slots_left <= searched_slots ? std::size_t{200} : std::size_t{20}, 16};
+    return {1e-4, slots_left <= searched_slots ? std::size_t{200} : std::size_t{5}, 4};
 }
 
 /// Quantile of the relative deviation of mechanical power from the model's at the policy's probability: by the policy's

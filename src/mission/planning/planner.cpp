@@ -248,11 +248,15 @@ Plan plan_remaining(const PlanningProblem& problem, const PlanningTables& planne
     const auto slots = make_slots(problem, start.time_s);
     const auto choices = choices_of(problem, planner, start, slots);
     const auto exact = dynamics_of(problem, planner, start, slots, planner.step_s);
-    const auto quick = dynamics_of(problem, planner, start, slots, planner.quick_step_s);
-    const auto in_between = dynamics_of(problem, planner, start, slots, planner.quick_step_s / closer);
+    std::optional<SlotDynamics> quick;
+    std::optional<SlotDynamics> in_between;
+    if (planner.quick_step_s > planner.step_s) {
+        quick = dynamics_of(problem, planner, start, slots, planner.quick_step_s);
+        in_between = dynamics_of(problem, planner, start, slots, planner.quick_step_s / closer);
+    }
     const auto chosen = search_schedule({exact,
-                                         quick,
-                                         in_between,
+                                         quick ? *quick : exact,
+                                         in_between ? *in_between : exact,
                                          choices,
                                          {start.soc_percent, start.rc_voltage_v},
                                          reserve_soc_percent - rounding_percent},

@@ -197,7 +197,7 @@ FoundSchedule least_schedule(const ScheduleProblem& problem, const ScheduleGraph
 }
 
 /// As much of the effort as time and memory allow for many slots, choices or long runs.
-SearchLimits affordable(SearchLimits effort, const ScheduleGraph& graph) {
+SearchLimits affordable(SearchLimits effort, const SlotDynamics& dynamics, const ScheduleGraph& graph) {
     constexpr std::size_t max_slots_followed = 2000000;  // for the bound
     constexpr std::size_t max_labels_made = 6000000;
     constexpr std::size_t min_labels = 50;
@@ -208,6 +208,7 @@ SearchLimits affordable(SearchLimits effort, const ScheduleGraph& graph) {
             for (const auto& run : (*each)[i]) work += run.to - i;
     effort.value_cells = std::min(effort.value_cells, std::max(min_cells, max_slots_followed / work));
     effort.max_labels = std::min(effort.max_labels, std::max(min_labels, max_labels_made / work));
+    if (!dynamics.depletion_percent.empty()) effort.value_cells = 1;  // a choice takes the same at any charge
     return effort;
 }
 
@@ -278,7 +279,7 @@ void begin_with_long_runs(const ScheduleProblem& problem, SearchState& search) {
                                  choices,       problem.start,  problem.reserve_soc_percent};
     const auto graph = make_schedule_graph(choices);
     SearchState found{search.best};
-    improve(coarse, graph, affordable(quick_effort, graph), found);
+    improve(coarse, graph, affordable(quick_effort, problem.coarse, graph), found);
     search.best = std::move(found.best);
 }
 
@@ -286,7 +287,7 @@ void begin_with_long_runs(const ScheduleProblem& problem, SearchState& search) {
 
 SearchResult search_schedule(const ScheduleProblem& problem, const SearchLimits& wanted_effort) {
     const auto graph = make_schedule_graph(problem.choices);
-    const auto effort = affordable(wanted_effort, graph);
+    const auto effort = affordable(wanted_effort, problem.coarse, graph);
     const auto least = least_schedule(problem, graph);
     SearchState search;
     if (least.end_percent >= problem.reserve_soc_percent) search.best = least;

@@ -156,6 +156,17 @@ SlotDynamics extreme_dynamics(const MissionSetup& mission, const std::vector<Pha
     return dynamics;
 }
 
+std::vector<std::vector<double>> depletion_table(const SlotDynamics& dynamics) {
+    std::vector<std::vector<double>> table(dynamics.slots.size());
+    for (std::size_t slot = 0; slot < table.size(); ++slot) {
+        for (std::size_t choice = 0; choice < dynamics.compute_w.size(); ++choice) {
+            const auto end = advance_slot(dynamics, slot, choice, {0.0});
+            table[slot].push_back(end ? -end->soc_percent : std::numeric_limits<double>::infinity());
+        }
+    }
+    return table;
+}
+
 }  // namespace
 
 SlotDynamics make_slot_dynamics(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
@@ -169,6 +180,8 @@ SlotDynamics make_slot_dynamics(const MissionSetup& mission, const std::vector<P
     dynamics.slots.reserve(slots.size());
     for (const auto& slot : slots)
         dynamics.slots.push_back(slot_of(dynamics, load_segments(load, {slot, {}}), step_s, mechanical_factor));
+    if (!mission.battery.thevenin && mission.cutoff_voltage_v == 0.0)
+        dynamics.depletion_percent = depletion_table(dynamics);
     return dynamics;
 }
 
@@ -198,6 +211,11 @@ double choose_coarse_step_s(const MissionSetup& mission, const std::vector<Phase
 
 std::optional<battery::BatteryState> advance_slot(const SlotDynamics& dynamics, std::size_t slot, std::size_t choice,
                                                   const battery::BatteryState& state) {
+    if (!dynamics.depletion_percent.empty()) {
+        const double after_percent = state.soc_percent - dynamics.depletion_percent[slot][choice];
+        if (!std::isfinite(after_percent)) return std::nullopt;
+        return battery::BatteryState{std::min(after_percent, 100.0), state.rc_voltage_v};
+    }
     SlotRun run(dynamics.circuit, battery::VoltageLine(dynamics.open_circuit, state.soc_percent));
     std::optional<battery::BatteryState> after = state;
     for (const auto& part : dynamics.slots[slot].parts)

@@ -35,6 +35,9 @@ struct SlotDynamics {
     // Error bounds of long steps. A battery that fails by less than these is not ended.
     double error_percent = 0.0;
     double error_v = 0.0;
+    /// Of a constant source without cut-off: what each choice takes in each slot, from any state; infinite: more than
+    /// can be delivered.
+    std::vector<std::vector<double>> depletion_percent;
 };
 
 /// Assumed error bounds for steps of choose_coarse_step_s.
