@@ -100,7 +100,11 @@ TextTable model_table(const mechanical::MechanicalModel& model,
 }
 
 TextTable mean_power_table(const mechanical::MechanicalModel& model) {
-    TextTable table{{"phase", "mean W", "low 95 %", "high 95 %", "RMS W", "R2", "flights", "samples"}, {}};
+    // R2 is part of the errors (--errors).
+    const bool has_r2 = std::ranges::any_of(flight::all_phases,
+                                            [&](const auto phase) { return model.phases[phase].errors.has_value(); });
+    TextTable table{{"phase", "mean W", "low 95 %", "high 95 %", "RMS W", "flights", "samples"}, {}};
+    if (has_r2) table.header.insert(table.header.begin() + 5, "R2");
     for (const auto phase : flight::all_phases) {
         const auto power = mean_power(model, phase);
         if (!power) continue;
@@ -108,8 +112,9 @@ TextTable mean_power_table(const mechanical::MechanicalModel& model) {
         const auto r2 = fitted.errors ? std::optional(fitted.errors->r2) : std::nullopt;
         const auto end = [&](double Interval::*of) { return power->interval ? fixed((*power->interval).*of, 2) : "-"; };
         table.rows.push_back({std::string(to_string(phase)), fixed(power->mean_w, 2), end(&Interval::low),
-                              end(&Interval::high), fixed(fitted.rms_w, 2), fixed(r2, 3),
-                              fmt::format("{}", power->flights), fmt::format("{}", power->samples)});
+                              end(&Interval::high), fixed(fitted.rms_w, 2), fmt::format("{}", power->flights),
+                              fmt::format("{}", power->samples)});
+        if (has_r2) table.rows.back().insert(table.rows.back().begin() + 5, fixed(r2, 3));
     }
     return table;
 }
