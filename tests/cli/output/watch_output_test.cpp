@@ -87,14 +87,14 @@ TEST(WatchOutput, SaysWhenToTurnHome) {
         HasSubstr("reserve in 10.0 min of cruise, probability of landing below it 3.1 %, turn home within 1.5 min"));
     state.turn_home = live::ReturnDeadline{};
     EXPECT_THAT(line_of(state, two_components()), HasSubstr("too late to turn home"));
+    const auto compute = two_components();
+    EXPECT_TRUE(record_json(WatchState{&state, &compute})["turn_home"]["latest_in_s"].is_null());
     state.prediction.emplace();
     EXPECT_THAT(line_of(state, two_components()), HasSubstr("too late to land"));
     state.turn_home = live::ReturnDeadline{90.0, true};
     EXPECT_THAT(line_of(state, two_components()), HasSubstr("land within 1.5 min or finish as planned"));
     state.prediction->overtime_s = 60.0;
     EXPECT_THAT(line_of(state, two_components()), HasSubstr("Wh if it lands now"));
-    const auto compute = two_components();
-    EXPECT_TRUE(record_json(WatchState{&state, &compute})["turn_home"]["latest_in_s"].is_null());
 }
 
 TEST(WatchOutput, ACommandFindsTheDecisionInItsEnvironment) {
