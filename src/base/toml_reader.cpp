@@ -321,6 +321,7 @@ void TomlTable::collect_unknown_keys(const std::function<void()>& read) const {
     } catch (const std::exception&) {
         if (root_->unknown.empty()) throw;
     }
+    root_->collects = false;
     if (!root_->unknown.empty()) refuse_keys(root_->unknown);
 }
 

@@ -124,9 +124,11 @@ TEST(Options, RefuseWholeNumbersOutsideTheirRange) {
 }
 
 TEST(Options, RefuseNumbersOutsideTheirRange) {
-    for (const std::string text : {"0.49", "1", "nan", "inf"})
+    for (const std::string text : {"0.49", "1"})
         EXPECT_EQ(refusal({"--share=" + text}), "--share " + text + ": expected 0.5 or more and less than 1");
-    EXPECT_EQ(refusal({"--share=half"}), "--share half: expected a number without a unit, 0.5 or more and less than 1");
+    for (const std::string text : {"nan", "inf", "half"})
+        EXPECT_EQ(refusal({"--share=" + text}),
+                  "--share " + text + ": expected a number without a unit, 0.5 or more and less than 1");
     for (const std::string text : {"0", "-2", "2200"})
         EXPECT_EQ(refusal({"--capacity=" + text}),
                   "--capacity " + text + ": expected more than 0 and at most 200 Ah; not mAh");

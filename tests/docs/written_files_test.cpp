@@ -102,7 +102,7 @@ TEST(WrittenColumns, AreDocumented) {
     expect_columns(folder / "profiles" / "idle.csv", "Power profile");
     expect_columns(folder / "profiles" / "detection.csv", "Power profile");
     output_of("synthesize", {published, "--flights", "1", "--cruise", "60", "--truth", "-o", "made"}, folder);
-    expect_columns(folder / "made" / "opterra_synthetic_01.truth.csv", "Truth");
+    expect_columns(folder / "made" / "opterra-table1_synthetic_01.truth.csv", "Truth");
 }
 
 /// Calls `found` for each value of a JSON text, with its path: "phases.takeoff.cos_w[]".

@@ -113,7 +113,7 @@ TEST(TableOne, CanHaveIntervals) {
     model.phases[flight::Phase::cruise].errors =
         PhaseErrors{1e-5, 0.05, {0.01, 0.02, 0.03}, {0.04, 0.05, 0.06}, 0.02, 1e9, false, 0.9, 0.1, 400.0};
     const auto table = table_one(model, TableIntervals::present);
-    ASSERT_EQ(table.header.size(), 7U);
+    ASSERT_EQ(table.header.size(), 8U);
     EXPECT_EQ(table.header[4], "cruise 95 %");
     EXPECT_EQ(table.rows[0][4], "27.12 to 27.32");    // 1.96 standard errors
     EXPECT_EQ(table.rows[7][4], "0.1795 to 0.1803");  // of xi = omega * 600 / 28
@@ -121,8 +121,8 @@ TEST(TableOne, CanHaveIntervals) {
     model.phases[flight::Phase::cruise].errors->frequency_is_fixed = true;
     EXPECT_EQ(table_one(model, TableIntervals::present).rows[7][4], "-");
     const auto beside = table_one_comparison(test::published_model(), model, TableIntervals::present);
-    EXPECT_EQ(beside.header.size(), 10U);
-    for (const auto& row : beside.rows) EXPECT_EQ(row.size(), 10U);
+    EXPECT_EQ(beside.header.size(), 11U);
+    for (const auto& row : beside.rows) EXPECT_EQ(row.size(), 11U);
 }
 
 TEST(TableOneLatex, IsThePapersTable) {
@@ -132,18 +132,18 @@ TEST(TableOneLatex, IsThePapersTable) {
 \centering
 \caption{Constants for the mechanical energy model}
 \label{tab:mechanical-energy-model}
-\begin{tabular}{lrrr}
+\begin{tabular}{lrrrl}
 \toprule
- & take-off & cruise & landing \\
+ & take-off & cruise & landing & unit \\
 \midrule
-$a_{0}$ & $29.97$ & $27.22$ & $27.21$ \\
-$a_{1}$ & $1.57$ & $0.3737$ & $-0.9512$ \\
-$b_{1}$ & $-1.963$ & $1.194$ & $1.276$ \\
-$a_{2}$ & $0.3876$ & $0.6513$ & $0.9357$ \\
-$b_{2}$ & $-1.552$ & $0.2954$ & $0.965$ \\
-$a_{3}$ & $-0.2869$ & $0.5039$ & $0.4913$ \\
-$b_{3}$ & $-0.547$ & $-0.2864$ & $-0.1192$ \\
-$\xi$ & $0.1525$ & $0.1799$ & $0.1296$ \\
+$a_{0}$ & $29.97$ & $27.22$ & $27.21$ & W \\
+$a_{1}$ & $1.57$ & $0.3737$ & $-0.9512$ & W \\
+$b_{1}$ & $-1.963$ & $1.194$ & $1.276$ & W \\
+$a_{2}$ & $0.3876$ & $0.6513$ & $0.9357$ & W \\
+$b_{2}$ & $-1.552$ & $0.2954$ & $0.965$ & W \\
+$a_{3}$ & $-0.2869$ & $0.5039$ & $0.4913$ & W \\
+$b_{3}$ & $-0.547$ & $-0.2864$ & $-0.1192$ & W \\
+$\xi$ & $0.1525$ & $0.1799$ & $0.1296$ & rad \\
 \bottomrule
 \end{tabular}
 \end{table}

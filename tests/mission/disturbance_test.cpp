@@ -141,7 +141,7 @@ TEST(DisturbanceFile, RefusesWhatMakesNoSense) {
     EXPECT_NE(refused("compute_w = 1\n[[disturbance]]\nformat = 2").find("unknown key 'format'"), std::string::npos);
     const auto folder = scratch_dir();
     const auto path = write_text(folder / "empty.toml", "");
-    EXPECT_NE(rejected([&] { read_disturbances(path, durations); }, folder).find("there are no disturbances"),
+    EXPECT_NE(rejected([&] { read_disturbances(path, durations); }, folder).find("empty.toml: is empty"),
               std::string::npos);
 }
 

@@ -322,7 +322,7 @@ TEST(MissionFile, RefusesAMissionThatDoesNotFitItsParts) {
     EXPECT_EQ(of(flight + "duration_s = { takeoff = 0, cruise = 0, landing = 0 }\n"),
               "m.toml:3:1: all phases take 0 s, expected a mission");
     EXPECT_EQ(of(flight + "duration_s = { cruising = 10 }\n"),
-              "m.toml:3:16: unknown key 'cruising'; known keys: cruise, landing, takeoff");
+              "m.toml:3:16: unknown key 'cruising'; known keys of [duration_s]: cruise, landing, takeoff");
     EXPECT_EQ(of("mechanical = none\n").substr(0, 29), "m.toml:1:15: is not TOML: Err");
     // What is wrong in a model is placed in the model's file.
     write_text(folder / "opterra.toml", "name = \"x\"\n");

@@ -40,8 +40,8 @@ for spec in specs:
 print(f"{len(specs)} figures")
 PYTHON
 
-# In a column of 3.5 inches nothing is wider, or taller than 4.5 inches, and type is of 8 points, 10.67 pixels.
-"$bin/flightwatt-report" "$scratch/out" "$source/missions/paper/phased.toml" --figures "$scratch/column" --figure-width 3.5in --figure-font serif 2>/dev/null
+# In a column of 3.5 inches nothing is wider, or taller than 4.2 inches, and type is of 8 points, 10.67 pixels.
+"$bin/flightwatt-report" "$scratch/out" "$source/missions/paper/phased.toml" --figures "$scratch/column" --figure-width 3.5in --figure-height 4.2in --figure-font serif 2>/dev/null
 python3 - "$scratch/column" <<'PYTHON'
 import glob, os, re, sys
 
@@ -53,7 +53,7 @@ for drawing in drawings:
     width = float(re.search(r'<svg[^>]* width="([\d.]+)"', svg).group(1))
     assert 200 < width <= 336.5, (drawing, width)
     height = float(re.search(r'<svg[^>]* height="([\d.]+)"', svg).group(1))
-    assert height <= 432.5, (drawing, height)
+    assert height <= 403.7, (drawing, height)
     assert "Serif" in svg and "DejaVu Sans" not in svg, drawing
     sizes = {float(size) for size in re.findall(r'font-size="([\d.]+)px"', svg)}
     assert sizes and all(abs(size - 32 / 3) < 0.01 for size in sizes), (drawing, sizes)

@@ -47,7 +47,8 @@ class RefusedFile : public testing::Test {
 
 TEST_F(RefusedFile, IsNone) {
     std::filesystem::create_directory(folder / "folder.data");
-    EXPECT_EQ(reading("missing.data"), "missing.data: cannot be read: No such file or directory");
+    EXPECT_EQ(reading("missing.data"),
+              "missing.data: cannot be read: No such file or directory; its folder has folder.data");
     EXPECT_EQ(reading("folder.data"), "folder.data: is a folder, expected a file; name a file in it");
     std::filesystem::create_symlink("/dev/null", folder / "device.data");
     EXPECT_EQ(reading("device.data"), "device.data: is not a regular file");
