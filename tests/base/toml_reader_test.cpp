@@ -184,7 +184,8 @@ TEST(UnknownKeys, OfAllTablesAreReportedTogether) {
         "(did you mean 'cruise'?); known keys: reserve, rest_s, t");
     EXPECT_EQ(test::rejected(read),
               "m.toml:1:1: 2 unknown keys: 'rest' in line 1 (did you mean 'rest_s'?), 'elephant' in line 2; "
-              "known keys: reserve, rest_s, t");
+              "known keys: missing, reserve, rest_s, t")
+        << "one table alone";
 }
 
 TEST(UnknownKeys, AreNamedByPartsAndSynonyms) {
