@@ -90,7 +90,8 @@
     if (isKnown(battery?.reserve_in_s)) list.push([state.reserve_soc_percent > 0 ? "Reserve reached in" : "Empty in", ...duration(battery.reserve_in_s), overtime ? "at the mean power so far" : "if the cruise continues"]);
     const verb = isKnown(prediction?.cruise.path_at_s) ? "Turn home" : "Land";
     if (home && home.latest_in_s === null) list.push([verb, "now", "", "too late for the reserve", "home"]);
-    else if (home) list.push([`${verb} within`, ...duration(home.latest_in_s), home.path_can_be_flown ? "or finish as planned" : "to keep the reserve", "home"]);
+    else if (home?.path_can_be_flown) list.push(["Planned landing in", ...duration(home.latest_in_s), "keeps the reserve", "home"]);
+    else if (home) list.push([`${verb} within`, ...duration(home.latest_in_s), "to keep the reserve", "home"]);
     return list;
   }
   // --- small values: [label, text] ---

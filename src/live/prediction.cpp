@@ -145,7 +145,7 @@ BatteryPrediction predict_battery(const PredictionInput& input, const flight::Fl
 
 /// Throws InputError where the model allows no prediction.
 void require_predicting(const PredictionInput& input, const std::string& file) {
-    if (input.path)
+    if (input.path || input.motion)
         require_physical(input.model, file, "--mission");
     else
         require_interval(input.model, flight::Phase::cruise, file);
@@ -159,6 +159,8 @@ PredictionInput unchecked_input(const mission::MissionSetup& setup) {
         input.path = std::make_shared<const path::PathForecast>(*setup.cruise_path->plan);
     else
         input.cruise_s = setup.duration_s[flight::Phase::cruise];
+    if (!setup.cruise_path && setup.airspeed_m_per_s)
+        input.motion = mechanical::FlightState{.airspeed_m_per_s = *setup.airspeed_m_per_s};
     return input;
 }
 

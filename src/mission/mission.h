@@ -50,6 +50,7 @@ struct MissionSetup {
     std::string name;
     std::optional<mechanical::MechanicalModel> mechanical;  ///< none: computing alone
     mechanical::PhaseTimeScaling phase_clock = mechanical::PhaseTimeScaling::scaled;
+    std::optional<double> airspeed_m_per_s = {};  ///< of the cruise, if stated
     /// The cruise's mean power at the stated airspeed, or along its path; the cruise has this level then.
     std::optional<mechanical::ConstantPower> cruise_level = {};
     std::optional<path::CruisePath> cruise_path = {};  ///< source of the cruise's power instead of the model's curve

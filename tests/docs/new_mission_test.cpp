@@ -110,6 +110,7 @@ std::string with_block(const std::vector<std::string>& lines, const std::pair<st
         if (!is_taken && decides && in_schedule && !lines[i].starts_with("#")) continue;
         if (!is_taken && is_utility && lines[i].starts_with("utility")) continue;
         if (!is_taken && states_cruise && lines[i].starts_with("airspeed_m_per_s")) continue;
+        if (!is_taken && states_cruise && lines[i].starts_with("duration_s")) continue;
         text += (is_taken ? lines[i].substr(1) : lines[i]) + "\n";
     }
     return text;

@@ -22,6 +22,10 @@ constexpr double fix_loss_s = 120.0;    // or within this time, if it was stuck 
 constexpr std::size_t max_jumps = 10;   // of a usable altitude
 constexpr double stuck_s = 10.0;        // a value that is repeated for this time,
 constexpr std::size_t stuck_count = 5;  // in this many samples, is that of an estimator without a fix
+constexpr double min_pause_s = 2.5;     // of a link that may deliver what it held
+constexpr double max_pause_s = 10.0;
+constexpr double delivery_s = 2.0;      // of what was held
+constexpr double climb_m_per_s = 15.0;  // and descent, of most aircraft
 constexpr double min_piece_s = 5.0;
 constexpr double long_piece_s = 20.0;
 constexpr double max_jump_m = 1000.0;
@@ -40,13 +44,32 @@ bool is_beyond(const Track& track, std::size_t i, std::size_t j, double step_m, 
     return std::abs(track.value[j] - track.value[i]) > step_m + rate_m_per_s * (track.time_s[j] - track.time_s[i]);
 }
 
+/// How far each sample may be from the one before it, as a link that held samples delivers them at once: what an
+/// aircraft climbs or descends in the pause before.
+std::vector<double> allowed_after_pause_m(const Track& track) {
+    std::vector<double> allowed_m(track.time_s.size(), 0.0);
+    double pause_s = 0.0;
+    double pause_end_s = 0.0;
+    for (std::size_t i = 1; i < allowed_m.size(); ++i) {
+        const double step_s = track.time_s[i] - track.time_s[i - 1];
+        if (step_s >= min_pause_s) {
+            pause_s = std::min(step_s, max_pause_s);
+            pause_end_s = track.time_s[i];
+        } else if (pause_s > 0.0 && track.time_s[i] - pause_end_s <= delivery_s) {
+            allowed_m[i] = climb_m_per_s * pause_s;
+        }
+    }
+    return allowed_m;
+}
+
 /// The pieces between jumps, in order.
 std::vector<IndexSpan> pieces_of(const Track& track) {
     const auto stuck = stuck_altitudes(track);
+    const auto allowed_m = allowed_after_pause_m(track);
     const auto continues = [&](std::size_t i) {
         const bool has_fix = !stuck[i - 1] && !stuck[i];
         return (has_fix || !is_beyond(track, i - 1, i, fix_jump_m, fix_jump_m_per_s)) &&
-               !is_beyond(track, i - 1, i, jump_m, jump_m_per_s);
+               !is_beyond(track, i - 1, i, jump_m + allowed_m[i], jump_m_per_s);
     };
     return runs_of(
         {0, stuck.size()}, [](std::size_t) { return true; }, continues);

@@ -73,12 +73,13 @@ void add_reserve_alarm(const LiveState& state, std::string_view before, std::vec
     const bool is_alarm = reaches(probability, alarm_probability, before == alarm);
     if (!is_alarm && !reaches(probability, caution_probability, !before.empty())) return;
     const auto& battery = *state.prediction->battery;
-    const auto* missed =
-        battery.limits.reserve_soc_percent > 0.0 ? "the reserve will be missed" : "the battery will be empty";
+    const bool has_reserve = battery.limits.reserve_soc_percent > 0.0;
     auto action =
-        is_alarm ? fmt::format("{}: {}", return_text(state), missed)
-                 : fmt::format("{}: {:.0f} of 100 flights {}", return_text(state), units::percentage(probability, 1.0),
-                               battery.limits.reserve_soc_percent > 0.0 ? "miss the reserve" : "run empty");
+        probability > 0.5
+            ? fmt::format("{}: {}", return_text(state),
+                          has_reserve ? "the reserve will be missed" : "the battery will be empty")
+            : fmt::format("{}: {:.0f} of 100 flights {}", return_text(state), units::percentage(probability, 1.0),
+                          has_reserve ? "miss the reserve" : "run empty");
     alarms.push_back({"reserve", is_alarm ? alarm : caution, reserve_text(battery, probability), std::move(action)});
 }
 

@@ -244,6 +244,7 @@ void apply_airspeed(const TomlTable& mission_table, MissionSetup& mission) {
     }
     if (!is_within_flown_range(physical, motion))
         mission.notes.push_back(fmt::format("{} ({:.4g} to {:.4g} m/s): its power is extrapolated", beyond, low, high));
+    mission.airspeed_m_per_s = airspeed;
     const double duration_s = mission.mechanical->phases[Phase::cruise].duration_s;
     set_cruise_level(predicted_power(physical, term_values(motion), duration_s), mission);
 }

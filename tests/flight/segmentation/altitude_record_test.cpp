@@ -4,6 +4,7 @@
 #include "flight/segmentation.h"
 #include "helpers/flown_points.h"
 
+#include <algorithm>
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -135,6 +136,23 @@ TEST(AltitudeRecord, JumpsByMoreThan10MetresAnd60MetresPerSecond) {
     EXPECT_EQ(jumps_of({{0, 60}, {71, 60}}), 1U);
     EXPECT_EQ(jumps_of({{0, 60}, {130, 60}}, 2.0), 0U);
     EXPECT_EQ(jumps_of({{0, 60}, {131, 60}}, 2.0), 1U);
+}
+
+/// A link that holds 5 s of a descent and delivers them at once is no jump; 100 m after such a pause are one.
+TEST(AltitudeRecord, DoesNotJumpWhereALinkDeliversWhatItHeld) {
+    const auto jumps_with = [](double at_once_m) {
+        Track track;
+        for (int i = 0; i < 400; ++i) {
+            const double sent_s = 0.5 * i;
+            const bool is_held = sent_s > 100.0 && sent_s < 105.0;
+            track.time_s.push_back(is_held ? 105.0 + 0.001 * i : std::max(sent_s, sent_s == 105.0 ? 105.3 : 0.0));
+            track.value.push_back(sent_s < 104.0 ? 300.0 : 300.0 - at_once_m);
+        }
+        std::sort(track.time_s.begin(), track.time_s.end());
+        return clean_altitude(track).jumps_s.size();
+    };
+    EXPECT_EQ(jumps_with(34.0), 0U);
+    EXPECT_EQ(jumps_with(120.0), 1U);
 }
 
 TEST(AltitudeRecord, JumpsWithLessWhereItStoodStillForTenSecondsAndFiveSamples) {

@@ -70,14 +70,14 @@ TEST(AlarmsOf, TheActionStatesTheTimeLeft) {
     EXPECT_EQ(action_of(flying(0.16)), "Turn home within 8 min: 16 of 100 flights miss the reserve");
     auto state = flying(0.3);
     state.turn_home->path_can_be_flown = true;
-    EXPECT_EQ(action_of(state), "Shorten the cruise: the reserve will be missed");
+    EXPECT_EQ(action_of(state), "Shorten the cruise: 30 of 100 flights miss the reserve");
     state = flying(0.3);
     state.prediction->on_path_s.reset();
-    EXPECT_EQ(action_of(state), "Land within 8 min: the reserve will be missed");
+    EXPECT_EQ(action_of(state), "Land within 8 min: 30 of 100 flights miss the reserve");
     state.prediction->battery->limits.reserve_soc_percent = 0.0;
-    EXPECT_EQ(action_of(state), "Land within 8 min: the battery will be empty");
+    EXPECT_EQ(action_of(state), "Land within 8 min: 30 of 100 flights run empty");
     state.turn_home.reset();
-    EXPECT_EQ(action_of(state), "Land now: the battery will be empty");
+    EXPECT_EQ(action_of(state), "Land now: 30 of 100 flights run empty");
     EXPECT_EQ(alarms_of(flying(0.97), input(), {}).front().text,
               "23.4 % at landing, reserve 20 %; probability of missing it 97 %");
 }
