@@ -37,7 +37,6 @@ struct ReportArguments {
     std::optional<std::string> figure_height;
     bool figures_are_serif = false;
     std::optional<std::string> published;
-    std::optional<std::string> reference_figures;
     std::optional<std::string> title;
     std::optional<std::string> outline;
     std::optional<double> capacity_ah;
@@ -115,10 +114,6 @@ int write_page(const cli::StageCall& call, const ReportArguments& arguments) {
     report::PageHead head{.title = "",
                           .name = "FlightWatt report",
                           .facts = {{"computed", time_of_report()}, {"by", "flightwatt " FLIGHTWATT_VERSION}}};
-    if (const auto& folder = arguments.reference_figures) {
-        input.figures = report::read_published_figures(*folder);
-        head.facts.emplace_back("reference", "the paper's Figs. 2 (c-e), 3 (a, b) and 4, digitised");
-    }
     const auto content = make_report(input, log_of(call));
     head.title = content.title;
     if (arguments.title) head.title = head.name = valid_utf8(*arguments.title);
@@ -138,7 +133,7 @@ int flightwatt::stages::report_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "report", "[OUT] [MISSION.toml...] -o report.html",
         R"(Writes one HTML page, to be opened offline, of the folder OUT of flightwatt batch (flights, model,
-validation, battery) and of missions (software, schedules, quality of service, plan). Its figures are
+validation, battery) and of missions (software, schedules, quality of service). Its figures are
 Vega-Lite specifications with their data; --figures writes them as files for papers: .vl.json, .svg (by node)
 and .pdf (where rsvg-convert is). The model is the batch's own, with the bands that the batch stored.)"};
     stage.next = [](const auto&) { return "open it in a browser"; };
@@ -156,8 +151,6 @@ and .pdf (where rsvg-convert is). The model is the batch's own, with the bands t
     options.add_choice<bool>("figure-font", arguments.figures_are_serif, {{"sans", false}, {"serif", true}},
                              {.value = "FONT", .needs = {"figures"}}, "of those files");
     options.add("published", arguments.published, cli::input_file("MODEL.toml"), "show Table I next to this model's");
-    options.add("reference-figures", arguments.reference_figures, cli::input_file("DIR"),
-                "show the paper's figures, digitised, next to ours: fig2_cruise.csv and others");
     options.add("title", arguments.title, {.value = "TITLE"}, "of the page");
     options.add("outline", arguments.outline, cli::input_file("FILE.geojson"),
                 "draw its lines and polygons below the flown tracks: a field, a coast, an airspace");

@@ -3,7 +3,7 @@
 (() => {
   const read = (id) => JSON.parse(document.getElementById(`data-${id}`)?.textContent ?? "[]");
   const missions = read("missions");
-  const tracks = read("tracks");
+  const tracks = read("tracks").map(centred);
   const selected = { mission: 0, cells: new Map() };
   const paper = { mission: 400, spark: 96, curves: 670, cell: 330, track: 214 }; // widths of print [px]
   let printing = false;
@@ -224,21 +224,45 @@
   };
 
   // Flown tracks, all on one scale.
+  /** A track in metres from its middle, with its half extent and the outlines at its place. */
+  function centred(track) {
+    const points = track.lines.flatMap((one) => one.points);
+    const [low, high] = [Math.min, Math.max].map((end) => [0, 1].map((axis) => end(...points.map((point) => point[axis]))));
+    const middle = low.map((value, axis) => (value + high[axis]) / 2);
+    const moved = ([east, north]) => [east - middle[0], north - middle[1]];
+    const projected = ([longitude, latitude]) => {
+      const [east, north, atLongitude, atLatitude] = track.place;
+      const perDegree = 111195; // m
+      return moved([east + (longitude - atLongitude) * perDegree * Math.cos((atLatitude * Math.PI) / 180), north + (latitude - atLatitude) * perDegree]);
+    };
+    return {
+      ...track,
+      half_m: Math.max(1, high[0] - middle[0], high[1] - middle[1]),
+      lines: track.lines.map((one) => ({ ...one, points: one.points.map(moved) })),
+      marks: track.marks.map((mark) => ({ ...mark, point: moved(mark.point) })),
+      outlines: track.place ? read("outlines").map((points) => points.map(projected)) : [],
+    };
+  }
+  tracks.forEach(({ title, text: words }, i) => {
+    const box = html("div", "drawn");
+    Object.assign(box.dataset, { draw: "track", track: i });
+    document.querySelector(".maps").append(html("div", "card", html("h3", "", title), html("p", "soft", words), box));
+  });
   draw.track = (box) => {
-    const { title, lines, marks, outline } = tracks[box.dataset.track];
+    const { title, lines, marks, outlines } = tracks[box.dataset.track];
     const size = Math.max(160, widthOf(box));
     const half = 1.12 * Math.max(...tracks.map(({ half_m }) => half_m));
     const at = ([east, north]) => [size / 2 + (east / half) * (size / 2), size / 2 - (north / half) * (size / 2)];
     const d = (points) => points.map((point, i) => `${i ? "L" : "M"}${at(point).map((v) => v.toFixed(1)).join(" ")}`).join("");
     const root = svg("svg", { width: size, height: size, viewBox: `0 0 ${size} ${size}`, role: "img", "aria-label": `Ground track of ${title}. ${marks.map((mark) => mark.text).join("; ")}` });
-    for (const points of outline) root.append(svg("path", { d: d(points), class: "outline" }));
+    for (const points of outlines) root.append(svg("path", { d: d(points), class: "outline" }));
     const bar = [100, 200, 500, 1000, 2000, 5000, 10000].find((metres) => (metres / half) * (size / 2) > 50) ?? 20000;
     const step = (bar / half) * (size / 2);
     for (let v = size / 2 % step; v < size; v += step) root.append(line(v, 0, v, size, "grid"), line(0, v, size, v, "grid"));
     for (const phase of ["cruise", "take-off", "landing"]) for (const one of lines) if (one.phase === phase) root.append(svg("path", { d: d(one.points), class: `flown ${phase.replace("-", "")}` }));
     const sides = [[], []];
     for (const mark of marks) {
-      const [x, y] = at([mark.x, mark.y]);
+      const [x, y] = at(mark.point);
       sides[Number(x >= size / 2)].push({ x, y, text: mark.text });
     }
     sides.forEach((side, right) => {

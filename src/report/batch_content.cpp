@@ -138,9 +138,9 @@ FlightSummary summarize_flight(const ReportFlight& flight, std::optional<std::si
     facts.date = date_of(facts.start_clock_s);
     facts.distance_m = 0.0;
     if (!airspeed.empty()) facts.air_distance_m = 0.0;
-    if (power.has_power()) facts.energy_wh = 0.0;
-    double cruise_wh = 0.0;
-    double cruise_s = 0.0;
+    if (power.has_power()) facts.energy_wh = facts.counter_wh = 0.0;
+    flight::PerPhase<double> energy_wh;
+    double cruise_m = 0.0;  // through the air
     for (std::size_t s = 0; s < flight.phases.sorties.size(); ++s) {
         if (sortie && s != *sortie) continue;
         const double start_s = flight.phases.sorties[s].phases.front().start.time_s;
@@ -151,14 +151,20 @@ FlightSummary summarize_flight(const ReportFlight& flight, std::optional<std::si
             facts.height_m = std::max(*height_m, facts.height_m.value_or(*height_m));
         if (facts.air_distance_m)
             *facts.air_distance_m += flight::integrated(airspeed.time_s, airspeed.value, start_s, end_s);
-        if (facts.energy_wh) *facts.energy_wh += power.between(start_s, end_s).energy_wh;
+        const auto whole = power.between(start_s, end_s);
+        if (facts.energy_wh) *facts.energy_wh += whole.energy_wh;
+        add(facts.counter_wh, whole.counter_energy_wh);
         for (const auto& span : flight.phases.sorties[s].phases) {
-            if (span.phase != flight::Phase::cruise) continue;
-            cruise_wh += power.between(span.start.time_s, span.end.time_s).energy_wh;
-            cruise_s += span.duration_s();
+            energy_wh[span.phase] += power.between(span.start.time_s, span.end.time_s).energy_wh;
+            facts.duration_s[span.phase] += span.duration_s();
+            if (span.phase == flight::Phase::cruise && facts.air_distance_m)
+                cruise_m += flight::integrated(airspeed.time_s, airspeed.value, span.start.time_s, span.end.time_s);
         }
     }
-    if (power.has_power() && cruise_s > 0.0) facts.cruise_power_w = units::joule_from_wh(cruise_wh) / cruise_s;
+    for (const auto phase : flight::all_phases)
+        if (power.has_power() && facts.duration_s[phase] > 0.0)
+            facts.mean_power_w[phase] = units::joule_from_wh(energy_wh[phase]) / facts.duration_s[phase];
+    if (cruise_m > 0.0) facts.cruise_airspeed_m_per_s = cruise_m / facts.duration_s[flight::Phase::cruise];
     return facts;
 }
 

@@ -54,7 +54,10 @@ struct FlightSummary {
     std::optional<double> air_distance_m;  ///< of logs with airspeed
     std::optional<double> height_m;        ///< maximum above the ground at lift-off
     std::optional<double> energy_wh;       ///< while in the air
-    std::optional<double> cruise_power_w;  ///< mean of its cruises
+    std::optional<double> counter_wh;      ///< the same by the autopilot's counter
+    flight::PerPhase<double> duration_s;
+    flight::PerPhase<std::optional<double>> mean_power_w;
+    std::optional<double> cruise_airspeed_m_per_s;  ///< mean
 };
 
 /// Of an accepted flight, or of its sortie, counted from 0.

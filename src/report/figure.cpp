@@ -4,7 +4,6 @@
 #include "base/text.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <numeric>
@@ -20,32 +19,6 @@ namespace {
 double rounded(double number, int decimals) {
     const double scale = std::pow(10.0, decimals);
     return std::round(number * scale) / scale + 0.0;
-}
-
-PublishedCurve read_curve(const std::filesystem::path& path, std::string_view value) {
-    const auto table = read_csv(path);
-    const auto time_at = column_index(table, "time_s");
-    const auto value_at = column_index(table, value);
-    PublishedCurve curve;
-    for (const auto& row : table.rows) {
-        curve.time_s.push_back(cell_number(table, row, time_at));
-        curve.value.push_back(cell_number(table, row, value_at));
-    }
-    return curve;
-}
-
-std::vector<PublishedCell> read_cells(const std::filesystem::path& path) {
-    const auto table = read_csv(path);
-    const auto number = [&](const CsvTable::Row& row, std::string_view name) {
-        return cell_number(table, row, column_index(table, name));
-    };
-    std::vector<PublishedCell> cells;
-    for (const auto& row : table.rows) {
-        cells.push_back({std::midpoint(number(row, "fps_low"), number(row, "fps_high")),
-                         std::midpoint(number(row, "key_bits_low"), number(row, "key_bits_high")),
-                         number(row, "soc_percent")});
-    }
-    return cells;
 }
 
 }  // namespace
@@ -141,21 +114,6 @@ std::vector<std::size_t> downsample_m4(const std::vector<double>& time_s, const 
 std::string script_json(const VegaJson& json) {
     const auto text = json.dump(-1, ' ', false, VegaJson::error_handler_t::replace);
     return boost::replace_all_copy(text, "<", "\\u003c");  // no </script> and no <!--
-}
-
-PublishedFigures read_published_figures(const std::filesystem::path& folder) {
-    PublishedFigures figures;
-    for (const auto phase : flight::all_phases) {
-        figures.power[phase] = read_curve(folder / fmt::format("fig2_{}.csv", to_string(phase)), "power_w");
-    }
-    for (const auto* mission : {"mechanical-only", "invariant-5.8fps-32bit", "invariant-10fps-240bit",
-                                "invariant-32fps-448bit", "phased", "adaptive"}) {
-        auto name = std::string("fig3_") + mission + ".csv";
-        std::ranges::replace(name, '-', '_');
-        figures.soc[mission] = read_curve(folder / name, "soc_percent");
-    }
-    figures.soc_cells = read_cells(folder / "fig4_soc_cells.csv");
-    return figures;
 }
 
 }  // namespace flightwatt::report

@@ -3,7 +3,6 @@
 #include "flight/flight_phases.h"
 
 #include <cstddef>
-#include <filesystem>
 #include <initializer_list>
 #include <map>
 #include <string>
@@ -65,6 +64,16 @@ class FigureData {
 std::vector<std::size_t> downsample_m4(const std::vector<double>& time_s, const std::vector<double>& values,
                                        std::size_t columns);
 
+/// `count` of the values at equal steps, with the first and the last; all of them where there are no more.
+template <typename Value>
+std::vector<Value> evenly_chosen(const std::vector<Value>& values, std::size_t count) {
+    if (values.size() <= count) return values;
+    std::vector<Value> chosen;
+    for (std::size_t i = 0; i < count; ++i)
+        chosen.push_back(values[count == 1 ? 0 : i * (values.size() - 1) / (count - 1)]);
+    return chosen;
+}
+
 /// "take-off", "cruise", "landing".
 constexpr std::string_view phase_word(flight::Phase phase) {
     return phase == flight::Phase::takeoff ? std::string_view("take-off") : to_string(phase);
@@ -72,29 +81,5 @@ constexpr std::string_view phase_word(flight::Phase phase) {
 
 /// JSON without '<', for an HTML script element.
 std::string script_json(const VegaJson& json);
-
-/// A digitised curve of a published figure.
-struct PublishedCurve {
-    std::vector<double> time_s;
-    std::vector<double> value;  ///< power_w or soc_percent
-};
-
-/// A cell of the published map of the state of charge over two qualities of service.
-struct PublishedCell {
-    double fps = 0.0;       ///< at its middle
-    double key_bits = 0.0;  ///< at its middle
-    double soc_percent = 0.0;
-};
-
-/// The digitised Figs. 2 (c-e), 3 (a, b) and 4 of the IRC 2020 paper.
-struct PublishedFigures {
-    flight::PerPhase<PublishedCurve> power;     ///< Fig. 2
-    std::map<std::string, PublishedCurve> soc;  ///< Fig. 3, by the name of the mission in missions/paper
-    std::vector<PublishedCell> soc_cells;       ///< Fig. 4
-};
-
-/// Reads fig2_PHASE.csv (time_s, power_w), fig3_MISSION.csv (time_s, soc_percent; '_' for '-') and fig4_soc_cells.csv
-/// of a folder. Throws InputError for a missing or invalid table.
-PublishedFigures read_published_figures(const std::filesystem::path& folder);
 
 }  // namespace flightwatt::report

@@ -21,15 +21,12 @@ bool is_number_or_dash(std::string_view cell) {
 /// Class attributes of the columns' cells.
 std::vector<std::string> column_classes(const TextTable& table) {
     constexpr std::size_t short_text = 18;
-    constexpr std::size_t long_text = 28;
     std::vector<std::string> classes(table.header.size());
     for (std::size_t c = 0; c < classes.size(); ++c) {
         if (std::ranges::all_of(table.rows, [c](const auto& row) { return is_number_or_dash(row[c]); })) continue;
         std::size_t max_length = 0;
         for (const auto& row : table.rows) max_length = std::max(max_length, row[c].size());
-        classes[c] = max_length <= short_text ? " class=\"text short\""
-                     : max_length > long_text ? " class=\"text long\""
-                                              : " class=\"text\"";
+        classes[c] = max_length <= short_text ? " class=\"text short\"" : " class=\"text\"";
     }
     return classes;
 }

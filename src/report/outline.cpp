@@ -11,21 +11,13 @@ namespace {
 
 /// Adds every list of positions in a GeoJSON's coordinates.
 void collect_outlines(const Json& value, std::vector<Outline>& outlines) {
-    if (value.is_object()) {
-        for (const auto& member : value) collect_outlines(member, outlines);
-        return;
-    }
-    if (!value.is_array()) return;
     const auto is_position = [](const Json& one) {
         return one.is_array() && one.size() >= 2 && one[0].is_number() && one[1].is_number();
     };
-    if (value.size() < 2 || !std::ranges::all_of(value, is_position)) {
+    if (value.is_array() && value.size() >= 2 && std::ranges::all_of(value, is_position))
+        outlines.push_back(value.get<Outline>());
+    else if (value.is_structured())
         for (const auto& member : value) collect_outlines(member, outlines);
-        return;
-    }
-    Outline outline;
-    for (const auto& one : value) outline.emplace_back(one[0].get<double>(), one[1].get<double>());
-    outlines.push_back(std::move(outline));
 }
 
 }  // namespace

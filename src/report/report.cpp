@@ -54,7 +54,7 @@ void add_model(Draft& page, const BatchContent& batch) {
     model.table_one = cli::model_table(
         fitted, published ? std::optional(mechanical::read_mechanical_model(*published)) : std::nullopt,
         mechanical::TableIntervals::present);
-    sections.push_back(model_section(model, page.input.figures, "model"));
+    sections.push_back(model_section(model, "model"));
     sections.back().latex = model_latex(fitted);
     if (batch.measured.size() < 2 || batch.measured.size() > max_validation_flights) {
         notes.push_back(
@@ -118,38 +118,23 @@ void add_trends(Draft& page, const BatchContent& batch) {
     page.content.sections.push_back(std::move(*section));
 }
 
-void sort_worst_first(PageSummary& answers) {
-    std::vector<SimulatedMission> missions;
-    std::vector<MissionAssessment> assessments;
-    for (const auto i : worst_first(answers.missions)) {
-        missions.push_back(std::move(answers.missions[i]));
-        assessments.push_back(std::move(answers.answers[i]));
-    }
-    answers.missions = std::move(missions);
-    answers.answers = std::move(assessments);
-}
-
 void add_missions(Draft& page) {
     const auto& missions = page.input.missions;
-    std::vector<std::string> names;
-    names.reserve(missions.size());
-    for (const auto& mission : missions) names.push_back(setup_of(mission).file);
     std::vector<std::string> files;  // the page goes to others: without the folders
-    files.reserve(names.size());
-    for (const auto& name : names) files.push_back(std::filesystem::path(name).filename().string());
+    files.reserve(missions.size());
+    for (const auto& mission : missions)
+        files.push_back(std::filesystem::path(setup_of(mission).file).filename().string());
     page.content.facts.emplace_back("missions", fmt::format("{}", fmt::join(files, ", ")));
-    page.answers.missions = simulate_for_report(missions, page.log.progress("missions"));
+    auto simulated = simulate_for_report(missions, page.log.progress("missions"));
+    for (const auto i : worst_first(simulated)) page.answers.missions.push_back(std::move(simulated[i]));
     const auto progress = page.log.progress("answers");
-    for (const auto& simulated : page.answers.missions) {
+    for (const auto& one : page.answers.missions) {
         if (progress) progress(page.answers.answers.size(), missions.size());
-        const std::filesystem::path file = names[page.answers.answers.size()];
-        page.answers.answers.push_back(assess_mission(simulated, [&](const mission::MissionReadOptions& reading) {
-            return mission::read_mission(file, reading);
+        page.answers.answers.push_back(assess_mission(one, [&](const mission::MissionReadOptions& reading) {
+            return mission::read_mission(one.mission.setup.file, reading);
         }));
     }
-    sort_worst_first(page.answers);
-    std::ranges::move(mission_sections(page.answers.missions, page.input.figures, page.models),
-                      std::back_inserter(page.content.sections));
+    std::ranges::move(mission_sections(page.answers.missions, page.models), std::back_inserter(page.content.sections));
 }
 
 /// The missions on the power that the batch's flights measured.

@@ -33,10 +33,9 @@ struct ReportInput {
     std::filesystem::path out = {};  ///< the folder of flightwatt batch, or empty
     std::vector<mission::MissionVariant> missions = {};
     std::optional<std::string> published_file = {};  ///< of a model, for Table I
-    PublishedFigures figures = {};
-    std::optional<double> capacity_ah = {};  ///< of the flights' battery
-    bool with_replay = false;                ///< of the missions on the flights
-    std::vector<Outline> outlines = {};      ///< below the flown tracks
+    std::optional<double> capacity_ah = {};          ///< of the flights' battery
+    bool with_replay = false;                        ///< of the missions on the flights
+    std::vector<Outline> outlines = {};              ///< below the flown tracks
 };
 
 struct ReportContent {

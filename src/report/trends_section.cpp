@@ -30,7 +30,8 @@ constexpr std::array<TrendQuantity, 6> quantities{{
      [](const FlightTrendData& f) {
          return per(f.facts.energy_wh, f.facts.air_distance_m.value_or(0.0) / metres_per_km);
      }},
-    {"cruise_power_w", "cruise [W]", [](const FlightTrendData& f) { return f.facts.cruise_power_w; }},
+    {"cruise_power_w", "cruise [W]",
+     [](const FlightTrendData& f) { return f.facts.mean_power_w[flight::Phase::cruise]; }},
     {"resistance_ohm", "pack [ohm]",
      [](const FlightTrendData& f) { return f.resistance ? std::optional(f.resistance->value_ohm) : std::nullopt; }},
     {"capacity_percent", "pack [% of its mean]", [](const FlightTrendData& f) { return f.capacity_percent; }},

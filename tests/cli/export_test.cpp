@@ -55,7 +55,7 @@ TEST(ExportLatex, IsCompiledByLatex) {
     EXPECT_THAT(read_file(folder / "flights.tex"), HasSubstr("a\\_b\\%\\{\\&\\}\\#\\$"));
     EXPECT_THAT(read_file(folder / "flights.tex"), HasSubstr("\\label{tab:validation}"));
     EXPECT_THAT(read_file(folder / "published.tex"), HasSubstr("$a_{0}$ & $29.97$ & $27.22$ & $27.21$"));
-    EXPECT_THAT(read_file(folder / "missions.tex"), HasSubstr("\\label{tab:plans}"));
+    EXPECT_THAT(read_file(folder / "missions.tex"), HasSubstr("\\label{tab:missions}"));
     for (const auto* label : {"identified-battery", "battery-flights"})
         EXPECT_THAT(read_file(folder / "flights.tex"), HasSubstr(std::string("\\label{tab:") + label + "}"));
     expect_compiled({"flights", "published", "wing", "pack", "errors", "missions"}, folder);

@@ -80,7 +80,7 @@ TEST(FlightFacts, AreThoseOfTheTimeInTheAir) {
     EXPECT_DOUBLE_EQ(*facts.distance_m, 400.0);
     EXPECT_DOUBLE_EQ(*facts.height_m, 60.0);
     EXPECT_DOUBLE_EQ(*facts.energy_wh, 36.0 * 20.0 / 3600.0);
-    EXPECT_DOUBLE_EQ(facts.cruise_power_w.value(), 36.0);
+    EXPECT_DOUBLE_EQ(facts.mean_power_w[flight::Phase::cruise].value(), 36.0);
     EXPECT_FALSE(facts.air_distance_m) << "no airspeed was measured";
 }
 
@@ -93,7 +93,7 @@ TEST(FlightFacts, MeasureTheWayThroughTheAirByAirspeed) {
 TEST(FlightFacts, HaveNoCruisePowerWithoutACruise) {
     auto flight = square_flight();
     flight.phases.sorties[0].phases.erase(flight.phases.sorties[0].phases.begin() + 1);
-    EXPECT_FALSE(summarize_flight(flight).cruise_power_w);
+    EXPECT_FALSE(summarize_flight(flight).mean_power_w[flight::Phase::cruise]);
 }
 
 TEST(FlightFacts, MeasureDegreesOnTheEarth) {

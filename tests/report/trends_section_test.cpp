@@ -32,7 +32,8 @@ std::vector<FlightTrendData> flown(const test::AgedFlights& aged, double part_a_
         flight.name = "f" + std::to_string(f);
         flight.aircraft = "7 Wing";
         flight.facts.start_clock_s = seconds_per_day * aged.day[f];
-        flight.facts.cruise_power_w = fresh_w * (1.0 + part_a_day * aged.day[f] + 0.02 * normal(random));
+        flight.facts.mean_power_w[flight::Phase::cruise] =
+            fresh_w * (1.0 + part_a_day * aged.day[f] + 0.02 * normal(random));
         flight.records = {aged.records[f]};
         flights.push_back(std::move(flight));
     }
@@ -95,12 +96,12 @@ TEST(Trends, AreDrawnFromFiveFlightsOnThreeDaysOn) {
     for (std::size_t f = 0; f < flights.size(); ++f) {
         flights[f].aircraft = "7 Wing";
         flights[f].facts.start_clock_s = seconds_per_day * static_cast<double>(f);
-        flights[f].facts.cruise_power_w = fresh_w + static_cast<double>(f);
+        flights[f].facts.mean_power_w[flight::Phase::cruise] = fresh_w + static_cast<double>(f);
     }
     EXPECT_FALSE(trends_section(trends_of(flights)));
     flights.push_back(flights.back());
     flights.back().facts.start_clock_s = seconds_per_day * 9.0;
-    flights.back().facts.cruise_power_w = fresh_w + 9.0;
+    flights.back().facts.mean_power_w[flight::Phase::cruise] = fresh_w + 9.0;
     const auto section = trends_section(trends_of(flights));
     ASSERT_TRUE(section);
     ASSERT_EQ(section->figures.size(), 1U);

@@ -32,9 +32,9 @@ std::vector<NamedEdge> edges_of(const ReportFlight& flight);
 Figure flight_figure(const ReportFlight& flight, const mechanical::MechanicalModel* model, const std::string& id);
 
 /// The mechanical model as the paper's Fig. 2, a panel a phase: curve, envelope of the flights and 95 % band of the
-/// mean (bands without times: unknown), and points of the digitised figure.
+/// mean (bands without times: unknown).
 Figure model_figure(const mechanical::MechanicalModel& model, const flight::PerPhase<mechanical::CurveBand>& bands,
-                    const PublishedFigures& published, const std::string& id);
+                    const std::string& id);
 
 /// Errors of the predicted energy by leave-one-out: a point a flight, a row a model.
 Figure validation_figure(std::span<const mechanical::ValidatedFlight> flights, const std::string& id);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "flight/flight_phases.h"
 #include "report/figure.h"
 #include "report/sections/simulated_mission.h"
 
@@ -10,7 +9,7 @@
 #include <string>
 #include <vector>
 
-/// Figures of missions: software, schedules, plans and quality of service.
+/// Figures of missions: software, schedules and quality of service.
 
 namespace flightwatt::report {
 
@@ -18,24 +17,9 @@ namespace flightwatt::report {
 /// others; with 95 % intervals where standard errors are known. `compute` is not empty.
 Figure profile_figure(const compute::ComputeModel& compute, const std::string& id);
 
-/// State of charge over time as the paper's Fig. 3, with common phases and the digitised curves of missions of their
-/// names; below, the schedules, coloured by power. `missions` is not empty.
-Figure schedule_figure(std::span<const SimulatedMission> missions, const PublishedFigures& published,
-                       const std::string& id);
-
-/// Time since the start of the mission in which a component runs with one quality of service.
-struct RunInterval : flight::TimeInterval {
-    std::size_t component = 0;
-    std::vector<double> qos;
-};
-
-std::vector<RunInterval> run_intervals(const mission::Mission& mission);
-
-/// "fps 32, key_bits 448", or "on" without parameters.
-std::string describe_qos(const compute::Component& component, const std::vector<double>& qos);
-
-/// A schedule as a Gantt chart, a row a component.
-Figure strip_figure(const SimulatedMission& planned, const std::string& id);
+/// State of charge over time as the paper's Fig. 3, with common phases; below, the schedules, coloured by power. `data`
+/// is missions_data() of the missions, which are not empty.
+Figure schedule_figure(std::span<const SimulatedMission> missions, const VegaJson& data, const std::string& id);
 
 /// A parameter of a component: an axis of the map.
 struct QosAxis {
@@ -79,9 +63,7 @@ std::string model_key(const mission::MissionSetup& mission);
 std::string software_key(const mission::MissionSetup& mission);
 std::string map_key(const mission::MissionSetup& mission);
 
-/// The map as the paper's Fig. 4: a cell is the mean of its corners; the missions' configurations are marked.
-/// `published` are digitised cells of the same axes, drawn as points of the same colour scale.
-Figure qos_map_figure(const QosMap& map, std::span<const SimulatedMission> missions,
-                      const std::vector<PublishedCell>& published, const std::string& id);
+/// The map as the paper's Fig. 4: a cell is the mean of its corners.
+Figure qos_map_figure(const QosMap& map, const std::string& id);
 
 }  // namespace flightwatt::report

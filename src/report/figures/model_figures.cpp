@@ -31,36 +31,6 @@ VegaJson model_rows(const mechanical::PhaseModel& phase) {
     return data.json();
 }
 
-VegaJson published_rows(const PublishedCurve& curve) {
-    if (curve.time_s.empty()) return nullptr;
-    FigureData data({"time_s", "power_w"});
-    for (std::size_t i = 0; i < curve.time_s.size(); ++i) data.add({curve.time_s[i], curve.value[i]});
-    return data.json();
-}
-
-/// RMS difference of published and model, over the points within the phase.
-double rms_w(const mechanical::PhaseModel& phase, const PublishedCurve& curve) {
-    double squares = 0.0;
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < curve.time_s.size(); ++i) {
-        if (curve.time_s[i] > phase.duration_s) continue;
-        squares += std::pow(curve.value[i] - power_w(phase.fourier, curve.time_s[i]), 2);
-        ++count;
-    }
-    return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(count, 1)));
-}
-
-std::string model_caption(const mechanical::MechanicalModel& model, const PublishedFigures& published) {
-    std::string text = "Power of each phase (Eq. 1).";
-    if (published.power[flight::Phase::cruise].time_s.empty()) return text;
-    text += " Points: the paper's Fig. 2 (c-e), digitised; RMS difference";
-    for (const auto phase : flight::all_phases) {
-        text += fmt::format("{} {} {:.3f} W", phase == flight::Phase::takeoff ? "" : ",", phase_word(phase),
-                            rms_w(model.phases[phase], published.power[phase]));
-    }
-    return text + ".";
-}
-
 FigureData error_rows(std::span<const mechanical::ValidatedFlight> flights) {
     FigureData data({"error_wh", "measured_wh", "predicted_wh"}, {"model", "flight"});
     for (const auto& model : model_names(flights)) {
@@ -122,12 +92,11 @@ FigureData best_rows(const mechanical::SpeedToFly& speeds, const mechanical::Flo
 }  // namespace
 
 Figure model_figure(const mechanical::MechanicalModel& model, const flight::PerPhase<mechanical::CurveBand>& bands,
-                    const PublishedFigures& published, const std::string& id) {
+                    const std::string& id) {
     auto drawn = VegaJson::array({"model"});
     const auto& cruise = bands[flight::Phase::cruise];
     if (!cruise.time_s.empty()) drawn.push_back("95 % band of the mean");
     if (!cruise.flights_low_w.empty()) drawn.push_back("envelope of the flights");
-    if (!published.power[flight::Phase::cruise].time_s.empty()) drawn.push_back("published, Fig. 2");
     auto panels = VegaJson::array();
     for (const auto phase : flight::all_phases) {
         const auto& band = bands[phase];
@@ -135,10 +104,9 @@ Figure model_figure(const mechanical::MechanicalModel& model, const flight::PerP
                           {"drawn", drawn},
                           {"envelope", area_rows(band.time_s, band.flights_low_w, band.flights_high_w)},
                           {"band", area_rows(band.time_s, band.low_95_w, band.high_95_w)},
-                          {"model", model_rows(model.phases[phase])},
-                          {"published", published_rows(published.power[phase])}});
+                          {"model", model_rows(model.phases[phase])}});
     }
-    return new_figure("model", id, model_caption(model, published),
+    return new_figure("model", id, "Power of each phase (Eq. 1).",
                       fmt::format("Mechanical power model {} over each phase.", model.name), {{"panels", panels}});
 }
 

@@ -9,9 +9,6 @@
 #include "report/figures/mission_figures.h"
 
 #include <cmath>
-#include <limits>
-#include <map>
-#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -40,32 +37,27 @@ std::vector<QosAxis> axes_of(const compute::ComputeModel& compute) {
     return axes;
 }
 
-/// All parameters at their maximum.
-compute::Configuration max_configuration(const compute::ComputeModel& compute) {
+/// Schedules of one configuration throughout, for each value of two parameters, x running fastest; the others have
+/// their maximum.
+std::vector<std::vector<mission::ScheduleSegment>> schedules_of(const mission::MissionSetup& mission, const QosAxis& x,
+                                                                const QosAxis& y) {
     compute::Configuration run;
-    for (std::size_t c = 0; c < compute.components.size(); ++c) {
-        compute::RunningComponent running{c, {}};
-        for (const auto& axis : compute.components[c].profile.axes) running.qos.push_back(axis.back());
-        run.push_back(std::move(running));
+    for (std::size_t c = 0; c < mission.compute.components.size(); ++c) {
+        run.push_back({c, {}});
+        for (const auto& axis : mission.compute.components[c].profile.axes) run.back().qos.push_back(axis.back());
     }
-    return run;
-}
-
-std::vector<mission::ScheduleSegment> throughout(const mission::MissionSetup& mission,
-                                                 const compute::Configuration& run) {
-    std::vector<mission::ScheduleSegment> schedule;
-    for (const auto phase : flight::all_phases) {
-        if (mission.duration_s[phase] > 0.0) schedule.push_back({phase, 0.0, mission.duration_s[phase], run});
+    std::vector<std::vector<mission::ScheduleSegment>> schedules;
+    for (const double y_value : y.nodes) {
+        run[y.component].qos[y.parameter] = y_value;
+        for (const double x_value : x.nodes) {
+            run[x.component].qos[x.parameter] = x_value;
+            schedules.emplace_back();
+            for (const auto phase : flight::all_phases)
+                if (mission.duration_s[phase] > 0.0)
+                    schedules.back().push_back({phase, 0.0, mission.duration_s[phase], run});
+        }
     }
-    return schedule;
-}
-
-/// At most `count` of the values, at equal steps, with the first and the last.
-std::vector<double> evenly_chosen(const std::vector<double>& values, std::size_t count) {
-    if (values.size() <= count) return values;
-    std::vector<double> chosen;
-    for (std::size_t i = 0; i < count; ++i) chosen.push_back(values[i * (values.size() - 1) / (count - 1)]);
-    return chosen;
+    return schedules;
 }
 
 double cell_soc(const QosMap& map, std::size_t i, std::size_t j) {
@@ -80,58 +72,6 @@ VegaJson cell_rows(const QosMap& map) {
         }
     }
     return data.json();
-}
-
-/// Configurations with both components on, and the missions that run them.
-std::map<std::pair<double, double>, std::string> configurations(const QosMap& map,
-                                                                std::span<const SimulatedMission> missions) {
-    std::map<std::pair<double, double>, std::string> marked;
-    for (const auto& mission : missions) {
-        for (const auto& segment : mission.mission.schedule) {
-            std::optional<double> x;
-            std::optional<double> y;
-            for (const auto& running : segment.run) {
-                if (running.component == map.x.component) x = running.qos[map.x.parameter];
-                if (running.component == map.y.component) y = running.qos[map.y.parameter];
-            }
-            if (!x || !y) continue;
-            auto& titles = marked[{*x, *y}];
-            if (titles.ends_with(mission.title)) continue;
-            titles += (titles.empty() ? "" : ", ") + mission.title;
-        }
-    }
-    return marked;
-}
-
-VegaJson marker_rows(const QosMap& map, std::span<const SimulatedMission> missions) {
-    FigureData data({"x", "y"}, {"missions"});
-    for (const auto& [point, titles] : configurations(map, missions)) data.add({point.first, point.second}, {titles});
-    return data.json();
-}
-
-VegaJson published_rows(const std::vector<PublishedCell>& cells) {
-    FigureData data({"x", "y", "soc_percent"});
-    for (const auto& cell : cells) data.add({cell.fps, cell.key_bits, cell.soc_percent});
-    return data.json();
-}
-
-/// RMS difference from the published cells; std::nullopt if one is not a cell of the map.
-std::optional<double> rms_to_published(const QosMap& map, const std::vector<PublishedCell>& cells) {
-    const auto index = [](const std::vector<double>& nodes, double middle) -> std::optional<std::size_t> {
-        const double tolerance = 0.02 * (nodes.back() - nodes.front());
-        for (std::size_t i = 0; i + 1 < nodes.size(); ++i)
-            if (std::abs(std::midpoint(nodes[i], nodes[i + 1]) - middle) < tolerance) return i;
-        return std::nullopt;
-    };
-    double squares = 0.0;
-    for (const auto& cell : cells) {
-        const auto i = index(map.x.nodes, cell.fps);
-        const auto j = index(map.y.nodes, cell.key_bits);
-        if (!i || !j) return std::nullopt;
-        squares += std::pow(cell_soc(map, *i, *j) - cell.soc_percent, 2);
-    }
-    if (cells.empty()) return std::nullopt;
-    return std::sqrt(squares / static_cast<double>(cells.size()));
 }
 
 /// The parameters but the first.
@@ -181,21 +121,14 @@ std::optional<QosMap> qos_map(const mission::MissionSetup& mission) {
     const auto axes = axes_of(mission.compute);
     if (axes.size() < 2) return std::nullopt;
     QosMap map{axes[0], axes[1], {}, ""};
-    auto run = max_configuration(mission.compute);
     for (std::size_t a = 2; a < axes.size(); ++a) {
         map.others += fmt::format("{}{} {:g}", map.others.empty() ? "" : ", ", axes[a].name, axes[a].nodes.back());
     }
     mission::SimulationOptions steps;
     steps.integration_s = 1.0;  // power is constant or smooth: error below 0.01 %
     for (const auto phase : flight::all_phases) steps.output_s = std::max(steps.output_s, mission.duration_s[phase]);
-    for (const double y : map.y.nodes) {
-        run[map.y.component].qos[map.y.parameter] = y;
-        for (const double x : map.x.nodes) {
-            run[map.x.component].qos[map.x.parameter] = x;
-            const auto summary = simulate(mission, throughout(mission, run), steps).summary;
-            map.soc_percent.push_back(summary.final_soc_percent.value_or(std::numeric_limits<double>::quiet_NaN()));
-        }
-    }
+    for (const auto& schedule : schedules_of(mission, map.x, map.y))
+        map.soc_percent.push_back(simulate(mission, schedule, steps).summary.final_soc_percent.value_or(std::nan("")));
     return map;
 }
 
@@ -209,19 +142,14 @@ std::optional<QosGrid> qos_grid(const mission::MissionSetup& mission) {
     for (auto* axis : {&grid.x, &grid.y})
         axis->nodes =
             evenly_chosen(mission.compute.components[axis->component].profile.axes[axis->parameter], max_values);
-    auto run = max_configuration(mission.compute);
     mission::SimulationOptions steps;
     steps.output_s = mission::timeline_of(mission.duration_s).duration_s / rows;
-    for (const double y : grid.y.nodes) {
-        run[grid.y.component].qos[grid.y.parameter] = y;
-        for (const double x : grid.x.nodes) {
-            run[grid.x.component].qos[grid.x.parameter] = x;
-            const mission::PreparedMission prepared{mission, throughout(mission, run), std::nullopt};
-            QosCell cell{simulate_prepared(prepared, steps).simulation, std::nullopt};
-            if (has_uncertainty(mission))
-                cell.probability = 1.0 - sample_flights(prepared, {}, {flights_drawn, 1}).probability_below_reserve;
-            grid.cells.push_back(std::move(cell));
-        }
+    for (const auto& schedule : schedules_of(mission, grid.x, grid.y)) {
+        const mission::PreparedMission prepared{mission, schedule, std::nullopt};
+        QosCell cell{simulate_prepared(prepared, steps).simulation, std::nullopt};
+        if (has_uncertainty(mission))
+            cell.probability = 1.0 - sample_flights(prepared, {}, {flights_drawn, 1}).probability_below_reserve;
+        grid.cells.push_back(std::move(cell));
     }
     return grid;
 }
@@ -248,17 +176,10 @@ std::string map_key(const mission::MissionSetup& mission) {
     return key;
 }
 
-Figure qos_map_figure(const QosMap& map, std::span<const SimulatedMission> missions,
-                      const std::vector<PublishedCell>& published, const std::string& id) {
+Figure qos_map_figure(const QosMap& map, const std::string& id) {
     std::string caption =
-        "Final state of charge if one configuration runs throughout. A cell is the mean of its corners; diamonds are "
-        "the configurations of the missions.";
+        "Final state of charge if one configuration runs throughout. A cell is the mean of its corners.";
     if (!map.others.empty()) caption += fmt::format(" With {}.", map.others);
-    const auto rms = rms_to_published(map, published);
-    if (rms) {
-        caption += fmt::format(" Discs: the paper's Fig. 4, digitised. RMS difference over {} cells {:.2f} points.",
-                               published.size(), *rms);
-    }
     const auto x = valid_utf8(map.x.name);
     const auto y = valid_utf8(map.y.name);
     return new_figure("quality", id, caption,
@@ -270,9 +191,7 @@ Figure qos_map_figure(const QosMap& map, std::span<const SimulatedMission> missi
                        {"y", y},
                        {"y_from", y + " from"},
                        {"y_domain", {map.y.nodes.front(), map.y.nodes.back()}},
-                       {"cells", cell_rows(map)},
-                       {"published", rms ? published_rows(published) : VegaJson()},
-                       {"markers", marker_rows(map, missions)}});
+                       {"cells", cell_rows(map)}});
 }
 
 Figure profile_figure(const compute::ComputeModel& compute, const std::string& id) {

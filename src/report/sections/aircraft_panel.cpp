@@ -3,8 +3,6 @@
 #include "base/units.h"
 #include "battery/battery.h"
 #include "flight/flight_identity.h"
-#include "flight/phase_statistics.h"
-#include "flight/selected_track.h"
 #include "report/batch_content.h"
 #include "report/sections/sections.h"
 
@@ -31,13 +29,8 @@ std::string dates_text(double first_s, double last_s) {
     const auto [first, last] = std::pair(utc(first_s), utc(last_s));
     const auto end = day_text(last_s);
     if (first.tm_year != last.tm_year) return fmt::format("{} to {}", day_text(first_s), end);
-    if (first.tm_mon != last.tm_mon) return fmt::format("{0:%e} {0:%B} to {1}", first, end);
-    return first.tm_mday == last.tm_mday ? end : fmt::format("{:%e} to {}", first, end);
-}
-
-std::string trimmed(std::string text) {
-    text.erase(0, text.find_first_not_of(' '));
-    return text;
+    if (first.tm_mon != last.tm_mon) return fmt::format("{} {:%B} to {}", first.tm_mday, first, end);
+    return first.tm_mday == last.tm_mday ? end : fmt::format("{} to {}", first.tm_mday, end);
 }
 
 /// "3 flights, 3 to 10 July 2020".
@@ -48,7 +41,7 @@ std::string flights_text(std::span<const FlightSummary> flights) {
     const auto text = plural(flights.size(), "flight");
     if (starts_s.empty()) return text;
     const auto [first, last] = std::ranges::minmax(starts_s);
-    return fmt::format("{}, {}", text, trimmed(dates_text(first, last)));
+    return fmt::format("{}, {}", text, dates_text(first, last));
 }
 
 std::string describe(std::span<const FlightSummary> flights) {
@@ -75,46 +68,16 @@ std::map<std::string, std::vector<FlightSummary>> by_aircraft(Flights flights) {
     return of_aircraft;
 }
 
-/// What a flight needed in its phases.
-struct FlownPower {
-    flight::PerPhase<std::optional<double>> mean_w;
-    std::optional<double> cruise_airspeed_m_per_s;
-    std::string day;
-};
-
-FlownPower flown_power(const ReportFlight& flight) {
-    FlownPower flown;
-    const flight::PowerStatistics power(flight.series);
-    const auto airspeed = select_track(flight.series, "airspeed_m_per_s");
-    flight::PerPhase<double> energy_wh;
-    flight::PerPhase<double> duration_s;
-    double air_distance_m = 0.0;
-    for (const auto& sortie : flight.phases.sorties)
-        for (const auto& span : sortie.phases) {
-            energy_wh[span.phase] += power.between(span.start.time_s, span.end.time_s).energy_wh;
-            duration_s[span.phase] += span.duration_s();
-            if (span.phase == flight::Phase::cruise && !airspeed.empty())
-                air_distance_m +=
-                    flight::integrated(airspeed.time_s, airspeed.value, span.start.time_s, span.end.time_s);
-        }
-    for (const auto phase : flight::all_phases)
-        if (duration_s[phase] > 0.0) flown.mean_w[phase] = units::joule_from_wh(energy_wh[phase]) / duration_s[phase];
-    if (air_distance_m > 0.0) flown.cruise_airspeed_m_per_s = air_distance_m / duration_s[flight::Phase::cruise];
-    const auto start_s = summarize_flight(flight).start_clock_s;
-    if (start_s) flown.day = day_text(*start_s);
-    return flown;
-}
-
 std::string fact(std::string_view name, std::string_view value, std::string_view text) {
     return fmt::format("<dt>{}</dt><dd><b>{}</b> {}</dd>\n", name, html_escaped(value), html_escaped(text));
 }
 
-std::string phases_html(std::span<const FlownPower> flown) {
+std::string phases_html(std::span<const FlightSummary> flown) {
     flight::PerPhase<std::vector<double>> powers_w;
     double max_w = 1.0;
     for (const auto& flight : flown)
         for (const auto phase : flight::all_phases)
-            if (flight.mean_w[phase]) powers_w[phase].push_back(*flight.mean_w[phase]);
+            if (flight.mean_power_w[phase]) powers_w[phase].push_back(*flight.mean_power_w[phase]);
     for (const auto& powers : powers_w.values)
         if (!powers.empty()) max_w = std::max(max_w, std::ranges::max(powers));
     std::string html;
@@ -134,11 +97,11 @@ std::string phases_html(std::span<const FlownPower> flown) {
                        plural(flown.size(), "flight"), html);
 }
 
-std::string cruise_fact(std::span<const FlownPower> flown) {
-    std::vector<std::pair<double, const FlownPower*>> energies_wh;  // of a minute
+std::string cruise_fact(std::span<const FlightSummary> flown) {
+    std::vector<std::pair<double, const FlightSummary*>> energies_wh;  // of a minute
     double sum_wh = 0.0;
     for (const auto& flight : flown)
-        if (const auto& power_w = flight.mean_w[flight::Phase::cruise]) {
+        if (const auto& power_w = flight.mean_power_w[flight::Phase::cruise]) {
             energies_wh.emplace_back(units::wh_from_joule(*power_w * units::seconds_per_minute), &flight);
             sum_wh += energies_wh.back().first;
         }
@@ -147,7 +110,8 @@ std::string cruise_fact(std::span<const FlownPower> flown) {
         auto text = fmt::format("{:.2f} Wh", one.first);
         if (const auto& airspeed = one.second->cruise_airspeed_m_per_s)
             text += fmt::format(" at {:.1f} m/s", *airspeed);
-        return one.second->day.empty() ? text : fmt::format("{} ({})", text, one.second->day);
+        const auto& start_s = one.second->start_clock_s;
+        return start_s ? fmt::format("{} ({})", text, day_text(*start_s)) : text;
     };
     const auto [low, high] = std::ranges::minmax_element(energies_wh);
     return fact("Energy for a minute of cruise",
@@ -210,7 +174,7 @@ std::string flight_notes_html(Flights flights) {
 
 }  // namespace
 
-std::string day_text(double clock_s) { return trimmed(fmt::format("{0:%e} {0:%B} {0:%Y}", utc(clock_s))); }
+std::string day_text(double clock_s) { return fmt::format("{} {:%B %Y}", utc(clock_s).tm_mday, utc(clock_s)); }
 
 std::string flight_title(const ReportFlight& flight) {
     const auto start_s = summarize_flight(flight).start_clock_s;
@@ -254,9 +218,9 @@ std::string page_title(Flights flights, std::size_t missions) {
 }
 
 std::string aircraft_panel(const PageSummary& answers, Flights flights) {
-    std::vector<FlownPower> flown;
+    std::vector<FlightSummary> flown;
     for (const auto& flight : flights)
-        if (flight.rejected.empty() && flight.unusable_power.empty()) flown.push_back(flown_power(flight));
+        if (flight.rejected.empty() && flight.unusable_power.empty()) flown.push_back(summarize_flight(flight));
     auto html = by_aircraft(flights).size() == 1 ? phases_html(flown) : "";
     std::string facts = html.empty() ? "" : cruise_fact(flown);
     if (answers.model && answers.model->physical) facts += motion_fact(*answers.model->physical);

@@ -34,15 +34,6 @@ void add_record(ReportBattery& battery, const ReportFlight& flight) {
     }
 }
 
-/// `count` of the records at equal steps, with the first and the last.
-std::vector<battery::DischargeRecord> select_evenly(std::vector<battery::DischargeRecord> records, std::size_t count) {
-    if (records.size() <= count) return records;
-    std::vector<battery::DischargeRecord> chosen;
-    for (std::size_t i = 0; i < count; ++i)
-        chosen.push_back(std::move(records[count == 1 ? 0 : i * (records.size() - 1) / (count - 1)]));
-    return chosen;
-}
-
 /// Parameters of the circuit, and the capacity.
 TextTable parameters_table(const battery::BatteryIdentification& identified) {
     auto table = cli::pack_table(identified.battery);
@@ -99,7 +90,7 @@ ReportBattery identify_with(std::span<const ReportFlight> flights, const battery
     ReportBattery battery;
     for (const auto& flight : flights) add_record(battery, flight);
     battery.usable = battery.records.size();
-    battery.records = select_evenly(std::move(battery.records), max_flights);
+    battery.records = evenly_chosen(battery.records, max_flights);
     if (battery.records.empty()) {
         battery.no_result_reason = "no flight has both voltage and current";
         return battery;

@@ -2,7 +2,6 @@
 #include "base/parallel.h"
 #include "base/units.h"
 #include "flight/flight_identity.h"
-#include "flight/phase_statistics.h"
 #include "flight/selected_track.h"
 #include "report/batch_content.h"
 #include "report/figures/flight_figures.h"
@@ -10,7 +9,6 @@
 #include "report/sections/sections.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <filesystem>
 #include <iterator>
@@ -24,80 +22,41 @@ namespace flightwatt::report {
 namespace {
 
 std::vector<std::string> cells_of(const ReportFlight& flight, std::size_t sortie) {
-    const auto& phases = flight.phases.sorties[sortie].phases;
-    const flight::PowerStatistics power(flight.series);
-    const auto whole = power.between(phases.front().start.time_s, phases.back().end.time_s);
-    flight::PerPhase<std::string> durations{"-", "-", "-"};
-    flight::PerPhase<std::string> means{"-", "-", "-"};
-    for (const auto& span : phases) {
-        durations[span.phase] = fixed(span.duration_s(), 0);
-        if (power.has_power())
-            means[span.phase] = fixed(power.between(span.start.time_s, span.end.time_s).mean_power_w, 1);
-    }
-    const auto facts = summarize_flight(flight, sortie);
-    const auto& counter_wh = whole.counter_energy_wh;
-    const bool has_closure = facts.energy_wh && counter_wh && *counter_wh > 0.0;
     using enum flight::Phase;
+    const auto facts = summarize_flight(flight, sortie);
+    const bool has_closure = facts.energy_wh && facts.counter_wh && *facts.counter_wh > 0.0;
     return {flight.phases.sorties.size() > 1 ? fmt::format("{}, sortie {}", flight.name, sortie + 1) : flight.name,
-            flight::describe_aircraft(flight.series.aircraft_id, flight.series.aircraft_name),
             facts.date.empty() ? "-" : facts.date,
-            fixed(facts.energy_wh, 3),
-            means[cruise],
-            durations[cruise],
-            fmt::format("{}", flight.warnings.size()),
-            std::string(fitted_part(flight)),
+            fixed(facts.duration_s[cruise], 0),
             facts.distance_m ? fixed(*facts.distance_m / 1000.0, 2) : "-",
             fixed(facts.height_m, 0),
-            durations[takeoff],
-            durations[landing],
-            means[takeoff],
-            means[landing],
-            fixed(counter_wh, 3),
-            has_closure ? fmt::format("{:+.2f}", units::percentage(*facts.energy_wh - *counter_wh, *counter_wh)) : "-",
-            power.has_power() ? fmt::format("{}", whole.gaps) : "-"};
+            fixed(facts.mean_power_w[takeoff], 1),
+            fixed(facts.mean_power_w[cruise], 1),
+            fixed(facts.mean_power_w[landing], 1),
+            fixed(facts.energy_wh, 3),
+            fixed(facts.counter_wh, 3),
+            has_closure
+                ? fmt::format("{:+.2f}", units::percentage(*facts.energy_wh - *facts.counter_wh, *facts.counter_wh))
+                : "-",
+            std::string(fitted_part(flight))};
 }
 
-TextTable flights_table(std::span<const ReportFlight> flights) {
-    TextTable table{{"flight", "aircraft", "date", "energy [Wh]", "cruise [W]", "cruise [s]", "warnings", "fitted",
-                     "distance [km]", "height [m]", "take\u2011off [s]", "landing [s]", "take\u2011off [W]",
-                     "landing [W]", "counter [Wh]", "closure [%]", "gaps"},
+/// A row for each sortie, with links to the flights.
+void add_flights_table(Section& section, std::span<const ReportFlight> flights, const std::vector<std::string>& ids) {
+    TextTable table{{"Flight", "Date (UTC)", "Cruise [s]", "Distance [km]", "Height [m]", "Take\u2011off [W]",
+                     "Cruise [W]", "Landing [W]", "Energy [Wh]", "Counter [Wh]", "Closure [%]", "Fitted"},
                     {}};
+    HtmlTableOptions options{.sortable = true};
     std::vector<std::vector<std::vector<std::string>>> rows(flights.size());
     for_each_in_parallel(flights.size(), [&](std::size_t f) {
         if (!flights[f].rejected.empty()) return;
         for (std::size_t s = 0; s < flights[f].phases.sorties.size(); ++s) rows[f].push_back(cells_of(flights[f], s));
     });
-    for (auto& of_flight : rows) std::ranges::move(of_flight, std::back_inserter(table.rows));
-    return table;
-}
-
-/// The columns of the first look, from the columns of all.
-TextTable short_table(const TextTable& all) {
-    constexpr std::array<std::size_t, 9> shown{0, 2, 5, 8, 9, 12, 4, 13, 3};
-    TextTable table{{"Flight", "Date (UTC)", "Cruise [s]", "Distance [km]", "Height [m]", "Take\u2011off [W]",
-                     "Cruise [W]", "Landing [W]", "Energy [Wh]"},
-                    {}};
-    for (const auto& row : all.rows) {
-        table.rows.emplace_back();
-        for (const auto column : shown) table.rows.back().push_back(row[column]);
+    for (std::size_t f = 0; f < flights.size(); ++f) {
+        options.links.insert(options.links.end(), rows[f].size(), ids[f]);
+        std::ranges::move(rows[f], std::back_inserter(table.rows));
     }
-    return table;
-}
-
-void add_flights_table(Section& section, std::span<const ReportFlight> flights, const std::vector<std::string>& ids) {
-    HtmlTableOptions options{.sortable = true};
-    for (std::size_t f = 0; f < flights.size(); ++f)
-        if (flights[f].rejected.empty())
-            options.links.insert(options.links.end(), flights[f].phases.sorties.size(), ids[f]);
-    const auto all = flights_table(flights);
-    add_table(section, {short_table(all), "Flights", ""}, options);
-    section.html += "<details class=\"more\"><summary>All measurements of the flights</summary>\n";
-    section.html += paragraph(
-        "Durations, mean power and energy are those of the power samples between lift-off and touchdown; counter is "
-        "the autopilot's energy counter over the same time, closure the difference of the integral from it.",
-        "soft");
-    add_table(section, {all, "All measurements of the flights", "tab:flights"}, options);
-    section.html += "</details>\n";
+    add_table(section, {std::move(table), "Flights", "tab:flights"}, options);
 }
 
 void add_excluded(Section& section, std::span<const ReportFlight> flights) {
@@ -232,7 +191,8 @@ Section flights_section(const BatchContent& batch, const Progress& progress) {
     const auto rejected =
         std::ranges::count_if(flights, [](const ReportFlight& flight) { return !flight.rejected.empty(); });
     section.html += paragraph(
-        fmt::format("{} logs{}. Mean power of each phase; distance over ground, height above the ground at lift-off.",
+        fmt::format("{} logs{}. Mean power of each phase; distance over ground, height above the ground at lift-off. "
+                    "Closure: energy less that of the autopilot's counter.",
                     flights.size(), rejected > 0 ? fmt::format(", {} of them rejected", rejected) : ""),
         "soft");
     const auto ids = flight_ids(flights);

@@ -135,6 +135,8 @@ std::vector<std::string> notes_of(const SimulatedMission& simulated, const Missi
         notes.push_back("Warning: " + warning + (summary.by_flights ? "; " + describe(*summary.by_flights, 1) : ""));
     if (!answer.no_reach_reason.empty()) notes.push_back("The reach is unknown: " + answer.no_reach_reason);
     if (answer.is_unplanned) notes.emplace_back("The longest cruise is that with the least software");
+    if (simulated.planned && !simulated.planned->feasible)
+        notes.emplace_back("No schedule that keeps the reserve was found: this one needs the least energy");
     if (summary.utility) {
         notes.push_back(fmt::format("Utility {:.4g}", *summary.utility));
         if (simulated.planned && simulated.planned->feasible)

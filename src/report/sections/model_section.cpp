@@ -16,13 +16,13 @@
 #include <fmt/format.h>
 
 namespace flightwatt::report {
-Section model_section(const ReportModel& model, const PublishedFigures& published, const std::string& id) {
+Section model_section(const ReportModel& model, const std::string& id) {
     Section section{id, "Mechanical model: " + valid_utf8(model.model.name)};
     section.html += paragraph(model.origin, "soft");
     if (!model.model.description.empty()) section.html += paragraph(model.model.description);
     for (const auto& warning : model_warnings(model.model)) section.html += paragraph(warning, "warning");
     for (const auto& note : fit_notes(model.model)) section.html += paragraph(note);
-    add_figure(section, model_figure(model.model, model.bands, published, id + "-curves"));
+    add_figure(section, model_figure(model.model, model.bands, id + "-curves"));
     if (model.table_one) {
         section.html += heading("Table I");
         add_table(section, {*model.table_one, "Coefficients of the model as the paper's Table I", ""});

@@ -17,7 +17,9 @@ VegaJson phases_of(const mission::MissionSetup& mission) {
     const auto timeline = mission::timeline_of(mission.duration_s);
     for (const auto phase : flight::all_phases)
         if (mission.duration_s[phase] > 0.0)
-            phases.push_back({{"phase", phase_word(phase)}, {"end_s", rounded_json(timeline.end_s[phase], 1)}});
+            phases.push_back({{"phase", phase_word(phase)},
+                              {"start_s", rounded_json(timeline.start_s[phase], 1)},
+                              {"end_s", rounded_json(timeline.end_s[phase], 1)}});
     return phases;
 }
 

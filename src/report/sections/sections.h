@@ -64,7 +64,7 @@ struct ReportModel {
 };
 
 /// The model as Fig. 2 with Table I.
-Section model_section(const ReportModel& model, const PublishedFigures& published, const std::string& id);
+Section model_section(const ReportModel& model, const std::string& id);
 
 /// Errors of predictions by leave-one-out, compared with the baselines. `flights` is not empty; a warning is for
 /// `synthetic` ones.
@@ -74,12 +74,9 @@ Section validation_section(const std::vector<mechanical::ValidatedFlight>& fligh
 std::optional<Section> physical_section(std::span<const mechanical::MeasuredFlight> flights);
 
 /// Each mechanical model that is not in `shown` and each software once, schedules as Fig. 3 with the ranking, maps over
-/// the quality of service as Fig. 4, and plans. `missions` is not empty.
-std::vector<Section> mission_sections(std::span<const SimulatedMission> missions, const PublishedFigures& published,
+/// the quality of service as Fig. 4. `missions` is not empty.
+std::vector<Section> mission_sections(std::span<const SimulatedMission> missions,
                                       std::span<const mechanical::MechanicalModel> shown = {});
-
-/// Schedules of planned missions. No figures without one.
-Section plan_section(std::span<const SimulatedMission> missions);
 
 /// Schedules of missions on the flights' measured power. `replays` is not empty.
 Section replay_section(std::span<const mission::Replay> replays);

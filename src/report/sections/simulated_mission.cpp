@@ -102,7 +102,7 @@ std::vector<SimulatedMission> simulate_for_report(const std::vector<mission::Mis
         auto title = valid_utf8(setup.name);
         if (const int times = ++seen[title]; times > 1) title += fmt::format(" ({})", times);
         simulated.push_back(simulate_one(mission, steps));
-        simulated.back().title = std::move(title);
+        simulated.back().simulation.summary.mission = simulated.back().title = std::move(title);
     }
     return simulated;
 }

@@ -11,32 +11,25 @@
 namespace flightwatt::report {
 namespace {
 
-/// Style, shape and words of a outcome; its words in the headline follow a number of missions.
+/// Style and words of an outcome; its words in the headline follow a number of missions.
 struct OutcomeLook {
-    const char* css_class;
-    const char* shape;  ///< of an SVG of 16 by 16
+    const char* css_class;  ///< also the name of its mark in web/page.html
     const char* of_one;
     const char* of_several;
 };
 
-constexpr auto triangle = "<path d=\"M8 1 15.5 15H.5z\"/><path class=\"sign\" d=\"M8 5.5v4.5M8 11.8v1.4\"/>";
-
 /// In the order of Outcome.
-constexpr std::array<OutcomeLook, 4> looks{
-    {{"keeps", "<circle cx=\"8\" cy=\"8\" r=\"7.5\"/><path class=\"sign\" d=\"m4.5 8.3 2.4 2.4 4.6-5\"/>",
-      "lands as planned", "land as planned"},
-     {"may-miss", triangle, "may miss the reserve", "may miss the reserve"},
-     {"misses", triangle, "lands below the reserve", "land below the reserve"},
-     {"fails",
-      "<rect x=\".5\" y=\".5\" width=\"15\" height=\"15\" rx=\"3\"/><path class=\"sign\" d=\"m5 5 6 6m0-6-6 6\"/>",
-      "does not reach its end", "do not reach their end"}}};
+constexpr std::array<OutcomeLook, 4> looks{{{"keeps", "lands as planned", "land as planned"},
+                                            {"may-miss", "may miss the reserve", "may miss the reserve"},
+                                            {"misses", "lands below the reserve", "land below the reserve"},
+                                            {"fails", "does not reach its end", "do not reach their end"}}};
 
 const OutcomeLook& look_of(Outcome outcome) { return looks.at(static_cast<std::size_t>(outcome)); }
 
 std::string mark_html(Outcome outcome) {
     return fmt::format(
-        "<svg class=\"mark\" viewBox=\"0 0 16 16\" width=\"16\" height=\"16\" aria-hidden=\"true\">{}</svg>",
-        look_of(outcome).shape);
+        "<svg class=\"mark\" width=\"16\" height=\"16\" aria-hidden=\"true\"><use href=\"#mark-{}\"/></svg>",
+        look_of(outcome).css_class);
 }
 
 std::string number_word(std::size_t number) {

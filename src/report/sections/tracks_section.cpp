@@ -8,13 +8,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 
 #include <boost/geometry/algorithms/append.hpp>
-#include <boost/geometry/algorithms/assign.hpp>
-#include <boost/geometry/algorithms/expand.hpp>
 #include <boost/geometry/algorithms/simplify.hpp>
-#include <boost/geometry/geometries/box.hpp>
 #include <boost/geometry/geometries/linestring.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
 #include <boost/geometry/strategies/cartesian/distance_projected_point.hpp>
@@ -26,15 +22,11 @@ namespace {
 namespace bg = boost::geometry;
 using Point = bg::model::d2::point_xy<double>;  ///< east, north [m]
 using Line = bg::model::linestring<Point>;
-using Box = bg::model::box<Point>;
 
 constexpr std::size_t max_tracks = 40;
 constexpr double tolerance_m = 2.0;  ///< of the drawn lines
 
-struct Piece {
-    flight::Phase phase = flight::Phase::cruise;
-    Line line;
-};
+VegaJson point_data(const Point& point) { return {rounded_json(point.x(), 0), rounded_json(point.y(), 0)}; }
 
 /// Positions of a flight.
 struct Positions {
@@ -56,32 +48,36 @@ Positions positions_of(const flight::FlightSeries& series) {
     return {std::move(east.time_s), std::move(east.value), std::move(north_m)};
 }
 
-/// The track of the phases, split at gaps of the samples.
-std::vector<Piece> pieces_of(const ReportFlight& flight, const Positions& positions) {
-    std::vector<Piece> pieces;
+/// The lines of the phases, split at gaps of the samples.
+VegaJson lines_of(const ReportFlight& flight, const Positions& positions) {
+    auto lines = VegaJson::array();
+    const auto add = [&](flight::Phase phase, const Line& line) {
+        if (line.empty()) return;
+        Line simple;
+        bg::simplify(line, simple, tolerance_m);
+        auto points = VegaJson::array();
+        for (const auto& point : simple) points.push_back(point_data(point));
+        lines.push_back({{"phase", phase_word(phase)}, {"points", points}});
+    };
     const double gap_s = flight::gap_threshold_s(positions.time_s);
     for (const auto& sortie : flight.phases.sorties) {
         for (const auto& span : sortie.phases) {
-            double last_s = -std::numeric_limits<double>::infinity();
+            Line line;
+            double last_s = std::numeric_limits<double>::infinity();
             for (std::size_t i = 0; i < positions.time_s.size(); ++i) {
                 const double now_s = positions.time_s[i];
                 if (now_s < span.start.time_s || now_s > span.end.time_s) continue;
-                if (now_s - last_s > gap_s) pieces.push_back({span.phase, {}});
-                bg::append(pieces.back().line, Point(positions.east_m[i], positions.north_m[i]));
+                if (now_s - last_s > gap_s) {
+                    add(span.phase, line);
+                    line.clear();
+                }
+                bg::append(line, Point(positions.east_m[i], positions.north_m[i]));
                 last_s = now_s;
             }
+            add(span.phase, line);
         }
     }
-    return pieces;
-}
-
-VegaJson line_data(const Line& line, const Point& middle) {
-    Line simple;
-    bg::simplify(line, simple, tolerance_m);
-    auto points = VegaJson::array();
-    for (const auto& point : simple)
-        points.push_back({rounded_json(point.x() - middle.x(), 0), rounded_json(point.y() - middle.y(), 0)});
-    return points;
+    return lines;
 }
 
 /// Charge left [%] at a time, by the battery's record of the flight; none without one.
@@ -99,8 +95,7 @@ std::optional<double> charge_percent(const ReportBattery* battery, const std::st
 }
 
 /// Every 5 minutes (or more, of long flights) from lift-off to touchdown.
-VegaJson marks_of(const ReportFlight& flight, const Positions& positions, const Point& middle,
-                  const ReportBattery* battery) {
+VegaJson marks_of(const ReportFlight& flight, const Positions& positions, const ReportBattery* battery) {
     constexpr double max_marks = 8.0;
     const double start_s = flight.phases.sorties.front().phases.front().start.time_s;
     const double end_s = flight.phases.sorties.back().phases.back().end.time_s;
@@ -109,11 +104,9 @@ VegaJson marks_of(const ReportFlight& flight, const Positions& positions, const 
     auto marks = VegaJson::array();
     for (double minutes = step_min; start_s + minutes * units::seconds_per_minute < end_s; minutes += step_min) {
         const double time_s = start_s + minutes * units::seconds_per_minute;
-        const auto point = positions.at(time_s);
         const auto charge = charge_percent(battery, flight.name, time_s);
         marks.push_back(
-            {{"x", rounded_json(point.x() - middle.x(), 0)},
-             {"y", rounded_json(point.y() - middle.y(), 0)},
+            {{"point", point_data(positions.at(time_s))},
              {"text", fmt::format("{:.0f} min{}", minutes, charge ? fmt::format(": {:.0f} %", *charge) : "")}});
     }
     return marks;
@@ -139,52 +132,27 @@ std::string longest_block(const ReportFlight& flight) {
                        time_s.size() > 1 ? fmt::format(", of {} blocks", time_s.size()) : "");
 }
 
-/// Longitudes and latitudes as metres of the flight's own axes, by its position at one time; empty without one.
-VegaJson outline_data(const std::vector<Outline>& outlines, const flight::FlightSeries& series,
-                      const Positions& positions, const Point& middle) {
-    auto lines = VegaJson::array();
-    const auto longitude = sample_selected_track(series, "longitude_deg", positions.time_s);
-    const auto latitude = sample_selected_track(series, "latitude_deg", positions.time_s);
-    if (longitude.empty() || latitude.empty()) return lines;
+/// [east, north, longitude, latitude] at one time, by which outlines are placed; null without a longitude.
+VegaJson place_of(const flight::FlightSeries& series, const Positions& positions) {
+    const auto longitude_deg = sample_selected_track(series, "longitude_deg", positions.time_s);
+    const auto latitude_deg = sample_selected_track(series, "latitude_deg", positions.time_s);
+    if (longitude_deg.empty() || latitude_deg.empty()) return {};
     const auto at = positions.time_s.size() / 2;
-    const double narrowing = std::cos(latitude[at] / units::degree_per_rad);
-    for (const auto& outline : outlines) {
-        auto line = VegaJson::array();
-        for (const auto& [longitude_deg, latitude_deg] : outline)
-            line.push_back(
-                {rounded_json(positions.east_m[at] - middle.x() +
-                                  (longitude_deg - longitude[at]) * narrowing * units::metre_per_degree,
-                              0),
-                 rounded_json(
-                     positions.north_m[at] - middle.y() + (latitude_deg - latitude[at]) * units::metre_per_degree, 0)});
-        lines.push_back(std::move(line));
-    }
-    return lines;
+    return {positions.east_m[at], positions.north_m[at], longitude_deg[at], latitude_deg[at]};
 }
 
-/// Data of one map, centred, with its half extent; null without positions.
-VegaJson track_data(const ReportFlight& flight, const ReportBattery* battery, const std::vector<Outline>& outlines) {
+/// Data of one map; null without positions.
+VegaJson track_data(const ReportFlight& flight, const ReportBattery* battery) {
     if (!flight.rejected.empty() || flight.phases.sorties.empty()) return {};
     const auto positions = positions_of(flight.series);
     if (positions.time_s.empty()) return {};
-    const auto pieces = pieces_of(flight, positions);
-    if (pieces.empty()) return {};
-    Box box;
-    bg::assign_inverse(box);
-    for (const auto& piece : pieces)
-        for (const auto& point : piece.line) bg::expand(box, point);
-    const Point middle(std::midpoint(box.min_corner().x(), box.max_corner().x()),
-                       std::midpoint(box.min_corner().y(), box.max_corner().y()));
-    auto lines = VegaJson::array();
-    for (const auto& [phase, line] : pieces)
-        lines.push_back({{"phase", phase_word(phase)}, {"points", line_data(line, middle)}});
+    auto lines = lines_of(flight, positions);
+    if (lines.empty()) return {};
     return {{"title", flight_title(flight)},
             {"text", longest_block(flight)},
-            {"half_m",
-             rounded_json(std::max({1.0, box.max_corner().x() - middle.x(), box.max_corner().y() - middle.y()}), 0)},
-            {"lines", lines},
-            {"marks", marks_of(flight, positions, middle, battery)},
-            {"outline", outline_data(outlines, flight.series, positions, middle)}};
+            {"lines", std::move(lines)},
+            {"marks", marks_of(flight, positions, battery)},
+            {"place", place_of(flight.series, positions)}};
 }
 
 }  // namespace
@@ -193,29 +161,21 @@ std::optional<Section> tracks_section(const BatchContent& batch, const ReportBat
                                       const std::vector<Outline>& outlines) {
     auto tracks = VegaJson::array();
     std::size_t left_out = 0;
-    std::string maps;
     for (const auto& flight : batch.flights) {
-        if (tracks.size() == max_tracks) {
+        if (tracks.size() == max_tracks)
             ++left_out;
-            continue;
-        }
-        auto data = track_data(flight, battery, outlines);
-        if (data.is_null()) continue;
-        maps += fmt::format(
-            "<div class=\"card\"><h3>{}</h3>\n<p class=\"soft\">{}</p>\n<div class=\"drawn\" data-draw=\"track\" "
-            "data-track=\"{}\"></div></div>\n",
-            html_escaped(data["title"].get<std::string>()), html_escaped(data["text"].get<std::string>()),
-            tracks.size());
-        tracks.push_back(std::move(data));
+        else if (auto data = track_data(flight, battery); !data.is_null())
+            tracks.push_back(std::move(data));
     }
     if (tracks.empty()) return std::nullopt;
-    Section section{"tracks", "Tracks"};
     const bool has_charge = battery != nullptr && battery->identified;
+    Section section{"tracks", "Tracks"};
     section.html = fmt::format(
         "<p class=\"soft\"><b class=\"takeoff\">Take-off</b>, <b class=\"cruise\">cruise</b>, <b "
-        "class=\"landing\">landing</b>. Dots: minutes since lift-off{}. All maps have the same scale.</p>\n",
-        has_charge ? fmt::format(", and the charge left of {:.3g} Ah", battery->identified->battery.capacity_ah) : "");
-    section.html += "<div class=\"maps\">\n" + maps + "</div>\n" + data_block("tracks", tracks);
+        "class=\"landing\">landing</b>. Dots: minutes since lift-off{}. All maps have the same scale.</p>\n"
+        "<div class=\"maps\"></div>\n{}{}",
+        has_charge ? fmt::format(", and the charge left of {:.3g} Ah", battery->identified->battery.capacity_ah) : "",
+        data_block("tracks", tracks), data_block("outlines", outlines));
     if (left_out > 0)
         section.html += paragraph(
             fmt::format("{} further flights are not drawn; flightwatt export writes their tracks.", left_out), "soft");

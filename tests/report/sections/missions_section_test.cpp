@@ -1,6 +1,6 @@
-#include "base/error.h"
 #include "helpers/paper_missions.h"
 #include "report/figures/mission_figures.h"
+#include "report/sections/page_data.h"
 #include "report/sections/sections.h"
 
 #include <algorithm>
@@ -45,13 +45,13 @@ TEST(QosMap, NeedsTwoParameters) {
 }
 
 TEST(MissionSections, HaveEachModelAndSoftwareOnce) {
-    const auto sections = mission_sections(simulated({"phased", "adaptive", "computing-only"}), {});
+    const auto sections = mission_sections(simulated({"phased", "adaptive", "computing-only"}));
     std::vector<std::string> figures;
     for (const auto& section : sections) {
         for (const auto& figure : section.figures) figures.push_back(figure.id);
     }
-    EXPECT_THAT(figures,
-                testing::ElementsAre("mission-model-1-curves", "profile-1", "schedules-soc", "quality-1", "quality-2"));
+    EXPECT_THAT(figures, testing::UnorderedElementsAre("mission-model-1-curves", "profile-1", "schedules-soc",
+                                                       "quality-1", "quality-2"));
 }
 
 TEST(QosGrid, HasTheProfiledValuesWithTheirCurvesAndProbabilities) {
@@ -72,80 +72,35 @@ TEST(QosGrid, HasTheProfiledValuesWithTheirCurvesAndProbabilities) {
 TEST(MissionSections, AnswerFirstAndFoldStatistics) {
     const auto missions = simulated({"phased", "computing-only"});
     std::vector<std::string> open;
-    for (const auto& section : mission_sections(missions, {}))
+    for (const auto& section : mission_sections(missions))
         if (section.place == SectionPlace::page) open.push_back(section.id);
     EXPECT_THAT(open, testing::ElementsAre("curves", "quality-of-service"));
 }
 
+TEST(MissionSections, DrawTheSchedulesFromTheDataOfThePage) {
+    const auto missions = simulated({"phased", "computing-only"});
+    for (const auto& section : mission_sections(missions)) {
+        if (section.id != "schedules") continue;
+        const auto& panels = section.figures.at(0).spec["vconcat"];
+        EXPECT_EQ(panels[0]["data"]["values"], missions_data(missions));
+        EXPECT_EQ(panels[0]["layer"][0]["data"]["values"].size(), 3U) << "both have the same phases";
+        EXPECT_THAT(panels[1]["data"]["values"].get<std::string>(), HasSubstr("computing-only,take-off,"));
+    }
+}
+
 TEST(MissionSections, NameWhatIsDrawnOnce) {
     std::string html;
-    for (const auto& section : mission_sections(simulated({"phased", "adaptive"}), {})) html += section.html;
+    for (const auto& section : mission_sections(simulated({"phased", "adaptive"}))) html += section.html;
     EXPECT_THAT(html, HasSubstr("phased, adaptive: drawn: "));
 }
 
 TEST(MissionSections, ShowWhereTheBatteryCannotDeliver) {
     auto weak = paper_mission("phased");
     weak.setup.battery.resistance_ohm = 1.0;
-    const auto sections = mission_sections(simulate_for_report({weak}), {});
+    const auto sections = mission_sections(simulate_for_report({weak}));
     bool said = false;
     for (const auto& section : sections) said = said || section.html.find("cannot deliver") != std::string::npos;
     EXPECT_TRUE(said);
-}
-
-TEST(PublishedFigures, StandBesideOurs) {
-    FLIGHTWATT_NEEDS_SHARED();
-    const auto published = read_published_figures(test::shared_dir() / "paper");
-    EXPECT_EQ(published.soc.size(), 6U);
-    EXPECT_EQ(published.soc_cells.size(), 108U);
-    std::string captions;
-    for (const auto& section : mission_sections(simulated({"computing-only", "phased"}), published)) {
-        for (const auto& figure : section.figures) captions += figure.caption;
-    }
-    EXPECT_THAT(captions, HasSubstr("RMS difference take-off 0.009 W, cruise 0.005 W, landing 0.019 W"));
-    EXPECT_THAT(captions, HasSubstr("Points: the paper's Fig. 3, digitised."));
-    EXPECT_THAT(captions, HasSubstr("RMS difference over 108 cells 0.04 points"));
-}
-
-TEST(PublishedFigures, NameWhatIsMissing) { EXPECT_THROW(read_published_figures(test::scratch_dir()), InputError); }
-
-mission::MissionVariant paper(const std::string& name) {
-    return mission::read_mission(test::paper_mission_path(name), {true, std::nullopt});
-}
-
-TEST(PlanSection, IsEmptyWhereNothingWasPlanned) {
-    EXPECT_TRUE(plan_section(simulate_for_report({paper("phased")})).figures.empty());
-}
-
-TEST(PlanSection, ShowsThePlan) {
-    const auto missions = simulate_for_report({paper("plan"), paper("phased")});
-    ASSERT_TRUE(missions[0].planned);
-    EXPECT_TRUE(missions[0].planned->feasible);
-    EXPECT_FALSE(missions[1].planned);
-    const auto section = plan_section(missions);
-    ASSERT_EQ(section.figures.size(), 1U);
-    EXPECT_EQ(section.figures[0].id, "plan-1-strip");
-    EXPECT_THAT(section.html, HasSubstr("proven bound"));
-    EXPECT_THAT(section.html, HasSubstr("data-label=\"schedule\">optimal</td>"));
-}
-
-TEST(PlanSection, SaysWhereNoPlanKeepsTheReserve) {
-    auto mission = test::paper_problem("plan");
-    mission.setup.reserve_soc_percent = 60.0;
-    const auto missions = simulate_for_report({mission});
-    EXPECT_FALSE(missions[0].planned->feasible);
-    const auto html = plan_section(missions).html;
-    EXPECT_THAT(html, HasSubstr("No schedule that keeps the reserve was found"));
-    EXPECT_THAT(html, HasSubstr(">no</td>"));
-}
-
-TEST(RunningTimes, JoinEqualNeighboursOverPhases) {
-    const auto mission = test::paper_mission("adaptive");
-    const auto times = run_intervals(mission);
-    ASSERT_EQ(times.size(), 6U) << "two components: little, much, little";
-    EXPECT_EQ(times[0].start_s, 0.0);
-    EXPECT_NEAR(times[2].end_s - times[2].start_s, 120.0, 1e-9);
-    EXPECT_EQ(describe_qos(mission.setup.compute.components[times[2].component], times[2].qos), "fps 32");
-    EXPECT_NEAR(times[4].end_s, 688.0, 1.0);
 }
 
 using testing::Not;

@@ -18,13 +18,13 @@ using testing::Not;
 
 TEST(ModelSection, ShowsCurvesAndTable) {
     ReportModel model{test::published_model(), "Read from a file."};
-    const auto without = model_section(model, {}, "model");
+    const auto without = model_section(model, "model");
     ASSERT_EQ(without.figures.size(), 1U);
     EXPECT_EQ(without.figures[0].id, "model-curves");
     EXPECT_THAT(without.html, HasSubstr("Read from a file."));
     EXPECT_THAT(without.html, Not(HasSubstr("<h3>Table I</h3>")));
     model.table_one = table_one(model.model);
-    const auto with = model_section(model, {}, "model");
+    const auto with = model_section(model, "model");
     EXPECT_THAT(with.html, HasSubstr("<h3>Table I</h3>"));
     EXPECT_THAT(with.html, Not(HasSubstr("the 95 % intervals"))) << "its errors are not known";
 }

@@ -26,8 +26,8 @@ BatchContent sample_batch() {
     return batch;
 }
 
-VegaJson data_of(const Section& section) {
-    const std::string begin = "id=\"data-tracks\">";
+VegaJson data_of(const Section& section, const std::string& name = "tracks") {
+    const std::string begin = "id=\"data-" + name + "\">";
     const auto at = section.html.find(begin) + begin.size();
     return VegaJson::parse(section.html.substr(at, section.html.find("</script>", at) - at));
 }
@@ -41,9 +41,17 @@ TEST(TracksSection, DrawsPhasesBrokenAtGapsWithMarksEvery5Minutes) {
     EXPECT_EQ(data["lines"].front()["phase"], "take-off");
     ASSERT_EQ(data["marks"].size(), 2U);
     EXPECT_EQ(data["marks"][1]["text"], "10 min") << "no battery is known";
-    const double half_m = data["half_m"];
-    for (const auto& line : data["lines"])
-        for (const auto& point : line["points"]) EXPECT_LE(std::abs(point[0].get<double>()), half_m + 1.0);
+}
+
+TEST(TracksSection, PlacesOutlinesByAPositionInDegrees) {
+    auto batch = sample_batch();
+    const auto section = tracks_section(batch, nullptr, {{{10.39, 63.42}, {10.4, 63.42}}});
+    EXPECT_EQ(data_of(*section, "outlines").dump(), "[[[10.39,63.42],[10.4,63.42]]]");
+    const auto place = data_of(*section)[0]["place"];
+    ASSERT_EQ(place.size(), 4U);
+    EXPECT_NEAR(place[2].get<double>(), 10.39, 0.1);
+    std::erase_if(batch.flights[0].series.tracks, [](const auto& track) { return track.name == "longitude_deg"; });
+    EXPECT_TRUE(data_of(*tracks_section(batch, nullptr))[0]["place"].is_null());
 }
 
 TEST(TracksSection, ShowsTheChargeOfAnIdentifiedBattery) {
