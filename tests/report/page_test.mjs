@@ -110,7 +110,7 @@ const lines = (figure) => figure.locator("svg.marks .mark-line.role-mark path").
 test("six flights: every figure is drawn, nothing is said, nothing is asked of the network", async () => {
   const { page, faults } = await open("six.html");
   const count = await drawAll(page);
-  assert.equal(count, 16, `${count} figures`);
+  assert.equal(count, 13, `${count} figures`);
   assert.deepEqual(await withoutMarks(page), []);
   assert.deepEqual(faults, []);
   assert.ok(statSync(path.join(folder, "six.html")).size < 3e6);
