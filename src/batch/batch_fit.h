@@ -1,7 +1,6 @@
 #pragma once
 
 #include "batch/batch_run.h"
-#include "mechanical/model_errors.h"
 #include "mechanical/model_fit.h"
 #include "mechanical/phase_samples.h"
 

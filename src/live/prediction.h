@@ -5,7 +5,6 @@
 #include "mechanical/flight_progress.h"
 #include "mechanical/prediction.h"
 #include "mission/mission.h"
-#include "path/path_tracker.h"
 #include "path/remaining_path.h"
 
 #include <functional>

@@ -6,7 +6,6 @@
 #include "mechanical/flight_bins.h"
 
 #include <cstddef>
-#include <optional>
 
 namespace flightwatt::mechanical {
 

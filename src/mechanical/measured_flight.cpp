@@ -1,9 +1,7 @@
 #include "mechanical/measured_flight.h"
 
 #include "base/piecewise_linear.h"
-#include "flight/phase_statistics.h"
 #include "flight/selected_track.h"
-#include "mechanical/phase_samples.h"
 
 #include <algorithm>
 #include <utility>

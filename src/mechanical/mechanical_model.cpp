@@ -1,6 +1,5 @@
 #include "mechanical/mechanical_model.h"
 
-#include "base/statistics.h"
 #include "base/units.h"
 
 #include <algorithm>

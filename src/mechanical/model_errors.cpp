@@ -1,8 +1,7 @@
-#include "mechanical/model_errors.h"
-
 #include "base/csv.h"
 #include "base/statistics.h"
-#include "mechanical/fit/error_analysis.h"
+#include "mechanical/fit/phase_fit.h"
+#include "mechanical/model_fit.h"
 
 #include <algorithm>
 #include <cmath>

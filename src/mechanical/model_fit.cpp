@@ -3,8 +3,6 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/statistics.h"
-#include "mechanical/fit/flight_variation.h"
-#include "mechanical/fit/flight_weights.h"
 #include "mechanical/fit/fourier_basis.h"
 #include "mechanical/fit/least_squares.h"
 #include "mechanical/fit/phase_fit.h"

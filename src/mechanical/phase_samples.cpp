@@ -4,10 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <span>
 #include <utility>
-#include <vector>
 
 namespace flightwatt::mechanical {
 namespace {

@@ -1,7 +1,6 @@
 #include "mechanical/prediction.h"
 
 #include "base/error.h"
-#include "base/statistics.h"
 #include "base/units.h"
 #include "mechanical/physical/power_regression.h"
 

@@ -4,7 +4,6 @@
 #include "base/units.h"
 
 #include <algorithm>
-#include <string_view>
 #include <vector>
 
 #include <boost/algorithm/string/replace.hpp>

@@ -4,7 +4,7 @@
 #include "base/parallel.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "mechanical/fit/flight_variation.h"
+#include "mechanical/fit/phase_fit.h"
 #include "mechanical/physical_fit.h"
 
 #include <algorithm>

@@ -79,6 +79,13 @@ class LimitSearch {
         return false;
     }
 
+    /// The same; where there is no end throws NoResultError, whose text contains the greatest value, or the misfit.
+    void require_end(double max_value, std::string_view text) {
+        if (find_end(1.0, max_value)) return;
+        if (!good_) throw *misfit_;
+        throw NoResultError(fmt::format(fmt::runtime(text), *good_));
+    }
+
     void set_end(double bad) { bad_ = bad; }
 
     /// Narrows to the accuracy of the search, or to neighbouring whole numbers.
@@ -161,11 +168,7 @@ Mission with_capacity(Mission mission, double capacity_ah) {
 FeasibilityLimit longest_cruise(const MissionVariation& with_cruise_s, const std::optional<double>& probability) {
     constexpr double longest_cruise_s = 1e7;
     LimitSearch search(with_cruise_s, probability);
-    if (!search.find_end(1.0, longest_cruise_s)) {
-        if (search.good())
-            throw NoResultError(fmt::format("a cruise of {:.3g} s still lands with the reserve", *search.good()));
-        throw *search.misfit();
-    }
+    search.require_end(longest_cruise_s, "a cruise of {:.3g} s still lands with the reserve");
     search.refine();
     if (!search.good())
         throw NoResultError(
@@ -198,8 +201,7 @@ FeasibilityLimit largest_payload(const MissionVariant& mission, const std::optio
         throw NoResultError(fmt::format("without any payload the mission misses its reserve by {:.4g} points already{}",
                                         -surplus, search.share_text()));
     }
-    if (!search.find_end(1.0, largest_payload_w))
-        throw NoResultError(fmt::format("a payload of {:.3g} W still lands with the reserve", search.low()));
+    search.require_end(largest_payload_w, "a payload of {:.3g} W still lands with the reserve");
     search.refine();
     auto most = search.limit(search.low(), search.low() * (1.0 + 1e-9) + 1e-9);
     if (probability) most.sources = collect_uncertainty(bare.setup).sources;
@@ -222,11 +224,7 @@ std::optional<double> min_capacity_ah(const MissionVariant& mission, const std::
 FeasibilityLimit max_circles(const MissionVariation& with_circles, const std::optional<double>& probability) {
     constexpr double max_circles_tried = 1e4;
     LimitSearch search(with_circles, probability);
-    if (!search.find_end(1.0, max_circles_tried)) {
-        if (search.good())
-            throw NoResultError(fmt::format("{:.0f} circles still land with the reserve", *search.good()));
-        throw *search.misfit();
-    }
+    search.require_end(max_circles_tried, "{:.0f} circles still land with the reserve");
     if (search.bad() > 1.0) search.refine(true);
     if (!search.good()) throw NoResultError("the fewest circles that fit do not land with the reserve");
     return search.limit(*search.good(), *search.good() + 1.0);

@@ -3,7 +3,6 @@
 #include "base/duration_text.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include <fmt/format.h>

@@ -5,7 +5,6 @@
 #include "mission/simulation/load_segments.h"
 
 #include <utility>
-#include <vector>
 
 namespace flightwatt::mission {
 

@@ -75,6 +75,17 @@ struct Replays {
     std::vector<SkippedReplay> not_replayed;
 };
 
+/// Pieces of constant power with the measured energy, of 1 s or more, at least from sample to sample. Negative energy
+/// counts as 0.
+path::PiecewisePower measured_power_profile(const mechanical::PhasePower& measured);
+
+/// The mission as known before a flight: with another mechanical model, its durations where the mission states none,
+/// and without a path.
+MissionSetup nominal_mission(const MissionSetup& stated, const mechanical::MechanicalModel& model);
+
+/// The mission with the power and durations of a flight, which must have every phase that is flown.
+MissionSetup measured_mission(const MissionSetup& known, const mechanical::MeasuredFlight& flight);
+
 /// Simulates each mission on each flight's measured mechanical power (docs/methods.md, Replay), with its own schedule,
 /// or if it is to be planned with all other methods. Schedules are made with a model of the other flights. Throws
 /// NoResultError for a single flight without options.model, UsageError for a flight given twice, InputError for a

@@ -1,7 +1,6 @@
 #include "mission/sampled_flights.h"
 
 #include "base/csv.h"
-#include "base/statistics.h"
 #include "base/units.h"
 #include "mission/plan.h"
 #include "mission/sampling/flight_draws.h"

@@ -1,6 +1,5 @@
 #include "path/cruise_path.h"
 
-#include "base/piecewise_linear.h"
 #include "base/units.h"
 
 #include <algorithm>
@@ -67,10 +66,6 @@ double duration_s(const CruisePath& cruise) { return cruise.pieces->time_s.back(
 double energy_j(const CruisePath& cruise) { return cruise.pieces->energy_j.back(); }
 
 double mean_power_w(const CruisePath& cruise) { return energy_j(cruise) / duration_s(cruise); }
-
-double energy_until_j(const PiecewisePower& pieces, double time_s) {
-    return interpolate_extended(pieces.time_s, pieces.energy_j, time_s);
-}
 
 std::vector<PathElementResult> path_element_results(const PlannedPath& plan) {
     const auto flown = compute_trajectory(plan.path, plan.wind);

@@ -42,9 +42,6 @@ double duration_s(const CruisePath& cruise);
 double energy_j(const CruisePath& cruise);
 double mean_power_w(const CruisePath& cruise);
 
-/// Energy [J] from the start of the phase to a time within it.
-double energy_until_j(const PiecewisePower& pieces, double time_s);
-
 /// One element of a path as it is flown: means over its time.
 struct PathElementResult {
     std::string name;      ///< "leg 3"

@@ -4,11 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <iterator>
 #include <utility>
-#include <variant>
-#include <vector>
 
 namespace flightwatt::path {
 namespace {

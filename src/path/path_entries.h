@@ -1,9 +1,12 @@
 #pragma once
 
+#include "base/toml_reader.h"
 #include "path/path.h"
 
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace flightwatt::path {
@@ -42,6 +45,21 @@ struct PathEntry {
     bool is_turn = false;  ///< circles that are a part of a pattern, and not flown more often
     std::optional<double> hold_s;
 };
+
+/// The numbers that waypoints and legs may have in addition to their place.
+struct EntryValue {
+    std::string_view name;  ///< as files call it
+    std::optional<double> PathEntry::*value;
+    NumberRange range;
+};
+inline constexpr std::array<EntryValue, 6> entry_values{{
+    {"altitude_m", &PathEntry::altitude_m, between(-1e5, 1e5)},
+    {"airspeed_m_per_s", &PathEntry::airspeed_m_per_s, more_than_up_to(0.0, max_m_per_s)},
+    {"duration_s", &PathEntry::duration_s, more_than_up_to(0.0, 1e7)},
+    {"hold_s", &PathEntry::hold_s, more_than_up_to(0.0, 1e7)},
+    {"circles", &PathEntry::circles, more_than_up_to(0.0, largest_circle_count)},
+    {"radius_m", &PathEntry::radius_m, between(min_radius_m, max_radius_m)},
+}};
 
 /// Defaults of a path, which an entry may override.
 struct PathDefaults {

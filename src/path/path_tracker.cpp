@@ -1,6 +1,5 @@
-#include "path/path_tracker.h"
-
 #include "base/units.h"
+#include "path/remaining_path.h"
 
 #include <algorithm>
 #include <array>

@@ -2,6 +2,7 @@
 
 #include "path/path_entries.h"
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -57,5 +58,13 @@ PlanEntries parse_wpl(std::string_view text, const std::string& file, const Auto
 /// Lines over the polygon of a GeoJSON or KML file: `spacing_m` apart, on the course `heading_deg` and back, with half
 /// circles between them. Throws InputError, placed in the file, unless it has one polygon, into which lines fit.
 PlanEntries parse_area(std::string_view text, const std::string& file, double spacing_m, double heading_deg);
+
+/// The waypoints of a file, in its order: GeoJSON by its ending (.geojson, .json), plans of QGroundControl and
+/// ArduPilot by their content, else CSV (docs/formats.md, Waypoints). Throws InputError, placed in the file.
+PlanEntries read_waypoints(const std::filesystem::path& path, const AutopilotSettings& settings);
+
+/// CSV and GeoJSON from text.
+std::vector<PathEntry> parse_waypoint_csv(std::string_view text, const std::string& file);
+std::vector<PathEntry> parse_geojson(std::string_view text, const std::string& file);
 
 }  // namespace flightwatt::path

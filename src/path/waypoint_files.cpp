@@ -1,8 +1,7 @@
-#include "path/waypoint_files.h"
-
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/toml_reader.h"
+#include "path/plan_files.h"
 #include "path/plans/json_text.h"
 
 #include <algorithm>
@@ -15,20 +14,10 @@ namespace flightwatt::path {
 namespace {
 
 /// Checks and sets a value of a waypoint.
-void set_value(PathEntry& entry, std::string_view name, double value, const Location& where) {
-    const auto checked = [&](NumberRange range) {
-        require_in(range, value, name, where);
-        return value;
-    };
-    if (name == "altitude_m") entry.altitude_m = checked(between(-1e5, 1e5));
-    if (name == "airspeed_m_per_s") entry.airspeed_m_per_s = checked(more_than_up_to(0.0, max_m_per_s));
-    if (name == "duration_s") entry.duration_s = checked(more_than_up_to(0.0, 1e7));
-    if (name == "hold_s") entry.hold_s = checked(more_than_up_to(0.0, 1e7));
-    if (name == "circles") entry.circles = checked(more_than_up_to(0.0, largest_circle_count));
-    if (name == "radius_m") entry.radius_m = checked(between(min_radius_m, max_radius_m));
+void set_value(PathEntry& entry, const EntryValue& of, double value, const Location& where) {
+    require_in(of.range, value, of.name, where);
+    entry.*of.value = value;
 }
-
-constexpr std::array waypoint_values{"altitude_m", "airspeed_m_per_s", "duration_s", "hold_s", "circles", "radius_m"};
 
 GeodeticPosition geographic_place(double latitude_deg, double longitude_deg, const Location& where) {
     require_in(between(-90.0, 90.0), latitude_deg, "latitude_deg", where);
@@ -58,12 +47,12 @@ PlaceColumns place_columns(const CsvTable& table) {
 }
 
 void refuse_other_columns(const CsvTable& table) {
+    std::vector<std::string_view> known{"east_m", "north_m", "latitude_deg", "longitude_deg"};
+    for (const auto& value : entry_values) known.push_back(value.name);
     for (const auto& column : table.columns) {
-        constexpr std::array places{"east_m", "north_m", "latitude_deg", "longitude_deg"};
-        if (std::ranges::find(places, column) != places.end()) continue;
-        if (std::ranges::find(waypoint_values, column) != waypoint_values.end()) continue;
+        if (std::ranges::find(known, column) != known.end()) continue;
         throw InputError({table.file, 1}, fmt::format("unknown column '{}'", column),
-                         fmt::format("known are {} and {}", fmt::join(places, ", "), fmt::join(waypoint_values, ", ")));
+                         fmt::format("known are {}", fmt::join(known, ", ")));
     }
 }
 
@@ -74,18 +63,16 @@ class GeoJsonReader {
 
     void read(const Json& object) {
         const auto type = type_of(object);
-        if (type == "FeatureCollection") {
-            refuse_other_reference(object);
-            std::size_t number = 0;
-            for (const auto& feature : member(object, "features", "an array", &Json::is_array)) {
-                at_.name = fmt::format("feature {}", ++number);
-                if (type_of(feature) != "Feature") refuse("is no Feature");
-                read_feature(feature);
-            }
-        } else if (type == "Feature") {
-            read_feature(object);
-        } else {
-            read_geometry(object);
+        if (type == "Feature") return read_feature(object);
+        if (type != "FeatureCollection") return read_geometry(object);
+        const auto reference = object.contains("crs") ? object["crs"].dump() : "CRS84";
+        if (reference.find("CRS84") == std::string::npos && reference.find("4326") == std::string::npos)
+            refuse("has coordinates of another reference than WGS84");
+        std::size_t number = 0;
+        for (const auto& feature : member(object, "features", "an array", &Json::is_array)) {
+            at_.name = fmt::format("feature {}", ++number);
+            if (type_of(feature) != "Feature") refuse("is no Feature");
+            read_feature(feature);
         }
     }
 
@@ -112,23 +99,17 @@ class GeoJsonReader {
         return *found;
     }
 
-    void refuse_other_reference(const Json& object) const {
-        if (object.contains("crs") && object["crs"].dump().find("CRS84") == std::string::npos &&
-            object["crs"].dump().find("4326") == std::string::npos)
-            refuse("has coordinates of another reference than WGS84");
-    }
-
     void read_feature(const Json& feature) {
         const auto first = entries.size();
         read_geometry(member(feature, "geometry", "a geometry", &Json::is_object));
         const auto properties = feature.find("properties");
         if (properties == feature.end() || !properties->is_object()) return;
-        for (const auto* name : waypoint_values) {
-            const auto value = properties->find(name);
+        for (const auto& of : entry_values) {
+            const auto value = properties->find(of.name);
             if (value == properties->end() || value->is_null()) continue;
-            if (!value->is_number()) refuse(fmt::format("has a '{}' that is no number", name));
+            if (!value->is_number()) refuse(fmt::format("has a '{}' that is no number", of.name));
             for (std::size_t i = first; i < entries.size(); ++i)
-                set_value(entries[i], name, value->get<double>(), at_.where);
+                set_value(entries[i], of, value->get<double>(), at_.where);
         }
     }
 
@@ -138,11 +119,8 @@ class GeoJsonReader {
         if (type != "Point" && type != "LineString" && type != "MultiPoint")
             refuse(fmt::format("is a {}, which is no path", type));
         const auto& coordinates = member(geometry, "coordinates", "an array", &Json::is_array);
-        if (type == "Point") {
-            read_position(coordinates);
-        } else {
-            for (const auto& position : coordinates) read_position(position);
-        }
+        if (type == "Point") return read_position(coordinates);
+        for (const auto& position : coordinates) read_position(position);
     }
 
     void read_area(const Json& geometry, const std::string& type) {
@@ -163,7 +141,7 @@ class GeoJsonReader {
         entry.where = at_.where;
         entry.name = fmt::format("waypoint {}", entries.size() + 1);
         entry.geographic = geographic_place(position[1].get<double>(), position[0].get<double>(), at_.where);
-        if (position.size() == 3) set_value(entry, "altitude_m", position[2].get<double>(), at_.where);
+        if (position.size() == 3) set_value(entry, entry_values.front(), position[2].get<double>(), at_.where);
         entries.push_back(std::move(entry));
     }
 
@@ -188,11 +166,11 @@ std::vector<PathEntry> parse_waypoint_csv(std::string_view text, const std::stri
             entry.geographic = geographic_place(first, second, entry.where);
         else
             entry.place = LocalPosition{first, second};
-        for (const auto* name : waypoint_values) {
-            const auto column = std::ranges::find(table.columns, name) - table.columns.begin();
+        for (const auto& value : entry_values) {
+            const auto column = std::ranges::find(table.columns, value.name) - table.columns.begin();
             const auto index = static_cast<std::size_t>(column);
             if (index == table.columns.size() || row.cells[index].text.empty()) continue;
-            set_value(entry, name, cell_number(table, row, index), {file, row.line, row.cells[index].column});
+            set_value(entry, value, cell_number(table, row, index), {file, row.line, row.cells[index].column});
         }
         entries.push_back(std::move(entry));
     }

@@ -3,7 +3,6 @@
 #include "fuzz/fuzz_target.h"
 #include "path/plan_files.h"
 #include "path/trajectory.h"
-#include "path/waypoint_files.h"
 
 namespace {
 

@@ -1,10 +1,9 @@
-#include "mechanical/model_errors.h"
-
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/error.h"
 #include "helpers/made_up_flights.h"
-#include "mechanical/fit/flight_weights.h"
+#include "mechanical/fit/phase_fit.h"
+#include "mechanical/model_fit.h"
 #include "mechanical/table_one.h"
 
 #include <algorithm>

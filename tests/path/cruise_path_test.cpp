@@ -1,5 +1,6 @@
 #include "path/cruise_path.h"
 
+#include "base/piecewise_linear.h"
 #include "helpers/made_up_paths.h"
 #include "path/trajectory.h"
 
@@ -40,7 +41,7 @@ TEST(CruisePath, IsPiecesOfConstantPower) {
     EXPECT_NEAR(duration_s(cruise), 300.0, 1e-9);
     const double sum_j = 100.0 * 21.97 + 50.0 * 29.97 + 150.0 * 27.44;
     EXPECT_NEAR(energy_j(cruise), sum_j, 1e-6);
-    EXPECT_NEAR(energy_until_j(pieces, 120.0), 2197.0 + 20.0 * 29.97, 1e-6);
+    EXPECT_NEAR(interpolate_extended(pieces.time_s, pieces.energy_j, 120.0), 2197.0 + 20.0 * 29.97, 1e-6);
 }
 
 TEST(CruisePath, HasTheMeanOfItsTerms) {

@@ -1,7 +1,6 @@
-#include "path/path_tracker.h"
-
 #include "flight/selected_track.h"
 #include "helpers/made_up_paths.h"
+#include "path/remaining_path.h"
 
 #include <algorithm>
 #include <cmath>

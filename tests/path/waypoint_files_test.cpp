@@ -1,7 +1,6 @@
-#include "path/waypoint_files.h"
-
 #include "helpers/rejected.h"
 #include "helpers/test_paths.h"
+#include "path/plan_files.h"
 
 #include <fstream>
 

@@ -2,7 +2,6 @@
 
 #include "base/text_table.h"
 #include "cli/stage.h"
-#include "mechanical/model_errors.h"
 #include "mechanical/model_fit.h"
 #include "mechanical/physical_fit.h"
 #include "mechanical/table_one.h"

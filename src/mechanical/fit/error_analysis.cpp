@@ -1,9 +1,8 @@
-#include "mechanical/fit/error_analysis.h"
-
 #include "base/parallel.h"
 #include "base/statistics.h"
 #include "mechanical/fit/fourier_basis.h"
 #include "mechanical/fit/least_squares.h"
+#include "mechanical/fit/phase_fit.h"
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,6 @@
 #include "mechanical/fit/fourier_basis.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 

@@ -4,7 +4,6 @@
 #include "mechanical/mechanical_model.h"
 #include "mechanical/phase_samples.h"
 
-#include <cmath>
 #include <span>
 #include <vector>
 

@@ -1,4 +1,4 @@
-#include "mechanical/physical/term_choice.h"
+#include "mechanical/physical/power_regression.h"
 
 #include <algorithm>
 #include <cmath>

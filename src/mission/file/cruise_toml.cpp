@@ -4,7 +4,6 @@
 #include "path/path_entries.h"
 #include "path/plan_files.h"
 #include "path/trajectory.h"
-#include "path/waypoint_files.h"
 
 #include <algorithm>
 #include <array>
@@ -37,8 +36,6 @@ void set_cruise_level(const mechanical::ConstantPower& level, MissionSetup& miss
 }
 
 constexpr double max_wind_m_per_s = 100.0;
-constexpr auto altitudes = between(-1e5, 1e5);
-constexpr auto times = more_than_up_to(0.0, 1e7);
 
 path::Wind read_wind(const TomlTable& root) {
     path::Wind wind;
@@ -82,13 +79,8 @@ path::PathEntry read_leg(const TomlTable& leg, std::size_t number) {
     read_place(leg, entry.place, entry.geographic);
     entry.length_m = optional_number_in(more_than_up_to(0.0, path::max_leg_m), leg, "length_m");
     entry.course_deg = optional_number_in(between(-360.0, 360.0), leg, "course_deg");
-    entry.duration_s = optional_number_in(times, leg, "duration_s");
-    entry.altitude_m = optional_number_in(altitudes, leg, "altitude_m");
-    entry.airspeed_m_per_s = optional_number_in(more_than_up_to(0.0, path::max_m_per_s), leg, "airspeed_m_per_s");
+    for (const auto& [name, value, range] : path::entry_values) entry.*value = optional_number_in(range, leg, name);
     entry.rates = read_rates(leg);
-    entry.circles = optional_number_in(more_than_up_to(0.0, path::largest_circle_count), leg, "circles");
-    entry.radius_m = optional_number_in(between(path::min_radius_m, path::max_radius_m), leg, "radius_m");
-    entry.hold_s = optional_number_in(times, leg, "hold_s");
     if (const auto turn = leg.optional_string("turn")) {
         if (*turn != "left" && *turn != "right")
             throw InputError(leg.where("turn"), fmt::format("there is no turn '{}'", *turn),
@@ -103,7 +95,7 @@ path::PathDefaults read_defaults(const TomlTable& path) {
     path::PathDefaults defaults;
     defaults.where = path.where();
     defaults.airspeed_m_per_s = number_in(more_than_up_to(0.0, path::max_m_per_s), path, "airspeed_m_per_s");
-    defaults.altitude_m = optional_number_in(altitudes, path, "altitude_m");
+    defaults.altitude_m = optional_number_in(between(-1e5, 1e5), path, "altitude_m");
     defaults.rates = read_rates(path);
     defaults.return_to_start = path.optional_boolean("return_to_start").value_or(false);
     if (const auto start = path.optional_table("start")) {

@@ -3,7 +3,6 @@
 #include "base/units.h"
 #include "compute/profile_reader.h"
 #include "mission/file/mission_tables.h"
-#include "mission/file/schedule_toml.h"
 #include "mission/mission_file.h"
 
 #include <algorithm>
@@ -255,8 +254,8 @@ MissionVariant mission_from(const TomlTable& root, const std::filesystem::path& 
     mission.cutoff_voltage_v = number_in_or(between(0.0, 1e6), root, "cutoff_voltage_v", 0.0);
     mission.reserve_soc_percent = number_in_or(between(0.0, 100.0), root, "reserve_soc_percent", 0.0);
     if (const double percent = mission.reserve_soc_percent; percent > 0.0 && percent < 1.0)
-        mission.notes.push_back(fmt::format("reserve_soc_percent = {} is {} % of the charge; are {:.3g} % meant?", percent,
-                                            percent, units::percentage(percent, 1.0)));
+        mission.notes.push_back(fmt::format("reserve_soc_percent = {} is {} % of the charge; are {:.3g} % meant?",
+                                            percent, percent, units::percentage(percent, 1.0)));
     mission.uncertainty = read_uncertainty(root, mission.compute, mission.mechanical.has_value());
     return with_read_schedule(root, reading, stated_s, std::move(mission));
 }

@@ -1,10 +1,7 @@
 #include "mission/planning/schedule_search.h"
 
-#include "mission/planning/state_labels.h"
-
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace flightwatt::mission {

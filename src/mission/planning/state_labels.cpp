@@ -1,4 +1,4 @@
-#include "mission/planning/state_labels.h"
+#include "mission/planning/schedule_search.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,14 +4,12 @@
 #include "base/units.h"
 #include "mechanical/prediction.h"
 #include "mission/sampling/flight_spreads.h"
-#include "mission/sampling/joint_spread.h"
 #include "mission/simulation/load_segments.h"
 #include "path/cruise_path.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 #include <boost/random/normal_distribution.hpp>

@@ -3,7 +3,6 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "mechanical/prediction.h"
-#include "mission/sampling/joint_spread.h"
 
 #include <algorithm>
 #include <cmath>

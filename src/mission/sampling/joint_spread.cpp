@@ -1,4 +1,4 @@
-#include "mission/sampling/joint_spread.h"
+#include "mission/sampling/flight_spreads.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,6 @@
 #include "base/statistics.h"
 #include "mission/sampling/flight_outcomes.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <span>

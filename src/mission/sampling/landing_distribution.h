@@ -25,7 +25,6 @@ struct LandingDistribution {
     double quantile_percent(double probability) const;
     /// That above the reserve: not negative just where as many keep the reserve.
     double spare_percent(double probability) const { return quantile_percent(probability) - reserve_percent; }
-    double nominal_spare_percent() const { return nominal_percent - reserve_percent; }
 };
 
 inline constexpr std::size_t landing_flights = 20000;  ///< standard error of a probability of 0.95: 0.0015

@@ -47,16 +47,14 @@ PlanEntries parse_area(std::string_view text, const std::string& file, double sp
     const auto& origin = outline.corners.front();
     std::vector<LocalPosition> corners;
     for (const auto& corner : outline.corners) corners.push_back(to_local(corner, origin));
-    const auto lines = survey_lines(corners, spacing_m, heading_deg);
-    if (lines.empty())
-        throw InputError({file}, fmt::format("no lines {} m apart fit into the area, or more than 5000", spacing_m));
     PathEntry like;
     like.name = "the survey of the area";
     like.where = {file};
     PlanEntries survey;
     survey.starts_at_first_place = true;
     if (outline.has_holes) survey.not_flown.emplace_back("the holes of the area are flown over");
-    add_survey(lines, spacing_m, corners.front(), like, survey.entries);
+    PatternWriter{like, survey.entries}.survey(survey_lines(corners, spacing_m, heading_deg, {file}), spacing_m,
+                                               corners.front());
     const GeographicLib::LocalCartesian plane(origin.latitude_deg, origin.longitude_deg);
     for (auto& entry : survey.entries) {
         if (!entry.place) continue;

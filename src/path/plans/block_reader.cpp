@@ -150,14 +150,18 @@ class BlockReader {
         return 1.0;
     }
 
+    PatternWriter pattern(const pugi::xml_node& stage, const PathEntry& waypoint) {
+        return {like(stage, waypoint), entries_};
+    }
+
     /// The whole way from one waypoint to the next: the aircraft follows the line between them.
     void route(const pugi::xml_node& stage, const std::string& from, const std::string& to) {
         if (!from.empty()) {
             const auto start = waypoint(stage, from);
-            if (at() != start.place) entries_.push_back(leg_to(*start.place, like(stage, start)));
+            if (at() != start.place) pattern(stage, start).fly_to(*start.place);
         }
         const auto end = waypoint(stage, to);
-        entries_.push_back(leg_to(*end.place, like(stage, end)));
+        pattern(stage, end).fly_to(*end.place);
     }
 
     void go(const pugi::xml_node& stage) {
@@ -179,10 +183,8 @@ class BlockReader {
         const double radius_m = radius(stage, attribute(stage, "radius"));
         const double turns = rounds(stage, {"NavCircleCount", "circle_count"}, circumference_m(radius_m),
                                     fmt::format("the circle around {}", attribute(stage, "wp")));
-        auto entry = arc(turns, radius_m, like(stage, *centre));
-        entry.is_turn = false;
-        entry.place = centre->place;
-        entries_.push_back(entry);
+        entries_.push_back(with_circles(like(stage, *centre), turns, radius_m));
+        entries_.back().place = centre->place;
     }
 
     void oval(const pugi::xml_node& stage) {
@@ -192,14 +194,14 @@ class BlockReader {
         const auto way = *first.place - second;
         const double round_m = 2.0 * std::hypot(way.east_m, way.north_m) + circumference_m(radius_m);
         const double count = rounds(stage, {"NavOvalCount", "nav_oval_count"}, round_m, "the oval");
-        add_oval(*first.place, second, radius_m, count, like(stage, first), entries_);
+        pattern(stage, first).oval(*first.place, second, radius_m, count);
     }
 
     void eight(const pugi::xml_node& stage) {
         const auto centre = waypoint(stage, attribute(stage, "center"));
         const auto turn = *waypoint(stage, attribute(stage, "turn_around")).place;
         rounds(stage, {}, 1.0, "the eight");
-        add_eight(*centre.place, turn, radius(stage, attribute(stage, "radius")), like(stage, centre), entries_);
+        pattern(stage, centre).eight(*centre.place, turn, radius(stage, attribute(stage, "radius")));
     }
 
     /// Lines from north to south unless the orientation is WE.
@@ -216,7 +218,7 @@ class BlockReader {
     void stay(const pugi::xml_node& stage) {
         const auto place = target(stage);
         if (!place) return;
-        entries_.push_back(leg_to(*place->place, like(stage, *place)));
+        pattern(stage, *place).fly_to(*place->place);
         const auto until = attribute(stage, "until");
         const auto time_s = end_of(until, {"stage_time", "NavBlockTime"});
         if (time_s && *time_s > 0.0)
@@ -258,7 +260,7 @@ class BlockReader {
         const auto first = waypoint(stage, arguments[0]);
         const auto second = *waypoint(stage, arguments[1]).place;
         rounds(stage, {}, 1.0, "the line");
-        add_line(*first.place, second, std::abs(radius(stage, arguments[2])), like(stage, first), entries_);
+        pattern(stage, first).line(*first.place, second, std::abs(radius(stage, arguments[2])));
     }
 
     void zamboni(const pugi::xml_node& stage, const Arguments& arguments) {
@@ -271,9 +273,9 @@ class BlockReader {
         survey.rounds = std::floor((number(stage, arguments[4], "the number of lines") + 1.0) / 2.0);
         if (!(survey.rounds >= 1.0 && survey.rounds < max_survey_lines) || !(survey.length_m > 0.0))
             throw InputError(where(plan_, stage), "the survey has no lines, or more than 5000");
-        auto entry = like(stage, centre);
-        entry.altitude_m = number(stage, arguments[5], "the altitude");
-        add_zamboni(survey, entry, entries_);
+        auto writer = pattern(stage, centre);
+        writer.like.altitude_m = number(stage, arguments[5], "the altitude");
+        writer.zamboni(survey);
     }
 
     /// The waypoints from the first argument on, as many as the second states.
@@ -292,11 +294,11 @@ class BlockReader {
 
     void polygon(const pugi::xml_node& stage, const Arguments& arguments) {
         const double spacing_m = number(stage, arguments[3], "the spacing");
-        auto entry = like(stage, waypoint(stage, arguments[0]));
-        entry.altitude_m = number(stage, arguments[6], "the altitude");
+        auto writer = pattern(stage, waypoint(stage, arguments[0]));
+        writer.like.altitude_m = number(stage, arguments[6], "the altitude");
         const auto lines =
             lines_over(stage, corners(stage, arguments), spacing_m, number(stage, arguments[2], "the angle"));
-        add_one_way_survey(lines, spacing_m, radius(stage, arguments[5]), entry, entries_);
+        writer.one_way_survey(lines, spacing_m, radius(stage, arguments[5]));
     }
 
     /// Lines there and back; the orientation is the lines' angle from east to north, or towards a waypoint.
@@ -309,17 +311,14 @@ class BlockReader {
 
     void survey(const pugi::xml_node& stage, const std::vector<LocalPosition>& polygon, double spacing_m,
                 double course_deg, const PathEntry& corner) {
-        add_survey(lines_over(stage, polygon, spacing_m, course_deg), spacing_m, at().value_or(polygon.front()),
-                   like(stage, corner), entries_);
+        pattern(stage, corner)
+            .survey(lines_over(stage, polygon, spacing_m, course_deg), spacing_m, at().value_or(polygon.front()));
     }
 
     std::vector<SurveyLine> lines_over(const pugi::xml_node& stage, const std::vector<LocalPosition>& polygon,
                                        double spacing_m, double course_deg) const {
         require_in(at_least(min_radius_m), spacing_m, "the spacing of lines", where(plan_, stage));
-        auto lines = survey_lines(polygon, spacing_m, course_deg);
-        if (!lines.empty()) return lines;
-        throw InputError(where(plan_, stage),
-                         fmt::format("no lines {} m apart fit into the area, or more than 5000", spacing_m));
+        return survey_lines(polygon, spacing_m, course_deg, where(plan_, stage));
     }
 
     const FlightPlan& plan_;

@@ -2,6 +2,7 @@
 #include "base/toml_reader.h"
 #include "path/plan_files.h"
 #include "path/plans/json_text.h"
+#include "path/plans/patterns.h"
 
 #include <algorithm>
 #include <array>
@@ -184,11 +185,7 @@ class ItemReader {
         if (!(turns > 0.0)) return fly_to(item, 0.0);
         require_in(between(0.0, largest_circle_count), turns, "the number of circles", item.where);
         require_in(between(-max_radius_m, max_radius_m), radius_m, "the radius", item.where);
-        auto entry = entry_at_altitude(item);
-        entry.circles = turns;
-        entry.radius_m = std::abs(radius_m);
-        entry.to_right = radius_m > 0.0;
-        entries_.push_back(entry);
+        entries_.push_back(with_circles(entry_at_altitude(item), turns, radius_m));
     }
 
     void set_speed(const MissionItem& item) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace flightwatt::path {
 namespace {
 
@@ -16,14 +18,12 @@ double distance_m(const LocalPosition& a, const LocalPosition& b) {
     return std::hypot(a.east_m - b.east_m, a.north_m - b.north_m);
 }
 
-LocalPosition direction(double course_deg) {
-    const double course_rad = course_deg / units::degree_per_rad;
-    return {std::sin(course_rad), std::cos(course_rad)};
-}
+LocalPosition direction(double course_deg) { return moved({}, 1.0, course_deg); }
 
 }  // namespace
 
-std::vector<SurveyLine> survey_lines(const std::vector<LocalPosition>& polygon, double spacing_m, double course_deg) {
+std::vector<SurveyLine> survey_lines(const std::vector<LocalPosition>& polygon, double spacing_m, double course_deg,
+                                     const Location& where) {
     const auto along = direction(course_deg);
     const auto across = direction(course_deg + 90.0);
     const auto offset = [&](const LocalPosition& corner) { return scalar_product(corner, across); };
@@ -31,8 +31,7 @@ std::vector<SurveyLine> survey_lines(const std::vector<LocalPosition>& polygon, 
     std::vector<SurveyLine> lines;
     const double first = offset(left) + spacing_m / 2.0;
     const double count = std::floor((offset(right) + 1e-6 - first) / spacing_m) + 1.0;
-    if (!(count <= max_survey_lines)) return lines;
-    for (double line = 0.0; line < count; line += 1.0) {
+    for (double line = 0.0; line < count && count <= max_survey_lines; line += 1.0) {
         const double x = first + line * spacing_m;
         std::vector<double> crossings;
         for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -51,7 +50,8 @@ std::vector<SurveyLine> survey_lines(const std::vector<LocalPosition>& polygon, 
         };
         lines.push_back({place(low), place(high)});
     }
-    return lines;
+    if (!lines.empty()) return lines;
+    throw InputError(where, fmt::format("no lines {} m apart fit into the area, or more than 5000", spacing_m));
 }
 
 double course_between(const LocalPosition& from, const LocalPosition& to) {
@@ -59,118 +59,113 @@ double course_between(const LocalPosition& from, const LocalPosition& to) {
     return std::atan2(way.east_m, way.north_m) * units::degree_per_rad;
 }
 
-PathEntry leg_to(const LocalPosition& place, const PathEntry& like) {
-    auto entry = like;
-    entry.place = place;
-    return entry;
-}
-
-PathEntry arc(double turns, double radius_m, const PathEntry& like) {
-    auto entry = like;
+PathEntry with_circles(PathEntry entry, double turns, double radius_m) {
     entry.circles = turns;
     entry.radius_m = std::abs(radius_m);
     entry.to_right = radius_m > 0.0;
-    entry.is_turn = true;
     return entry;
 }
 
-void add_survey(const std::vector<SurveyLine>& lines, double spacing_m, const LocalPosition& at, const PathEntry& like,
-                std::vector<PathEntry>& entries) {
-    if (lines.empty()) return;
-    auto flown = lines;
-    const auto nearest_m = [&](const SurveyLine& line) {
-        return std::min(distance_m(at, line.from), distance_m(at, line.to));
-    };
-    if (nearest_m(flown.back()) < nearest_m(flown.front())) std::ranges::reverse(flown);
-    bool is_back = distance_m(at, flown.front().to) < distance_m(at, flown.front().from);
-    for (auto& line : flown) {
-        if (is_back) std::swap(line.from, line.to);
-        is_back = !is_back;
-    }
-    for (std::size_t i = 0; i < flown.size(); ++i) {
-        entries.push_back(leg_to(flown[i].from, like));
-        entries.push_back(leg_to(flown[i].to, like));
-        if (i + 1 == flown.size()) break;
-        const double course_deg = course_between(flown[i].from, flown[i].to);
-        const auto next = flown[i + 1].from - flown[i].to;
-        const double ahead_m = scalar_product(next, direction(course_deg));
-        if (ahead_m > 0.0) entries.push_back(leg_to(moved(flown[i].to, ahead_m, course_deg), like));
-        const double side = scalar_product(next, direction(course_deg + 90.0)) > 0.0 ? 1.0 : -1.0;
-        entries.push_back(arc(0.5, side * spacing_m / 2.0, like));
-    }
+void PatternWriter::fly_to(const LocalPosition& place) const {
+    entries.push_back(like);
+    entries.back().place = place;
 }
 
-void add_oval(const LocalPosition& first, const LocalPosition& second, double radius_m, double rounds,
-              const PathEntry& like, std::vector<PathEntry>& entries) {
+void PatternWriter::turn(double turns, double radius_m) const {
+    entries.push_back(with_circles(like, turns, radius_m));
+    entries.back().is_turn = true;
+}
+
+void PatternWriter::oval(const LocalPosition& first, const LocalPosition& second, double radius_m,
+                         double rounds) const {
     const auto opposite = moved(second, 2.0 * radius_m, course_between(second, first) + 90.0);
     for (double round = 0.0; round < rounds; round += 1.0) {
-        entries.push_back(leg_to(second, like));
-        entries.push_back(leg_to(first, like));
-        entries.push_back(arc(0.5, radius_m, like));
-        entries.push_back(leg_to(opposite, like));
-        entries.push_back(arc(0.5, radius_m, like));
+        fly_to(second);
+        fly_to(first);
+        turn(0.5, radius_m);
+        fly_to(opposite);
+        turn(0.5, radius_m);
     }
 }
 
-void add_eight(const LocalPosition& centre, const LocalPosition& turn, double radius_m, const PathEntry& like,
-               std::vector<PathEntry>& entries) {
-    const double course_deg = course_between(centre, turn);
-    const double offset_m = std::clamp(distance_m(centre, turn), 1.0, 2.0 * std::abs(radius_m));
-    const auto half_circle = [&](double along_m, double side) {
-        const auto around = moved(centre, along_m, course_deg);
-        entries.push_back(leg_to(moved(around, radius_m, course_deg - 90.0), like));
-        entries.push_back(arc(0.5, side * radius_m, leg_to(around, like)));
-    };
-    half_circle(offset_m, 1.0);
-    half_circle(-offset_m, -1.0);
-    entries.push_back(leg_to(moved(moved(centre, offset_m, course_deg), radius_m, course_deg - 90.0), like));
+void PatternWriter::eight(const LocalPosition& centre, const LocalPosition& around, double radius_m) const {
+    const double course_deg = course_between(centre, around);
+    const double offset_m = std::clamp(distance_m(centre, around), 1.0, 2.0 * std::abs(radius_m));
+    const auto fly_beside = [&](const LocalPosition& middle) { fly_to(moved(middle, radius_m, course_deg - 90.0)); };
+    for (const double side : {1.0, -1.0}) {
+        const auto middle = moved(centre, side * offset_m, course_deg);
+        fly_beside(middle);
+        turn(0.5, side * radius_m);
+        entries.back().place = middle;
+    }
+    fly_beside(moved(centre, offset_m, course_deg));
 }
 
-void add_line(const LocalPosition& first, const LocalPosition& second, double radius_m, const PathEntry& like,
-              std::vector<PathEntry>& entries) {
-    const auto fly = [&](const LocalPosition& from, const LocalPosition& to) {
-        entries.push_back(leg_to(from, like));
-        entries.push_back(leg_to(to, like));
-        for (const auto& [turns, side] : {std::pair{1.0 / 6.0, 1.0}, {5.0 / 6.0, -1.0}, {1.0 / 6.0, 1.0}})
-            entries.push_back(arc(turns, side * radius_m, like));
-    };
-    fly(second, first);
-    fly(first, second);
+void PatternWriter::line(const LocalPosition& first, const LocalPosition& second, double radius_m) const {
+    for (const auto& [from, to] : {SurveyLine{second, first}, SurveyLine{first, second}}) {
+        fly_to(from);
+        fly_to(to);
+        turn(1.0 / 6.0, radius_m);
+        turn(5.0 / 6.0, -radius_m);
+        turn(1.0 / 6.0, radius_m);
+    }
 }
 
-void add_zamboni(const Zamboni& survey, const PathEntry& like, std::vector<PathEntry>& entries) {
-    const auto fly_to = [&](double along_m, double left_m) {
-        const auto along = moved(survey.centre, along_m, survey.course_deg);
-        entries.push_back(leg_to(moved(along, left_m, survey.course_deg - 90.0), like));
+void PatternWriter::zamboni(const Zamboni& survey) const {
+    const auto fly = [&](double along_m, double left_m) {
+        fly_to(moved(moved(survey.centre, along_m, survey.course_deg), left_m, survey.course_deg - 90.0));
     };
     const double half_m = survey.length_m / 2.0;
     const double across_m = (survey.rounds - 1.0) * survey.spacing_m;
-    const auto turn = [&](double radius_m) {
-        if (std::abs(radius_m) >= min_radius_m) entries.push_back(arc(0.5, radius_m, like));
+    const auto turn_half = [&](double radius_m) {
+        if (std::abs(radius_m) >= min_radius_m) turn(0.5, radius_m);
     };
-    fly_to(0.0, 0.0);
-    fly_to(half_m, 0.0);
+    fly(0.0, 0.0);
+    fly(half_m, 0.0);
     for (double round = 0.0; round < survey.rounds; round += 1.0) {
-        turn(across_m / 2.0);
-        fly_to(half_m, round * survey.spacing_m - across_m);
-        fly_to(-half_m, round * survey.spacing_m - across_m);
+        turn_half(across_m / 2.0);
+        fly(half_m, round * survey.spacing_m - across_m);
+        fly(-half_m, round * survey.spacing_m - across_m);
         if (round + 1.0 == survey.rounds) break;
-        turn((across_m + survey.spacing_m) / 2.0);
-        fly_to(-half_m, (round + 1.0) * survey.spacing_m);
-        fly_to(half_m, (round + 1.0) * survey.spacing_m);
+        turn_half((across_m + survey.spacing_m) / 2.0);
+        fly(-half_m, (round + 1.0) * survey.spacing_m);
+        fly(half_m, (round + 1.0) * survey.spacing_m);
     }
 }
 
-void add_one_way_survey(const std::vector<SurveyLine>& lines, double spacing_m, double radius_m, const PathEntry& like,
-                        std::vector<PathEntry>& entries) {
+void PatternWriter::survey(std::vector<SurveyLine> lines, double spacing_m, const LocalPosition& at) const {
+    const auto nearest_m = [&](const SurveyLine& line) {
+        return std::min(distance_m(at, line.from), distance_m(at, line.to));
+    };
+    if (nearest_m(lines.back()) < nearest_m(lines.front())) std::ranges::reverse(lines);
+    bool is_back = distance_m(at, lines.front().to) < distance_m(at, lines.front().from);
     for (std::size_t i = 0; i < lines.size(); ++i) {
-        entries.push_back(leg_to(lines[i].from, like));
-        entries.push_back(leg_to(lines[i].to, like));
+        auto& [from, to] = lines[i];
+        if (is_back) std::swap(from, to);
+        is_back = !is_back;
+        if (i > 0) {
+            const auto& before = lines[i - 1];
+            const double course_deg = course_between(before.from, before.to);
+            const auto next = from - before.to;
+            const double ahead_m = scalar_product(next, direction(course_deg));
+            if (ahead_m > 0.0) fly_to(moved(before.to, ahead_m, course_deg));
+            const double side = scalar_product(next, direction(course_deg + 90.0)) > 0.0 ? 1.0 : -1.0;
+            turn(0.5, side * spacing_m / 2.0);
+        }
+        fly_to(from);
+        fly_to(to);
+    }
+}
+
+void PatternWriter::one_way_survey(const std::vector<SurveyLine>& lines, double spacing_m, double radius_m) const {
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        fly_to(lines[i].from);
+        fly_to(lines[i].to);
         if (i + 1 == lines.size()) break;
         const double right_deg = course_between(lines[i].from, lines[i].to) + 90.0;
-        entries.push_back(arc(0.5, -radius_m, like));
-        entries.push_back(leg_to(moved(lines[i + 1].from, -2.0 * radius_m - spacing_m, right_deg), like));
-        entries.push_back(arc(0.5, -(radius_m + spacing_m / 2.0), like));
+        turn(0.5, -radius_m);
+        fly_to(moved(lines[i + 1].from, -2.0 * radius_m - spacing_m, right_deg));
+        turn(0.5, -(radius_m + spacing_m / 2.0));
     }
 }
 

@@ -2,7 +2,6 @@
 
 #include "path/path_entries.h"
 
-#include <string>
 #include <vector>
 
 namespace flightwatt::path {
@@ -16,29 +15,16 @@ struct SurveyLine {
 };
 
 /// Parallel lines over a polygon, all in the direction `course_deg`, from left to right. The first is half of the
-/// spacing within the polygon. Where the polygon is concave a line crosses what is outside. Empty if no
-/// line fits, or more than 5000.
-std::vector<SurveyLine> survey_lines(const std::vector<LocalPosition>& polygon, double spacing_m, double course_deg);
+/// spacing within the polygon. Where the polygon is concave a line crosses what is outside. Throws InputError at `where`
+/// if no line fits, or more than 5000.
+std::vector<SurveyLine> survey_lines(const std::vector<LocalPosition>& polygon, double spacing_m, double course_deg,
+                                     const Location& where);
 
-/// The lines there and back, beginning with the one and the end that are nearest to `at`. Before a turn the aircraft
-/// flies on until the next line's beginning is abeam. `like` has name, location and altitude of the entries.
-void add_survey(const std::vector<SurveyLine>& lines, double spacing_m, const LocalPosition& at, const PathEntry& like,
-                std::vector<PathEntry>& entries);
+/// Course [degrees] from one place to another.
+double course_between(const LocalPosition& from, const LocalPosition& to);
 
-/// Patterns of Paparazzi's autopilots (sw/airborne/modules/nav), appended to `entries`; radii and spacings more than 0
-/// are to the right in arcs and ovals, to the left for Zamboni surveys.
-
-/// From `second` to `first`, half a circle, back on a parallel, half a circle; `rounds` times, the last one whole.
-void add_oval(const LocalPosition& first, const LocalPosition& second, double radius_m, double rounds,
-              const PathEntry& like, std::vector<PathEntry>& entries);
-
-/// Crossing the centre twice, with half a circle around `turn` (moved to within two radii) and its mirror image.
-void add_eight(const LocalPosition& centre, const LocalPosition& turn, double radius_m, const PathEntry& like,
-               std::vector<PathEntry>& entries);
-
-/// From `second` to `first` and back, with 420 degrees of arcs at each end that lead back onto the line.
-void add_line(const LocalPosition& first, const LocalPosition& second, double radius_m, const PathEntry& like,
-              std::vector<PathEntry>& entries);
+/// An entry with circles: radii above 0 are to the right.
+PathEntry with_circles(PathEntry entry, double turns, double radius_m);
 
 /// Half the lines on the way there and half on the way back, in rounds that move by the spacing.
 struct Zamboni {
@@ -48,19 +34,34 @@ struct Zamboni {
     double spacing_m = 0.0;
     double rounds = 0.0;  ///< of two lines each
 };
-void add_zamboni(const Zamboni& survey, const PathEntry& like, std::vector<PathEntry>& entries);
 
-/// Every line in the same direction: after each half a circle to the left, the way back, and a wider half circle.
-void add_one_way_survey(const std::vector<SurveyLine>& lines, double spacing_m, double radius_m, const PathEntry& like,
-                        std::vector<PathEntry>& entries);
+/// Appends the patterns of Paparazzi's autopilots (sw/airborne/modules/nav) to a path; radii and spacings more than 0
+/// are to the right in arcs and ovals, to the left for Zamboni surveys.
+struct PatternWriter {
+    PathEntry like;  ///< has name, location and altitude of the entries
+    std::vector<PathEntry>& entries;
 
-/// Course [degrees] from one place to another.
-double course_between(const LocalPosition& from, const LocalPosition& to);
+    void fly_to(const LocalPosition& place) const;
+    /// A part of a circle from where the aircraft is.
+    void turn(double turns, double radius_m) const;
 
-/// An entry like `like` that flies straight to a place.
-PathEntry leg_to(const LocalPosition& place, const PathEntry& like);
+    /// From `second` to `first`, half a circle, back on a parallel, half a circle; `rounds` times, the last one whole.
+    void oval(const LocalPosition& first, const LocalPosition& second, double radius_m, double rounds) const;
 
-/// A part of a circle from where the aircraft is; positive radii turn right.
-PathEntry arc(double turns, double radius_m, const PathEntry& like);
+    /// Crossing the centre twice, with half a circle around `around` (moved to within two radii) and its mirror image.
+    void eight(const LocalPosition& centre, const LocalPosition& around, double radius_m) const;
+
+    /// From `second` to `first` and back, with 420 degrees of arcs at each end that lead back onto the line.
+    void line(const LocalPosition& first, const LocalPosition& second, double radius_m) const;
+
+    void zamboni(const Zamboni& survey) const;
+
+    /// The lines there and back, beginning with the one and the end that are nearest to `at`. Before a turn the
+    /// aircraft flies on until the next line's beginning is abeam.
+    void survey(std::vector<SurveyLine> lines, double spacing_m, const LocalPosition& at) const;
+
+    /// Every line in the same direction: after each half a circle to the left, the way back, and a wider half circle.
+    void one_way_survey(const std::vector<SurveyLine>& lines, double spacing_m, double radius_m) const;
+};
 
 }  // namespace flightwatt::path

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 
 #include <boost/algorithm/string/classification.hpp>
 #include <boost/algorithm/string/replace.hpp>
@@ -13,18 +14,18 @@ namespace flightwatt::path {
 namespace {
 
 /// Without blanks: expression = term {(+|-) term}, term = factor {(*|/) factor},
-/// factor = [-] (number | name[(...)] | (expression)).
+/// factor = [-] (number | name[(...)] | (expression)). What is not known is NaN.
 class Expression {
   public:
     Expression(std::string_view text, const NamedValues& value_of) : rest_(text), value_of_(value_of) {}
 
     std::optional<double> value() {
-        const auto result = sum();
-        return rest_.empty() && result && std::isfinite(*result) ? result : std::nullopt;
+        const double result = sum();
+        return rest_.empty() && std::isfinite(result) ? std::optional(result) : std::nullopt;
     }
 
   private:
-    using Value = std::optional<double>;
+    static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
     bool take(char symbol) {
         if (!rest_.starts_with(symbol)) return false;
@@ -32,38 +33,35 @@ class Expression {
         return true;
     }
 
-    Value sum() {
-        auto value = product();
-        while (value) {
-            const bool is_plus = take('+');
-            if (!is_plus && !take('-')) break;
-            const auto next = product();
-            value = next ? Value(*value + (is_plus ? *next : -*next)) : std::nullopt;
+    double sum() {
+        for (double value = product();;) {
+            if (take('+'))
+                value += product();
+            else if (take('-'))
+                value -= product();
+            else
+                return value;
         }
-        return value;
     }
 
-    Value product() {
-        auto value = factor();
-        while (value) {
-            const bool is_times = take('*');
-            if (!is_times && !take('/')) break;
-            const auto next = factor();
-            value = next ? Value(is_times ? *value * *next : *value / *next) : std::nullopt;
+    double product() {
+        for (double value = factor();;) {
+            if (take('*'))
+                value *= factor();
+            else if (take('/'))
+                value /= factor();
+            else
+                return value;
         }
-        return value;
     }
 
-    Value factor() {
+    double factor() {
         constexpr int max_factors = 1000;
-        if (++factors_ > max_factors) return std::nullopt;
-        if (take('-')) {
-            const auto value = factor();
-            return value ? Value(-*value) : std::nullopt;
-        }
+        if (++factors_ > max_factors) return unknown;
+        if (take('-')) return -factor();
         if (take('(')) {
-            const auto value = sum();
-            return take(')') ? value : std::nullopt;
+            const double value = sum();
+            return take(')') ? value : unknown;
         }
         const auto is_in_name = [](char c) {
             return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.' || c == '[' || c == ']';
@@ -72,9 +70,8 @@ class Expression {
         if (rest_.substr(length).starts_with('(')) length = std::min(rest_.find(')', length), rest_.size() - 1) + 1;
         const std::string name(rest_.substr(0, length));
         rest_.remove_prefix(length);
-        if (const auto number = parse_number(name.ends_with('f') ? name.substr(0, name.size() - 1) : name))
-            return number;
-        return name.empty() ? std::nullopt : value_of_(name);
+        const auto number = parse_number(name.ends_with('f') ? name.substr(0, name.size() - 1) : name);
+        return number ? *number : value_of_(name).value_or(unknown);
     }
 
     std::string_view rest_;

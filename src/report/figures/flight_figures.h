@@ -2,7 +2,7 @@
 
 #include "battery/discharge_record.h"
 #include "battery/identified_battery.h"
-#include "mechanical/model_errors.h"
+#include "mechanical/model_fit.h"
 #include "mechanical/physical_fit.h"
 #include "mechanical/validation.h"
 #include "report/batch_content.h"

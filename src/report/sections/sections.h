@@ -4,7 +4,7 @@
 #include "batch/batch_fit.h"
 #include "battery/identification.h"
 #include "mechanical/mechanical_model.h"
-#include "mechanical/model_errors.h"
+#include "mechanical/model_fit.h"
 #include "mechanical/validation.h"
 #include "mission/mission.h"
 #include "mission/replay.h"

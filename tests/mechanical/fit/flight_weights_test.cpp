@@ -1,4 +1,3 @@
-#include "mechanical/fit/flight_weights.h"
 
 #include "helpers/made_up_flights.h"
 #include "mechanical/fit/phase_fit.h"

@@ -1,7 +1,6 @@
 #include "mechanical/physical/power_regression.h"
 
 #include "helpers/generated_motion.h"
-#include "mechanical/physical/term_choice.h"
 
 #include <cmath>
 #include <span>

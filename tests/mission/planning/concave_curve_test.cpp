@@ -1,4 +1,4 @@
-#include "mission/planning/concave_curve.h"
+#include "mission/planning/schedule_value.h"
 
 #include <algorithm>
 #include <cmath>

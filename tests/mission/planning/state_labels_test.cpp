@@ -1,7 +1,6 @@
-#include "mission/planning/state_labels.h"
-
 #include "helpers/small_missions.h"
 #include "mission/plan.h"
+#include "mission/planning/schedule_search.h"
 
 #include <gtest/gtest.h>
 

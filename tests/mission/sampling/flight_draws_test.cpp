@@ -4,7 +4,7 @@
 #include "battery/identification.h"
 #include "helpers/paper_missions.h"
 #include "helpers/steady_mission.h"
-#include "mission/sampling/joint_spread.h"
+#include "mission/sampling/flight_spreads.h"
 #include "mission/simulation/load_segments.h"
 
 #include <cmath>
