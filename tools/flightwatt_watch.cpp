@@ -35,46 +35,9 @@ struct WatchArguments {
     cli::BasisArguments basis;
     live::LiveOptions live;
     bool replans = false;
-    std::optional<std::string> on_decision;
     std::optional<std::string> record;
     std::optional<std::string> serve;
     bool until_landed = false;
-};
-
-/// Runs --on-decision's command where what runs changes.
-class DecisionHook {
-  public:
-    DecisionHook(const cli::StageCall& call, const std::optional<std::string>& command,
-                 const compute::ComputeModel& compute)
-        : call_(call), compute_(compute) {
-        if (command) command_.emplace(*command);
-    }
-
-    void update_flight(const live::LiveState& state) {
-        if (!command_) return;
-        if (state.decision && state.decision->changes != changes_) {
-            changes_ = state.decision->changes;
-            command_->run(cli::decision_environment(state, compute_));
-        }
-        warn_of_failure();
-    }
-
-    void end() {
-        constexpr int max_ms = 5000;
-        if (!command_) return;
-        if (!command_->wait(max_ms)) cli::warn(call_, "--on-decision: its command still runs");
-        warn_of_failure();
-    }
-
-  private:
-    void warn_of_failure() {
-        if (const auto failure = command_->poll()) cli::warn(call_, "--on-decision: " + *failure);
-    }
-
-    const cli::StageCall& call_;
-    const compute::ComputeModel& compute_;
-    std::optional<live::DecisionCommand> command_;
-    std::size_t changes_ = 0;
 };
 
 /// Publishes the state on a page.
@@ -199,21 +162,18 @@ int watch(const cli::StageCall& call, const WatchArguments& arguments) {
     }
     live::LiveFlight flight(std::move(options), watched.basis, make_schedule(watched, arguments.replans));
     cli::WatchOutput speaker(call, watched.compute);
-    DecisionHook hook(call, arguments.on_decision, watched.compute);
     LivePage page(call, arguments.serve, watched.compute, watched.basis);
     const auto update_flight = [&](double silent_s) -> std::string {
         auto state = flight.update(silent_s);
         for (const auto& [reason, count] : source->report().unusable) state.unusable[reason] += count;
         speaker.print_state(state);
         page.print_state(state);
-        hook.update_flight(state);
         if (!speaker.is_read()) return "the reader of the output has ended";
         return arguments.until_landed && state.landed ? "the aircraft has landed" : "";
     };
     const auto why = watch_source(*source, flight, update_flight);
     flight.end();
     update_flight(0.0);
-    hook.end();
     for (const auto& [reason, count] : source->report().unusable) cli::warn(call, fmt::format("{}: {}", reason, count));
     if (recorder && !recorder->failure().empty()) cli::warn(call, "the recording ended early: " + recorder->failure());
     speaker.end(flight, why);
@@ -249,9 +209,6 @@ with its source, or by a signal, and then prints its last prediction. The source
     options.add("replan", arguments.replans,
                 "plan the remaining mission again at every slot of its [plan], or as its [policy] states",
                 {.needs = {"mission"}, .old_name = "decide"});
-    options.add(
-        "on-decision", arguments.on_decision, {.value = "COMMAND", .needs = {"mission"}},
-        "run by sh at each change of the running software, with the decision in its environment (FLIGHTWATT_...)");
     options.add("record", arguments.record, cli::output_file("DIR"),
                 "write the received messages as a log into this folder");
     options.add("serve", arguments.serve, {.value = "PORT"},

@@ -5,7 +5,6 @@
 #include "record/json_type.h"
 
 #include <algorithm>
-#include <cctype>
 #include <optional>
 
 #include <fmt/format.h>
@@ -145,14 +144,6 @@ std::string charge_text(const live::LiveState& state) {
                        with_unit(state.battery->soc_by_voltage_percent, 1, "%"));
 }
 
-std::string variable_name(std::string text) {
-    for (auto& c : text)
-        c = std::isalnum(static_cast<unsigned char>(c)) != 0
-                ? static_cast<char>(std::toupper(static_cast<unsigned char>(c)))
-                : '_';
-    return text;
-}
-
 constexpr auto replace_invalid = Json::error_handler_t::replace;
 
 /// The JSON document of a record in one line.
@@ -254,28 +245,6 @@ std::vector<std::string> screen_of(const live::LiveState& state, const compute::
 
 std::string line_of(const live::LiveState& state, const compute::ComputeModel& compute) {
     return fmt::format("{}\n", fmt::join(screen_of(state, compute), "  "));
-}
-
-live::DecisionCommand::Environment decision_environment(const live::LiveState& state,
-                                                        const compute::ComputeModel& compute) {
-    const auto& decision = state.decision.value();
-    const auto soc =
-        state.battery && state.battery->state ? std::optional(state.battery->state->soc_percent) : std::nullopt;
-    live::DecisionCommand::Environment variables{
-        {"FLIGHTWATT_TIME_S", fmt::format("{}", state.time_s)},
-        {"FLIGHTWATT_PHASE", phase_text(state)},
-        {"FLIGHTWATT_SOC_PERCENT", soc ? fmt::format("{:.2f}", *soc) : ""},
-        {"FLIGHTWATT_RUN", JsonType<Keyed<Keyed<double>>>::write(run_values(decision.run, compute)).dump()}};
-    for (std::size_t c = 0; c < compute.components.size(); ++c) {
-        const auto& component = compute.components[c];
-        const auto name = "FLIGHTWATT_COMPONENT_" + variable_name(component.name);
-        const auto running = std::ranges::find(decision.run, c, &compute::RunningComponent::component);
-        variables[name] = running == decision.run.end() ? "0" : "1";
-        if (running == decision.run.end()) continue;
-        for (std::size_t i = 0; i < running->qos.size(); ++i)
-            variables[name + "_" + variable_name(component.profile.parameters[i])] = fmt::format("{}", running->qos[i]);
-    }
-    return variables;
 }
 
 std::vector<std::string> fresh_warnings(const std::vector<std::string>& now, std::set<std::string>& reported) {

@@ -3,7 +3,6 @@
 #include "cli/stage.h"
 #include "cli/terminal.h"
 #include "compute/compute_model.h"
-#include "live/decision_command.h"
 #include "live/live_flight.h"
 
 #include <chrono>
@@ -42,12 +41,6 @@ std::vector<std::string> screen_of(const live::LiveState& state, const compute::
 
 /// The same in one line, for a log.
 std::string line_of(const live::LiveState& state, const compute::ComputeModel& compute);
-
-/// Environment of --on-decision's command: FLIGHTWATT_TIME_S, FLIGHTWATT_PHASE, FLIGHTWATT_SOC_PERCENT,
-/// FLIGHTWATT_RUN (JSON), and of each component FLIGHTWATT_COMPONENT_NAME (1 or 0) and, where it runs,
-/// FLIGHTWATT_COMPONENT_NAME_PARAMETER. The state has a decision.
-live::DecisionCommand::Environment decision_environment(const live::LiveState& state,
-                                                        const compute::ComputeModel& compute);
 
 /// The warnings that were not reported yet, whatever their numbers were; at most 200 kinds.
 std::vector<std::string> fresh_warnings(const std::vector<std::string>& now, std::set<std::string>& reported);

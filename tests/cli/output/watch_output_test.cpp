@@ -97,17 +97,6 @@ TEST(WatchOutput, SaysWhenToTurnHome) {
     EXPECT_THAT(line_of(state, two_components()), HasSubstr("Wh if it lands now"));
 }
 
-TEST(WatchOutput, ACommandFindsTheDecisionInItsEnvironment) {
-    const auto variables = decision_environment(flying(), two_components());
-    EXPECT_EQ(variables.at("FLIGHTWATT_PHASE"), "cruise");
-    EXPECT_EQ(variables.at("FLIGHTWATT_TIME_S"), "400");
-    EXPECT_EQ(variables.at("FLIGHTWATT_SOC_PERCENT"), "");
-    EXPECT_EQ(variables.at("FLIGHTWATT_RUN"), "{\"detection\":{\"fps\":5.8}}");
-    EXPECT_EQ(variables.at("FLIGHTWATT_COMPONENT_DETECTION"), "1");
-    EXPECT_EQ(variables.at("FLIGHTWATT_COMPONENT_DETECTION_FPS"), "5.8");
-    EXPECT_EQ(variables.at("FLIGHTWATT_COMPONENT_TX_2"), "0");
-}
-
 TEST(FreshWarnings, AreReportedOnceWhateverTheirNumbers) {
     std::set<std::string> reported;
     EXPECT_THAT(fresh_warnings({"1 gap, of 12 s"}, reported), ElementsAre("1 gap, of 12 s"));
