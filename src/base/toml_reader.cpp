@@ -39,48 +39,20 @@ std::string text_of(const std::string& file, const toml::node& node, std::string
     return *node.value<std::string>();
 }
 
-/// No file of ours nests deeper than five; the parser would end the program at some ten thousand (its stack).
+/// No file of ours nests deeper than five. The parser limits arrays and inline tables; keys of some ten thousand parts
+/// would end the program (its stack).
 constexpr std::size_t deepest_nesting = 50;
 /// A file in memory takes up to some hundred times its size. A mission or model has some 10 kB.
 constexpr std::size_t max_toml_bytes = 8'000'000;
 
-/// Behind the end of the string that begins at `at`. One of a single line ends with the line: the parser refuses it.
-std::size_t end_of_string(std::string_view text, std::size_t at) {
-    const char quote = text[at];
-    const std::string triple(3, quote);
-    const bool is_long = text.substr(at).starts_with(triple);
-    for (at += is_long ? 3 : 1; at < text.size(); ++at) {
-        if (quote == '"' && text[at] == '\\') {
-            ++at;
-        } else if (is_long && text.substr(at).starts_with(triple)) {
-            return std::min(text.find_first_not_of(quote, at), at + 5);  // up to two quotes may be before the end
-        } else if (!is_long && (text[at] == quote || text[at] == '\n')) {
-            return text[at] == quote ? at + 1 : at;
-        }
-    }
-    return at;
-}
-
-/// Where more than `most` brackets are open, or a key has more dots, outside of strings and comments; npos: nowhere.
-std::size_t find_deeper_than(std::string_view text, std::size_t most) {
-    std::size_t open = 0;
+/// Where a key has more than `most` dots; npos: nowhere. Comments are skipped, texts of dots alone are not.
+std::size_t find_deeper_key(std::string_view text, std::size_t most) {
+    constexpr std::string_view ends_of_keys = "\n,[{";
     std::size_t dots = 0;
-    for (std::size_t at = 0; at < text.size();) {
-        const char c = text[at];
-        if (c == '"' || c == '\'') {
-            at = end_of_string(text, at);
-            continue;
-        }
-        if (c == '#') {
-            at = std::min(text.find('\n', at), text.size());
-            continue;
-        }
-        if (c == '.') ++dots;
-        if (c == '[' || c == '{') ++open;
-        if ((c == ']' || c == '}') && open > 0) --open;
-        if (c == '[' || c == '{' || c == '\n' || c == ',') dots = 0;
-        if (open > most || dots > most) return at;
-        ++at;
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        if (text.substr(at).starts_with("# ")) at = std::min(text.find('\n', at), text.size() - 1);
+        if (ends_of_keys.find(text[at]) != std::string_view::npos) dots = 0;
+        if (text[at] == '.' && ++dots > most) return at;
     }
     return std::string_view::npos;
 }
@@ -90,11 +62,11 @@ void refuse_monsters(std::string_view text, const std::string& file) {
         throw InputError({file}, fmt::format("holds more than {} MB of TOML", max_toml_bytes / 1'000'000),
                          "is it the file that was meant?");
     }
-    const auto at = find_deeper_than(text, deepest_nesting);
+    const auto at = find_deeper_key(text, deepest_nesting);
     if (at == std::string_view::npos) return;
     const auto line = 1 + static_cast<std::size_t>(std::ranges::count(text.substr(0, at), '\n'));
     throw InputError({file, line, at - (text.substr(0, at).rfind('\n') + 1) + 1},
-                     fmt::format("keys, arrays or tables are nested more than {} levels deep", deepest_nesting));
+                     fmt::format("keys are nested more than {} levels deep", deepest_nesting));
 }
 
 /// Other words for keys.
