@@ -86,9 +86,7 @@ int write_new_mission(const cli::StageCall& call, const NewMissionArguments& arg
         throw UsageError("--plan: expected --profile FILE of the software whose schedule is to be planned");
     }
     const auto text = new_mission_toml(fresh);
-    mission::MissionReadOptions reading;
-    reading.allow_unplanned = fresh.is_planned;
-    const auto read = mission::parse_mission(text, file, reading);
+    const auto read = mission::parse_mission(text, file, {.allow_unplanned = fresh.is_planned});
     cli::write_result(call, text);
     cli::warn_of_setup(call, setup_of(read));
     if (call.json) {

@@ -108,9 +108,7 @@ int list_plan(const cli::StageCall& call, std::string_view text, std::optional<d
 }
 
 int show_path(const cli::StageCall& call) {
-    mission::MissionReadOptions reading;
-    reading.allow_unplanned = true;
-    const auto mission = mission::read_mission(call.inputs.front(), reading);
+    const auto mission = mission::read_mission(call.inputs.front(), {.allow_unplanned = true});
     const auto& setup = setup_of(mission);
     if (!setup.cruise_path) {
         throw InputError({call.inputs.front()}, "the mission has no [path]",

@@ -9,7 +9,6 @@
 #include "telemetry/data_file.h"
 #include "telemetry/log_configuration.h"
 
-#include <chrono>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,7 +23,6 @@ struct PlayArguments {
     std::optional<std::string> to;
     double speed = 1.0;
     std::optional<std::string> messages;
-    bool as_aircraft = false;
 };
 
 /// The definitions that frames are made with and a binary log is read with: those of --messages, or of the log's own
@@ -37,38 +35,14 @@ telemetry::MessageDictionary read_definitions(const cli::StageCall& call, const 
                      "give --messages messages.xml");
 }
 
-live::PlaybackTargetSetup target_setup(const cli::StageCall& call, const PlayArguments& arguments) {
-    const auto& to = *arguments.to;
-    if (!to.starts_with("ivy:") && arguments.as_aircraft)
-        throw UsageError("--as-aircraft goes with --to ivy:ADDRESS:PORT");
-    live::PlaybackTargetSetup setup;
-    setup.as_aircraft = arguments.as_aircraft;
-    if (to.starts_with("udp:")) setup.definitions = read_definitions(call, arguments);
-    return setup;
-}
-
-/// Those of a binary log; none of a text.
-std::optional<telemetry::MessageDictionary> log_definitions(const cli::StageCall& call, const PlayArguments& arguments,
-                                                            const live::PlaybackTargetSetup& setup) {
+/// The definitions that the log is played with: those of frames, and of a binary log; none for a text as lines.
+std::optional<telemetry::MessageDictionary> definitions_of(const cli::StageCall& call, const PlayArguments& arguments) {
     const bool is_binary = telemetry::detect_binary_framing(telemetry::read_data_file(call.inputs.front())).has_value();
-    if (!is_binary && !setup.definitions && arguments.messages)
+    if (is_binary || *arguments.to != "-") return read_definitions(call, arguments);
+    if (arguments.messages)
         throw UsageError("--messages is of frames and of binary logs: this is a text, to a target that takes text");
-    if (!is_binary) return std::nullopt;
-    return setup.definitions ? setup.definitions : read_definitions(call, arguments);
+    return std::nullopt;
 }
-
-/// Lines to the standard output, each at once.
-class OutputTarget : public live::PlaybackTarget {
-  public:
-    std::string_view send(const live::IncomingMessage& message) override {
-        has_reader_ = cli::print_flushed(live::data_line(message));
-        return {};
-    }
-    bool has_reader() const { return has_reader_; }
-
-  private:
-    bool has_reader_ = true;
-};
 
 }  // namespace
 
@@ -105,27 +79,22 @@ void print_report(const cli::StageCall& call, const PlayArguments& arguments, co
 }
 
 int play(const cli::StageCall& call, const PlayArguments& arguments) {
-    if (!arguments.to)
-        throw UsageError("nowhere to play to: expected --to udp:ADDRESS:PORT, ivy:ADDRESS:PORT, file:NAME.data or -");
+    constexpr std::string_view udp = "udp:";
+    if (!arguments.to) throw UsageError("nowhere to play to: expected --to udp:ADDRESS:PORT or -");
     const auto& to = *arguments.to;
     if (to == "-" && call.json) throw UsageError("--json would stand among the lines of --to -");
-    const double speed = arguments.speed;
+    if (to != "-" && !to.starts_with(udp))
+        throw UsageError(fmt::format("unknown target '{}': expected udp:ADDRESS:PORT or -", to));
     const SignalWatch signals;
-    const auto stop = [&] { return signals.received().has_value(); };
-    const auto setup = target_setup(call, arguments);
-    const auto definitions = log_definitions(call, arguments, setup);
-    if (to == "-") {
-        OutputTarget output;
-        const auto stop_output = [&] { return stop() || !output.has_reader(); };
-        print_report(call, arguments, live::play(call.inputs.front(), speed, output, stop_output, definitions));
-        return cli::ok;
-    }
-    const auto target = live::open_playback_target(to, setup);
-    constexpr std::chrono::seconds max_wait{10};
-    if (!target->has_receiver(max_wait)) {
-        throw NoResultError(fmt::format("{}: no other agent came within {} s", to, max_wait.count()));
-    }
-    print_report(call, arguments, live::play(call.inputs.front(), speed, *target, stop, definitions));
+    const auto definitions = definitions_of(call, arguments);
+    bool has_reader = true;
+    const auto stop = [&] { return signals.received().has_value() || !has_reader; };
+    live::PlaybackTarget target = [&](const live::IncomingMessage& message) -> std::string_view {
+        has_reader = cli::print_flushed(live::data_line(message));
+        return {};
+    };
+    if (to != "-") target = live::open_udp_target(to.substr(udp.size()), definitions.value());
+    print_report(call, arguments, live::play(call.inputs.front(), arguments.speed, target, stop, definitions));
     return cli::ok;
 }
 
@@ -136,8 +105,7 @@ int flightwatt::stages::play_stage(int argc, char** argv) {
         "play", "LOG --to TARGET",
         R"(Sends a log as live telemetry, in its own time or faster, over a link that flightwatt watch listens to: a test
 bench for software that runs during a flight. The log is text or binary. Targets: udp:ADDRESS:PORT
-(Paparazzi's link frames, a datagram each), ivy:ADDRESS:PORT (a replay on an Ivy bus, in the form of Paparazzi's
-log player), file:NAME.data (a file that grows), - (the standard output).)"};
+(Paparazzi's link frames, a datagram each), - (lines to the standard output; > FILE.data is a file that grows).)"};
     stage.json_schema = cli::document_schema<live::PlaybackReport>;
     stage.max_inputs = 1;
     stage.output_help = "write how it was played to FILE instead of the standard output";
@@ -153,7 +121,5 @@ log player), file:NAME.data (a file that grows), - (the standard output).)"};
                 "speed relative to the log's own time");
     options.add("messages", arguments.messages, cli::input_file("FILE"),
                 "definitions of the messages, for udp and binary logs: a messages.xml, or a .log; default: the log's");
-    options.add("as-aircraft", arguments.as_aircraft,
-                "for ivy: messages as the aircraft itself sends them, without their time");
     return cli::run_stage(argc, argv, stage, [&](const auto& call) { return play(call, arguments); });
 }

@@ -103,9 +103,9 @@ int conclude(const cli::StageCall& call, const compute::ProfileOutcome& outcome,
              const compute::ProfileSpecification& specification) {
     write_profiles(outcome, specification, *call.output);
     if (call.json) {
-        cli::print_json(call, cli::ProfileOutput{outcome, specification.above_idle});
+        cli::print_json(call, cli::ProfileOutput{&outcome, specification.above_idle});
     } else {
-        cli::print(cli::profile_text({outcome, specification.above_idle}, screen_of(call)));
+        cli::print(cli::profile_text({&outcome, specification.above_idle}, screen_of(call)));
     }
     std::size_t failed = 0;
     for (const auto& component : outcome.components) failed += component.failures.size();

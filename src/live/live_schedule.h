@@ -30,7 +30,6 @@ class LiveSchedule {
     /// Throws InputError for `replans` of a mission with a fixed schedule, and as mission::prepare_mission.
     LiveSchedule(mission::MissionVariant mission, bool replans);
 
-    bool replans() const { return decider_.has_value(); }
     const mission::MissionSetup& setup() const { return setup_of(mission_); }
 
     /// The decision at a moment. `clock_s`: for the time between calls. Replanning needs the battery's state; without

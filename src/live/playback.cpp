@@ -3,15 +3,19 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "live/sources.h"
+#include "live/sources/endpoints.h"
 #include "live/sources/message_readers.h"
 #include "telemetry/binary_log.h"
 #include "telemetry/data_file.h"
+#include "telemetry/link_encoder.h"
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
 #include <thread>
 #include <utility>
 
+#include <boost/asio.hpp>
 #include <fmt/format.h>
 
 namespace flightwatt::live {
@@ -23,19 +27,19 @@ using Seconds = std::chrono::duration<double>;
 constexpr std::chrono::milliseconds max_wait{50};  // between two calls of stop()
 
 /// Waits in short steps; false: stopped.
-bool wait_for(Clock::time_point then, PlaybackTarget& target, const std::function<bool()>& stop) {
+bool wait_for(Clock::time_point then, const std::function<bool()>& stop) {
     for (;;) {
         if (stop()) return false;
         const auto now = Clock::now();
         if (now >= then) return true;
-        target.wait_until(std::min(then, now + max_wait));
+        std::this_thread::sleep_until(std::min(then, now + max_wait));
     }
 }
 
 /// Sends the messages of a log to a target when they are due.
 class Player final : public MessageSink {
   public:
-    Player(double speed, PlaybackTarget& target, const std::function<bool()>& stop)
+    Player(double speed, const PlaybackTarget& target, const std::function<bool()>& stop)
         : speed_(speed), target_(target), stop_(stop) {}
 
     bool is_stopped() const { return report_.stopped; }
@@ -48,10 +52,10 @@ class Player final : public MessageSink {
         report_.log_s += std::min(step_s, max_played_gap_s);
         last_s_ = message.time_s;
         const auto due = begin_ + std::chrono::duration_cast<Clock::duration>(Seconds(report_.log_s / speed_));
-        report_.stopped = !wait_for(due, target_, stop_);
+        report_.stopped = !wait_for(due, stop_);
         if (report_.stopped) return;
         report_.max_delay_s = std::max(report_.max_delay_s, Seconds(Clock::now() - due).count());
-        const auto reason = target_.send(message);
+        const auto reason = target_(message);
         ++(reason.empty() ? report_.messages : report_.left_out[std::string(reason)]);
     }
 
@@ -66,7 +70,7 @@ class Player final : public MessageSink {
 
   private:
     double speed_;
-    PlaybackTarget& target_;
+    const PlaybackTarget& target_;
     const std::function<bool()>& stop_;
     PlaybackReport report_;
     std::optional<double> last_s_;  ///< of the message before, on the log's clock
@@ -90,12 +94,33 @@ void play_binary(const telemetry::BinaryLog& log, Player& player) {
     if (!player.is_stopped()) require_fitting(reader.counts(), log);
 }
 
-/// Waits until the receiver has read all messages.
-void drain(PlaybackTarget& target, const std::function<bool()>& stop) {
-    constexpr std::chrono::seconds timeout{10};
-    const auto end = Clock::now() + timeout;
-    while (!target.is_drained() && Clock::now() < end && !stop()) target.wait_until(Clock::now() + max_wait);
-}
+/// Sends messages as link frames, each in a datagram; without a receiver it is lost, as over the air.
+class UdpTarget {
+  public:
+    UdpTarget(std::string_view to, telemetry::MessageDictionary definitions, telemetry::LinkVersion version)
+        : definitions_(std::move(definitions)),
+          encoder_(definitions_, version),
+          to_(parse_udp_address(to)),
+          socket_(context_, to_.protocol()) {
+        socket_.set_option(boost::asio::socket_base::broadcast(true));
+    }
+
+    std::string_view send(const IncomingMessage& message) {
+        frame_.clear();
+        if (const auto reason = encoder_.append_frame(message.text, frame_); !reason.empty()) return reason;
+        boost::system::error_code error;
+        socket_.send_to(boost::asio::buffer(frame_), to_, 0, error);
+        return error && error != boost::asio::error::connection_refused ? "the network did not accept them" : "";
+    }
+
+  private:
+    telemetry::MessageDictionary definitions_;
+    telemetry::LinkEncoder encoder_;
+    std::string frame_;
+    boost::asio::ip::udp::endpoint to_;
+    boost::asio::io_context context_;
+    boost::asio::ip::udp::socket socket_;
+};
 
 }  // namespace
 
@@ -105,9 +130,13 @@ std::string data_line(const IncomingMessage& message) {
     return fmt::format("{} {}\n", parse_number(in_ms) == time_s ? in_ms : fmt::to_string(time_s), message.text);
 }
 
-void PlaybackTarget::wait_until(Clock::time_point then) { std::this_thread::sleep_until(then); }
+PlaybackTarget open_udp_target(std::string_view to, telemetry::MessageDictionary definitions,
+                               telemetry::LinkVersion version) {
+    const auto target = std::make_shared<UdpTarget>(to, std::move(definitions), version);
+    return [target](const IncomingMessage& message) { return target->send(message); };
+}
 
-PlaybackReport play(const std::filesystem::path& log, double speed, PlaybackTarget& target,
+PlaybackReport play(const std::filesystem::path& log, double speed, const PlaybackTarget& target,
                     const std::function<bool()>& stop, const std::optional<telemetry::MessageDictionary>& definitions) {
     const auto text = telemetry::read_data_file(log);
     const auto framing = telemetry::detect_binary_framing(text);
@@ -122,7 +151,6 @@ PlaybackReport play(const std::filesystem::path& log, double speed, PlaybackTarg
         TextReader reader(player);
         play_bytes(text, reader, player);
     }
-    drain(target, stop);
     return player.end();
 }
 

@@ -4,12 +4,10 @@
 #include "telemetry/link_decoder.h"
 #include "telemetry/message_dictionary.h"
 
-#include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,34 +18,12 @@ namespace flightwatt::live {
 /// as many digits as necessary.
 std::string data_line(const IncomingMessage& message);
 
-/// Destination of a played log.
-class PlaybackTarget {
-  public:
-    PlaybackTarget() = default;
-    virtual ~PlaybackTarget() = default;
-    PlaybackTarget(const PlaybackTarget&) = delete;
-    PlaybackTarget& operator=(const PlaybackTarget&) = delete;
+/// Sends a message of a played log, which has a time. Returns the reason if it cannot be sent, else an empty text.
+using PlaybackTarget = std::function<std::string_view(const IncomingMessage&)>;
 
-    /// Waits up to the given time for a receiver; false without one.
-    virtual bool has_receiver(std::chrono::milliseconds) { return true; }
-    /// Sends a message that has a time. Returns the reason if it cannot be sent, else an empty text. Throws OutputError
-    /// where no message can be sent.
-    virtual std::string_view send(const IncomingMessage& message) = 0;
-    virtual void wait_until(std::chrono::steady_clock::time_point then);
-    /// Whether no sent message waits for transmission.
-    virtual bool is_drained() const { return true; }
-};
-
-struct PlaybackTargetSetup {
-    std::optional<telemetry::MessageDictionary> definitions = {};  ///< for udp:
-    telemetry::LinkVersion version = telemetry::LinkVersion::v2;
-    bool as_aircraft = false;  ///< for ivy: messages as the aircraft sends them, without their time
-};
-
-/// "udp:127.0.0.1:4242" (a link frame in each datagram), "ivy:127.255.255.255:2010" (a replay as by Paparazzi's log
-/// player), "file:NAME.data" (a new file that grows). Throws UsageError for another name, InputError for a bus that
-/// cannot be opened, OutputError for the file.
-std::unique_ptr<PlaybackTarget> open_playback_target(std::string_view to, PlaybackTargetSetup setup);
+/// A link frame in each datagram to an address: "127.0.0.1:4242". Throws UsageError for another text.
+PlaybackTarget open_udp_target(std::string_view to, telemetry::MessageDictionary definitions,
+                               telemetry::LinkVersion version = telemetry::LinkVersion::v2);
 
 struct PlaybackReport {
     std::size_t messages = 0;                                  ///< sent
@@ -65,7 +41,7 @@ inline constexpr double max_played_gap_s = 600.0;
 /// Plays a log, text or binary (compressed or not), at `speed` times its own speed until its end or until `stop`
 /// returns true. Where the log's clock goes back, the next message follows at once. `definitions`: of the messages of a
 /// binary log. Throws InputError for a log that cannot be read.
-PlaybackReport play(const std::filesystem::path& log, double speed, PlaybackTarget& target,
+PlaybackReport play(const std::filesystem::path& log, double speed, const PlaybackTarget& target,
                     const std::function<bool()>& stop,
                     const std::optional<telemetry::MessageDictionary>& definitions = {});
 

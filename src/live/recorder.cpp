@@ -14,6 +14,9 @@
 
 namespace flightwatt::live {
 
+namespace {
+
+/// Creates an empty file; false if it exists. Throws OutputError.
 bool make_new_file(const std::filesystem::path& path) {
     const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file < 0 && errno == EEXIST) return false;
@@ -21,6 +24,8 @@ bool make_new_file(const std::filesystem::path& path) {
     ::close(file);
     return true;
 }
+
+}  // namespace
 
 Recorder::Recorder(std::filesystem::path folder, std::string name, std::optional<std::string> log_text)
     : folder_(std::move(folder)), name_(std::move(name)), log_text_(std::move(log_text)) {

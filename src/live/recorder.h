@@ -10,9 +10,6 @@
 
 namespace flightwatt::live {
 
-/// Creates an empty file; false if it exists. Throws OutputError.
-bool make_new_file(const std::filesystem::path& path);
-
 /// Records telemetry as logs for `batch`: NAME.data in a folder, with the .log of its definitions. After a restart of
 /// the clock a new log NAME_2 ... begins; existing files are never changed. Written lines can be read at once. A full
 /// disk ends the recording, not the watch.

@@ -46,8 +46,6 @@ class MessageSource {
     virtual void receive(std::chrono::milliseconds timeout, std::vector<IncomingMessage>& messages) = 0;
     /// No more messages will follow: standard input was closed.
     virtual bool at_end() const { return false; }
-    /// "following logs/20_07_03.data"
-    virtual std::string description() const = 0;
     virtual const SourceReport& report() const = 0;
 };
 

@@ -147,13 +147,6 @@ TEST_F(WatchFlights, FromTheStandardInput) {
     expect_as_predicted(last_object(result.out).at("last_prediction").at("prediction"), "flown.data", exactly);
 }
 
-TEST_F(WatchFlights, FromAnIvyBus) {
-    const auto bus = fmt::format("127.255.255.255:{}", test::free_udp_port());
-    const auto watching = start_watch({"--ivy", bus, "--log", "flown.log"});
-    play("ivy:" + bus, 200);
-    expect_as_predicted(ended(watching, log_end_s), "flown.data", 1e-5);
-}
-
 /// By times of arrival, 60 times as fast: a machine that is busy for a second makes them a minute late.
 class WatchFlightsStudy : public WatchFlights {};
 

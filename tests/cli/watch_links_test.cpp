@@ -96,17 +96,12 @@ class WatchLinks : public testing::Test {
     Json expected;
 };
 
-TEST_F(WatchLinks, OverAnIvyBusWithItsTimesItIsTheSame) {
-    const auto bus = fmt::format("127.255.255.255:{}", test::free_udp_port());
-    expect_near(watch("--ivy " + bus + " --log flown.log", "ivy:" + bus, 400, [] { return true; }), 1e-5);
-}
-
 TEST_F(WatchLinks, OverUdpItIsTheSameButForTimesOfArrival) {
     const auto port = test::free_udp_port();
     const auto source =
         fmt::format("--udp {} --messages flown.log --clock-factor 100 --serve {}", port, test::free_udp_port());
     // Arrivals are late by milliseconds, on a busy machine by tenths of a second, which are tens of seconds at this
-    // speed. Values and times without arrivals are compared exactly over the Ivy bus.
+    // speed. WatchFlights compares times that come with the messages exactly.
     constexpr double of_arrivals = 0.15;
     expect_near(watch(source, fmt::format("udp:127.0.0.1:{}", port), 100, [&] { return test::is_taken(port); }),
                 of_arrivals);

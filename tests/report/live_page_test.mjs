@@ -2,7 +2,7 @@
 // console, and it comes back when its server does. Environment: BIN, SOURCE, SCRATCH, PORT, FLIGHTWATT_WEB, CHROMIUM.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
-import { createWriteStream, existsSync, rmSync } from "node:fs";
+import { createWriteStream, openSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
 import path from "node:path";
 import { after, before, test } from "node:test";
@@ -17,14 +17,14 @@ const address = `http://127.0.0.1:${PORT}/`;
 const running = [];
 let browser;
 
-function start(program, ...options) {
-  const child = spawn(path.join(BIN, program), options, { stdio: ["ignore", "ignore", "pipe"] });
+function start(program, options, output = "ignore") {
+  const child = spawn(path.join(BIN, program), options, { stdio: ["ignore", output, "pipe"] });
   child.stderr.pipe(createWriteStream(path.join(SCRATCH, `${program}.stderr`), { flags: "a" }));
   child.ended = new Promise((resolve) => child.once("exit", resolve));
   running.push(child);
   return child;
 }
-const watch = () => start("flightwatt-watch", "--follow", growing, "--log", `${log}.log`, "--model", path.join(SOURCE, "fits/mechanical/synthetic-wing.toml"), "--battery", path.join(SOURCE, "fits/battery/synthetic-3s.toml"), "--remaining", "300", "--serve", PORT, "--json");
+const watch = () => start("flightwatt-watch", ["--follow", growing, "--log", `${log}.log`, "--model", path.join(SOURCE, "fits/mechanical/synthetic-wing.toml"), "--battery", path.join(SOURCE, "fits/battery/synthetic-3s.toml"), "--remaining", "300", "--serve", PORT, "--json"]);
 
 /** Asks every 100 ms, and says every minute what for; CTest ends what never comes. */
 async function eventually(what, condition) {
@@ -46,8 +46,7 @@ after(async () => {
 });
 
 test("charts move while a flight is played, and the page outlives its server", async () => {
-  start("flightwatt-play", `${log}.data`, "--to", `file:${growing}`, "--speed", "15");
-  await eventually("the log is there", () => existsSync(growing));
+  start("flightwatt-play", [`${log}.data`, "--to", "-", "--speed", "15"], openSync(growing, "w"));
   const first = watch();
   await eventually("the server answers", answers);
   const page = await (await browser.newContext({ viewport: { width: 390, height: 844 } })).newPage();

@@ -32,9 +32,7 @@ using live::PredictionInput;
 PredictionInput read_mission_basis(const StageCall& call, const BasisArguments& arguments,
                                    std::optional<mission::MissionVariant>* kept) {
     const auto& file = *arguments.mission;
-    mission::MissionReadOptions reading;
-    reading.allow_unplanned = true;
-    auto mission = mission::read_mission(file, reading);
+    auto mission = mission::read_mission(file, {.allow_unplanned = true});
     const auto& setup = setup_of(mission);
     const bool needs_path = arguments.need == PathNeed::required;
     if (!setup.cruise_path && needs_path) {

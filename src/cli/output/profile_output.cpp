@@ -52,34 +52,33 @@ namespace {
 
 /// A configuration as measured.
 struct NodeOutput {
-    const compute::NodeEstimate& node;
+    const compute::NodeEstimate* node = nullptr;
     compute::PowerEstimate reported;  ///< above idle if specified
 };
 
 /// A component as measured.
 struct ComponentOutput {
-    const compute::ComponentEstimate& component;
-    const ProfileOutput& profile;
+    const compute::ComponentEstimate* component = nullptr;
+    std::vector<NodeOutput> nodes;
 };
 
 Fields<NodeOutput> record_fields(const NodeOutput*) {
     using R = NodeOutput;
-    return list_fields<R>(field(
-                              "qos", [](const R& r) { return r.node.qos; }, "parameters of the configuration"),
-                          embedded([](const R& r) { return &r.reported; }),
-                          field(
-                              "total_power_w", [](const R& r) { return r.node.total.power_w; }, "with the idle power"));
+    using N = compute::NodeEstimate;
+    return list_fields<R>(
+        field("qos", at(&R::node, &N::qos), "parameters of the configuration"), embedded(&R::reported),
+        field("total_power_w", at(&R::node, &N::total, &compute::PowerEstimate::power_w), "with the idle power"));
 }
 
 std::vector<NodeOutput> node_outputs(const compute::ComponentEstimate& component, const ProfileOutput& profile) {
     std::vector<NodeOutput> all;
     for (const auto& node : component.nodes) {
-        const auto reported = reported_power(node.total, profile.outcome.idle, profile.above_idle);
+        const auto reported = reported_power(node.total, profile.outcome->idle, profile.above_idle);
         auto estimate = node.total;
         estimate.power_w = reported.power_w;
         estimate.standard_error_w = reported.standard_error_w;
         estimate.energy_j = reported.power_w * node.total.duration_s;
-        all.push_back({node, estimate});
+        all.push_back({&node, estimate});
     }
     return all;
 }
@@ -96,37 +95,32 @@ TextTable component_table(const compute::ComponentEstimate& component, const Pro
 
 Fields<ComponentOutput> record_fields(const ComponentOutput*) {
     using R = ComponentOutput;
-    return {field(
-                "name", [](const R& r) { return r.component.name; }, "name of the component"),
-            field(
-                "parameters", [](const R& r) { return r.component.parameters; }, "names of its parameters"),
-            field(
-                "nodes", [](const R& r) { return node_outputs(r.component, r.profile); }, "configurations"),
-            field(
-                "failures", [](const R& r) { return r.component.failures; }, "failed runs")};
+    using C = compute::ComponentEstimate;
+    return {field("name", at(&R::component, &C::name), "name of the component"),
+            field("parameters", at(&R::component, &C::parameters), "names of its parameters"),
+            field("nodes", &R::nodes, "configurations"),
+            field("failures", at(&R::component, &C::failures), "failed runs")};
 }
 
 }  // namespace
 
 Fields<ProfileOutput> record_fields(const ProfileOutput*) {
     using R = ProfileOutput;
+    using O = compute::ProfileOutcome;
     const auto components = [](const R& r) {
         std::vector<ComponentOutput> all;
-        for (const auto& component : r.outcome.components) all.push_back({component, r});
+        for (const auto& component : r.outcome->components) all.push_back({&component, node_outputs(component, r)});
         return all;
     };
-    return {field(
-                "sampler", [](const R& r) { return r.outcome.sampler; }, "the power sensor"),
+    return {field("sampler", at(&R::outcome, &O::sampler), "the power sensor"),
             field("above_idle", &R::above_idle, "powers are above the idle power"),
-            field(
-                "idle", [](const R& r) { return r.outcome.idle; }, "idle power", optional_key{}),
-            field(
-                "sampling_interval", [](const R& r) { return r.outcome.jitter; }, "interval between samples"),
+            field("idle", at(&R::outcome, &O::idle), "idle power", optional_key{}),
+            field("sampling_interval", at(&R::outcome, &O::jitter), "interval between samples"),
             field("components", components, "components")};
 }
 
 std::string profile_text(const ProfileOutput& profile, const Screen& screen) {
-    const auto& outcome = profile.outcome;
+    const auto& outcome = *profile.outcome;
     auto text = outcome.idle ? values_text(record_json(*outcome.idle), "idle ") : "";
     text += values_text(record_json(outcome.jitter), "sampling interval ");
     for (const auto& component : outcome.components) {

@@ -19,7 +19,7 @@ namespace flightwatt::cli {
 
 /// JSON of a measured profile.
 struct ProfileOutput {
-    const compute::ProfileOutcome& outcome;
+    const compute::ProfileOutcome* outcome = nullptr;
     bool above_idle = false;  ///< power over the idle power instead of total power
 };
 Fields<ProfileOutput> record_fields(const ProfileOutput*);

@@ -61,8 +61,6 @@ class FileTail {
         }
     }
 
-    const std::filesystem::path& path() const { return path_; }
-
   private:
     bool open() {
         file_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
@@ -126,7 +124,6 @@ class StandardInput : public MessageSource {
         queue_.take(milliseconds(0), messages, report_);
     }
     bool at_end() const override { return at_end_; }
-    std::string description() const override { return "the standard input"; }
     const SourceReport& report() const override { return report_; }
 
   private:
@@ -153,7 +150,6 @@ class FollowedFile : public MessageSource {
         reader_.push(chunk.bytes);
         queue_.take(milliseconds(0), messages, report_);
     }
-    std::string description() const override { return "following " + tail_.path().string(); }
     const SourceReport& report() const override { return report_; }
 
   private:

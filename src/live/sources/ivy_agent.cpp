@@ -8,14 +8,11 @@
 #include <chrono>
 #include <exception>
 #include <limits>
-#include <map>
 #include <optional>
 #include <random>
-#include <stdexcept>
 #include <utility>
 
 #include <boost/asio.hpp>
-#include <boost/regex.hpp>
 #include <fmt/format.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -101,24 +98,8 @@ class IvyAgent::Peer : public std::enable_shared_from_this<Peer> {
         }
     }
 
-    void send(std::string_view message) {
-        if (!ready_) return;
-        for (const auto& [id, regexp] : subscriptions_) {
-            boost::cmatch match;
-            try {
-                if (!boost::regex_search(message.begin(), message.end(), match, regexp)) continue;
-            } catch (const std::runtime_error&) {
-                continue;  // the match would take too long
-            }
-            std::string arguments;
-            for (std::size_t group = 1; group < match.size(); ++group)
-                arguments.append(match[group].first, match[group].second).push_back('\003');
-            write(to_ivy_line(IvyType::message, id, arguments));
-        }
-    }
-
-    /// Stops sending messages on this duplicate connection. It stays open until the other end sends a bye, so that
-    /// messages already sent still arrive.
+    /// Ends this duplicate connection. It stays open until the other end sends a bye, so that messages already sent
+    /// still arrive.
     void retire() {
         retired_ = true;
         ready_ = false;
@@ -183,11 +164,6 @@ class IvyAgent::Peer : public std::enable_shared_from_this<Peer> {
                 if (line.id > 0 && line.id <= std::numeric_limits<std::uint16_t>::max())
                     service_port_ = static_cast<std::uint16_t>(line.id);
                 return;
-            case IvyType::subscribe:
-                return subscribe(line);
-            case IvyType::unsubscribe:
-                subscriptions_.erase(line.id);
-                return;
             case IvyType::end_of_subscriptions:
                 if (retired_) return;
                 ready_ = true;
@@ -199,6 +175,8 @@ class IvyAgent::Peer : public std::enable_shared_from_this<Peer> {
             case IvyType::bye:
                 other_ended_ = true;
                 return retired_ && waiting_bytes() > 0 ? void() : lose();
+            case IvyType::subscribe:  // nothing is sent to them
+            case IvyType::unsubscribe:
             case IvyType::pong:
                 return;
             case IvyType::error:
@@ -207,16 +185,6 @@ class IvyAgent::Peer : public std::enable_shared_from_this<Peer> {
                 break;
         }
         agent_.setup_.on_unusable(fmt::format("Ivy lines of type {}, which are ignored", line.type));
-    }
-
-    void subscribe(const IvyLine& line) {
-        constexpr std::size_t max_subscriptions = 4096;  // of one agent; Paparazzi's have some dozens
-        if (!agent_.setup_.sends) return;
-        const boost::regex regexp(line.arguments.begin(), line.arguments.end(),
-                                  boost::regex::perl | boost::regex::no_except);
-        if (regexp.status() != 0) return write(to_ivy_line(IvyType::error, line.id, "not a regular expression"));
-        if (subscriptions_.size() >= max_subscriptions && !subscriptions_.contains(line.id)) return;
-        subscriptions_.insert_or_assign(line.id, regexp);
     }
 
     void write(std::string_view text) {
@@ -248,7 +216,6 @@ class IvyAgent::Peer : public std::enable_shared_from_this<Peer> {
     std::array<char, 16'384> received_{};
     LineBuffer buffer_;
     std::vector<std::string> lines_;
-    std::map<int, boost::regex> subscriptions_;  ///< Perl's, as Ivy's libraries take them
     std::string outgoing_, writing_;
 };
 
@@ -288,7 +255,7 @@ void IvyAgent::announce() {
 asio::awaitable<void> IvyAgent::announce_while_alone() {
     asio::steady_timer timer(context_);
     for (;;) {
-        if (ready_peers() == 0) announce();
+        if (std::ranges::none_of(peers_, [](const auto& peer) { return peer->ready(); })) announce();
         timer.expires_after(announce_interval);
         co_await timer.async_wait(use_awaitable);
     }
@@ -328,20 +295,6 @@ void IvyAgent::retire_duplicate(Peer& peer) {
         if (other->ready() && other->is_duplicate_of(peer))
             return other->higher_port() > peer.higher_port() ? other->retire() : peer.retire();
     }
-}
-
-void IvyAgent::send(std::string_view message) {
-    for (const auto& peer : peers_) peer->send(message);
-}
-
-std::size_t IvyAgent::ready_peers() const {
-    return static_cast<std::size_t>(std::ranges::count_if(peers_, [](const auto& peer) { return peer->ready(); }));
-}
-
-std::size_t IvyAgent::waiting_bytes() const {
-    std::size_t max_bytes = 0;
-    for (const auto& peer : peers_) max_bytes = std::max(max_bytes, peer->waiting_bytes());
-    return max_bytes;
 }
 
 }  // namespace flightwatt::live

@@ -23,7 +23,6 @@ struct IvyAgentSetup {
     boost::asio::ip::udp::endpoint bus;
     std::string name;
     std::vector<std::string> subscriptions = {};  ///< regular expressions; their ids count from 0
-    bool sends = false;                           ///< handles the subscriptions of other agents
 
     /// Called with the groups of a message from another agent.
     std::function<void(const std::vector<std::string_view>&)> on_message = [](const auto&) {};
@@ -31,24 +30,14 @@ struct IvyAgentSetup {
     std::function<void()> on_peer_lost = [] {};
 };
 
-/// An agent on an Ivy bus: announces itself, connects once with each other agent, exchanges subscriptions and answers
-/// pings. Malformed lines and requests to end are counted and ignored. Runs in the thread that runs the context.
+/// An agent that listens on an Ivy bus: announces itself, connects once with each other agent, sends its subscriptions
+/// and answers pings. Malformed lines and requests to end are counted and ignored. Runs in the thread that runs the context.
 class IvyAgent {
   public:
     /// Opens its sockets and starts. Throws InputError, as where another program uses the port exclusively.
     IvyAgent(boost::asio::io_context& context, IvyAgentSetup setup);
     /// Sends a bye and closes all connections; the context does not run.
     ~IvyAgent();
-
-    /// Sends to each matching subscription. A message is lost for an agent that does not read.
-    void send(std::string_view message);
-    /// Number of agents whose subscriptions are known.
-    std::size_t ready_peers() const;
-    /// Unsent bytes of the slowest agent.
-    std::size_t waiting_bytes() const;
-
-    const IvyAgentSetup& setup() const { return setup_; }
-    std::uint16_t port() const { return port_; }
 
   private:
     class Peer;

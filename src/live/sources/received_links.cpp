@@ -37,7 +37,6 @@ class ReceivingSource : public MessageSource {
     void receive(std::chrono::milliseconds timeout, std::vector<IncomingMessage>& messages) override {
         queue_.take(timeout, messages, report_);
     }
-    std::string description() const override { return receiver_.description; }
     const SourceReport& report() const override { return report_; }
 
   private:
@@ -48,21 +47,17 @@ class ReceivingSource : public MessageSource {
     std::thread thread_;
 };
 
-std::string describe_udp(const udp::endpoint& at) {
-    if (at.address().is_unspecified()) return fmt::format("UDP port {}", at.port());
-    return fmt::format("UDP {}:{}", at.address().to_string(), at.port());
-}
-
 /// Link frames over UDP. Each sender has a reader of its own, so that damage in one stream does not affect another.
 class UdpReceiver {
   public:
     UdpReceiver(asio::io_context& context, MessageQueue& queue, const udp::endpoint& at,
                 LinkReader::Definitions definitions)
-        : description(describe_udp(at)), queue_(queue), definitions_(std::move(definitions)), socket_(context) {
+        : queue_(queue), definitions_(std::move(definitions)), socket_(context) {
         try {
             socket_ = udp::socket(context, at);
         } catch (const boost::system::system_error& error) {
-            throw InputError({description}, fmt::format("cannot listen: {}", error.code().message()),
+            throw InputError({fmt::format("UDP {}:{}", at.address().to_string(), at.port())},
+                             fmt::format("cannot listen: {}", error.code().message()),
                              "find the program that uses the port (ss -lup), or use another port");
         }
         close_on_exec(socket_);
@@ -71,8 +66,6 @@ class UdpReceiver {
         socket_.set_option(asio::socket_base::receive_buffer_size(receive_buffer_bytes), ignored);
         asio::co_spawn(context, run(), asio::detached);
     }
-
-    const std::string description;
 
   private:
     asio::awaitable<void> run() {
@@ -103,8 +96,7 @@ class SerialReceiver {
   public:
     /// Throws InputError where the device is missing or does not support the speed.
     SerialReceiver(asio::io_context& context, MessageQueue& queue, SerialLine line, LinkReader::Definitions definitions)
-        : description(fmt::format("{} at {} baud", line.device, line.baud)),
-          queue_(queue),
+        : queue_(queue),
           line_(std::move(line)),
           port_(context),
           timer_(context),
@@ -117,8 +109,6 @@ class SerialReceiver {
         }
         asio::co_spawn(context, run(), asio::detached);
     }
-
-    const std::string description;
 
   private:
     asio::awaitable<void> run() {
@@ -150,8 +140,7 @@ class SerialReceiver {
 class IvyReceiver {
   public:
     IvyReceiver(asio::io_context& context, MessageQueue& queue, const udp::endpoint& bus)
-        : description(fmt::format("the Ivy bus {}:{}", bus.address().to_string(), bus.port())),
-          messages_(queue),
+        : messages_(queue),
           agent_(context,
                  {.bus = bus,
                   .name = "FlightWatt watch",
@@ -161,8 +150,6 @@ class IvyReceiver {
                   .on_message = [this](const auto& groups) { messages_.handle(groups.empty() ? "" : groups.front()); },
                   .on_unusable = [&queue](std::string_view reason) { queue.count(reason, 1); },
                   .on_peer_lost = [&queue] { queue.count_restart(); }}) {}
-
-    const std::string description;
 
   private:
     IvyMessages messages_;

@@ -49,9 +49,7 @@ struct Start {
 
 Start start_of_mission(const PredictorSetup& setup) {
     if (!setup.model_file.empty()) throw UsageError("mission_file and model_file exclude each other");
-    mission::MissionReadOptions reading;
-    reading.allow_unplanned = true;
-    const auto mission = mission::read_mission(setup.mission_file, reading);
+    const auto mission = mission::read_mission(setup.mission_file, {.allow_unplanned = true});
     const auto& of = setup_of(mission);
     if (!of.mechanical)
         throw InputError({setup.mission_file}, "the mission has no mechanical model", "name one: mechanical = FILE");

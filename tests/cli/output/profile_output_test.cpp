@@ -29,12 +29,12 @@ compute::ProfileOutcome outcome() {
 
 TEST(ProfileText, ShowsTotalPowerOrThatAboveIdle) {
     const auto measured = outcome();
-    const auto total = profile_text({measured, false});
+    const auto total = profile_text({&measured, false});
     EXPECT_THAT(total, HasSubstr("idle power: 2 W"));
     EXPECT_THAT(total, HasSubstr("\ndetection\n"));
     EXPECT_THAT(total, HasSubstr("5.0000"));
     EXPECT_THAT(total, HasSubstr("24.00"));
-    const auto above = profile_text({measured, true});
+    const auto above = profile_text({&measured, true});
     EXPECT_THAT(above, HasSubstr("\ndetection, above idle\n"));
     EXPECT_THAT(above, HasSubstr("3.0000"));
 }
@@ -44,23 +44,23 @@ TEST(ProfileText, FitsTheScreen) {
     Screen narrow;
     narrow.is_terminal = true;
     narrow.columns = 44;
-    const auto text = profile_text({measured, false}, narrow);
+    const auto text = profile_text({&measured, false}, narrow);
     EXPECT_THAT(text, HasSubstr("left out: "));
     EXPECT_THAT(text, HasSubstr("fps"));
     EXPECT_THAT(text, HasSubstr("6.0000"));
     narrow.wide = true;
-    EXPECT_THAT(profile_text({measured, false}, narrow), Not(HasSubstr("left out: ")));
+    EXPECT_THAT(profile_text({&measured, false}, narrow), Not(HasSubstr("left out: ")));
 }
 
 TEST(ProfileText, SaysThatNothingCouldBeMeasured) {
     auto failed = outcome();
     failed.components.front().nodes.clear();
-    EXPECT_THAT(profile_text({failed, false}), HasSubstr("detection\nno configuration was measured\n"));
+    EXPECT_THAT(profile_text({&failed, false}), HasSubstr("detection\nno configuration was measured\n"));
 }
 
 TEST(ProfileJson, HoldsReportedAndTotalPower) {
     const auto measured = outcome();
-    const auto json = record_json(ProfileOutput{measured, true});
+    const auto json = record_json(ProfileOutput{&measured, true});
     const auto& node = json["components"][0]["nodes"][0];
     EXPECT_EQ(node["qos"][0], 10.0);
     EXPECT_EQ(node["power_w"], 3.0);
