@@ -26,6 +26,7 @@
 #include <vector>
 
 #include <fmt/chrono.h>
+#include <unistd.h>
 
 namespace {
 
@@ -109,6 +110,8 @@ int write_page(const cli::StageCall& call, const ReportArguments& arguments) {
         throw UsageError(
             "--replay flies missions on a batch's flights: give a folder of flightwatt batch and missions");
     const bool wants_page = call.output || (!call.json && !arguments.figures);
+    if (wants_page && !call.output && ::isatty(STDOUT_FILENO) == 1)
+        throw UsageError("a page is not for a terminal: expected -o FILE.html");
     std::optional<report::WebFiles> web;  // read first: missing files are an error before any work
     if (wants_page || arguments.figures) web = report::read_web_files(report::web_folder());
     report::PageHead head{.title = "",

@@ -153,7 +153,7 @@ TEST_F(NewMissions, HaveNoCommentedKeyThatIsRefused) {
             EXPECT_TRUE(is_read) << usual[block.first] << why;
         }
     }
-    EXPECT_GT(tried.size(), 18U);
+    EXPECT_GE(tried.size(), 18U);
 }
 
 }  // namespace

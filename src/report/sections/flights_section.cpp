@@ -15,6 +15,7 @@
 #include <regex>
 #include <set>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -62,11 +63,14 @@ void add_flights_table(Section& section, std::span<const ReportFlight> flights, 
 void add_excluded(Section& section, std::span<const ReportFlight> flights) {
     std::vector<Exclusion> exclusions;
     for (const auto& flight : flights) {
-        if (!flight.rejected.empty()) exclusions.push_back({flight.name, "rejected", flight.rejected});
+        // No folder of this machine: the page is passed on.
+        const auto folder = std::filesystem::path(flight.log).parent_path().string() + "/";
+        const auto reason = boost::algorithm::replace_all_copy(flight.rejected, folder, "");
+        if (!reason.empty()) exclusions.push_back({flight.name, "rejected", reason});
         const auto name = flight.name + ": ";
-        for (const auto& reason : flight.exclusions)
+        for (const auto& text : flight.exclusions)
             exclusions.push_back(
-                {flight.name, "from the model", reason.starts_with(name) ? reason.substr(name.size()) : reason});
+                {flight.name, "from the model", text.starts_with(name) ? text.substr(name.size()) : text});
     }
     if (exclusions.empty()) return;
     section.html += "<h3 id=\"excluded\">Excluded</h3>\n";

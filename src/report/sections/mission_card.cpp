@@ -133,7 +133,7 @@ std::vector<std::string> notes_of(const SimulatedMission& simulated, const Missi
     std::vector<std::string> notes;
     if (auto warning = capacity_warning(setup.battery); !warning.empty())
         notes.push_back("Warning: " + warning + (summary.by_flights ? "; " + describe(*summary.by_flights, 1) : ""));
-    if (!answer.no_reach_reason.empty()) notes.push_back("The reach is unknown: " + answer.no_reach_reason);
+    if (!answer.no_reach_reason.empty()) notes.push_back("No longest cruise: " + answer.no_reach_reason);
     if (answer.is_unplanned) notes.emplace_back("The longest cruise is that with the least software");
     if (simulated.planned && !simulated.planned->feasible)
         notes.emplace_back("No schedule that keeps the reserve was found: this one needs the least energy");
@@ -174,7 +174,7 @@ MissionCard mission_card(const SimulatedMission& simulated, const MissionAssessm
             .probability = summary.samples ? probability_text(1.0 - summary.samples->probability_below_reserve)
                                            : std::string("unknown"),
             .reach_name = name_of_reach(answer),
-            .reach = reach ? describe_reach(*reach) : "unknown",
+            .reach = reach ? describe_reach(*reach) : "",
             .planned = is_cruise ? duration_text(planned_cruise_s(simulated)) : "",
             .help = describe_help(simulated, answer, outcome),
             .notes = notes_of(simulated, answer)};
@@ -185,9 +185,10 @@ std::vector<std::string> card_lines(const SimulatedMission& simulated, const Mis
     std::vector<std::string> lines{
         fmt::format("{}: {}", capitalized(card.words), card.lead),
         fmt::format("Probability: {}: {}", describe_aim(simulated.simulation.summary.reserve_soc_percent),
-                    card.probability),
-        fmt::format("{}: {}{}", card.reach_name, card.reach,
-                    card.planned.empty() ? "" : fmt::format(" (planned: {})", card.planned))};
+                    card.probability)};
+    if (!card.reach.empty())
+        lines.push_back(fmt::format("{}: {}{}", card.reach_name, card.reach,
+                                    card.planned.empty() ? "" : fmt::format(" (planned: {})", card.planned)));
     if (!card.help.empty()) lines.push_back(card.help);
     lines.insert(lines.end(), card.notes.begin(), card.notes.end());
     return lines;

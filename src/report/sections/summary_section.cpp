@@ -130,8 +130,9 @@ std::string card_html(const RankedCards& ranked, std::size_t i) {
         html_escaped(card.lead), html_escaped(mission.title), html_escaped(card.runs));
     html += number_row("Charge at landing", "", card.landing);
     html += number_row(capitalized(describe_aim(reserve_percent)), "", card.probability);
-    html +=
-        number_row(card.reach_name, card.planned.empty() ? "" : fmt::format("(planned: {})", card.planned), card.reach);
+    if (!card.reach.empty())
+        html += number_row(card.reach_name, card.planned.empty() ? "" : fmt::format("(planned: {})", card.planned),
+                           card.reach);
     return html + fmt::format(
                       "</dl>\n</div>\n<div class=\"drawn\" data-draw=\"mission\" data-mission=\"{}\"></div>\n"
                       "<div class=\"below\">{}</div>\n</article>\n",
