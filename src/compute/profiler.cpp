@@ -31,9 +31,8 @@ bool is_executable(const std::string& program, const std::filesystem::path& fold
     const char* const path = std::getenv("PATH");
     if (program.find('/') == std::string::npos)
         boost::split(places, path != nullptr ? path : "/usr/bin:/bin", boost::is_any_of(":"));
-    return std::ranges::any_of(places, [&](const std::filesystem::path& place) {
-        return ::access((place / program).c_str(), X_OK) == 0;
-    });
+    return std::ranges::any_of(
+        places, [&](const std::filesystem::path& place) { return ::access((place / program).c_str(), X_OK) == 0; });
 }
 
 /// Throws InputError for a program that is absent, before anything is measured.
