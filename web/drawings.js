@@ -61,7 +61,7 @@
   const pathOf = ({ x, y }, times, values) => times.map((t, i) => `${i ? "L" : "M"}${x(t).toFixed(1)} ${y(values[i]).toFixed(1)}`).join("");
   const curveOf = (axes, { time_s, soc }, className) => svg("path", { d: pathOf(axes, time_s, soc), class: `curve ${className}` });
   function addReserve({ root, x, y, left, width, right }, reserve) {
-    if (reserve > 0) root.append(line(left, y(reserve), width - right, y(reserve), "reserve"), text(left + 6, y(reserve) - 5, `reserve ${reserve} %`, "halo"));
+    if (reserve > 0) root.append(line(left, y(reserve), width - right, y(reserve), "reserve"), text(left + 6, y(reserve) - 5, `reserve ${Number(reserve.toFixed(1))} %`, "halo"));
   }
   function addBand(axes, band, duration_s) {
     const { root, x, y, width } = axes;

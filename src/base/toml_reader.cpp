@@ -106,6 +106,7 @@ namespace {
                                             fmt::join(known, ", "));
     }
     std::vector<std::string> hints;
+    hints.reserve(known_keys.size());
     for (const auto& [table, hint] : known_keys) hints.push_back(hint);
     if (unknown.size() > 1)
         throw InputError(first.where, fmt::format("{} unknown keys: {}", unknown.size(), fmt::join(names, ", ")),

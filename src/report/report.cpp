@@ -221,8 +221,9 @@ ReportContent make_report(const ReportInput& input, const ReportLog& log) {
     if (input.with_replay && replays.empty())
         page.answers.notes.emplace_back("There is no replay: no mission could be replayed on any flight.");
     // What missions answer stands before the flights.
-    std::ranges::stable_partition(
-        sections, [](const Section& section) { return section.id == "curves" || section.id == "quality-of-service"; });
+    std::stable_partition(sections.begin(), sections.end(), [](const Section& section) {
+        return section.id == "curves" || section.id == "quality-of-service";
+    });
     sections.insert(sections.begin(), summary_section(page.answers, batch.flights));
     if (auto notes = notes_section(page.answers)) sections.push_back(std::move(*notes));
     title = page_title(batch.flights, page.answers.missions.size());

@@ -103,8 +103,8 @@ std::vector<std::string> speed_lines(const mechanical::SpeedToFly& speeds) {
 std::string physical_text(const mechanical::PhysicalFit& fit, const Screen& screen) {
     auto values = record_json(fit);
     values.erase("speed_to_fly");
-    const auto text = "Power from the motion through the air\n" + screen_text(constants_table(fit.model), screen) +
-                      values_text(values) + "\nRMS hold-out error by term\n" + screen_text(trials_table(fit), screen);
+    auto text = "Power from the motion through the air\n" + screen_text(constants_table(fit.model), screen) +
+                values_text(values) + "\nRMS hold-out error by term\n" + screen_text(trials_table(fit), screen);
     if (!fit.speeds) return text;
     return text + fmt::format("\nSpeed to fly\n{}\n", fmt::join(speed_lines(*fit.speeds), "\n"));
 }

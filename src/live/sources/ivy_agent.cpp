@@ -282,7 +282,7 @@ void IvyAgent::handle_announcement(const IvyAnnouncement& announcement, const as
     add_peer(std::make_shared<Peer>(*this, tcp::endpoint(from, announcement.port), announcement.id));
 }
 
-void IvyAgent::add_peer(std::shared_ptr<Peer> peer) {
+void IvyAgent::add_peer(const std::shared_ptr<Peer>& peer) {
     constexpr std::size_t max_peers = 64;
     if (peers_.size() >= max_peers) return setup_.on_unusable("agents beyond the limit of 64 connections");
     peers_.push_back(peer);

@@ -46,7 +46,7 @@ class IvyAgent {
     boost::asio::awaitable<void> listen_for_announcements();
     void announce();
     void handle_announcement(const IvyAnnouncement& announcement, const boost::asio::ip::address& from);
-    void add_peer(std::shared_ptr<Peer> peer);
+    void add_peer(const std::shared_ptr<Peer>& peer);
     void retire_duplicate(Peer& peer);
     bool is_local() const { return setup_.bus.address().is_loopback(); }
 

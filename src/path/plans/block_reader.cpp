@@ -237,7 +237,9 @@ class BlockReader {
     }
 
     void call(const pugi::xml_node& stage) {
-        const auto [name, arguments] = function_call(attribute(stage, "fun"));
+        const auto called = function_call(attribute(stage, "fun"));
+        const auto& name = called.first;
+        const auto& arguments = called.second;
         const auto is = [&](std::initializer_list<std::string_view> names, std::size_t count) {
             return std::ranges::find(names, name) != names.end() && arguments.size() == count;
         };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -120,9 +121,9 @@ PlanFormat plan_format(std::string_view text) {
 std::vector<PlanBlock> parse_plan(std::string_view text, const std::string& file, const AutopilotSettings& settings) {
     const auto format = plan_format(text);
     if (format == PlanFormat::flight_plan) return flight_plan_blocks(text, file, settings);
-    const auto plan =
+    auto plan =
         format == PlanFormat::ardupilot ? parse_wpl(text, file, settings) : parse_qgc_plan(text, file, settings);
-    return {summarised({"mission"}, [&] { return plan; })};
+    return {summarised({"mission"}, [&] { return std::move(plan); })};
 }
 
 PlanEntries parse_plan_blocks(std::string_view text, const std::string& file, const std::vector<std::string>& blocks,

@@ -38,7 +38,7 @@ std::string flights_text(std::span<const FlightSummary> flights) {
     std::vector<double> starts_s;
     for (const auto& flight : flights)
         if (flight.start_clock_s) starts_s.push_back(*flight.start_clock_s);
-    const auto text = plural(flights.size(), "flight");
+    auto text = plural(flights.size(), "flight");
     if (starts_s.empty()) return text;
     const auto [first, last] = std::ranges::minmax(starts_s);
     return fmt::format("{}, {}", text, dates_text(first, last));

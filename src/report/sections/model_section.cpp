@@ -49,7 +49,8 @@ Section validation_section(const std::vector<mechanical::ValidatedFlight>& fligh
         "(physical).");
     add_figure(section, validation_figure(flights, "validation-errors"));
     auto scores = cli::scores_table(flights);
-    std::ranges::stable_partition(scores.rows, [](const auto& row) { return row.front() == "total"; });
+    std::stable_partition(scores.rows.begin(), scores.rows.end(),
+                          [](const auto& row) { return row.front() == "total"; });
     add_table(section,
               {std::move(scores), "Errors of the models on flights that they were not fitted to", "tab:validation"},
               {.sortable = true});
