@@ -61,9 +61,10 @@ std::vector<std::string> column_of(const PhaseModel& phase, std::size_t order) {
     return cells;
 }
 
-/// The 95 % intervals of column_of's cells.
+/// The 95 % intervals of column_of's cells; none where other frequencies fit almost as well, as those of the
+/// coefficients would be far wider than the curve's.
 std::vector<std::string> intervals_of(const PhaseModel& phase, std::size_t order) {
-    if (!phase.errors) return std::vector<std::string>(2 * order + 2, "-");
+    if (!phase.errors || phase.open_frequency) return std::vector<std::string>(2 * order + 2, "-");
     const auto intervals = coefficient_intervals(phase);
     auto cells = coefficient_cells(intervals.a0_w, intervals.cos_w, intervals.sin_w, order);
     const auto xi = [&](double omega) { return units::table_one_xi_from_rad(omega * phase.duration_s); };

@@ -13,11 +13,13 @@
 namespace flightwatt::report {
 namespace {
 
-VegaJson area_rows(const std::vector<double>& time_s, const std::vector<double>& low_w,
-                   const std::vector<double>& high_w) {
+/// The band ends at 0 W where the fit held the curve above it.
+VegaJson area_rows(const mechanical::PhaseModel& phase, const std::vector<double>& time_s,
+                   const std::vector<double>& low_w, const std::vector<double>& high_w) {
     if (low_w.empty()) return nullptr;
     FigureData data({"time_s", "low_w", "high_w"});
-    for (std::size_t i = 0; i < time_s.size(); ++i) data.add({time_s[i], low_w[i], high_w[i]});
+    for (std::size_t i = 0; i < time_s.size(); ++i)
+        data.add({time_s[i], phase.not_negative ? std::max(low_w[i], 0.0) : low_w[i], high_w[i]});
     return data.json();
 }
 
@@ -100,11 +102,12 @@ Figure model_figure(const mechanical::MechanicalModel& model, const flight::PerP
     auto panels = VegaJson::array();
     for (const auto phase : flight::all_phases) {
         const auto& band = bands[phase];
+        const auto& fitted = model.phases[phase];
         panels.push_back({{"phase", phase_word(phase)},
                           {"drawn", drawn},
-                          {"envelope", area_rows(band.time_s, band.flights_low_w, band.flights_high_w)},
-                          {"band", area_rows(band.time_s, band.low_95_w, band.high_95_w)},
-                          {"model", model_rows(model.phases[phase])}});
+                          {"envelope", area_rows(fitted, band.time_s, band.flights_low_w, band.flights_high_w)},
+                          {"band", area_rows(fitted, band.time_s, band.low_95_w, band.high_95_w)},
+                          {"model", model_rows(fitted)}});
     }
     return new_figure("model", id, "Power of each phase (Eq. 1).",
                       fmt::format("Mechanical power model {} over each phase.", model.name), {{"panels", panels}});
