@@ -152,6 +152,7 @@ std::vector<PathEntry> parse_flight_plan(std::string_view text, const std::strin
                                          const std::vector<std::string>& names) {
     const auto plan = load_flight_plan(text, file);
     std::vector<PathEntry> entries;
+    entries.reserve(names.size());
     for (const auto& name : names) entries.push_back(waypoint_entry(plan, waypoint_number(plan, name, {file})));
     return entries;
 }
