@@ -78,10 +78,10 @@ FlightReplanner::FlightReplanner(const AdaptivePlanner& planner)
 }
 
 double FlightReplanner::mechanical_factor() const {
-    if (learned_.mechanical_percent <= 0.0) return 1.0;
-    const double gain = learned_.time_s / (learned_.time_s + nominal_.adaptive->learning_time_s);
+    if (observed_.mechanical_percent <= 0.0) return 1.0;
+    const double gain = observed_.time_s / (observed_.time_s + nominal_.adaptive->learning_time_s);
     return std::max(
-        0.0, 1.0 + gain * (learned_.observed_percent - learned_.predicted_percent) / learned_.mechanical_percent);
+        0.0, 1.0 + gain * (observed_.observed_percent - observed_.predicted_percent) / observed_.mechanical_percent);
 }
 
 FlightReplanner::PredictedDepletion FlightReplanner::predict(const Schedule& run,
@@ -105,7 +105,7 @@ Plan FlightReplanner::replan(const PhaseTime& moment, const battery::BatteryStat
     const double time_s = planned_.start_s[moment.phase] + moment.time_s;
     const double left_s = planned_.duration_s - time_s;
     const double seen =
-        policy.learning_time_s > 0.0 ? policy.learning_time_s / (learned_.time_s + policy.learning_time_s) : 0.0;
+        policy.learning_time_s > 0.0 ? policy.learning_time_s / (observed_.time_s + policy.learning_time_s) : 0.0;
     const double margin = required_deviation_ * std::sqrt(seen + policy.learning_time_s / left_s);
     const PlanStart start{time_s,          now.soc_percent, running_, running_for_s_, mechanical_factor() + margin,
                           now.rc_voltage_v};
@@ -123,10 +123,10 @@ void FlightReplanner::update(const PhaseSegment& interval, const Schedule& run, 
     const auto predicted = predict(run, before);
     const double observed_percent = before.soc_percent - soc_after_percent;
     if (observed_percent < 0.0 || observed_percent > jump_factor * predicted.percent) return;
-    learned_.time_s += interval.duration_s();
-    learned_.observed_percent += observed_percent;
-    learned_.predicted_percent += predicted.percent;
-    learned_.mechanical_percent += predicted.mechanical_percent;
+    observed_.time_s += interval.duration_s();
+    observed_.observed_percent += observed_percent;
+    observed_.predicted_percent += predicted.percent;
+    observed_.mechanical_percent += predicted.mechanical_percent;
 }
 
 Schedule clip_to_interval(const Schedule& plan, const PhaseSegment& interval) {

@@ -46,7 +46,7 @@ class FlightReplanner {
 
   private:
     /// Sums over the intervals that are used to estimate mechanical power.
-    struct Learned {
+    struct Observed {
         double time_s = 0.0;
         double observed_percent = 0.0;
         double predicted_percent = 0.0;
@@ -64,7 +64,7 @@ class FlightReplanner {
     const PlanningProblem& nominal_;
     MissionTimeline planned_;
     std::shared_ptr<const MissionLoad> known_load_;
-    Learned learned_;
+    Observed observed_;
     std::optional<compute::Configuration> running_;
     double running_for_s_ = 0.0;
     double required_deviation_ = 0.0;  ///< of mechanical power, as a fraction: the reserve is kept up to it

@@ -29,7 +29,7 @@ std::string to_string(ScheduleOrigin origin);
 struct AdaptiveDecisions {
     std::size_t made = 0;
     std::size_t without_plan = 0;    ///< where no plan kept the reserve: least energy demand was run
-    double mechanical_factor = 1.0;  ///< of mechanical power to the model's, as learned at the end
+    double mechanical_factor = 1.0;  ///< of mechanical power to the model's, as estimated at the end
 };
 
 /// State of charge at one part of the mission, over the flights.

@@ -51,9 +51,9 @@ std::string range_text(const mechanical::FlownRange& range) {
 
 }  // namespace
 
-CruisePath compute_cruise(std::shared_ptr<const PlannedPath> plan, const Wind& wind, InfeasibleLegPolicy forbidden,
-                          double factor) {
-    const auto flown = compute_trajectory(plan->path, wind, forbidden);
+CruisePath compute_cruise(std::shared_ptr<const PlannedPath> plan, const Wind& wind,
+                          InfeasibleLegPolicy infeasible_legs, double factor) {
+    const auto flown = compute_trajectory(plan->path, wind, infeasible_legs);
     CruisePath cruise;
     cruise.pieces = std::make_shared<const PiecewisePower>(power_pieces(plan->power, flown, factor));
     cruise.is_infeasible = !flown.infeasible_elements.empty();

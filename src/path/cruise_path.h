@@ -35,8 +35,8 @@ struct CruisePath {
 };
 
 /// A cruise as it is flown in `wind`, its power times `factor`. Throws as compute_trajectory.
-CruisePath compute_cruise(std::shared_ptr<const PlannedPath> plan, const Wind& wind, InfeasibleLegPolicy forbidden,
-                          double factor = 1.0);
+CruisePath compute_cruise(std::shared_ptr<const PlannedPath> plan, const Wind& wind,
+                          InfeasibleLegPolicy infeasible_legs, double factor = 1.0);
 
 double duration_s(const CruisePath& cruise);
 double energy_j(const CruisePath& cruise);

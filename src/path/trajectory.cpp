@@ -41,8 +41,8 @@ double rising_root(const Function& function, double low, double high) {
 /// Flies the elements one after the other.
 class PathFlight {
   public:
-    PathFlight(const FlightPath& path, const Wind& wind, InfeasibleLegPolicy forbidden)
-        : path_(path), wind_(wind), crawls_(forbidden == InfeasibleLegPolicy::crawl) {}
+    PathFlight(const FlightPath& path, const Wind& wind, InfeasibleLegPolicy infeasible_legs)
+        : path_(path), wind_(wind), crawls_(infeasible_legs == InfeasibleLegPolicy::crawl) {}
 
     PathTrajectory fly() {
         for (std::size_t i = 0; i < path_.elements.size(); ++i) {
@@ -93,9 +93,9 @@ class PathFlight {
         const GroundTrack track(shape, wind_);
         const double least = track.min_horizontal_m_per_s();
         const double crawl_s = track.length_m() / (crawling_fraction * airspeed());
-        const bool is_forbidden = airspeed() <= least * (1.0 + 1e-12);
-        if (is_forbidden && !crawls_) refuse_wind();
-        if (crawls_ && (is_forbidden || track.time_s(0.0, track.length_m(), airspeed()) > crawl_s)) {
+        const bool is_infeasible = airspeed() <= least * (1.0 + 1e-12);
+        if (is_infeasible && !crawls_) refuse_wind();
+        if (crawls_ && (is_infeasible || track.time_s(0.0, track.length_m(), airspeed()) > crawl_s)) {
             flown_.infeasible_elements.push_back(index_);
             add(crawl_s, 0.0);
             return;
@@ -196,8 +196,8 @@ class PathFlight {
 
 }  // namespace
 
-PathTrajectory compute_trajectory(const FlightPath& path, const Wind& wind, InfeasibleLegPolicy forbidden) {
-    return PathFlight(path, wind, forbidden).fly();
+PathTrajectory compute_trajectory(const FlightPath& path, const Wind& wind, InfeasibleLegPolicy infeasible_legs) {
+    return PathFlight(path, wind, infeasible_legs).fly();
 }
 
 std::optional<double> ground_speed_m_per_s(double airspeed_m_per_s, double course_deg, const Wind& wind) {

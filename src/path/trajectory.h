@@ -36,7 +36,7 @@ enum class InfeasibleLegPolicy {
 /// element, for one that the wind forbids, that is too short or too steep for its climb, or for a path of more than
 /// 1e7 s.
 PathTrajectory compute_trajectory(const FlightPath& path, const Wind& wind,
-                                  InfeasibleLegPolicy forbidden = InfeasibleLegPolicy::refuse);
+                                  InfeasibleLegPolicy infeasible_legs = InfeasibleLegPolicy::refuse);
 
 /// Ground speed [m/s] in a wind, of level flight with a course over ground; none where the drift angle that it takes
 /// does not exist, or the aircraft would be blown back.

@@ -75,13 +75,24 @@ std::shared_ptr<const path::PathForecast> path_of(const std::filesystem::path& l
     return std::make_shared<const path::PathForecast>(path::PlannedPath{path, {}, test::made_up_wing()});
 }
 
-TEST(LiveFlight, SaysWhatPredictSaysAlongAPath) {
-    const auto log = test::sample(1);
+/// When the cruise of the log begins [s].
+double cruise_start_s(const std::filesystem::path& log) {
+    return mechanical::progress_at(flight::read_flight(log), 300.0).cruise_start_s;
+}
+
+/// The wing along the log's own path, for this long from the beginning of its cruise.
+PredictionInput basis_along(const std::filesystem::path& log, double path_s) {
     auto basis = test::wing_basis();
     basis.remaining_s.reset();
     basis.model.physical = test::made_up_wing();
-    const auto cruise_s = mechanical::progress_at(flight::read_flight(log), 300.0).cruise_start_s;
-    basis.path = path_of(log, cruise_s, cruise_s + 400.0);
+    basis.path = path_of(log, cruise_start_s(log), cruise_start_s(log) + path_s);
+    return basis;
+}
+
+TEST(LiveFlight, SaysWhatPredictSaysAlongAPath) {
+    const auto log = test::sample(1);
+    const auto cruise_s = cruise_start_s(log);
+    const auto basis = basis_along(log, 400.0);
     LiveFlight flight(test::options_of(log), basis, nullptr);
     test::receive_all(flight, test::messages_of(log, 300.0));
     const auto state = flight.update();
@@ -232,11 +243,7 @@ TEST(LiveFlight, AStartInTheAirAfterThePlannedCruiseIsALandingFromNow) {
 
 TEST(LiveFlight, ACompletedPathIsPredictedAsALandingFromNow) {
     const auto log = test::sample(1);
-    auto basis = test::wing_basis();
-    basis.remaining_s.reset();
-    basis.model.physical = test::made_up_wing();
-    const auto cruise_s = mechanical::progress_at(flight::read_flight(log), 300.0).cruise_start_s;
-    basis.path = path_of(log, cruise_s, cruise_s + 100.0);
+    const auto basis = basis_along(log, 100.0);
     LiveFlight flight(test::options_of(log), basis, nullptr);
     test::receive_all(flight, test::messages_of(log, 420.0));
     const auto state = flight.update();

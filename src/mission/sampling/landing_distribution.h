@@ -67,7 +67,7 @@ class MarginSearch {
     }
 
   private:
-    struct Learnt {
+    struct PlanAtMargin {
         double margin_percent;
         double slack_percent;
     };
@@ -89,7 +89,7 @@ class MarginSearch {
     }
 
     double margin_percent_;
-    std::optional<Learnt> last_;
+    std::optional<PlanAtMargin> last_;
     std::optional<double> too_little_percent_;
     std::optional<double> enough_percent_;
 };

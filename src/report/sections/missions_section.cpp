@@ -58,7 +58,7 @@ Section schedule_section(Missions missions) {
     Section section{"schedules", "Schedules, and what differs between drawn flights"};
     add_figure(section, schedule_figure(missions, missions_data(missions), "schedules-soc"));
     std::vector<mission::MissionSummary> summaries;
-    std::vector<std::pair<std::string, std::string>> sources;  ///< what is drawn, and the missions of which
+    std::vector<std::pair<std::string, std::string>> sources;  ///< drawn quantities, and their missions
     for (const auto& simulated : missions) {
         const auto& summary = summaries.emplace_back(simulated.simulation.summary);
         if (!summary.samples) continue;

@@ -92,7 +92,7 @@ struct PageSummary {
     std::vector<std::string> notes;     ///< missing parts of the page, with reasons
 };
 
-/// The first screen: headline, a card for each mission of which one is shown, their table, and the aircraft.
+/// The first screen: headline, a card for each mission (one is shown), their table, and the aircraft.
 /// `flights` may be empty.
 Section summary_section(const PageSummary& answers, std::span<const ReportFlight> flights);
 
