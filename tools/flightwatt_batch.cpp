@@ -237,8 +237,9 @@ std::vector<std::string> listed_logs(const cli::StageCall& call, const std::opti
 /// The changes of the run to the folder, before it makes them.
 batch::BatchPlan make_plan(const cli::StageCall& call, const BatchArguments& arguments,
                            const batch::BatchOptions& options) {
-    auto logs =
-        chosen_logs(call, arguments.filter, batch::find_logs(call.inputs, listed_logs(call, arguments.files_from)));
+    auto logs = chosen_logs(
+        call, arguments.filter,
+        batch::find_logs(call.inputs, listed_logs(call, arguments.files_from), arguments.flights.load.columns));
     for (const auto& log : logs) {
         register_input(log.path);
         if (const auto file = telemetry::find_log_file(log.path)) register_input(*file);

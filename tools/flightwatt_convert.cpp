@@ -158,6 +158,11 @@ struct ConvertArguments {
 int convert(const cli::StageCall& call, const ConvertArguments& arguments) {
     const std::filesystem::path path = call.inputs.front();
     const flight::FlightFile file(path, arguments.max_log_bytes, arguments.messages);
+    if (file.autopilot()) {
+        throw InputError({path.string()},
+                         fmt::format("is a log of another autopilot ({})", telemetry::to_string(*file.autopilot())),
+                         "every stage reads it as it is; flightwatt parse writes it as text");
+    }
     if (!file.framing()) {
         throw InputError({path.string()}, "is no binary log: no frames with right checksums follow each other in it",
                          "expected the .LOG or .tlm of an SD card, or a capture of a link");

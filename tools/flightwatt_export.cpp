@@ -194,8 +194,7 @@ Exported export_columns(const cli::StageCall& call, const ExportArguments& argum
     auto options = arguments.load;
     Exported result;
     if (const auto& message = arguments.message) {
-        auto table = exchange::message_table(flight::FlightFile(file, options.max_log_bytes, options.messages),
-                                             *message, options.aircraft_id);
+        auto table = exchange::message_table(flight::FlightFile(file, options), *message, options.aircraft_id);
         if (!table.left_out.empty())
             result.notes.push_back(
                 fmt::format("{}: {} holds no numbers in {}", file, *message, short_list(table.left_out)));

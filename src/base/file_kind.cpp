@@ -17,13 +17,24 @@ struct KnownFile {
     std::string sign;    ///< regular expression that finds it; empty: none does
 };
 
-/// In the order of the search.
+/// In the order of the search. A capture of MAVLink begins with the time in microseconds of this century.
 const std::vector<KnownFile>& known_files() {
     using enum FileKind;
     constexpr auto path_remedy = "a mission names it in its [path]; `flightwatt new-mission` writes a mission";
     static const std::vector<KnownFile> files{
-        {log, "a log", "expected a .data log, a .LOG or .tlm of an SD card, or a series",
-         R"((^|\n)[0-9.]+ [^ \n]+ [A-Z])"},
+        {foreign, "a bag of ROS", "", "^#ROSBAG"},
+        {foreign, "a blackbox log of Betaflight or INAV", "", "^H Product:Blackbox"},
+        {foreign, "a MATLAB file", "", "^MATLAB 5"},
+        {foreign, "an HDF5 file", "", "^\x89HDF"},
+        {foreign, "an SQLite database", "", "^SQLite format 3"},
+        {foreign, "a PDF document", "", "^%PDF"},
+        {foreign, "a picture", "", "^\x89PNG"},
+        {foreign, "a program", "",
+         "^\x7F"
+         "ELF"},
+        {foreign, "a capture of MAVLink (.tlog)", "", "^\\x00[\\x04-\\x06][\\s\\S]{6}[\xFD\xFE]"},
+        {log, "a log", "expected a .data log, .LOG or .tlm of Paparazzi, a .bin or .ulg, or a CSV of a flight",
+         "(^|\n)([0-9.]+ [^ \n]+ [A-Z]|FMT, ?128)|^(\xA3\x95\x80|ULog\x01)"},
         {unknown, "", "", "[\\x00-\\x08]"},  // binary: a log, or nothing that is known
         {mission, "a mission", "write one with `flightwatt new-mission`", R"((^|\n)\[*(battery|mechanical)\b)"},
         {mechanical_model, "a mechanical model", "fit one with `flightwatt batch` or `fit`", R"((^|\n)\[*takeoff\b)"},

@@ -47,6 +47,7 @@ std::string fingerprint_of(const flight::FlightFile& file, const LogFile& log, c
                                 segmentation.idle_throttle_percent, segmentation.cruise_fraction,
                                 segmentation.ground_fraction, segmentation.flight_height_m));
     fingerprint.add(file.text());
+    if (const auto& map = file.column_map()) fingerprint.add(map->text);
     fingerprint.add(file.log_text().value_or("no .log"));
     return fingerprint.hex();
 }
@@ -104,7 +105,7 @@ void conclude(FlightRecord& record, const LogFile& log, const std::string& finge
 
 /// Processes a log that exists; sets `fingerprint` as soon as it is known.
 BatchFlight do_existing(const LogFile& log, const BatchOptions& options, std::string& fingerprint) {
-    const flight::FlightFile file(log.path, options.load.max_log_bytes, options.load.messages);
+    const flight::FlightFile file(log.path, options.load);
     fingerprint = fingerprint_of(file, log, options);
     auto record = stored_result(options, log, fingerprint);
     const bool was_up_to_date = record.has_value();

@@ -221,6 +221,7 @@ std::string exclusion_reason(const FlightRecord& record, const flight::LoadOptio
     if (options.excluded.contains(record.flight)) return "--exclude names it";
     if (!record.no_power_reason.empty()) return record.no_power_reason;
     if (options.keep.contains(record.flight)) return "";
+    if (auto reason = flight::simulation_reason(record.aircraft_name, options); !reason.empty()) return reason;
     if (!record.power_faults.empty()) return flight::describe_power_faults(record.power_faults);
     return record.not_fitted_reason;
 }

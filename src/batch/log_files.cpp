@@ -4,6 +4,8 @@
 #include "base/error.h"
 #include "base/fingerprint.h"
 #include "base/text.h"
+#include "flight/column_map.h"
+#include "telemetry/autopilot_log.h"
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
@@ -18,16 +20,28 @@
 namespace flightwatt::batch {
 namespace {
 
-/// .data, and of SD cards .LOG and .tlm, compressed or not. An X.LOG that is XML defines the messages of X.tlm.
-bool is_log_name(const std::filesystem::path& path) {
+/// Whether a batch wrote a CSV: its record is in the same folder.
+bool is_result(const std::filesystem::path& csv) {
+    auto name = csv.filename().string();
+    for (const std::string_view ending : {".series.csv", ".phases.csv"})
+        if (name.ends_with(ending)) name.resize(name.size() - ending.size());
+    std::error_code none;
+    return std::filesystem::exists(csv.parent_path() / (name + ".record.json"), none);
+}
+
+/// .data, of SD cards .LOG and .tlm, and of other autopilots .bin and .ulg, compressed or not. An X.LOG that is XML
+/// defines the messages of X.tlm; a .log counts if it is a DataFlash log as text, a .csv if it is a flight.
+bool is_log_name(const std::filesystem::path& path, const std::optional<std::filesystem::path>& columns) {
     auto name = path.filename().string();
+    if (name.ends_with(".csv")) return !is_result(path) && flight::is_flight_csv(path, columns);
     for (const std::string_view packed : {".gz", ".bz2", ".xz", ".zst"}) {
         if (!name.ends_with(packed)) continue;
         name.resize(name.size() - packed.size());
         break;
     }
-    constexpr std::array<std::string_view, 4> endings{".data", ".LOG", ".tlm", ".TLM"};
+    constexpr std::array<std::string_view, 7> endings{".data", ".LOG", ".tlm", ".TLM", ".bin", ".BIN", ".ulg"};
     const bool is_log = std::ranges::any_of(endings, [&](std::string_view ending) { return name.ends_with(ending); });
+    if (name.ends_with(".log")) return telemetry::map_autopilot_log(path).has_value();
     return is_log && !(name.ends_with(".LOG") && telemetry::begins_as_xml(path));
 }
 
@@ -51,8 +65,23 @@ std::string why_not_fitted(const std::filesystem::path& log, const std::filesyst
 
 std::string cause_of(const std::error_code& error) { return fmt::format("cannot be listed: {}", error.message()); }
 
-void add_folder(const std::filesystem::path& folder, const std::filesystem::path& given, std::vector<LogFile>& logs) {
+/// Drops the CSVs of a folder, from `first` on, that were made from one of its logs.
+void drop_series_of_logs(std::vector<LogFile>& logs, std::size_t first) {
+    const auto is_csv = [](const LogFile& log) { return log.path.ends_with(".csv"); };
+    std::unordered_set<std::string> of_logs;
+    for (auto i = first; i < logs.size(); ++i)
+        if (!is_csv(logs[i])) of_logs.insert(telemetry::flight_name(logs[i].path));
+    const auto begin = logs.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto is_made = [&](const LogFile& log) {
+        return is_csv(log) && of_logs.contains(telemetry::flight_name(log.path));
+    };
+    logs.erase(std::remove_if(begin, logs.end(), is_made), logs.end());
+}
+
+void add_folder(const std::filesystem::path& folder, const std::filesystem::path& given,
+                const std::optional<std::filesystem::path>& columns, std::vector<LogFile>& logs) {
     std::error_code error;
+    const auto first = logs.size();
     std::vector<std::filesystem::path> below;
     std::filesystem::directory_iterator entry(folder, error);
     while (!error && entry != std::filesystem::directory_iterator()) {
@@ -60,13 +89,14 @@ void add_folder(const std::filesystem::path& folder, const std::filesystem::path
         // A broken link with a log's name is rejected later.
         if (entry->is_directory(ignored)) {
             if (!entry->is_symlink(ignored)) below.push_back(entry->path());
-        } else if (is_log_name(entry->path())) {
+        } else if (is_log_name(entry->path(), columns)) {
             logs.push_back({entry->path().string(), {}, why_not_fitted(entry->path(), given)});
         }
         entry.increment(error);
     }
     if (error) logs.push_back({folder.string(), {}, {}, cause_of(error)});
-    for (const auto& inner : below) add_folder(inner, given, logs);
+    drop_series_of_logs(logs, first);
+    for (const auto& inner : below) add_folder(inner, given, columns, logs);
 }
 
 std::vector<LogFile> each_once(std::vector<LogFile> logs) {
@@ -136,18 +166,19 @@ std::vector<std::string> parse_path_list(std::string_view text, const std::strin
     return paths;
 }
 
-std::vector<LogFile> find_logs(const std::vector<std::string>& inputs, const std::vector<std::string>& listed) {
+std::vector<LogFile> find_logs(const std::vector<std::string>& inputs, const std::vector<std::string>& listed,
+                               const std::optional<std::filesystem::path>& columns) {
     std::vector<LogFile> logs;
     const auto add = [&](const std::string& path, bool has_to_exist) {
         std::error_code error;
         const auto status = std::filesystem::status(path, error);
-        if (std::filesystem::is_directory(status)) return add_folder(path, path, logs);
+        if (std::filesystem::is_directory(status)) return add_folder(path, path, columns, logs);
         if (has_to_exist && !std::filesystem::exists(status)) {
             const auto cause = path.empty() || !error || error == std::errc::no_such_file_or_directory
                                    ? "does not exist"
                                    : error.message();
             throw InputError({path.empty() ? "''" : path}, cause,
-                             "expected a .data log, a .LOG or .tlm of an SD card, or a folder of them");
+                             "expected a .data log, a .LOG or .tlm of an SD card, a .bin or .ulg, or a folder of them");
         }
         logs.push_back({path});
     };
@@ -155,8 +186,9 @@ std::vector<LogFile> find_logs(const std::vector<std::string>& inputs, const std
     for (const auto& path : listed) add(path, false);
     logs = each_once(std::move(logs));
     if (logs.empty()) {
-        throw InputError({}, "no log in " + short_list(inputs.empty() ? listed : inputs),
-                         "expected *.data, *.LOG or *.tlm, also .gz, .bz2, .xz or .zst");
+        throw InputError(
+            {}, "no log in " + short_list(inputs.empty() ? listed : inputs),
+            "expected *.data, *.LOG, *.tlm, *.bin or *.ulg, also .gz, .bz2, .xz or .zst, or flights as *.csv");
     }
     UniqueNames names;
     for (auto& log : logs) log.flight = names.assign(log.path);

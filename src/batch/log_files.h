@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -27,7 +28,9 @@ std::string canonical_path(const std::string& log);
 /// A not-fitted.txt below a given folder excludes its logs from the fit, with the reason in its first line.
 /// Logs that are `listed` need not exist: those are unusable, as a folder that cannot be listed.
 /// Throws InputError for a missing input, for no log at all, and for an empty not-fitted.txt.
-std::vector<LogFile> find_logs(const std::vector<std::string>& inputs, const std::vector<std::string>& listed = {});
+/// A CSV below a folder counts if it is a flight, with the column map `columns` or by its header.
+std::vector<LogFile> find_logs(const std::vector<std::string>& inputs, const std::vector<std::string>& listed = {},
+                               const std::optional<std::filesystem::path>& columns = std::nullopt);
 
 /// The paths of a text, one a line; empty lines are ignored. Throws InputError for a NUL, as of find -print0.
 std::vector<std::string> parse_path_list(std::string_view text, const std::string& file);

@@ -119,6 +119,20 @@ MessageCsv as_csv(const telemetry::MessageTable& table) {
     return result;
 }
 
+/// The table of a log that defines its messages.
+MessageCsv autopilot_table(const flight::FlightFile& file, const std::string& message) {
+    const auto format = file.autopilot().value();
+    std::vector<std::string> names;
+    for (auto& of : telemetry::autopilot_messages(file.text(), format, file.path())) {
+        names.push_back(fmt::format("{} {}", of.name, of.count));
+        if (of.name != message) continue;
+        const auto read = read_autopilot_log(file.text(), format, file.path(), {{message, std::move(of.fields)}});
+        if (const auto* table = read.log.senders.front().table(message)) return as_csv(*table);
+    }
+    throw InputError({file.path().string()}, fmt::format("contains no readable {}", message),
+                     "it contains " + short_list(names));
+}
+
 }  // namespace
 
 MessageCsv message_table(const flight::FlightFile& file, const std::string& message,
@@ -127,6 +141,7 @@ MessageCsv message_table(const flight::FlightFile& file, const std::string& mess
         throw InputError({file.path().string()}, "is a series, which contains tracks and no messages",
                          "give the log that it was made from, or remove --message");
     }
+    if (file.autopilot()) return autopilot_table(file, message);
     std::optional<telemetry::LogConfiguration> configuration;
     if (const auto& text = file.log_text()) configuration = telemetry::parse_log_configuration(*text, file.log_file());
     const auto fields = fields_of(configuration, message);

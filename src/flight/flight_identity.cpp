@@ -64,10 +64,16 @@ FlightContent content_of(const FlightSeries& series) {
 
 bool is_synthetic(const std::string& aircraft_name) { return boost::algorithm::icontains(aircraft_name, "synthetic"); }
 
+bool is_simulated(const std::string& aircraft_name) {
+    return aircraft_name.find("SITL") != std::string::npos || aircraft_name.find("HITL") != std::string::npos;
+}
+
 std::string describe_aircraft(const std::string& id, const std::string& name) {
     if (id.empty() && name.empty()) return "unknown";
     return fmt::format("{}{}{}{}", id, id.empty() || name.empty() ? "" : " ", name,
-                       is_synthetic(name) ? " (SYNTHETIC)" : "");
+                       is_synthetic(name)   ? " (SYNTHETIC)"
+                       : is_simulated(name) ? " (SIMULATED)"
+                                            : "");
 }
 
 std::string describe_mixed_aircraft(std::span<const FlightAircraft> flights) {

@@ -41,7 +41,10 @@ inline constexpr auto unnamed_synthetic = "synthetic";
 /// Whether `flightwatt synthesize` wrote the log: its aircraft have such names.
 bool is_synthetic(const std::string& aircraft_name);
 
-/// "20 Twinstar", "7 Opterra_synthetic (SYNTHETIC)", "unknown".
+/// Whether a simulator of an autopilot recorded the log: its aircraft's name has SITL or HITL.
+bool is_simulated(const std::string& aircraft_name);
+
+/// "20 Twinstar", "7 Opterra_synthetic (SYNTHETIC)", "PX4 SITL (SIMULATED)", "unknown".
 std::string describe_aircraft(const std::string& id, const std::string& name);
 
 /// The aircraft with their flights, if these are not of one aircraft; empty if they may be. Synthetic and real flights

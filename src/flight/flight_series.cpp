@@ -132,6 +132,8 @@ const std::vector<std::string>& track_names() {
                                                 "block",
                                                 "rover_mode",
                                                 "takeoff",
+                                                "armed",
+                                                "landed",
                                                 "ground_altitude_m"};
     return names;
 }

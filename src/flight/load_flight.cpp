@@ -7,6 +7,7 @@
 #include "flight/flight_identity.h"
 #include "flight/selected_track.h"
 #include "flight/series_file.h"
+#include "flight/sources/log_family.h"
 #include "flight/telemetry_series.h"
 
 #include <algorithm>
@@ -26,12 +27,16 @@ constexpr std::size_t min_altitudes = 2;  // for segmentation
 std::string census(const FlightFile& file) {
     if (file.is_series()) return "";
     std::vector<std::string> names;
-    const auto counts =
-        file.framing()
-            ? with_binary_log(file, [](const auto& log) { return telemetry::census_of_binary_messages(log); })
-            : telemetry::count_messages(file.text());
-    names.reserve(counts.size());
-    for (const auto& [name, count] : counts) names.push_back(fmt::format("{} {}", name, count));
+    if (file.autopilot()) {
+        for (const auto& of : telemetry::autopilot_messages(file.text(), *file.autopilot(), file.path()))
+            names.push_back(fmt::format("{} {}", of.name, of.count));
+    } else {
+        const auto counts =
+            file.framing()
+                ? with_binary_log(file, [](const auto& log) { return telemetry::census_of_binary_messages(log); })
+                : telemetry::count_messages(file.text());
+        for (const auto& [name, count] : counts) names.push_back(fmt::format("{} {}", name, count));
+    }
     constexpr std::size_t shown = 12;
     const bool more = names.size() > shown;
     names.resize(std::min(names.size(), shown));
@@ -104,9 +109,10 @@ std::vector<std::string> all_warnings(const SelectedTracks& tracks, const Flight
     return warnings;
 }
 
-std::string exclusion_of(const std::string& flight, const FlightAssessment& assessment, const LoadOptions& options) {
-    if (options.excluded.contains(flight)) return "--exclude names it";
-    if (assessment.lacks_power.empty() && options.keep.contains(flight)) return "";
+std::string exclusion_of(const FlightSeries& series, const FlightAssessment& assessment, const LoadOptions& options) {
+    if (options.excluded.contains(series.flight)) return "--exclude names it";
+    if (assessment.lacks_power.empty() && options.keep.contains(series.flight)) return "";
+    if (auto reason = simulation_reason(series.aircraft_name, options); !reason.empty()) return reason;
     return exclusion_reason(assessment);
 }
 
@@ -158,11 +164,20 @@ std::string error_of_definitions(const std::filesystem::path& log, bool for_fram
     return "";
 }
 
+FlightSeries read_autopilot(const FlightFile& file) {
+    const auto format = file.autopilot().value();
+    const auto& family = format == telemetry::AutopilotFormat::ulog ? px4_family() : ardupilot_family();
+    return family_series(read_autopilot_log(file.text(), format, file.path(), family_messages(family)), family);
+}
+
 std::vector<FlightSeries> parse_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id) {
     std::vector<FlightSeries> candidates;
     std::vector<std::string> ids;
-    if (file.is_series()) {
-        candidates.push_back(parse_series_csv(file.text(), file.path()));
+    if (file.is_series() || file.autopilot()) {
+        const auto& map = file.column_map();
+        candidates.push_back(map                ? parse_mapped_csv(file.text(), file.path(), *map)
+                             : file.is_series() ? parse_series_csv(file.text(), file.path())
+                                                : read_autopilot(file));
         ids.push_back(candidates.front().aircraft_id);
         if (!aircraft_id || ids.front().empty() || ids.front() == *aircraft_id) return candidates;
     } else {
@@ -186,16 +201,25 @@ std::vector<FlightSeries> parse_candidates(const FlightFile& file, const std::op
 }  // namespace
 
 FlightFile::FlightFile(const std::filesystem::path& path, std::size_t max_bytes,
-                       const std::optional<std::filesystem::path>& messages)
+                       const std::optional<std::filesystem::path>& messages,
+                       const std::optional<std::filesystem::path>& columns)
     : path_(path) {
     std::error_code error;
     is_series_ = path.extension() == ".csv" && std::filesystem::is_regular_file(path, error);
     if (is_series_) {
         text_ = read_file(path, max_bytes, "if it is a series, --max-log-mb raises the limit");
         require_kind(text_, FileKind::log, path.string());
+        column_map_ = column_map_of(text_, path, columns);
         return;
     }
-    text_ = telemetry::read_data_file(path, max_bytes);
+    if (auto mapped = telemetry::map_autopilot_log(path)) {
+        mapped_ = *std::move(mapped);
+    } else {
+        text_ = telemetry::read_data_file(path, max_bytes);
+        mapped_.bytes = text_;
+    }
+    autopilot_ = telemetry::detect_autopilot_format(mapped_.bytes);
+    if (autopilot_) return;
     require_kind(text_, FileKind::log, path.string());
     framing_ = telemetry::detect_binary_framing(text_);
     auto log = telemetry::find_log_file(path);
@@ -207,6 +231,9 @@ FlightFile::FlightFile(const std::filesystem::path& path, std::size_t max_bytes,
     }
     if (!log_error_.empty()) log_error_ += fmt::format(": the definitions are those of {}", log_file_.string());
 }
+
+FlightFile::FlightFile(const std::filesystem::path& path, const LoadOptions& options)
+    : FlightFile(path, options.max_log_bytes, options.messages, options.columns) {}
 
 telemetry::MessageDictionary FlightFile::definitions() const {
     if (!log_text_) {
@@ -258,6 +285,11 @@ FlightAssessment assess_flight(const SelectedTracks& tracks, const FlightPhases&
     return assessment;
 }
 
+std::string simulation_reason(const std::string& aircraft_name, const LoadOptions& options) {
+    if (options.simulated || !is_simulated(aircraft_name)) return "";
+    return fmt::format("a simulator flew it ({}); --simulated uses such flights", aircraft_name);
+}
+
 std::string exclusion_reason(const FlightAssessment& assessment) {
     if (!assessment.lacks_power.empty()) return assessment.lacks_power;
     return assessment.power.power_faults.empty() ? "" : describe_power_faults(assessment.power.power_faults);
@@ -283,7 +315,7 @@ LoadedFlight segment_and_check(FlightSeries series, const LoadOptions& options) 
         loaded.warnings = all_warnings(tracks, loaded.phases, assessment);
         loaded.sources = track_sources(tracks);
     }
-    loaded.exclusion = exclusion_of(series.flight, assessment, options);
+    loaded.exclusion = exclusion_of(series, assessment, options);
     loaded.series = std::move(series);
     return loaded;
 }
@@ -296,7 +328,7 @@ LoadedFlight load_flight(const FlightFile& file, const LoadOptions& options) {
 
 LoadedFlight load_flight(const std::filesystem::path& path, const LoadOptions& options) {
     try {
-        return load_flight(FlightFile(path, options.max_log_bytes, options.messages), options);
+        return load_flight(FlightFile(path, options), options);
     } catch (const std::bad_alloc&) {
         throw InputError({path.string()}, "cannot be read: not enough memory");
     }

@@ -1,10 +1,12 @@
 #pragma once
 
 #include "base/error.h"
+#include "flight/column_map.h"
 #include "flight/flight_series.h"
 #include "flight/power_check.h"
 #include "flight/segmentation.h"
 #include "flight/selected_track.h"
+#include "telemetry/autopilot_log.h"
 #include "telemetry/binary_log.h"
 #include "telemetry/data_file.h"
 
@@ -26,12 +28,14 @@ struct LoadOptions {
     bool correct_idle_offset = false;     ///< see correct_idle_offset()
     std::set<std::string> excluded = {};  ///< flights that are not used
     std::set<std::string> keep = {};      ///< flights that are used despite power faults
+    bool simulated = false;               ///< flights of a simulator (SITL, HITL) are used too
     /// False: a log without altitude or flight is accepted, and has no phases.
     bool flight_required = true;
     /// False: a log without measured power is accepted if it has an altitude.
     bool power_required = true;
     std::size_t max_log_bytes = telemetry::default_max_log_bytes;  ///< see read_data_file
     std::optional<std::filesystem::path> messages = {};            ///< see FlightFile
+    std::optional<std::filesystem::path> columns = {};             ///< see FlightFile
 };
 
 /// Quality of a segmented series.
@@ -48,18 +52,24 @@ struct LoadedFlight : FlightAssessment {
     std::map<std::string, std::string> sources = {};  ///< source of each selected track, by name
 };
 
-/// A text or binary log with its .log, or a series CSV, in memory. `messages` (a messages.xml or another .log) defines
-/// the messages of a log whose .log is missing or damaged. Throws InputError for a file that cannot be read.
+/// A text or binary log with its .log, a log of another autopilot, or a series CSV, in memory. `messages` (a messages.xml or another .log) defines
+/// the messages of a log whose .log is missing or damaged, `columns` (a column map) those of a CSV. Throws InputError for a file that cannot be read.
 class FlightFile {
   public:
     explicit FlightFile(const std::filesystem::path& path, std::size_t max_bytes = telemetry::default_max_log_bytes,
-                        const std::optional<std::filesystem::path>& messages = std::nullopt);
+                        const std::optional<std::filesystem::path>& messages = std::nullopt,
+                        const std::optional<std::filesystem::path>& columns = std::nullopt);
+    FlightFile(const std::filesystem::path& path, const LoadOptions& options);
     FlightFile(const FlightFile&) = delete;
     FlightFile& operator=(const FlightFile&) = delete;
 
     const std::filesystem::path& path() const { return path_; }
     bool is_series() const { return is_series_; }
-    std::string_view text() const { return text_; }
+    /// Of a CSV that is no series.
+    const std::optional<ColumnMap>& column_map() const { return column_map_; }
+    std::string_view text() const { return autopilot_ ? mapped_.bytes : text_; }
+    /// Format of another autopilot's log, which defines its own messages.
+    std::optional<telemetry::AutopilotFormat> autopilot() const { return autopilot_; }
     /// Framing of a binary log; std::nullopt for text.
     std::optional<telemetry::Framing> framing() const { return framing_; }
     /// Text of the log's .log or of `messages`; std::nullopt without one.
@@ -73,7 +83,10 @@ class FlightFile {
   private:
     std::filesystem::path path_;
     bool is_series_ = false;
+    std::optional<ColumnMap> column_map_;
     std::string text_;
+    telemetry::MappedFile mapped_;  ///< of an autopilot's log; of a compressed one `text_`
+    std::optional<telemetry::AutopilotFormat> autopilot_;
     std::optional<telemetry::Framing> framing_;
     std::filesystem::path log_file_;
     std::optional<std::string> log_text_;
@@ -102,6 +115,9 @@ FlightSeries choose_aircraft(std::vector<FlightSeries> candidates);
 FlightAssessment assess_flight(const SelectedTracks& tracks, const FlightPhases& phases,
                                const SegmentationOptions& options = {});
 
+/// Why a flight of this aircraft is not used, as a simulator flew it; empty if it is used.
+std::string simulation_reason(const std::string& aircraft_name, const LoadOptions& options);
+
 /// Why the power of an assessment is not used; empty if it is.
 std::string exclusion_reason(const FlightAssessment& assessment);
 
@@ -109,7 +125,7 @@ std::string exclusion_reason(const FlightAssessment& assessment);
 /// missing sortie, and, if a flight is required, without altitude or flight.
 LoadedFlight segment_and_check(FlightSeries series, const LoadOptions& options);
 
-/// Reads, segments and checks a Paparazzi .data or binary log (compressed or not) or series CSV.
+/// Reads, segments and checks a log (compressed or not) or series CSV.
 LoadedFlight load_flight(const FlightFile& file, const LoadOptions& options);
 LoadedFlight load_flight(const std::filesystem::path& path, const LoadOptions& options = {});
 

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "flight/segmentation/flight_grid.h"
 #include "flight/segmentation/flight_rejection.h"
+#include "flight/segmentation/hover_record.h"
 #include "flight/segmentation/phase_edges.h"
 
 #include <algorithm>
@@ -96,10 +97,12 @@ void validate(const SegmentationOptions& options) {
 
 FlightPhases segment(const SelectedTracks& tracks, const SegmentationOptions& options) {
     validate(options);
-    const auto grid = make_grid(tracks);
+    auto grid = make_grid(tracks);
+    grid.hovers = find_hovers(tracks, grid);
+    grid.detector = tracks["landed"];
     FlightPhases phases;
     phases.motor_source = grid.motor_evidence;
-    const auto rests = find_rests(grid, options);
+    const auto rests = grid.hovers.empty() ? find_rests(grid, options) : rests_between(grid.hovers, grid);
     for (const auto& rest : rests) phases.rests.push_back({grid.time_s(rest.begin), grid.time_s(rest.end)});
     auto reason = ground_vehicle_reason(tracks);
     if (reason.empty()) reason = grid.unusable;

@@ -183,6 +183,7 @@ Choice voltage(const FlightSeries& series) {
 
 Choice choose(const FlightSeries& series, std::string_view name) {
     if (name == "power_w") return select_power(series);
+    if (auto of_batteries = select_of_batteries(series, name)) return *std::move(of_batteries);
     if (name == "current_a") return current(series);
     if (name == "voltage_v") return voltage(series);
     if (name == "throttle_percent") return throttle(series);
@@ -276,8 +277,11 @@ void require_power(const FlightSeries& series, const std::string& messages) {
     if (!select_power(series).track.empty()) return;
     const auto reasons = no_power_reason(series);
     const auto reason = reasons.empty() ? "" : fmt::format(" ({})", reasons);
+    const bool is_paparazzi = !series.aircraft_name.starts_with("Ardu") && !series.aircraft_name.starts_with("PX4");
     throw InputError({series.file}, fmt::format("has no measured power of aircraft {}{}", series.aircraft_id, reason),
-                     fmt::format("expected ENERGY with power, BAT or ENERGY with current, ESC or POWER_DEVICE{}{}",
+                     fmt::format("expected {}{}{}",
+                                 is_paparazzi ? "ENERGY with power, BAT or ENERGY with current, ESC or POWER_DEVICE"
+                                              : "BAT, CURR or battery_status with current",
                                  messages.empty() ? "" : "; it has ", messages));
 }
 

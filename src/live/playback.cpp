@@ -5,6 +5,7 @@
 #include "live/sources.h"
 #include "live/sources/endpoints.h"
 #include "live/sources/message_readers.h"
+#include "telemetry/autopilot_log.h"
 #include "telemetry/binary_log.h"
 #include "telemetry/data_file.h"
 #include "telemetry/link_encoder.h"
@@ -139,6 +140,11 @@ PlaybackTarget open_udp_target(std::string_view to, telemetry::MessageDictionary
 PlaybackReport play(const std::filesystem::path& log, double speed, const PlaybackTarget& target,
                     const std::function<bool()>& stop, const std::optional<telemetry::MessageDictionary>& definitions) {
     const auto text = telemetry::read_data_file(log);
+    if (const auto autopilot = telemetry::detect_autopilot_format(text)) {
+        throw InputError({log.string()},
+                         fmt::format("is a log of another autopilot ({})", telemetry::to_string(*autopilot)),
+                         "expected a Paparazzi log: play sends its messages");
+    }
     const auto framing = telemetry::detect_binary_framing(text);
     if (framing && !definitions) {
         throw InputError({log.string()}, "is a binary log without a .log that defines its messages",

@@ -28,6 +28,7 @@ struct Column {
     std::string field;
     std::optional<units::Quantity> quantity;
     std::vector<double> values;
+    bool is_integer = false;  ///< as an autopilot's log stores it; set for these logs only
 };
 
 /// The rows of one message of one sender, in the order of the file.

@@ -133,8 +133,9 @@ TEST(FileKinds, OneTakenForAnotherIsNamed) {
     const std::string mission = "mechanical = \"m.toml\"\nbattery = \"p.toml\"\n[[schedule]]\n";
     EXPECT_EQ(refused(model, FileKind::battery),
               "f: is a mechanical model, not a battery; identify one with `flightwatt battery`");
-    EXPECT_EQ(refused(mission, FileKind::log),
-              "f: is a mission, not a log; expected a .data log, a .LOG or .tlm of an SD card, or a series");
+    EXPECT_EQ(
+        refused(mission, FileKind::log),
+        "f: is a mission, not a log; expected a .data log, .LOG or .tlm of Paparazzi, a .bin or .ulg, or a CSV of a flight");
     EXPECT_EQ(refused(pack, FileKind::mission),
               "f: is a battery, not a mission; write one with `flightwatt new-mission`");
     EXPECT_EQ(refused(" \n", FileKind::mission),
@@ -149,6 +150,11 @@ TEST(FileKinds, AreKnownByTheirContent) {
         return test::rejected([&] { require_kind(text, FileKind::mission, "f"); });
     };
     const std::vector<std::pair<std::string, std::string>> kinds{
+        {"#ROSBAG V2.0\n", "a bag of ROS"},
+        {"%PDF-1.7\n", "a PDF document"},
+        {std::string("\0\x05\x8E\x8A\x93\xE5\xC0\x00\xFE\x09", 10), "a capture of MAVLink (.tlog)"},
+        {"ULog\x01\x12\x35", "a log"},
+        {"FMT, 128, 89, FMT, BBnNZ", "a log"},
         {"garbage\n335.149 20 ENERGY 69 11.7 3.1\n", "a log"},
         {"<!-- x -->\n<configuration>\n", "the definitions of a log (.log)"},
         {"<!DOCTYPE flight_plan>\n<flight_plan alt=\"260\">", "a flight plan of Paparazzi"},
@@ -161,7 +167,8 @@ TEST(FileKinds, AreKnownByTheirContent) {
         {"# made by\ntime_s,soc_percent\n", "a table (CSV)"}};
     for (const auto& [text, name] : kinds)
         EXPECT_THAT(refusal_of(text), testing::HasSubstr("is " + name + ", not a mission; ")) << text;
-    for (const std::string text : {"hello", "a = 1\nb = [1, 2]\n", "\x01\x02"}) EXPECT_EQ(refusal_of(text), "") << text;
+    for (const std::string text : {"hello", "\x89\x01\xFE", "a = 1\nb = [1, 2]\n", "\x01\x02"})
+        EXPECT_EQ(refusal_of(text), "") << text;
     EXPECT_EQ(kind_of_text("# " + std::string(100000, ',')), FileKind::unknown) << "without end of the stack";
 }
 

@@ -47,6 +47,23 @@ TEST(FindLogs, TakesFilesOfAnyName) {
     EXPECT_THAT(names(find_logs({file.string()})), ElementsAre("flight"));
 }
 
+TEST(FindLogs, TakesLogsOfOtherAutopilotsAndFlightsAsCsv) {
+    const auto folder = test::scratch_dir();
+    for (const auto* name : {"a.bin", "b.BIN", "c.ulg", "c.ulg.gz", "d.log", "d.txt", "made.data"})
+        touch(folder / name);
+    write_text(folder / "e.log", "FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns\n");
+    write_text(folder / "own.csv", "time_s,power_w,altitude_m\n1,2,3\n");
+    write_text(folder / "made.series.csv", "time_s,power_w,altitude_m\n1,2,3\n");
+    write_text(folder / "soc.csv", "time_s,power_w,soc\n1,2,3\n");
+    write_text(folder / "result.series.csv", "time_s,power_w,altitude_m\n1,2,3\n");
+    touch(folder / "result.record.json");
+    EXPECT_THAT(names(find_logs({folder.string()})), ElementsAre("a", "b", "c", "c_2", "e", "made", "own"));
+    write_text(folder / "soc.csv", "t,p\n1,2\n");
+    const auto map =
+        write_text(folder / "map.toml", "time = { column = \"t\" }\n[[track]]\nname = \"power_w\"\ncolumn = \"p\"\n");
+    EXPECT_EQ(names(find_logs({folder.string()}, {}, map)).back(), "soc");
+}
+
 TEST(FindLogs, TakesALogOnceHoweverItIsWritten) {
     const auto folder = test::scratch_dir();
     const auto log = touch(folder / "logs" / "a.data");
@@ -114,14 +131,17 @@ TEST(FindLogs, RefusesWhatIsNotThere) {
                   },
                   folder.parent_path()),
               ": no log in FindLogs.RefusesWhatIsNotThere, FindLogs.RefusesWhatIsNotThere; expected "
-              "*.data, *.LOG or *.tlm, also .gz, .bz2, .xz or .zst");
-    EXPECT_EQ(rejected([&] { find_logs({(folder / "b.data").string()}); }, folder),
-              "b.data: does not exist; expected a .data log, a .LOG or .tlm of an SD card, or a folder of them");
-    EXPECT_EQ(rejected([&] { find_logs({(folder / std::string(300, 'x')).string()}); }, folder),
-              std::string(300, 'x') +
-                  ": File name too long; expected a .data log, a .LOG or .tlm of an SD card, or a folder of them");
-    EXPECT_EQ(rejected([&] { find_logs({""}); }),
-              "'': does not exist; expected a .data log, a .LOG or .tlm of an SD card, or a folder of them");
+              "*.data, *.LOG, *.tlm, *.bin or *.ulg, also .gz, .bz2, .xz or .zst, or flights as *.csv");
+    EXPECT_EQ(
+        rejected([&] { find_logs({(folder / "b.data").string()}); }, folder),
+        "b.data: does not exist; expected a .data log, a .LOG or .tlm of an SD card, a .bin or .ulg, or a folder of them");
+    EXPECT_EQ(
+        rejected([&] { find_logs({(folder / std::string(300, 'x')).string()}); }, folder),
+        std::string(300, 'x') +
+            ": File name too long; expected a .data log, a .LOG or .tlm of an SD card, a .bin or .ulg, or a folder of them");
+    EXPECT_EQ(
+        rejected([&] { find_logs({""}); }),
+        "'': does not exist; expected a .data log, a .LOG or .tlm of an SD card, a .bin or .ulg, or a folder of them");
 }
 
 TEST(FindLogs, TakesTheReasonWhyAFolderBelowIsNotFitted) {

@@ -2,6 +2,7 @@
 #include "base/toml_reader.h"
 #include "battery/battery.h"
 #include "compute/profile_specification.h"
+#include "flight/column_map.h"
 #include "flight/series_file.h"
 #include "helpers/document.h"
 #include "helpers/test_paths.h"
@@ -30,13 +31,15 @@ std::vector<Document> pages() {
 const std::map<std::string, std::string> sections{
     {"mission", "Mission file"},   {"disturbance", "Disturbance file"},
     {"model", "Mechanical model"}, {"series", "Series"},
-    {"battery", "Battery"},        {"specification", "Profile specification"}};
+    {"battery", "Battery"},        {"specification", "Profile specification"},
+    {"columns", "Column map"}};
 
 void read_as(const std::string& kind, const std::filesystem::path& file) {
     if (kind == "mission") mission::read_mission(file, {.allow_unplanned = true, .cruise_s = {}});
     if (kind == "disturbance") mission::read_disturbances(file, flight::PerPhase<double>{{28.0, 600.0, 60.0}});
     if (kind == "model") mechanical::read_mechanical_model(file);
     if (kind == "series") flight::read_series_csv(file);
+    if (kind == "columns") flight::read_column_map(file);
     if (kind == "battery") battery::read_battery(file);
     if (kind == "specification") compute::read_profile_specification(file);
 }

@@ -95,6 +95,12 @@ TEST(Aircraft, AreOneUnlessIdNameOrTheirBeingRealTellsThemApart) {
     EXPECT_EQ(describe_aircraft("", ""), "unknown");
 }
 
+TEST(Aircraft, OfASimulatorAreLabelled) {
+    EXPECT_TRUE(is_simulated("ArduPlane SITL"));
+    EXPECT_FALSE(is_simulated("ArduPlane"));
+    EXPECT_EQ(describe_aircraft("1", "PX4 HITL"), "1 PX4 HITL (SIMULATED)");
+}
+
 TEST(Aircraft, AreKnownAsSyntheticWithoutTheirLogToo) {
     const auto folder = test::scratch_dir();
     const auto data = read_file(test::source_dir() / "logs" / "opterra_synthetic_01.data");

@@ -85,7 +85,7 @@ bool is_of_batch(const std::filesystem::path& folder) { return std::filesystem::
 
 void add_logs_of_folder(const StageCall& call, const std::string& folder, const flight::LoadOptions& options,
                         std::vector<std::string>& files) {
-    for (const auto& log : batch::find_logs({folder})) {
+    for (const auto& log : batch::find_logs({folder}, {}, options.columns)) {
         if (!log.problem.empty())
             skip_input(call, log.path, InputError({log.path}, log.problem));
         else if (!log.why_not_fitted.empty() && !options.keep.contains(log.flight))

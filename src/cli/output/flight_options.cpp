@@ -84,6 +84,9 @@ void add_flight_options(Options& options, flight::LoadOptions& load, const std::
     options.add(
         "messages", load.messages, input_file("FILE"),
         "definitions for logs without a .log, above all binary ones: a messages.xml, or the .log of the same build");
+    options.add("columns", load.columns, input_file("MAP"),
+                "column map of CSV files: which of their columns are the tracks of a flight");
+    options.add("simulated", load.simulated, "use flights of an autopilot's simulator (SITL, HITL) too");
     options.begin_group("Reading of flights", true, needs);
     options.add("correct-idle-offset", load.correct_idle_offset,
                 "subtract from the power what the current sensor reads on the ground");

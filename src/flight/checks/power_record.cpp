@@ -43,10 +43,13 @@ void close(const PowerRecord& record, const std::vector<double>& rate, OnBoardCo
     counter.rounding_percent = units::percentage(2.0 * counter.resolution, difference);
 }
 
+/// An armed motor may idle at throttle 0, so the samples while the aircraft is `armed` do not count.
 std::vector<std::size_t> resting_samples(const PowerRecord& record, const std::vector<TimeInterval>& rests,
-                                         const SegmentationOptions& options) {
+                                         const Track& armed, const SegmentationOptions& options) {
     std::vector<std::size_t> indices;
     const auto is_off = [&](std::size_t i) {
+        const bool is_known = !armed.empty() && record.time_s[i] >= armed.time_s.front();
+        if (is_known && state_at(armed, record.time_s[i]) == 1.0) return false;
         if (record.has_throttle()) return record.throttle_percent[i] <= options.idle_throttle_percent;
         return std::ranges::none_of(record.in_flight,
                                     [&](const IndexSpan& flown) { return i >= flown.begin && i < flown.end; });
@@ -151,7 +154,7 @@ PowerRecord make_power_record(const SelectedTracks& tracks, const FlightPhases& 
     }
     close(record, record.power_w, record.energy_wh);
     close(record, record.current_a, record.charge_ah);
-    add_facts(record, resting_samples(record, phases.rests, options));
+    add_facts(record, resting_samples(record, phases.rests, tracks["armed"], options));
     return record;
 }
 

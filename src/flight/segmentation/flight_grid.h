@@ -22,6 +22,8 @@ struct ResampledFlight {
     double min_motor_percent = 0.0;
     std::vector<double> ground_speed_m_per_s;  ///< empty if unknown
     std::vector<IndexSpan> pieces;             ///< between jumps of the altitude; together the whole grid
+    std::vector<IndexSpan> hovers;             ///< see find_hovers
+    Track detector;                            ///< of the ground, as the autopilot states it: "landed"
     MotorIndicator motor_indicator = MotorIndicator::unknown;
     std::string motor_evidence;         ///< see MotorRecord
     std::vector<std::string> warnings;  ///< removed and substituted data

@@ -272,6 +272,8 @@ std::string ground_vehicle_reason(const SelectedTracks& tracks) {
 }
 
 std::string no_flight_reason(const FlightCandidate& candidate) {
+    // Its motors carry it, however low.
+    if (!candidate.grid.hovers.empty()) return climbs_too_fast(candidate);
     for (const auto rejection : rejections)
         if (auto reason = rejection(candidate); !reason.empty()) return reason;
     return "";

@@ -1,10 +1,12 @@
 #include "flight/segmentation/phase_edges.h"
 
 #include "base/statistics.h"
+#include "flight/segmentation/hover_record.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 namespace flightwatt::flight {
 namespace {
@@ -24,6 +26,7 @@ double median_of_upper_half(const std::vector<double>& heights, double highest) 
     return upper.empty() ? highest : median_high(std::move(upper));
 }
 
+constexpr double hover_noise_m = 0.5;
 constexpr double airborne_fraction = 0.25;  // of the flight's height: above it is in the air
 
 /// One sortie on the grid.
@@ -38,7 +41,11 @@ struct Flown {
     double height(std::size_t i) const { return heights.height_m[i]; }
     double time_s(std::size_t i) const { return grid.time_s(activity.span.begin + i); }
     double airborne_m() const { return airborne_fraction * heights.cruise_height_m; }
-    double ground_m() const { return options.ground_fraction * heights.cruise_height_m; }
+    /// A barometer's noise hides the lower heights of a hover.
+    double ground_m() const {
+        const double usual_m = options.ground_fraction * heights.cruise_height_m;
+        return grid.hovers.empty() ? usual_m : std::max(usual_m, std::min(hover_noise_m, airborne_m()));
+    }
 };
 
 /// Time between two consecutive points at which the height crosses `level`.
@@ -80,6 +87,29 @@ void find_ground_edges(Flown& flown, SortieEdges& edges) {
     flown.touchdown = down;
     while (flown.touchdown + 1 < height.size() && height[flown.touchdown] > ground) ++flown.touchdown;
     if (height[flown.touchdown] <= ground) edges.touchdown_s = crossing_s(flown, flown.touchdown - 1, ground);
+}
+
+/// The edges of a hover: lift-off where the altitude confirms that the motors lift, as a rotorcraft may idle at much
+/// throttle, and touchdown where they cease to.
+void find_hover_edges(Flown& flown, SortieEdges& edges) {
+    constexpr double max_wait_s = 6.0;   // from lifting effort to lift-off
+    constexpr double max_early_s = 2.0;  // a ramp of the throttle
+    const auto& moving = flown.activity.moving;
+    const double lifts_s = flown.grid.time_s(moving.begin);
+    const double ceases_s = flown.grid.time_s(moving.end - 1);
+    const auto climbs_s = std::exchange(edges.lift_off_s, std::nullopt);
+    edges.touchdown_s.reset();
+    if (moving.begin > 0) {
+        const bool confirms = climbs_s && *climbs_s >= lifts_s - max_early_s && *climbs_s <= lifts_s + max_wait_s;
+        edges.lift_off_s = confirms ? *climbs_s : lifts_s;
+    }
+    if (moving.end < flown.grid.size()) edges.touchdown_s = ceases_s;
+    const auto index_at = [&](double time_s) {
+        const auto steps = std::max(time_s - flown.time_s(0), 0.0) / flown.grid.step_s;
+        return std::min(static_cast<std::size_t>(steps), flown.heights.height_m.size() - 1);
+    };
+    flown.lift_off = index_at(edges.lift_off_s.value_or(lifts_s));
+    flown.touchdown = std::max(index_at(edges.touchdown_s.value_or(ceases_s)), flown.lift_off);
 }
 
 /// The height held after the take-off: the highest of the first hold time, seen from lift-off on, in which what was
@@ -215,6 +245,9 @@ SortieEdges find_edges(const ResampledFlight& grid, const Activity& activity, co
     SortieEdges edges;
     Flown flown{grid, activity, heights, options};
     find_ground_edges(flown, edges);
+    if (!grid.hovers.empty()) find_hover_edges(flown, edges);
+    if (edges.lift_off_s) edges.lift_off_s = confirmed_by_detector(grid.detector, *edges.lift_off_s, false);
+    if (edges.touchdown_s) edges.touchdown_s = confirmed_by_detector(grid.detector, *edges.touchdown_s, true);
     const auto lift_off = flown.lift_off;
     const auto touchdown = flown.touchdown;
     const double reached = options.cruise_fraction * height_after_takeoff(flown);

@@ -115,9 +115,11 @@ bool reports_rarely(const Device& device, std::size_t max_reports) {
            (reports < min_reports && max_reports >= enough_reports);
 }
 
-DeviceSum sum_over_devices(const FlightSeries& series, std::string_view name, std::string_view message) {
+DeviceSum sum_over_devices(const FlightSeries& series, std::string_view name, std::string_view message,
+                           const std::set<std::string>& left_out) {
     DeviceSum sum;
     auto devices = devices_of(series, name, message);
+    std::erase_if(devices, [&](const Device& device) { return left_out.contains(device.id); });
     if (devices.empty()) return sum;
     const auto max_reports = devices.front().track.time_s.size();
     std::erase_if(devices, [&](const Device& device) {

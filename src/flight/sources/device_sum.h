@@ -3,6 +3,7 @@
 #include "flight/flight_series.h"
 
 #include <cstddef>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,9 +30,10 @@ struct DeviceSum {
     std::vector<std::string> notes;  ///< devices that become silent or report rarely
 };
 
-/// Sum over the devices of `message` that report `name`, at the times at which none is silent (docs/methods.md). The
-/// track's `source` states their number.
-DeviceSum sum_over_devices(const FlightSeries& series, std::string_view name, std::string_view message);
+/// Sum over the devices of `message` that report `name`, without those of `left_out`, at the times at which none is
+/// silent (docs/methods.md). The track's `source` states their number.
+DeviceSum sum_over_devices(const FlightSeries& series, std::string_view name, std::string_view message,
+                           const std::set<std::string>& left_out = {});
 
 /// Whether the track is a sum over more than one device.
 bool is_sum_over_devices(const Track& track);

@@ -1,6 +1,7 @@
 #include "flight/sources/power_source.h"
 
 #include "base/statistics.h"
+#include "flight/sources/batteries.h"
 #include "flight/sources/derived_tracks.h"
 #include "flight/sources/device_sum.h"
 #include "flight/sources/outliers.h"
@@ -36,6 +37,19 @@ const Track* find_product(const FlightSeries& series, std::string_view message) 
         return track.source.starts_with(message) && track.source.find(" * ") != std::string::npos &&
                track.device.empty();
     });
+}
+
+/// Whether the power is of a message that Paparazzi has; others are of a user's CSV or of another autopilot.
+bool is_of_paparazzi(const Track& power) {
+    const auto& source = power.source;
+    const bool is_product = source.find(" * ") != std::string::npos;
+    return !power.device.empty() || source == "ENERGY.power" ||
+           (is_product && (source.starts_with("ENERGY.") || source.starts_with("BAT.")));
+}
+
+/// One of the batteries that a log numbers, without a current.
+bool is_unmeasured_battery(const Track& power) {
+    return power.empty() && !power.device.empty() && power.source.find(" * ") != std::string::npos;
 }
 
 /// A track without a message: of a user's CSV.
@@ -122,7 +136,9 @@ bool take(const FlightSeries& series, const Track& candidate, TrackSelection& ch
         choice.rejected_sources.push_back(std::move(cleaned.removal_notes.front()));
     } else {
         choice.rejected_sources.push_back(
-            candidate.source + (candidate.time_s.size() < 2 ? " has no two finite values" : " is 0 throughout"));
+            candidate.source + (is_unmeasured_battery(candidate) ? " has no value: there is no current sensor"
+                                : candidate.time_s.size() < 2    ? " has no two finite values"
+                                                                 : " is 0 throughout"));
     }
     return false;
 }
@@ -148,11 +164,36 @@ Track dropout_throttle(const FlightSeries& series, const Track& candidate) {
     return throttle == nullptr ? Track{} : within_bounds(*throttle);
 }
 
+std::optional<TrackSelection> select_of_batteries(const FlightSeries& series, std::string_view name) {
+    constexpr std::size_t enough_samples = 30;  // to know from a record what is far beyond it
+    auto choice = battery_track(series, name);
+    if (!choice) return choice;
+    auto& track = choice->track;
+    if (track.time_s.size() < enough_samples) {
+        track = within_bounds(track);
+        return choice;
+    }
+    auto cleaned = remove_outliers(track, {}, name == "voltage_v" ? Track{} : dropout_throttle(series, track));
+    track = std::move(cleaned.track);
+    std::ranges::move(cleaned.removal_notes, std::back_inserter(choice->removal_notes));
+    return choice;
+}
+
 TrackSelection select_power(const FlightSeries& series) {
     TrackSelection choice;
     if (const auto* plain = find_plain(series, "power_w")) {
         // Accepted even if it is 0 throughout.
         return remove_outliers(*plain, contradicted_times(series, plain->source), dropout_throttle(series, *plain));
+    }
+    if (auto of_batteries = select_of_batteries(series, "power_w")) {
+        if (measures_something(of_batteries->track)) return *std::move(of_batteries);
+        choice.rejected_sources = std::move(of_batteries->rejected_sources);
+        choice.rejected_sources.emplace_back("the batteries' power is 0 throughout");
+        return choice;
+    }
+    for (const auto& track : series.tracks) {
+        const bool is_other = !is_of_paparazzi(track) || is_unmeasured_battery(track);
+        if (track.name == "power_w" && is_other && take(series, track, choice)) return choice;
     }
     const auto* product = find_product(series, "ENERGY.");
     if (const auto* power = find_source(series, "ENERGY.power")) {

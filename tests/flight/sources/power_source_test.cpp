@@ -45,6 +45,16 @@ TEST(PowerSource, IsNotAPowerOfWhichMostSamplesAreAFifthAwayFromVoltageTimesCurr
     EXPECT_FALSE(takes_power({{20, 5.0, 1.1}}));
 }
 
+TEST(PowerSource, MayBeOfAnyMessageThatPaparazziHasNot) {
+    FlightSeries series;
+    series.tracks = {{.name = "power_w", .source = "BAT.Volt*Curr", .time_s = {1.0, 2.0}, .value = {10.0, 11.0}}};
+    EXPECT_EQ(select_power(series).track.value, (std::vector<double>{10.0, 11.0}));
+    series.tracks[0].source = "CURR.Volt * CURR.Curr";
+    EXPECT_EQ(select_power(series).track.value, (std::vector<double>{10.0, 11.0}));
+    series.tracks[0].value = {0.0, 0.0};
+    EXPECT_EQ(select_power(series).rejected_sources, std::vector<std::string>{"CURR.Volt * CURR.Curr is 0 throughout"});
+}
+
 TEST(PowerSource, IsContradictedInSamplesATenthAndAWattAwayFromVoltageTimesCurrent) {
     const auto contradicted = [](const std::vector<Samples>& samples) {
         return contradicted_times(series_of(samples), "ENERGY.power").size();

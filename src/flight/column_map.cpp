@@ -1,0 +1,296 @@
+#include "flight/column_map.h"
+
+#include "base/atomic_file.h"
+#include "base/csv.h"
+#include "base/error.h"
+#include "base/number.h"
+#include "base/text.h"
+#include "base/toml_reader.h"
+#include "base/units.h"
+#include "telemetry/log_configuration.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flightwatt::flight {
+
+/// The maps that come with FlightWatt: config/columns (CMakeLists.txt).
+std::vector<std::string_view> shipped_column_maps();
+
+namespace {
+
+using Combine = MappedTrack::Combine;
+
+constexpr std::size_t max_header_bytes = 1 << 16;
+
+/// The quantity of a track by the suffix of its name; std::nullopt for states.
+std::optional<units::Quantity> quantity_of(std::string_view track) {
+    using enum units::Quantity;
+    constexpr std::pair<std::string_view, units::Quantity> suffixes[] = {{"_m_per_s", metre_per_second},
+                                                                         {"_percent", percent},
+                                                                         {"_deg", degree},
+                                                                         {"_ah", ampere_hour},
+                                                                         {"_wh", watt_hour},
+                                                                         {"_v", volt},
+                                                                         {"_a", ampere},
+                                                                         {"_w", watt},
+                                                                         {"_m", metre},
+                                                                         {"_c", celsius}};
+    for (const auto& [suffix, quantity] : suffixes)
+        if (track.ends_with(suffix)) return quantity;
+    return std::nullopt;
+}
+
+/// Counters, angles and states are not averaged.
+Merge merge_of(std::string_view track) {
+    constexpr std::string_view averaged[] = {"_v", "_a", "_w", "_m", "_m_per_s", "_percent", "_c", "_rpm"};
+    const bool is_mean = std::ranges::any_of(averaged, [&](auto suffix) { return track.ends_with(suffix); });
+    return is_mean ? Merge::mean : Merge::latest;
+}
+
+double unit_factor(const TomlTable& table, const std::string& track) {
+    const auto text = table.optional_string("unit");
+    if (!text) return 1.0;
+    const auto unit = units::parse_unit(*text);
+    if (unit && unit->quantity == quantity_of(track)) return unit->factor;
+    throw InputError(table.where("unit"), fmt::format("'{}' is no unit of {}", *text, track),
+                     "expected a unit such as V, mA, W, m, cm/s, deg, rad or %");
+}
+
+MappedTrack read_track(const TomlTable& table) {
+    MappedTrack track;
+    track.name = table.string("name");
+    if (std::ranges::find(track_names(), track.name) == track_names().end()) {
+        const auto near = nearest_word(track.name, track_names());
+        throw InputError(table.where("name"), fmt::format("unknown track '{}'", track.name),
+                         near.empty() ? fmt::format("expected {}", fmt::join(track_names(), ", "))
+                                      : fmt::format("did you mean '{}'?", near));
+    }
+    if (const auto column = table.optional_string("column")) track.columns = {*column};
+    for (const auto& [key, combine] : {std::pair{"product", Combine::product}, {"norm", Combine::norm}}) {
+        if (!table.has(key)) continue;
+        if (!track.columns.empty()) throw InputError(table.where(key), "one track has one source", "remove the others");
+        track.columns = table.strings(key);
+        track.combine = combine;
+        if (track.columns.size() < 2) throw InputError(table.where(key), "expected two columns or more");
+    }
+    if (track.columns.empty())
+        throw InputError(table.where(), fmt::format("{} has no source", track.name),
+                         "expected column, product or norm");
+    track.factor = unit_factor(table, track.name) * table.optional_number("factor").value_or(1.0);
+    table.refuse_unknown_keys();
+    return track;
+}
+
+void read_time(const TomlTable& time, ColumnMap& map) {
+    constexpr std::pair<std::string_view, double> ticks[] = {{"s", 1.0}, {"ms", 1e3}, {"us", 1e6}, {"ns", 1e9}};
+    map.time_column = time.string("column");
+    const auto unit = time.optional_string("unit").value_or("s");
+    const auto* const found = std::ranges::find(ticks, unit, &std::pair<std::string_view, double>::first);
+    if (found == std::end(ticks))
+        throw InputError(time.where("unit"), fmt::format("'{}' is no unit of time", unit), "expected s, ms, us or ns");
+    map.ticks_per_s = found->second;
+    const auto clock = time.optional_string("clock").value_or("log");
+    map.is_unix_time = clock == "unix";
+    if (clock != "log" && clock != "unix")
+        throw InputError(time.where("clock"), fmt::format("clock is '{}', expected log or unix", clock));
+    time.refuse_unknown_keys();
+}
+
+CurrentOrigin origin_of(const TomlTable& table) {
+    const auto text = table.optional_string("current_origin").value_or("unknown");
+    for (const auto origin : {CurrentOrigin::unknown, CurrentOrigin::sensor, CurrentOrigin::throttle})
+        if (to_string(origin) == text) return origin;
+    throw InputError(table.where("current_origin"), fmt::format("current_origin is '{}'", text),
+                     "expected 'measured by a sensor', 'computed from throttle' or 'unknown'");
+}
+
+/// The first line that is no comment, as cells.
+std::vector<std::string> header_of(std::string_view csv) {
+    csv = csv.substr(0, max_header_bytes);
+    while (!csv.empty()) {
+        const auto line = csv.substr(0, csv.find('\n'));
+        if (!line.empty() && line.front() != '#' && line != "\r") {
+            const auto rows = parse_csv(line, "", CsvHeader::absent).rows;
+            std::vector<std::string> cells;
+            for (const auto& row : rows)
+                for (const auto& cell : row.cells) cells.push_back(cell.text);
+            return cells;
+        }
+        csv.remove_prefix(std::min(line.size() + 1, csv.size()));
+    }
+    return {};
+}
+
+bool has_all(const std::vector<std::string>& header, const std::vector<std::string>& columns) {
+    return std::ranges::all_of(columns,
+                               [&](const auto& column) { return std::ranges::find(header, column) != header.end(); });
+}
+
+/// Only time and tracks, further candidates included.
+bool is_series_header(const std::vector<std::string>& header) {
+    const auto is_known = [](const std::string& column) {
+        return column == "time_s" ||
+               std::ranges::find(track_names(), column.substr(0, column.find('.'))) != track_names().end();
+    };
+    return std::ranges::all_of(header, is_known) && has_all(header, {"time_s"}) &&
+           (has_all(header, {"power_w"}) || has_all(header, {"altitude_m"}));
+}
+
+/// Collects the raw rows of the tracks.
+class MappedRows {
+  public:
+    MappedRows(const ColumnMap& map, std::string file)
+        : map_(map), file_(std::move(file)), values_(map.tracks.size()) {}
+
+    void read_row(const CsvRowView& row) {
+        if (places_.empty()) return bind(row);
+        const double time_s = number(row, time_place_, 0.0) / map_.ticks_per_s;
+        if (std::isnan(time_s)) return;
+        if (!first_s_) first_s_ = map_.is_unix_time ? time_s : 0.0;
+        time_s_.push_back(time_s - *first_s_);
+        for (std::size_t t = 0; t < places_.size(); ++t) {
+            double value = map_.tracks[t].combine == Combine::norm ? 0.0 : 1.0;
+            for (const auto place : places_[t]) {
+                const double cell = number(row, place, time_s_.back());
+                value = map_.tracks[t].combine == Combine::norm ? std::hypot(value, cell) : value * cell;
+            }
+            values_[t].push_back(value * map_.tracks[t].factor);
+        }
+    }
+
+    FlightSeries take() {
+        FlightSeries series;
+        for (std::size_t t = 0; t < values_.size(); ++t) {
+            const auto& mapped = map_.tracks[t];
+            auto track = make_track(time_s_, values_[t], merge_of(mapped.name));
+            track.name = mapped.name;
+            track.source = mapped.combine == Combine::norm ? fmt::format("|{}|", fmt::join(mapped.columns, ", "))
+                                                           : fmt::format("{}", fmt::join(mapped.columns, " * "));
+            series.tracks.push_back(std::move(track));
+        }
+        const auto& names = track_names();
+        std::ranges::stable_sort(series.tracks, {}, [&](const Track& track) {
+            return std::ranges::find(names, track.name) - names.begin();
+        });
+        if (map_.is_unix_time) series.start_clock_s = first_s_;
+        if (!skipped_.lines.empty()) series.skipped.push_back(std::move(skipped_));
+        return series;
+    }
+
+    std::size_t rows() const { return time_s_.size(); }
+
+  private:
+    void bind(const CsvRowView& header) {
+        CsvTable table{file_, {}, {}};
+        for (const auto& cell : header.cells) table.columns.emplace_back(cell.text);
+        time_place_ = column_index(table, map_.time_column);
+        for (const auto& track : map_.tracks) {
+            auto& places = places_.emplace_back();
+            for (const auto& column : track.columns) places.push_back(column_index(table, column));
+        }
+    }
+
+    /// NaN for an empty cell and one that is no number; the latter is counted.
+    double number(const CsvRowView& row, std::size_t place, double time_s) {
+        const auto& text = row.cells[place].text;
+        const double value = number_or_nan(text);
+        if (!std::isnan(value) || text.empty()) return value;
+        auto& lines = skipped_.lines;
+        if (!lines.empty() && lines.back().time_s >= time_s)
+            ++lines.back().count;
+        else
+            lines.push_back({time_s, 1, row.line});
+        return value;
+    }
+
+    const ColumnMap& map_;
+    std::string file_;
+    std::size_t time_place_ = 0;
+    std::vector<std::vector<std::size_t>> places_;  ///< of the columns of each track
+    std::vector<double> time_s_;
+    std::vector<std::vector<double>> values_;
+    std::optional<double> first_s_;
+    telemetry::SkippedLines skipped_{"cells that are no numbers", {}, telemetry::SkippedLines::Unit::line};
+};
+
+}  // namespace
+
+ColumnMap parse_column_map(const std::string& text, const std::filesystem::path& file) {
+    const auto table = parse_toml(text, file.string());
+    require_known_format(table);
+    ColumnMap map;
+    map.text = text;
+    if (table.has("header")) map.header = table.strings("header");
+    map.aircraft_id = table.optional_string("aircraft_id").value_or("");
+    map.aircraft_name = table.optional_string("aircraft_name").value_or("");
+    map.firmware = table.optional_string("firmware").value_or("");
+    if (!map.firmware.empty() && map.firmware != "fixedwing" && map.firmware != "rotorcraft" && map.firmware != "rover")
+        throw InputError(table.where("firmware"), fmt::format("firmware is '{}'", map.firmware),
+                         "expected fixedwing, rotorcraft or rover");
+    map.current_origin = origin_of(table);
+    read_time(table.table("time"), map);
+    for (const auto& track : table.tables("track")) map.tracks.push_back(read_track(track));
+    table.refuse_unknown_keys();
+    const auto maps = [&](const char* name) {
+        return std::ranges::find(map.tracks, name, &MappedTrack::name) != map.tracks.end();
+    };
+    if (!maps("power_w") && !maps("altitude_m"))
+        throw InputError({file.string()}, "has neither power_w nor altitude_m", "add a [[track]] with this name");
+    return map;
+}
+
+ColumnMap read_column_map(const std::filesystem::path& file) { return parse_column_map(read_file(file), file); }
+
+std::optional<ColumnMap> column_map_of(std::string_view csv, const std::filesystem::path& file,
+                                       const std::optional<std::filesystem::path>& columns) {
+    if (csv.starts_with("# format")) return std::nullopt;
+    if (columns) return read_column_map(*columns);
+    const auto header = header_of(csv);
+    if (header.empty() || has_all(header, {"time_s"})) return std::nullopt;
+    for (const auto shipped : shipped_column_maps()) {
+        auto map = parse_column_map(std::string(shipped), "a column map of FlightWatt");
+        if (!map.header.empty() && has_all(header, map.header)) return map;
+    }
+    throw InputError(
+        {file.string(), 1}, "has no column 'time_s'",
+        fmt::format("its columns are {}; a column map names their tracks: --columns MAP.toml", short_list(header)));
+}
+
+bool is_flight_csv(const std::filesystem::path& file, const std::optional<std::filesystem::path>& columns) {
+    std::ifstream stream(file, std::ios::binary);
+    std::string beginning(max_header_bytes, '\0');
+    stream.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
+    beginning.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
+    try {
+        const auto header = header_of(beginning);
+        if (is_series_header(header)) return true;
+        const auto map = column_map_of(beginning, file, columns);
+        return map && has_all(header, {map->time_column});
+    } catch (const InputError&) {
+        return false;
+    }
+}
+
+FlightSeries parse_mapped_csv(std::string_view csv, const std::filesystem::path& file, const ColumnMap& map) {
+    MappedRows rows(map, file.string());
+    for_each_csv_row(csv, file.string(), [&](const CsvRowView& row) { rows.read_row(row); });
+    if (rows.rows() < 2) throw InputError({file.string()}, "has fewer than two rows with a time");
+    auto series = rows.take();
+    series.file = file.string();
+    series.flight = telemetry::flight_name(file);
+    series.aircraft_id = map.aircraft_id;
+    series.aircraft_name = map.aircraft_name;
+    series.firmware = map.firmware;
+    series.current_origin = map.current_origin;
+    return series;
+}
+
+}  // namespace flightwatt::flight

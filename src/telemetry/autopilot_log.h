@@ -1,0 +1,44 @@
+#pragma once
+
+#include "telemetry/autopilot_data.h"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace flightwatt::telemetry {
+
+/// A log that defines its own messages (docs/formats.md, "Logs of other autopilots").
+enum class AutopilotFormat {
+    dataflash,       ///< ArduPilot, binary
+    dataflash_text,  ///< the same as lines
+    ulog,            ///< PX4
+};
+
+std::string_view to_string(AutopilotFormat format);
+
+/// By the first bytes, for text by the lines of its formats; std::nullopt for anything else.
+std::optional<AutopilotFormat> detect_autopilot_format(std::string_view bytes);
+
+/// Reads the requested messages. A column has a quantity if the log states its unit; of ULog, the field "multi_id" is
+/// the topic's instance and "control[3]" an element. A message of a damaged log counts if another one follows it; the
+/// bytes between are counted as skipped. Throws InputError for a newer ULog and for damage of more than 64 MB.
+AutopilotLog read_autopilot_log(std::string_view bytes, AutopilotFormat format, const std::filesystem::path& file,
+                                const std::vector<MessageRequest>& wanted);
+
+/// The messages, most frequent first.
+std::vector<AutopilotMessage> autopilot_messages(std::string_view bytes, AutopilotFormat format,
+                                                 const std::filesystem::path& file);
+
+/// A file as part of the memory.
+struct MappedFile {
+    std::shared_ptr<const void> memory;
+    std::string_view bytes;
+};
+
+/// Maps a regular file that is such a log; std::nullopt for any other.
+std::optional<MappedFile> map_autopilot_log(const std::filesystem::path& file);
+
+}  // namespace flightwatt::telemetry
