@@ -252,8 +252,9 @@ const std::set<std::string> no_files{"N",
                                      "WIDTH"};
 
 /// Options that name files to read; those that write have a command above.
-const std::set<std::string> reading{"--published", "--model", "--mission",  "--disturb", "--battery",    "--path-from",
-                                    "--follow",    "--log",   "--messages", "--profile", "--files-from", "--outline"};
+const std::set<std::string> reading{"--published",  "--model",   "--mission", "--disturb",  "--battery",
+                                    "--path-from",  "--follow",  "--log",     "--messages", "--profile",
+                                    "--files-from", "--outline", "--columns"};
 
 class InputsKept : public testing::Test {
   protected:
