@@ -90,9 +90,9 @@ std::vector<IdentifiedFlight> identified_flights(const FittedFlights& fitted,
         flight.capacity = fitted.capacities[f];
         flight.air_temperature_c = record->air_temperature_c;
         flight.samples = record->time_s.size();
-        const auto residual_v = rows_of(fitted.aligned, f, linear_only).residual_v;
-        flight.unused = flight.samples - static_cast<std::size_t>(residual_v.size());
-        flight.voltage_rms_v = residual_v.norm() / std::sqrt(static_cast<double>(residual_v.size()));
+        const auto residual = residual_v(fitted.aligned, f);
+        flight.unused = flight.samples - static_cast<std::size_t>(residual.size());
+        flight.voltage_rms_v = residual.norm() / std::sqrt(static_cast<double>(residual.size()));
         flights.push_back(std::move(flight));
     }
     return flights;

@@ -48,10 +48,10 @@ struct ResidualSums {
 ResidualSums residual_sums(const JointCircuitFit& joint) {
     ResidualSums sums;
     for (std::size_t r = 0; r < joint.records.size(); ++r) {
-        const auto residual_v = rows_of(joint, r, linear_only).residual_v;
-        const auto n = residual_v.size();
-        if (n > 1) sums.products += residual_v.head(n - 1).dot(residual_v.tail(n - 1));
-        sums.squares += residual_v.squaredNorm();
+        const auto residual = residual_v(joint, r);
+        const auto n = residual.size();
+        if (n > 1) sums.products += residual.head(n - 1).dot(residual.tail(n - 1));
+        sums.squares += residual.squaredNorm();
         sums.count += static_cast<double>(n);
     }
     return sums;
@@ -93,7 +93,7 @@ double best_initial_charge_ah(JointCircuitFit joint) {
     const double beyond_ah = 0.1 * (joint.fit.knots_ah.back() - joint.fit.knots_ah.front());
     const auto misfit = [&](double tried_ah) {
         aligned.initial_charge_ah = tried_ah;
-        return rows_of(joint, last, linear_only).residual_v.tail(loaded).squaredNorm();
+        return residual_v(joint, last).tail(loaded).squaredNorm();
     };
     return grid_minimum(misfit, joint.fit.knots_ah.front() - beyond_ah, joint.fit.knots_ah.back() + beyond_ah);
 }
@@ -120,13 +120,13 @@ void search_time_constant(JointCircuitFit& joint) {
         tried.fit.rc_resistance_ohm = begin_ohm;
         tried.fit.rc_time_constant_s = low_s * std::pow(factor, static_cast<double>(i) / (time_constants_tried - 1));
         const auto problem = normal_equations(tried, linear_only);
-        const auto& places = problem.places;
         const auto step = step_of(problem);
-        const double objective = problem.objective - problem.pull.dot(step);
-        const double fall_v = tried.fit.open_circuit_v.front() + step[places.first_knot] -
-                              tried.fit.open_circuit_v.back() - step[places.first_knot + places.knots - 1];
+        const double objective = problem.objective + step.objective_change;
+        const auto knots = std::ssize(tried.fit.open_circuit_v);
+        const double fall_v = tried.fit.open_circuit_v.front() + step.common[0] - tried.fit.open_circuit_v.back() -
+                              step.common[knots - 1];
         // A slow RC pair and a curve that rises may resemble a curve that falls.
-        if (begin_ohm + step[places.rc_resistance] <= 0.0 || fall_v < 0.0 || objective >= least) continue;
+        if (begin_ohm + step.common[knots + rc_column] <= 0.0 || fall_v < 0.0 || objective >= least) continue;
         least = objective;
         best = std::move(tried);
     }

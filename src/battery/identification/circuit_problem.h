@@ -47,75 +47,71 @@ struct FreeParameters {
 };
 inline constexpr FreeParameters linear_only{false, false, false, false};
 
-/// Indices of the parameters. Index 0 is that of all fixed ones.
-struct ParameterIndices {
-    struct Own {
-        Eigen::Index rest = 0;
-        Eigen::Index initial_charge = 0;
-        Eigen::Index resistance = 0;
-        Eigen::Index log_capacity = 0;
-    };
-    Eigen::Index first_knot = 1;
-    Eigen::Index knots = 0;
-    Eigen::Index common_rest = 0;
-    Eigen::Index resistance = 0;  ///< the common one
-    Eigen::Index rc_resistance = 0;
-    Eigen::Index log_time_constant = 0;
-    std::vector<Own> own;  ///< of each record
-    Eigen::Index count = 0;
+/// Parameters that all records have in common: the knots, and behind them these. The last is no parameter: it holds the
+/// sum of the capacities' logarithms at 0 (a Lagrange multiplier).
+enum CommonColumn : Eigen::Index {
+    common_rest_column,
+    resistance_column,
+    rc_column,
+    time_constant_column,  ///< its logarithm
+    capacity_sum_column,
+    common_columns
 };
 
-/// The derivatives of one record's voltage have a column a knot, and behind them these.
-enum OwnColumn { rc_column, time_constant_column, rest_column, charge_column, resistance_column, capacity_column };
-inline constexpr Eigen::Index own_columns = 6;
+/// Parameters of one record, behind the common ones in its equations.
+enum OwnColumn : Eigen::Index { rest_column, charge_column, own_resistance_column, capacity_column, own_columns };
 
 /// Sets the knots at equal distances over the charge of the records.
 void place_knots(JointCircuitFit& joint, int segments);
 
-/// One row a used sample of a record.
-struct RecordRows {
-    Eigen::MatrixXd columns;     ///< derivatives of the fitted voltage
-    Eigen::VectorXd residual_v;  ///< measured less fitted
-    Eigen::VectorXd charge_ah;   ///< position on the curve
-};
-RecordRows rows_of(const JointCircuitFit& joint, std::size_t record, const FreeParameters& free);
+/// Measured less fitted voltage of a record's used samples.
+Eigen::VectorXd residual_v(const JointCircuitFit& joint, std::size_t record);
 
-/// Consecutive rows of a record, and their part of the normal equations in the record's columns.
-struct RowBlock {
-    std::size_t record = 0;
-    Eigen::Index first = 0;
-    Eigen::Index count = 0;
-    Eigen::MatrixXd normal;
-    Eigen::VectorXd score;
-};
-
-/// The normal equations of the least squares of voltages and prior at a fit. Blocks are intervals of the records' time:
-/// 12 of each record, 30 of a single one, of 15 s or longer.
-struct NormalEquations {
-    ParameterIndices places;
-    std::vector<RowBlock> blocks;
+/// A part of the normal equations, in the columns of a record: the common parameters, then its own. Those that are
+/// fixed have zeros.
+struct Equations {
     Eigen::MatrixXd normal;
     Eigen::VectorXd pull;
+};
+
+struct RecordEquations {
+    Equations sum;                  ///< of its blocks, with its prior
+    std::vector<Equations> blocks;  ///< intervals of its time: 12, of a single record 30, of 15 s or longer
+};
+
+/// The normal equations of the least squares of voltages and prior at a fit: a block matrix in arrow form, because
+/// records have only the common parameters in common.
+struct NormalEquations {
+    Equations circuit;  ///< the prior of the common parameters, without columns of a record
+    std::vector<RecordEquations> records;
     double objective = 0.0;  ///< sum of squares [V^2]
 
-    /// Of the columns of one record's rows.
-    std::vector<Eigen::Index> columns_of(std::size_t record) const;
+    Eigen::Index common_count() const { return circuit.pull.size(); }
 };
 NormalEquations normal_equations(const JointCircuitFit& joint, const FreeParameters& free);
 
+/// Changes of all parameters.
+struct ParameterStep {
+    Eigen::VectorXd common;
+    Eigen::MatrixXd own;            ///< a column a record
+    double objective_change = 0.0;  ///< by the linearisation, below 0 [V^2]
+};
+
 /// The Gauss-Newton step; the solution of a linear problem.
-Eigen::VectorXd step_of(const NormalEquations& problem);
+ParameterStep step_of(const NormalEquations& problem);
 
 /// Gauss-Newton steps until they no longer improve; returns the equations at the end. After each step the knots are set
 /// again, and the linear parameters are solved (variable projection: Golub and Pereyra 1973). An RC pair whose
 /// resistance would be negative is dropped.
 NormalEquations least_squares(JointCircuitFit& joint, const FreeParameters& free);
 
-/// By the jackknife over blocks (CR3, linearised).
+/// By the jackknife over blocks (CR3, linearised). Standard errors are not less than for independent samples of the
+/// effective error, as of parameters that only the prior determines; 0 of fixed parameters.
 struct ParameterErrors {
-    Eigen::MatrixXd changes;  ///< a row a parameter: products of two rows are covariances
-    /// Not less than for independent samples of the effective error, as of parameters that only the prior determines.
-    Eigen::VectorXd standard_error;
+    Eigen::MatrixXd common_changes;  ///< a row a parameter: products of two rows are covariances
+    Eigen::VectorXd common;
+    Eigen::MatrixXd own;  ///< a column a record
+    double degrees_of_freedom = 0.0;
 };
 ParameterErrors parameter_errors(const NormalEquations& problem, double sample_error_v);
 

@@ -54,24 +54,24 @@ std::optional<ResistanceScatter> resistance_scatter(std::span<const std::optiona
 std::vector<FlightHealth> estimate_state_of_health(JointCircuitFit joint, bool with_capacity) {
     const FreeParameters free{true, false, true, with_capacity && joint.records.size() > 1};
     const auto problem = least_squares(joint, free);
-    const auto errors = parameter_errors(problem, joint.fit.weights.sample_error_v).standard_error;
+    const auto errors = parameter_errors(problem, joint.fit.weights.sample_error_v).own;
     std::vector<FlightHealth> health(joint.records.size());
     for (std::size_t f = 0; f < health.size(); ++f) {
         const auto& aligned = joint.records[f];
-        const auto& places = problem.places.own[f];
-        const auto blocks = std::ranges::count(problem.blocks, f, &RowBlock::record);
-        if (places.initial_charge != 0) health[f].initial_charge_error_ah = errors[places.initial_charge];
+        const auto own_errors = errors.col(static_cast<Eigen::Index>(f));
+        const auto blocks = std::ssize(problem.records[f].blocks);
+        health[f].initial_charge_error_ah = own_errors[charge_column];
         if (blocks < enough_blocks) continue;
         FlightResistance found;
         found.value_ohm = aligned.resistance_ohm;
-        found.standard_error_ohm = errors[places.resistance];
+        found.standard_error_ohm = own_errors[own_resistance_column];
         found.degrees_of_freedom = std::max(1.0, static_cast<double>(blocks) - own_parameters);
         const double t = student_t_half_width(found.degrees_of_freedom);
         const double half_ohm = t * found.standard_error_ohm;
         found.interval_ohm = {std::max(0.0, found.value_ohm - half_ohm), found.value_ohm + half_ohm};
         if (found.standard_error_ohm < max_relative_error * found.value_ohm) health[f].resistance = found;
         if (!free.own_capacities) continue;
-        const double half_log = t * std::hypot(errors[places.log_capacity], log_capacity_error(joint, f));
+        const double half_log = t * std::hypot(own_errors[capacity_column], log_capacity_error(joint, f));
         const double ratio = std::exp(aligned.log_capacity);
         if (half_log <= std::log1p(max_ratio_error))
             health[f].capacity = FlightCapacity{ratio, {ratio * std::exp(-half_log), ratio * std::exp(half_log)}};
