@@ -45,11 +45,7 @@ void widen_by_flights(std::span<const std::optional<FlightResistance>> resistanc
     interval_ohm.high = std::max(interval_ohm.high, fitted_ohm + half_ohm);
 }
 
-FittedFlights fitted_flights(std::span<const DischargeRecord> records, int cells, bool with_capacities,
-                             std::span<const double> begin_ah) {
-    FittedFlights fitted;
-    fitted.aligned = fit_circuit_jointly(records, cells, begin_ah);
-    fitted.errors = circuit_errors(fitted.aligned);
+void add_health(FittedFlights& fitted, bool with_capacities) {
     auto& errors_ah = fitted.errors.initial_charge_error_ah;
     const auto health = estimate_state_of_health(fitted.aligned, with_capacities);
     for (std::size_t f = 0; f < health.size(); ++f) {
@@ -58,7 +54,6 @@ FittedFlights fitted_flights(std::span<const DischargeRecord> records, int cells
         errors_ah[f] = std::max(errors_ah[f], health[f].initial_charge_error_ah);
     }
     widen_by_flights(fitted.resistances, fitted.aligned.fit.resistance_ohm, fitted.errors.resistance_ohm);
-    return fitted;
 }
 
 ObservedOcv shown_curve(const FittedFlights& fitted) {
@@ -105,19 +100,21 @@ struct IdentificationResult {
     std::vector<CapacityHypothesis> posterior;
 };
 
-/// `begin_ah`: see fit_circuit_jointly.
-IdentificationResult identify_common(std::span<const DischargeRecord> records, const IdentificationOptions& options,
-                                     std::span<const double> begin_ah = {}) {
-    if (records.empty()) throw NoResultError("no flight is left to identify a battery from");
-    const int cells = options.cells.value_or(lipo_cells(highest_resting_v(records)));
+int cells_of(std::span<const DischargeRecord> records, const IdentificationOptions& options) {
+    return options.cells.value_or(lipo_cells(highest_resting_v(records)));
+}
+
+/// Without the flights' health.
+IdentificationResult identify_common(JointCircuitFit aligned, const IdentificationOptions& options) {
     IdentificationResult common;
-    common.fitted = fitted_flights(records, cells, options.with_capacities, begin_ah);
+    common.fitted.errors = circuit_errors(aligned);
+    common.fitted.aligned = std::move(aligned);
     common.posterior = capacity_posterior(shown_curve(common.fitted), options.capacity_ah);
     const auto& [identification, fitted, posterior] = common;
     auto& result = common.identification;
     const auto& fit = result.fit = fitted.aligned.fit;
-    const auto& errors = result.errors = fitted.errors;
-    result.cells = cells;
+    const auto& errors = fitted.errors;
+    result.cells = fit.weights.cells;
     result.cells_are_given = options.cells.has_value();
     result.capacity = estimate_capacity(fit.knots_ah.back(), posterior, options.capacity_ah);
     result.chemistry = most_probable_chemistry(posterior);
@@ -130,12 +127,10 @@ IdentificationResult identify_common(std::span<const DischargeRecord> records, c
     battery.name = options.name;
     battery.resistance_ohm = fit.resistance_ohm;
     battery.capacity_ah = result.capacity.value_ah;
-    battery.cells = cells;
+    battery.cells = result.cells;
     battery.thevenin = TheveninCircuit{extended.curve, fit.rc_resistance_ohm, std::max(0.1, fit.rc_time_constant_s)};
     battery.intervals.capacity_ah = result.capacity.interval_ah;
-    battery.intervals.resistance_ohm = errors.resistance_ohm;
     battery.intervals.open_circuit_standard_error_v = extended.standard_error_v;
-    battery.intervals.resistance_scatter = resistance_scatter(fitted.resistances, fit.resistance_ohm);
     if (fit.rc_resistance_ohm > 0.0) {
         battery.intervals.rc_resistance_ohm = errors.rc_resistance_ohm;
         battery.intervals.rc_time_constant_s = errors.rc_time_constant_s;
@@ -229,12 +224,16 @@ LeaveOneOutCheck checked(const IdentificationResult& common, const DischargeReco
 
 BatteryIdentification identify_battery(std::span<const DischargeRecord> records, const IdentificationOptions& options) {
     if (options.cells && !records.empty()) require_possible_cells(highest_resting_v(records), *options.cells);
-    const auto common = identify_common(records, options);
-    const auto& [identification, fitted, posterior] = common;
-    auto result = identification;
+    if (records.empty()) throw NoResultError("no flight is left to identify a battery from");
+    auto common = identify_common(fit_circuit_jointly(records, cells_of(records, options)), options);
+    auto& [result, fitted, posterior] = common;
+    add_health(fitted, options.with_capacities);
+    result.errors = fitted.errors;
+    result.battery.intervals.resistance_ohm = fitted.errors.resistance_ohm;
+    result.battery.intervals.resistance_scatter = resistance_scatter(fitted.resistances, result.fit.resistance_ohm);
     result.flights = identified_flights(fitted, posterior, result.curve_start_depletion_ah);
     result.battery.flight_estimate = flight_estimate(common);
-    return result;
+    return std::move(result);
 }
 
 PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& record, double initial_charge_ah) {
@@ -259,21 +258,12 @@ std::vector<LeaveOneOutCheck> leave_one_out(std::span<const DischargeRecord> rec
                                             std::size_t max_folds) {
     if (records.size() < 2) return {};
     const auto folds = make_folds(records.size(), std::max<std::size_t>(2, max_folds));
-    const auto all = identify_common(records, options).fitted.aligned;
-    auto of_others = options;
-    of_others.cells = all.fit.weights.cells;
+    const auto all = fit_circuit_jointly(records, cells_of(records, options));
     std::vector<LeaveOneOutCheck> checks(records.size());
     std::mutex mutex;  // guards `done`
     std::size_t done = 0;
     for_each_in_parallel(folds.size(), [&](std::size_t fold) {
-        std::vector<DischargeRecord> others;
-        std::vector<double> begin_ah;
-        for (std::size_t f = 0; f < records.size(); ++f) {
-            if (std::ranges::binary_search(folds[fold], f)) continue;
-            others.push_back(records[f]);
-            begin_ah.push_back(all.records[f].initial_charge_ah);
-        }
-        const auto common = identify_common(others, of_others, begin_ah);
+        const auto common = identify_common(fit_without(all, folds[fold]), options);
         for (const auto k : folds[fold]) checks[k] = checked(common, records[k]);
         if (!progress) return;
         const std::lock_guard lock(mutex);

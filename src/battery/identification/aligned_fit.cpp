@@ -5,7 +5,6 @@
 #include "base/statistics.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -21,6 +20,8 @@ constexpr int max_segments = 6;
 constexpr double min_segment_samples = 20.0;
 constexpr double straight_cell_v = 0.01;  // a cell; a curve with smaller deviations has one segment
 constexpr int time_constants_tried = 12;
+/// The circuit is fitted again when an eighth more records are aligned, so that the cost is linear in them.
+constexpr std::size_t growth_between_fits = 8;
 constexpr double max_record_fraction = 0.25;  // a slower RC pair resembles the open-circuit voltage
 
 /// Whether all knots are near the straight line between the first and the last one.
@@ -147,14 +148,20 @@ std::vector<double> aligned_one_by_one(std::span<const DischargeRecord> records,
     JointCircuitFit growing;
     growing.fit.weights = weights;
     std::vector<double> initial_ah(records.size(), 0.0);
+    std::size_t next_fit = 1;
+    std::size_t next_search = 1;
     for (const auto at : fullest_first(records)) {
         auto& aligned = growing.records.emplace_back(AlignedRecord{&records[at], 0.0, 0.0, 0.0, 0.0});
         aligned.resistance_ohm = growing.fit.resistance_ohm;
         if (growing.records.size() > 1) aligned.initial_charge_ah = best_initial_charge_ah(growing);
         initial_ah[at] = aligned.initial_charge_ah;
         place_knots(growing, max_segments);
+        const auto count = growing.records.size();
+        if (count < next_fit) continue;
+        next_fit = count + std::max<std::size_t>(1, count / growth_between_fits);
         // The time constant is searched for again at every doubling; in between it is known well enough.
-        if (std::has_single_bit(growing.records.size())) {
+        if (count >= next_search) {
+            next_search = 2 * count;
             search_time_constant(growing);
         } else {
             least_squares(growing, linear_only);
@@ -170,32 +177,15 @@ void begin_at_zero(JointCircuitFit& joint) {
     for (auto& aligned : joint.records) aligned.initial_charge_ah -= low_ah;
 }
 
-}  // namespace
-
-JointCircuitFit fit_circuit_jointly(std::span<const DischargeRecord> records, int cells,
-                                    std::span<const double> begin_ah) {
-    JointCircuitFit rough;
-    rough.reference = fullest_first(records).front();
-    rough.fit.weights.cells = cells;
-    rough.fit.weights.fullest_rest_v = records[rough.reference].resting_voltage_v;
-    std::vector<double> initial_ah(begin_ah.begin(), begin_ah.end());
-    if (begin_ah.empty()) initial_ah = aligned_one_by_one(records, rough.fit.weights);
-    for (std::size_t r = 0; r < records.size(); ++r)
-        rough.records.push_back({&records[r], initial_ah[r], 0.0, 0.0, 0.0});
-    place_knots(rough, max_segments);
-    search_time_constant(rough);
-    rough.fit.weights.sample_error_v = effective_error_v(rough);
-    least_squares(rough, {});
-    rough.fit.weights.sample_error_v = effective_error_v(rough);
+/// The last fit, with so many segments, or fewer where the curve would rise.
+JointCircuitFit fit_falling_curve(const JointCircuitFit& rough, int segments, bool with_search) {
     double samples = 0.0;
     for (const auto& aligned : rough.records) samples += static_cast<double>(used_sample_count(*aligned.record));
-    const int first = is_straight(rough.fit) ? 1 : max_segments;
-    // Fewer where the curve would rise.
-    for (int segments = first; segments > 0; --segments) {
+    for (; segments > 0; --segments) {
         if (segments > 1 && samples < min_segment_samples * segments) continue;
         auto joint = rough;
         place_knots(joint, segments);
-        search_time_constant(joint);
+        if (with_search) search_time_constant(joint);
         least_squares(joint, {});
         if (!(joint.fit.resistance_ohm > 0.0))
             throw NoResultError("the voltage does not fall as current rises: no series resistance can be identified");
@@ -206,6 +196,36 @@ JointCircuitFit fit_circuit_jointly(std::span<const DischargeRecord> records, in
         return joint;
     }
     throw NoResultError("the open-circuit voltage does not fall as charge is drawn");
+}
+
+}  // namespace
+
+JointCircuitFit fit_circuit_jointly(std::span<const DischargeRecord> records, int cells) {
+    JointCircuitFit rough;
+    rough.reference = fullest_first(records).front();
+    rough.fit.weights.cells = cells;
+    rough.fit.weights.fullest_rest_v = records[rough.reference].resting_voltage_v;
+    const auto initial_ah = aligned_one_by_one(records, rough.fit.weights);
+    for (std::size_t r = 0; r < records.size(); ++r)
+        rough.records.push_back({&records[r], initial_ah[r], 0.0, 0.0, 0.0});
+    place_knots(rough, max_segments);
+    search_time_constant(rough);
+    rough.fit.weights.sample_error_v = effective_error_v(rough);
+    least_squares(rough, {});
+    rough.fit.weights.sample_error_v = effective_error_v(rough);
+    return fit_falling_curve(rough, is_straight(rough.fit) ? 1 : max_segments, true);
+}
+
+JointCircuitFit fit_without(const JointCircuitFit& joint, std::span<const std::size_t> excluded) {
+    auto others = joint;
+    others.records.clear();
+    for (std::size_t r = 0; r < joint.records.size(); ++r)
+        if (!std::ranges::binary_search(excluded, r)) others.records.push_back(joint.records[r]);
+    const auto rest_v = [](const AlignedRecord& aligned) { return aligned.record->resting_voltage_v; };
+    const auto fullest = std::ranges::max_element(others.records, {}, rest_v);
+    others.reference = static_cast<std::size_t>(fullest - others.records.begin());
+    others.fit.weights.fullest_rest_v = rest_v(*fullest);
+    return fit_falling_curve(others, static_cast<int>(joint.fit.knots_ah.size()) - 1, false);
 }
 
 }  // namespace flightwatt::battery
