@@ -15,7 +15,7 @@ namespace flightwatt::battery {
 namespace {
 
 constexpr int max_steps = 30;
-constexpr int max_halvings = 6;
+constexpr int max_halvings = 3;
 constexpr double min_block_s = 15.0;
 constexpr double blocks_of_each = 12.0;
 constexpr double more_blocks_of_one = 18.0;
