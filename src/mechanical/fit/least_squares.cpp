@@ -17,8 +17,9 @@ namespace flightwatt::mechanical {
 namespace {
 
 /// Phase of the highest harmonic between two thetas of the scan: half of it, from the middle of the phase, costs at
-/// most 2 % of a harmonic's power.
+/// most this fraction of a harmonic's power.
 constexpr double turn_between_rad = 1.0;
+constexpr double lost_between_fraction = 0.02;
 
 /// Minima of the scan that are refined. One that explains less than this fraction of the best explanation cannot become
 /// the best within a step.
@@ -30,9 +31,6 @@ constexpr double harmonic_significance = 1e-3;
 
 /// A harmonic with less than this fraction of the power that the series explains is negligible.
 constexpr double negligible_fraction = 0.02;
-
-/// A multiple that explains less than this before refinement is not refined.
-constexpr double unrefined_fraction = 0.5;
 
 /// Below this fraction of the values' own sum of squares a residual is rounding.
 constexpr double rounding_level = 1e-9;
@@ -71,6 +69,15 @@ std::vector<Candidate> minima(const FrequencyScan& scan) {
     }
     std::ranges::sort(found, {}, &Candidate::square_sum);
     return found;
+}
+
+/// The scan's least value between two thetas.
+double least_between(const FrequencyScan& scan, double low_rad, double high_rad) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < scan.square_sum.size(); ++i)
+        if (const double theta_rad = scan.grid.theta_rad(i); theta_rad >= low_rad && theta_rad <= high_rad)
+            least = std::min(least, scan.square_sum[i]);
+    return least;
 }
 
 }  // namespace
@@ -117,11 +124,11 @@ double find_frequency(std::span<const PhaseSamples> flights, int order, const Fr
         const auto fine = refined(flights, order, range, candidate.theta_rad, scan.grid.step_rad);
         if (fine.square_sum < best.square_sum) best = fine;
     }
-    return resolve_subharmonic(flights, order, range, best.theta_rad);
+    return resolve_subharmonic(flights, order, range, scan, best.theta_rad);
 }
 
 double resolve_subharmonic(std::span<const PhaseSamples> flights, int order, const FrequencyRange& range,
-                           double theta_rad) {
+                           const FrequencyScan& scan, double theta_rad) {
     const double total = own_square_sum(flights);
     const double rounding = std::max(rounding_level * total, std::numeric_limits<double>::min());
     const double best = std::max(rounding, projected_square_sum(flights, order, theta_rad));
@@ -134,20 +141,20 @@ double resolve_subharmonic(std::span<const PhaseSamples> flights, int order, con
     for (int multiple = order; multiple >= 2; --multiple) {
         const double reach_rad = turn_between_rad / order * multiple;
         if (multiple * theta_rad + reach_rad > range.high_rad) continue;
-        const double unrefined = projected_square_sum(flights, order, multiple * theta_rad);
-        if (total - unrefined < unrefined_fraction * (total - best)) continue;
-        const auto simpler = refined(flights, order, range, multiple * theta_rad, reach_rad);
-        const bool slope = std::abs(simpler.theta_rad - multiple * theta_rad) > 0.9 * reach_rad;
-        if (slope) continue;  // the least is where the search ended, not a minimum
         const int lost_harmonics = order - order / multiple;
         const double lacking = 2.0 * static_cast<double>(flights.size()) * lost_harmonics;
-        const double worse = std::max(rounding, simpler.square_sum) - best;
         const boost::math::fisher_f distribution(lacking, degrees_of_freedom);
         const double by_chance =
             lacking * variance * boost::math::quantile(boost::math::complement(distribution, harmonic_significance));
-        if (worse <= by_chance && worse - lacking * variance <= negligible_fraction * (total - best)) {
-            return simpler.theta_rad;
-        }
+        const double explained = total - best;
+        const double max_worse = std::min(by_chance, lacking * variance + negligible_fraction * explained);
+        const double least =
+            least_between(scan, multiple * theta_rad - reach_rad, multiple * theta_rad + reach_rad) - best;
+        if (least > max_worse + lost_between_fraction * explained) continue;
+        const auto simpler = refined(flights, order, range, multiple * theta_rad, reach_rad);
+        const bool slope = std::abs(simpler.theta_rad - multiple * theta_rad) > 0.9 * reach_rad;
+        if (slope) continue;  // the least is where the search ended, not a minimum
+        if (std::max(rounding, simpler.square_sum) - best <= max_worse) return simpler.theta_rad;
     }
     return theta_rad;
 }

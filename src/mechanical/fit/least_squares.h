@@ -46,7 +46,7 @@ double find_frequency(std::span<const PhaseSamples> flights, int order, const Fr
 /// are insignificant (F test at 0.1 %) and explain, less the expected noise, below 2 % of the series' power (which
 /// keeps trends of less than a period); else theta_rad.
 double resolve_subharmonic(std::span<const PhaseSamples> flights, int order, const FrequencyRange& range,
-                           double theta_rad);
+                           const FrequencyScan& scan, double theta_rad);
 
 /// The frequency all flights share and each flight's own coefficients.
 struct JointFit {

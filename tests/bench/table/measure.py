@@ -29,7 +29,7 @@ class Sizes:
     rounds: int = 5  # after one that warms caches; the least counts
     log_mb: int = 250
     flights: int = 1000  # of one page, and of the batch that is run twice
-    validated: int = 20  # leave-one-out: of so many flights, and of twice as many
+    validated: int = 40  # leave-one-out: of so many flights, and of twice as many
     real_logs: int = 200  # of 4 MB
     archive: int = 100_000  # small logs, beside a hundredth of them
     kills: int = 10

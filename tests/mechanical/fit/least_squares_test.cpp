@@ -24,6 +24,10 @@ double found_frequency(std::span<const PhaseSamples> flights, const FrequencyRan
     return find_frequency(flights, 3, range, scan_frequencies(flights, 3, range));
 }
 
+double resolved(std::span<const PhaseSamples> flights, const FrequencyRange& range, double theta_rad) {
+    return resolve_subharmonic(flights, 3, range, scan_frequencies(flights, 3, range), theta_rad);
+}
+
 TEST(FrequencyScan, CoversTheRangeAndAgreesWithTheExactSums) {
     const auto flights = one_flight(test::cruise_of(4.2, {2.0, 0.6, 0.3}, {1.0, -0.2, 0.4}), 1.0, 1);
     const FrequencyRange range{std::numbers::pi, 200.0};
@@ -72,16 +76,16 @@ TEST(FrequencyScan, DoesNotTakeOddHarmonicsForNoise) {
     const FrequencyRange range{std::numbers::pi, 500.0};
     const auto flights = one_flight(test::cruise_of(5.0, {0.4, 3.0, 0.0}, {0.0, 2.0, 0.4}), 1.5, 4);
     EXPECT_NEAR(found_frequency(flights, range), 10.0 * std::numbers::pi, 0.1);
-    EXPECT_NEAR(resolve_subharmonic(flights, 3, range, 10.0 * std::numbers::pi), 10.0 * std::numbers::pi, 0.1);
+    EXPECT_NEAR(resolved(flights, range, 10.0 * std::numbers::pi), 10.0 * std::numbers::pi, 0.1);
 }
 
 TEST(FrequencyScan, MovesASubharmonicToTheSimplestFrequency) {
     const FrequencyRange range{std::numbers::pi, 500.0};
     const double theta_rad = 2.0 * std::numbers::pi * 12.0;
     const auto flights = one_flight(test::cruise_of(12.0, {3.0}, {2.0}), 1.5, 5);
-    EXPECT_NEAR(resolve_subharmonic(flights, 3, range, theta_rad / 2.0), theta_rad, 0.05);
-    EXPECT_NEAR(resolve_subharmonic(flights, 3, range, theta_rad / 3.0), theta_rad, 0.05);
-    EXPECT_EQ(resolve_subharmonic(flights, 3, range, theta_rad), theta_rad);
+    EXPECT_NEAR(resolved(flights, range, theta_rad / 2.0), theta_rad, 0.05);
+    EXPECT_NEAR(resolved(flights, range, theta_rad / 3.0), theta_rad, 0.05);
+    EXPECT_EQ(resolved(flights, range, theta_rad), theta_rad);
 }
 
 TEST(FrequencyScan, KeepsTheTrendOfAShortTakeOff) {
