@@ -114,6 +114,12 @@ void note_sources(const cli::StageCall& call, const PlanArguments& arguments, co
 
 int make_plan(const cli::StageCall& call, const PlanArguments& arguments, const MissionFile& file) {
     const auto mission = file.read();
+    if (setup_of(mission).packs && !arguments.probability) {
+        cli::warn_of_setup(call, setup_of(mission));
+        const auto all = fly_packs(mission);
+        print_packs(call, all, csv_of(all.flights), {all.setup.name, {"mission", "cruise_to_s", "final_soc_percent"}});
+        return cli::ok;
+    }
     const auto* problem = std::get_if<mission::PlanningProblem>(&mission);
     if (problem == nullptr) {
         if (setup_of(mission).compute.components.empty())
@@ -184,6 +190,7 @@ int print_reach(const cli::StageCall& call, const PlanArguments& arguments, cons
 
 int plan_file(const cli::StageCall& call, const PlanArguments& arguments) {
     const MissionFile file{call.inputs.front(), read_file(call.inputs.front())};
+    if (arguments.longest_cruise || arguments.largest_payload) require_single_flight(setup_of(file.read()));
     if (arguments.longest_cruise) return print_reach(call, arguments, file);
     if (arguments.largest_payload) {
         const auto mission = file.read();
@@ -202,12 +209,14 @@ int flightwatt::stages::plan_stage(int argc, char** argv) {
 of any other. The result is the mission with that schedule, for simulate and compare. Entries of
 [[schedule]] next to [plan] are fixed. --longest-cruise and --largest-payload take the mission's own schedule, or the
 one that demands least energy. On a battery whose voltage falls with its charge (model = "thevenin"), or with a
-cut-off voltage, the battery is simulated for each candidate schedule.)"};
+cut-off voltage, the battery is simulated for each candidate schedule. A mission with [packs] is divided into flights,
+and the result is a table of them (CSV); their schedules are in --json.)"};
     stage.max_inputs = 1;
     stage.next = [](const auto& call) {
-        return call.has("longest-cruise") || call.has("largest-payload") ? "" : "flightwatt simulate {}";
+        const bool is_table = std::filesystem::path(*call.output).extension() == ".csv";  // of a mission with [packs]
+        return is_table || call.has("longest-cruise") || call.has("largest-payload") ? "" : "flightwatt simulate {}";
     };
-    stage.json_schema = cli::document_schema<cli::PlanOutput, PlanLimit>;
+    stage.json_schema = cli::document_schema<cli::PlanOutput, PlanLimit, mission::PackFlights>;
     stage.examples = {"flightwatt plan mission.toml -o planned.toml",
                       "flightwatt plan mission.toml --longest-cruise --probability 0.95"};
     stage.uses_threads = true;

@@ -62,8 +62,15 @@ report::ReportInput read_inputs(const cli::StageCall& call, const ReportArgument
     for (const auto& input : call.inputs) {
         std::error_code error;
         if (!std::filesystem::is_directory(input, error)) {
-            inputs.missions.push_back(mission::read_mission(input, {true, std::nullopt}));
-            cli::warn_of_setup(call, setup_of(inputs.missions.back()));
+            const auto read = mission::read_mission(input, {true, std::nullopt});
+            cli::warn_of_setup(call, setup_of(read));
+            if (!setup_of(read).packs || inputs.with_replay) {
+                inputs.missions.push_back(read);
+                continue;
+            }
+            const auto& all = inputs.packs.emplace_back(fly_packs(read));
+            if (!all.suffice) cli::warn(call, describe(all));
+            for (const auto& flight : all.flights) inputs.missions.push_back(flight.mission);
             continue;
         }
         if (!inputs.out.empty())

@@ -47,9 +47,17 @@ void sample(const SimulateArguments& arguments, const mission::PreparedMission& 
 }
 
 int simulate_mission(const cli::StageCall& call, const SimulateArguments& arguments) {
+    constexpr std::size_t rows = 24;
     const auto text = read_file(call.inputs.front());
     const auto mission = mission::parse_mission(text, call.inputs.front());
     cli::warn_of_setup(call, setup_of(mission));
+    const bool draws = arguments.sampling.samples || arguments.sampling.disturbances || arguments.schedule_file;
+    if (setup_of(mission).packs && !draws) {
+        const auto all = mission::fly_packs(mission, {.output_s = arguments.step_s});
+        print_packs(call, all, to_csv(all.curve),
+                    {all.setup.name, {"time_s", "phase", "soc_percent", "power_w"}, rows});
+        return cli::ok;
+    }
     const auto disturbed_by = read_disturbances(arguments.sampling, setup_of(mission));
     const auto prepared = prepare_mission(mission);
     mission::SimulationOptions steps;
@@ -59,7 +67,6 @@ int simulate_mission(const cli::StageCall& call, const SimulateArguments& argume
     if (summary.undeliverable) throw NoResultError(describe(summary));
     sample(arguments, prepared, disturbed_by, summary);
     write_schedule(call, arguments.schedule_file, text, prepared, flight);
-    constexpr std::size_t rows = 24;
     write_csv_result(call, to_csv(flight.simulation.curve),
                      {summary.mission, {"time_s", "phase", "soc_percent", "power_w"}, rows});
     if (call.json) {
@@ -82,11 +89,12 @@ time_s, phase, mechanical_w, compute_w, power_w, current_a, soc_percent, termina
 the mission demands; current is the battery's, 0 once it is empty or below the mission's cut-off voltage.
 The cause of the end and the remaining charge are printed as well; --json: final_soc_percent, energy_wh (demanded),
 delivered_energy_wh, depleted_at_s, cut_off_at_s (null: never), feasible, keeps_reserve, utility.
+With [packs], the flights follow each other, with the time on the ground between them.
 A mission with [policy] kind = "adaptive" is replanned in flight. --samples draws flights and reports
 their final state of charge; the CSV stays that of the mission as it is stated.)"};
     stage.max_inputs = 1;
     stage.next = [](const auto&) { return "flightwatt report {in} -o report.html"; };
-    stage.json_schema = cli::document_schema<mission::MissionSummary>;
+    stage.json_schema = cli::document_schema<mission::MissionSummary, mission::PackFlights>;
     stage.shows_table = true;
     stage.examples = {"flightwatt simulate mission.toml -o soc.csv",
                       "flightwatt simulate mission.toml --samples 2000 --json"};

@@ -153,6 +153,7 @@ void require_predicting(const PredictionInput& input, const std::string& file) {
 }
 
 PredictionInput unchecked_input(const mission::MissionSetup& setup) {
+    require_single_flight(setup);
     PredictionInput input{setup.mechanical.value(), {}, setup.duration_s[flight::Phase::landing]};
     input.limits = {setup.cutoff_voltage_v, setup.reserve_soc_percent};
     if (setup.cruise_path)

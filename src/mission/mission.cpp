@@ -1,11 +1,13 @@
 #include "mission/mission.h"
 
+#include "base/error.h"
 #include "base/piecewise_linear.h"
 #include "base/units.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace flightwatt::mission {
 
@@ -20,6 +22,23 @@ std::optional<Interval> capacity_interval_ah(const MissionSetup& mission) {
     const double capacity_ah = mission.battery.capacity_ah;
     const double reach_ah = sd_per_half_95 * units::amount_from_percent(capacity_ah, *percent);
     return Interval{capacity_ah - reach_ah, capacity_ah + reach_ah};
+}
+
+void require_single_flight(const MissionSetup& mission) {
+    if (mission.packs)
+        throw InputError({mission.file}, "the mission has [packs], and this is computed for one flight alone",
+                         "simulate, plan and report divide it, without --samples, --disturb, --probability and limits; "
+                         "for one flight leave [packs] out");
+}
+
+void set_cruise_path(MissionSetup& mission, path::PlannedPath plan) {
+    const auto shared = std::make_shared<const path::PlannedPath>(std::move(plan));
+    const auto flown = compute_trajectory(shared->path, shared->wind);
+    mission.cruise_path = compute_cruise(shared, shared->wind, path::InfeasibleLegPolicy::refuse);
+    mission.cruise_level = predicted_power(shared->power, mean_terms(shared->power, flown), flown.duration_s);
+    mission.cruise_level->mean_w = mean_power_w(*mission.cruise_path);
+    mission.duration_s[Phase::cruise] = duration_s(*mission.cruise_path);
+    mission.duration_is_stated[Phase::cruise] = true;
 }
 
 double utility_per_s(const Utility& utility, const std::vector<double>& qos) {

@@ -44,6 +44,14 @@ struct Uncertainty {
     double initial_soc_sd_percent = 0.0;                    ///< of the charge at the start [points]
 };
 
+/// Packs that are changed on the ground: the mission is as many flights as it needs (packs.h).
+struct Packs {
+    std::size_t count = 1;
+    double change_s = 0.0;                         ///< on the ground, for each change
+    std::vector<battery::Battery> batteries = {};  ///< one a pack; empty: all are the mission's
+    path::LocalPosition home = {};                 ///< from the start of the path
+};
+
 /// A flight, the software that can run in it, and the battery that feeds both: all but the schedule.
 struct MissionSetup {
     std::string file;
@@ -70,6 +78,7 @@ struct MissionSetup {
     std::optional<mechanical::HeldOutScore> power_model =
         {};                               ///< of the model that predicts the power, if its file has a validation
     std::vector<std::string> notes = {};  ///< warnings from reading the file
+    std::optional<Packs> packs = {};      ///< then it is divided (packs.h) before anything flies it
 };
 
 /// A mission that can be flown.
@@ -117,6 +126,13 @@ using MissionVariant = std::variant<Mission, PlanningProblem>;
 using MissionVariation = std::function<MissionVariant(double value)>;
 
 const MissionSetup& setup_of(const MissionVariant& mission);
+
+/// Throws InputError for a mission over several packs: it is divided before anything flies it.
+void require_single_flight(const MissionSetup& mission);
+
+/// Makes the cruise of a path: its duration, and its level and power by the physical model. Throws as
+/// compute_trajectory.
+void set_cruise_path(MissionSetup& mission, path::PlannedPath plan);
 
 /// Half the width of a normal 95 % interval, in deviations.
 inline constexpr double sd_per_half_95 = 1.96;

@@ -20,6 +20,24 @@ PathElement reversed(PathElement element, const ClimbRates& back) {
     return element;
 }
 
+PathElement part_of(PathElement element, double start, double end) {
+    const double part = end - start;
+    if (part == 1.0) return element;
+    constexpr double turn_deg = 360.0;
+    element.altitude_change_m *= part;
+    element.climb_rate_m_per_s.reset();
+    if (auto* circles = std::get_if<Circles>(&element.shape)) {
+        circles->start_course_deg += (circles->to_right ? turn_deg : -turn_deg) * circles->turns * start;
+        circles->turns *= part;
+    } else if (auto* hold = std::get_if<Hold>(&element.shape)) {
+        hold->time_s *= part;
+        if (hold->over_ground) hold->over_ground->length_m *= part;
+    } else {
+        std::get<Leg>(element.shape).length_m *= part;
+    }
+    return element;
+}
+
 LocalPosition after_part(const LocalPosition& at, const PathElement& element, double part) {
     if (const auto* circles = std::get_if<Circles>(&element.shape)) {
         constexpr double quarter_deg = 90.0;
@@ -66,6 +84,16 @@ double length_of_legs_m(const FlightPath& path) {
         if (const auto* leg = std::get_if<Leg>(&element.shape); leg && !element.is_return_leg)
             length_m += leg->length_m;
     return length_m;
+}
+
+FlightPath path_between(const FlightPath& path, const PathPosition& from, const PathPosition& to) {
+    FlightPath between;
+    for (auto i = from.element; i < path.elements.size() && i <= to.element; ++i) {
+        const double start = i == from.element ? from.part : 0.0;
+        const double end = i == to.element ? to.part : 1.0;
+        if (end > start) between.elements.push_back(part_of(path.elements[i], start, end));
+    }
+    return between;
 }
 
 LocalPosition moved(const LocalPosition& from, double length_m, double course_deg) {

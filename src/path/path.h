@@ -89,6 +89,9 @@ struct LocalPosition {
 /// A position moved straight over ground.
 LocalPosition moved(const LocalPosition& from, double length_m, double course_deg);
 
+/// The path between two positions. An element in part changes its height evenly.
+FlightPath path_between(const FlightPath& path, const PathPosition& from, const PathPosition& to);
+
 /// Location of a position, from the start of the path. Holds do not move it, except those of legs with a measured time.
 LocalPosition local_position_at(const FlightPath& path, const PathPosition& place);
 

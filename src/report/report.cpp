@@ -124,6 +124,7 @@ void add_missions(Draft& page) {
     files.reserve(missions.size());
     for (const auto& mission : missions)
         files.push_back(std::filesystem::path(setup_of(mission).file).filename().string());
+    files.erase(std::unique(files.begin(), files.end()), files.end());  // a file may be several flights
     page.content.facts.emplace_back("missions", fmt::format("{}", fmt::join(files, ", ")));
     auto simulated = simulate_for_report(missions, page.log.progress("missions"));
     for (const auto i : worst_first(simulated)) page.answers.missions.push_back(std::move(simulated[i]));
@@ -214,6 +215,7 @@ ReportContent make_report(const ReportInput& input, const ReportLog& log) {
         add_trends(page, batch);
     }
     if (!input.missions.empty()) add_missions(page);
+    if (!input.packs.empty()) sections.push_back(packs_section(input.packs));
     if (!replays.empty()) {
         sections.push_back(replay_section(replays));
         sections.back().place = SectionPlace::folded;
@@ -222,7 +224,7 @@ ReportContent make_report(const ReportInput& input, const ReportLog& log) {
         page.answers.notes.emplace_back("There is no replay: no mission could be replayed on any flight.");
     // What missions answer stands before the flights.
     std::stable_partition(sections.begin(), sections.end(), [](const Section& section) {
-        return section.id == "curves" || section.id == "quality-of-service";
+        return section.id == "packs" || section.id == "curves" || section.id == "quality-of-service";
     });
     sections.insert(sections.begin(), summary_section(page.answers, batch.flights));
     if (auto notes = notes_section(page.answers)) sections.push_back(std::move(*notes));

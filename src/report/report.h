@@ -1,7 +1,7 @@
 #pragma once
 
 #include "mechanical/mechanical_model.h"
-#include "mission/mission.h"
+#include "mission/packs.h"
 #include "record/record.h"
 #include "report/batch_content.h"
 #include "report/html.h"
@@ -32,6 +32,7 @@ inline constexpr std::size_t max_battery_flights = 12;
 struct ReportInput {
     std::filesystem::path out = {};  ///< the folder of flightwatt batch, or empty
     std::vector<mission::MissionVariant> missions = {};
+    std::vector<mission::PackFlights> packs = {};    ///< missions over several packs; their flights are in `missions`
     std::optional<std::string> published_file = {};  ///< of a model, for Table I
     std::optional<double> capacity_ah = {};          ///< of the flights' battery
     bool with_replay = false;                        ///< of the missions on the flights

@@ -4,6 +4,7 @@
 #include <optional>
 #include <random>
 #include <variant>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -64,6 +65,30 @@ TEST(Path, TurnsBackAtItsEndWhateverItsLengthsRoundTo) {
         path.elements.push_back(element_of(Hold{60.0}));  // begins where the path turns back: is not flown
         EXPECT_EQ(out_and_back(path, length_of_legs_m(path), {}).elements.size(), 10U) << i;
     }
+}
+
+/// A path in parts is the whole path: places, heights and shapes.
+TEST(Path, IsTheSumOfItsParts) {
+    auto hold = element_of(Hold{100.0, Leg{500.0, 45.0}});
+    const FlightPath path{
+        {climbing(element_of(Leg{300.0, 90.0}), 20.0), element_of(Circles{50.0, 3.0, false, 30.0}), hold}};
+    const std::vector<PathPosition> cuts{{0, 0.0}, {0, 0.25}, {1, 0.5}, {1, 0.75}, {2, 0.1}, {3, 0.0}};
+    FlightPath all;
+    for (std::size_t i = 1; i < cuts.size(); ++i) {
+        const auto part = path_between(path, cuts[i - 1], cuts[i]);
+        all.elements.insert(all.elements.end(), part.elements.begin(), part.elements.end());
+        const auto place = local_position_at(path, cuts[i]);
+        const auto reached = local_position_at(all, {all.elements.size(), 0.0});
+        EXPECT_NEAR(reached.east_m, place.east_m, 1e-9) << i;
+        EXPECT_NEAR(reached.north_m, place.north_m, 1e-9) << i;
+    }
+    ASSERT_EQ(all.elements.size(), 7U);
+    EXPECT_DOUBLE_EQ(all.elements[0].altitude_change_m, 5.0);
+    EXPECT_DOUBLE_EQ(all.elements[1].altitude_change_m, 15.0);
+    EXPECT_FALSE(all.elements[1].climb_rate_m_per_s);
+    EXPECT_DOUBLE_EQ(std::get<Circles>(all.elements[3].shape).turns, 0.75);
+    EXPECT_DOUBLE_EQ(std::get<Hold>(all.elements[6].shape).time_s, 90.0);
+    EXPECT_EQ(path_between(path, {0, 0.0}, {0, 0.0}).elements.size(), 0U);
 }
 
 }  // namespace

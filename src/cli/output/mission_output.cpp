@@ -101,6 +101,45 @@ Fields<MissionSummary> record_fields(const MissionSummary*) {
               optional_key{}));
 }
 
+Fields<PackFlight> record_fields(const PackFlight*) {
+    using R = PackFlight;
+    const auto schedule = [](const R& flight) {
+        std::vector<Json> segments;
+        for (const auto& segment : flight.flown.schedule)
+            segments.push_back({{"phase", to_string(segment.phase)},
+                                {"from_s", segment.start_s},
+                                {"to_s", segment.end_s},
+                                {"run", JsonType<Keyed<Keyed<double>>>::write(
+                                            cli::run_values(segment.run, setup_of(flight.mission).compute))}});
+        return segments;
+    };
+    return list_fields<R>(
+        field("pack", &R::pack, "number of the pack", csv_column{}),
+        field("start_s", &R::start_s, "since the first take-off", column{"start [s]"}, csv_column{}),
+        field("cruise_from_s", &R::cruise_from_s, "of the cruise as if flown at once", column{"cruise from [s]"},
+              csv_column{}),
+        field("cruise_to_s", &R::cruise_to_s, "the same", column{"to [s]"}, csv_column{}),
+        field("largest_to_s", &R::largest_to_s, "from where this pack could still return with the reserve",
+              column{"at most [s]"}, csv_column{}),
+        field("return_from", &R::return_from, "element of the path and its completed part; empty: the end, or no path",
+              column_if_any("returns from"), csv_column{}),
+        field("return_east_m", &R::return_east_m, "from the start of the path; null: the same", csv_column{}),
+        field("return_north_m", &R::return_north_m, "the same", csv_column{}),
+        embedded([](const R& r) { return &r.flown.simulation.summary; }),
+        field("runs", schedule, "schedule: from and to since the phase began"));
+}
+
+Fields<PackFlights> record_fields(const PackFlights*) {
+    using R = PackFlights;
+    const auto stated = [](const R& all) { return all.setup.packs->count; };
+    return list_fields<R>(
+        field("packs", stated, "number of packs of the mission"),
+        field("packs_needed", &R::needed, "null: no number of packs is enough"),
+        field("on_ground_s", &R::on_ground_s, "between the flights; part of the duration"),
+        embedded(&R::total, {"schedule", "depleted_at_s", "cut_off_at_s", "delivered_energy_wh"}),
+        field("flights", &R::flights, "one with each pack; final_soc_percent above is the least of them"));
+}
+
 Fields<InfeasibilityReport> record_fields(const InfeasibilityReport*) {
     using R = InfeasibilityReport;
     return {field("short_percent", &R::shortfall_percent, "missing charge with the least energy"),
@@ -149,6 +188,28 @@ Fields<PlanOutput> record_fields(const PlanOutput*) {
         field("shortfall", &R::shortfall, "why no plan is feasible", optional_key{}));
 }
 
+Keyed<Keyed<double>> run_values(const compute::Configuration& run, const compute::ComputeModel& compute) {
+    Keyed<Keyed<double>> all;
+    for (const auto& running : run) {
+        const auto& component = compute.components[running.component];
+        auto& qos = all.emplace_back(component.name, Keyed<double>()).second;
+        for (std::size_t i = 0; i < running.qos.size(); ++i)
+            qos.emplace_back(component.profile.parameters[i], running.qos[i]);
+    }
+    return all;
+}
+
+void print_packs(const StageCall& call, const mission::PackFlights& all, const std::string& csv,
+                 const ScreenTable& table) {
+    if (all.suffice) write_csv_result(call, csv, table);
+    if (call.json) print_json(call, all);
+    if (!all.suffice) throw NoResultError(describe(all));
+    if (call.json) return;
+    for (const auto& flight : all.flights) note(call, describe(flight.flown.simulation.summary));
+    note(call, describe(all));
+    note_power_model(call, all.setup);
+}
+
 void warn_of_lost_comments(const StageCall& call, const mission::PlannedMissionText& written) {
     if (written.lost_comments)
         warn(call,
@@ -158,6 +219,9 @@ void warn_of_lost_comments(const StageCall& call, const mission::PlannedMissionT
 
 void warn_of_setup(const StageCall& call, const mission::MissionSetup& mission) {
     auto warnings = battery_warnings(mission.battery);
+    if (mission.packs)
+        for (const auto& battery : mission.packs->batteries)
+            std::ranges::copy(battery_warnings(battery), std::back_inserter(warnings));
     if (mission.mechanical) std::ranges::copy(model_warnings(*mission.mechanical), std::back_inserter(warnings));
     for (const auto& component : mission.compute.components)
         if (auto text = negative_power_warning(component.profile); !text.empty()) warnings.push_back(std::move(text));

@@ -1,9 +1,11 @@
 #pragma once
 
+#include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "mission/disturbance.h"
 #include "mission/feasibility_limits.h"
 #include "mission/mission_file.h"
+#include "mission/packs.h"
 #include "mission/plan.h"
 #include "mission/sampled_flights.h"
 #include "mission/simulation.h"
@@ -20,6 +22,8 @@ namespace flightwatt::mission {
 Fields<UncertaintySources> record_fields(const UncertaintySources*);
 Fields<EstimatedLanding> record_fields(const EstimatedLanding*);
 Fields<MissionSummary> record_fields(const MissionSummary*);
+Fields<PackFlight> record_fields(const PackFlight*);
+Fields<PackFlights> record_fields(const PackFlights*);
 }  // namespace flightwatt::mission
 
 /// Options and JSON that simulate, compare and plan share.
@@ -30,6 +34,13 @@ void warn_of_setup(const StageCall& call, const mission::MissionSetup& mission);
 
 /// Names the power model and its error, where its file has one.
 void note_power_model(const StageCall& call, const mission::MissionSetup& mission);
+
+/// The components that run, with their quality by parameter.
+Keyed<Keyed<double>> run_values(const compute::Configuration& run, const compute::ComputeModel& compute);
+
+/// Result and JSON of a mission over several packs. Throws NoResultError where they do not suffice.
+void print_packs(const StageCall& call, const mission::PackFlights& all, const std::string& csv,
+                 const ScreenTable& table);
 
 /// Warns of a mission that was written without its comments.
 void warn_of_lost_comments(const StageCall& call, const mission::PlannedMissionText& written);

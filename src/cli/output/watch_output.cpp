@@ -1,6 +1,7 @@
 #include "cli/output/watch_output.h"
 
 #include "base/units.h"
+#include "cli/output/mission_output.h"
 #include "cli/output/prediction_output.h"
 #include "record/json_type.h"
 
@@ -49,18 +50,6 @@ namespace {
 std::string phase_text(const live::LiveState& state) {
     if (state.phase) return std::string(to_string(*state.phase));
     return state.landed ? "landed" : "ground";
-}
-
-/// The components that run, with their quality by parameter.
-Keyed<Keyed<double>> run_values(const compute::Configuration& run, const compute::ComputeModel& compute) {
-    Keyed<Keyed<double>> all;
-    for (const auto& running : run) {
-        const auto& component = compute.components[running.component];
-        auto& qos = all.emplace_back(component.name, Keyed<double>()).second;
-        for (std::size_t i = 0; i < running.qos.size(); ++i)
-            qos.emplace_back(component.profile.parameters[i], running.qos[i]);
-    }
-    return all;
 }
 
 /// A decision with the names of its components.

@@ -56,6 +56,8 @@ path::ClimbRates read_rates(const TomlTable& table) {
     return {optional_number_in(rates, table, "climb_m_per_s"), optional_number_in(rates, table, "descent_m_per_s")};
 }
 
+constexpr auto place_hint = "give east_m and north_m, or latitude_deg and longitude_deg";
+
 /// The place that a table gives, in either coordinates.
 void read_place(const TomlTable& table, std::optional<path::LocalPosition>& local,
                 std::optional<path::GeodeticPosition>& geographic) {
@@ -102,8 +104,7 @@ path::PathDefaults read_defaults(const TomlTable& path) {
         start->refuse_keys_except({"east_m", "north_m", "latitude_deg", "longitude_deg"});
         read_place(*start, defaults.start, defaults.geographic_start);
         if (!defaults.start && !defaults.geographic_start)
-            throw InputError(start->where(), "start is no place",
-                             "give east_m and north_m, or latitude_deg and longitude_deg");
+            throw InputError(start->where(), "start is no place", place_hint);
     }
     return defaults;
 }
@@ -198,7 +199,23 @@ path::PathEntry* repeated_circles(std::vector<path::PathEntry>& entries) {
     return last == entries.rend() ? nullptr : &*last;
 }
 
-path::FlightPath read_path(const TomlTable& table, const MissionReadOptions& reading, MissionSetup& mission) {
+/// Where packs are changed, from the path's start: as if it ended there.
+path::LocalPosition read_home(const TomlTable& packs, std::vector<path::PathEntry> entries,
+                              path::PathDefaults defaults) {
+    const auto home = packs.optional_table("home", "{ east_m = 0, north_m = 0 }");
+    if (!home) return {};
+    auto& last = entries.emplace_back();
+    last.name = "home";
+    last.where = home->where();
+    read_place(*home, last.place, last.geographic);
+    if (!last.place && !last.geographic) throw InputError(home->where(), "home is no place", place_hint);
+    defaults.return_to_start = false;
+    const auto path = path_of(entries, defaults);
+    return local_position_at(path, {path.elements.size(), 0.0});
+}
+
+path::FlightPath read_path(const TomlTable& table, const MissionReadOptions& reading,
+                           const std::optional<TomlTable>& packs, MissionSetup& mission) {
     table.refuse_keys_except({"airspeed_m_per_s", "altitude_m", "climb_m_per_s", "descent_m_per_s", "start",
                               "return_to_start", "waypoints", "flight_plan", "waypoint_order", "blocks", "radius_m",
                               "area", "spacing_m", "heading_deg", "leg"});
@@ -210,6 +227,7 @@ path::FlightPath read_path(const TomlTable& table, const MissionReadOptions& rea
         repeated->circles = *reading.circles;
     }
     auto path = path_of(entries, defaults);
+    if (packs) mission.packs->home = read_home(*packs, entries, defaults);
     if (reading.return_after_m) path = out_and_back(path, *reading.return_after_m, defaults.rates);
     return path;
 }
@@ -251,17 +269,12 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
     if (reading.cruise_s) throw NoResultError("the duration of the cruise follows from its path");
     refuse_what_the_path_decides(mission_table);
     path::PlannedPath plan;
-    plan.path = read_path(*table, reading, mission);
+    plan.path = read_path(*table, reading, mission_table.optional_table("packs"), mission);
     plan.wind = read_wind(mission_table);
     plan.power = power_model(*table, mission);
-    const auto flown = compute_trajectory(plan.path, plan.wind);
-    for (auto& warning : path_warnings(plan, flown)) mission.notes.push_back(std::move(warning));
-    const auto shared = std::make_shared<const path::PlannedPath>(std::move(plan));
-    mission.cruise_path = compute_cruise(shared, shared->wind, path::InfeasibleLegPolicy::refuse);
-    mission.cruise_level = predicted_power(shared->power, mean_terms(shared->power, flown), flown.duration_s);
-    mission.cruise_level->mean_w = mean_power_w(*mission.cruise_path);
-    mission.duration_s[Phase::cruise] = duration_s(*mission.cruise_path);
-    mission.duration_is_stated[Phase::cruise] = true;
+    for (auto& warning : path_warnings(plan, compute_trajectory(plan.path, plan.wind)))
+        mission.notes.push_back(std::move(warning));
+    set_cruise_path(mission, std::move(plan));
 }
 
 }  // namespace flightwatt::mission

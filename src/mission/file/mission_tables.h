@@ -17,6 +17,9 @@ namespace flightwatt::mission {
 /// The file that a key names, relative to the mission file. Throws InputError at the key where it cannot be read.
 std::filesystem::path file_of(const TomlTable& table, std::string_view key);
 
+/// The mission's [packs] without `home`, which read_cruise_path reads; none without one.
+std::optional<Packs> read_packs(const TomlTable& mission);
+
 /// Sets the level of the cruise to that of the mission's airspeed_m_per_s by the physical model; leaves it where none
 /// is stated. Throws InputError for a model without one, and far beyond what its flights flew.
 void apply_airspeed(const TomlTable& mission_table, MissionSetup& mission);

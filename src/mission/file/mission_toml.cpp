@@ -182,7 +182,7 @@ MissionVariant with_read_schedule(const TomlTable& root, const MissionReadOption
     const auto& entries_s = is_stretched ? stated_s : setup.duration_s;
     auto entries = read_schedule(root, setup.compute, entries_s);
     const bool lacks_schedule = entries.empty() && !setup.compute.components.empty();
-    if (!reading.allow_unplanned && !adaptive) require_schedule(root, lacks_schedule);
+    if (!reading.allow_unplanned && !adaptive && !setup.packs) require_schedule(root, lacks_schedule);
     if (lacks_schedule || root.has("plan") || adaptive) {
         PlanningProblem problem{std::move(setup), {}, {}, adaptive};
         problem.plan = read_plan_settings(root, problem.setup.compute);
@@ -226,16 +226,23 @@ MissionVariant mission_from(const TomlTable& root, const std::filesystem::path& 
         throw InputError(root.where("conditions"), "conditions are no longer read: a cruise follows its airspeed alone",
                          "leave them out, or state airspeed_m_per_s at the top of the mission, with a model of "
                          "flightwatt fit --model-kind physical");
-    root.refuse_keys_except({"format", "name", "mechanical", "duration_s", "phase_clock", "airspeed_m_per_s", "path",
-                             "wind", "battery", "initial_soc_percent", "capacity_ah", "cutoff_voltage_v",
-                             "reserve_soc_percent", "may_charge", "components", "schedule", "plan", "policy",
-                             "uncertainty"});
+    root.refuse_keys_except({"format",      "name",
+                             "mechanical",  "duration_s",
+                             "phase_clock", "airspeed_m_per_s",
+                             "path",        "wind",
+                             "battery",     "initial_soc_percent",
+                             "capacity_ah", "cutoff_voltage_v",
+                             "packs",       "reserve_soc_percent",
+                             "may_charge",  "components",
+                             "schedule",    "plan",
+                             "policy",      "uncertainty"});
     require_known_format(root);
     MissionSetup mission;
     mission.file = path.string();
     mission.name = root.optional_string("name").value_or(path.stem().string());
     mission.mechanical = read_mechanical(root);
     mission.phase_clock = read_clock(root, mission.mechanical.has_value());
+    mission.packs = read_packs(root);
     if (!root.has("path")) apply_airspeed(root, mission);
     read_durations(root, mission);
     read_cruise_path(root, reading, mission);

@@ -105,6 +105,31 @@ void read_levels(const TomlTable& levels, const compute::PowerProfile& profile, 
 
 }  // namespace
 
+std::optional<Packs> read_packs(const TomlTable& mission) {
+    constexpr double most_packs = 1000.0;
+    constexpr double max_change_s = 1e6;
+    const auto table = mission.optional_table("packs", "{ count = 3, change_s = 300 }");
+    if (!table) return std::nullopt;
+    table->refuse_keys_except({"count", "change_s", "home", "battery"});
+    Packs packs;
+    packs.count = count_in(*table, "count", 1);
+    require_in(at_most(most_packs), static_cast<double>(packs.count), "count", table->where("count"));
+    packs.change_s = number_in(between(0.0, max_change_s), *table, "change_s");
+    if (table->has("home") && !mission.has("path"))
+        throw InputError(table->where("home"), "home belongs to a [path]", "leave it out, or add one");
+    if (!table->has("battery")) return packs;
+    for (const auto& name : table->strings("battery"))
+        packs.batteries.push_back(battery::read_battery(std::filesystem::path(table->file()).parent_path() / name));
+    if (packs.batteries.size() != packs.count)
+        throw InputError(table->where("battery"),
+                         fmt::format("{} batteries for {} packs", packs.batteries.size(), packs.count),
+                         "give one for each pack, in the order of the flights");
+    if (mission.has("capacity_ah"))
+        throw InputError(mission.where("capacity_ah"), "capacity_ah, and [packs] has batteries of their own",
+                         "leave one of them out");
+    return packs;
+}
+
 Utility read_utility(const TomlTable& table, const compute::PowerProfile& profile) {
     table.refuse_keys_except({"parameter", "weight", "shape", "qos", "value", "worth"});
     Utility utility;

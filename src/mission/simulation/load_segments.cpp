@@ -138,6 +138,7 @@ double quick_step_s(const LoadSegment& segment) {
 }
 
 MissionLoad make_mission_load(const MissionSetup& mission) {
+    require_single_flight(mission);
     MissionLoad load{mission, timeline_of(mission.duration_s), {}, {}};
     for (const auto phase : all_phases) {
         if (!mission.mechanical || mission.duration_s[phase] == 0.0) continue;

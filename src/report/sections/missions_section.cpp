@@ -126,6 +126,15 @@ std::vector<Section> mission_sections(Missions missions, std::span<const mechani
     return sections;
 }
 
+Section packs_section(std::span<const mission::PackFlights> missions) {
+    Section section{"packs", "Several packs"};
+    for (const auto& all : missions) {
+        section.html += paragraph(describe(all) + ".");
+        add_table(section, {table_of(all.flights), "Flights of " + all.setup.name, "tab:packs"});
+    }
+    return section;
+}
+
 Section replay_section(std::span<const mission::Replay> replays) {
     Section section{"replay", "Replay"};
     section.html += paragraph(

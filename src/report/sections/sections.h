@@ -6,7 +6,7 @@
 #include "mechanical/mechanical_model.h"
 #include "mechanical/model_fit.h"
 #include "mechanical/validation.h"
-#include "mission/mission.h"
+#include "mission/packs.h"
 #include "mission/replay.h"
 #include "report/batch_content.h"
 #include "report/figure.h"
@@ -77,6 +77,9 @@ std::optional<Section> physical_section(std::span<const mechanical::MeasuredFlig
 /// the quality of service as Fig. 4. `missions` is not empty.
 std::vector<Section> mission_sections(std::span<const SimulatedMission> missions,
                                       std::span<const mechanical::MechanicalModel> shown = {});
+
+/// Missions over several packs: a row for each flight.
+Section packs_section(std::span<const mission::PackFlights> missions);
 
 /// Schedules of missions on the flights' measured power. `replays` is not empty.
 Section replay_section(std::span<const mission::Replay> replays);

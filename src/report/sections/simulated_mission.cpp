@@ -114,6 +114,7 @@ MissionAssessment assess_mission(const SimulatedMission& simulated, const missio
         answer.no_reach_reason = "its file cannot be read again";
         return answer;
     }
+    if (setup_of(*mission).packs) return answer;  // reach and capacity are of one flight
     answer.is_unplanned = std::holds_alternative<mission::PlanningProblem>(*mission);
     answer.reach = try_compute([&] { return find_reach(mission_of); }, &answer.no_reach_reason);
     if (answer.reach && simulated.simulation.summary.samples)

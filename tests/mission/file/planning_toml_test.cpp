@@ -170,5 +170,36 @@ TEST(AdaptivePolicyToml, ReadsAndRefuses) {
               "m.toml:3:1: decide_every_s = 0, expected 0.1 to 1000000");
 }
 
+TEST(PacksToml, AreRead) {
+    const auto mission = read("[packs]\ncount = 3\nchange_s = 300\n");
+    EXPECT_EQ(setup_of(mission).packs->count, 3U);
+    EXPECT_EQ(setup_of(mission).packs->change_s, 300.0);
+    EXPECT_FALSE(setup_of(read("")).packs);
+}
+
+TEST(PacksToml, OfWrongNumbersAreRefused) {
+    const auto without_folder = [](const std::string& packs) { return refused("[packs]\n" + packs); };
+    EXPECT_EQ(without_folder("count = 0\nchange_s = 300\n"),
+              "m.toml:5:1: count = 0, expected a whole number, 1 or more");
+    EXPECT_EQ(without_folder("count = 2.5\nchange_s = 300\n"), "m.toml:5:1: count = 2.5, expected a whole number");
+    EXPECT_NE(without_folder("count = 1001\nchange_s = 300\n"), "");
+    EXPECT_NE(without_folder("count = 2\nchange_s = -1\n").find("m.toml:6:1: change_s = -1"), std::string::npos);
+    EXPECT_NE(without_folder("count = 2\n").find("change_s"), std::string::npos);
+    EXPECT_NE(without_folder("count = 2\nchange_time = 300\n").find("change_s"), std::string::npos);
+    EXPECT_NE(without_folder("count = 2\nchange_s = 0\nhome = { east_m = 0, north_m = 0 }\n").find("home belongs"),
+              std::string::npos);
+    EXPECT_NE(without_folder("count = 2\nchange_s = 0\nbattery = [\"no.toml\", \"no.toml\"]\n").find("no.toml"),
+              std::string::npos);
+    const auto pack = (test::source_dir() / "fits" / "battery" / "paper.toml").string();
+    EXPECT_NE(without_folder("count = 2\nchange_s = 0\nbattery = [\"" + pack + "\"]\n").find("1 batteries for 2 packs"),
+              std::string::npos);
+    EXPECT_NE(rejected([&] {
+                  parse_mission(
+                      head + "capacity_ah = 3\n[packs]\ncount = 1\nchange_s = 0\nbattery = [\"" + pack + "\"]\n",
+                      mission_folder() / "m.toml");
+              }).find("capacity_ah, and [packs] has"),
+              std::string::npos);
+}
+
 }  // namespace
 }  // namespace flightwatt::mission

@@ -1,0 +1,257 @@
+#include "mission/packs.h"
+
+#include "base/duration_text.h"
+#include "base/error.h"
+#include "base/units.h"
+#include "mission/planning/planner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace flightwatt::mission {
+namespace {
+
+constexpr std::size_t most_flights = 1000;
+constexpr double parts_tried = 200.0;  ///< of the cruise, after which it may be left; the best is then narrowed
+constexpr double min_part_s = 1.0;     ///< that a pack has to fly
+constexpr double same_s = 1e-3;
+constexpr double search_step_s = 1.0;      ///< of integration
+constexpr double rounding_percent = 1e-4;  ///< above the reserve, for that step
+constexpr double balance_percent = 0.1;    ///< to which the flights' charge is balanced
+
+/// A part of the cruise, flown with a pack.
+struct CruisePart : TimeInterval {
+    std::size_t pack = 0;  ///< from 0
+};
+
+/// The schedule of a part of the cruise, which begins at `out_s` of the flight's; what runs at its ends also does on the
+/// ways there and home.
+Schedule schedule_of(const Schedule& whole, const CruisePart& part, double out_s, const PerPhase<double>& flown_s) {
+    Schedule schedule;
+    for (const auto phase : all_phases) {
+        const bool is_cruise = phase == Phase::cruise;
+        const auto [start_s, end_s] = is_cruise ? static_cast<TimeInterval>(part) : TimeInterval{0.0, flown_s[phase]};
+        for (auto segment : clip_to_interval(whole, {phase, start_s, end_s})) {
+            const double later_s = is_cruise ? out_s - start_s : 0.0;
+            segment.start_s = segment.start_s == start_s ? 0.0 : segment.start_s + later_s;
+            segment.end_s = segment.end_s == end_s ? flown_s[phase] : segment.end_s + later_s;
+            schedule.push_back(std::move(segment));
+        }
+    }
+    return schedule;
+}
+
+/// Divides a mission. Positions are times [s] of the cruise flown at once.
+class PackDivider {
+  public:
+    explicit PackDivider(const MissionVariant& mission)
+        : least_(with_minimum_energy_schedule(mission)),
+          packs_(*least_.setup.packs),
+          end_s_(least_.setup.duration_s[Phase::cruise]) {
+        if (!least_.setup.cruise_path) return;
+        plan_ = least_.setup.cruise_path->plan.get();
+        at_once_ = compute_trajectory(plan_->path, plan_->wind);
+    }
+
+    double end_s() const { return end_s_; }
+
+    /// Where each flight leaves the cruise if it goes as far as it can, up to where no pack gets further.
+    std::vector<double> farthest_ends_s(double margin_percent, std::size_t most) const {
+        std::vector<double> ends_s;
+        double from_s = 0.0;
+        while (from_s < end_s_ && ends_s.size() < most) {
+            const double to_s = farthest_s(ends_s.size(), from_s, margin_percent);
+            if (to_s < std::min(from_s + min_part_s, end_s_)) break;
+            ends_s.push_back(from_s = to_s);
+        }
+        return ends_s;
+    }
+
+    /// The same of as many flights, with the greatest charge that all of them can keep above the reserve.
+    std::vector<double> balanced(std::vector<double> ends_s) const {
+        double low = rounding_percent;
+        double high = 100.0;
+        while (high - low > balance_percent) {
+            const double margin = std::midpoint(low, high);
+            auto tried_s = farthest_ends_s(margin, ends_s.size());
+            const bool is_possible = !tried_s.empty() && tried_s.back() == end_s_;
+            (is_possible ? low : high) = margin;
+            if (is_possible) ends_s = std::move(tried_s);
+        }
+        return ends_s;
+    }
+
+    PackFlight flight(const MissionVariant& mission, const CruisePart& part) const {
+        PackFlight flight;
+        flight.pack = part.pack + 1;
+        flight.mission = mission;
+        if (auto* scheduled = std::get_if<Mission>(&flight.mission))
+            shorten(scheduled->setup, scheduled->schedule, part);
+        else
+            shorten(std::get<PlanningProblem>(flight.mission).setup, std::get<PlanningProblem>(flight.mission).fixed,
+                    part);
+        flight.cruise_from_s = part.start_s;
+        flight.cruise_to_s = part.end_s;
+        flight.largest_to_s = farthest_s(part.pack, part.start_s, rounding_percent);
+        if (plan_ == nullptr || part.end_s == end_s_) return flight;
+        const auto [element, completed] = position_at(at_once_, part.end_s);
+        flight.return_from =
+            fmt::format("{}, {:.0f} %", plan_->path.elements[element].name, units::percentage(completed, 1.0));
+        const auto place = local_position_at(plan_->path, {element, completed});
+        flight.return_east_m = place.east_m;
+        flight.return_north_m = place.north_m;
+        return flight;
+    }
+
+  private:
+    /// The way from home to a position of the path, or home from it.
+    path::PathElement way(const path::PathPosition& position, bool is_home) const {
+        const auto& elements = plan_->path.elements;
+        const double sign = is_home ? -1.0 : 1.0;
+        const auto there = local_position_at(plan_->path, position) - packs_.home;
+        path::PathElement way;
+        way.name = is_home ? "way home" : "way to the path";
+        way.airspeed_m_per_s = elements[std::min(position.element, elements.size() - 1)].airspeed_m_per_s;
+        for (const auto& element : path_between(plan_->path, {}, position).elements)
+            way.altitude_change_m += sign * element.altitude_change_m;
+        const double course_deg = std::atan2(sign * there.east_m, sign * there.north_m) * units::degree_per_rad;
+        way.shape = path::Leg{std::hypot(there.east_m, there.north_m), std::fmod(course_deg + 360.0, 360.0)};
+        return way;
+    }
+
+    /// Makes setup and schedule those of a part.
+    void shorten(MissionSetup& setup, Schedule& schedule, const CruisePart& part) const {
+        setup.packs.reset();
+        setup.name += fmt::format(", pack {}", part.pack + 1);
+        if (part.pack < packs_.batteries.size()) setup.battery = packs_.batteries[part.pack];
+        setup.duration_s[Phase::cruise] = part.duration_s();
+        setup.duration_is_stated[Phase::cruise] = true;
+        schedule = schedule_of(schedule, part, make_path(setup, part), setup.duration_s);
+    }
+
+    /// Makes the path of a part; the time of the flight's cruise at which the part begins.
+    double make_path(MissionSetup& setup, const CruisePart& part) const {
+        if (plan_ == nullptr) return 0.0;
+        const auto from = position_at(at_once_, part.start_s);
+        const bool goes_home = part.end_s < end_s_;
+        const auto to = goes_home ? position_at(at_once_, part.end_s) : path::PathPosition{plan_->path.elements.size()};
+        path::PlannedPath plan{path_between(plan_->path, from, to), plan_->wind, plan_->power};
+        auto& elements = plan.path.elements;
+        if (part.start_s > 0.0) elements.insert(elements.begin(), way(from, false));
+        if (goes_home) elements.push_back(way(to, true));
+        set_cruise_path(setup, plan);
+        return part.start_s > 0.0 ? compute_trajectory(plan.path, plan.wind).element_s.front() : 0.0;
+    }
+
+    /// Whether a part lands with so much more than the reserve, with the least energy demand.
+    bool lands(const CruisePart& part, double margin_percent) const {
+        try {
+            auto mission = least_;
+            shorten(mission.setup, mission.schedule, part);
+            const auto summary = simulate(mission, {mission.setup.duration_s[Phase::cruise], search_step_s}).summary;
+            return summary.feasible && *summary.final_soc_percent >= summary.reserve_soc_percent + margin_percent;
+        } catch (const InputError&) {  // the wind forbids a way, or it is too short for the change of height
+            return false;
+        }
+    }
+
+    /// The farthest position that a pack returns from with so much charge, `from_s` if there is none. As the way home may
+    /// become shorter, positions all along the cruise are tried.
+    double farthest_s(std::size_t pack, double from_s, double margin_percent) const {
+        const double step_s = std::max(min_part_s, end_s_ / parts_tried);
+        double best_s = from_s;
+        double beyond_s = end_s_;
+        for (double to_s = end_s_; to_s > from_s && best_s == from_s; to_s -= step_s) {
+            if (lands({{from_s, to_s}, pack}, margin_percent))
+                best_s = to_s;
+            else
+                beyond_s = to_s;
+        }
+        if (best_s == end_s_) return best_s;
+        while (beyond_s - best_s > same_s) {
+            const double middle_s = std::midpoint(best_s, beyond_s);
+            (lands({{from_s, middle_s}, pack}, margin_percent) ? best_s : beyond_s) = middle_s;
+        }
+        return best_s;
+    }
+
+    Mission least_;
+    const Packs& packs_;
+    double end_s_ = 0.0;
+    const path::PlannedPath* plan_ = nullptr;
+    path::PathTrajectory at_once_;
+};
+
+/// Adds a flight that was simulated to the others.
+void add(PackFlight& flight, PackFlights& all) {
+    const auto& [curve, summary] = flight.flown.simulation;
+    auto& total = all.total;
+    const double pause_s = flight.pack > 1 ? all.setup.packs->change_s : 0.0;
+    flight.start_s = total.duration_s + pause_s;
+    const double in_air_s = total.duration_s - all.on_ground_s;
+    all.on_ground_s += pause_s;
+    all.suffice = all.suffice && summary.keeps_reserve;
+    total.duration_s = flight.start_s + summary.duration_s;
+    total.mechanical_energy_wh += summary.mechanical_energy_wh;
+    total.compute_energy_wh += summary.compute_energy_wh;
+    total.energy_wh += summary.energy_wh;
+    total.final_soc_percent =
+        std::min(total.final_soc_percent.value_or(100.0), summary.final_soc_percent.value_or(0.0));
+    if (summary.utility)
+        total.utility = (total.utility.value_or(0.0) * in_air_s + *summary.utility * summary.duration_s) /
+                        (in_air_s + summary.duration_s);
+    for (auto row : curve.rows) {
+        row.time_s += flight.start_s;
+        all.curve.rows.push_back(row);
+    }
+}
+
+}  // namespace
+
+PackFlights fly_packs(const MissionVariant& mission, const SimulationOptions& steps) {
+    PackFlights all;
+    all.setup = setup_of(mission);
+    const auto& packs = *all.setup.packs;
+    const PackDivider divider(mission);
+    auto ends_s = divider.farthest_ends_s(rounding_percent, most_flights);
+    if (!ends_s.empty() && ends_s.back() == divider.end_s()) all.needed = ends_s.size();
+    all.suffice = all.needed && *all.needed <= packs.count;
+    all.total.mission = all.setup.name;
+    all.total.reserve_soc_percent = all.setup.reserve_soc_percent;
+    all.total.power_model = all.setup.power_model;
+    ends_s.resize(std::min(ends_s.size(), packs.count));
+    if (all.suffice) ends_s = divider.balanced(std::move(ends_s));
+    CruisePart part;
+    for (const double end_s : ends_s) {
+        part.end_s = end_s;
+        auto& flight = all.flights.emplace_back(divider.flight(mission, part));
+        flight.flown = simulate_prepared(prepare_mission(flight.mission), steps);
+        add(flight, all);
+        part = {{end_s, end_s}, part.pack + 1};
+    }
+    all.total.feasible = all.total.keeps_reserve = all.suffice;
+    return all;
+}
+
+std::string describe(const PackFlights& all) {
+    const auto text = fmt::format("{}: {} of {} packs", all.setup.name, all.flights.size(), all.setup.packs->count);
+    if (all.suffice)
+        return fmt::format(
+            "{}, {} with {} on the ground; {:.3f} Wh; each flight lands with {:.2f} % of its charge or "
+            "more, reserve {:.2f} %",
+            text, duration_text(all.total.duration_s), duration_text(all.on_ground_s), all.total.energy_wh,
+            *all.total.final_soc_percent, all.setup.reserve_soc_percent);
+    const double flown_s = all.flights.empty() ? 0.0 : all.flights.back().cruise_to_s;
+    return fmt::format("{} fly {} of {} of the cruise with the reserve; {}", text, duration_text(flown_s),
+                       duration_text(all.setup.duration_s[Phase::cruise]),
+                       all.needed ? fmt::format("{} packs would do", *all.needed)
+                                  : std::string("no number of packs would do: none gets further and lands with it"));
+}
+
+}  // namespace flightwatt::mission

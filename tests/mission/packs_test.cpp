@@ -1,0 +1,271 @@
+#include "mission/packs.h"
+
+#include "helpers/rejected.h"
+#include "mission/mission_file.h"
+#include "mission/plan.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::mission {
+namespace {
+
+using test::rejected;
+
+MissionVariant read(const std::string& text) {
+    return parse_mission(text, test::source_dir() / "packs.toml", {.allow_unplanned = true});
+}
+
+const std::string wing = R"(
+mechanical = "fits/mechanical/synthetic-wing.toml"
+battery = "fits/battery/synthetic-3s.toml"
+capacity_ah = 0.6
+cutoff_voltage_v = 10
+reserve_soc_percent = 20
+)";
+
+/// What each hand-written mission computes, and the flights of the mission over several packs beside it.
+void expect_equal(const PackFlights& all, const std::vector<std::string>& missions) {
+    ASSERT_EQ(all.flights.size(), missions.size());
+    EXPECT_TRUE(all.suffice) << describe(all);
+    double start_s = 0.0;
+    double energy_wh = 0.0;
+    std::size_t row = 0;
+    for (std::size_t i = 0; i < missions.size(); ++i) {
+        SCOPED_TRACE(missions[i]);
+        const auto one = simulate(std::get<Mission>(read(missions[i])));
+        const auto& summary = all.flights[i].flown.simulation.summary;
+        EXPECT_NEAR(all.flights[i].start_s, start_s, 1e-6);
+        EXPECT_NEAR(summary.duration_s, one.summary.duration_s, 1e-6);
+        EXPECT_NEAR(summary.energy_wh, one.summary.energy_wh, 1e-8);
+        EXPECT_NEAR(summary.compute_energy_wh, one.summary.compute_energy_wh, 1e-8);
+        EXPECT_NEAR(*summary.final_soc_percent, *one.summary.final_soc_percent, 1e-6);
+        ASSERT_LE(row + one.curve.rows.size(), all.curve.rows.size());
+        for (const auto& expected : one.curve.rows) {
+            const auto& actual = all.curve.rows[row++];
+            ASSERT_NEAR(actual.time_s, start_s + expected.time_s, 1e-6);
+            ASSERT_NEAR(actual.soc_percent, expected.soc_percent, 1e-6) << expected.time_s;
+            ASSERT_NEAR(actual.power_w, expected.power_w, 1e-5) << expected.time_s;
+        }
+        energy_wh += one.summary.energy_wh;
+        start_s += one.summary.duration_s + all.setup.packs->change_s;
+    }
+    EXPECT_EQ(row, all.curve.rows.size());
+    EXPECT_NEAR(all.total.energy_wh, energy_wh, 1e-8);
+    EXPECT_NEAR(all.total.duration_s, start_s - all.setup.packs->change_s, 1e-6);
+}
+
+/// The paper's aircraft, and its pack, with two components and a part of the cruise in which more runs.
+TEST(PackFlights, AreThreeMissionsFlownOneAfterTheOther) {
+    const std::string paper = R"(
+mechanical = "fits/mechanical/opterra-table1.toml"
+battery = "fits/battery/paper.toml"
+reserve_soc_percent = 5
+[components.detection]
+profile = "fits/compute/tx2-detection.csv"
+)";
+    const std::string ends = R"(
+[[schedule]]
+phase = "takeoff"
+run = {}
+[[schedule]]
+phase = "landing"
+run = {}
+)";
+    const auto runs = [](double from_s, double to_s, const char* fps) {
+        return fmt::format(
+            "[[schedule]]\nphase = \"cruise\"\nfrom = {:.17g}\nto = {:.17g}\nrun = {{ detection = {{ fps "
+            "= {} }} }}\n",
+            from_s, to_s, fps);
+    };
+    const auto all =
+        fly_packs(read("duration_s = { cruise = 1500 }\n" + paper + "[packs]\ncount = 3\nchange_s = 240\n" + ends +
+                       runs(0, 700, "10") + runs(700, 900, "32") + runs(900, 1500, "10")));
+    ASSERT_EQ(all.flights.size(), 3U);
+    const double first_s = all.flights[0].cruise_to_s;
+    const double second_s = all.flights[1].cruise_to_s;
+    ASSERT_TRUE(first_s < 700.0 && second_s > 900.0);
+    const auto flight = [&](double cruise_s) { return fmt::format("duration_s = {{ cruise = {:.17g} }}\n", cruise_s); };
+    const double middle_s = second_s - first_s;
+    expect_equal(all, {flight(first_s) + paper + ends + runs(0, first_s, "10"),
+                       flight(middle_s) + paper + ends + runs(0, 700 - first_s, "10") +
+                           runs(700 - first_s, 900 - first_s, "32") + runs(900 - first_s, middle_s, "10"),
+                       flight(1500 - second_s) + paper + ends + runs(0, 1500 - second_s, "10")});
+}
+
+struct Waypoint {
+    double east_m = 0.0, north_m = 0.0, altitude_m = 0.0;
+};
+
+std::string leg(const Waypoint& to) {
+    return fmt::format("[[path.leg]]\neast_m = {:.17g}\nnorth_m = {:.17g}\naltitude_m = {:.17g}\n", to.east_m,
+                       to.north_m, to.altitude_m);
+}
+
+/// Lines in wind, some of which climb, from a home beside them.
+TEST(PackFlights, OnAPathAreThreeMissionsWithTheWaysHome) {
+    const std::vector<Waypoint> places{{0, 0, 90},    {4000, 0, 90},    {4000, 300, 90},  {0, 300, 120},
+                                       {0, 600, 120}, {4000, 600, 150}, {4000, 900, 150}, {0, 900, 150},
+                                       {0, 1200, 90}, {4000, 1200, 70}};
+    const Waypoint home{300, -200, 90};
+    const auto path_from = [](const Waypoint& start) {
+        return fmt::format("[path]\nairspeed_m_per_s = 13\naltitude_m = 90\nstart = {{ east_m = {}, north_m = {} }}\n",
+                           start.east_m, start.north_m);
+    };
+    const std::string windy = wing + "[wind]\nspeed_m_per_s = 4\nfrom_deg = 250\n";
+    auto whole =
+        windy + "[packs]\ncount = 4\nchange_s = 60\nhome = { east_m = 300, north_m = -200 }\n" + path_from(places[0]);
+    for (std::size_t i = 1; i < places.size(); ++i) whole += leg(places[i]);
+    const auto all = fly_packs(read(whole));
+    ASSERT_EQ(all.flights.size(), 3U);
+    std::vector<std::string> missions;
+    std::size_t next = 1;  // place
+    auto from = places[0];
+    for (const auto& flight : all.flights) {
+        auto text = windy + path_from(missions.empty() ? from : home) + (missions.empty() ? "" : leg(from));
+        if (flight.return_from.empty()) {
+            for (; next < places.size(); ++next) text += leg(places[next]);
+        } else {
+            for (const auto last = std::stoul(flight.return_from.substr(4)); next < last; ++next)
+                text += leg(places[next]);
+            const auto &before = places[next - 1], &after = places[next];
+            from = {*flight.return_east_m, *flight.return_north_m, 0.0};
+            const double part = std::hypot(from.east_m - before.east_m, from.north_m - before.north_m) /
+                                std::hypot(after.east_m - before.east_m, after.north_m - before.north_m);
+            from.altitude_m = std::lerp(before.altitude_m, after.altitude_m, part);
+            text += leg(from) + leg(home);
+        }
+        missions.push_back(text);
+    }
+    expect_equal(all, missions);
+}
+
+/// Circles, holds and the survey of a flight plan: nothing of the path is lost or flown twice.
+TEST(PackFlights, FlyAllOfAFlightPlan) {
+    const auto whole = wing + R"([path]
+airspeed_m_per_s = 13
+flight_plan = "missions/synthetic/flight-plan.xml"
+blocks = ["Oval 1-2", "Survey", "Standby", "Survey"]
+radius_m = 70
+return_to_start = true
+[[path.leg]]
+hold_s = 900
+[[path.leg]]
+east_m = 900
+north_m = 900
+circles = 40
+radius_m = 80
+[wind]
+speed_m_per_s = 5
+from_deg = 30
+)";
+    const auto at_once = std::get<Mission>(read(whole)).setup.cruise_path->plan->path;
+    const auto all = fly_packs(read(whole + "[packs]\ncount = 9\nchange_s = 60\n"));
+    ASSERT_TRUE(all.suffice) << describe(all);
+    ASSERT_GT(all.flights.size(), 1U);
+    const auto sums = [](const path::FlightPath& path, auto& turns, auto& hold_s, auto& height_m) {
+        double length_m = 0.0;
+        for (const auto& element : path.elements) {
+            if (element.name == "way home" || element.name == "way to the path") continue;
+            height_m += element.altitude_change_m;
+            if (const auto* leg = std::get_if<path::Leg>(&element.shape)) length_m += leg->length_m;
+            if (const auto* circles = std::get_if<path::Circles>(&element.shape)) turns += circles->turns;
+            if (const auto* hold = std::get_if<path::Hold>(&element.shape)) hold_s += hold->time_s;
+        }
+        return length_m;
+    };
+    double turns = 0.0, hold_s = 0.0, height_m = 0.0, flown_m = 0.0;
+    const double length_m = sums(at_once, turns, hold_s, height_m);
+    for (const auto& flight : all.flights) {
+        const auto& setup = setup_of(flight.mission);
+        double flown_turns = 0.0, flown_hold_s = 0.0, flown_height_m = 0.0;
+        flown_m += sums(setup.cruise_path->plan->path, flown_turns, flown_hold_s, flown_height_m);
+        turns -= flown_turns;
+        hold_s -= flown_hold_s;
+        height_m -= flown_height_m;
+        double change_m = 0.0;  // every flight ends at the height that it began at
+        for (const auto& element : setup.cruise_path->plan->path.elements) change_m += element.altitude_change_m;
+        EXPECT_NEAR(change_m, 0.0, 1e-6);
+        const auto& elements = setup.cruise_path->plan->path.elements;
+        const auto end = path::local_position_at(path::FlightPath{elements}, {elements.size(), 0.0});
+        EXPECT_NEAR(std::hypot(end.east_m, end.north_m), 0.0, 1e-6 * flown_m);  // from home, and back
+    }
+    EXPECT_NEAR(flown_m, length_m, 1e-6 * length_m);
+    EXPECT_NEAR(turns, 0.0, 1e-6);
+    EXPECT_NEAR(hold_s, 0.0, 1e-6);
+    EXPECT_NEAR(height_m, 0.0, 1e-6);
+}
+
+TEST(PackFlights, AreTheFewestAndShareTheChargeEvenly) {
+    const auto text = [](int count) {
+        return "duration_s = { cruise = 3000 }\n" + wing + fmt::format("[packs]\ncount = {}\nchange_s = 60\n", count);
+    };
+    const auto all = fly_packs(read(text(5)));
+    ASSERT_TRUE(all.suffice);
+    ASSERT_GT(all.flights.size(), 1U);
+    EXPECT_EQ(*all.needed, all.flights.size());
+    for (const auto& flight : all.flights) {
+        EXPECT_NEAR(*flight.flown.simulation.summary.final_soc_percent, *all.total.final_soc_percent, 0.5);
+        EXPECT_GE(flight.largest_to_s, flight.cruise_to_s);
+    }
+    EXPECT_NEAR(all.flights.front().cruise_to_s, 3000.0 / static_cast<double>(all.flights.size()), 30.0);
+    // One pack fewer cannot do it: the flights go as far as they can.
+    const auto fewer = fly_packs(read(text(static_cast<int>(all.flights.size()) - 1)));
+    EXPECT_FALSE(fewer.suffice);
+    EXPECT_EQ(fewer.needed, all.needed);
+    for (const auto& flight : fewer.flights) {
+        EXPECT_NEAR(*flight.flown.simulation.summary.final_soc_percent, 20.0, 0.01);
+        EXPECT_EQ(flight.largest_to_s, flight.cruise_to_s);
+    }
+    EXPECT_NE(describe(fewer).find(fmt::format("{} packs would do", *all.needed)), std::string::npos);
+}
+
+TEST(PackFlights, HaveTheirOwnPacks) {
+    const auto all =
+        fly_packs(read("duration_s = { cruise = 4000 }\nreserve_soc_percent = 20\nmechanical = "
+                       "\"fits/mechanical/synthetic-wing.toml\"\nbattery = "
+                       "\"fits/battery/synthetic-3s.toml\"\n[packs]\ncount = 2\nchange_s = 60\nbattery = "
+                       "[\"fits/battery/paper.toml\", \"fits/battery/synthetic-3s.toml\"]\n"));
+    ASSERT_EQ(all.flights.size(), 2U);
+    EXPECT_EQ(setup_of(all.flights[0].mission).battery.voltage_v, 3.416);
+    EXPECT_TRUE(setup_of(all.flights[1].mission).battery.thevenin);
+    EXPECT_LT(all.flights[0].cruise_to_s, 1500.0);  // a third of the energy
+}
+
+TEST(PackFlights, AreNotPossibleWhereNoPackGetsFurther) {
+    const auto all = fly_packs(read(wing + "[packs]\ncount = 3\nchange_s = 60\n[path]\nairspeed_m_per_s = 13\n" +
+                                    "[[path.leg]]\nlength_m = 60000\ncourse_deg = 0\n"));
+    EXPECT_FALSE(all.suffice);
+    EXPECT_FALSE(all.needed);
+    EXPECT_NE(describe(all).find("no number of packs would do"), std::string::npos) << describe(all);
+}
+
+TEST(PackFlights, ArePlannedEachOnItsOwn) {
+    const auto all = fly_packs(
+        read_mission(test::source_dir() / "missions/synthetic/several-packs.toml", {.allow_unplanned = true}));
+    ASSERT_TRUE(all.suffice) << describe(all);
+    double utility = 0.0, time_s = 0.0;
+    for (const auto& flight : all.flights) {
+        const auto& summary = flight.flown.simulation.summary;
+        EXPECT_TRUE(summary.keeps_reserve);
+        const auto plan = plan_mission(std::get<PlanningProblem>(flight.mission));
+        EXPECT_EQ(plan.mission.schedule, flight.flown.schedule);
+        utility += *summary.utility * summary.duration_s;
+        time_s += summary.duration_s;
+    }
+    EXPECT_NEAR(*all.total.utility, utility / time_s, 1e-9);
+    EXPECT_NEAR(all.total.duration_s - all.on_ground_s, time_s, 1e-6);
+}
+
+TEST(PackFlights, AreNotTakenForOneFlight) {
+    const auto mission = read(wing + "[packs]\ncount = 3\nchange_s = 60\n");
+    EXPECT_NE(rejected([&] { simulate(std::get<Mission>(mission)); }).find("the mission has [packs]"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace flightwatt::mission
