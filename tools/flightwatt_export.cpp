@@ -22,7 +22,6 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
-#include <map>
 #include <set>
 #include <system_error>
 
@@ -54,11 +53,14 @@ constexpr std::array kind_names{"log or series", "mechanical model", "battery", 
 
 std::string name_of(ExportKind kind) { return kind_names.at(static_cast<std::size_t>(kind)); }
 
+using WriteParameters = exchange::ParameterText (*)(const exchange::EstimatorInput&);
+
 struct Format {
     std::string name;
     std::string ending;  ///< of -o that means it; may be empty
     std::set<ExportKind> kinds;
-    std::set<std::string> options;  ///< that it uses, of those that not all use
+    std::set<std::string> options;    ///< that it uses, of those that not all use
+    WriteParameters write = nullptr;  ///< of parameters
 };
 
 const std::vector<Format>& formats() {
@@ -76,10 +78,13 @@ const std::vector<Format>& formats() {
          {"message", "aircraft", "sortie", "exclude", "keep", "correct-idle-offset", "messages"}},
         {"json", ".json", {model, battery}, {}},
         {"c", ".h", {model}, {}},
-        {"px4", ".params", of_aircraft, {"cells"}},
-        {"inav", "", of_aircraft, {"cells", "idle-power"}},
-        {"paparazzi", "", of_aircraft, {"cells", "parallel"}},
-        {"paparazzi-map", "", {battery, mission}, {"cells", "parallel"}},
+        {"px4", ".params", of_aircraft, {"cells"}, exchange::to_px4},
+        {"inav", "", of_aircraft, {"cells", "idle-power"}, exchange::to_inav},
+        {"paparazzi", "", of_aircraft, {"cells", "parallel"}, exchange::to_paparazzi},
+        {"paparazzi-map", "", {battery, mission}, {"cells", "parallel"}, exchange::to_paparazzi_map},
+        {"ardupilot-sitl", ".parm", of_aircraft, {}, exchange::to_ardupilot_sitl},
+        {"px4-sitl", "", of_aircraft, {"cells"}, exchange::to_px4_sitl},
+        {"gazebo", ".sdf", of_aircraft, {}, exchange::to_gazebo},
         {"latex", ".tex", {model, battery, mission, batch}, {"replay", "capacity"}}};
     return all;
 }
@@ -102,19 +107,16 @@ ExportKind kind_of(const std::string& file) {
     return kind == FileKind::battery ? ExportKind::battery : ExportKind::model;
 }
 
-std::string format_names() {
-    return names_of_formats([](const Format&) { return true; });
-}
-
 const Format& format_of(const cli::StageCall& call, const std::optional<std::string>& name) {
     const auto ending = call.output ? std::filesystem::path(*call.output).extension().string() : "";
     for (const auto& format : formats())
         if (name ? format.name == *name : !ending.empty() && format.ending == ending) return format;
-    if (name) throw UsageError(fmt::format("--format {}: expected one of {}", *name, format_names()));
+    const auto names = names_of_formats([](const Format&) { return true; });
+    if (name) throw UsageError(fmt::format("--format {}: expected one of {}", *name, names));
     throw UsageError(
-        fmt::format("expected -o FILE that ends in .geojson, .kml, .gpx, .csv, .json, .h, .params or .tex, or "
-                    "--format NAME, one of {}",
-                    format_names()));
+        fmt::format("expected -o FILE that ends in .geojson, .kml, .gpx, .csv, .json, .h, .params, .parm, .sdf or "
+                    ".tex, or --format NAME, one of {}",
+                    names));
 }
 
 void require_fitting(const ExportInput& input, const Format& format) {
@@ -148,8 +150,7 @@ void require_few(const std::vector<ExportInput>& inputs, const Format& format) {
         return static_cast<std::size_t>(std::ranges::count(inputs, kind, &ExportInput::kind));
     };
     const bool is_latex = format.name == "latex";
-    const bool is_of_both =
-        format.kinds.contains(model) && format.kinds.contains(battery) && format.kinds.contains(mission) && !is_latex;
+    const bool is_of_both = format.write && format.kinds.contains(model);
     const bool are_tables = is_latex && of_kind(batch) <= 1 && of_kind(batch) + of_kind(mission) == inputs.size();
     const bool are_both = is_of_both && inputs.size() == 2 && of_kind(model) == 1 && of_kind(battery) == 1;
     if (inputs.size() == 1 || are_tables || are_both) return;
@@ -175,10 +176,7 @@ Fields<Exported> record_fields(const Exported*) {
 
 Exported export_track(const cli::StageCall& call, const ExportArguments& arguments, const std::string& file,
                       const std::string& format) {
-    auto options = arguments.load;
-    options.flight_required = false;
-    options.power_required = false;
-    const auto loaded = cli::load_flight(call, file, options);
+    const auto loaded = cli::load_flight(call, file, arguments.load);
     const auto track = exchange::flown_track(loaded.series, loaded.phases);
     Exported result;
     result.text = format == "geojson" ? to_geojson(track) : format == "kml" ? to_kml(track) : to_gpx(track);
@@ -191,7 +189,7 @@ Exported export_track(const cli::StageCall& call, const ExportArguments& argumen
 }
 
 Exported export_columns(const cli::StageCall& call, const ExportArguments& arguments, const std::string& file) {
-    auto options = arguments.load;
+    const auto& options = arguments.load;
     Exported result;
     if (const auto& message = arguments.message) {
         auto table = exchange::message_table(flight::FlightFile(file, options), *message, options.aircraft_id);
@@ -201,8 +199,6 @@ Exported export_columns(const cli::StageCall& call, const ExportArguments& argum
         result.text = std::move(table.csv);
         return result;
     }
-    options.flight_required = false;
-    options.power_required = false;
     result.text = exchange::series_table(cli::load_flight(call, file, options).series);
     return result;
 }
@@ -232,17 +228,6 @@ exchange::EstimatorInput estimator_input(const cli::StageCall& call, exchange::E
         if (setup.reserve_soc_percent > 0.0) result.reserve_percent = setup.reserve_soc_percent;
     }
     return result;
-}
-
-Exported export_parameters(const cli::StageCall& call, const ExportArguments& arguments,
-                           const std::vector<ExportInput>& inputs, const std::string& format) {
-    using Write = exchange::ParameterText (*)(const exchange::EstimatorInput&);
-    static const std::map<std::string, Write> writers{{"px4", exchange::to_px4},
-                                                      {"inav", exchange::to_inav},
-                                                      {"paparazzi", exchange::to_paparazzi},
-                                                      {"paparazzi-map", exchange::to_paparazzi_map}};
-    auto parameters = writers.at(format)(estimator_input(call, arguments.estimator, inputs));
-    return {std::move(parameters.text), std::move(parameters.notes)};
 }
 
 Exported export_latex(const cli::StageCall& call, const ExportArguments& arguments,
@@ -275,13 +260,17 @@ Exported export_latex(const cli::StageCall& call, const ExportArguments& argumen
 }
 
 Exported exported(const cli::StageCall& call, const ExportArguments& arguments, const std::vector<ExportInput>& inputs,
-                  const std::string& format) {
+                  const Format& to) {
+    const auto& format = to.name;
     const auto& file = inputs.front().file;
+    if (to.write) {
+        auto parameters = to.write(estimator_input(call, arguments.estimator, inputs));
+        return {std::move(parameters.text), std::move(parameters.notes)};
+    }
     if (format == "geojson" || format == "kml" || format == "gpx") return export_track(call, arguments, file, format);
     if (format == "csv") return export_columns(call, arguments, file);
     if (format == "latex") return export_latex(call, arguments, inputs);
     if (format == "c") return {exchange::to_c_header(mechanical::read_mechanical_model(file))};
-    if (format != "json") return export_parameters(call, arguments, inputs, format);
     return {inputs.front().kind == ExportKind::battery
                 ? exchange::to_json_text(battery::read_battery(file))
                 : exchange::to_json_text(mechanical::read_mechanical_model(file))};
@@ -294,7 +283,7 @@ int export_inputs(const cli::StageCall& call, const ExportArguments& arguments) 
     for (const auto& file : call.inputs) inputs.push_back({file, kind_of(file)});
     for (const auto& input : inputs) require_fitting(input, format);
     require_few(inputs, format);
-    auto result = exported(call, arguments, inputs, format.name);
+    auto result = exported(call, arguments, inputs, format);
     cli::write_result(call, result.text);
     for (const auto& note : result.notes) cli::note(call, note);
     if (!call.json) return cli::ok;
@@ -310,12 +299,14 @@ int flightwatt::stages::export_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "export", "FLIGHT|MODEL.toml|PACK.toml|MISSION.toml|OUT...",
         R"(Writes the formats of other programs. Of a log or series: its track (geojson, kml, gpx), or columns over time
-(csv, for PlotJuggler). Of models: json, a header for C99 (c), and the parameters of
-autopilots' estimators (px4, inav, paparazzi, paparazzi-map), from a model and a battery or from a mission. Of models,
-missions and the folder OUT of flightwatt batch: tables (latex). The form is that of FILE's ending
-(.geojson, .kml, .gpx, .csv, .json, .h, .params: px4, .tex) or of --format.)"};
+(csv, for PlotJuggler). Of models: json, a header for C99 (c), and, from a model and a battery or from a mission, the
+parameters of autopilots' estimators (px4, inav, paparazzi, paparazzi-map) and of simulated batteries (ardupilot-sitl,
+px4-sitl, gazebo). Of models, missions and the folder OUT of flightwatt batch: tables (latex). The form is that of
+FILE's ending (.geojson, .kml, .gpx, .csv, .json, .h, .params: px4, .parm: ardupilot-sitl, .sdf: gazebo, .tex) or of
+--format.)"};
     stage.next = [](const auto& call) {
         const auto ending = std::filesystem::path(*call.output).extension();
+        if (ending == ".sdf") return "paste it into the <model> of the aircraft";
         if (ending == ".kml" || ending == ".gpx" || ending == ".geojson") return "open it in QGIS or Google Earth";
         return ending == ".csv" ? "plotjuggler -d {}" : "";
     };
@@ -324,6 +315,7 @@ missions and the folder OUT of flightwatt batch: tables (latex). The form is tha
                       "flightwatt export model.toml pack.toml --format px4"};
     stage.reads_logs = stage.uses_threads = true;
     ExportArguments arguments;
+    arguments.load.flight_required = arguments.load.power_required = false;
     constexpr double max_cells = 100;
     constexpr double max_idle_w = 1e5;
     auto& options = stage.options;

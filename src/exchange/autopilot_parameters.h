@@ -7,10 +7,11 @@
 #include <string>
 #include <vector>
 
-/// Parameters of the estimators of autopilots and ground stations. Each name, unit and conversion: docs/exports.md.
+/// Parameters of the estimators of autopilots and ground stations, and of simulators. Each name, unit and conversion:
+/// docs/exports.md.
 namespace flightwatt::exchange {
 
-/// An aircraft for an estimator. Absent values are not set on the autopilot.
+/// An aircraft for an estimator or a simulator. Absent values are not set there.
 struct EstimatorInput {
     std::optional<mechanical::MechanicalModel> model = {};
     std::optional<battery::Battery> battery = {};
@@ -42,5 +43,16 @@ ParameterText to_paparazzi(const EstimatorInput& input);
 /// Its batterymodel.csv: cell voltage from 4.20 to 2.50 V by 0.01 V, and the charge drawn from a cell [mAh] at that
 /// voltage under 2, 4, 6, 8 and 10 A. Throws InputError without a battery, or for one of constant voltage.
 ParameterText to_paparazzi_map(const EstimatorInput& input);
+
+/// SIM_BATT_... and BATT_CAPACITY of ArduPilot's SITL, a line "NAME VALUE" each. What a simulator does not represent is
+/// in comments and notes, here and below. Throws InputError without a battery.
+ParameterText to_ardupilot_sitl(const EstimatorInput& input);
+
+/// SIM_BAT_... and the voltages of PX4's SITL, as QGroundControl loads them. Throws InputError without battery and
+/// model and beyond PX4's ranges, NoResultError if a full battery cannot deliver the cruise.
+ParameterText to_px4_sitl(const EstimatorInput& input);
+
+/// SDF's <plugin> of Gazebo's LinearBatteryPlugin, for a <model>. Throws InputError without battery and model.
+ParameterText to_gazebo(const EstimatorInput& input);
 
 }  // namespace flightwatt::exchange

@@ -1,8 +1,8 @@
-#include "exchange/autopilot_parameters.h"
-
 #include "base/error.h"
 #include "base/piecewise_linear.h"
 #include "base/units.h"
+#include "exchange/autopilot_parameters.h"
+#include "exchange/estimators/pack_summary.h"
 
 #include <algorithm>
 #include <array>
@@ -15,71 +15,6 @@
 
 namespace flightwatt::exchange {
 namespace {
-
-constexpr double max_charged_cell_v = 4.25;
-
-/// The battery for estimators with a single resistance: in the steady state of the RC pair.
-struct PackSummary {
-    battery::Battery battery;  ///< with the RC pair's resistance in series
-    int cells = 1;             ///< in series
-    double capacity_mah = 0.0;
-    double energy_wh = 0.0;  ///< at the open-circuit voltage, from full to empty
-};
-
-/// Throws InputError without a battery.
-PackSummary summarize_pack(const EstimatorInput& input, const std::string& reader) {
-    if (!input.battery) {
-        throw InputError({}, fmt::format("{} needs a battery, and none is given", reader),
-                         "give a pack of `flightwatt battery`, or a mission");
-    }
-    PackSummary pack;
-    pack.battery = *input.battery;
-    if (pack.battery.thevenin) {
-        pack.battery.resistance_ohm += pack.battery.thevenin->rc_resistance_ohm;
-        pack.battery.thevenin->rc_resistance_ohm = 0.0;
-    }
-    const double full_v = open_circuit_voltage_v(pack.battery, units::percent_per_whole);
-    const auto min_cells = static_cast<int>(std::max(1.0, std::ceil(full_v / max_charged_cell_v)));
-    pack.cells = input.cells_in_series.value_or(pack.battery.cells.value_or(min_cells));
-    pack.capacity_mah = pack.battery.capacity_ah / units::milli;
-    pack.energy_wh = full_energy_wh(pack.battery);
-    return pack;
-}
-
-/// Throws InputError without a model.
-const mechanical::MechanicalModel& required_model(const EstimatorInput& input, const std::string& reader) {
-    if (!input.model) {
-        throw InputError({}, fmt::format("{} needs a mechanical model, and none is given", reader),
-                         "give a model of `flightwatt fit` or `batch` with the battery, or a mission");
-    }
-    return *input.model;
-}
-
-/// The model's mean power of a phase, and the computer's [W].
-double mean_power_w(const EstimatorInput& input, flight::Phase phase) {
-    const auto& curve = input.model.value().phases[phase];
-    return energy_j(curve.fourier, curve.duration_s) / curve.duration_s + input.compute_w;
-}
-
-/// A least-squares polynomial of a curve.
-struct CurveFit {
-    Eigen::VectorXd coefficients;  ///< of 1, x, x^2 ...
-    double max_error = 0.0;
-};
-
-template <typename Curve>
-CurveFit fitted_polynomial(const mechanical::FlownRange& range, int points, int order, const Curve& curve) {
-    Eigen::MatrixXd powers(points, order + 1);
-    Eigen::VectorXd values(points);
-    for (int i = 0; i < points; ++i) {
-        const double x = std::lerp(range.low, range.high, i / (points - 1.0));
-        for (int k = 0; k <= order; ++k) powers(i, k) = std::pow(x, k);
-        values[i] = curve(x);
-    }
-    CurveFit fit{powers.colPivHouseholderQr().solve(values)};
-    fit.max_error = (values - powers * fit.coefficients).cwiseAbs().maxCoeff();
-    return fit;
-}
 
 constexpr auto inav = "INAV";
 constexpr int max_inav_cells = 12;
@@ -111,27 +46,6 @@ double phase_energy_wh(const EstimatorInput& input, flight::Phase phase) {
 double drawn_fraction(const battery::OpenCircuitVoltage& curve, double voltage_v) {
     if (voltage_v >= curve.voltage_v.back()) return 0.0;
     return 1.0 - interpolate_clamped(curve.voltage_v, curve.soc_percent, voltage_v) / units::percent_per_whole;
-}
-
-constexpr auto px4 = "PX4";
-constexpr int max_px4_cells = 16;
-constexpr double max_resistance_ohm = 0.2;  // of a cell
-constexpr double max_capacity_mah = 100'000.0;
-constexpr double max_current_a = 500.0;
-constexpr double half_charged_percent = 50.0;
-
-void require_up_to(double value, double max, const char* name, const char* unit) {
-    if (value <= max) return;
-    throw InputError({}, fmt::format("{} would be {:.4g} {}: PX4 takes up to {:g}", name, value, unit, max),
-                     "is the number of cells right (--cells)?");
-}
-
-/// MAV_PARAM_TYPE of MAVLink.
-enum class ParameterType { int32 = 6, real32 = 9 };
-
-std::string px4_line(const char* name, double value, ParameterType type) {
-    const auto text = type == ParameterType::int32 ? fmt::format("{:.0f}", value) : fmt::format("{:.9g}", value);
-    return fmt::format("1\t1\t{}\t{}\t{}\n", name, text, static_cast<int>(type));
 }
 
 }  // namespace
@@ -226,52 +140,6 @@ ParameterText to_paparazzi_map(const EstimatorInput& input) {
                 fmt::format(", {:.6f}", cell_mah * drawn_fraction(pack.battery.thevenin->open_circuit, source_v));
         }
         result.text += '\n';
-    }
-    return result;
-}
-
-ParameterText to_px4(const EstimatorInput& input) {
-    const auto pack = summarize_pack(input, px4);
-    const double cell_ohm = pack.battery.resistance_ohm / pack.cells;
-    require_up_to(pack.cells, max_px4_cells, "BAT1_N_CELLS", "cells");
-    require_up_to(cell_ohm, max_resistance_ohm, "BAT1_R_INTERNAL", "ohm");
-    require_up_to(pack.capacity_mah, max_capacity_mah, "BAT1_CAPACITY", "mAh");
-    ParameterText result;
-    result.text = "# Written by flightwatt export " FLIGHTWATT_VERSION
-                  ", for PX4 and QGroundControl\n"
-                  "# Vehicle-Id Component-Id Name Value Type\n";
-    result.text += px4_line("BAT1_N_CELLS", pack.cells, ParameterType::int32);
-    result.text += px4_line("BAT1_CAPACITY", pack.capacity_mah, ParameterType::real32);
-    result.text += px4_line("BAT1_R_INTERNAL", cell_ohm, ParameterType::real32);
-    if (pack.battery.thevenin) {
-        // A cell's resting voltage as a line from 10 % on: PX4 requires voltages above the steep drop.
-        constexpr int charges = 91;
-        const auto line = fitted_polynomial({10.0, units::percent_per_whole}, charges, 1, [&](double soc_percent) {
-            return open_circuit_voltage_v(pack.battery, soc_percent) / pack.cells;
-        });
-        const double empty_v = line.coefficients[0];
-        const double v_per_percent = line.coefficients[1];
-        if (!(v_per_percent > 0.0)) {
-            throw InputError({}, "the voltage of this battery does not depend on its state of charge, as PX4 requires",
-                             "identify the open-circuit voltage with flightwatt battery");
-        }
-        result.text += px4_line("BAT1_V_EMPTY", empty_v, ParameterType::real32);
-        result.text +=
-            px4_line("BAT1_V_CHARGED", empty_v + v_per_percent * units::percent_per_whole, ParameterType::real32);
-        result.notes.push_back(
-            fmt::format("PX4's state of charge by voltage is a line: from 10 to 100 % its error is up to "
-                        "{:.0f} points",
-                        line.max_error / v_per_percent));
-    } else {
-        result.notes.emplace_back("the battery has a constant voltage: BAT1_V_EMPTY and BAT1_V_CHARGED are omitted");
-    }
-    if (input.model) {
-        const double current_a =
-            internal_current_a(pack.battery, mean_power_w(input, flight::Phase::cruise), {half_charged_percent, 0.0});
-        require_up_to(current_a, max_current_a, "BAT_AVRG_CURRENT", "A");
-        result.text += px4_line("BAT_AVRG_CURRENT", current_a, ParameterType::real32);
-    } else {
-        result.notes.emplace_back("without a model BAT_AVRG_CURRENT is omitted");
     }
     return result;
 }

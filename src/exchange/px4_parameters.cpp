@@ -1,0 +1,110 @@
+#include "base/error.h"
+#include "base/units.h"
+#include "battery/landing_forecast.h"
+#include "exchange/autopilot_parameters.h"
+#include "exchange/estimators/pack_summary.h"
+
+#include <fmt/format.h>
+
+namespace flightwatt::exchange {
+namespace {
+
+constexpr auto px4 = "PX4";
+constexpr auto px4_sitl = "PX4's SITL";
+constexpr int max_px4_cells = 16;
+constexpr double max_resistance_ohm = 0.2;  // of a cell
+constexpr double max_capacity_mah = 100'000.0;
+constexpr double max_current_a = 500.0;
+constexpr double max_drain_s = 86'400.0;
+
+void require_up_to(double value, double max, const char* name, const char* unit) {
+    if (value <= max) return;
+    throw InputError({}, fmt::format("{} would be {:.4g} {}: PX4 takes up to {:g}", name, value, unit, max),
+                     "are battery, model and number of cells (--cells) those of one aircraft?");
+}
+
+/// MAV_PARAM_TYPE of MAVLink.
+enum class ParameterType { int32 = 6, real32 = 9 };
+
+std::string px4_line(const char* name, double value, ParameterType type = ParameterType::real32) {
+    const auto text = type == ParameterType::int32 ? fmt::format("{:.0f}", value) : fmt::format("{:.9g}", value);
+    return fmt::format("1\t1\t{}\t{}\t{}\n", name, text, static_cast<int>(type));
+}
+
+std::string px4_head(const char* reader) {
+    return fmt::format("# Written by flightwatt export " FLIGHTWATT_VERSION
+                       ", for {} and QGroundControl\n"
+                       "# Vehicle-Id Component-Id Name Value Type\n",
+                       reader);
+}
+
+std::string cells_line(const PackSummary& pack) {
+    require_up_to(pack.cells, max_px4_cells, "BAT1_N_CELLS", "cells");
+    return px4_line("BAT1_N_CELLS", pack.cells, ParameterType::int32);
+}
+
+/// Of a cell.
+std::string voltage_lines(const PackSummary& pack, const VoltageLine& line) {
+    if (!(line.full_v - line.empty_v > units::milli)) {
+        throw InputError({}, "the voltage of this battery does not depend on its state of charge, as PX4 requires",
+                         "identify the open-circuit voltage with flightwatt battery");
+    }
+    return px4_line("BAT1_V_EMPTY", line.empty_v / pack.cells) + px4_line("BAT1_V_CHARGED", line.full_v / pack.cells);
+}
+
+/// Until the full battery is empty; where it fails before, at the rate until then.
+double drain_s(const battery::Battery& battery, double power_w) {
+    const auto end = discharge_constant_load(battery, {}, {power_w, max_drain_s}, 0.0);
+    const double lasts_s = end.failed_at_s().value_or(max_drain_s);
+    if (lasts_s < 1.0)
+        throw NoResultError(fmt::format("the full battery cannot deliver the {:.4g} W of the cruise", power_w));
+    return lasts_s * units::percent_per_whole / (units::percent_per_whole - end.soc_percent);
+}
+
+}  // namespace
+
+ParameterText to_px4(const EstimatorInput& input) {
+    const auto pack = summarize_pack(input, px4);
+    const double cell_ohm = pack.battery.resistance_ohm / pack.cells;
+    ParameterText result{px4_head(px4) + cells_line(pack)};
+    require_up_to(cell_ohm, max_resistance_ohm, "BAT1_R_INTERNAL", "ohm");
+    require_up_to(pack.capacity_mah, max_capacity_mah, "BAT1_CAPACITY", "mAh");
+    result.text += px4_line("BAT1_CAPACITY", pack.capacity_mah) + px4_line("BAT1_R_INTERNAL", cell_ohm);
+    if (pack.battery.thevenin) {
+        const auto line = fitted_line(pack.battery, PackSummary{}.lowest_percent);
+        result.text += voltage_lines(pack, line);
+        result.notes.push_back(
+            fmt::format("PX4's state of charge by voltage is a line: from 10 to 100 % its error is up to {:.0f} points",
+                        units::percentage(line.error_v, line.full_v - line.empty_v)));
+    } else {
+        result.notes.emplace_back("the battery has a constant voltage: BAT1_V_EMPTY and BAT1_V_CHARGED are omitted");
+    }
+    if (input.model) {
+        const double current_a = cruise_current_a(input, pack);
+        require_up_to(current_a, max_current_a, "BAT_AVRG_CURRENT", "A");
+        result.text += px4_line("BAT_AVRG_CURRENT", current_a);
+    } else {
+        result.notes.emplace_back("without a model BAT_AVRG_CURRENT is omitted");
+    }
+    return result;
+}
+
+ParameterText to_px4_sitl(const EstimatorInput& input) {
+    const auto pack = summarize_pack(input, px4_sitl);
+    required_model(input, px4_sitl);
+    const double cruise_w = mean_power_w(input, flight::Phase::cruise);
+    const double full_s = drain_s(*input.battery, cruise_w);
+    require_up_to(full_s, max_drain_s, "SIM_BAT_DRAIN", "s");
+    const auto line = fitted_line(pack.battery, pack.lowest_percent);
+    const double drop_v = pack.battery.resistance_ohm * cruise_current_a(input, pack);
+    ParameterText result{px4_head(px4_sitl)};
+    result.text +=
+        note_limits({voltage_limit(line), fmt::format("the voltage drop under load, in cruise {:.2f} V", drop_v),
+                     "charge by current: it falls evenly in time while armed, on the ground too", power_limit(input)},
+                    "# ", result) +
+        px4_line("SIM_BAT_ENABLE", 1, ParameterType::int32) + px4_line("SIM_BAT_DRAIN", full_s) +
+        px4_line("SIM_BAT_MIN_PCT", 0.0) + cells_line(pack) + voltage_lines(pack, line);
+    return result;
+}
+
+}  // namespace flightwatt::exchange
