@@ -20,23 +20,21 @@ namespace {
 
 using namespace flightwatt;
 
-/// Those that are in cruise at the moment, with what they had flown by then.
-std::vector<mechanical::MeasuredFlight> in_cruise(const cli::StageCall& call, const flight::LoadedFlight& loaded,
-                                                  mechanical::MeasuredFlights measured, double until_s,
-                                                  const flight::SegmentationOptions& options) {
+/// Those that are in the air at the moment, with what they had flown by then.
+std::vector<mechanical::MeasuredFlight> in_the_air(const cli::StageCall& call, const flight::LoadedFlight& loaded,
+                                                   mechanical::MeasuredFlights measured, double until_s) {
     for (const auto& exclusion : measured.exclusions) cli::warn(call, to_string(exclusion));
     std::vector<mechanical::MeasuredFlight> flights;
     const flight::SelectedTracks tracks(loaded.series);
     for (std::size_t i = 0; i < measured.flights.size(); ++i) {
         auto& flight = measured.flights[i];
         try {
-            const auto sortie = measured.sorties[i];
-            const double time_s = mechanical::log_time_after_lift_off(loaded.series, until_s, sortie, options);
-            flight.flown = mechanical::progress_at(loaded.series, time_s, sortie, options);
-            if (const auto& cruise = flight.samples.phases[flight::Phase::cruise]) {
-                const double end_s = cruise->start_s + cruise->duration_s;
-                flight.remaining_cruise = mechanical::bin_flight(tracks, {{flight::Phase::cruise, time_s, end_s}}).bins;
-            }
+            const auto& sortie = loaded.phases.sorties[measured.sorties[i]];
+            flight.flown = mechanical::progress_after_lift_off(loaded.series, sortie, until_s);
+            auto spans = mechanical::phase_spans(sortie);
+            for (auto& span : spans) span.start_s = std::max(span.start_s, flight.flown->until_s);
+            std::erase_if(spans, [](const auto& span) { return span.duration_s() <= 0.0; });
+            flight.remaining = mechanical::bin_flight(tracks, spans).bins;
             flights.push_back(std::move(flight));
         } catch (const NoResultError& error) {
             cli::warn(call, fmt::format("{} is excluded: {}", flight.samples.flight, error.what()));
@@ -45,13 +43,12 @@ std::vector<mechanical::MeasuredFlight> in_cruise(const cli::StageCall& call, co
     return flights;
 }
 
-/// The flights of all inputs. In flight, those that are not in cruise at the moment are excluded.
+/// The flights of all inputs. In flight, those that are not in the air at the moment are excluded.
 std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call, const cli::FlightArguments& arguments,
                                                      std::size_t needed_samples, const std::optional<double>& at_s) {
     if (!at_s) return cli::measured_flights(call, arguments, needed_samples);
     return cli::from_flights<mechanical::MeasuredFlight>(call, arguments, [&](const auto&, const auto& loaded) {
-        return in_cruise(call, loaded, mechanical::extract_flights(loaded, needed_samples), *at_s,
-                         arguments.load.segmentation);
+        return in_the_air(call, loaded, mechanical::extract_flights(loaded, needed_samples), *at_s);
     });
 }
 
@@ -87,13 +84,13 @@ from their durations alone; then compares with the integral of the power that wa
   constant_mean   the other flights' mean power in the phase
   physical        power from the airspeed and climb that were flown, as if they had been known before
                   (flightwatt fit --model-kind physical); where flights measured them
-With --at S: S seconds after its lift-off a flight has measured its energy up to then; the rest of
-the cruise and the landing are predicted, by the models above as before the flight, and by
-  in_flight           the cruise level shrunk between model and flight (see flightwatt predict)
+With --at S: S seconds after its lift-off a flight has measured its energy up to then; the rest is
+predicted from the durations of its phases, by the models above as before the flight, and by
+  in_flight           the level of each phase shrunk between model and flight (see flightwatt predict)
   in_flight_constant  the same about the model's mean power
   in_flight_physical      the physical model at this flight's own level, on the airspeed and climb of the
                       rest as they were flown, as if they had been known
-Errors in percent are parts of the phase's measured energy, the flown part included; none for landing,
+Errors in percent are parts of the measured energy of phase or flight, the flown part included; none for landing,
 whose power is near zero. Bias is predicted less measured. physical is rejected, and not shown,
 where the mean power predicts better.)" +
             std::string(cli::several_flights_text)};

@@ -65,7 +65,22 @@ Fields<FlightBin> record_fields(const FlightBin*) {
 
 Fields<BinnedFlight> record_fields(const BinnedFlight*) {
     using R = BinnedFlight;
-    return {field("bank_measured", &R::bank_measured), field("lacks", &R::no_bins_reason), field("bins", &R::bins)};
+    return {field("bank_measured", &R::bank_measured),
+            field("lacks", &R::no_bins_reason),
+            field("rotorcraft", &R::is_rotorcraft),
+            field("payload_known", &R::payload_known),
+            field(
+                "load",
+                [](const R& r) {
+                    const auto rotors = r.load.rotors.value_or(RotorLoading{});
+                    return std::vector{r.load.payload_kg, rotors.mass_kg, rotors.disc_area_m2};
+                },
+                "payload, mass and disc area; 0: not stated")
+                .reading([](const Json& json, R& r) {
+                    r.load.payload_kg = json.at(0).get<double>();
+                    if (json.at(1).get<double>() > 0.0) r.load.rotors = {json.at(1), json.at(2)};
+                }),
+            field("bins", &R::bins)};
 }
 
 Fields<PhaseSamples> record_fields(const PhaseSamples*) {

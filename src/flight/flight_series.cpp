@@ -128,6 +128,8 @@ const std::vector<std::string>& track_names() {
                                                 "roll_deg",
                                                 "air_temperature_c",
                                                 "motor_speed_rpm",
+                                                "mass_kg",
+                                                "rotor_area_m2",
                                                 "mode",
                                                 "block",
                                                 "rover_mode",

@@ -108,6 +108,24 @@ mechanical::RemainingCruise predict_along_path(const PredictionInput& input, con
     return rest.cruise;
 }
 
+/// Cruise and landing by what was measured of take-off and cruise.
+mechanical::RemainingCruise predict_phases(const PredictionInput& input, const FlightProgress& flown,
+                                           Prediction& prediction) {
+    flight::PerPhase<std::optional<mechanical::WeightedPhase>> model;
+    auto of_flight = flown.phases;
+    for (const auto phase : flight::all_phases) {
+        model[phase] = forecast_of(input.model, phase);
+        if (phase != flight::Phase::cruise && !model[phase]->model.level_spread) of_flight[phase] = {};
+    }
+    of_flight[flight::Phase::cruise] = {flown.cruise_s(), flown.cruise_energy_wh};
+    const auto rest = predict_remaining_flight(model, correlate_phases(input.model), of_flight,
+                                               {{0.0, prediction.remaining_s, input.landing_s}},
+                                               input.level.value_or(mechanical::CruisePrior::curve));
+    prediction.landing = rest.phases[flight::Phase::landing].energy;
+    prediction.remaining_energy = rest.total;
+    return rest.phases[flight::Phase::cruise];
+}
+
 mechanical::RemainingCruise predict_cruise(const PredictionInput& input, const FlightProgress& flown,
                                            const std::optional<PathFix>& fix, Prediction& prediction,
                                            Diagnostics& remarks) {
@@ -119,12 +137,11 @@ mechanical::RemainingCruise predict_cruise(const PredictionInput& input, const F
     const double overtime_s = input.remaining_s ? -*input.remaining_s : flown.cruise_s() - input.cruise_s.value();
     if (overtime_s > 0.0) return predict_overtime(flown, overtime_s, prediction, remarks);
     prediction.remaining_s = -overtime_s;
-    if (!input.motion)
-        return predict_remaining_cruise(forecast_of(input.model, flight::Phase::cruise), flown, prediction.remaining_s,
-                                        input.level.value_or(mechanical::CruisePrior::curve));
-    const auto& model = input.model.physical.value();
+    if (!input.motion) return predict_phases(input, flown, prediction);
+    auto model = input.model.physical.value();
+    if (flown.motion.payload_known) model.load.payload_kg = flown.motion.load.payload_kg;
     warn_of_extrapolation(model, *input.motion, remarks);
-    return predict_remaining_physical(model, flown, {term_values(*input.motion), prediction.remaining_s});
+    return predict_remaining_physical(model, flown, {term_values(*input.motion, model.load), prediction.remaining_s});
 }
 
 /// From the whole record of the flight so far.
@@ -253,11 +270,12 @@ Prediction predict_energy(const PredictionInput& input, const FlightProgress& fl
     prediction.cruise = predict_cruise(input, flown, fix, prediction, remarks);
     if (prediction.uses_physical_model) warn_of_level(input.model.physical.value(), prediction.cruise.gain, remarks);
     prediction.landing_s = input.landing_s;
-    if (input.landing_s > 0.0) {
-        prediction.landing =
-            mechanical::predict_before_flight(forecast_of(input.model, flight::Phase::landing), input.landing_s);
+    if (prediction.uses_physical_model || prediction.overtime_s) {
+        if (input.landing_s > 0.0)
+            prediction.landing =
+                mechanical::predict_before_flight(forecast_of(input.model, flight::Phase::landing), input.landing_s);
+        prediction.remaining_energy = sum_of(prediction.cruise.energy, prediction.landing);
     }
-    prediction.remaining_energy = sum_of(prediction.cruise.energy, prediction.landing);
     prediction.interval = interval_95(prediction.remaining_energy).value();
     return prediction;
 }

@@ -49,7 +49,8 @@ struct MotionTracks {
     const flight::Track& airspeed;
     const flight::Track& altitude;
     const flight::Track& roll;
-    double min_m_per_s = 0.0;  ///< at which the wing carries
+    const BinnedFlight& flight;
+    double min_m_per_s = 0.0;  ///< at which the wing carries; 0 of a rotorcraft
 };
 
 /// Altitude and kinetic energy, in metres of height.
@@ -71,7 +72,11 @@ FlightBin motion_bin(const MotionTracks& tracks, const flight::PhaseSegment& spa
     bin.samples = values_between(tracks.power, span.start_s, span.end_s).size();
     bin.airspeed_m_per_s = mean(speeds);
     bin.values[PowerTerm::drag] = mean_of(speeds, [](double v) { return v * v * v; });
-    bin.values[PowerTerm::induced] = mean_of(speeds, [&](double v) { return 1.0 / std::max(v, min_m_per_s); });
+    bin.values[PowerTerm::blade] = mean_of(speeds, [](double v) { return v * v; });
+    bin.values[PowerTerm::payload] = tracks.flight.load.payload_kg;
+    bin.values[PowerTerm::hover] = mean_of(speeds, [&](double v) { return induced_power_w(tracks.flight.load, v); });
+    if (!tracks.flight.is_rotorcraft)
+        bin.values[PowerTerm::induced] = mean_of(speeds, [&](double v) { return 1.0 / std::max(v, min_m_per_s); });
     const double tan_squared = mean_of(values_between(tracks.roll, span.start_s, span.end_s), [](double roll_deg) {
         const double bank_deg = std::min(std::abs(roll_deg), max_bank_deg);
         return std::pow(std::tan(bank_deg / units::degree_per_rad), 2);
@@ -84,14 +89,26 @@ FlightBin motion_bin(const MotionTracks& tracks, const flight::PhaseSegment& spa
     return bin;
 }
 
+/// A rotorcraft seldom has an airspeed sensor; wings are carried by airspeed alone.
+std::string_view speed_of(const flight::SelectedTracks& tracks) {
+    const bool by_ground = tracks.series().firmware == "rotorcraft" && tracks["airspeed_m_per_s"].empty();
+    return by_ground ? "ground_speed_m_per_s" : "airspeed_m_per_s";
+}
+
+/// The first value of a constant of the log or its column map.
+std::optional<double> constant_of(const flight::SelectedTracks& tracks, std::string_view name) {
+    const auto& track = tracks[name];
+    return track.empty() ? std::nullopt : std::optional(track.value.front());
+}
+
 /// Reason why a flight has no bins; empty without one.
 std::string no_bins_reason(const flight::SelectedTracks& tracks) {
     const auto& firmware = tracks.series().firmware;
-    if (firmware == "rotorcraft") return "a rotorcraft: this model describes fixed wings";
-    if (firmware == "rover") return "a rover: this model describes fixed wings";
+    if (firmware == "rover") return "a rover: this model describes aircraft";
     if (tracks["power_w"].empty()) return "its power was not measured";
     if (tracks["altitude_m"].empty()) return "its altitude was not measured";
-    if (!tracks["airspeed_m_per_s"].empty()) return "";
+    if (!tracks[speed_of(tracks)].empty()) return "";
+    if (firmware == "rotorcraft") return "neither airspeed nor ground speed was measured";
     return "its airspeed was not measured; ground speed cannot replace it, as wind changes its cube";
 }
 
@@ -108,13 +125,20 @@ BinnedFlight bin_flight(const flight::SelectedTracks& tracks, const std::vector<
                         double bin_s) {
     BinnedFlight motion{tracks.series().flight, {}, false, no_bins_reason(tracks)};
     if (!motion.no_bins_reason.empty()) return motion;
-    MotionTracks of{tracks["power_w"], tracks["airspeed_m_per_s"], tracks["altitude_m"], tracks["roll_deg"]};
+    motion.is_rotorcraft = tracks.series().firmware == "rotorcraft";
+    const auto payload_kg = constant_of(tracks, "payload_kg");
+    motion.payload_known = payload_kg.has_value();
+    motion.load.payload_kg = payload_kg.value_or(0.0);
+    const auto mass_kg = constant_of(tracks, "mass_kg");
+    const auto area_m2 = constant_of(tracks, "rotor_area_m2");
+    if (motion.is_rotorcraft && mass_kg && area_m2) motion.load.rotors = {*mass_kg, *area_m2};
+    MotionTracks of{tracks["power_w"], tracks[speed_of(tracks)], tracks["altitude_m"], tracks["roll_deg"], motion};
     std::vector<double> speeds;
     for (const auto& span : spans) {
         const auto values = values_between(of.airspeed, span.start_s, span.end_s);
         speeds.insert(speeds.end(), values.begin(), values.end());
     }
-    if (!speeds.empty()) of.min_m_per_s = 0.5 * median(speeds);
+    if (!speeds.empty() && !motion.is_rotorcraft) of.min_m_per_s = 0.5 * median(speeds);
     motion.bank_measured = !of.roll.empty();
     for (const auto& span : spans) {
         const double duration_s = span.duration_s();
@@ -124,7 +148,7 @@ BinnedFlight bin_flight(const flight::SelectedTracks& tracks, const std::vector<
             const double start_s = span.start_s + static_cast<double>(i) * width_s;
             const double end_s = start_s + width_s;
             if (!is_measured(of.power, start_s, end_s) || !is_measured(of.airspeed, start_s, end_s) ||
-                !is_measured(of.altitude, start_s, end_s) || !(of.min_m_per_s > 0.0))
+                !is_measured(of.altitude, start_s, end_s) || !(motion.is_rotorcraft || of.min_m_per_s > 0.0))
                 continue;
             motion.bins.push_back(motion_bin(of, {span.phase, start_s, end_s}));
         }

@@ -32,17 +32,21 @@ struct BinnedFlight {
     std::vector<FlightBin> bins;
     bool bank_measured = false;  ///< without it every load factor is 1
     std::string no_bins_reason;  ///< why there are no bins; empty if there are
+    bool is_rotorcraft = false;
+    bool payload_known = false;  ///< of the load; stated, as the rotors, by the log or its column map
+    AircraftLoad load = {};
 };
 
 /// Length of a bin: longer than gusts and the exchange of height and speed, shorter than manoeuvres.
 inline constexpr double default_bin_s = 30.0;
 
-/// Each span in equal bins of about `bin_s`. A bin counts where power, airspeed and altitude were measured in half of
-/// its seconds or more (a sample within 5 s). Its terms:
+/// Each span in equal bins of about `bin_s`. A bin counts where power, airspeed (of a rotorcraft without one, ground
+/// speed) and altitude were measured in half of its seconds or more (a sample within 5 s). Its terms:
 ///   drag, induced   means of V^3 and 1/V of the airspeed's samples (1/V at half their median or more: below, the wing
 ///                   does not carry)
 ///   climb           of the energy height altitude + V^2 / 2g, from end to end: power that becomes speed is not lost
 ///   descent         the same where it is below 0
+///   hover, blade    means of the induced power and of V^2 of the airspeed's samples
 ///   turn            mean of tan^2 of the bank (at most 60 degrees: more is not a steady turn) times that of 1/V
 BinnedFlight bin_flight(const flight::SelectedTracks& tracks, const std::vector<flight::PhaseSegment>& spans,
                         double bin_s = default_bin_s);

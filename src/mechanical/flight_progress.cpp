@@ -72,8 +72,6 @@ FlightProgress progress_at(const flight::FlightSeries& series, double until_s, s
 FlightProgress progress_of(const flight::SelectedTracks& known, const flight::Sortie* sortie, double until_s,
                            const flight::SegmentationOptions& options) {
     const auto& series = known.series();
-    FlightProgress flown;
-    flown.until_s = until_s;
     if (const double end_s = last_time_s(series); std::isfinite(end_s) && until_s > end_s + max_log_gap_s) {
         throw NoResultError(
             fmt::format("{}: the log ends at {:.1f} s, before {:.1f} s", series.flight, end_s, until_s));
@@ -88,18 +86,49 @@ FlightProgress progress_of(const flight::SelectedTracks& known, const flight::So
     }
     const auto& last = sortie->phases.back();
     if (last.phase == flight::Phase::landing && last.complete) refuse("has landed");
-    flown.lift_off_s = first.start.time_s;
-    flown.cruise_start_s = first.end.time_s;
+    const double cruise_start_s = first.end.time_s;
     // A climbing aircraft has always just reached 90 % of its height so far: that is not a cruise yet.
-    if (last.phase == flight::Phase::takeoff || flown.cruise_s() < options.hold_s) {
+    if (last.phase == flight::Phase::takeoff || until_s - cruise_start_s < options.hold_s) {
         refuse(fmt::format("has not held its height for {:.0f} s: expected a moment in cruise", options.hold_s));
     }
-    const auto& power = known["power_w"];
-    flown.cruise_energy_wh = integrated_energy_wh(power, flown.cruise_start_s, until_s);
-    flown.energy_wh = integrated_energy_wh(power, flown.lift_off_s, flown.cruise_start_s) + flown.cruise_energy_wh;
-    flown.motion = bin_flight(known, {{flight::Phase::takeoff, flown.lift_off_s, flown.cruise_start_s},
-                                      {flight::Phase::cruise, flown.cruise_start_s, until_s}});
+    return measured_progress(known,
+                             {{flight::Phase::takeoff, first.start.time_s, cruise_start_s},
+                              {flight::Phase::cruise, cruise_start_s, until_s}},
+                             until_s);
+}
+
+FlightProgress measured_progress(const flight::SelectedTracks& known, const std::vector<flight::PhaseSegment>& spans,
+                                 double until_s) {
+    FlightProgress flown;
+    flown.until_s = until_s;
+    flown.lift_off_s = spans.front().start_s;
+    flown.cruise_start_s = until_s;
+    for (const auto& span : spans) {
+        const double energy_wh = integrated_energy_wh(known["power_w"], span.start_s, span.end_s);
+        flown.phases[span.phase] = {span.duration_s(), energy_wh};
+        flown.energy_wh += energy_wh;
+        if (span.phase != flight::Phase::cruise) continue;
+        flown.cruise_start_s = span.start_s;
+        flown.cruise_energy_wh = energy_wh;
+    }
+    flown.motion = bin_flight(known, spans);
     return flown;
+}
+
+FlightProgress progress_after_lift_off(const flight::FlightSeries& series, const flight::Sortie& sortie,
+                                       double since_s) {
+    const auto& first = sortie.phases.front();
+    const double until_s = first.start.time_s + since_s;
+    const auto refuse = [&](std::string_view reason) {
+        throw NoResultError(fmt::format("{}: {:.0f} s after lift-off {}", series.flight, since_s, reason));
+    };
+    if (first.phase != flight::Phase::takeoff || !first.complete) refuse("is unknown: its take-off is not in the log");
+    if (until_s >= sortie.end_s()) refuse("the aircraft has landed, or its log has ended");
+    std::vector<flight::PhaseSegment> spans;
+    for (const auto& span : phase_spans(sortie))
+        if (span.start_s < until_s) spans.push_back({span.phase, span.start_s, std::min(span.end_s, until_s)});
+    const auto known = truncate_series(series, until_s);
+    return measured_progress(flight::SelectedTracks(known), spans, until_s);
 }
 
 }  // namespace flightwatt::mechanical

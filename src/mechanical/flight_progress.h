@@ -9,14 +9,21 @@
 
 namespace flightwatt::mechanical {
 
-/// A flight in the air, at one moment of its cruise; all times are the log's own seconds.
+/// What was flown of a phase.
+struct FlownPhase {
+    double duration_s = 0.0;
+    double energy_wh = 0.0;
+};
+
+/// A flight in the air at one moment; all times are the log's own seconds.
 struct FlightProgress {
     double lift_off_s = 0.0;
     double cruise_start_s = 0.0;
     double until_s = 0.0;
     double energy_wh = 0.0;  ///< measured from lift-off until now
     double cruise_energy_wh = 0.0;
-    BinnedFlight motion = {};  ///< until now
+    BinnedFlight motion = {};                  ///< until now
+    flight::PerPhase<FlownPhase> phases = {};  ///< with a known start
     double cruise_s() const { return until_s - cruise_start_s; }
 };
 
@@ -37,5 +44,14 @@ FlightProgress progress_at(const flight::FlightSeries& series, double until_s, s
 /// The same from a log that ends at that time, and its segmentation. nullptr: no sortie.
 FlightProgress progress_of(const flight::SelectedTracks& known, const flight::Sortie* sortie, double until_s,
                            const flight::SegmentationOptions& options = {});
+
+/// Energies, phases and motion of these spans, which end at `until_s` or before.
+FlightProgress measured_progress(const flight::SelectedTracks& known, const std::vector<flight::PhaseSegment>& spans,
+                                 double until_s);
+
+/// The state `since_s` after the lift-off of a sortie whose phases are known, from the power and motion of the log up
+/// to then. Throws NoResultError where the take-off is not complete in the log, or it has landed by then.
+FlightProgress progress_after_lift_off(const flight::FlightSeries& series, const flight::Sortie& sortie,
+                                       double since_s);
 
 }  // namespace flightwatt::mechanical

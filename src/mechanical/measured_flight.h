@@ -27,7 +27,7 @@ struct MeasuredFlight {
     flight::PerPhase<std::optional<double>> counter_energy_wh;  ///< by the on-board counter
     std::optional<FlightProgress> flown;                        ///< only for a validation in flight
     BinnedFlight motion = {};                                   ///< as it was flown
-    std::vector<FlightBin> remaining_cruise = {};               ///< of `motion`'s kind, from `flown` to the landing
+    std::vector<FlightBin> remaining = {};                      ///< of `motion`'s kind, from `flown` on
     flight::PerPhase<std::optional<PhasePower>> power = {};     ///< of its complete phases
 };
 

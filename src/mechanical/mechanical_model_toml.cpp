@@ -216,6 +216,14 @@ void list_physical(TomlFields& fields, PhysicalModel& model) {
     fields.optional_real("cubic_mean_airspeed_m_per_s", model.cubic_mean_airspeed_m_per_s, more_than(0.0));
     fields.table("airspeed_m_per_s", model.airspeed_m_per_s, list_range);
     fields.table("climb_m_per_s", model.climb_m_per_s, list_range);
+    fields.optional_table("payload_kg", model.payload_kg, [&](TomlFields& payload, FlownRange& range) {
+        payload.real("mean", model.load.payload_kg, at_least(0.0));
+        list_range(payload, range);
+    });
+    fields.optional_table("rotors", model.load.rotors, [](TomlFields& rotors, RotorLoading& of) {
+        rotors.real("mass_kg", of.mass_kg, more_than(0.0));
+        rotors.real("disc_area_m2", of.disc_area_m2, more_than(0.0));
+    });
     fields.optional_table("level", model.level_sd, [&](TomlFields& level, double& sd) {
         level.real("sd", sd, at_least(0.0));
         level.real("degrees_of_freedom", model.degrees_of_freedom, at_least(1.0));

@@ -76,7 +76,11 @@ void describe_flights(PhysicalModel& model, std::span<const BinnedFlight> flight
     std::vector<double> cruise_speeds;
     std::vector<double> cruise_cubes;
     double duration_s = 0.0;
+    model.load.rotors = flights.front().load.rotors;
+    if (std::ranges::all_of(flights, &BinnedFlight::payload_known)) model.payload_kg.emplace();
     for (const auto& flight : flights) {
+        if (model.payload_kg) add_value(*model.payload_kg, flight.load.payload_kg, model.flights.empty());
+        model.load.payload_kg += flight.load.payload_kg / static_cast<double>(flights.size());
         model.flights.push_back(flight.flight);
         double sum = 0.0;
         double cubes = 0.0;
@@ -132,6 +136,7 @@ PhysicalModel fit_terms(std::span<const BinnedFlight> flights, const PowerRegres
 /// not determine them.
 std::optional<SpeedTerms> fit_speed_terms(std::span<const BinnedFlight> flights, const PowerRegression& regression,
                                           std::vector<PowerTerm> terms) {
+    if (flights.front().is_rotorcraft) return std::nullopt;
     const auto chosen = terms.size();
     for (const auto term : {PowerTerm::drag, PowerTerm::induced})
         if (std::ranges::find(terms, term) == terms.end()) terms.push_back(term);

@@ -1,5 +1,7 @@
 #include "mechanical/physical_model.h"
 
+#include "base/units.h"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -9,10 +11,10 @@
 namespace flightwatt::mechanical {
 namespace {
 
-constexpr std::array<std::string_view, power_term_count> power_term_names{"drag",  "induced", "turn",
-                                                                          "climb", "descent", "constant"};
-constexpr std::array<std::string_view, power_term_count> power_term_units{"W s^3/m^3", "W m/s", "W m/s",
-                                                                          "W s/m",     "W s/m", "W"};
+constexpr std::array<std::string_view, power_term_count> power_term_names{
+    "drag", "induced", "turn", "climb", "descent", "constant", "hover", "blade", "payload"};
+constexpr std::array<std::string_view, power_term_count> power_term_units{
+    "W s^3/m^3", "W m/s", "W m/s", "W s/m", "W s/m", "W", "W/W", "W s^2/m^2", "W/kg"};
 
 bool is_within(const FlownRange& range, double value) { return range.low <= value && value <= range.high; }
 
@@ -28,22 +30,34 @@ std::optional<PowerTerm> power_term_from(std::string_view name) {
 
 std::string_view unit_of(PowerTerm term) { return power_term_units[static_cast<std::size_t>(term)]; }
 
-TermValues term_values(const FlightState& motion) {
+double induced_power_w(const AircraftLoad& load, double airspeed_m_per_s) {
+    if (!load.rotors) return 0.0;
+    constexpr double density_kg_per_m3 = 1.225;
+    const double weight_n = (load.rotors->mass_kg + load.payload_kg) * units::standard_gravity_m_per_s2;
+    const double hover_square = weight_n / (2.0 * density_kg_per_m3 * load.rotors->disc_area_m2);  // of its velocity
+    const double half = 0.5 * airspeed_m_per_s * airspeed_m_per_s;
+    return weight_n * hover_square / std::sqrt(half + std::hypot(half, hover_square));
+}
+
+TermValues term_values(const FlightState& motion, const AircraftLoad& load) {
     const double airspeed = motion.airspeed_m_per_s;
-    const double load = motion.load_factor;
+    const double load_factor = motion.load_factor;
     if (!(airspeed > 0.0) || !std::isfinite(airspeed)) {
         throw std::invalid_argument(fmt::format("an airspeed of {} m/s: expected more than 0", airspeed));
     }
-    if (!(load >= 0.0) || !std::isfinite(load)) {
-        throw std::invalid_argument(fmt::format("a load factor of {}: expected 0 or more", load));
+    if (!(load_factor >= 0.0) || !std::isfinite(load_factor)) {
+        throw std::invalid_argument(fmt::format("a load factor of {}: expected 0 or more", load_factor));
     }
     TermValues values;
     values[PowerTerm::drag] = airspeed * airspeed * airspeed;
     values[PowerTerm::induced] = 1.0 / airspeed;
-    values[PowerTerm::turn] = (load * load - 1.0) / airspeed;
+    values[PowerTerm::turn] = (load_factor * load_factor - 1.0) / airspeed;
     values[PowerTerm::climb] = motion.climb_m_per_s;
     values[PowerTerm::descent] = std::min(motion.climb_m_per_s, 0.0);
     values[PowerTerm::constant] = 1.0;
+    values[PowerTerm::hover] = induced_power_w(load, airspeed);
+    values[PowerTerm::payload] = load.payload_kg;
+    values[PowerTerm::blade] = airspeed * airspeed;
     return values;
 }
 
@@ -64,7 +78,7 @@ double coefficient_variance_w2(const PhysicalModel& model, const TermValues& val
 }
 
 double power_w(const PhysicalModel& model, const FlightState& motion) {
-    return std::max(0.0, sum_of_terms_w(model, term_values(motion)));
+    return std::max(0.0, sum_of_terms_w(model, term_values(motion, model.load)));
 }
 
 double variance_of_mean_w2(const DriftProcess& drift, double duration_s) {

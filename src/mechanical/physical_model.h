@@ -9,7 +9,18 @@
 
 namespace flightwatt::mechanical {
 
-/// The motion of a fixed-wing aircraft through the air.
+/// What carries a rotorcraft.
+struct RotorLoading {
+    double mass_kg = 0.0;  ///< without the payload
+    double disc_area_m2 = 0.0;
+};
+
+struct AircraftLoad {
+    double payload_kg = 0.0;                  ///< beyond the aircraft's own mass
+    std::optional<RotorLoading> rotors = {};  ///< of a rotorcraft, if stated
+};
+
+/// The motion of an aircraft through the air.
 struct FlightState {
     double airspeed_m_per_s = 0.0;
     double climb_m_per_s = 0.0;  ///< below 0 it descends
@@ -24,11 +35,15 @@ enum class PowerTerm {
     climb,     ///< climb rate, both ways: m g / efficiency
     descent,   ///< climb rate below 0, in addition to `climb`: a descent returns less
     constant,  ///< independent of the motion
+    hover,     ///< weight times induced velocity (Glauert): what rotors of known loading spend on lift
+    blade,     ///< V^2: what forward flight adds to the drag of rotor blades
+    payload,   ///< payload: what it adds, in proportion
 };
 
-inline constexpr std::size_t power_term_count = 6;
+inline constexpr std::size_t power_term_count = 9;
 inline constexpr std::array<PowerTerm, power_term_count> all_power_terms{
-    PowerTerm::drag, PowerTerm::induced, PowerTerm::turn, PowerTerm::climb, PowerTerm::descent, PowerTerm::constant};
+    PowerTerm::drag,     PowerTerm::induced, PowerTerm::turn,  PowerTerm::climb,  PowerTerm::descent,
+    PowerTerm::constant, PowerTerm::hover,   PowerTerm::blade, PowerTerm::payload};
 
 /// "drag" and so on, as model files call them.
 std::string_view to_string(PowerTerm term);
@@ -50,8 +65,13 @@ struct MotionAhead {
     double duration_s = 0.0;
 };
 
-/// The terms' values. Throws std::invalid_argument unless the airspeed is positive and the load factor at least 0.
-TermValues term_values(const FlightState& motion);
+/// Induced power [W] of level flight by momentum theory: weight times v, with v sqrt(V^2 + v^2) = weight / (2 density
+/// area) (Glauert) at sea level. 0 without rotors.
+double induced_power_w(const AircraftLoad& load, double airspeed_m_per_s);
+
+/// The terms' values. Throws std::invalid_argument unless the airspeed is positive and the
+/// load factor at least 0.
+TermValues term_values(const FlightState& motion, const AircraftLoad& load = {});
 
 struct FlownRange {
     double low = 0.0;
@@ -91,7 +111,10 @@ struct PhysicalModel {
 
     FlownRange airspeed_m_per_s;  ///< of the bins' means
     FlownRange climb_m_per_s;
-    double mean_airspeed_m_per_s = 0.0;  ///< of the flights' cruises, each counting the same
+    /// Of which power is predicted; after a fit with the mean payload of its flights.
+    AircraftLoad load = {};
+    std::optional<FlownRange> payload_kg = {};  ///< of the flights; absent unless all state theirs
+    double mean_airspeed_m_per_s = 0.0;         ///< of the flights' cruises, each counting the same
     /// The root of their mean cube, at which drag takes its mean power; absent in files of 0.2.
     std::optional<double> cubic_mean_airspeed_m_per_s = {};
     /// Absent where `terms` contain drag and induced drag or the flights do not determine them, and in older files.

@@ -11,23 +11,6 @@
 namespace flightwatt::mechanical {
 namespace {
 
-/// Variances [W^2] of the mean powers of the flown and the remaining cruise about their expectation.
-struct CruiseVariances {
-    double level_w2 = 0.0;
-    double flown_drift_w2 = 0.0;
-    double remaining_drift_w2 = 0.0;
-    double drift_covariance_w2 = 0.0;
-    double flown_w2() const { return level_w2 + flown_drift_w2; }
-};
-
-/// Variance of the gain times the flown mean, to first order: the estimates of level and drift have relative variances
-/// 2 / degrees of freedom, and the gain changes oppositely with the logarithms of both.
-double gain_variance_w2(const CruiseVariances& of, double degrees_of_freedom) {
-    if (!(of.flown_w2() > 0.0)) return 0.0;
-    const double change_w = of.level_w2 * (of.flown_drift_w2 - of.drift_covariance_w2) / of.flown_w2();
-    return change_w * change_w / of.flown_w2() * 4.0 / degrees_of_freedom;
-}
-
 /// Half width of the 95 % interval of a phase's mean power, where it is known.
 std::optional<double> mean_power_half_width_w(const WeightedPhase& phase, std::size_t flights) {
     const auto& model = phase.model;
@@ -111,48 +94,6 @@ EnergyEstimate predict_remaining_before_flight(const WeightedPhase& phase, doubl
     const double sd_wh = units::wh_from_joule(spread.between_flight_sd_w * remaining_s);
     add_variance(estimate, sd_wh * sd_wh * (1.0 + phase.weight_square_sum), static_cast<double>(spread.flights - 1));
     return estimate;
-}
-
-RemainingCruise predict_remaining_cruise(const WeightedPhase& cruise, const FlightProgress& flown, double remaining_s,
-                                         CruisePrior prior) {
-    if (!cruise.model.level_spread)
-        throw NoResultError("the model has no variability between flights: fit two flights or more");
-    RemainingCruise rest;
-    if (remaining_s == 0.0) return rest;
-    const double flown_s = flown.cruise_s();
-    const double duration_s = flown_s + remaining_s;
-    const auto curve = time_scaled_model(cruise.model, duration_s, PhaseTimeScaling::scaled);
-    const double flown_j = energy_j(curve, flown_s);
-    const double whole_j = energy_j(curve, duration_s);
-    const double mean_w = whole_j / duration_s;
-    const double curve_flown_w = flown_j / flown_s;
-    const double curve_remaining_w = (whole_j - flown_j) / remaining_s;
-    const bool by_curve = prior == CruisePrior::curve;
-    const auto& spread = *cruise.model.level_spread;
-    const DriftProcess drift{spread.drift_sd_w, spread.correlation_s};
-    const CruiseVariances of{spread.between_flight_sd_w * spread.between_flight_sd_w,
-                             variance_of_mean_w2(drift, flown_s), variance_of_mean_w2(drift, remaining_s),
-                             covariance_of_means_w2(drift, flown_s, remaining_s)};
-    // Without any variance between and within flights the model holds, whatever is measured.
-    const double gain =
-        of.flown_w2() > 0.0 ? std::min((of.level_w2 + of.drift_covariance_w2) / of.flown_w2(), 1.0) : 0.0;
-    rest.gain = gain;
-    rest.expected_w = by_curve ? curve_flown_w : mean_w;
-    rest.measured_w = units::joule_from_wh(flown.cruise_energy_wh) / flown_s;
-    rest.remaining_mean_w = (by_curve ? curve_remaining_w : mean_w) + gain * (rest.measured_w - rest.expected_w);
-    rest.energy.energy_wh = units::wh_from_joule(rest.remaining_mean_w * remaining_s);
-    // The error's independent causes (docs/methods.md, Eq. 20). All rest on the flights, less one for their average:
-    // the drift differs between flights, so that more samples of a flight do not count more.
-    const auto freedom = static_cast<double>(spread.flights - 1);
-    const double average = 1.0 + cruise.weight_square_sum;
-    const double drift_w2 =
-        std::max(0.0, of.remaining_drift_w2 - 2.0 * gain * of.drift_covariance_w2 + gain * gain * of.flown_drift_w2);
-    const double shape_w = by_curve ? 0.0 : curve_remaining_w - mean_w - gain * (curve_flown_w - mean_w);
-    const double wh2_per_w2 = std::pow(units::wh_from_joule(remaining_s), 2);
-    for (const double variance_w2 : {average * (1.0 - gain) * (1.0 - gain) * of.level_w2, average * drift_w2,
-                                     shape_w * shape_w, average * gain_variance_w2(of, freedom)})
-        add_variance(rest.energy, variance_w2 * wh2_per_w2, freedom);
-    return rest;
 }
 
 std::vector<RemainingCruise> predict_remaining_physical(const PhysicalModel& model, const FlightProgress& flown,

@@ -84,11 +84,31 @@ struct RemainingCruise {
     double remaining_mean_w = 0.0;
 };
 
-/// Shrinkage between model and flight (docs/methods.md, Eqs. 19 and 20): the difference of measured and expected mean
-/// power so far persists by the share of the variance between flights. Throws NoResultError if the model has no
-/// level_spread.
-RemainingCruise predict_remaining_cruise(const WeightedPhase& cruise, const FlightProgress& flown, double remaining_s,
-                                         CruisePrior prior);
+/// Correlations between flights of the phases' mean powers; 0 of two flights or fewer. Shrunk as if three more flights
+/// had shown none (docs/methods.md, Eq. 19a).
+using PhaseCorrelations = flight::PerPhase<flight::PerPhase<double>>;
+PhaseCorrelations correlate_phases(std::span<const flight::PerPhase<std::optional<double>>> mean_powers_w);
+
+/// The same of a model's flights; none where its file does not state their mean powers.
+PhaseCorrelations correlate_phases(const MechanicalModel& model);
+
+/// The sum over phases whose errors have these correlations.
+EnergyEstimate sum_of(const flight::PerPhase<std::optional<EnergyEstimate>>& phases,
+                      const PhaseCorrelations& correlations);
+
+/// The rest of a flight, phase by phase; a phase without time left is empty.
+struct RemainingFlight {
+    flight::PerPhase<RemainingCruise> phases;
+    EnergyEstimate total;
+};
+
+/// Bayes' rule for normal errors (docs/methods.md, Eqs. 19 to 20a): what was measured of every phase updates the
+/// phases ahead by the covariances between flights. `model` has the phases with time flown or left. Throws
+/// NoResultError if one of them has no variability.
+RemainingFlight predict_remaining_flight(const flight::PerPhase<std::optional<WeightedPhase>>& model,
+                                         const PhaseCorrelations& correlations,
+                                         const flight::PerPhase<FlownPhase>& flown,
+                                         const flight::PerPhase<double>& remaining_s, CruisePrior prior);
 
 /// The rest of a cruise with known motion, in flight (predict_posterior_power), for each possible motion ahead. Throws
 /// NoResultError if the model is of a single flight.

@@ -24,79 +24,15 @@ struct Others {
     flight::PerPhase<std::vector<PhaseSamples>> phases;
     std::optional<PhysicalModel> physical;
     flight::PerPhase<std::optional<WeightedPhase>> forecasts;  ///< fitted on first use
+    PhaseCorrelations correlations;
 };
 
-const WeightedPhase& forecast_of_others(Others& others, flight::Phase phase, const ModelFitOptions& options) {
+void forecast_of_others(Others& others, flight::Phase phase, const ModelFitOptions& options) {
     auto& forecast = others.forecasts[phase];
-    if (!forecast) {
-        const auto fitted = fit_phase_model(phase, others.phases[phase], options);
-        forecast = {fitted.model,
-                    std::inner_product(fitted.weights.begin(), fitted.weights.end(), fitted.weights.begin(), 0.0)};
-    }
-    return *forecast;
-}
-
-using Estimates = std::vector<std::pair<std::string, EnergyEstimate>>;
-
-/// One phase of a flight that has not taken off, from its duration and motion.
-Estimates predict_phase(const MeasuredFlight& flight, flight::Phase phase, double duration_s, const Others& others,
-                        const WeightedPhase& forecast) {
-    const auto by_mean = energy_of(constant_mean(others.phases[phase]), duration_s);
-    Estimates estimates{{"fourier", predict_before_flight(forecast, duration_s)}, {"constant_mean", by_mean}};
-    if (flight.flown || !others.physical || flight.motion.bins.empty()) return estimates;
-    std::vector<FlightBin> bins;
-    for (const auto& bin : flight.motion.bins)
-        if (bin.phase == phase) bins.push_back(bin);
-    estimates.emplace_back(
-        "physical", bins.empty()
-                        ? by_mean
-                        : energy_of(predicted_power(*others.physical, mean_values(bins), duration_s), duration_s));
-    return estimates;
-}
-
-/// The whole cruise of a flight in the air: the energy measured so far and the remaining cruise's.
-Estimates predict_cruise_in_flight(const MeasuredFlight& flight, double remaining_s, const Others& others,
-                                   const WeightedPhase& forecast) {
-    const auto& flown = *flight.flown;
-    Estimates estimates{{"fourier", predict_remaining_before_flight(forecast, flown.cruise_s(), remaining_s)},
-                        {"constant_mean", energy_of(constant_mean(others.phases[flight::Phase::cruise]), remaining_s)}};
-    if (forecast.model.level_spread) {
-        for (const auto& [name, prior] :
-             {std::pair{"in_flight", CruisePrior::curve}, {"in_flight_constant", CruisePrior::constant}})
-            estimates.emplace_back(name, predict_remaining_cruise(forecast, flown, remaining_s, prior).energy);
-        if (others.physical && others.physical->level_sd && !flight.remaining_cruise.empty())
-            estimates.emplace_back(
-                "in_flight_physical",
-                predict_remaining_physical(*others.physical, flown, {mean_values(flight.remaining_cruise), remaining_s})
-                    .energy);
-    }
-    for (auto& [name, estimate] : estimates) estimate.energy_wh += flown.cruise_energy_wh;
-    return estimates;
-}
-
-/// Of a phase that other flights have too.
-Estimates estimates_of(const MeasuredFlight& flight, flight::Phase phase, Others& others,
-                       const ModelFitOptions& options) {
-    const double duration_s = flight.samples.phases[phase]->duration_s;
-    if (flight.flown && phase == flight::Phase::takeoff) return {};
-    const double remaining_s = flight.flown ? duration_s - flight.flown->cruise_s() : 0.0;
-    const bool is_flying = flight.flown && phase == flight::Phase::cruise;
-    if (is_flying && remaining_s <= 0.0) return {};
-    const auto& forecast = forecast_of_others(others, phase, options);
-    if (is_flying) return predict_cruise_in_flight(flight, remaining_s, others, forecast);
-    auto estimates = predict_phase(flight, phase, duration_s, others, forecast);
-    // Models that observe the cruise predict the landing by the curve.
-    const auto by_curve = estimates.front().second;
-    if (flight.flown)
-        for (const auto* model : {"in_flight", "in_flight_constant", "in_flight_physical"})
-            estimates.emplace_back(model, by_curve);
-    return estimates;
-}
-
-FlightPrediction& prediction_of(ValidatedFlight& flight, const std::string& model) {
-    const auto found = std::ranges::find(flight.predictions, model, &FlightPrediction::model);
-    if (found != flight.predictions.end()) return *found;
-    return flight.predictions.emplace_back(FlightPrediction{model, {}});
+    if (forecast) return;
+    const auto fitted = fit_phase_model(phase, others.phases[phase], options);
+    forecast = {fitted.model,
+                std::inner_product(fitted.weights.begin(), fitted.weights.end(), fitted.weights.begin(), 0.0)};
 }
 
 /// std::nullopt where the flights' motion does not determine their power.
@@ -118,26 +54,134 @@ Others others_of(std::span<const MeasuredFlight> flights, std::span<const Flight
         others.samples.push_back(samples[i]);
         motions.push_back(flights[i].motion);
     }
-    for (const auto phase : flight::all_phases) others.phases[phase] = samples_of_phase(others.samples, phase);
+    std::vector<flight::PerPhase<std::optional<double>>> mean_powers_w(others.samples.size());
+    for (const auto phase : flight::all_phases) {
+        others.phases[phase] = samples_of_phase(others.samples, phase);
+        for (std::size_t i = 0; i < others.samples.size(); ++i)
+            if (const auto& samples_of = others.samples[i].phases[phase])
+                mean_powers_w[i][phase] = mean_power_w(*samples_of);
+    }
+    others.correlations = correlate_phases(mean_powers_w);
     const auto was_measured = [&](std::size_t i) { return !flights[i].motion.bins.empty(); };
     if (std::ranges::any_of(excluded, was_measured)) others.physical = physical_model_of(motions);
     return others;
 }
 
-ValidatedFlight validate_flight(const MeasuredFlight& excluded, Others& others, const ModelFitOptions& options) {
-    ValidatedFlight flight{excluded.samples.flight, {}, {}, {}};
+/// The seconds and the motion of a flight that are predicted: all of it, or from a moment on.
+struct PredictedPart {
+    flight::PerPhase<double> flown_s;
+    flight::PerPhase<double> ahead_s;
+    std::vector<FlightBin> bins;
+
+    std::vector<FlightBin> bins_of(flight::Phase phase) const {
+        std::vector<FlightBin> of_phase;
+        std::ranges::copy_if(bins, std::back_inserter(of_phase), [&](const auto& bin) { return bin.phase == phase; });
+        return of_phase;
+    }
+};
+
+/// Of phases that other flights have too, fitted.
+PredictedPart predicted_part(const MeasuredFlight& flight, Others& others, const ModelFitOptions& options) {
+    PredictedPart part{{}, {}, flight.flown ? flight.remaining : flight.motion.bins};
     for (const auto phase : flight::all_phases) {
-        if (!excluded.samples.phases[phase] || others.phases[phase].empty()) continue;
-        for (const auto& [model, estimate] : estimates_of(excluded, phase, others, options)) {
-            prediction_of(flight, model).phases[phase] = estimate;
-            flight.measured_wh[phase] = excluded.energy_wh[phase];
-            flight.counter_wh[phase] = excluded.counter_energy_wh[phase];
+        if (!flight.samples.phases[phase] || others.phases[phase].empty()) continue;
+        const double duration_s = flight.samples.phases[phase]->duration_s;
+        if (flight.flown) part.flown_s[phase] = std::min(flight.flown->phases[phase].duration_s, duration_s);
+        part.ahead_s[phase] = duration_s - part.flown_s[phase];
+        if (part.ahead_s[phase] < 1e-3) part.ahead_s[phase] = 0.0;  // durations are rounded
+        forecast_of_others(others, phase, options);
+    }
+    return part;
+}
+
+bool all_vary(const MeasuredFlight& flight, const PredictedPart& part, const Others& others) {
+    return flight.flown && std::ranges::all_of(flight::all_phases, [&](auto phase) {
+               return part.flown_s[phase] + part.ahead_s[phase] <= 0.0 || others.forecasts[phase]->model.level_spread;
+           });
+}
+
+/// By the model of the motion, as it was flown; phases without motion by their estimates `otherwise`.
+FlightPrediction predict_by_motion(const MeasuredFlight& flight, const PredictedPart& part, const PhysicalModel& model,
+                                   const FlightPrediction& otherwise) {
+    FlightPrediction prediction = otherwise;
+    prediction.model = flight.flown ? "in_flight_physical" : "physical";
+    const auto energy_ahead = [&](const TermValues& terms, double in_s, double duration_s) {
+        if (!flight.flown) return energy_of(predicted_power(model, terms, duration_s), duration_s);
+        auto flown = *flight.flown;
+        flown.until_s += in_s;
+        return predict_remaining_physical(model, flown, {terms, duration_s}).energy;
+    };
+    MotionAhead whole;
+    bool has_all = true;
+    for (const auto phase : flight::all_phases) {
+        if (!(part.ahead_s[phase] > 0.0)) continue;
+        // The glide of a wing that lands differs from all other motion (docs/validation.md, Airspeed and climb).
+        const bool glides = flight.flown && phase == flight::Phase::landing && !flight.motion.is_rotorcraft;
+        const auto bins = part.bins_of(phase);
+        has_all = has_all && !bins.empty() && !glides;
+        if (bins.empty() || glides) continue;
+        const auto terms = mean_values(bins);
+        prediction.phases[phase] = energy_ahead(terms, whole.duration_s, part.ahead_s[phase]);
+        for (const auto term : all_power_terms) whole.mean_terms[term] += terms[term] * part.ahead_s[phase];
+        whole.duration_s += part.ahead_s[phase];
+    }
+    if (whole.duration_s == 0.0) return prediction;
+    for (auto& term : whole.mean_terms.values) term /= whole.duration_s;
+    prediction.total = has_all ? energy_ahead(whole.mean_terms, 0.0, whole.duration_s)
+                               : sum_of(prediction.phases,
+                                        correlate_phases(std::span<const flight::PerPhase<std::optional<double>>>{}));
+    return prediction;
+}
+
+std::vector<FlightPrediction> predict_part(const MeasuredFlight& flight, const PredictedPart& part,
+                                           const Others& others) {
+    const auto& correlations = others.correlations;
+    FlightPrediction by_curve{"fourier", {}, {}};
+    FlightPrediction by_mean{"constant_mean", {}, {}};
+    for (const auto phase : flight::all_phases) {
+        const double ahead_s = part.ahead_s[phase];
+        if (!(ahead_s > 0.0)) continue;
+        by_curve.phases[phase] =
+            predict_remaining_before_flight(*others.forecasts[phase], part.flown_s[phase], ahead_s);
+        by_mean.phases[phase] = energy_of(constant_mean(others.phases[phase]), ahead_s);
+    }
+    for (auto* prediction : {&by_curve, &by_mean}) prediction->total = sum_of(prediction->phases, correlations);
+    std::vector predictions{by_curve, by_mean};
+    if (all_vary(flight, part, others)) {
+        for (const auto& [name, prior] :
+             {std::pair{"in_flight", CruisePrior::curve}, {"in_flight_constant", CruisePrior::constant}}) {
+            auto flown = flight.flown->phases;
+            for (const auto phase : flight::all_phases)
+                if (!(part.flown_s[phase] > 0.0)) flown[phase] = {};
+            const auto rest = predict_remaining_flight(others.forecasts, correlations, flown, part.ahead_s, prior);
+            auto& prediction = predictions.emplace_back(FlightPrediction{name, {}, rest.total});
+            for (const auto phase : flight::all_phases)
+                if (part.ahead_s[phase] > 0.0) prediction.phases[phase] = rest.phases[phase].energy;
         }
     }
-    // A model without a prediction of the cruise (no airspeed, no variability) repeats others in the other phases.
-    if (flight.measured_wh[flight::Phase::cruise])
-        std::erase_if(flight.predictions,
-                      [](const auto& prediction) { return !prediction.phases[flight::Phase::cruise]; });
+    const bool is_known =
+        others.physical && !flight.motion.bins.empty() && (!flight.flown || others.physical->level_sd);
+    if (is_known && (!flight.flown || predictions.size() > 2))
+        predictions.push_back(
+            predict_by_motion(flight, part, *others.physical, flight.flown ? predictions[2] : by_mean));
+    return predictions;
+}
+
+ValidatedFlight validate_flight(const MeasuredFlight& excluded, Others& others, const ModelFitOptions& options) {
+    ValidatedFlight flight{excluded.samples.flight, {}, {}, {}};
+    const auto part = predicted_part(excluded, others, options);
+    if (std::ranges::all_of(part.ahead_s.values, [](double ahead_s) { return ahead_s <= 0.0; })) return flight;
+    flight.predictions = predict_part(excluded, part, others);
+    for (const auto phase : flight::all_phases) {
+        const double flown_wh = part.flown_s[phase] > 0.0 ? excluded.flown->phases[phase].energy_wh : 0.0;
+        flight.flown_wh += flown_wh;
+        flight.total_wh += part.ahead_s[phase] > 0.0 ? *excluded.energy_wh[phase] : flown_wh;
+        if (!(part.ahead_s[phase] > 0.0)) continue;
+        flight.measured_wh[phase] = excluded.energy_wh[phase];
+        flight.counter_wh[phase] = excluded.counter_energy_wh[phase];
+        for (auto& prediction : flight.predictions) prediction.phases[phase]->energy_wh += flown_wh;
+    }
+    for (auto& prediction : flight.predictions) prediction.total->energy_wh += flight.flown_wh;
     return flight;
 }
 
@@ -187,6 +231,7 @@ std::optional<PredictedEnergy> predicted_energy(const ValidatedFlight& flight, c
     const auto prediction = std::ranges::find(flight.predictions, model, &FlightPrediction::model);
     if (prediction == flight.predictions.end() || !was_predicted(flight, phase)) return std::nullopt;
     PredictedEnergy energy;
+    if (!phase && prediction->total) return PredictedEnergy{flight.total_wh, *prediction->total};
     for (const auto p : flight::all_phases) {
         if ((phase && p != *phase) || !flight.measured_wh[p]) continue;
         if (!prediction->phases[p]) return std::nullopt;
@@ -200,6 +245,7 @@ std::optional<ModelScore> score_of(std::span<const ValidatedFlight> flights, con
                                    std::optional<flight::Phase> phase) {
     ModelScore score;
     double percent = 0.0;
+    double rest_percent = 0.0;
     std::size_t covered = 0;
     std::size_t with_interval = 0;
     for (const auto& flight : flights) {
@@ -211,12 +257,15 @@ std::optional<ModelScore> score_of(std::span<const ValidatedFlight> flights, con
         score.mean_absolute_error_wh += std::abs(error_wh);
         score.bias_wh += error_wh;
         percent += units::percentage(std::abs(error_wh), energy->measured_wh);
+        const double rest_wh = energy->measured_wh - flight.flown_wh;
+        if (!phase && rest_wh > 0.0) rest_percent += units::percentage(std::abs(error_wh), rest_wh);
         if (const auto interval = interval_95(energy->estimate)) {
             ++with_interval;
             if (interval->contains(energy->measured_wh)) ++covered;
         }
     }
     if (score.flights == 0) return std::nullopt;
+    if (rest_percent > 0.0) score.mean_absolute_error_rest_percent = rest_percent / static_cast<double>(score.flights);
     const auto count = static_cast<double>(score.flights);
     score.mean_absolute_error_wh /= count;
     score.bias_wh /= count;

@@ -15,7 +15,8 @@ namespace flightwatt::mechanical {
 /// Prediction of a hold-out flight by one model.
 struct FlightPrediction {
     std::string model;
-    flight::PerPhase<std::optional<EnergyEstimate>> phases;
+    flight::PerPhase<std::optional<EnergyEstimate>> phases;  ///< with what was flown of them
+    std::optional<EnergyEstimate> total = {};                ///< none: their sum, as if they were independent
 };
 
 struct ValidatedFlight {
@@ -23,6 +24,8 @@ struct ValidatedFlight {
     flight::PerPhase<std::optional<double>> measured_wh;  ///< phases that were predicted
     flight::PerPhase<std::optional<double>> counter_wh;
     std::vector<FlightPrediction> predictions;
+    double flown_wh = 0.0;  ///< before the prediction
+    double total_wh = 0.0;  ///< measured, of these phases and those flown before; 0 without FlightPrediction::total
 };
 
 /// Of more flights than this, groups are left out together (make_folds).
@@ -33,7 +36,7 @@ void require_distinct(std::span<const MeasuredFlight> flights);
 
 /// Excludes each flight in turn (or each of `max_folds` groups), fits the others and predicts the energy of its phases
 /// from their durations and, by "physical", their motion (docs/guide.md, validate). Of a flight with `flown` the
-/// remaining cruise and the landing are predicted, also by "in_flight", "in_flight_constant" and "in_flight_physical".
+/// rest is predicted, also by "in_flight", "in_flight_constant" and "in_flight_physical".
 /// `progress` gets the numbers of done and of all folds, from one thread at a time. Throws NoResultError for fewer than
 /// 2 flights, and as fit_phase_model.
 std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights, const ModelFitOptions& options = {},
@@ -44,8 +47,9 @@ std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> fligh
 struct ModelScore {
     std::size_t flights = 0;
     double mean_absolute_error_wh = 0.0;
-    std::optional<double> mean_absolute_error_percent;  ///< of the measured energy; none for landing
-    double bias_wh = 0.0;                               ///< mean of predicted - measured
+    std::optional<double> mean_absolute_error_percent;       ///< of the measured energy; none for landing
+    std::optional<double> mean_absolute_error_rest_percent;  ///< of the energy not flown yet; only of the whole
+    double bias_wh = 0.0;                                    ///< mean of predicted - measured
     std::optional<double> coverage_95;  ///< fraction of the flights within the interval; none without intervals
 };
 

@@ -107,7 +107,7 @@ std::vector<PathElementResult> path_element_results(const PlannedPath& plan) {
 mechanical::TermValues mean_terms(const mechanical::PhysicalModel& model, const PathTrajectory& flown) {
     mechanical::TermValues sums;
     for (const auto& piece : flown.pieces) {
-        const auto terms = mechanical::term_values(piece.motion);
+        const auto terms = mechanical::term_values(piece.motion, model.load);
         if (sum_of_terms_w(model, terms) < 0.0) continue;
         for (const auto term : mechanical::all_power_terms) sums[term] += terms[term] * piece.time_s / flown.duration_s;
     }

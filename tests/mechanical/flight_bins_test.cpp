@@ -104,6 +104,25 @@ TEST(FlightBins, AreThereOnlyWhereAllWasMeasured) {
     }
 }
 
+/// Rotors carry without airspeed, which ground speed replaces; payload, mass and rotors are constants of the log.
+TEST(FlightBins, OfARotorcraftHaveItsTerms) {
+    auto series = some_series();
+    series.firmware = "rotorcraft";
+    series.tracks[2].name = "ground_speed_m_per_s";
+    for (const auto& [name, value] : {std::pair{"payload_kg", 0.5}, {"mass_kg", 3.0}, {"rotor_area_m2", 0.4}})
+        series.tracks.push_back(track(name, 1.0, [value](double) { return value; }));
+    const auto found = motion(series);
+    EXPECT_TRUE(found.is_rotorcraft);
+    EXPECT_TRUE(found.payload_known);
+    ASSERT_FALSE(found.bins.empty()) << found.no_bins_reason;
+    const auto& bin = found.bins.front();
+    EXPECT_DOUBLE_EQ(bin.values[PowerTerm::payload], 0.5);
+    EXPECT_DOUBLE_EQ(bin.values[PowerTerm::induced], 0.0);
+    EXPECT_GT(bin.values[PowerTerm::blade], 0.0);
+    EXPECT_NEAR(bin.values[PowerTerm::hover], induced_power_w({0.5, RotorLoading{3.0, 0.4}}, bin.airspeed_m_per_s),
+                5.0);
+}
+
 TEST(FlightBins, SayWhyThereAreNone) {
     auto glider = some_series();
     glider.tracks.erase(glider.tracks.begin() + 2);
@@ -111,9 +130,13 @@ TEST(FlightBins, SayWhyThereAreNone) {
     auto stuck = some_series();
     stuck.tracks[2] = track("airspeed_m_per_s", 1.0, [](double) { return 0.0; });
     EXPECT_THAT(motion(stuck).no_bins_reason, testing::HasSubstr("airspeed was not measured"));
-    auto hovering = some_series();
-    hovering.firmware = "rotorcraft";
-    EXPECT_THAT(motion(hovering).no_bins_reason, testing::HasSubstr("a rotorcraft"));
+    auto driving = some_series();
+    driving.firmware = "rover";
+    EXPECT_THAT(motion(driving).no_bins_reason, testing::HasSubstr("a rover"));
+    auto blind = some_series();
+    blind.firmware = "rotorcraft";
+    blind.tracks.erase(blind.tracks.begin() + 2);
+    EXPECT_THAT(motion(blind).no_bins_reason, testing::HasSubstr("neither airspeed nor ground speed"));
     auto apart = some_series();
     apart.tracks[2].time_s.resize(50);
     apart.tracks[2].value.resize(50);

@@ -19,12 +19,14 @@ WeightedPhase forecast(const VarianceComponents& spread) {
     return cruise;
 }
 
-FlightProgress flown(double seconds, double mean_w) {
-    FlightProgress flight;
-    flight.cruise_start_s = 100.0;
-    flight.until_s = 100.0 + seconds;
-    flight.cruise_energy_wh = units::wh_from_joule(mean_w * seconds);
-    return flight;
+/// The rest of a cruise of which so much was flown at a mean power.
+RemainingCruise rest_of(const WeightedPhase& cruise, double seconds, double mean_w, double remaining_s,
+                        CruisePrior prior = CruisePrior::curve) {
+    flight::PerPhase<std::optional<WeightedPhase>> model;
+    model[flight::Phase::cruise] = cruise;
+    flight::PerPhase<FlownPhase> flown;
+    flown[flight::Phase::cruise] = {seconds, units::wh_from_joule(mean_w * seconds)};
+    return predict_remaining_flight(model, {}, flown, {{0.0, remaining_s, 0.0}}, prior).phases[flight::Phase::cruise];
 }
 
 /// A cruise of these flights' mean powers and weights.
@@ -97,14 +99,14 @@ TEST(Prediction, BeforeFlightOfTheRestMissesOnlyTheFlownPart) {
 
 TEST(Prediction, KeepsTheModelWhereFlightsAreAllAlike) {
     const auto cruise = forecast({4, 0.0, 5.0, 1.0});
-    const auto rest = predict_remaining_cruise(cruise, flown(300.0, 40.0), 3000.0, CruisePrior::curve);
+    const auto rest = rest_of(cruise, 300.0, 40.0, 3000.0);
     EXPECT_LT(rest.gain, 0.01);
     EXPECT_NEAR(rest.energy.energy_wh, predict_remaining_before_flight(cruise, 300.0, 3000.0).energy_wh, 0.1);
 }
 
 TEST(Prediction, TakesTheFlightsOwnLevelWhereFlightsDifferAndDoNotDrift) {
     const auto cruise = forecast({4, 5.0, 1e-3, 1.0});
-    const auto rest = predict_remaining_cruise(cruise, flown(300.0, 40.0), 300.0, CruisePrior::curve);
+    const auto rest = rest_of(cruise, 300.0, 40.0, 300.0);
     EXPECT_NEAR(rest.gain, 1.0, 1e-6);
     EXPECT_NEAR(rest.remaining_mean_w - 40.0,
                 2.0 * units::joule_from_wh(predict_remaining_before_flight(cruise, 300.0, 300.0).energy_wh) / 600.0 -
@@ -117,7 +119,7 @@ TEST(Prediction, ShrinksByTheVariances) {
     const double correlation_s = 0.01;
     const double sd_w = 2.0 / std::sqrt(2.0 * correlation_s / 300.0);
     const auto cruise = forecast({4, 2.0, sd_w, correlation_s});
-    const auto rest = predict_remaining_cruise(cruise, flown(300.0, 40.0), 900.0, CruisePrior::curve);
+    const auto rest = rest_of(cruise, 300.0, 40.0, 900.0);
     EXPECT_NEAR(rest.gain, 0.5, 1e-4);
     const double hours = 900.0 / 3600.0;
     const double variance_w2 = rest.energy.variance_wh2 / hours / hours;
@@ -133,7 +135,7 @@ TEST(Prediction, IntervalNarrowsAsTheFlightGoesOn) {
     const auto cruise = forecast({4, 5.0, 8.0, 60.0});
     double last_wh = 1e9;
     for (const double seconds : {10.0, 100.0, 300.0, 600.0, 890.0}) {
-        const auto rest = predict_remaining_cruise(cruise, flown(seconds, 30.0), 900.0 - seconds, CruisePrior::curve);
+        const auto rest = rest_of(cruise, seconds, 30.0, 900.0 - seconds);
         const auto interval = interval_95(rest.energy).value();
         EXPECT_LT(interval.high_wh - interval.low_wh, last_wh) << seconds;
         last_wh = interval.high_wh - interval.low_wh;
@@ -142,7 +144,7 @@ TEST(Prediction, IntervalNarrowsAsTheFlightGoesOn) {
 
 TEST(Prediction, HoldsOneLevelWhereAsked) {
     const auto cruise = forecast({4, 5.0, 1e-3, 1.0});
-    const auto rest = predict_remaining_cruise(cruise, flown(300.0, 40.0), 300.0, CruisePrior::constant);
+    const auto rest = rest_of(cruise, 300.0, 40.0, 300.0, CruisePrior::constant);
     EXPECT_NEAR(rest.remaining_mean_w, 40.0, 1e-3);
     const double mean_w = energy_j(cruise.model.fourier, 600.0) / 600.0;
     EXPECT_NEAR(rest.expected_w, mean_w, 1e-9);
@@ -153,15 +155,80 @@ TEST(Prediction, HoldsOneLevelWhereAsked) {
 
 TEST(Prediction, SaysWhenTheModelHasNoSpread) {
     const WeightedPhase cruise{test::published_model().phases[flight::Phase::cruise], 1.0};
-    EXPECT_THROW(predict_remaining_cruise(cruise, flown(300.0, 20.0), 900.0, CruisePrior::curve), NoResultError);
+    EXPECT_THROW(rest_of(cruise, 300.0, 20.0, 900.0), NoResultError);
     EXPECT_FALSE(interval_95(predict_before_flight(cruise, 600.0)).has_value());
 }
 
 TEST(Prediction, OfNothingLeftIsNothing) {
-    const auto rest =
-        predict_remaining_cruise(forecast({4, 2.0, 1.0, 50.0}), flown(300.0, 40.0), 0.0, CruisePrior::curve);
+    const auto rest = rest_of(forecast({4, 2.0, 1.0, 50.0}), 300.0, 40.0, 0.0);
     EXPECT_DOUBLE_EQ(rest.energy.energy_wh, 0.0);
     EXPECT_DOUBLE_EQ(rest.energy.variance_wh2, 0.0);
+}
+
+flight::PerPhase<std::optional<WeightedPhase>> three_phases() {
+    flight::PerPhase<std::optional<WeightedPhase>> model;
+    for (const auto phase : flight::all_phases) {
+        model[phase] = {test::published_model().phases[phase], 0.0};
+        model[phase]->model.level_spread = VarianceComponents{1000, 2.0, 1e-3, 1.0};
+    }
+    return model;
+}
+
+PhaseCorrelations all_correlated(double correlation) {
+    PhaseCorrelations all;
+    for (const auto a : flight::all_phases)
+        for (const auto b : flight::all_phases) all[a][b] = a == b ? 1.0 : correlation;
+    return all;
+}
+
+/// A flight that needs more for its take-off needs as much more later, if phases vary together.
+TEST(RemainingFlight, IsUpdatedByThePhasesFlown) {
+    const auto model = three_phases();
+    const double takeoff_s = model[flight::Phase::takeoff]->model.duration_s;
+    const double usual_j = energy_j(model[flight::Phase::takeoff]->model.fourier, takeoff_s);
+    flight::PerPhase<FlownPhase> flown;
+    flown[flight::Phase::takeoff] = {takeoff_s, units::wh_from_joule(usual_j + 3.0 * takeoff_s)};
+    const flight::PerPhase<double> ahead_s{{0.0, 600.0, 30.0}};
+    const auto apart = predict_remaining_flight(model, all_correlated(0.0), flown, ahead_s, CruisePrior::curve);
+    const auto together = predict_remaining_flight(model, all_correlated(0.9), flown, ahead_s, CruisePrior::curve);
+    for (const auto phase : {flight::Phase::cruise, flight::Phase::landing}) {
+        const double seconds = ahead_s[phase];
+        const double before_wh = predict_before_flight(*model[phase], seconds).energy_wh;
+        EXPECT_NEAR(apart.phases[phase].energy.energy_wh, before_wh, 1e-9);
+        EXPECT_NEAR(together.phases[phase].energy.energy_wh - before_wh, units::wh_from_joule(0.9 * 3.0 * seconds),
+                    1e-6);
+        // 2 W of which a correlation of 0.9 leaves sqrt(1 - 0.81), and its own error of 0.19 / sqrt(1002).
+        EXPECT_NEAR(std::sqrt(together.phases[phase].energy.variance_wh2) * 3600.0 / seconds, 2.0 * std::sqrt(0.19),
+                    0.01);
+    }
+    EXPECT_NEAR(together.total.energy_wh,
+                together.phases[flight::Phase::cruise].energy.energy_wh +
+                    together.phases[flight::Phase::landing].energy.energy_wh,
+                1e-12);
+}
+
+TEST(RemainingFlight, PhasesThatVaryTogetherAddTheirDeviations) {
+    const auto model = three_phases();
+    const flight::PerPhase<double> ahead_s{{60.0, 600.0, 30.0}};
+    for (const auto& [correlation, deviation_s] : {std::pair{0.0, std::hypot(60.0, 600.0, 30.0)}, {1.0, 690.0}}) {
+        const auto correlations = all_correlated(correlation);
+        const auto rest = predict_remaining_flight(model, correlations, {}, ahead_s, CruisePrior::curve);
+        EXPECT_NEAR(std::sqrt(rest.total.variance_wh2), 2.0 * deviation_s / 3600.0, 1e-6) << correlation;
+        flight::PerPhase<std::optional<EnergyEstimate>> parts;
+        for (const auto phase : flight::all_phases) parts[phase] = predict_before_flight(*model[phase], ahead_s[phase]);
+        EXPECT_NEAR(sum_of(parts, correlations).variance_wh2, rest.total.variance_wh2, 1e-9) << correlation;
+    }
+}
+
+/// r of all flights, as if three more had shown no correlation; none of two.
+TEST(RemainingFlight, CorrelationsOfFewFlightsAreShrunk) {
+    std::vector<flight::PerPhase<std::optional<double>>> powers{
+        {{1.0, 10.0, {}}}, {{2.0, 20.0, {}}}, {{3.0, 30.0, 5.0}}};
+    const auto found = correlate_phases(powers);
+    EXPECT_NEAR(found[flight::Phase::takeoff][flight::Phase::cruise], 2.0 / 5.0, 1e-12);
+    EXPECT_DOUBLE_EQ(found[flight::Phase::takeoff][flight::Phase::landing], 0.0);
+    powers.pop_back();
+    EXPECT_DOUBLE_EQ(correlate_phases(powers)[flight::Phase::takeoff][flight::Phase::cruise], 0.0);
 }
 
 EnergyEstimate estimate(double energy_wh, double variance_wh2, double degrees_of_freedom) {

@@ -29,6 +29,8 @@ Fields<ModelScore> record_fields(const ModelScore*) {
             field("mean_absolute_error_wh", &R::mean_absolute_error_wh, "mean of |error|", column{"mean |error| Wh"}),
             field("mean_absolute_error_percent", &R::mean_absolute_error_percent, "of the measured energy",
                   column{"mean |error| %"}),
+            field("mean_absolute_error_rest_percent", &R::mean_absolute_error_rest_percent,
+                  "of the energy not flown yet; only of the whole"),
             field("bias_wh", &R::bias_wh, "mean of predicted less measured", column{"bias Wh", "+.3f"}),
             field("coverage_95", &R::coverage_95, "fraction of the flights within the 95 % interval",
                   column{"95 % interval covers", ".2f"})};

@@ -69,22 +69,19 @@ std::string without_flight_name(const std::string& text, const std::string& flig
 }
 
 mechanical::FlightProgress airborne_progress(const flight::SelectedTracks& tracks, const flight::Sortie& sortie) {
-    mechanical::FlightProgress flown;
-    flown.until_s = mechanical::last_time_s(tracks.series());
-    flown.lift_off_s = sortie.start_s();
+    const double until_s = mechanical::last_time_s(tracks.series());
     const auto& first = sortie.phases.front();
-    flown.cruise_start_s = first.phase == flight::Phase::takeoff ? first.end.time_s : sortie.start_s();
+    const double cruise_start_s = first.phase == flight::Phase::takeoff ? first.end.time_s : sortie.start_s();
     const double hold_s = flight::SegmentationOptions{}.hold_s;
-    if (sortie.phases.back().phase == flight::Phase::takeoff || flown.cruise_s() < hold_s) {
+    if (sortie.phases.back().phase == flight::Phase::takeoff || until_s - cruise_start_s < hold_s) {
         throw NoResultError(
             fmt::format("at {:.1f} s of the log, which begins in the air, the aircraft has not held its height for "
                         "{:.0f} s",
-                        flown.until_s, hold_s));
+                        until_s, hold_s));
     }
-    const auto& power = tracks["power_w"];
-    flown.cruise_energy_wh = integrated_energy_wh(power, flown.cruise_start_s, flown.until_s);
-    flown.energy_wh = integrated_energy_wh(power, flown.lift_off_s, flown.cruise_start_s) + flown.cruise_energy_wh;
-    flown.motion = mechanical::bin_flight(tracks, {{flight::Phase::cruise, flown.cruise_start_s, flown.until_s}});
+    auto flown = mechanical::measured_progress(tracks, {{flight::Phase::cruise, cruise_start_s, until_s}}, until_s);
+    flown.lift_off_s = sortie.start_s();
+    flown.energy_wh += integrated_energy_wh(tracks["power_w"], flown.lift_off_s, cruise_start_s);
     return flown;
 }
 

@@ -157,6 +157,9 @@ NormalEquations accumulate_normal_equations(std::span<const FlightBin> bins, dou
             response = (response - correlation * bins[i - 1].power_w) / std::sqrt(innovation);
             sums.log_determinant += std::log(innovation);
         }
+        const double weight = std::sqrt(std::min(1.0, bins[i].duration_s / default_bin_s));
+        column *= weight;
+        response *= weight;
         sums.products += column * column.transpose();
         sums.responses += response * column;
         sums.square += response * response;

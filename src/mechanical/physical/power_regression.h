@@ -39,7 +39,8 @@ inline Eigen::Map<const Eigen::Vector<double, column_count>> as_columns(const Te
     return Eigen::Map<const Eigen::Vector<double, column_count>>(values.values.data());
 }
 
-/// Sums over bins whose drift is correlated by exp(-lag / correlation_s); 0: not at all.
+/// Sums over bins whose drift is correlated by exp(-lag / correlation_s); 0: not at all. Bins shorter than
+/// default_bin_s weigh in proportion.
 NormalEquations accumulate_normal_equations(std::span<const FlightBin> bins, double correlation_s);
 
 /// Assumed variance of the flights' levels and correlation of the drift.

@@ -30,6 +30,9 @@ struct TermFold {
 struct Folds {
     std::vector<TermFold> folds;
     bool bank_measured = true;
+    bool payload_known = true;
+    bool rotors_known = true;
+    std::size_t rotorcraft = 0;
     bool phases_decide = true;
     std::size_t flights = 0;
     const PowerRegression* regression = nullptr;  ///< of all flights
@@ -65,6 +68,9 @@ Folds folds_of(std::span<const BinnedFlight> flights, const PowerRegression& reg
     made.regression = &regression;
     made.flights = flights.size();
     made.bank_measured = std::ranges::all_of(flights, &BinnedFlight::bank_measured);
+    made.payload_known = std::ranges::all_of(flights, &BinnedFlight::payload_known);
+    made.rotors_known = std::ranges::all_of(flights, [](const auto& of) { return of.load.rotors.has_value(); });
+    made.rotorcraft = static_cast<std::size_t>(std::ranges::count_if(flights, &BinnedFlight::is_rotorcraft));
     if (flights.size() == 1) {
         const std::span bins(flights.front().bins);
         made.phases_decide = false;
@@ -135,11 +141,18 @@ std::optional<HoldOutError> hold_out_error(const Folds& of, const std::vector<in
 
 /// Terms that are similar in all motions: few flights cannot distinguish them.
 bool is_level_term(PowerTerm term) {
-    return term == PowerTerm::drag || term == PowerTerm::induced || term == PowerTerm::constant;
+    return term == PowerTerm::drag || term == PowerTerm::induced || term == PowerTerm::constant ||
+           term == PowerTerm::hover || term == PowerTerm::blade;
 }
 
 /// Reason not to try a term with others; empty without one.
 std::string_view not_tried_reason(const Folds& of, const std::vector<PowerTerm>& terms, PowerTerm term) {
+    const bool of_wings = term == PowerTerm::induced || term == PowerTerm::turn;
+    const bool of_rotors = term == PowerTerm::hover || term == PowerTerm::blade;
+    if (of_wings && of.rotorcraft > 0) return "not tried: rotors carry, not wings";
+    if (of_rotors && of.rotorcraft < of.flights) return "not tried: wings carry, not rotors";
+    if (term == PowerTerm::hover && !of.rotors_known) return "not tried: mass and rotor area are not stated";
+    if (term == PowerTerm::payload && !of.payload_known) return "not tried: not every flight states its payload";
     if (term == PowerTerm::turn && !of.bank_measured) return "not tried: the bank was not measured in all flights";
     if (term == PowerTerm::descent && std::ranges::find(terms, PowerTerm::climb) == terms.end())
         return "not tried without the climb";
@@ -206,7 +219,8 @@ std::optional<Candidate> try_term(const Folds& of, const std::vector<PowerTerm>&
 /// climb, which has no term yet.
 std::optional<Candidate> first_term(const Folds& of) {
     std::optional<Candidate> first;
-    for (const auto term : {PowerTerm::drag, PowerTerm::constant}) {
+    for (const auto term : {PowerTerm::drag, PowerTerm::constant, PowerTerm::hover}) {
+        if (!not_tried_reason(of, {}, term).empty()) continue;
         auto error = hold_out_error(of, columns_of({term}));
         if (!error || !is_possible(of, {term})) continue;
         if (!first || is_less(of, error->bins_w2, first->error.bins_w2)) first = Candidate{term, std::move(*error)};

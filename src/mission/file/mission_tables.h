@@ -20,6 +20,10 @@ std::filesystem::path file_of(const TomlTable& table, std::string_view key);
 /// The mission's [packs] without `home`, which read_cruise_path reads; none without one.
 std::optional<Packs> read_packs(const TomlTable& mission);
 
+/// Changes the mechanical model to the mission's payload_kg, if it is stated: its phases in proportion to the physical
+/// model's power. Throws InputError for a model that does not know its effect.
+void apply_payload(const TomlTable& mission_table, MissionSetup& mission);
+
 /// Sets the level of the cruise to that of the mission's airspeed_m_per_s by the physical model; leaves it where none
 /// is stated. Throws InputError for a model without one, and far beyond what its flights flew.
 void apply_airspeed(const TomlTable& mission_table, MissionSetup& mission);

@@ -226,16 +226,27 @@ MissionVariant mission_from(const TomlTable& root, const std::filesystem::path& 
         throw InputError(root.where("conditions"), "conditions are no longer read: a cruise follows its airspeed alone",
                          "leave them out, or state airspeed_m_per_s at the top of the mission, with a model of "
                          "flightwatt fit --model-kind physical");
-    root.refuse_keys_except({"format",      "name",
-                             "mechanical",  "duration_s",
-                             "phase_clock", "airspeed_m_per_s",
-                             "path",        "wind",
-                             "battery",     "initial_soc_percent",
-                             "capacity_ah", "cutoff_voltage_v",
-                             "packs",       "reserve_soc_percent",
-                             "may_charge",  "components",
-                             "schedule",    "plan",
-                             "policy",      "uncertainty"});
+    root.refuse_keys_except({"format",
+                             "name",
+                             "mechanical",
+                             "duration_s",
+                             "phase_clock",
+                             "airspeed_m_per_s",
+                             "path",
+                             "wind",
+                             "battery",
+                             "initial_soc_percent",
+                             "capacity_ah",
+                             "cutoff_voltage_v",
+                             "packs",
+                             "payload_kg",
+                             "reserve_soc_percent",
+                             "may_charge",
+                             "components",
+                             "schedule",
+                             "plan",
+                             "policy",
+                             "uncertainty"});
     require_known_format(root);
     MissionSetup mission;
     mission.file = path.string();
@@ -243,6 +254,7 @@ MissionVariant mission_from(const TomlTable& root, const std::filesystem::path& 
     mission.mechanical = read_mechanical(root);
     mission.phase_clock = read_clock(root, mission.mechanical.has_value());
     mission.packs = read_packs(root);
+    apply_payload(root, mission);
     if (!root.has("path")) apply_airspeed(root, mission);
     read_durations(root, mission);
     read_cruise_path(root, reading, mission);

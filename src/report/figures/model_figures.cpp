@@ -68,7 +68,7 @@ void add_level_rows(FigureData& data, const mechanical::PhysicalModel& model, co
     for (int i = 0; i <= steps; ++i) {
         const double airspeed = std::lerp(range.low, range.high, static_cast<double>(i) / steps);
         if (!(airspeed > 0.0)) continue;
-        const auto terms = mechanical::term_values({airspeed});
+        const auto terms = mechanical::term_values({airspeed}, model.load);
         const double power_w = sum_of_terms_w(model, terms);
         const double reach_w = model.level_sd ? student_t_half_width(model.degrees_of_freedom) *
                                                     std::sqrt(coefficient_variance_w2(model, terms))
