@@ -21,8 +21,8 @@ constexpr std::size_t most_flights = 1000;
 constexpr double parts_tried = 200.0;  ///< of the cruise, after which it may be left; the best is then narrowed
 constexpr double min_part_s = 1.0;     ///< that a pack has to fly
 constexpr double same_s = 1e-3;
-constexpr double search_step_s = 1.0;      ///< of integration
-constexpr double rounding_percent = 1e-4;  ///< above the reserve, for that step
+constexpr double search_step_s = 4.0;      ///< of integration
+constexpr double rounding_percent = 1e-3;  ///< above the reserve, for that step
 constexpr double balance_percent = 0.1;    ///< to which the flights' charge is balanced
 
 /// A part of the cruise, flown with a pack.
@@ -161,8 +161,8 @@ class PackDivider {
         }
     }
 
-    /// The farthest position that a pack returns from with so much charge, `from_s` if there is none. As the way home may
-    /// become shorter, positions all along the cruise are tried.
+    /// The farthest position that a pack returns from with that margin; without any, `from_s`. As the way home may become
+    /// shorter, positions all along the cruise are tried.
     double farthest_s(std::size_t pack, double from_s, double margin_percent) const {
         const double step_s = std::max(min_part_s, end_s_ / parts_tried);
         double best_s = from_s;

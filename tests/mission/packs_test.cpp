@@ -267,5 +267,24 @@ TEST(PackFlights, AreNotTakenForOneFlight) {
               std::string::npos);
 }
 
+TEST(PackFlights, HaveAHomeInTheCoordinatesOfThePath) {
+    const auto refused = [](const std::string& home, const std::string& leg) {
+        return rejected([&] {
+            read(wing + "[packs]\ncount = 2\nchange_s = 0\nhome = " + home +
+                 "\n[path]\nairspeed_m_per_s = 13\n[[path.leg]]\n" + leg);
+        });
+    };
+    const std::string place = "latitude_deg = 43.4, longitude_deg = 1.2";
+    const std::string there =
+        "latitude_deg = 43.41\nlongitude_deg = 1.2\n[[path.leg]]\nlatitude_deg = 43.42\nlongitude_deg = 1.2\n";
+    EXPECT_EQ(refused("{ " + place + " }", there), "");
+    EXPECT_NE(refused("{ " + place + " }", "length_m = 900\ncourse_deg = 0\n").find("home has a latitude"),
+              std::string::npos);
+    EXPECT_NE(refused("{ " + place + ", up_m = 3 }", "length_m = 900\ncourse_deg = 0\n").find("up_m"),
+              std::string::npos);
+    EXPECT_NE(refused("{}", "length_m = 900\ncourse_deg = 0\n").find("home is no place"), std::string::npos);
+    EXPECT_NE(refused("{ east_m = 1, north_m = 2 }", there).find("home: is in metres"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace flightwatt::mission

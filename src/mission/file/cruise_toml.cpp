@@ -204,11 +204,16 @@ path::LocalPosition read_home(const TomlTable& packs, std::vector<path::PathEntr
                               path::PathDefaults defaults) {
     const auto home = packs.optional_table("home", "{ east_m = 0, north_m = 0 }");
     if (!home) return {};
-    auto& last = entries.emplace_back();
+    home->refuse_keys_except({"east_m", "north_m", "latitude_deg", "longitude_deg"});
+    path::PathEntry last;
     last.name = "home";
     last.where = home->where();
     read_place(*home, last.place, last.geographic);
     if (!last.place && !last.geographic) throw InputError(home->where(), "home is no place", place_hint);
+    if (last.geographic && !defaults.geographic_start &&
+        std::ranges::none_of(entries, [](const auto& entry) { return !!entry.geographic; }))
+        throw InputError(home->where(), "home has a latitude, and the path has none", "give east_m and north_m");
+    entries.push_back(last);
     defaults.return_to_start = false;
     const auto path = path_of(entries, defaults);
     return local_position_at(path, {path.elements.size(), 0.0});

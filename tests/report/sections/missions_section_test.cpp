@@ -145,5 +145,15 @@ TEST(ReplaySection, ComparesNothingForAGivenScheduleAlone) {
     EXPECT_THAT(section.html, Not(HasSubstr("replanning in flight against")));
 }
 
+TEST(PacksSection, HasARowForEachFlight) {
+    auto mission = paper_mission("invariant-10fps-240bit");
+    mission.setup.packs = mission::Packs{.count = 3, .change_s = 120.0};
+    mission.setup.reserve_soc_percent = 40.0;
+    const auto section = packs_section(std::vector{fly_packs(mission)});
+    for (const auto* text : {"2 of 3 packs", "with 2 min on the ground", "invariant-10fps-240bit, pack 1",
+                             "invariant-10fps-240bit, pack 2", "at most"})
+        EXPECT_THAT(section.html, HasSubstr(text));
+}
+
 }  // namespace
 }  // namespace flightwatt::report
