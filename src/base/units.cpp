@@ -50,6 +50,8 @@ constexpr std::array named_units{
     NamedUnit{"degC", {Quantity::celsius, 1.0}},
     NamedUnit{"deg_celsius", {Quantity::celsius, 1.0}},
     NamedUnit{"deg celsius", {Quantity::celsius, 1.0}},
+    NamedUnit{"kg", {Quantity::kilogram, 1.0}},
+    NamedUnit{"g", {Quantity::kilogram, 1e-3}},
     NamedUnit{"deg celcius", {Quantity::celsius, 1.0}},  // as Paparazzi spells it
 };
 

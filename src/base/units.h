@@ -54,7 +54,8 @@ enum class Quantity {
     second,
     percent,
     degree,
-    celsius
+    celsius,
+    kilogram
 };
 
 struct Unit {

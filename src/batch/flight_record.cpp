@@ -173,6 +173,7 @@ Fields<FlightRecord> record_fields(const FlightRecord*) {
             field("is_of_other_aircraft", &R::is_of_other_aircraft),
             field("aircraft_id", &R::aircraft_id, "id of the aircraft in the log", csv_column{}),
             field("aircraft_name", &R::aircraft_name, "name of the aircraft in the log", csv_column{}),
+            field("payload_kg", &R::payload_kg, "payload, if the file states it", csv_column{}),
             field("power_source", &R::power_source, "message of the power", csv_column{}),
             field("error", &R::error, "reason of a rejected log", csv_column{}),
             field("current_origin", &R::current_origin),
@@ -195,6 +196,7 @@ FlightRecord record_of(const flight::LoadedFlight& loaded) {
     record.accepted = true;
     record.aircraft_id = series.aircraft_id;
     record.aircraft_name = series.aircraft_name;
+    record.payload_kg = payload_kg(series);
     record.content = content_of(series);
     record.power_source = power_track(series).source;
     record.current_origin = to_string(series.current_origin);

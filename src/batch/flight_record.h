@@ -40,6 +40,7 @@ struct FlightRecord {
     bool is_of_other_aircraft = false;  ///< rejected as it has no data of --aircraft
     std::string aircraft_id;
     std::string aircraft_name;
+    std::optional<double> payload_kg;  ///< see flight::payload_kg
     std::string power_source;
     std::string current_origin;  ///< see CurrentOrigin
     std::vector<RecordedPhase> phases;

@@ -18,8 +18,8 @@ namespace flightwatt::exchange {
 namespace {
 
 std::string_view suffix_of(units::Quantity quantity) {
-    constexpr std::array<std::string_view, 11> suffixes{"_v",       "_a", "_w",       "_ah",  "_wh", "_m",
-                                                        "_m_per_s", "_s", "_percent", "_deg", "_c"};
+    constexpr std::array<std::string_view, 12> suffixes{"_v",       "_a", "_w",       "_ah",  "_wh", "_m",
+                                                        "_m_per_s", "_s", "_percent", "_deg", "_c",  "_kg"};
     return suffixes.at(static_cast<std::size_t>(quantity));
 }
 

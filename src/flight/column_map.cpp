@@ -42,7 +42,8 @@ std::optional<units::Quantity> quantity_of(std::string_view track) {
                                                                          {"_a", ampere},
                                                                          {"_w", watt},
                                                                          {"_m", metre},
-                                                                         {"_c", celsius}};
+                                                                         {"_c", celsius},
+                                                                         {"_kg", kilogram}};
     for (const auto& [suffix, quantity] : suffixes)
         if (track.ends_with(suffix)) return quantity;
     return std::nullopt;
@@ -76,15 +77,18 @@ MappedTrack read_track(const TomlTable& table) {
     if (const auto column = table.optional_string("column")) track.columns = {*column};
     for (const auto& [key, combine] : {std::pair{"product", Combine::product}, {"norm", Combine::norm}}) {
         if (!table.has(key)) continue;
-        if (!track.columns.empty()) throw InputError(table.where(key), "one track has one source", "remove the others");
+        if (!track.columns.empty())
+            throw InputError(table.where(key), fmt::format("{} has a second source", track.name), "remove one");
         track.columns = table.strings(key);
         track.combine = combine;
         if (track.columns.size() < 2) throw InputError(table.where(key), "expected two columns or more");
     }
-    if (track.columns.empty())
-        throw InputError(table.where(), fmt::format("{} has no source", track.name),
-                         "expected column, product or norm");
-    track.factor = unit_factor(table, track.name) * table.optional_number("factor").value_or(1.0);
+    const auto constant = table.optional_number("value");
+    if (track.columns.empty() != constant.has_value())
+        throw InputError(table.where(), fmt::format("{} has {} source", track.name, constant ? "a second" : "no"),
+                         "expected one of column, product, norm and value");
+    track.factor =
+        constant.value_or(1.0) * unit_factor(table, track.name) * table.optional_number("factor").value_or(1.0);
     table.refuse_unknown_keys();
     return track;
 }
@@ -172,8 +176,9 @@ class MappedRows {
             const auto& mapped = map_.tracks[t];
             auto track = make_track(time_s_, values_[t], merge_of(mapped.name));
             track.name = mapped.name;
-            track.source = mapped.combine == Combine::norm ? fmt::format("|{}|", fmt::join(mapped.columns, ", "))
-                                                           : fmt::format("{}", fmt::join(mapped.columns, " * "));
+            track.source = mapped.columns.empty()            ? "column map"
+                           : mapped.combine == Combine::norm ? fmt::format("|{}|", fmt::join(mapped.columns, ", "))
+                                                             : fmt::format("{}", fmt::join(mapped.columns, " * "));
             series.tracks.push_back(std::move(track));
         }
         const auto& names = track_names();

@@ -136,7 +136,8 @@ const std::vector<std::string>& track_names() {
                                                 "takeoff",
                                                 "armed",
                                                 "landed",
-                                                "ground_altitude_m"};
+                                                "ground_altitude_m",
+                                                "payload_kg"};
     return names;
 }
 

@@ -223,6 +223,11 @@ std::optional<double> ground_altitude_m(const SelectedTracks& tracks) {
     return logged.empty() ? tracks.series().planned_ground_altitude_m : logged.value.back();
 }
 
+std::optional<double> payload_kg(const FlightSeries& series) {
+    const auto stated = select_track(series, "payload_kg");
+    return stated.empty() ? std::nullopt : std::optional(stated.value.front());
+}
+
 std::vector<std::string> warnings_of(const SelectedTracks& tracks) {
     const auto& series = tracks.series();
     std::vector<std::string> warnings;

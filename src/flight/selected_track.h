@@ -49,6 +49,10 @@ std::map<std::string, std::string> track_sources(const SelectedTracks& tracks);
 /// Ground level above the sea, from NAVIGATION_REF, else as planned; 0 if altitudes are above the ground.
 std::optional<double> ground_altitude_m(const SelectedTracks& tracks);
 
+/// What the aircraft carries beyond its own mass at the beginning, if its file or column map states it (track
+/// payload_kg).
+std::optional<double> payload_kg(const FlightSeries& series);
+
 /// Warnings for the user: assumed layouts, rejected sources, removed samples, skipped lines.
 std::vector<std::string> warnings_of(const SelectedTracks& tracks);
 

@@ -25,6 +25,7 @@ FlightRecord full_record() {
     record.results = "fedcba9876543210";
     record.accepted = true;
     record.aircraft_id = "20";
+    record.payload_kg = 0.25;
     record.power_source = "ENERGY.power";
     record.current_origin = "computed from throttle";
     RecordedPhase takeoff{1, flight::Phase::takeoff, 147.0, 178.1, 0.5, 1.0 / 3.0, false, {}};

@@ -54,6 +54,16 @@ TEST(ColumnMap, HasUnitsFactorsAndClocks) {
     EXPECT_EQ(describe(series.skipped[0]), "cells that are no numbers: 1 line, first at line 4");
 }
 
+TEST(ColumnMap, StatesThePayload) {
+    const auto payload_of = [](const std::string& track) {
+        const auto map = parse_column_map(small_map + "[[track]]\nname = \"payload_kg\"\n" + track, "map.toml");
+        return payload_kg(parse_mapped_csv("t,u,i,down,load\n2000,10,5,-300,\n3000,10,4,0,250\n", "f.csv", map));
+    };
+    EXPECT_EQ(payload_of("value = 0.5\n"), 0.5);
+    EXPECT_EQ(payload_of("column = \"load\"\nunit = \"g\"\n"), 0.25);
+    EXPECT_EQ(payload_kg({}), std::nullopt);
+}
+
 TEST(ColumnMap, MistakesAreNamed) {
     const auto refusal = [](const std::string& text) {
         return test::rejected([&] { parse_column_map(text, "map.toml"); });
@@ -65,6 +75,8 @@ TEST(ColumnMap, MistakesAreNamed) {
     EXPECT_THAT(refusal(time + "[[track]]\nname = \"power_w\"\ncolumn = \"p\"\nunit = \"V\"\n"),
                 HasSubstr("'V' is no unit of power_w"));
     EXPECT_THAT(refusal(time + "[[track]]\nname = \"power_w\"\n"), HasSubstr("power_w has no source"));
+    EXPECT_THAT(refusal(time + "[[track]]\nname = \"power_w\"\ncolumn = \"p\"\nvalue = 1\n"),
+                HasSubstr("power_w has a second source"));
     EXPECT_THAT(refusal("time = { column = \"t\", unit = \"h\" }\n"), HasSubstr("'h' is no unit of time"));
     EXPECT_EQ(test::rejected([] { parse_mapped_csv("t,u\n1,2\n", "f.csv", parse_column_map(small_map, "m")); }),
               "f.csv:1: has no column 'i'; its columns are t, u");
