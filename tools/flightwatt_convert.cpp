@@ -1,10 +1,11 @@
-// flightwatt convert: a binary log as the text that Paparazzi's own sd2log makes of it.
+// flightwatt convert: a binary log as text: of Paparazzi as its own sd2log writes it, of other autopilots as a series.
 
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/overwrite_guard.h"
 #include "cli/stage.h"
 #include "flight/load_flight.h"
+#include "flight/series_file.h"
 #include "stages.h"
 #include "telemetry/log_configuration.h"
 
@@ -27,13 +28,13 @@ using namespace flightwatt;
 
 /// A binary log as text, and its content in numbers.
 struct ConvertedLog {
-    std::string text;
+    std::string text = {};
     std::size_t lines = 0;
-    std::optional<double> start_s;  ///< nothing for a capture of a link without times
+    std::optional<double> start_s = {};  ///< nothing for a capture of a link without times
     double end_s = 0.0;
     std::size_t untimed = 0;  ///< messages before the first time of a link; they are not in the text
-    std::set<int> senders;
-    telemetry::LinkCounts counts;
+    std::set<int> senders = {};
+    telemetry::LinkCounts counts = {};
 };
 
 ConvertedLog convert_log(const flight::FlightFile& file) {
@@ -155,14 +156,29 @@ struct ConvertArguments {
     std::size_t max_log_bytes = telemetry::default_max_log_bytes;
 };
 
+/// Writes the series of a log that defines its own messages.
+int convert_to_series(const cli::StageCall& call, const flight::FlightFile& file) {
+    const auto path = file.path().string();
+    if (call.output && !call.output->ends_with(".csv"))
+        throw UsageError(fmt::format("{} becomes a series, which is a .csv, not {}", path, *call.output));
+    const auto series = flight::read_candidates(file, std::nullopt).front();
+    ConvertedLog converted{.text = to_csv(series)};
+    converted.counts.bytes = file.text().size();
+    auto warnings = series.notes;
+    for (const auto& skipped : series.skipped) warnings.push_back(describe(skipped));
+    cli::write_result(call, converted.text);
+    for (const auto& warning : warnings) cli::warn(call, fmt::format("{}: {}", path, warning));
+    if (call.json)
+        cli::print_json(call, ConvertOutput{&file, &converted, &warnings});
+    else
+        cli::note(call, fmt::format("{}: {}, {} tracks", path, to_string(*file.autopilot()), series.tracks.size()));
+    return cli::ok;
+}
+
 int convert(const cli::StageCall& call, const ConvertArguments& arguments) {
     const std::filesystem::path path = call.inputs.front();
     const flight::FlightFile file(path, arguments.max_log_bytes, arguments.messages);
-    if (file.autopilot()) {
-        throw InputError({path.string()},
-                         fmt::format("is a log of another autopilot ({})", telemetry::to_string(*file.autopilot())),
-                         "every stage reads it as it is; flightwatt parse writes it as text");
-    }
+    if (file.autopilot()) return convert_to_series(call, file);
     if (!file.framing()) {
         throw InputError({path.string()}, "is no binary log: no frames with right checksums follow each other in it",
                          "expected the .LOG or .tlm of an SD card, or a capture of a link");
@@ -198,13 +214,14 @@ int flightwatt::stages::convert_stage(int argc, char** argv) {
         "convert", "LOG",
         R"(Writes a binary log as text, as Paparazzi's sd2log does: the .LOG or .tlm of an SD card, or a capture
 of a serial line, of UDP or of an XBee (also .gz, .bz2, .xz, .zst). With -o NAME.data, NAME.log is
-written next to it if the log has one. All stages also read the binary log itself, with the same
-results.)"};
+written next to it if the log has one. A .bin of ArduPilot or a .ulg of PX4 becomes a series (-o NAME.csv).
+All stages also read the binary log itself, with the same results.)"};
     stage.next = [](const auto&) { return "flightwatt segment {}"; };
     stage.json_schema = cli::document_schema<ConvertOutput>;
     stage.max_inputs = 1;
     stage.examples = {"flightwatt convert flight.LOG -o flight.data",
-                      "flightwatt convert capture.bin --messages messages.xml"};
+                      "flightwatt convert capture.bin --messages messages.xml",
+                      "flightwatt convert flight.ulg -o flight.csv"};
     stage.reads_logs = true;
     ConvertArguments arguments;
     stage.options.add("messages", arguments.messages, cli::input_file("FILE"),

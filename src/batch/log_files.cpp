@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "flight/column_map.h"
 #include "telemetry/autopilot_log.h"
+#include "telemetry/data_file.h"
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
@@ -41,7 +42,8 @@ bool is_log_name(const std::filesystem::path& path, const std::optional<std::fil
     }
     constexpr std::array<std::string_view, 7> endings{".data", ".LOG", ".tlm", ".TLM", ".bin", ".BIN", ".ulg"};
     const bool is_log = std::ranges::any_of(endings, [&](std::string_view ending) { return name.ends_with(ending); });
-    if (name.ends_with(".log")) return telemetry::map_autopilot_log(path).has_value();
+    if (name.ends_with(".log"))
+        return telemetry::detect_autopilot_format(telemetry::beginning_of_file(path)).has_value();
     return is_log && !(name.ends_with(".LOG") && telemetry::begins_as_xml(path));
 }
 

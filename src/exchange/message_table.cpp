@@ -50,17 +50,11 @@ telemetry::TelemetryLog read_message(const flight::FlightFile& file,
 }
 
 [[noreturn]] void refuse_absent(const flight::FlightFile& file, const std::string& message, bool is_defined) {
-    const auto counts =
-        file.framing() ? flight::with_binary_log(file, [](const auto& log) { return census_of_binary_messages(log); })
-                       : telemetry::count_messages(file.text());
-    std::vector<std::string> names;
-    for (const auto& [name, count] : counts) {
-        if (name == message && !is_defined) {
-            throw InputError({file.path().string()}, fmt::format("has no definition of {}", message),
-                             "add the .log of the log, or give --messages FILE");
-        }
-        names.push_back(fmt::format("{} {}", name, count));
-    }
+    const auto names = flight::census_of(file);
+    const auto is_it = [&](const std::string& name) { return name.starts_with(message + " "); };
+    if (!is_defined && std::ranges::any_of(names, is_it))
+        throw InputError({file.path().string()}, fmt::format("has no definition of {}", message),
+                         "add the .log of the log, or give --messages FILE");
     throw InputError({file.path().string()}, fmt::format("contains no readable {}", message),
                      "it contains " + short_list(names));
 }
@@ -121,16 +115,15 @@ MessageCsv as_csv(const telemetry::MessageTable& table) {
 
 /// The table of a log that defines its messages.
 MessageCsv autopilot_table(const flight::FlightFile& file, const std::string& message) {
-    const auto format = file.autopilot().value();
-    std::vector<std::string> names;
-    for (auto& of : telemetry::autopilot_messages(file.text(), format, file.path())) {
-        names.push_back(fmt::format("{} {}", of.name, of.count));
+    const auto read = [&](const std::vector<telemetry::MessageRequest>& wanted) {
+        return read_autopilot_log(file.text(), file.autopilot().value(), file.path(), wanted);
+    };
+    for (auto& of : read({}).messages) {
         if (of.name != message) continue;
-        const auto read = read_autopilot_log(file.text(), format, file.path(), {{message, std::move(of.fields)}});
-        if (const auto* table = read.log.senders.front().table(message)) return as_csv(*table);
+        const auto found = read({{message, std::move(of.fields)}});
+        if (const auto* table = found.log.senders.front().table(message)) return as_csv(*table);
     }
-    throw InputError({file.path().string()}, fmt::format("contains no readable {}", message),
-                     "it contains " + short_list(names));
+    refuse_absent(file, message, true);
 }
 
 }  // namespace

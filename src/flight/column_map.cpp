@@ -7,12 +7,13 @@
 #include "base/text.h"
 #include "base/toml_reader.h"
 #include "base/units.h"
+#include "flight/series_file.h"
+#include "flight/sources/log_family.h"
+#include "telemetry/data_file.h"
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <utility>
 
@@ -27,8 +28,6 @@ std::vector<std::string_view> shipped_column_maps();
 namespace {
 
 using Combine = MappedTrack::Combine;
-
-constexpr std::size_t max_header_bytes = 1 << 16;
 
 /// The quantity of a track by the suffix of its name; std::nullopt for states.
 std::optional<units::Quantity> quantity_of(std::string_view track) {
@@ -108,29 +107,18 @@ void read_time(const TomlTable& time, ColumnMap& map) {
     time.refuse_unknown_keys();
 }
 
-CurrentOrigin origin_of(const TomlTable& table) {
-    const auto text = table.optional_string("current_origin").value_or("unknown");
-    for (const auto origin : {CurrentOrigin::unknown, CurrentOrigin::sensor, CurrentOrigin::throttle})
-        if (to_string(origin) == text) return origin;
-    throw InputError(table.where("current_origin"), fmt::format("current_origin is '{}'", text),
-                     "expected 'measured by a sensor', 'computed from throttle' or 'unknown'");
-}
-
 /// The first line that is no comment, as cells.
 std::vector<std::string> header_of(std::string_view csv) {
+    constexpr std::size_t max_header_bytes = 1 << 16;
     csv = csv.substr(0, max_header_bytes);
-    while (!csv.empty()) {
-        const auto line = csv.substr(0, csv.find('\n'));
-        if (!line.empty() && line.front() != '#' && line != "\r") {
-            const auto rows = parse_csv(line, "", CsvHeader::absent).rows;
-            std::vector<std::string> cells;
-            for (const auto& row : rows)
-                for (const auto& cell : row.cells) cells.push_back(cell.text);
-            return cells;
-        }
-        csv.remove_prefix(std::min(line.size() + 1, csv.size()));
-    }
-    return {};
+    while (csv.starts_with('#') || csv.starts_with('\n') || csv.starts_with("\r\n"))
+        csv.remove_prefix(std::min(csv.find('\n'), csv.size() - 1) + 1);
+    std::vector<std::string> cells;
+    if (csv.empty()) return cells;
+    for_each_csv_row(csv.substr(0, csv.find('\n')), "", [&](const CsvRowView& row) {
+        for (const auto& cell : row.cells) cells.emplace_back(cell.text);
+    });
+    return cells;
 }
 
 bool has_all(const std::vector<std::string>& header, const std::vector<std::string>& columns) {
@@ -181,10 +169,7 @@ class MappedRows {
                                                              : fmt::format("{}", fmt::join(mapped.columns, " * "));
             series.tracks.push_back(std::move(track));
         }
-        const auto& names = track_names();
-        std::ranges::stable_sort(series.tracks, {}, [&](const Track& track) {
-            return std::ranges::find(names, track.name) - names.begin();
-        });
+        sort_tracks(series.tracks);
         if (map_.is_unix_time) series.start_clock_s = first_s_;
         if (!skipped_.lines.empty()) series.skipped.push_back(std::move(skipped_));
         return series;
@@ -240,7 +225,7 @@ ColumnMap parse_column_map(const std::string& text, const std::filesystem::path&
     if (!map.firmware.empty() && map.firmware != "fixedwing" && map.firmware != "rotorcraft" && map.firmware != "rover")
         throw InputError(table.where("firmware"), fmt::format("firmware is '{}'", map.firmware),
                          "expected fixedwing, rotorcraft or rover");
-    map.current_origin = origin_of(table);
+    if (table.has("current_origin")) map.current_origin = read_current_origin(table);
     read_time(table.table("time"), map);
     for (const auto& track : table.tables("track")) map.tracks.push_back(read_track(track));
     table.refuse_unknown_keys();
@@ -270,10 +255,7 @@ std::optional<ColumnMap> column_map_of(std::string_view csv, const std::filesyst
 }
 
 bool is_flight_csv(const std::filesystem::path& file, const std::optional<std::filesystem::path>& columns) {
-    std::ifstream stream(file, std::ios::binary);
-    std::string beginning(max_header_bytes, '\0');
-    stream.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
-    beginning.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
+    const auto beginning = telemetry::beginning_of_file(file);
     try {
         const auto header = header_of(beginning);
         if (is_series_header(header)) return true;

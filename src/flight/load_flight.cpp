@@ -5,6 +5,7 @@
 #include "base/input_file.h"
 #include "base/overwrite_guard.h"
 #include "flight/flight_identity.h"
+#include "flight/phase_statistics.h"
 #include "flight/selected_track.h"
 #include "flight/series_file.h"
 #include "flight/sources/log_family.h"
@@ -23,21 +24,10 @@ namespace {
 
 constexpr std::size_t min_altitudes = 2;  // for segmentation
 
-/// The messages of a log, most frequent first: "GPS 310, ALIVE 12, ...".
-std::string census(const FlightFile& file) {
-    if (file.is_series()) return "";
-    std::vector<std::string> names;
-    if (file.autopilot()) {
-        for (const auto& of : telemetry::autopilot_messages(file.text(), *file.autopilot(), file.path()))
-            names.push_back(fmt::format("{} {}", of.name, of.count));
-    } else {
-        const auto counts =
-            file.framing()
-                ? with_binary_log(file, [](const auto& log) { return telemetry::census_of_binary_messages(log); })
-                : telemetry::count_messages(file.text());
-        for (const auto& [name, count] : counts) names.push_back(fmt::format("{} {}", name, count));
-    }
+/// "GPS 310, ALIVE 12, ...".
+std::string shown_census(const FlightFile& file) {
     constexpr std::size_t shown = 12;
+    auto names = census_of(file);
     const bool more = names.size() > shown;
     names.resize(std::min(names.size(), shown));
     return fmt::format("{}{}", fmt::join(names, ", "), more ? ", ..." : "");
@@ -66,7 +56,7 @@ void name_synthetic(const FlightFile& file, std::vector<FlightSeries>& candidate
 FlightSeries read_series(const FlightFile& file, const std::optional<std::string>& aircraft_id, bool power_required) {
     auto series = choose_aircraft(read_candidates(file, aircraft_id));
     const bool needs_power = power_required || SelectedTracks(series)["altitude_m"].time_s.size() < min_altitudes;
-    if (series.clock_restart || (needs_power && power_track(series).empty())) require_power(series, census(file));
+    if (series.clock_restart || (needs_power && power_track(series).empty())) require_power(series, shown_census(file));
     return series;
 }
 
@@ -106,6 +96,11 @@ std::vector<std::string> all_warnings(const SelectedTracks& tracks, const Flight
         warnings.push_back(assessment.lacks_power + ": the energy of its phases is unknown");
     for (const auto* more : {&phases.warnings, &assessment.power.warnings})
         warnings.insert(warnings.end(), more->begin(), more->end());
+    const PowerStatistics power(tracks.series());
+    for (const auto& sortie : phases.sorties)
+        if (const double lost_s = power.between(sortie.start_s(), sortie.end_s()).lost_s; lost_s > 0.0)
+            warnings.push_back(
+                fmt::format("damage hides the power of {:.1f} s in flight: its energy is not counted", lost_s));
     return warnings;
 }
 
@@ -212,13 +207,8 @@ FlightFile::FlightFile(const std::filesystem::path& path, std::size_t max_bytes,
         column_map_ = column_map_of(text_, path, columns);
         return;
     }
-    if (auto mapped = telemetry::map_autopilot_log(path)) {
-        mapped_ = *std::move(mapped);
-    } else {
-        text_ = telemetry::read_data_file(path, max_bytes);
-        mapped_.bytes = text_;
-    }
-    autopilot_ = telemetry::detect_autopilot_format(mapped_.bytes);
+    text_ = telemetry::read_data_file(path, max_bytes);
+    autopilot_ = telemetry::detect_autopilot_format(text_);
     if (autopilot_) return;
     require_kind(text_, FileKind::log, path.string());
     framing_ = telemetry::detect_binary_framing(text_);
@@ -241,6 +231,21 @@ telemetry::MessageDictionary FlightFile::definitions() const {
                          "name the messages.xml or .log of the aircraft and build that flew, with --messages FILE");
     }
     return telemetry::parse_message_dictionary(*log_text_, log_file_);
+}
+
+std::vector<std::string> census_of(const FlightFile& file) {
+    std::vector<std::string> names;
+    if (file.is_series()) return names;
+    if (file.autopilot()) {
+        for (const auto& of : read_autopilot_log(file.text(), *file.autopilot(), file.path(), {}).messages)
+            names.push_back(fmt::format("{} {}", of.name, of.count));
+        return names;
+    }
+    const auto counts = file.framing()
+                            ? with_binary_log(file, [](const auto& log) { return census_of_binary_messages(log); })
+                            : telemetry::count_messages(file.text());
+    for (const auto& [name, count] : counts) names.push_back(fmt::format("{} {}", name, count));
+    return names;
 }
 
 std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id) {

@@ -52,8 +52,9 @@ struct LoadedFlight : FlightAssessment {
     std::map<std::string, std::string> sources = {};  ///< source of each selected track, by name
 };
 
-/// A text or binary log with its .log, a log of another autopilot, or a series CSV, in memory. `messages` (a messages.xml or another .log) defines
-/// the messages of a log whose .log is missing or damaged, `columns` (a column map) those of a CSV. Throws InputError for a file that cannot be read.
+/// A text or binary log with its .log, a log of another autopilot, or a CSV, in memory. `messages` (a messages.xml or
+/// another .log) defines the messages of a log whose .log is missing or damaged, `columns` (a column map) the tracks of
+/// a CSV. Throws InputError for a file that cannot be read.
 class FlightFile {
   public:
     explicit FlightFile(const std::filesystem::path& path, std::size_t max_bytes = telemetry::default_max_log_bytes,
@@ -67,7 +68,7 @@ class FlightFile {
     bool is_series() const { return is_series_; }
     /// Of a CSV that is no series.
     const std::optional<ColumnMap>& column_map() const { return column_map_; }
-    std::string_view text() const { return autopilot_ ? mapped_.bytes : text_; }
+    std::string_view text() const { return text_; }
     /// Format of another autopilot's log, which defines its own messages.
     std::optional<telemetry::AutopilotFormat> autopilot() const { return autopilot_; }
     /// Framing of a binary log; std::nullopt for text.
@@ -85,7 +86,6 @@ class FlightFile {
     bool is_series_ = false;
     std::optional<ColumnMap> column_map_;
     std::string text_;
-    telemetry::MappedFile mapped_;  ///< of an autopilot's log; of a compressed one `text_`
     std::optional<telemetry::AutopilotFormat> autopilot_;
     std::optional<telemetry::Framing> framing_;
     std::filesystem::path log_file_;
@@ -99,6 +99,9 @@ auto with_binary_log(const FlightFile& file, const Use& use) {
     const auto messages = file.definitions();
     return use(telemetry::BinaryLog{file.text(), file.framing().value(), file.path(), file.log_file(), &messages});
 }
+
+/// The messages of a log and their numbers, the most frequent first: "GPS 310". Empty for a series.
+std::vector<std::string> census_of(const FlightFile& file);
 
 /// The log is valid, but has no data of the requested aircraft.
 class OtherAircraftError : public InputError {

@@ -13,6 +13,23 @@ std::size_t first_at_or_after(const std::vector<double>& time_s, double t) {
     return static_cast<std::size_t>(std::lower_bound(time_s.begin(), time_s.end(), t) - time_s.begin());
 }
 
+/// The samples before gaps in which bytes of the log are damaged.
+std::vector<std::size_t> samples_before_damage(const FlightSeries& series, const std::vector<double>& time_s,
+                                               double gap_s) {
+    std::vector<std::size_t> before;
+    for (const auto& skipped : series.skipped) {
+        if (skipped.unit != telemetry::SkippedLines::Unit::byte) continue;
+        for (const auto& at : skipped.lines) {
+            const auto next = first_at_or_after(time_s, at.time_s);
+            if (next > 0 && next < time_s.size() && time_s[next] - time_s[next - 1] > gap_s) before.push_back(next - 1);
+        }
+    }
+    std::ranges::sort(before);
+    const auto repeated = std::ranges::unique(before);
+    before.erase(repeated.begin(), repeated.end());
+    return before;
+}
+
 }  // namespace
 
 double integrated_energy_wh(const FlightSeries& series, double start_s, double end_s) {
@@ -26,7 +43,8 @@ double integrated_energy_wh(const Track& power_w, double start_s, double end_s) 
 PowerStatistics::PowerStatistics(const FlightSeries& series)
     : power_(power_track(series)),
       counter_wh_(sample_selected_track(series, "energy_wh", power_.time_s)),
-      gap_s_(gap_threshold_s(power_.time_s)) {}
+      gap_s_(gap_threshold_s(power_.time_s)),
+      lost_(samples_before_damage(series, power_.time_s, gap_s_)) {}
 
 PhaseStatistics PowerStatistics::between(double start_s, double end_s) const {
     PhaseStatistics statistics;
@@ -44,9 +62,17 @@ PhaseStatistics PowerStatistics::between(double start_s, double end_s) const {
         ++statistics.samples;
     }
     count_gap(end_s);
-    const double energy_j = integrated(time_s, power_.value, start_s, end_s);
+    double energy_j = integrated(time_s, power_.value, start_s, end_s);
+    for (const auto i : lost_) {
+        const double from_s = std::max(start_s, time_s[i]);
+        const double to_s = std::min(end_s, time_s[i + 1]);
+        if (to_s <= from_s) continue;
+        statistics.lost_s += to_s - from_s;
+        energy_j -= integrated(time_s, power_.value, from_s, to_s);
+    }
     statistics.energy_wh = units::wh_from_joule(energy_j);
-    if (end_s > start_s) statistics.mean_power_w = energy_j / (end_s - start_s);
+    const double known_s = end_s - start_s - statistics.lost_s;
+    if (known_s > 0.0) statistics.mean_power_w = energy_j / known_s;
     if (!counter_wh_.empty()) {
         statistics.counter_energy_wh =
             interpolate_clamped(time_s, counter_wh_, end_s) - interpolate_clamped(time_s, counter_wh_, start_s);

@@ -12,10 +12,11 @@ namespace flightwatt::flight {
 struct PhaseStatistics {
     std::size_t samples = 0;                  ///< power samples in [start, end]
     double mean_power_w = 0.0;                ///< energy over duration; 0 without a duration
-    double energy_wh = 0.0;                   ///< integral of the power, linear between samples
+    double energy_wh = 0.0;                   ///< integral of the power, linear between samples, without lost_s
     std::optional<double> counter_energy_wh;  ///< difference of the on-board counter
     std::size_t gaps = 0;                     ///< times without a sample, see gap_threshold_s()
     double max_gap_s = 0.0;
+    double lost_s = 0.0;  ///< in gaps of damaged bytes: their power is not known
 };
 
 /// Statistics of the power of a series, for many phases.
@@ -31,6 +32,7 @@ class PowerStatistics {
     Track power_;
     std::vector<double> counter_wh_;  ///< at the times of the power samples
     double gap_s_ = 0.0;
+    std::vector<std::size_t> lost_;  ///< last sample before each gap in which bytes are damaged
 };
 
 /// Energy [Wh] of the series' power between two times: trapezoids, the ends interpolated.

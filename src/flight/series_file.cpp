@@ -10,7 +10,6 @@
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -24,8 +23,6 @@
 
 namespace flightwatt::flight {
 namespace {
-
-constexpr std::array origins{CurrentOrigin::unknown, CurrentOrigin::sensor, CurrentOrigin::throttle};
 
 /// Counts of skipped lines; those after the last message have no time, so `time_s` is then one shorter.
 std::string skipped_text(const telemetry::SkippedLines& skipped) {
@@ -69,14 +66,6 @@ telemetry::SkippedLines read_skipped(const TomlTable& table) {
     return skipped;
 }
 
-CurrentOrigin read_origin(const TomlTable& table) {
-    const auto text = table.string("current_origin");
-    for (const auto origin : origins)
-        if (to_string(origin) == text) return origin;
-    throw InputError(table.where("current_origin"), fmt::format("current_origin is '{}'", text),
-                     "expected 'measured by a sensor', 'computed from throttle' or 'unknown'");
-}
-
 Track read_track(const TomlTable& table) {
     Track track;
     const auto column = table.string("name");
@@ -112,7 +101,7 @@ FrontMatter read_matter(const TomlTable& table) {
     series.aircraft_id = table.string("aircraft_id");
     series.aircraft_name = table.string("aircraft_name");
     series.firmware = table.optional_string("firmware").value_or("");
-    series.current_origin = read_origin(table);
+    series.current_origin = read_current_origin(table);
     series.planned_ground_altitude_m = table.optional_number("planned_ground_altitude_m");
     series.start_clock_s = table.optional_number("start_clock_s");
     series.log_is_missing = table.optional_boolean("lacks_log").value_or(false);
@@ -308,6 +297,14 @@ class TableReader {
 };
 
 }  // namespace
+
+CurrentOrigin read_current_origin(const TomlTable& table) {
+    const auto text = table.string("current_origin");
+    for (const auto origin : {CurrentOrigin::unknown, CurrentOrigin::sensor, CurrentOrigin::throttle})
+        if (to_string(origin) == text) return origin;
+    throw InputError(table.where("current_origin"), fmt::format("current_origin is '{}'", text),
+                     "expected 'measured by a sensor', 'computed from throttle' or 'unknown'");
+}
 
 std::string to_csv(const FlightSeries& series) {
     std::string text;

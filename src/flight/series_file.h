@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/atomic_file.h"
+#include "base/toml_reader.h"
 #include "flight/flight_series.h"
 
 #include <filesystem>
@@ -11,6 +12,9 @@ namespace flightwatt::flight {
 
 /// Source of a track of a CSV without front matter.
 inline constexpr auto plain_source = "series CSV";
+
+/// The value of a table's key current_origin. Throws InputError for another text.
+CurrentOrigin read_current_origin(const TomlTable& table);
 
 /// Writes a series file: metadata as TOML in comment lines, the first of them `format = 1`, then a CSV table with
 /// `time_s`, a column for each track (further candidates are NAME.2, NAME.3, ...) and a row for each time of any track.

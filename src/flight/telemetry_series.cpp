@@ -2,6 +2,7 @@
 
 #include "base/units.h"
 #include "flight/sources/derived_tracks.h"
+#include "flight/sources/log_family.h"
 
 #include <algorithm>
 #include <cmath>
@@ -97,92 +98,106 @@ void add_faults(const telemetry::MessageTable& table, ClockFaults& faults) {
     }
 }
 
-using units::Quantity;
-
-/// A field that is a track without computation.
-struct FieldTrack {
-    const char* name;
-    const char* message;
-    const char* field;
-    std::optional<Quantity> quantity;  ///< required of the field
-    Merge merge;
-};
-
-/// In the order of preference within each name.
-const std::vector<FieldTrack>& field_tracks() {
-    constexpr auto metre = Quantity::metre;
-    constexpr auto speed = Quantity::metre_per_second;
-    constexpr auto degree = Quantity::degree;
-    static const std::vector<FieldTrack> fields{
-        {"altitude_m", "ESTIMATOR", "z", metre, Merge::mean},
-        {"altitude_m", "ROTORCRAFT_FP", "up", metre, Merge::mean},
-        {"altitude_m", "GPS", "alt", metre, Merge::mean},
-        {"altitude_m", "GPS_INT", "hmsl", metre, Merge::mean},
-        {"altitude_m", "AIR_DATA", "amsl_baro", metre, Merge::mean},
-        {"throttle_percent", "ENERGY", "throttle", Quantity::percent, Merge::mean},
-        {"throttle_percent", "BAT", "throttle", Quantity::percent, Merge::mean},
-        {"voltage_v", "ENERGY", "voltage", Quantity::volt, Merge::mean},
-        {"voltage_v", "ENERGY", "bat", Quantity::volt, Merge::mean},
-        {"voltage_v", "BAT", "voltage", Quantity::volt, Merge::mean},
-        {"voltage_v", "ESC", "bat_volts", Quantity::volt, Merge::mean},
-        {"voltage_v", "POWER_DEVICE", "voltage", Quantity::volt, Merge::mean},
-        {"current_a", "ENERGY", "current", Quantity::ampere, Merge::mean},
-        {"current_a", "ENERGY", "amp", Quantity::ampere, Merge::mean},
-        {"current_a", "BAT", "amps", Quantity::ampere, Merge::mean},
-        {"power_w", "ENERGY", "power", Quantity::watt, Merge::mean},
-        {"charge_ah", "ENERGY", "charge", Quantity::ampere_hour, Merge::latest},
-        {"charge_ah", "ENERGY", "energy", Quantity::ampere_hour, Merge::latest},
-        {"charge_ah", "BAT", "energy", Quantity::ampere_hour, Merge::latest},
-        {"energy_wh", "ENERGY", "energy", Quantity::watt_hour, Merge::latest},
-        {"east_m", "NAVIGATION", "pos_x", metre, Merge::mean},
-        {"east_m", "ROTORCRAFT_FP", "east", metre, Merge::mean},
-        {"east_m", "GPS", "utm_east", metre, Merge::mean},
-        {"north_m", "NAVIGATION", "pos_y", metre, Merge::mean},
-        {"north_m", "ROTORCRAFT_FP", "north", metre, Merge::mean},
-        {"north_m", "GPS", "utm_north", metre, Merge::mean},
-        {"ground_speed_m_per_s", "GPS", "speed", speed, Merge::mean},
-        {"airspeed_m_per_s", "AIRSPEED", "airspeed", speed, Merge::mean},
-        {"airspeed_m_per_s", "AIR_DATA", "airspeed", speed, Merge::mean},
-        {"wind_east_m_per_s", "WIND_INFO", "east", speed, Merge::mean},
-        {"wind_north_m_per_s", "WIND_INFO", "north", speed, Merge::mean},
-        {"latitude_deg", "GPS_INT", "lat", degree, Merge::latest},
-        {"latitude_deg", "GPS_LLA", "lat", degree, Merge::latest},
-        {"longitude_deg", "GPS_INT", "lon", degree, Merge::latest},
-        {"longitude_deg", "GPS_LLA", "lon", degree, Merge::latest},
-        {"heading_deg", "ATTITUDE", "psi", degree, Merge::latest},
-        {"heading_deg", "ROTORCRAFT_FP", "psi", degree, Merge::latest},
-        {"course_deg", "GPS", "course", degree, Merge::latest},
-        {"climb_m_per_s", "ESTIMATOR", "z_dot", speed, Merge::mean},
-        {"climb_m_per_s", "ROTORCRAFT_FP", "vup", speed, Merge::mean},
-        {"climb_m_per_s", "GPS", "climb", speed, Merge::mean},
-        {"roll_deg", "ATTITUDE", "phi", degree, Merge::latest},
-        {"roll_deg", "ROTORCRAFT_FP", "phi", degree, Merge::latest},
-        {"air_temperature_c", "AIR_DATA", "temp", Quantity::celsius, Merge::mean},
-        {"motor_speed_rpm", "ESC", "rpm", std::nullopt, Merge::mean},
-        {"mode", "PPRZ_MODE", "ap_mode", std::nullopt, Merge::latest},
-        {"block", "NAVIGATION", "cur_block", std::nullopt, Merge::latest},
-        {"rover_mode", "ROVER_STATUS", "ap_mode", std::nullopt, Merge::latest},
-        {"ground_altitude_m", "NAVIGATION_REF", "ground_alt", metre, Merge::latest},
-    };
-    return fields;
+/// 0 east and 0 north: the aircraft does not know the wind yet.
+double wind_speed(const std::vector<double>& east_north) {
+    const double speed = std::hypot(east_north[0], east_north[1]);
+    return speed > 0.0 ? speed : std::numeric_limits<double>::quiet_NaN();
 }
 
-std::size_t order_of(const Track& track) {
-    const auto& names = track_names();
-    return static_cast<std::size_t>(std::find(names.begin(), names.end(), track.name) - names.begin());
+double speed_of_components(const std::vector<double>& row) { return std::hypot(row[0], row[1], row[2]); }
+
+double percent_of_command(const std::vector<double>& row) { return units::percent_from_pprz(row[0]); }
+
+double utm_latitude_deg(const std::vector<double>& row) { return position_of_utm(row).first; }
+double utm_longitude_deg(const std::vector<double>& row) { return position_of_utm(row).second; }
+
+const LogFamily& paparazzi_family() {
+    constexpr auto mean = Merge::mean;
+    constexpr auto latest = Merge::latest;
+    const FamilySource voltage{"voltage", "V"};
+    const FamilySource current{"current", "A"};
+    const std::vector<FamilySource> ecef{{"ecef_xd"}, {"ecef_yd"}, {"ecef_zd"}};
+    const std::vector<FamilySource> wind{{"east", "m/s"}, {"north"}};
+    const std::vector<FamilySource> utm{{"utm_east"}, {"utm_north"}, {"utm_zone"}};
+    static const LogFamily family{
+        {
+            {"altitude_m", "ESTIMATOR", {{"z", "m"}}},
+            {"altitude_m", "ROTORCRAFT_FP", {{"up", "m"}}},
+            {"altitude_m", "GPS", {{"alt", "m"}}},
+            {"altitude_m", "GPS_INT", {{"hmsl", "m"}}},
+            {"altitude_m", "AIR_DATA", {{"amsl_baro", "m"}}},
+            {"throttle_percent", "ENERGY", {{"throttle", "%"}}},
+            {"throttle_percent", "BAT", {{"throttle", "%"}}},
+            {"voltage_v", "ENERGY", {{"voltage", "V"}}},
+            {"voltage_v", "ENERGY", {{"bat", "V"}}},
+            {"voltage_v", "BAT", {{"voltage", "V"}}},
+            {"voltage_v", "ESC", {{"bat_volts", "V"}}},
+            {"voltage_v", "POWER_DEVICE", {{"voltage", "V"}}},
+            {"current_a", "ENERGY", {{"current", "A"}}},
+            {"current_a", "ENERGY", {{"amp", "A"}}},
+            {"current_a", "BAT", {{"amps", "A"}}},
+            {"power_w", "ENERGY", {{"power", "W"}}},
+            {"power_w", "ENERGY", {voltage, current}, mean, product},
+            {"power_w", "ENERGY", {voltage, {"amp", "A"}}, mean, product},
+            {"power_w", "ENERGY", {{"bat", "V"}, current}, mean, product},
+            {"power_w", "ENERGY", {{"bat", "V"}, {"amp", "A"}}, mean, product},
+            {"power_w", "BAT", {voltage, {"amps", "A"}}, mean, product},
+            {"charge_ah", "ENERGY", {{"charge", "Ah"}}, latest},
+            {"charge_ah", "ENERGY", {{"energy", "Ah"}}, latest},
+            {"charge_ah", "BAT", {{"energy", "Ah"}}, latest},
+            {"energy_wh", "ENERGY", {{"energy", "Wh"}}, latest},
+            {"east_m", "NAVIGATION", {{"pos_x", "m"}}},
+            {"east_m", "ROTORCRAFT_FP", {{"east", "m"}}},
+            {"east_m", "GPS", {{"utm_east", "m"}}},
+            {"north_m", "NAVIGATION", {{"pos_y", "m"}}},
+            {"north_m", "ROTORCRAFT_FP", {{"north", "m"}}},
+            {"north_m", "GPS", {{"utm_north", "m"}}},
+            {"ground_speed_m_per_s", "GPS", {{"speed", "m/s"}}},
+            {"airspeed_m_per_s", "AIRSPEED", {{"airspeed", "m/s"}}},
+            {"airspeed_m_per_s", "AIR_DATA", {{"airspeed", "m/s"}}},
+            {"wind_east_m_per_s", "WIND_INFO", {{"east", "m/s"}}},
+            {"wind_north_m_per_s", "WIND_INFO", {{"north", "m/s"}}},
+            {"latitude_deg", "GPS_INT", {{"lat", "deg"}}, latest},
+            {"latitude_deg", "GPS_LLA", {{"lat", "deg"}}, latest},
+            {"longitude_deg", "GPS_INT", {{"lon", "deg"}}, latest},
+            {"longitude_deg", "GPS_LLA", {{"lon", "deg"}}, latest},
+            {"heading_deg", "ATTITUDE", {{"psi", "deg"}}, latest},
+            {"heading_deg", "ROTORCRAFT_FP", {{"psi", "deg"}}, latest},
+            {"course_deg", "GPS", {{"course", "deg"}}, latest},
+            {"climb_m_per_s", "ESTIMATOR", {{"z_dot", "m/s"}}},
+            {"climb_m_per_s", "ROTORCRAFT_FP", {{"vup", "m/s"}}},
+            {"climb_m_per_s", "GPS", {{"climb", "m/s"}}},
+            {"roll_deg", "ATTITUDE", {{"phi", "deg"}}, latest},
+            {"roll_deg", "ROTORCRAFT_FP", {{"phi", "deg"}}, latest},
+            {"air_temperature_c", "AIR_DATA", {{"temp", "celsius"}}},
+            {"motor_speed_rpm", "ESC", {{"rpm"}}},
+            {"mode", "PPRZ_MODE", {{"ap_mode"}}, latest},
+            {"block", "NAVIGATION", {{"cur_block"}}, latest},
+            {"rover_mode", "ROVER_STATUS", {{"ap_mode"}}, latest},
+            {"ground_altitude_m", "NAVIGATION_REF", {{"ground_alt", "m"}}, latest},
+            // Rotorcraft before 2018: thrust, without a unit, on Paparazzi's command scale.
+            {"throttle_percent", "ROTORCRAFT_FP", {{"thrust"}}, mean, percent_of_command},
+            // Command to the motor, also in manual mode.
+            {"throttle_percent", "COMMANDS", {{"values"}}, mean, percent_of_command, nullptr, commanded_throttle},
+            {"motor_speed_rpm", "MOTOR", {{"rpm"}}, mean, [](const auto& hertz) { return hertz[0] * 60.0; }},
+            {"ground_speed_m_per_s", "GPS_INT", ecef, mean, speed_of_components, nullptr, "GPS_INT.ecef velocity"},
+            {"wind_speed_m_per_s", "WIND_INFO", wind, mean, wind_speed, nullptr, "WIND_INFO.east, north"},
+            {"latitude_deg", "GPS", utm, mean, utm_latitude_deg, nullptr, "GPS.utm"},
+            {"longitude_deg", "GPS", utm, mean, utm_longitude_deg, nullptr, "GPS.utm"},
+        },
+        {},
+        nullptr,
+        {},
+        LogFamily::Unstated::unused};
+    return family;
 }
 
 /// All candidates of all tracks, in the order of track_names() and of preference.
 std::vector<Track> logged_tracks(const telemetry::SenderLog& sender) {
     std::vector<Track> tracks;
-    for (const auto& [name, message, field, quantity, merge] : field_tracks()) {
-        const auto* table = sender.table(message);
-        const auto* column = table == nullptr ? nullptr : table->column(field);
-        if (column == nullptr || (quantity && column->quantity != quantity)) continue;
-        tracks.push_back(make_candidate(name, fmt::format("{}.{}", message, field), *table, column->values, merge));
-    }
+    add_family_tracks(sender, paparazzi_family(), "", tracks);
     add_derived_tracks(tracks, sender);
-    std::ranges::stable_sort(tracks, {}, order_of);
+    sort_tracks(tracks);
     return tracks;
 }
 

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <fstream>
 #include <new>
 #include <optional>
 #include <stdexcept>
@@ -184,6 +185,17 @@ std::string read_data_file(const std::filesystem::path& path, std::size_t max_by
     if (!text) return bytes;
     if (text->empty()) throw InputError({path.string()}, "is empty once decompressed");
     return std::move(*text);
+}
+
+std::string beginning_of_file(const std::filesystem::path& path) {
+    constexpr std::size_t size = 1 << 16;
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) return "";  // a pipe would wait
+    std::ifstream file(path, std::ios::binary);
+    std::string bytes(size, '\0');
+    file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
+    return bytes;
 }
 
 }  // namespace flightwatt::telemetry

@@ -15,4 +15,7 @@ inline constexpr std::size_t default_max_log_bytes = 100'000'000;
 /// that unpacks to more than `max_bytes`, and one with more than that in blocks of zeros.
 std::string read_data_file(const std::filesystem::path& path, std::size_t max_bytes = default_max_log_bytes);
 
+/// The first bytes of a regular file, at most 64 KB; empty for one that cannot be read.
+std::string beginning_of_file(const std::filesystem::path& path);
+
 }  // namespace flightwatt::telemetry

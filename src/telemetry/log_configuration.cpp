@@ -3,10 +3,10 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/number.h"
+#include "telemetry/data_file.h"
 #include "telemetry/message_definition.h"
 
 #include <algorithm>
-#include <fstream>
 #include <initializer_list>
 #include <string_view>
 
@@ -117,11 +117,9 @@ bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b
 }  // namespace
 
 bool begins_as_xml(const std::filesystem::path& path) {
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error)) return false;  // a pipe would wait
-    std::ifstream file(path, std::ios::binary);
-    char first = '\0';
-    return static_cast<bool>(file >> first) && (first == '<' || first == '\xEF');
+    const auto bytes = beginning_of_file(path);
+    const auto first = bytes.find_first_not_of(" \t\r\n");
+    return first != std::string::npos && (bytes[first] == '<' || bytes[first] == '\xEF');
 }
 
 LogConfiguration parse_log_configuration(const std::string& text, const std::filesystem::path& file) {

@@ -118,6 +118,30 @@ void type_five_commands(const std::filesystem::path& flights, const std::filesys
         EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
 }
 
+/// The commands of the guide on logs of another autopilot, with the sample flights in its format.
+void type_autopilot_commands(const std::string& format) {
+    const auto folder = scratch_dir();
+    const auto text = read_file(source_dir() / "docs" / "guide.md");
+    const auto start = text.find("```sh\n", text.find("<!-- flights of other autopilots -->"));
+    ASSERT_NE(start, std::string::npos);
+    auto commands = text.substr(start + 6, text.find("```", start + 1) - start - 6);
+    if (!std::filesystem::exists(source_dir() / "web" / "node_modules" / "vega"))
+        commands = std::regex_replace(commands, std::regex("flightwatt report [^\n]*"), "");
+    const auto source = source_dir().string();
+    const auto prepared = "set -e\nexport PATH=" + programs_dir().string() + ":$PATH\n" +
+                          "for i in 1 2 3 4; do flightwatt parse " + source +
+                          "/logs/opterra_synthetic_0$i.data -o opterra_synthetic_0$i.csv; done\n" + source +
+                          "/scripts/autopilot_logs " + format + " flights opterra_synthetic_0*.csv\n";
+    const auto result = run_shell(prepared + std::regex_replace(commands, std::regex("\\.bin"), "." + format), folder);
+    EXPECT_EQ(result.code, 0) << result.out << result.err;
+    for (const auto* file : {"flight.csv", "my/model.toml", "model.toml", "pack.toml", "soc.csv"})
+        EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
+    EXPECT_NE(read_file(folder / "my" / "flights.csv").find("_synthetic"), std::string::npos);
+}
+
+TEST(Examples, LogsOfArduPilotGoThroughAllStages) { type_autopilot_commands("bin"); }
+TEST(Examples, LogsOfPx4GoThroughAllStages) { type_autopilot_commands("ulg"); }
+
 TEST(Examples, TheFiveCommandsOfTheReadmeRun) { type_five_commands(source_dir() / "logs", scratch_dir()); }
 
 TEST(ExamplesStudy, TheFiveCommandsOfTheReadmeRunOnRealFlights) {

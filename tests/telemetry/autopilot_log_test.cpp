@@ -22,7 +22,7 @@ const std::vector<MessageRequest> all_batteries{
 
 AutopilotLog read_any(const std::string& bytes) {
     const auto format = detect_autopilot_format(bytes);
-    if (!format) return {{}, {}};
+    if (!format) return {};
     return read_autopilot_log(bytes, *format, "x.log", all_batteries);
 }
 
@@ -51,23 +51,13 @@ TEST(AutopilotLog, IsRecognisedByItsContent) {
     EXPECT_EQ(detect_autopilot_format(""), std::nullopt);
 }
 
-TEST(AutopilotLog, IsMappedIntoMemory) {
-    const auto file = test::write_text(test::scratch_dir() / "x.bin", test::dataflash_log(3));
-    const auto mapped = map_autopilot_log(file);
-    ASSERT_TRUE(mapped);
-    EXPECT_EQ(mapped->bytes, test::dataflash_log(3));
-    EXPECT_FALSE(map_autopilot_log(test::write_text(test::scratch_dir() / "x.data", "1.0 7 PONG\n")));
-    EXPECT_FALSE(map_autopilot_log(test::scratch_dir()));
-    EXPECT_FALSE(map_autopilot_log("absent"));
-}
-
 TEST(AutopilotLog, MessagesAreCounted) {
-    const auto messages = autopilot_messages(test::dataflash_log(5), AutopilotFormat::dataflash, "x.bin");
+    const auto messages = read_any(test::dataflash_log(5)).messages;
     ASSERT_EQ(messages.size(), 4U);
     EXPECT_EQ(messages[0].name, "BAT");
     EXPECT_EQ(messages[0].count, 5U);
     EXPECT_THAT(messages[0].fields, testing::ElementsAre("TimeUS", "Volt", "Curr"));
-    const auto topics = autopilot_messages(test::ulog_log(5), AutopilotFormat::ulog, "x.ulg");
+    const auto topics = read_any(test::ulog_log(5)).messages;
     ASSERT_EQ(topics.size(), 1U);
     EXPECT_EQ(topics[0].count, 10U);
     EXPECT_THAT(topics[0].fields, testing::ElementsAre("multi_id", "timestamp", "voltage_v", "current_a", "connected"));

@@ -18,90 +18,61 @@
 namespace flightwatt::flight {
 namespace {
 
-constexpr double min_current_fraction = 0.02;    // of the largest mean current; less is a spare input
-constexpr double max_voltage_difference = 0.10;  // of batteries in parallel
-constexpr std::string_view product_sign = " * ";
+constexpr double min_current_fraction = 0.02;  // of the largest mean current; less is a spare input
+// Packs of as many cells are at most as far apart: 4.2 V a cell when full, 3.15 V when empty.
+constexpr double max_voltage_difference = 0.25;
 
 struct Battery {
     std::string id;
     double mean_a = 0.0;
     double mean_v = 0.0;
+    std::string exclusion = {};
 };
 
-/// The batteries of a log: those in parallel that draw current, and the others with the reason.
-struct Batteries {
-    std::string message;
-    std::vector<Battery> used;  ///< the one that draws most first
-    std::vector<std::pair<Battery, std::string>> excluded;
-};
-
-double mean_of(const FlightSeries& series, std::string_view name, const std::string& message, const std::string& id) {
-    for (const auto& track : series.tracks) {
-        if (track.name == name && track.device == id && !track.empty() &&
-            track.source.substr(0, track.source.find('.')) == message)
-            return mean(track.value);
-    }
-    return 0.0;
+/// Message of the batteries that a log numbers: "BAT"; empty without any.
+std::string message_of_batteries(const FlightSeries& series) {
+    for (const auto& track : series.tracks)
+        if (track.name == "power_w" && !track.device.empty() && !track.empty() &&
+            track.source.find(" * ") != std::string::npos)
+            return track.source.substr(0, track.source.find('.'));
+    return "";
 }
 
-Batteries batteries_of(const FlightSeries& series) {
-    Batteries batteries;
-    std::vector<Battery> all;
-    for (const auto& track : series.tracks) {
-        const bool is_battery = track.name == "power_w" && !track.device.empty() && !track.empty() &&
-                                track.source.find(product_sign) != std::string::npos;
-        if (!is_battery) continue;
-        const auto message = track.source.substr(0, track.source.find('.'));
-        if (batteries.message.empty()) batteries.message = message;
-        if (message != batteries.message) continue;
-        all.push_back({track.device, mean_of(series, "current_a", message, track.device),
-                       mean_of(series, "voltage_v", message, track.device)});
+/// The batteries that have a current, the one that draws most first.
+std::vector<Battery> batteries_of(const FlightSeries& series, std::string_view message) {
+    std::vector<Battery> batteries;
+    const auto voltages = devices_of(series, "voltage_v", message);
+    for (const auto& device : devices_of(series, "current_a", message)) {
+        const auto voltage = std::ranges::find(voltages, device.id, &Device::id);
+        if (voltage != voltages.end())
+            batteries.push_back({device.id, mean(device.track.value), mean(voltage->track.value)});
     }
-    if (all.empty()) return batteries;
-    std::ranges::stable_sort(all, std::greater(), &Battery::mean_a);
-    for (auto& battery : all) {
-        const auto& main = all.front();
-        const double apart_v = std::abs(battery.mean_v - main.mean_v);
-        if (battery.mean_a < min_current_fraction * main.mean_a) {
-            batteries.excluded.emplace_back(battery, "a spare input, as it draws less than 2 % of the current");
-        } else if (apart_v > max_voltage_difference * main.mean_v) {
-            batteries.excluded.emplace_back(battery, "a circuit of its own, as its voltage is another");
-        } else {
-            batteries.used.push_back(battery);
-        }
+    std::ranges::stable_sort(batteries, std::greater(), &Battery::mean_a);
+    for (auto& battery : batteries) {
+        const auto& main = batteries.front();
+        if (battery.mean_a < min_current_fraction * main.mean_a)
+            battery.exclusion = "a spare input, as it draws less than 2 % of the current";
+        else if (std::abs(battery.mean_v - main.mean_v) > max_voltage_difference * main.mean_v)
+            battery.exclusion = "a circuit of its own, as its voltage is another";
     }
     return batteries;
 }
 
-/// "BAT 0 (16.1 V, 12.3 A)".
-std::string describe_battery(const Batteries& of, const Battery& battery) {
-    return fmt::format("{} {} ({:.2f} V, {:.2f} A)", of.message, battery.id, battery.mean_v, battery.mean_a);
-}
-
-std::vector<std::string> describe_choice(const Batteries& batteries) {
-    std::vector<std::string> notes;
+std::vector<std::string> describe_choice(const std::vector<Battery>& batteries, const std::string& message) {
     std::vector<std::string> used;
-    for (const auto& battery : batteries.used) used.push_back(describe_battery(batteries, battery));
+    const auto name_of = [&](const Battery& battery) {
+        return fmt::format("{} {} ({:.2f} V, {:.2f} A)", message, battery.id, battery.mean_v, battery.mean_a);
+    };
+    for (const auto& battery : batteries)
+        if (battery.exclusion.empty()) used.push_back(name_of(battery));
+    std::vector<std::string> notes;
     if (used.size() > 1)
         notes.push_back(fmt::format("the power is the sum over the batteries {}", fmt::join(used, " and ")));
-    for (const auto& [battery, reason] : batteries.excluded)
-        notes.push_back(fmt::format("{} is not counted: {}; the power is that of {}",
-                                    describe_battery(batteries, battery), reason, fmt::join(used, " and ")));
+    for (const auto& battery : batteries)
+        if (!battery.exclusion.empty())
+            notes.push_back(fmt::format("{} is not counted: {}; the power is that of {}", name_of(battery),
+                                        battery.exclusion, fmt::join(used, " and ")));
     return notes;
-}
-
-/// The track of one battery, as that of the log.
-Track track_of_battery(const FlightSeries& series, std::string_view name, const Batteries& batteries,
-                       const std::string& id) {
-    for (const auto& track : series.tracks) {
-        if (track.name != name || track.device != id || track.empty() ||
-            track.source.substr(0, track.source.find('.')) != batteries.message)
-            continue;
-        auto own = track;
-        own.device.clear();
-        return own;
-    }
-    return {};
 }
 
 }  // namespace
@@ -110,20 +81,27 @@ std::optional<TrackSelection> battery_track(const FlightSeries& series, std::str
     constexpr std::string_view summed[] = {"power_w", "charge_ah", "energy_wh", "current_a"};
     const bool is_sum = std::ranges::find(summed, name) != std::end(summed);
     if (!is_sum && name != "voltage_v") return std::nullopt;
-    const auto batteries = batteries_of(series);
-    if (batteries.used.empty()) return std::nullopt;
+    const auto message = message_of_batteries(series);
+    const auto batteries = batteries_of(series, message);
+    if (message.empty() || batteries.empty()) return std::nullopt;
+    std::set<std::string> excluded;
+    for (const auto& battery : batteries)
+        if (!battery.exclusion.empty()) excluded.insert(battery.id);
     TrackSelection choice;
-    if (batteries.used.size() == 1 || !is_sum) {
-        choice.track = track_of_battery(series, name, batteries, batteries.used.front().id);
-    } else {
-        std::set<std::string> excluded;
-        for (const auto& [battery, reason] : batteries.excluded) excluded.insert(battery.id);
-        auto sum = sum_over_devices(series, name, batteries.message, excluded);
+    if (is_sum && batteries.size() - excluded.size() > 1) {
+        auto sum = sum_over_devices(series, name, message, excluded);
         choice.track = std::move(sum.track);
         if (name == "power_w") choice.removal_notes = std::move(sum.notes);
         if (name == "power_w" && !sum.ambiguity.empty()) choice.rejected_sources.push_back(std::move(sum.ambiguity));
+    } else {
+        const auto own = std::ranges::find_if(series.tracks, [&](const Track& track) {
+            return track.name == name && track.device == batteries.front().id && track.source.starts_with(message);
+        });
+        if (own != series.tracks.end()) choice.track = *own;
+        choice.track.device.clear();
     }
-    if (name == "power_w") std::ranges::move(describe_choice(batteries), std::back_inserter(choice.removal_notes));
+    if (name == "power_w")
+        std::ranges::move(describe_choice(batteries, message), std::back_inserter(choice.removal_notes));
     return choice;
 }
 

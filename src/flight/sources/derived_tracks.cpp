@@ -25,109 +25,6 @@ using units::Quantity;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  // make_track drops NaN
 
-using Row = std::vector<double>;
-
-/// A track that is computed row by row from fields of one message, if it has all of them.
-struct DerivedTrack {
-    const char* name;
-    const char* message;
-    std::vector<const char*> fields;
-    std::optional<Quantity> quantity;  ///< required of the first field
-    const char* source;
-    double (*compute)(const Row& row);
-};
-
-struct Position {
-    double latitude_deg = 0.0;
-    double longitude_deg = 0.0;
-};
-
-/// WGS 84 position of UTM coordinates of Paparazzi, whose north has no false origin and is negative in the south. NaN
-/// if one of them is NaN or the zone is not 1 to 60.
-Position position_of_utm(double east_m, double north_m, double zone) {
-    if (!(zone >= 1.0 && zone <= 60.0) || !std::isfinite(east_m) || !std::isfinite(north_m)) return {unknown, unknown};
-    constexpr double false_east_m = 500e3;
-    constexpr double degree_per_zone = 6.0;
-    constexpr double first_meridian_deg = -183.0;
-    Position position;
-    GeographicLib::TransverseMercator::UTM().Reverse(first_meridian_deg + degree_per_zone * zone, east_m - false_east_m,
-                                                     north_m, position.latitude_deg, position.longitude_deg);
-    return position;
-}
-
-/// 0 east and 0 north: the aircraft does not know the wind yet.
-double wind_speed(const Row& east_north) {
-    const double speed = std::hypot(east_north[0], east_north[1]);
-    return speed > 0.0 ? speed : unknown;
-}
-
-double percent_of_command(const Row& row) { return units::percent_from_pprz(row[0]); }
-
-/// For MOTOR, whose field is in Hz.
-double rpm_of_hertz(const Row& row) { return row[0] * 60.0; }
-
-double speed_of_components(const Row& row) { return std::hypot(row[0], row[1], row[2]); }
-
-const std::vector<DerivedTrack>& derived_tracks() {
-    static const std::vector<DerivedTrack> derived{
-        // Rotorcraft before 2018: thrust, without a unit, on Paparazzi's command scale.
-        {"throttle_percent", "ROTORCRAFT_FP", {"thrust"}, {}, "ROTORCRAFT_FP.thrust", percent_of_command},
-        // Command to the motor, also in manual mode.
-        {"throttle_percent", "COMMANDS", {"values"}, {}, commanded_throttle, percent_of_command},
-        {"motor_speed_rpm", "MOTOR", {"rpm"}, {}, "MOTOR.rpm", rpm_of_hertz},
-        {"ground_speed_m_per_s",
-         "GPS_INT",
-         {"ecef_xd", "ecef_yd", "ecef_zd"},
-         {},
-         "GPS_INT.ecef velocity",
-         speed_of_components},
-        {"wind_speed_m_per_s",
-         "WIND_INFO",
-         {"east", "north"},
-         Quantity::metre_per_second,
-         "WIND_INFO.east, north",
-         wind_speed}};
-    return derived;
-}
-
-void add_derived(std::vector<Track>& tracks, const SenderLog& sender, const DerivedTrack& derived) {
-    const auto* table = sender.table(derived.message);
-    if (table == nullptr) return;
-    std::vector<const Column*> columns;
-    for (const auto* field : derived.fields) {
-        columns.push_back(table->column(field));
-        if (columns.back() == nullptr) return;
-    }
-    if (derived.quantity && columns.front()->quantity != derived.quantity) return;
-    std::vector<double> values(table->time_s.size());
-    Row row(columns.size());
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        for (std::size_t c = 0; c < columns.size(); ++c) row[c] = columns[c]->values[i];
-        values[i] = derived.compute(row);
-    }
-    tracks.push_back(make_candidate(derived.name, derived.source, *table, values, Merge::mean));
-}
-
-/// Latitude and longitude from UTM coordinates.
-void add_utm_position(std::vector<Track>& tracks, const SenderLog& sender) {
-    const auto* table = sender.table("GPS");
-    if (table == nullptr) return;
-    const auto* east = table->column("utm_east");
-    const auto* north = table->column("utm_north");
-    const auto* zone = table->column("utm_zone");
-    if (east == nullptr || north == nullptr || zone == nullptr) return;
-    const auto rows = table->time_s.size();
-    std::vector<double> latitude_deg(rows);
-    std::vector<double> longitude_deg(rows);
-    for (std::size_t i = 0; i < rows; ++i) {
-        const auto position = position_of_utm(east->values[i], north->values[i], zone->values[i]);
-        latitude_deg[i] = position.latitude_deg;
-        longitude_deg[i] = position.longitude_deg;
-    }
-    tracks.push_back(make_candidate("latitude_deg", "GPS.utm", *table, latitude_deg, Merge::mean));
-    tracks.push_back(make_candidate("longitude_deg", "GPS.utm", *table, longitude_deg, Merge::mean));
-}
-
 /// The first of `fields` with the given quantity, or nullptr.
 const Column* first_column(const MessageTable& table, std::initializer_list<const char*> fields, Quantity quantity) {
     for (const auto* field : fields) {
@@ -149,19 +46,6 @@ std::vector<double> products(const Column& a, const Column& b) {
     std::vector<double> result(a.values.size());
     std::transform(a.values.begin(), a.values.end(), b.values.begin(), result.begin(), std::multiplies<>());
     return result;
-}
-
-void add_products(std::vector<Track>& tracks, const SenderLog& sender) {
-    for (const auto* message : {"ENERGY", "BAT"}) {
-        const auto* table = sender.table(message);
-        if (table == nullptr) continue;
-        const auto* voltage = voltage_of(*table);
-        const auto* current = current_of(*table);
-        if (voltage == nullptr || current == nullptr) continue;
-        tracks.push_back(make_candidate("power_w",
-                                        fmt::format("{0}.{1} * {0}.{2}", message, voltage->field, current->field),
-                                        *table, products(*voltage, *current), Merge::mean));
-    }
 }
 
 /// A message that several devices send, identified by the values of its id fields.
@@ -228,6 +112,20 @@ void add_device_message(std::vector<Track>& tracks, const MessageTable* table,
 
 }  // namespace
 
+std::pair<double, double> position_of_utm(const std::vector<double>& east_north_zone) {
+    const double east_m = east_north_zone[0];
+    const double north_m = east_north_zone[1];
+    const double zone = east_north_zone[2];
+    if (!(zone >= 1.0 && zone <= 60.0) || !std::isfinite(east_m) || !std::isfinite(north_m)) return {unknown, unknown};
+    constexpr double false_east_m = 500e3;
+    constexpr double degree_per_zone = 6.0;
+    constexpr double first_meridian_deg = -183.0;
+    std::pair<double, double> position;
+    GeographicLib::TransverseMercator::UTM().Reverse(first_meridian_deg + degree_per_zone * zone, east_m - false_east_m,
+                                                     north_m, position.first, position.second);
+    return position;
+}
+
 Track make_candidate(const std::string& name, const std::string& source, const MessageTable& table,
                      const std::vector<double>& values, Merge merge) {
     auto track = make_track(table.time_s, values, merge);
@@ -239,9 +137,6 @@ Track make_candidate(const std::string& name, const std::string& source, const M
 }
 
 void add_derived_tracks(std::vector<Track>& tracks, const SenderLog& sender) {
-    add_products(tracks, sender);
-    for (const auto& derived : derived_tracks()) add_derived(tracks, sender, derived);
-    add_utm_position(tracks, sender);
     if (const auto* takeoff = sender.table("TAKEOFF"); takeoff != nullptr && !takeoff->empty()) {
         std::vector<double> ones(takeoff->time_s.size(), 1.0);
         tracks.push_back(make_candidate("takeoff", "TAKEOFF", *takeoff, ones, Merge::latest));

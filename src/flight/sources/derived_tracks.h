@@ -4,6 +4,7 @@
 #include "telemetry/telemetry_log.h"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace flightwatt::flight {
@@ -15,8 +16,11 @@ inline constexpr auto commanded_throttle = "COMMANDS.throttle";
 Track make_candidate(const std::string& name, const std::string& source, const telemetry::MessageTable& table,
                      const std::vector<double>& values, Merge merge);
 
-/// Adds the candidates that are computed from several fields: power as voltage times current, speed, wind and position
-/// from their components, and a track for every motor (ESC) and circuit (POWER_DEVICE).
+/// WGS 84 latitude and longitude [deg] of UTM coordinates of Paparazzi [m], whose north has no false origin and is
+/// negative in the south. NaN if one of them is NaN or the zone is not 1 to 60.
+std::pair<double, double> position_of_utm(const std::vector<double>& east_north_zone);
+
+/// Adds a track for every motor (ESC) and circuit (POWER_DEVICE), and the messages of take-offs.
 void add_derived_tracks(std::vector<Track>& tracks, const telemetry::SenderLog& sender);
 
 }  // namespace flightwatt::flight

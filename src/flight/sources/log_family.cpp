@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 #include <utility>
 
@@ -18,147 +17,146 @@ namespace {
 using telemetry::Column;
 using telemetry::MessageTable;
 
+constexpr double missing_value = std::numeric_limits<double>::quiet_NaN();
+
 /// Tracks of which each battery has its own.
 bool is_of_battery(std::string_view track) {
     constexpr std::string_view names[] = {"voltage_v", "current_a", "power_w", "charge_ah", "energy_wh"};
     return std::ranges::find(names, track) != std::end(names);
 }
 
-void append_row(MessageTable& to, const MessageTable& from, std::size_t row) {
-    to.time_s.push_back(from.time_s[row]);
-    for (std::size_t c = 0; c < from.columns.size(); ++c) to.columns[c].values.push_back(from.columns[c].values[row]);
-}
+/// The instance of each row of a table; NaN for a row that does not count. `numbered`: the log numbers them.
+struct Instances {
+    std::vector<double> of_row;
+    std::set<double> all;
+    bool numbered = false;
+};
 
-/// Splits a table by instance, without rows that do not count.
-void split(const MessageTable& table, const LogFamily& family, std::vector<InstanceTable>& tables) {
+Instances instances_of(const MessageTable& table, const LogFamily& family) {
     constexpr std::size_t max_instances = 16;
-    const Column* instance = nullptr;
-    const Column* valid = nullptr;
-    double min_valid = 0.0;
+    Instances instances{std::vector<double>(table.time_s.size(), 0.0), {}};
     for (const auto& rule : family.messages) {
         if (table.message != rule.message) continue;
-        if (instance == nullptr && rule.instance != nullptr) instance = table.column(rule.instance);
-        if (rule.valid == nullptr) continue;
-        valid = table.column(rule.valid);
-        min_valid = rule.min_valid;
+        const auto* number = rule.instance == nullptr ? nullptr : table.column(rule.instance);
+        const auto* valid = rule.valid == nullptr ? nullptr : table.column(rule.valid);
+        if (number != nullptr && !instances.numbered) instances.of_row = number->values;
+        instances.numbered = instances.numbered || number != nullptr;
+        for (std::size_t i = 0; valid != nullptr && i < table.time_s.size(); ++i)
+            if (!(valid->values[i] >= rule.min_valid)) instances.of_row[i] = missing_value;
     }
-    std::map<double, MessageTable> by_instance;
-    for (std::size_t row = 0; row < table.time_s.size(); ++row) {
-        const double number = instance == nullptr ? 0.0 : instance->values[row];
-        if (std::isnan(number) || (valid != nullptr && !(valid->values[row] >= min_valid))) continue;
-        auto found = by_instance.find(number);
-        if (found == by_instance.end()) {
-            if (by_instance.size() == max_instances) continue;
-            MessageTable empty{table.message, {}, table.columns};
-            for (auto& column : empty.columns) column.values.clear();
-            found = by_instance.emplace(number, std::move(empty)).first;
+    for (const double number : instances.of_row)
+        if (!std::isnan(number) && instances.all.size() < max_instances) instances.all.insert(number);
+    return instances;
+}
+
+/// A column of a log, and what turns its numbers into the track's unit.
+struct BoundSource {
+    const Column* column;
+    double factor;
+    double absent;
+    std::string unit;  ///< that is assumed, as the log states none
+};
+
+/// The sources of a track in a table; empty if it lacks one, or has another quantity there.
+std::vector<BoundSource> bound_sources(const MessageTable& table, const FamilyTrack& of, LogFamily::Unstated unstated) {
+    std::vector<BoundSource> bound;
+    for (const auto& source : of.sources) {
+        const auto* column = table.column(source.field);
+        if (column == nullptr) return {};
+        const bool is_other = column->is_integer && source.integer_unit != nullptr;
+        const auto* const text = is_other ? source.integer_unit : source.unit;
+        const auto unit = units::parse_unit(text);
+        const bool is_unused = !column->quantity && unstated == LogFamily::Unstated::unused;
+        if (unit && (is_unused || column->quantity.value_or(unit->quantity) != unit->quantity)) return {};
+        const double factor = !unit ? 1.0 : column->quantity ? std::copysign(1.0, unit->factor) : unit->factor;
+        bound.push_back({column, factor, source.absent, column->quantity ? "" : text});
+    }
+    return bound;
+}
+
+/// "BARO.Alt", of further instances "BARO[1].Alt", of power "BAT.Volt * BAT.Curr". Batteries have their device.
+std::string source_name(const FamilyTrack& of, const std::string& instance) {
+    if (of.source != nullptr) return of.source;
+    const bool is_further = !instance.empty() && instance != "0" && !is_of_battery(of.track);
+    const auto message = of.message + (is_further ? fmt::format("[{}]", instance) : "");
+    if (of.sources.size() < 2 || std::string_view(of.track) != "power_w")
+        return fmt::format("{}.{}", message, of.sources.front().field);
+    return fmt::format("{0}.{1} * {0}.{2}", message, of.sources[0].field, of.sources[1].field);
+}
+
+/// Adds the track of each instance.
+void add_tracks(const FamilyTrack& of, const MessageTable& table, const Instances& instances,
+                const std::vector<BoundSource>& sources, std::vector<Track>& tracks) {
+    std::vector<double> row(sources.size());
+    for (const double number : instances.all) {
+        std::vector<double> values(table.time_s.size(), missing_value);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            if (instances.of_row[i] != number) continue;
+            std::ranges::transform(sources, row.begin(), [&](const BoundSource& source) {
+                const double value = source.column->values[i];
+                return value == source.absent ? missing_value : value * source.factor;
+            });
+            values[i] = of.compute == nullptr ? row.front() : of.compute(row);
         }
-        append_row(found->second, table, row);
+        const auto instance = instances.numbered ? fmt::format("{}", number) : "";
+        auto track = make_candidate(of.track, source_name(of, instance), table, values, of.merge);
+        if (is_of_battery(of.track)) track.device = instance;
+        tracks.push_back(std::move(track));
     }
-    for (auto& [number, of] : by_instance)
-        tables.push_back({std::move(of), instance == nullptr ? "" : fmt::format("{}", number)});
 }
 
-/// The values of a field in the unit of its track; empty if the log has another quantity or type there.
-std::vector<double> values_of(const MessageTable& table, const FamilyField& field) {
-    const auto* column = table.column(field.field);
-    if (column == nullptr) return {};
-    using Stored = FamilyField::Stored;
-    if (field.stored != Stored::any && column->is_integer != (field.stored == Stored::integer)) return {};
-    const auto unit = units::parse_unit(field.unit);
-    if (unit && column->quantity && column->quantity != unit->quantity) return {};
-    const double factor = !unit ? 1.0 : column->quantity ? std::copysign(1.0, unit->factor) : unit->factor;
-    std::vector<double> values(column->values.size());
-    std::ranges::transform(column->values, values.begin(), [&](double value) {
-        return value == field.absent ? std::numeric_limits<double>::quiet_NaN() : value * factor;
-    });
-    return values;
-}
-
-/// "BAT.Volt"; of the second and further instances "BARO[1].Alt".
-std::string source_of(const InstanceTable& of, const char* field) {
-    const bool is_further = !of.instance.empty() && of.instance != "0";
-    return fmt::format("{}{}.{}", of.table.message, is_further ? fmt::format("[{}]", of.instance) : "", field);
-}
-
-void add_candidate(std::vector<Track>& tracks, const InstanceTable& of, const FamilyField& field,
-                   const std::string& source, const std::vector<double>& values) {
-    if (values.empty()) return;
-    add_track(tracks, field.track, source, of.table, values, field.merge);
-    if (is_of_battery(field.track)) tracks.back().device = of.instance;
-}
-
-std::vector<Track> family_tracks(const FamilyLog& log, const LogFamily& family) {
-    std::vector<Track> tracks;
-    for (const auto& field : family.fields)
-        for (const auto& of : log.tables)
-            if (of.table.message == field.message)
-                add_candidate(tracks, of, field,
-                              is_of_battery(field.track) ? fmt::format("{}.{}", field.message, field.field)
-                                                         : source_of(of, field.field),
-                              values_of(of.table, field));
-    for (std::size_t i = 0; i + 1 < family.power.size(); i += 2) {
-        const auto& voltage = family.power[i];
-        const auto& current = family.power[i + 1];
-        for (const auto& of : log.tables) {
-            if (of.table.message != voltage.message) continue;
-            auto values = values_of(of.table, voltage);
-            const auto current_a = values_of(of.table, current);
-            if (values.empty() || current_a.empty()) continue;
-            std::ranges::transform(values, current_a, values.begin(), std::multiplies<>());
-            add_candidate(tracks, of, {"power_w", voltage.message, voltage.field, "W"},
-                          fmt::format("{0}.{1} * {0}.{2}", voltage.message, voltage.field, current.field), values);
-        }
-    }
-    family.add(log, tracks);
-    const auto& names = track_names();
-    std::ranges::stable_sort(tracks, {},
-                             [&](const Track& track) { return std::ranges::find(names, track.name) - names.begin(); });
-    return tracks;
-}
-
-/// The assumed units of battery fields for which the log states none.
-void note_units(const FamilyLog& log, const LogFamily& family, FlightSeries& series) {
-    std::set<std::string> assumed;
-    for (const auto& field : family.power) {
-        for (const auto& of : log.tables) {
-            const auto* column = of.table.message == field.message ? of.table.column(field.field) : nullptr;
-            if (column != nullptr && !column->quantity && !values_of(of.table, field).empty())
-                assumed.insert(fmt::format("{}.{} is read in {}", field.message, field.field, field.unit));
-        }
-    }
-    if (family.notes_units && !assumed.empty())
-        series.notes.push_back(fmt::format("the log states no units: {}", fmt::join(assumed, ", ")));
+/// Unix time of the log's second 0: by the first time of this century.
+std::optional<double> start_clock_s(const std::vector<Track>& tracks) {
+    constexpr double first_s = 946'684'800.0;   // 2000
+    constexpr double last_s = 4'102'444'800.0;  // 2100
+    for (const auto& track : tracks)
+        for (std::size_t i = 0; track.name == utc_track && i < track.value.size(); ++i)
+            if (track.value[i] > first_s && track.value[i] < last_s) return track.value[i] - track.time_s[i];
+    return std::nullopt;
 }
 
 }  // namespace
 
-const MessageTable* FamilyLog::table(std::string_view message) const {
-    const auto found = std::ranges::find_if(
-        tables, [&](const InstanceTable& of) { return of.table.message == message && !of.table.empty(); });
-    return found == tables.end() ? nullptr : &found->table;
+std::set<std::string> add_family_tracks(const telemetry::SenderLog& sender, const LogFamily& family,
+                                        const std::string& firmware, std::vector<Track>& tracks) {
+    std::set<std::string> assumed;
+    for (const auto& of : family.tracks) {
+        const auto* table = sender.table(of.message);
+        if (table == nullptr || (of.firmware != nullptr && of.firmware != firmware)) continue;
+        const auto sources = bound_sources(*table, of, family.unstated_units);
+        if (!sources.empty()) add_tracks(of, *table, instances_of(*table, family), sources, tracks);
+        for (const auto& source : sources)
+            if (std::string_view(of.track) == "power_w" && !source.unit.empty())
+                assumed.insert(fmt::format("{}.{} is read in {}", of.message, source.column->field, source.unit));
+    }
+    return assumed;
 }
 
-void add_track(std::vector<Track>& tracks, const char* name, const std::string& source, const MessageTable& table,
-               const std::vector<double>& values, Merge merge) {
-    tracks.push_back(make_candidate(name, source, table, values, merge));
+double product(const std::vector<double>& values) { return values[0] * values[1]; }
+
+void sort_tracks(std::vector<Track>& tracks) {
+    const auto& names = track_names();
+    std::ranges::stable_sort(tracks, {},
+                             [&](const Track& track) { return std::ranges::find(names, track.name) - names.begin(); });
 }
 
 FlightSeries family_series(telemetry::AutopilotLog read, const LogFamily& family) {
     FlightSeries series;
     auto& log = read.log;
+    const auto& sender = log.senders.front();
     series.file = log.data_file.string();
     series.flight = log.flight;
     series.skipped = std::move(log.skipped);
     series.current_origin = CurrentOrigin::sensor;
-    FamilyLog split_log{{}, read.facts};
-    for (const auto& sender : log.senders) {
-        series.clock_restart = find_clock_restart(sender);
-        for (const auto& table : sender.tables) split(table, family, split_log.tables);
-    }
-    series.tracks = family_tracks(split_log, family);
-    family.describe(split_log, series);
-    note_units(split_log, family, series);
+    series.clock_restart = find_clock_restart(sender);
+    family.describe(read, series);
+    const auto is_synthetic_text = [](const std::string& text) { return text.find("SYNTHETIC:") != std::string::npos; };
+    if (std::ranges::any_of(read.facts.texts, is_synthetic_text)) series.aircraft_name += "_synthetic";
+    const auto assumed = add_family_tracks(sender, family, series.firmware, series.tracks);
+    series.start_clock_s = start_clock_s(series.tracks);
+    std::erase_if(series.tracks, [](const Track& track) { return track.name == utc_track; });
+    sort_tracks(series.tracks);
+    if (!assumed.empty()) series.notes.push_back(fmt::format("the log states no units: {}", fmt::join(assumed, ", ")));
     if (read.facts.dropouts > 0)
         series.notes.push_back(fmt::format("the logger lost data {} times, for {:.1f} s in all", read.facts.dropouts,
                                            read.facts.dropout_s));
@@ -166,16 +164,15 @@ FlightSeries family_series(telemetry::AutopilotLog read, const LogFamily& family
 }
 
 std::vector<telemetry::MessageRequest> family_messages(const LogFamily& family) {
-    std::vector<telemetry::MessageRequest> requests;
+    auto requests = family.more;
     const auto add = [&](const char* message, const char* field) {
         if (field == nullptr) return;
         auto found = std::ranges::find(requests, message, &telemetry::MessageRequest::message);
         if (found == requests.end()) found = requests.insert(found, {message, {}});
         if (std::ranges::find(found->fields, field) == found->fields.end()) found->fields.emplace_back(field);
     };
-    for (const auto& field : family.fields) add(field.message, field.field);
-    for (const auto& more : family.more)
-        for (const auto& field : more.fields) add(more.message.c_str(), field.c_str());
+    for (const auto& track : family.tracks)
+        for (const auto& source : track.sources) add(track.message, source.field);
     for (const auto& rule : family.messages) {
         add(rule.message, rule.instance);
         add(rule.message, rule.valid);

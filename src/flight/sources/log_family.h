@@ -1,25 +1,34 @@
 #pragma once
 
 #include "flight/flight_series.h"
-#include "telemetry/autopilot_data.h"
+#include "telemetry/autopilot_log.h"
 
 #include <limits>
+#include <set>
 #include <string>
 #include <vector>
 
 namespace flightwatt::flight {
 
-/// A field of an autopilot's log that is a track.
-struct FamilyField {
-    enum class Stored { any, integer, real };
+/// A field, with its unit where the log states none.
+struct FamilySource {
+    const char* field;
+    const char* unit = "";                                     ///< "-1m" also turns the sign of a stated one
+    const char* integer_unit = nullptr;                        ///< of versions that store whole numbers
+    double absent = std::numeric_limits<double>::quiet_NaN();  ///< this value means that there is no sensor
+};
+
+/// A track of an autopilot's log, from fields of one message: of each instance that the log numbers.
+struct FamilyTrack {
+    using Compute = double (*)(const std::vector<double>& values);
 
     const char* track;
     const char* message;
-    const char* field;
-    const char* unit;  ///< where the log states none; "-1m" also turns the sign of a stated one
+    std::vector<FamilySource> sources;
     Merge merge = Merge::mean;
-    Stored stored = Stored::any;                               ///< versions differ in it
-    double absent = std::numeric_limits<double>::quiet_NaN();  ///< this value means that there is no sensor
+    Compute compute = nullptr;       ///< default: the value of the only source
+    const char* firmware = nullptr;  ///< of these vehicles only
+    const char* source = nullptr;    ///< its name; default: of the first field
 };
 
 /// A rule for the rows of a message: several instances, or rows that do not count.
@@ -30,38 +39,32 @@ struct FamilyMessage {
     double min_valid = 0.0;          ///< at least this value
 };
 
-/// The rows of one instance of a message.
-struct InstanceTable {
-    telemetry::MessageTable table;
-    std::string instance;  ///< "0"; empty if the log does not number them
-};
-
-/// The tables of a log by message and instance, and what else it states.
-struct FamilyLog {
-    std::vector<InstanceTable> tables;
-    const telemetry::LogFacts& facts;
-
-    /// The first instance of a message; nullptr without rows.
-    const telemetry::MessageTable* table(std::string_view message) const;
-};
+/// Track of Unix times, from which the series has its start_clock_s.
+inline constexpr auto utc_track = "utc_s";
 
 /// The logs of one autopilot: where the quantities are, by version.
 struct LogFamily {
-    std::vector<FamilyField> fields;              ///< in the order of preference within each track
-    std::vector<FamilyMessage> messages;          ///< those with rules, in order of preference of the instance field
-    std::vector<FamilyField> power;               ///< voltage and current, whose product it is, in pairs
-    std::vector<telemetry::MessageRequest> more;  ///< further ones for `add` and `describe`
-    void (*add)(const FamilyLog&, std::vector<Track>&);
-    void (*describe)(const FamilyLog&, FlightSeries&);
-    bool notes_units = false;  ///< its logs state units, but older ones do not
+    std::vector<FamilyTrack> tracks;      ///< in the order of preference within each name
+    std::vector<FamilyMessage> messages;  ///< those with rules, in order of preference of the instance field
+    void (*describe)(const telemetry::AutopilotLog&,
+                     FlightSeries&) = nullptr;         ///< id, name and firmware of the aircraft
+    std::vector<telemetry::MessageRequest> more = {};  ///< further fields for `describe`
+    /// Fields without a unit: they have none, their unit is assumed, or assumed with a note.
+    enum class Unstated { unused, assumed, noted } unstated_units = Unstated::assumed;
 };
 
 const LogFamily& ardupilot_family();
 const LogFamily& px4_family();
 
-/// A track from a table and values of its rows.
-void add_track(std::vector<Track>& tracks, const char* name, const std::string& source,
-               const telemetry::MessageTable& table, const std::vector<double>& values, Merge merge = Merge::latest);
+/// Voltage times current, or any other two.
+double product(const std::vector<double>& values);
+
+/// Adds the tracks of a sender's messages. Returns the units that are assumed: "BAT.Volt is read in V".
+std::set<std::string> add_family_tracks(const telemetry::SenderLog& sender, const LogFamily& family,
+                                        const std::string& firmware, std::vector<Track>& tracks);
+
+/// In the order of track_names(), of equal names in the order that they have.
+void sort_tracks(std::vector<Track>& tracks);
 
 /// The series of an autopilot's log.
 FlightSeries family_series(telemetry::AutopilotLog log, const LogFamily& family);

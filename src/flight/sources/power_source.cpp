@@ -39,17 +39,17 @@ const Track* find_product(const FlightSeries& series, std::string_view message) 
     });
 }
 
-/// Whether the power is of a message that Paparazzi has; others are of a user's CSV or of another autopilot.
-bool is_of_paparazzi(const Track& power) {
-    const auto& source = power.source;
-    const bool is_product = source.find(" * ") != std::string::npos;
-    return !power.device.empty() || source == "ENERGY.power" ||
-           (is_product && (source.starts_with("ENERGY.") || source.starts_with("BAT.")));
-}
-
 /// One of the batteries that a log numbers, without a current.
 bool is_unmeasured_battery(const Track& power) {
     return power.empty() && !power.device.empty() && power.source.find(" * ") != std::string::npos;
+}
+
+/// Of a user's CSV or of another autopilot: no message of Paparazzi has it.
+bool is_foreign(const Track& power) {
+    if (!power.device.empty()) return is_unmeasured_battery(power);
+    const bool is_product = power.source.find(" * ") != std::string::npos &&
+                            (power.source.starts_with("ENERGY.") || power.source.starts_with("BAT."));
+    return power.source != "ENERGY.power" && !is_product;
 }
 
 /// A track without a message: of a user's CSV.
@@ -191,10 +191,8 @@ TrackSelection select_power(const FlightSeries& series) {
         choice.rejected_sources.emplace_back("the batteries' power is 0 throughout");
         return choice;
     }
-    for (const auto& track : series.tracks) {
-        const bool is_other = !is_of_paparazzi(track) || is_unmeasured_battery(track);
-        if (track.name == "power_w" && is_other && take(series, track, choice)) return choice;
-    }
+    for (const auto& track : series.tracks)
+        if (track.name == "power_w" && is_foreign(track) && take(series, track, choice)) return choice;
     const auto* product = find_product(series, "ENERGY.");
     if (const auto* power = find_source(series, "ENERGY.power")) {
         if (product != nullptr && contradicts(*power, *product)) {

@@ -4,64 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <string>
-
-#include <fmt/format.h>
 
 /// Where PX4's ULog has the quantities of a flight (docs/formats.md).
 namespace flightwatt::flight {
 namespace {
 
-using telemetry::MessageTable;
-
 constexpr double no_sensor = -1.0;
-
-const std::vector<FamilyField>& px4_fields() {
-    using enum FamilyField::Stored;
-    static const std::vector<FamilyField> fields{
-        {"altitude_m", "vehicle_air_data", "baro_alt_meter", "m"},
-        {"altitude_m", "vehicle_global_position", "alt", "m"},
-        {"altitude_m", "vehicle_local_position", "z", "-1m"},
-        {"altitude_m", "vehicle_gps_position", "altitude_msl_m", "m"},
-        {"altitude_m", "vehicle_gps_position", "alt", "mm"},
-        {"voltage_v", "battery_status", "voltage_v", "V"},
-        {"current_a", "battery_status", "current_a", "A", Merge::mean, any, no_sensor},
-        {"charge_ah", "battery_status", "discharged_mah", "mAh", Merge::latest, any, no_sensor},
-        {"east_m", "vehicle_local_position", "y", "m"},
-        {"north_m", "vehicle_local_position", "x", "m"},
-        {"airspeed_m_per_s", "airspeed_validated", "calibrated_airspeed_m_s", "m/s"},
-        {"airspeed_m_per_s", "airspeed_validated", "indicated_airspeed_m_s", "m/s"},
-        {"airspeed_m_per_s", "airspeed", "indicated_airspeed_m_s", "m/s"},
-        {"wind_east_m_per_s", "wind", "windspeed_east", "m/s"},
-        {"wind_east_m_per_s", "airspeed_wind", "windspeed_east", "m/s"},
-        {"wind_east_m_per_s", "wind_estimate", "windspeed_east", "m/s"},
-        {"wind_north_m_per_s", "wind", "windspeed_north", "m/s"},
-        {"wind_north_m_per_s", "airspeed_wind", "windspeed_north", "m/s"},
-        {"wind_north_m_per_s", "wind_estimate", "windspeed_north", "m/s"},
-        {"latitude_deg", "vehicle_gps_position", "latitude_deg", "deg", Merge::latest},
-        {"latitude_deg", "vehicle_gps_position", "lat", "1e7deg", Merge::latest},
-        {"latitude_deg", "vehicle_global_position", "lat", "deg", Merge::latest},
-        {"longitude_deg", "vehicle_gps_position", "longitude_deg", "deg", Merge::latest},
-        {"longitude_deg", "vehicle_gps_position", "lon", "1e7deg", Merge::latest},
-        {"longitude_deg", "vehicle_global_position", "lon", "deg", Merge::latest},
-        {"climb_m_per_s", "vehicle_local_position", "vz", "-1m/s"},
-        {"mode", "vehicle_status", "nav_state", "", Merge::latest},
-        {"landed", "vehicle_land_detected", "landed", "", Merge::latest},
-    };
-    return fields;
-}
-
-/// A track that is computed from fields of one topic.
-struct ComputedTrack {
-    const char* track;
-    const char* topic;
-    std::vector<const char*> fields;
-    double (*compute)(const std::vector<double>& row);
-    Merge merge = Merge::mean;
-};
-
-constexpr double armed_state = 2.0;
 
 /// Motors that are off have no value.
 double percent_of_fraction(const std::vector<double>& row) {
@@ -78,6 +27,9 @@ double to_heading(double east, double north) {
     return deg < 0.0 ? deg + turn_deg : deg;
 }
 
+double speed_of(const std::vector<double>& north_east) { return std::hypot(north_east[0], north_east[1]); }
+double course_of(const std::vector<double>& north_east) { return to_heading(north_east[1], north_east[0]); }
+
 double roll_of(const std::vector<double>& q) {
     return std::atan2(2.0 * (q[0] * q[1] + q[2] * q[3]), 1.0 - 2.0 * (q[1] * q[1] + q[2] * q[2])) *
            units::degree_per_rad;
@@ -87,49 +39,62 @@ double heading_of(const std::vector<double>& q) {
     return to_heading(2.0 * (q[0] * q[3] + q[1] * q[2]), 1.0 - 2.0 * (q[2] * q[2] + q[3] * q[3]));
 }
 
-const std::vector<ComputedTrack>& computed_tracks() {
-    static const std::vector<ComputedTrack> computed{
-        {"throttle_percent", "actuator_motors", {"control[0]"}, percent_of_fraction},
-        {"throttle_percent", "actuator_controls_0", {"control[3]"}, percent_of_fraction},
-        {"throttle_percent", "vehicle_thrust_setpoint", {"xyz[0]", "xyz[1]", "xyz[2]"}, percent_of_thrust},
-        {"ground_speed_m_per_s",
-         "vehicle_local_position",
-         {"vx", "vy"},
-         [](const auto& row) { return std::hypot(row[0], row[1]); }},
-        {"course_deg",
-         "vehicle_local_position",
-         {"vx", "vy"},
-         [](const auto& row) { return to_heading(row[1], row[0]); },
-         Merge::latest},
-        {"heading_deg", "vehicle_attitude", {"q[0]", "q[1]", "q[2]", "q[3]"}, heading_of, Merge::latest},
-        {"roll_deg", "vehicle_attitude", {"q[0]", "q[1]", "q[2]", "q[3]"}, roll_of, Merge::latest},
-        {"armed",
-         "vehicle_status",
-         {"arming_state"},
-         [](const auto& row) { return row[0] == armed_state ? 1.0 : 0.0; },
-         Merge::latest}};
-    return computed;
+double is_armed(const std::vector<double>& state) {
+    constexpr double armed_state = 2.0;
+    return state[0] == armed_state ? 1.0 : 0.0;
 }
 
-void add_computed(const FamilyLog& log, std::vector<Track>& tracks) {
-    for (const auto& [track, topic, fields, compute, merge] : computed_tracks()) {
-        const auto* table = log.table(topic);
-        if (table == nullptr) continue;
-        std::vector<const telemetry::Column*> columns;
-        for (const auto* field : fields) columns.push_back(table->column(field));
-        if (std::ranges::find(columns, nullptr) != columns.end()) continue;
-        std::vector<double> values(table->time_s.size());
-        std::vector<double> row(columns.size());
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            std::ranges::transform(columns, row.begin(), [&](const auto* column) { return column->values[i]; });
-            values[i] = compute(row);
-        }
-        add_track(tracks, track, fmt::format("{}.{}", topic, fields.front()), *table, values, merge);
-    }
+const std::vector<FamilyTrack>& px4_tracks() {
+    constexpr auto mean = Merge::mean;
+    constexpr auto latest = Merge::latest;
+    const FamilySource current{"current_a", "A", nullptr, no_sensor};
+    const std::vector<FamilySource> velocity{{"vx"}, {"vy"}};
+    const std::vector<FamilySource> quaternion{{"q[0]"}, {"q[1]"}, {"q[2]"}, {"q[3]"}};
+    static const std::vector<FamilyTrack> tracks{
+        {"power_w", "battery_status", {{"voltage_v", "V"}, current}, mean, product},
+        {"altitude_m", "vehicle_air_data", {{"baro_alt_meter", "m"}}},
+        {"altitude_m", "vehicle_global_position", {{"alt", "m"}}},
+        {"altitude_m", "vehicle_local_position", {{"z", "-1m"}}},
+        {"altitude_m", "vehicle_gps_position", {{"altitude_msl_m", "m"}}},
+        {"altitude_m", "vehicle_gps_position", {{"alt", "mm"}}},
+        {"voltage_v", "battery_status", {{"voltage_v", "V"}}},
+        {"current_a", "battery_status", {current}},
+        {"charge_ah", "battery_status", {{"discharged_mah", "mAh", nullptr, no_sensor}}, latest},
+        {"east_m", "vehicle_local_position", {{"y", "m"}}},
+        {"north_m", "vehicle_local_position", {{"x", "m"}}},
+        {"airspeed_m_per_s", "airspeed_validated", {{"calibrated_airspeed_m_s", "m/s"}}},
+        {"airspeed_m_per_s", "airspeed_validated", {{"indicated_airspeed_m_s", "m/s"}}},
+        {"airspeed_m_per_s", "airspeed", {{"indicated_airspeed_m_s", "m/s"}}},
+        {"wind_east_m_per_s", "wind", {{"windspeed_east", "m/s"}}},
+        {"wind_east_m_per_s", "airspeed_wind", {{"windspeed_east", "m/s"}}},
+        {"wind_east_m_per_s", "wind_estimate", {{"windspeed_east", "m/s"}}},
+        {"wind_north_m_per_s", "wind", {{"windspeed_north", "m/s"}}},
+        {"wind_north_m_per_s", "airspeed_wind", {{"windspeed_north", "m/s"}}},
+        {"wind_north_m_per_s", "wind_estimate", {{"windspeed_north", "m/s"}}},
+        {"latitude_deg", "vehicle_gps_position", {{"latitude_deg", "deg"}}, latest},
+        {"latitude_deg", "vehicle_gps_position", {{"lat", "1e7deg"}}, latest},
+        {"latitude_deg", "vehicle_global_position", {{"lat", "deg"}}, latest},
+        {"longitude_deg", "vehicle_gps_position", {{"longitude_deg", "deg"}}, latest},
+        {"longitude_deg", "vehicle_gps_position", {{"lon", "1e7deg"}}, latest},
+        {"longitude_deg", "vehicle_global_position", {{"lon", "deg"}}, latest},
+        {"climb_m_per_s", "vehicle_local_position", {{"vz", "-1m/s"}}},
+        {"mode", "vehicle_status", {{"nav_state"}}, latest},
+        {"landed", "vehicle_land_detected", {{"landed"}}, latest},
+        {"ground_speed_m_per_s", "vehicle_local_position", velocity, mean, speed_of},
+        {"course_deg", "vehicle_local_position", velocity, latest, course_of},
+        {"heading_deg", "vehicle_attitude", quaternion, latest, heading_of},
+        {"roll_deg", "vehicle_attitude", quaternion, latest, roll_of},
+        {"throttle_percent", "actuator_motors", {{"control[0]"}}, mean, percent_of_fraction},
+        {"throttle_percent", "actuator_controls_0", {{"control[3]"}}, mean, percent_of_fraction},
+        {"throttle_percent", "vehicle_thrust_setpoint", {{"xyz[0]"}, {"xyz[1]"}, {"xyz[2]"}}, mean, percent_of_thrust},
+        {"armed", "vehicle_status", {{"arming_state"}}, latest, is_armed},
+        {utc_track, "vehicle_gps_position", {{"time_utc_usec", "1e-6s"}}, latest},
+    };
+    return tracks;
 }
 
 /// The kind of vehicle by MAVLink's number, else by the status: "" if neither states it.
-std::string vehicle_kind(const FamilyLog& log) {
+std::string vehicle_kind(const telemetry::AutopilotLog& log) {
     constexpr std::array rotorcraft{2.0, 3.0, 4.0, 13.0, 14.0, 15.0, 29.0};
     constexpr double fixed_wing = 1.0;
     constexpr double ground_rover = 10.0;
@@ -138,7 +103,7 @@ std::string vehicle_kind(const FamilyLog& log) {
         if (std::ranges::find(rotorcraft, type->second) != rotorcraft.end()) return "rotorcraft";
         return type->second == fixed_wing ? "fixedwing" : type->second == ground_rover ? "rover" : "";
     }
-    const auto* status = log.table("vehicle_status");
+    const auto* status = log.log.senders.front().table("vehicle_status");
     if (status == nullptr) return "";
     if (const auto* kind = status->column("vehicle_type")) {
         constexpr std::array names{"", "rotorcraft", "fixedwing", "rover"};
@@ -150,19 +115,11 @@ std::string vehicle_kind(const FamilyLog& log) {
     return rotary == nullptr ? "" : rotary->values.front() != 0.0 ? "rotorcraft" : "fixedwing";
 }
 
-/// Unix time of the log's second 0, from the first GPS time.
-std::optional<double> clock_of_gps(const FamilyLog& log) {
-    const auto* gps = log.table("vehicle_gps_position");
-    const auto* utc_us = gps == nullptr ? nullptr : gps->column("time_utc_usec");
-    if (utc_us == nullptr || !(utc_us->values.front() > 0.0)) return std::nullopt;
-    return utc_us->values.front() * units::micro - gps->time_s.front();
-}
-
-void describe_px4(const FamilyLog& log, FlightSeries& series) {
-    const auto& [information, parameters, texts, dropouts, dropout_s] = log.facts;
+void describe_px4(const telemetry::AutopilotLog& log, FlightSeries& series) {
+    const auto& parameters = log.facts.parameters;
     const auto text_of = [&](const char* key) {
-        const auto found = information.find(key);
-        return found == information.end() ? std::string() : found->second;
+        const auto found = log.facts.information.find(key);
+        return found == log.facts.information.end() ? std::string() : found->second;
     };
     series.aircraft_id = text_of("sys_uuid");
     series.aircraft_name = "PX4";
@@ -172,34 +129,20 @@ void describe_px4(const FamilyLog& log, FlightSeries& series) {
     else if (hitl != parameters.end() && hitl->second > 0.0)
         series.aircraft_name += " HITL";
     series.firmware = vehicle_kind(log);
-    series.start_clock_s = clock_of_gps(log);
-}
-
-std::vector<telemetry::MessageRequest> further_fields() {
-    std::vector<telemetry::MessageRequest> more{{"vehicle_status", {"vehicle_type", "is_rotary_wing"}},
-                                                {"vehicle_gps_position", {"time_utc_usec"}}};
-    for (const auto& computed : computed_tracks())
-        more.push_back({computed.topic, {computed.fields.begin(), computed.fields.end()}});
-    return more;
 }
 
 }  // namespace
 
 const LogFamily& px4_family() {
-    static const LogFamily family{
-        px4_fields(),
-        {{"battery_status", "multi_id"},
-         {"vehicle_gps_position", "multi_id", "fix_type", 3.0},
-         {"vehicle_air_data", "multi_id"},
-         {"airspeed", "multi_id"},
-         {"wind_estimate", "multi_id"},
-         {"vehicle_local_position", "multi_id"}},
-        {{"voltage_v", "battery_status", "voltage_v", "V"},
-         {"current_a", "battery_status", "current_a", "A", Merge::mean, FamilyField::Stored::any, no_sensor}},
-        further_fields(),
-        add_computed,
-        describe_px4,
-        false};
+    static const LogFamily family{px4_tracks(),
+                                  {{"battery_status", "multi_id"},
+                                   {"vehicle_gps_position", "multi_id", "fix_type", 3.0},
+                                   {"vehicle_air_data", "multi_id"},
+                                   {"airspeed", "multi_id"},
+                                   {"wind_estimate", "multi_id"},
+                                   {"vehicle_local_position", "multi_id"}},
+                                  describe_px4,
+                                  {{"vehicle_status", {"vehicle_type", "is_rotary_wing"}}}};
     return family;
 }
 

@@ -3,15 +3,13 @@
 #include "telemetry/autopilot/row_collector.h"
 
 #include <string_view>
-#include <vector>
 
 namespace flightwatt::telemetry {
 
 /// Whether the bytes begin with a DataFlash message, perhaps behind a damaged page.
 bool is_dataflash(std::string_view bytes);
 
-/// Reads a DataFlash log, binary or as text, into the rows that the collector wants (docs/formats.md). Returns all
-/// messages that the log defines.
-std::vector<AutopilotMessage> read_dataflash(std::string_view bytes, bool as_text, RowCollector& rows);
+/// Reads a DataFlash log, binary or as text, into the rows that the collector wants (docs/formats.md).
+void read_dataflash(std::string_view bytes, bool as_text, RowCollector& rows);
 
 }  // namespace flightwatt::telemetry

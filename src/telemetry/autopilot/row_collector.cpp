@@ -1,6 +1,7 @@
 #include "telemetry/autopilot/row_collector.h"
 
 #include "base/error.h"
+#include "telemetry/binary/wire_value.h"
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
@@ -10,44 +11,61 @@
 namespace flightwatt::telemetry {
 namespace {
 
-constexpr double max_back_s = 1.0;  // messages are written in almost the order of their times
-constexpr double max_ahead_s = 10.0;
-constexpr std::size_t max_skipped = 64'000'000;
+constexpr double unknown_value = std::numeric_limits<double>::quiet_NaN();
+constexpr double after_last_s = std::numeric_limits<double>::infinity();
 
 bool continues_clock(double time_s, double from_s) {
+    constexpr double max_back_s = 1.0;  // messages are written in almost the order of their times
+    constexpr double max_ahead_s = 10.0;
     return time_s >= from_s - max_back_s && time_s <= from_s + max_ahead_s;
+}
+
+bool is_whole(const LoggedField& field) {
+    using enum WireType;
+    return field.factor == 1.0 && field.type != float32 && field.type != float64 && field.type != text;
 }
 
 }  // namespace
 
-RowCollector::RowCollector(const std::filesystem::path& file, const std::vector<MessageRequest>& wanted)
-    : file_(file), wanted_(wanted) {}
-
-const MessageRequest* RowCollector::request_of(std::string_view message) const {
-    const auto found = std::ranges::find(wanted_, message, &MessageRequest::message);
-    return found == wanted_.end() ? nullptr : &*found;
+double LoggedField::number(std::string_view bytes) const {
+    if (type == WireType::text || offset + size_of(type) > bytes.size()) return unknown_value;
+    const double value = wire_value(type, bytes.data() + offset);
+    return std::isfinite(value) ? value * factor : unknown_value;
 }
 
-std::size_t RowCollector::table_of(std::string_view message) {
-    const auto found = std::ranges::find(sender_.tables, message, &MessageTable::message);
-    const auto index = static_cast<std::size_t>(found - sender_.tables.begin());
-    if (found == sender_.tables.end()) sender_.tables.push_back({std::string(message), {}, {}});
-    return index;
+std::optional<std::size_t> LoggedMessage::index_of(std::string_view field) const {
+    const auto found = std::ranges::find(fields, field, &LoggedField::name);
+    return found == fields.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - fields.begin()));
 }
 
-void RowCollector::add_column(std::size_t table, const std::string& field) {
-    auto& of = sender_.tables[table];
-    if (of.column(field) != nullptr) return;
-    of.columns.push_back(
-        {field, std::nullopt, std::vector<double>(of.time_s.size(), std::numeric_limits<double>::quiet_NaN())});
+RowCollector::RowCollector(const std::filesystem::path& file, const std::vector<MessageRequest>& wanted) : file_(file) {
+    for (const auto& [message, fields] : wanted) {
+        auto& table = sender_.tables.emplace_back(MessageTable{message, {}, {}});
+        for (const auto& field : fields) table.columns.push_back({field, std::nullopt, {}});
+        is_bound_.emplace_back(fields.size(), false);
+    }
+}
+
+void RowCollector::bind(LoggedMessage& message) {
+    auto& tables = sender_.tables;
+    const auto found = std::ranges::find(tables, message.name, &MessageTable::message);
+    message.column_fields.clear();
+    message.table.reset();
+    if (found == tables.end()) return;
+    message.table = static_cast<std::size_t>(found - tables.begin());
+    for (std::size_t i = 0; i < found->columns.size(); ++i) {
+        const auto field = message.index_of(found->columns[i].field);
+        message.column_fields.push_back(field);
+        if (!field) continue;
+        is_bound_[*message.table][i] = true;
+        found->columns[i].is_integer = is_whole(message.fields[*field]);
+    }
 }
 
 void RowCollector::append(const Row& row) {
     auto& table = sender_.tables[row.table];
     table.time_s.push_back(row.time_s);
-    for (std::size_t i = 0; i < table.columns.size(); ++i)
-        table.columns[i].values.push_back(i < row.values.size() ? row.values[i]
-                                                                : std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t i = 0; i < table.columns.size(); ++i) table.columns[i].values.push_back(row.values[i]);
 }
 
 void RowCollector::drop(const std::optional<Row>& row) {
@@ -59,56 +77,61 @@ void RowCollector::count_gap(double time_s) {
     gap_ = 0;
 }
 
-void RowCollector::add(Row row) {
-    if (std::isnan(row.time_s)) {
+void RowCollector::add(const LoggedMessage& message, double time_s, std::size_t offset, const ValueOf& value_of) {
+    if (!message.table) return;
+    if (std::isnan(time_s)) {
         if (std::isnan(last_s_)) ++untimed_;  // events before the first time
-        if (!std::isnan(last_s_)) skips_.add({SkipReason::no_time, 0}, last_s_, row.offset + 1);
+        if (!std::isnan(last_s_)) skips_.add({SkipReason::no_time, 0}, last_s_, offset + 1);
         return;
     }
-    if (!continues_clock(row.time_s, last_s_)) {  // also at the beginning
-        if (!pending_ || !continues_clock(row.time_s, pending_->time_s)) {
-            drop(pending_);
-            pending_ = std::move(row);
-            return;
-        }
-        append(*pending_);
-    } else {
+    Row row{*message.table, time_s, offset, {}};
+    for (const auto& field : message.column_fields) row.values.push_back(field ? value_of(*field) : unknown_value);
+    if (continues_clock(time_s, last_s_)) {
         drop(pending_);
+    } else if (pending_ && continues_clock(time_s, pending_->time_s)) {
+        append(*pending_);
+    } else {  // also at the beginning
+        drop(pending_);
+        pending_ = std::move(row);
+        return;
     }
     pending_.reset();
-    count_gap(row.time_s);
-    last_s_ = row.time_s;
+    count_gap(time_s);
+    last_s_ = time_s;
     append(row);
 }
 
 void RowCollector::skip(std::size_t offset, std::size_t count) {
+    constexpr std::size_t max_skipped = 64'000'000;
     if (count == 0) return;
     if (gap_ == 0) gap_offset_ = offset;
     gap_ += count;
     skipped_ += count;
-    if (skipped_ <= max_skipped) return;
-    throw InputError({file_.string()}, "has more than 64 MB that are no messages",
-                     "is it a whole log of an autopilot?");
+    if (skipped_ > max_skipped)
+        throw InputError({file_.string()}, "has more than 64 MB that are no messages",
+                         "is it a whole log of an autopilot?");
 }
 
-std::vector<MessageTable>& RowCollector::end() {
-    if (pending_ && std::isnan(last_s_))
-        append(*pending_);
-    else
-        drop(pending_);
-    pending_.reset();
-    return sender_.tables;
+void RowCollector::list(const LoggedMessage& message) {
+    if (message.count == 0) return;
+    auto& listed = result_.messages.emplace_back(AutopilotMessage{message.name, message.count, {}});
+    for (const auto& field : message.fields) listed.fields.push_back(field.name);
 }
 
 AutopilotLog RowCollector::take(bool as_lines) {
-    end();
-    count_gap(std::numeric_limits<double>::infinity());
-    const bool has_rows = std::ranges::any_of(sender_.tables, [](const MessageTable& table) { return !table.empty(); });
-    if (!has_rows && untimed_ > 0)
-        skips_.add({SkipReason::no_time, 0}, std::numeric_limits<double>::infinity(), 1, untimed_);
-    AutopilotLog result;
-    result.facts = std::move(facts);
-    auto& log = result.log;
+    if (pending_ && std::isnan(last_s_))
+        append(*pending_);  // the only row
+    else
+        drop(pending_);
+    count_gap(after_last_s);
+    auto& tables = sender_.tables;
+    for (std::size_t t = 0; t < tables.size(); ++t) {
+        std::size_t column = 0;
+        std::erase_if(tables[t].columns, [&](const Column&) { return !is_bound_[t][column++]; });
+    }
+    std::erase_if(tables, [](const MessageTable& table) { return table.empty(); });
+    if (tables.empty() && untimed_ > 0) skips_.add({SkipReason::no_time, 0}, after_last_s, 1, untimed_);
+    auto& log = result_.log;
     log.data_file = file_;
     log.flight = flight_name(file_);
     for (auto& [kind, skipped] : skips_.take()) {
@@ -120,9 +143,8 @@ AutopilotLog RowCollector::take(bool as_lines) {
         skipped.unit = as_lines ? Unit::line : is_row ? Unit::frame : Unit::byte;
         log.skipped.push_back(std::move(skipped));
     }
-    std::erase_if(sender_.tables, [](const MessageTable& table) { return table.empty(); });
     log.senders.push_back(std::move(sender_));
-    return result;
+    return std::move(result_);
 }
 
 }  // namespace flightwatt::telemetry

@@ -1,10 +1,12 @@
 #pragma once
 
-#include "telemetry/autopilot_data.h"
+#include "telemetry/autopilot_log.h"
+#include "telemetry/message_dictionary.h"
 #include "telemetry/text/skip_counter.h"
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -13,52 +15,52 @@
 
 namespace flightwatt::telemetry {
 
-/// Where a layout of a message has the columns of its table.
-template <typename Source>
-struct RowBinding {
-    std::size_t table = 0;
-    std::vector<std::optional<Source>> columns;
+/// A field in the bytes of a message.
+struct LoggedField {
+    std::string name;
+    std::size_t offset = 0;
+    WireType type = WireType::uint8;
+    double factor = 1.0;
+
+    /// NaN for text, and where the bytes end before it.
+    double number(std::string_view bytes) const;
 };
 
-/// The rows of the wanted messages of a log that defines them, one after the other. A row whose time leaves the clock of
-/// the rows around it is damaged: a jump counts only if the next row confirms it.
+/// A message as a log defines it, and where its fields go.
+struct LoggedMessage {
+    std::string name = {};
+    std::size_t bytes = 0;  ///< of the whole message
+    std::vector<LoggedField> fields = {};
+    std::optional<std::size_t> clock = {};  ///< field of the time
+    double ticks_per_s = 1e6;
+    std::size_t count = 0;
+    std::optional<std::size_t> table = {};                       ///< of a requested message
+    std::vector<std::optional<std::size_t>> column_fields = {};  ///< of each of its columns
+
+    std::optional<std::size_t> index_of(std::string_view field) const;
+};
+
+/// The rows of the requested messages of a log that defines them, one after the other. A row whose time leaves the
+/// clock of the rows around it is damaged: a jump counts only if the next row confirms it.
 class RowCollector {
   public:
+    using ValueOf = std::function<double(std::size_t field)>;
+
     RowCollector(const std::filesystem::path& file, const std::vector<MessageRequest>& wanted);
 
-    bool wants(std::string_view message) const { return request_of(message) != nullptr; }
     const std::filesystem::path& file() const { return file_; }
-
-    /// Binds a layout: find(field) is its Source, if the layout has it. std::nullopt if the message is not wanted.
-    template <typename Source, typename Find>
-    std::optional<RowBinding<Source>> bind(std::string_view message, const Find& find) {
-        const auto* request = request_of(message);
-        if (request == nullptr) return std::nullopt;
-        RowBinding<Source> binding{table_of(message), {}};
-        for (const auto& field : request->fields)
-            if (find(field)) add_column(binding.table, field);
-        for (const auto& column : sender_.tables[binding.table].columns) binding.columns.push_back(find(column.field));
-        return binding;
-    }
-
-    /// Adds a row at `offset` (bytes, or line); value_of(source) is a number or NaN.
-    template <typename Source, typename ValueOf>
-    void add(const RowBinding<Source>& binding, double time_s, std::size_t offset, const ValueOf& value_of) {
-        Row row{binding.table, time_s, offset, {}};
-        row.values.reserve(binding.columns.size());
-        for (const auto& source : binding.columns)
-            row.values.push_back(source ? value_of(*source) : std::numeric_limits<double>::quiet_NaN());
-        add(std::move(row));
-    }
-
+    /// Finds the table of a message, if it is requested.
+    void bind(LoggedMessage& message);
+    /// Adds a row at `offset` (bytes, or line) if the message is requested.
+    void add(const LoggedMessage& message, double time_s, std::size_t offset, const ValueOf& value_of);
     /// Counts bytes (of text: lines) that are no message. Throws InputError if there are too many.
     void skip(std::size_t offset, std::size_t count);
     /// The time of the last row; NaN before the first.
     double last_s() const { return last_s_; }
-
-    /// The tables after the last row; a row whose time nothing confirms is left out, unless it is the only one.
-    std::vector<MessageTable>& end();
-    LogFacts facts;
+    std::vector<MessageTable>& tables() { return sender_.tables; }
+    /// Lists a message, if the log has any.
+    void list(const LoggedMessage& message);
+    LogFacts& facts() { return result_.facts; }
 
     /// The log; tables without rows are removed. `as_lines`: the unit of what was skipped.
     AutopilotLog take(bool as_lines);
@@ -71,17 +73,14 @@ class RowCollector {
         std::vector<double> values;
     };
 
-    const MessageRequest* request_of(std::string_view message) const;
-    std::size_t table_of(std::string_view message);
-    void add_column(std::size_t table, const std::string& field);
-    void add(Row row);
     void append(const Row& row);
     void drop(const std::optional<Row>& row);
     void count_gap(double time_s);
 
     std::filesystem::path file_;
-    std::vector<MessageRequest> wanted_;
+    AutopilotLog result_;
     SenderLog sender_;
+    std::vector<std::vector<bool>> is_bound_;  ///< of each table's columns: some definition has it
     double last_s_ = std::numeric_limits<double>::quiet_NaN();
     std::optional<Row> pending_;  ///< its time is not confirmed
     SkipCounter skips_;

@@ -28,19 +28,14 @@ constexpr std::size_t max_message_bytes = 10'000;  // the topics of real logs ha
 constexpr std::size_t max_information_bytes = 65'535;
 constexpr std::size_t max_entries = 10'000;  // of formats, parameters, texts
 constexpr std::size_t max_nesting = 8;
-constexpr std::size_t confirming_headers = 3;  // in a row, to continue behind damage
+constexpr std::size_t max_topic_fields = 200'000;  // of all topics
+constexpr std::size_t confirming_headers = 3;      // in a row, to continue behind damage
 
+/// A field of a format, whose type may be another format.
 struct UlogField {
     std::string type;
     std::size_t elements = 1;
     std::string name;
-};
-
-/// Place of a value in a topic's data.
-struct UlogSource {
-    std::size_t offset = 0;
-    WireType type = WireType::uint8;
-    bool is_instance = false;  ///< the topic's, which the data do not have
 };
 
 std::optional<WireType> wire_type(std::string_view name) {
@@ -97,30 +92,11 @@ class UlogReader {
         }
     }
 
-    std::vector<AutopilotMessage> messages() const {
-        std::vector<AutopilotMessage> found;
-        for (const auto& [name, fields] : formats_) {
-            std::vector<std::string> names{std::string(instance_field)};
-            for (const auto& field : fields) {
-                if (field.name.starts_with("_padding") || !wire_type(field.type)) continue;
-                for (std::size_t i = 0; i < field.elements; ++i)
-                    names.push_back(field.elements == 1 ? field.name : fmt::format("{}[{}]", field.name, i));
-            }
-            const auto topic = topics_.find(name);
-            found.push_back({name, topic == topics_.end() ? 0 : topic->second.count, std::move(names)});
-        }
-        return found;
+    void list() const {
+        for (const auto& [name, topic] : topics_) rows_.list(topic);
     }
 
   private:
-    struct Topic {
-        std::size_t bytes = 0;    ///< of the data; 0 if unknown
-        std::size_t padding = 0;  ///< of them at the end, not always written
-        std::size_t clock_offset = 0;
-        std::size_t count = 0;
-        std::optional<RowBinding<UlogSource>> binding = {};
-    };
-
     /// A log that was closed after a crash has further parts at known places; the part before may be cut.
     std::size_t end_of_part(std::size_t at) const {
         const auto next = std::ranges::upper_bound(appended_, at);
@@ -171,23 +147,23 @@ class UlogReader {
             case 'F':
                 return read_format(body);
             case 'I':
-                return read_information(body);
+                return read_key(body, false);
             case 'P':
-                return read_parameter(body);
+                return read_key(body, true);
             case 'A':
                 return subscribe(body);
             case 'D':
                 return read_data(body, offset);
             case 'L': {
                 constexpr std::size_t text_offset = 9;
-                if (body.size() > text_offset && rows_.facts.texts.size() < max_entries)
-                    rows_.facts.texts.emplace_back(body.substr(text_offset));
+                if (body.size() > text_offset && rows_.facts().texts.size() < max_entries)
+                    rows_.facts().texts.emplace_back(body.substr(text_offset));
                 return;
             }
             case 'O':
                 if (body.size() < 2) return;
-                ++rows_.facts.dropouts;
-                rows_.facts.dropout_s += wire_number<std::uint16_t>(body.data()) / 1e3;
+                ++rows_.facts().dropouts;
+                rows_.facts().dropout_s += wire_number<std::uint16_t>(body.data()) / 1e3;
                 return;
             default:
                 return;
@@ -226,57 +202,35 @@ class UlogReader {
         if (!name.empty() && !read.empty() && formats_.size() < max_entries) formats_.emplace(name, std::move(read));
     }
 
-    void read_information(std::string_view body) {
+    /// Information, as text, or a parameter.
+    void read_key(std::string_view body, bool is_parameter) {
         constexpr std::size_t max_text = 200;
         std::string_view value;
         const auto key = key_and_value(body, value);
-        auto& information = rows_.facts.information;
-        if (!key || information.size() >= max_entries) return;
+        auto& [information, parameters, texts, dropouts, dropout_s] = rows_.facts();
+        if (!key || information.size() + parameters.size() >= max_entries) return;
         const auto type = wire_type(key->type);
-        if (key->type == "char") {
-            information.emplace(key->name, value.substr(0, max_text));
-        } else if (type && value.size() == size_of(*type)) {
-            information.emplace(key->name, fmt::format("{}", wire_value(*type, value.data())));
-        }
+        const bool is_number = type && key->elements == 1 && value.size() == size_of(*type);
+        if (is_number && is_parameter) parameters.emplace(key->name, wire_value(*type, value.data()));
+        if (key->type == "char" && !is_parameter) information.emplace(key->name, value.substr(0, max_text));
     }
 
-    void read_parameter(std::string_view body) {
-        std::string_view value;
-        const auto key = key_and_value(body, value);
-        auto& parameters = rows_.facts.parameters;
-        if (!key || parameters.size() >= max_entries) return;
-        const auto type = wire_type(key->type);
-        if (type && value.size() == size_of(*type)) parameters.emplace(key->name, wire_value(*type, value.data()));
-    }
-
-    /// Bytes of a type; 0 if it is unknown, nested too deeply, or too large.
-    std::size_t bytes_of(const std::string& type, std::size_t depth = 0) const {
-        if (const auto basic = wire_type(type)) return size_of(*basic);
+    /// Adds the fields of a type, also of nested ones; false if it is unknown, nested too deeply, or too large.
+    bool add_fields(const std::string& type, const std::string& prefix, std::size_t depth, LoggedMessage& topic) {
         const auto format = formats_.find(type);
-        if (format == formats_.end() || depth > max_nesting) return 0;
-        std::size_t bytes = 0;
+        if (format == formats_.end() || depth > max_nesting) return false;
         for (const auto& field : format->second) {
-            const auto one = bytes_of(field.type, depth + 1);
-            bytes += one * field.elements;
-            if (one == 0 || bytes > max_message_bytes) return 0;
+            const auto basic = wire_type(field.type);
+            for (std::size_t i = 0; i < field.elements; ++i) {
+                auto name = prefix + (field.elements == 1 ? field.name : fmt::format("{}[{}]", field.name, i));
+                if (!basic && !add_fields(field.type, name + ".", depth + 1, topic)) return false;
+                if (!basic) continue;
+                topic.fields.push_back({std::move(name), topic.bytes, *basic});
+                topic.bytes += size_of(*basic);
+                if (topic.bytes > max_message_bytes || ++fields_ > max_topic_fields) return false;
+            }
         }
-        return bytes;
-    }
-
-    /// "timestamp", "control[3]".
-    std::optional<UlogSource> find_field(const std::vector<UlogField>& fields, std::string_view path) const {
-        const auto bracket = path.find('[');
-        const auto element = bracket == std::string_view::npos
-                                 ? std::optional<std::uint64_t>(0)
-                                 : parse_unsigned(path.substr(bracket + 1, path.size() - bracket - 2));
-        std::size_t offset = 0;
-        for (const auto& field : fields) {
-            const auto type = wire_type(field.type);
-            if (field.name == path.substr(0, bracket) && type && element && *element < field.elements)
-                return UlogSource{offset + *element * size_of(*type), *type};
-            offset += bytes_of(field.type) * field.elements;
-        }
-        return std::nullopt;
+        return true;
     }
 
     void subscribe(std::string_view body) {
@@ -286,66 +240,57 @@ class UlogReader {
                               static_cast<double>(static_cast<std::uint8_t>(body[0]))};
     }
 
-    /// A topic, at its first subscription; nullptr if its format is not defined.
-    Topic* topic_of(const std::string& name) {
-        const auto format = formats_.find(name);
-        if (format == formats_.end()) return nullptr;
+    /// A topic, at its first subscription; nullptr if its format is not defined. One that cannot be read has no clock.
+    LoggedMessage* topic_of(const std::string& name) {
+        if (!formats_.contains(name)) return nullptr;
         const auto [known, is_new] = topics_.try_emplace(name);
         auto& topic = known->second;
         if (!is_new) return &topic;
-        const auto& fields = format->second;
-        topic.bytes = bytes_of(name);
-        if (topic.bytes == 0) return &topic;
-        if (fields.back().name.starts_with("_padding"))
-            topic.padding = bytes_of(fields.back().type) * fields.back().elements;
-        const auto clock = find_field(fields, "timestamp");
-        if (!clock || clock->type != WireType::uint64) return &topic;
-        topic.clock_offset = clock->offset;
-        topic.binding = rows_.bind<UlogSource>(name, [&](const std::string& field) {
-            return field == instance_field ? UlogSource{0, WireType::uint8, true} : find_field(fields, field);
-        });
+        topic.name = name;
+        topic.fields.push_back({std::string(instance_field), 0, WireType::uint8});
+        const bool is_readable = add_fields(name, "", 0, topic);
+        while (topic.fields.back().name.starts_with("_padding")) topic.fields.pop_back();  // not always written
+        topic.clock = topic.index_of("timestamp");
+        if (!is_readable || (topic.clock && topic.fields[*topic.clock].type != WireType::uint64)) topic.clock.reset();
+        rows_.bind(topic);
         return &topic;
     }
 
     void read_data(std::string_view body, std::size_t offset) {
-        constexpr double us_per_s = 1e6;
         if (body.size() < 2) return rows_.skip(offset, body.size() + ulog_header_bytes);
         const auto found = subscriptions_.find(wire_number<std::uint16_t>(body.data()));
         if (found == subscriptions_.end() || found->second.first == nullptr) return;
-        auto& topic = *found->second.first;
-        const double multi_id = found->second.second;
+        const auto& [to, multi_id] = found->second;
+        auto& topic = *to;
         const auto data = body.substr(2);
-        if (topic.bytes == 0) return;
-        if (data.size() != topic.bytes && data.size() + topic.padding != topic.bytes)
+        if (!topic.clock) return;
+        const auto& last = topic.fields.back();
+        if (data.size() != topic.bytes && data.size() != last.offset + size_of(last.type))
             return rows_.skip(offset, body.size() + ulog_header_bytes);
         ++topic.count;
-        if (!topic.binding || topic.clock_offset + sizeof(std::uint64_t) > data.size()) return;
-        const auto time_us = wire_number<std::uint64_t>(data.data() + topic.clock_offset);
-        if (time_us == 0) return;  // never published
-        rows_.add(*topic.binding, static_cast<double>(time_us) / us_per_s, offset, [&](const UlogSource& source) {
-            if (source.is_instance) return multi_id;
-            if (source.offset + size_of(source.type) > data.size()) return std::numeric_limits<double>::quiet_NaN();
-            const double value = wire_value(source.type, data.data() + source.offset);
-            return std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN();
-        });
+        const double time_us = topic.fields[*topic.clock].number(data);
+        if (time_us == 0.0) return;  // never published
+        rows_.add(topic, time_us / topic.ticks_per_s, offset,
+                  [&](std::size_t field) { return field == 0 ? multi_id : topic.fields[field].number(data); });
     }
 
     std::string_view bytes_;
     RowCollector& rows_;
     std::vector<std::size_t> appended_;
     std::map<std::string, std::vector<UlogField>> formats_;
-    std::map<std::string, Topic> topics_;
-    std::map<std::uint16_t, std::pair<Topic*, double>> subscriptions_;  ///< with the instance
+    std::map<std::string, LoggedMessage> topics_;
+    std::size_t fields_ = 0;
+    std::map<std::uint16_t, std::pair<LoggedMessage*, double>> subscriptions_;  ///< with the instance
 };
 
 }  // namespace
 
 bool is_ulog(std::string_view bytes) { return bytes.starts_with(magic); }
 
-std::vector<AutopilotMessage> read_ulog(std::string_view bytes, RowCollector& rows) {
+void read_ulog(std::string_view bytes, RowCollector& rows) {
     UlogReader reader(bytes, rows);
     reader.read();
-    return reader.messages();
+    reader.list();
 }
 
 }  // namespace flightwatt::telemetry
