@@ -122,8 +122,8 @@ int flightwatt::stages::segment_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "segment", "FLIGHT.data|SERIES.csv|FOLDER...",
         R"(Finds every sortie in a log by altitude and throttle and writes its phases as CSV: take-off from
-lift-off until the height held is reached, cruise, landing from where that height is left until
-touchdown. TAKEOFF messages, mode and block are shown with each edge for comparison; they are not used.
+lift-off until the height held is reached (of a rotorcraft: until its climb ends), cruise, landing from
+where that height is left until touchdown. TAKEOFF messages, mode and block are shown with each edge for comparison; they are not used.
 A log without measured power is segmented too; its columns of power are then empty. Of several logs, or of
 a FOLDER of logs or of flightwatt batch, each row begins with its flight. A log that
 cannot be used is named and skipped, and the exit code is then 3.)"};

@@ -4,6 +4,7 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "battery/identification/pack_changes.h"
+#include "flight/flight_phases.h"
 #include "flight/phase_statistics.h"
 
 #include <algorithm>
@@ -142,7 +143,12 @@ DischargeRecords discharge_records(const flight::SelectedTracks& tracks) {
     whole.counter_ah = sample_selected_track(tracks, "charge_ah", whole.time_s);
     whole.throttle_percent = sample_selected_track(tracks, "throttle_percent", whole.time_s);
     DischargeRecords found;
-    const auto parts = split_at_pack_changes(std::move(whole), found.notes);
+    const auto stands = [&altitude = tracks["altitude_m"]](double time_s) {  // in a glide a pack recovers, too
+        constexpr flight::SegmentationOptions rest;
+        const auto at_m = [&](double later_s) { return value_at(altitude, time_s + later_s); };
+        return altitude.empty() || std::abs(at_m(rest.rest_s) - at_m(-rest.rest_s)) <= rest.rest_height_m;
+    };
+    const auto parts = split_at_pack_changes(std::move(whole), found.notes, stands);
     for (std::size_t p = 0; p < parts.size(); ++p) {
         DischargeRecord record;
         record.flight = p == 0 ? series.flight : fmt::format("{}#{}", series.flight, p + 1);

@@ -2,6 +2,7 @@
 
 #include "base/csv.h"
 #include "base/error.h"
+#include "flight/checks/runs.h"
 #include "flight/phase_statistics.h"
 #include "flight/selected_track.h"
 
@@ -53,6 +54,18 @@ PhaseSpan span_of(const RowReader& row) {
     return {*phase, edge_of(row, "start"), edge_of(row, "end"), complete == "true"};
 }
 
+/// Time of a rotorcraft below 2 m/s over ground [s], if its speed is known.
+std::optional<double> hovering_s(const FlightSeries& series, const PhaseSpan& span) {
+    constexpr double max_m_per_s = 2.0;
+    const auto speed = select_track(series, "ground_speed_m_per_s");
+    if (series.firmware != "rotorcraft" || speed.empty()) return std::nullopt;
+    const auto& time_s = speed.time_s;
+    const auto hovers = [&](std::size_t i) {
+        return time_s[i] >= span.start.time_s && time_s[i] <= span.end.time_s && speed.value[i] < max_m_per_s;
+    };
+    return to_millisecond(time_where(time_s, {0, time_s.size()}, gap_threshold_s(time_s), hovers));
+}
+
 }  // namespace
 
 std::string phases_csv(const FlightSeries& series, const FlightPhases& phases) {
@@ -79,7 +92,8 @@ std::string phases_csv(const FlightSeries& series, const FlightPhases& phases) {
                    "end_throttle_percent",
                    "end_mode",
                    "end_block",
-                   "end_to_takeoff_message_s"});
+                   "end_to_takeoff_message_s",
+                   "hovering_s"});
     const auto altitude = [](const PhaseEdge& edge) { return fmt::format("{:.2f}", edge.altitude_m); };
     const PowerStatistics power(series);
     for (const auto& sortie : phases.sorties) {
@@ -92,7 +106,7 @@ std::string phases_csv(const FlightSeries& series, const FlightPhases& phases) {
                     statistics.counter_energy_wh, known(statistics.gaps), known(statistics.max_gap_s), complete,
                     altitude(start), start.gap_s, start.throttle_percent, start.mode, start.block,
                     start.takeoff_after_s, altitude(end), end.gap_s, end.throttle_percent, end.mode, end.block,
-                    end.takeoff_after_s);
+                    end.takeoff_after_s, hovering_s(series, span));
         }
     }
     return csv.text();

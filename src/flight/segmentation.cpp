@@ -48,7 +48,10 @@ PhaseEdge describe_edge(const SelectedTracks& tracks, const ResampledFlight& gri
 
 Sortie make_sortie(const FlightCandidate& flown) {
     const auto& grid = flown.grid;
-    const auto edges = find_edges(grid, flown.activity, flown.heights, flown.options);
+    auto edges = grid.hovers.empty() ? find_edges(grid, flown.activity, flown.heights, flown.options)
+                                     : find_hover_edges(grid, flown.activity, flown.heights);
+    if (edges.lift_off_s) edges.lift_off_s = confirmed_by_detector(grid.detector, *edges.lift_off_s, false);
+    if (edges.touchdown_s) edges.touchdown_s = confirmed_by_detector(grid.detector, *edges.touchdown_s, true);
     const double first_s = edges.lift_off_s.value_or(grid.time_s(flown.activity.span.begin));
     const double last_s = edges.touchdown_s.value_or(grid.time_s(flown.activity.span.end - 1));
     const double cruise_from = edges.takeoff_end_s.value_or(first_s);

@@ -99,6 +99,19 @@ TEST(Identification, FindsItselfWithoutNoise) {
     EXPECT_EQ(to_toml(again), to_toml(found.battery));
 }
 
+TEST(Identification, FindsOneResistanceWhereTheVoltageLags) {
+    auto pack = known_pack();
+    pack.resistance_ohm = -0.01;  // a sensor that lags hides the series resistance
+    pack.thevenin->rc_resistance_ohm = 0.1;
+    pack.thevenin->rc_time_constant_s = 2.5;
+    SyntheticDischarge noisy;
+    noisy.voltage_noise_v = 0.05;
+    const auto found =
+        identify_battery(std::vector{test::discharge_record(synthetic_discharge(pack, noisy, 1))}, {2.4, 3, ""});
+    EXPECT_EQ(found.fit.rc_resistance_ohm, 0.0);
+    EXPECT_NEAR(found.fit.resistance_ohm, 0.08, 0.02);
+}
+
 TEST(Identification, AlignsFlightsByTheirVoltage) {
     SyntheticDischarge late;
     late.initial_charge_ah = 0.4;

@@ -21,6 +21,27 @@ TEST(PhasesCsvReader, ReadsBackWhatWasWritten) {
     EXPECT_EQ(phases_csv(series, phases), written);
 }
 
+TEST(PhasesCsv, HasTheTimeThatARotorcraftHovers) {
+    FlightSeries series;
+    Track altitude{.name = "altitude_m", .source = "plain"};
+    Track speed{.name = "ground_speed_m_per_s", .source = "plain"};
+    for (int i = 0; i <= 100; ++i) {
+        for (auto* track : {&altitude, &speed}) track->time_s.push_back(i);
+        altitude.value.push_back(20.0);
+        speed.value.push_back(i < 30 ? 0.5 : 8.0);
+    }
+    series.tracks = {altitude, speed};
+    FlightPhases phases;
+    phases.sorties.emplace_back();
+    PhaseSpan cruise;
+    cruise.start.time_s = 10.0;
+    cruise.end.time_s = 90.0;
+    phases.sorties[0].phases.push_back(cruise);
+    EXPECT_TRUE(phases_csv(series, phases).ends_with(",\n")) << "unknown kind";
+    series.firmware = "rotorcraft";
+    EXPECT_TRUE(phases_csv(series, phases).ends_with(",19\n"));
+}
+
 std::string refusal(const std::string& from, const std::string& to) {
     const auto series = read_flight(test::source_dir() / "logs" / "opterra_synthetic_01.data");
     auto text = phases_csv(series, segment(series));

@@ -187,6 +187,12 @@ JointCircuitFit fit_falling_curve(const JointCircuitFit& rough, int segments, bo
         place_knots(joint, segments);
         if (with_search) search_time_constant(joint);
         least_squares(joint, {});
+        if (!(joint.fit.resistance_ohm > 0.0)) {  // noise hides it from a fast RC pair: one resistance for both
+            joint = rough;
+            joint.fit.rc_resistance_ohm = joint.fit.rc_time_constant_s = 0.0;
+            place_knots(joint, segments);
+            least_squares(joint, linear_only);
+        }
         if (!(joint.fit.resistance_ohm > 0.0))
             throw NoResultError("the voltage does not fall as current rises: no series resistance can be identified");
         if (!falls_throughout(joint.fit)) continue;

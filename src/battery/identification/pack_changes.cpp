@@ -85,7 +85,8 @@ std::vector<double> integrated_charge_ah(const std::vector<double>& time_s, cons
     return charge;
 }
 
-std::vector<PackRecord> split_at_pack_changes(PackRecord record, std::vector<std::string>& notes) {
+std::vector<PackRecord> split_at_pack_changes(PackRecord record, std::vector<std::string>& notes,
+                                              const std::function<bool(double)>& stands) {
     const auto mask = rests_of(record);
     const auto drawn_ah = integrated_charge_ah(record.time_s, record.current_a);
     const auto logged_ah = record.counter_ah;
@@ -97,7 +98,7 @@ std::vector<PackRecord> split_at_pack_changes(PackRecord record, std::vector<std
         const double rise = (record.voltage_v[i] - record.voltage_v[i - 1]) / record.voltage_v[i - 1];
         // The step is estimated from all samples around it; it is where two neighbours differ by most of it.
         double step = 0.0;
-        if (between_loads && rise > late_step / 2.0) {
+        if (between_loads && rise > late_step / 2.0 && stands(record.time_s[i])) {
             step = step_up(record, mask, i, reset ? 0.0 : settled_s);
             if (const double early = step_up(record, mask, i, recovery_s); early > early_step) step = early;
         }

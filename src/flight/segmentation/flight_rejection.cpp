@@ -2,6 +2,7 @@
 
 #include "base/statistics.h"
 #include "base/units.h"
+#include "flight/segmentation/hover_record.h"
 #include "flight/series_file.h"
 #include "flight/sources/outliers.h"
 
@@ -22,6 +23,7 @@ constexpr double max_climb_5_s_m_per_s = 60.0;
 constexpr double max_climb_30_s_m_per_s = 30.0;
 constexpr double max_gps_motion_fraction = 0.25;  // of the altitude's, if it contradicts it
 constexpr double min_confirming_fraction = 0.5;   // of the altitude's, if it confirms it
+constexpr double min_hover_m = 0.3;               // of motion, above a barometer's noise
 constexpr double min_flight_m_per_s = 5.0;        // of a fixed wing
 constexpr double min_time_aloft_s = 15.0;         // above half of its height, without motor data
 constexpr double min_height_factor = 2.0;         // of flight_height_m, without motor data and speed
@@ -104,6 +106,19 @@ std::string stays_low(const FlightCandidate& c) {
                                c.grid.motor_indicator == MotorIndicator::throttle ? "throttle" : "motor speed",
                                motor_percent);
     return fmt::format("run-up, taxi or hop: {}, height to {:.1f} m", motor, height_m);
+}
+
+/// A rotorcraft's motors run as in flight, but it does not leave the ground.
+std::string stays_on_ground(const FlightCandidate& c) {
+    const auto& moving = c.activity.moving;
+    const auto& detector = c.grid.detector;
+    const double start_s = c.grid.time_s(moving.begin);
+    if (!detector.empty() && state_at(detector, start_s) == 1.0 &&
+        !takes(detector, 0.0, start_s, c.grid.time_s(moving.end - 1)))
+        return "run-up: the autopilot states that it is on the ground";
+    const auto [low_m, high_m] = std::ranges::minmax(part_of(c.grid.altitude_m, moving));
+    if (c.max_motor_percent() >= c.options.flight_throttle_percent && high_m - low_m >= min_hover_m) return "";
+    return fmt::format("run-up: motors to {:.0f} %, altitude within {:.1f} m", c.max_motor_percent(), high_m - low_m);
 }
 
 /// Whether energy height is gained within a window of flying speed.
@@ -255,6 +270,8 @@ using Rejection = std::string (*)(const FlightCandidate&);
 constexpr Rejection rejections[] = {stays_low,    rises_without_motor, climbs_too_fast, is_contradicted,
                                     only_settles, moves_on_a_road,     only_drives,     stands_still};
 
+constexpr Rejection rotorcraft_rejections[] = {stays_on_ground, climbs_too_fast};
+
 }  // namespace
 
 double FlightCandidate::max_motor_percent() const {
@@ -272,9 +289,9 @@ std::string ground_vehicle_reason(const SelectedTracks& tracks) {
 }
 
 std::string no_flight_reason(const FlightCandidate& candidate) {
-    // Its motors carry it, however low.
-    if (!candidate.grid.hovers.empty()) return climbs_too_fast(candidate);
-    for (const auto rejection : rejections)
+    const std::span<const Rejection> rules =
+        candidate.grid.hovers.empty() ? std::span<const Rejection>(rejections) : rotorcraft_rejections;
+    for (const auto rejection : rules)
         if (auto reason = rejection(candidate); !reason.empty()) return reason;
     return "";
 }

@@ -1,27 +1,64 @@
 #include "flight/segmentation/hover_record.h"
 
-#include "base/statistics.h"
-
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <span>
 
 namespace flightwatt::flight {
 namespace {
 
 constexpr double lifting_fraction = 0.7;  // of the usual effort in flight: an idling motor has less, a descent more
+constexpr double idle_fraction = 0.5;     // of lifting effort: below it for three seconds it does not fly
 constexpr double min_hover_s = 5.0;
 constexpr double max_detector_s = 1.5;
+constexpr double clear_m = 0.5;         // of the ground: a barometer's noise is less
+constexpr double max_early_s = 2.0;     // of lift-off, before the motors lift: a ramp of the throttle
+constexpr double max_wait_s = 15.0;     // of lift-off, after it: a rotorcraft may idle at much throttle
+constexpr double level_m_per_s = 0.2;   // a climb at this rate takes some 2 % more power than hovering
+constexpr double level_s = 3.0;         // of a hover; a landing may pause for less
+constexpr double drift_m = 3.0;         // of an altitude during a flight,
+constexpr double drift_fraction = 0.1;  // and of its height, if the log begins or ends on the ground
 
-/// The median effort above half of its 90th percentile.
-double usual_effort(const std::vector<double>& motor_percent) {
-    auto sorted = motor_percent;
-    std::ranges::sort(sorted);
-    const double half = 0.5 * quantile(sorted, 0.9);
-    const auto high = std::ranges::upper_bound(sorted, half);
-    return high == sorted.end() ? half : *(high + (sorted.end() - high) / 2);
+constexpr std::size_t steps(double duration_s) { return static_cast<std::size_t>(duration_s / segmentation_step_s); }
+
+/// Climb rate over a second before and after a point.
+double climb_rate(const std::vector<double>& height_m, std::size_t point) {
+    constexpr auto reach = steps(1.0);
+    const double climbed_m =
+        height_m[std::min(point + reach, height_m.size() - 1)] - height_m[point - std::min(reach, point)];
+    return climbed_m / (2.0 * segmentation_step_s * static_cast<double>(reach));
 }
 
-/// Whether a state takes a value after `from_s` and up to `to_s`.
+/// Where the climb from the first point of a span ends: in the air, with no more of it for a while (else at the highest
+/// point), less what follows at a small part of the climb's mean rate.
+std::size_t end_of_climb(const std::vector<double>& height_m, IndexSpan span, double airborne_m) {
+    const auto heights = part_of(height_m, span);
+    auto end = span.begin + static_cast<std::size_t>(std::ranges::max_element(heights) - heights.begin());
+    const auto holds = [](const IndexSpan& run) { return run.size() > steps(level_s); };
+    const auto levels = runs_of(
+        span, [&](std::size_t i) { return height_m[i] >= airborne_m && climb_rate(height_m, i) <= level_m_per_s; });
+    if (const auto level = std::ranges::find_if(levels, holds); level != levels.end()) end = level->begin;
+    const double climb_s = segmentation_step_s * std::max(1.0, static_cast<double>(end - span.begin));
+    const double least_m_per_s =
+        std::max(level_m_per_s, least_of_climb * (height_m[end] - height_m[span.begin]) / climb_s);
+    auto climbs = runs_of({span.begin, end}, [&](std::size_t i) { return climb_rate(height_m, i) >= least_m_per_s; });
+    std::erase_if(climbs, std::not_fn(holds));
+    return climbs.empty() ? end : climbs.back().end;
+}
+
+/// The last point, near the one at which the motors begin to lift, before the aircraft stays clear of the ground; that
+/// one if the altitude shows none.
+std::size_t lift_off_of(std::span<const double> altitude_m, double clear_altitude_m, std::size_t lifting) {
+    const auto from = lifting - std::min(lifting, steps(max_early_s));
+    const auto until = std::min(lifting + steps(max_wait_s + level_s), altitude_m.size());
+    for (const auto& run : runs_of({from, until}, [&](std::size_t i) { return altitude_m[i] > clear_altitude_m; }))
+        if (run.size() > steps(level_s)) return run.begin == from ? lifting : run.begin - 1;
+    return lifting;
+}
+
+}  // namespace
+
 bool takes(const Track& state, double value, double from_s, double to_s) {
     for (auto i = static_cast<std::size_t>(std::ranges::upper_bound(state.time_s, from_s) - state.time_s.begin());
          i < state.time_s.size() && state.time_s[i] <= to_s; ++i)
@@ -29,45 +66,70 @@ bool takes(const Track& state, double value, double from_s, double to_s) {
     return false;
 }
 
-}  // namespace
-
 std::vector<IndexSpan> find_hovers(const SelectedTracks& tracks, const ResampledFlight& grid) {
     const auto& armed = tracks["armed"];
     const auto& landed = tracks["landed"];
-    const bool is_stated = !armed.empty() || !landed.empty();
-    if (tracks.series().firmware != "rotorcraft" || !is_stated || grid.motor_percent.empty()) return {};
-    const double lifting = lifting_fraction * usual_effort(grid.motor_percent);
+    if (tracks.series().firmware != "rotorcraft" || grid.motor_percent.empty()) return {};
+    if (grid.motor_indicator == MotorIndicator::power && usual_effort(tracks["current_a"].value) < min_lifting_a)
+        return {};
+    const auto effort = running_median<5>(grid.motor_percent);
+    const double lifting = lifting_fraction * usual_effort(effort);
     if (!(lifting > 0.0)) return {};
+    const auto is_pause = [&](IndexSpan between) {
+        const double from_s = grid.time_s(between.begin);
+        const double to_s = grid.time_s(between.end);
+        if (!armed.empty() || !landed.empty())
+            return !takes(landed, 1.0, from_s, to_s) && !takes(armed, 0.0, from_s, to_s);
+        const auto idles = [&](std::size_t i) { return effort[i] < idle_fraction * lifting; };
+        return std::ranges::none_of(runs_of(between, idles),
+                                    [&](const IndexSpan& run) { return run.size() > steps(level_s); });
+    };
     std::vector<IndexSpan> hovers;
-    for (const auto& run : runs_of({0, grid.size()}, [&](std::size_t i) { return grid.motor_percent[i] >= lifting; })) {
-        const double from_s = hovers.empty() ? 0.0 : grid.time_s(hovers.back().end - 1);
-        const bool is_same = !hovers.empty() && !takes(landed, 1.0, from_s, grid.time_s(run.begin)) &&
-                             !takes(armed, 0.0, from_s, grid.time_s(run.begin));
-        if (is_same)
+    for (const auto& run : runs_of({0, grid.size()}, [&](std::size_t i) { return effort[i] >= lifting; })) {
+        if (!hovers.empty() && is_pause({hovers.back().end - 1, run.begin}))
             hovers.back().end = run.end;
         else
             hovers.push_back(run);
     }
-    std::erase_if(hovers, [&](const IndexSpan& hover) { return hover.size() <= grid.steps(min_hover_s); });
+    std::erase_if(hovers, [&](const IndexSpan& hover) { return hover.size() <= steps(min_hover_s); });
     return hovers;
 }
 
 std::vector<IndexSpan> rests_between(const std::vector<IndexSpan>& hovers, const ResampledFlight& grid) {
-    std::vector<IndexSpan> rests;
-    std::size_t begin = 0;
-    const auto add = [&](std::size_t end) {
-        // A rest does not extend across a jump of the altitude.
-        for (const auto& piece : grid.pieces) {
-            const IndexSpan rest{std::max(begin, piece.begin), std::min(end, piece.end)};
-            if (rest.begin < rest.end) rests.push_back(rest);
-        }
-    };
-    for (const auto& hover : hovers) {
-        add(hover.begin);
-        begin = hover.end;
+    std::vector<bool> rests(grid.size(), true);
+    for (const auto& hover : hovers) set_part(rests, hover, false);
+    // A rest does not extend across a jump of the altitude.
+    return runs_of(
+        {0, grid.size()}, [&](std::size_t i) { return rests[i]; },
+        [&](std::size_t i) { return !std::ranges::binary_search(grid.pieces, i, {}, &IndexSpan::begin); });
+}
+
+SortieEdges find_hover_edges(const ResampledFlight& grid, const Activity& activity, const Heights& heights) {
+    const auto& [moving, span, ground_before_m, ground_after_m] = activity;
+    auto height_m = heights.height_m;
+    const double airborne_m = airborne_fraction * heights.cruise_height_m;
+    const auto time_s = [&](std::size_t i) { return grid.time_s(activity.span.begin + i); };
+    auto first = moving.begin - span.begin;
+    const auto last = moving.end - 1 - span.begin;
+    const double ground_m = std::max(clear_m, std::min(drift_m, drift_fraction * heights.max_m));
+    const auto is_on_ground = [&](std::size_t i) { return std::abs(height_m[i]) <= ground_m; };
+    SortieEdges edges;
+    if (ground_before_m || (ground_after_m && is_on_ground(first))) {
+        const double clear_altitude_m = heights.ground_m + std::min(clear_m, airborne_m);
+        first = lift_off_of(part_of(grid.altitude_m, {span.begin, moving.end}), clear_altitude_m, first);
+        edges.lift_off_s = time_s(first);
     }
-    add(grid.size());
-    return rests;
+    if (ground_after_m || (ground_before_m && is_on_ground(last))) edges.touchdown_s = time_s(last);
+    const auto takeoff_end = edges.lift_off_s ? end_of_climb(height_m, {first, last + 1}, airborne_m) : first;
+    std::ranges::reverse(height_m);  // a descent is a climb from touchdown
+    const auto end = height_m.size() - 1;
+    const auto landing_start =
+        std::max(end - end_of_climb(height_m, {end - last, end - first + 1}, airborne_m), takeoff_end);
+    if (takeoff_end > first) edges.takeoff_end_s = time_s(takeoff_end);
+    // A log that ends in the air ends in the landing if most of the height is lost, above a ground that is known.
+    const bool is_low = edges.lift_off_s && heights.height_m[last] < 0.5 * heights.height_m[landing_start];
+    if ((edges.touchdown_s || is_low) && landing_start < last) edges.landing_start_s = time_s(landing_start);
+    return edges;
 }
 
 double confirmed_by_detector(const Track& detector, double edge_s, bool landed) {

@@ -30,8 +30,10 @@ struct PowerLevels {
     double percent(double power_w) const { return units::percentage(power_w - idle_w, running_w - idle_w); }
 };
 
-/// Idle and running power of the record; std::nullopt if they do not differ enough.
-std::optional<PowerLevels> power_levels(const Track& power, const Track& altitude_m) {
+/// Idle and running power of the record; std::nullopt if they do not differ enough. Where a rotorcraft hovers all the
+/// time, or at the altitude at which it rests, its current tells.
+std::optional<PowerLevels> power_levels(const SelectedTracks& tracks, const Track& altitude_m) {
+    const auto& power = tracks["power_w"];
     constexpr std::size_t enough = 20;
     if (power.time_s.size() < enough) return std::nullopt;
     const double low_m = quantile_of(altitude_m.value, 0.02);
@@ -41,8 +43,11 @@ std::optional<PowerLevels> power_levels(const Track& power, const Track& altitud
     for (std::size_t i = 0; i < at_m.size(); ++i) {
         if (at_m[i] <= ground_m) on_ground_w.push_back(power.value[i]);
     }
+    const double running_w = quantile_of(power.value, 0.98);
+    if (tracks.series().firmware == "rotorcraft" && usual_effort(tracks["current_a"].value) >= min_lifting_a)
+        return PowerLevels{0.0, running_w};
     if (on_ground_w.size() < enough / 2) return std::nullopt;
-    const PowerLevels levels{quantile_of(std::move(on_ground_w), 0.25), quantile_of(power.value, 0.98)};
+    const PowerLevels levels{quantile_of(std::move(on_ground_w), 0.25), running_w};
     const bool differ = levels.running_w >= min_running_to_idle_ratio * levels.idle_w &&
                         levels.running_w >= levels.idle_w + min_running_above_idle_w;
     return differ ? std::optional(levels) : std::nullopt;
@@ -151,11 +156,19 @@ std::string follow_motor(const SelectedTracks& tracks, Track& throttle, const st
 
 }  // namespace
 
+double usual_effort(std::vector<double> values) {
+    if (values.empty()) return 0.0;
+    std::ranges::sort(values);
+    const double half = 0.5 * quantile(values, 0.9);
+    const auto high = std::ranges::upper_bound(values, half);
+    return high == values.end() ? half : *(high + (values.end() - high) / 2);
+}
+
 MotorRecord motor_record(const SelectedTracks& tracks, const Track& altitude_m) {
     MotorRecord record;
     const auto& power = tracks["power_w"];
     auto throttle = throttle_of(tracks, power);
-    const auto levels = altitude_m.empty() ? std::nullopt : power_levels(power, altitude_m);
+    const auto levels = altitude_m.empty() ? std::nullopt : power_levels(tracks, altitude_m);
     const bool is_unused = is_constant(throttle);  // as of an autopilot without a throttle
     if (!throttle.empty() && !(is_unused && levels)) {
         record.indicator = MotorIndicator::throttle;

@@ -19,6 +19,9 @@ inline constexpr double min_running_above_idle_w = 2.0;
 inline constexpr double idle_power_percent = 10.0;
 inline constexpr double flight_power_percent = 25.0;
 
+/// Minimum of the usual current of a rotorcraft that hovers; electronics and idling motors draw less.
+inline constexpr double min_lifting_a = 5.0;
+
 /// Minimum of the full speed of a motor that can fly an aircraft.
 inline constexpr double min_running_rpm = 500.0;
 
@@ -30,6 +33,9 @@ struct MotorRecord {
     std::string evidence;  ///< "ENERGY.throttle", "power: idle 0.2 W, running 92 W", "ESC.rpm: full 9000 rpm"
     std::vector<std::string> warnings;  ///< removed and substituted data
 };
+
+/// Usual effort of motors that carry a rotorcraft, in any unit: the median above half of the 90th percentile.
+double usual_effort(std::vector<double> values);
 
 /// Derives the motor effort from throttle, power and motor speed; `altitude_m` (cleaned) identifies power on the
 /// ground.

@@ -1,19 +1,18 @@
 #include "flight/segmentation/phase_edges.h"
 
 #include "base/statistics.h"
-#include "flight/segmentation/hover_record.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <utility>
 
 namespace flightwatt::flight {
 namespace {
 
-/// Ground level next to an activity: the last (or first) twenty seconds of the rest there.
+/// Ground level next to an activity: the last (or first) twenty seconds of the rest there; of a rotorcraft, which may
+/// fly low while the altitude drifts, five.
 double adjacent_ground_m(const ResampledFlight& grid, IndexSpan rest, bool before) {
-    const auto length = std::min(grid.steps(20.0) + 1, rest.end - rest.begin);
+    const auto length = std::min(grid.steps(grid.hovers.empty() ? 20.0 : 5.0) + 1, rest.end - rest.begin);
     return median_altitude_m(
         grid, before ? IndexSpan{rest.end - length, rest.end} : IndexSpan{rest.begin, rest.begin + length});
 }
@@ -25,9 +24,6 @@ double median_of_upper_half(const std::vector<double>& heights, double highest) 
                  [&](double h) { return h > 0.5 * highest; });
     return upper.empty() ? highest : median_high(std::move(upper));
 }
-
-constexpr double hover_noise_m = 0.5;
-constexpr double airborne_fraction = 0.25;  // of the flight's height: above it is in the air
 
 /// One sortie on the grid.
 struct Flown {
@@ -41,11 +37,7 @@ struct Flown {
     double height(std::size_t i) const { return heights.height_m[i]; }
     double time_s(std::size_t i) const { return grid.time_s(activity.span.begin + i); }
     double airborne_m() const { return airborne_fraction * heights.cruise_height_m; }
-    /// A barometer's noise hides the lower heights of a hover.
-    double ground_m() const {
-        const double usual_m = options.ground_fraction * heights.cruise_height_m;
-        return grid.hovers.empty() ? usual_m : std::max(usual_m, std::min(hover_noise_m, airborne_m()));
-    }
+    double ground_m() const { return options.ground_fraction * heights.cruise_height_m; }
 };
 
 /// Time between two consecutive points at which the height crosses `level`.
@@ -89,29 +81,6 @@ void find_ground_edges(Flown& flown, SortieEdges& edges) {
     if (height[flown.touchdown] <= ground) edges.touchdown_s = crossing_s(flown, flown.touchdown - 1, ground);
 }
 
-/// The edges of a hover: lift-off where the altitude confirms that the motors lift, as a rotorcraft may idle at much
-/// throttle, and touchdown where they cease to.
-void find_hover_edges(Flown& flown, SortieEdges& edges) {
-    constexpr double max_wait_s = 6.0;   // from lifting effort to lift-off
-    constexpr double max_early_s = 2.0;  // a ramp of the throttle
-    const auto& moving = flown.activity.moving;
-    const double lifts_s = flown.grid.time_s(moving.begin);
-    const double ceases_s = flown.grid.time_s(moving.end - 1);
-    const auto climbs_s = std::exchange(edges.lift_off_s, std::nullopt);
-    edges.touchdown_s.reset();
-    if (moving.begin > 0) {
-        const bool confirms = climbs_s && *climbs_s >= lifts_s - max_early_s && *climbs_s <= lifts_s + max_wait_s;
-        edges.lift_off_s = confirms ? *climbs_s : lifts_s;
-    }
-    if (moving.end < flown.grid.size()) edges.touchdown_s = ceases_s;
-    const auto index_at = [&](double time_s) {
-        const auto steps = std::max(time_s - flown.time_s(0), 0.0) / flown.grid.step_s;
-        return std::min(static_cast<std::size_t>(steps), flown.heights.height_m.size() - 1);
-    };
-    flown.lift_off = index_at(edges.lift_off_s.value_or(lifts_s));
-    flown.touchdown = std::max(index_at(edges.touchdown_s.value_or(ceases_s)), flown.lift_off);
-}
-
 /// The height held after the take-off: the highest of the first hold time, seen from lift-off on, in which what was
 /// reached so far does not grow by more than the hold fraction.
 double height_after_takeoff(const Flown& flown) {
@@ -128,6 +97,16 @@ double height_after_takeoff(const Flown& flown) {
         if (holds && highest[i] > 0.5 * flown.heights.cruise_height_m) return later;
     }
     return highest[count - 1];
+}
+
+/// The point up to which a climb from the ground, or in reverse a descent to it, goes on beyond the end found.
+std::size_t end_of_motion(const Flown& flown, std::size_t ground, std::size_t end) {
+    const auto next = [is_climb = ground < end](std::size_t i) { return is_climb ? i + 1 : i - 1; };
+    const auto steps = static_cast<double>(std::max(ground, end) - std::min(ground, end));
+    const double least_m = least_of_climb * (flown.height(end) - flown.height(ground)) / steps;
+    const auto count = flown.heights.height_m.size();
+    while (end > 0 && end + 1 < count && flown.height(next(end)) - flown.height(end) >= least_m) end = next(end);
+    return end;
 }
 
 /// A held height on the grid, after which the aircraft does not return to a greater one.
@@ -245,9 +224,6 @@ SortieEdges find_edges(const ResampledFlight& grid, const Activity& activity, co
     SortieEdges edges;
     Flown flown{grid, activity, heights, options};
     find_ground_edges(flown, edges);
-    if (!grid.hovers.empty()) find_hover_edges(flown, edges);
-    if (edges.lift_off_s) edges.lift_off_s = confirmed_by_detector(grid.detector, *edges.lift_off_s, false);
-    if (edges.touchdown_s) edges.touchdown_s = confirmed_by_detector(grid.detector, *edges.touchdown_s, true);
     const auto lift_off = flown.lift_off;
     const auto touchdown = flown.touchdown;
     const double reached = options.cruise_fraction * height_after_takeoff(flown);
@@ -269,6 +245,9 @@ SortieEdges find_edges(const ResampledFlight& grid, const Activity& activity, co
         const bool below = flown.height(landing_start + 1) < left && flown.height(landing_start) >= left;
         edges.landing_start_s = below ? crossing_s(flown, landing_start, left) : flown.time_s(landing_start);
     }
+    if (grid.detector.empty()) return edges;
+    if (edges.takeoff_end_s) edges.takeoff_end_s = flown.time_s(end_of_motion(flown, lift_off, takeoff_end));
+    if (edges.landing_start_s) edges.landing_start_s = flown.time_s(end_of_motion(flown, touchdown, landing_start));
     return edges;
 }
 

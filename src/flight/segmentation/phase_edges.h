@@ -42,6 +42,10 @@ struct Heights {
 
 Heights compute_heights(const ResampledFlight& grid, const Activity& activity, const GroundLevels& grounds);
 
+/// Above this fraction of the flight's height an aircraft is in the air.
+inline constexpr double airborne_fraction = 0.25;
+/// A climb goes on at this fraction of its mean rate, or more.
+inline constexpr double least_of_climb = 0.25;
 /// A height held for this time before the landing is one of work, however low [s].
 inline constexpr double min_work_hold_s = 90.0;
 /// So is a height in the upper half of the flight that is held for this fraction of the longest earlier hold.

@@ -57,6 +57,14 @@ TEST(PackChanges, AreToldByVoltageWithAndWithoutACounter) {
     }
 }
 
+TEST(PackChanges, AreNoneInAGlide) {
+    auto columns = two_flights({});
+    for (const double time_s : columns.time_s) columns.altitude_m.push_back(5000.0 - time_s);
+    const auto [records, notes] = discharge_records(test::series_of(columns, "two"));
+    EXPECT_EQ(records.size(), 1U);
+    EXPECT_THAT(notes, testing::Each(testing::Not(HasSubstr("the pack was changed"))));
+}
+
 TEST(PackChanges, AreNoneWhereTheSamePackFliesAgain) {
     for (const bool anew : {true, false}) {
         const auto [records, notes] = records_of({false, anew, true});

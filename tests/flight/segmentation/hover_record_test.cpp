@@ -2,6 +2,7 @@
 
 #include "flight/segmentation.h"
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -37,9 +38,9 @@ Track state(const char* name, std::vector<double> time_s, std::vector<double> va
     return {.name = name, .source = "EV.Id", .time_s = std::move(time_s), .value = std::move(value)};
 }
 
-TEST(HoverRecord, IsThatOfARotorcraftWhoseStateIsKnown) {
+TEST(HoverRecord, IsThatOfARotorcraftHoweverLow) {
     auto series = hopping_copter();
-    EXPECT_THAT(segment(series).sorties, IsEmpty()) << "too low for a flight";
+    EXPECT_EQ(segment(series).sorties.size(), 2U) << "idle motors separate them";
     series.tracks.push_back(state("armed", {5.0}, {1.0}));
     const auto sorties = segment(series).sorties;
     ASSERT_EQ(sorties.size(), 1U) << "armed throughout, as if it descended";
@@ -47,6 +48,95 @@ TEST(HoverRecord, IsThatOfARotorcraftWhoseStateIsKnown) {
     EXPECT_NEAR(sorties[0].end_s(), 99.5, 0.6);
     series.firmware = "fixedwing";
     EXPECT_THAT(segment(series).sorties, IsEmpty());
+}
+
+/// Without a throttle, the current tells hovering from idling.
+TEST(HoverRecord, IsToldByACurrentThatLifts) {
+    const auto events = [](double current_a, double altitude_m) {
+        FlightSeries series;
+        series.firmware = "rotorcraft";
+        Track altitude{.name = "altitude_m", .source = "ALT"};
+        for (int i = 0; i < 600; ++i) {
+            altitude.time_s.push_back(0.2 * i);
+            altitude.value.push_back(250.0 + altitude_m * std::sin(i / 50.0));
+        }
+        auto current = altitude;
+        current.name = "current_a";
+        current.value.assign(600, current_a);
+        auto power = current;
+        power.name = "power_w";
+        for (auto& value : power.value) value *= 24.0;
+        series.tracks = {altitude, power, current};
+        return segment(series);
+    };
+    const auto hover = events(19.0, 3.0);
+    ASSERT_EQ(hover.sorties.size(), 1U);
+    ASSERT_EQ(hover.sorties[0].phases.size(), 1U) << "it begins and ends in the air";
+    EXPECT_EQ(hover.sorties[0].phases[0].phase, Phase::cruise);
+    EXPECT_FALSE(hover.sorties[0].phases[0].complete);
+    EXPECT_THAT(events(1.5, 3.0).sorties, IsEmpty()) << "armed idling";
+    ASSERT_EQ(events(19.0, 0.0).ground_events.size(), 1U);
+    EXPECT_THAT(events(19.0, 0.0).ground_events[0].what, testing::HasSubstr("altitude within 0.0 m"));
+}
+
+TEST(HoverRecord, IsNoneWhileTheAutopilotStatesTheGround) {
+    auto series = hopping_copter();
+    series.tracks.push_back(state("landed", {0.0}, {1.0}));
+    const auto phases = segment(series);
+    EXPECT_THAT(phases.sorties, IsEmpty());
+    EXPECT_THAT(phases.ground_events.at(0).what, testing::HasSubstr("states that it is on the ground"));
+}
+
+/// Heights at times, straight lines between, four samples a second; the throttle is that of a hover from lift-off to
+/// touchdown.
+FlightPhases flown(const Track& heights, double lift_off_s, double touchdown_s) {
+    FlightSeries series;
+    series.firmware = "rotorcraft";
+    Track throttle{.name = "throttle_percent", .source = "CTUN.ThO"};
+    Track altitude{.name = "altitude_m", .source = "BARO.Alt"};
+    for (double time_s = heights.time_s.front(); time_s <= heights.time_s.back(); time_s += 0.25) {
+        for (auto* track : {&throttle, &altitude}) track->time_s.push_back(time_s);
+        altitude.value.push_back(value_at(heights, time_s));
+        throttle.value.push_back(time_s >= lift_off_s && time_s <= touchdown_s ? 50.0 + std::fmod(time_s, 1.0) : 20.0);
+    }
+    series.tracks = {altitude, throttle, state("armed", {0.0}, {1.0})};
+    return segment(series);
+}
+
+void expect_edges(const FlightPhases& phases, const std::vector<double>& expected_s) {
+    ASSERT_EQ(phases.sorties.size(), 1U);
+    std::vector<double> edges_s{phases.sorties[0].start_s()};
+    for (const auto& span : phases.sorties[0].phases) edges_s.push_back(span.end.time_s);
+    ASSERT_EQ(edges_s.size(), expected_s.size());
+    for (std::size_t i = 0; i < edges_s.size(); ++i) EXPECT_NEAR(edges_s[i], expected_s[i], 1.1) << i;
+}
+
+TEST(HoverEdges, OfTakeoffAndLandingAreThoseOfFirstClimbAndLastDescent) {
+    const Track steps{.time_s = {0, 20, 24, 60, 66, 90, 96, 120, 128, 140}, .value = {0, 0, 8, 8, 20, 20, 8, 8, 0, 0}};
+    expect_edges(flown(steps, 20, 128), {20, 24, 120, 128});
+    // A slow drift before the descent, and a short pause in it.
+    const Track drifting{.time_s = {0, 20, 30, 70, 80, 86, 88, 96, 120}, .value = {0, 0, 30, 30, 27.5, 15, 15, 0, 0}};
+    expect_edges(flown(drifting, 20, 96), {20, 30, 80, 96});
+    const Track up_and_down{.time_s = {0, 20, 30, 40, 60}, .value = {0, 0, 20, 0, 0}};
+    expect_edges(flown(up_and_down, 20, 40), {20, 30, 40});
+}
+
+TEST(HoverEdges, AreAbsentWhereTheLogBeginsOrEndsInTheAir) {
+    const Track whole{.time_s = {20, 30, 60, 75}, .value = {0, 20, 20, 0}};
+    const auto groundless = flown(whole, 20, 80);
+    expect_edges(groundless, {20, 75});
+    EXPECT_FALSE(groundless.sorties[0].phases[0].complete) << "no ground is seen";
+    const Track late{.time_s = {0, 20, 30, 60, 70}, .value = {0, 0, 20, 20, 5}};
+    const auto descends = flown(late, 20, 80);
+    expect_edges(descends, {20, 30, 60, 70});
+    EXPECT_FALSE(descends.sorties[0].phases[2].complete) << "most of the height is lost";
+    const Track high{.time_s = {0, 20, 30, 60, 70}, .value = {0, 0, 20, 20, 12}};
+    expect_edges(flown(high, 20, 80), {20, 30, 70});
+    const Track touches{.time_s = {0, 10, 20, 40}, .value = {20, 20, 0, 0}};
+    expect_edges(flown(touches, 0, 20), {0, 10, 20});
+    // Armed on the ground when the log begins.
+    const Track begins{.time_s = {0, 2, 12, 40, 55, 80}, .value = {0, 0, 20, 20, 0, 0}};
+    expect_edges(flown(begins, 0, 55), {2, 12, 40, 55});
 }
 
 TEST(HoverRecord, IsSeparatedByALanding) {
