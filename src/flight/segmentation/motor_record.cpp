@@ -31,7 +31,7 @@ struct PowerLevels {
 };
 
 /// Idle and running power of the record; std::nullopt if they do not differ enough. Where a rotorcraft hovers all the
-/// time, or at the altitude at which it rests, its current tells.
+/// time, or at the altitude at which it rests, its current shows it.
 std::optional<PowerLevels> power_levels(const SelectedTracks& tracks, const Track& altitude_m) {
     const auto& power = tracks["power_w"];
     constexpr std::size_t enough = 20;

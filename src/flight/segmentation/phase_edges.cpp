@@ -99,7 +99,7 @@ double height_after_takeoff(const Flown& flown) {
     return highest[count - 1];
 }
 
-/// The point up to which a climb from the ground, or in reverse a descent to it, goes on beyond the end found.
+/// The point up to which a climb from the ground, or in reverse a descent to it, continues beyond the end found.
 std::size_t end_of_motion(const Flown& flown, std::size_t ground, std::size_t end) {
     const auto next = [is_climb = ground < end](std::size_t i) { return is_climb ? i + 1 : i - 1; };
     const auto steps = static_cast<double>(std::max(ground, end) - std::min(ground, end));

@@ -44,7 +44,7 @@ Heights compute_heights(const ResampledFlight& grid, const Activity& activity, c
 
 /// Above this fraction of the flight's height an aircraft is in the air.
 inline constexpr double airborne_fraction = 0.25;
-/// A climb goes on at this fraction of its mean rate, or more.
+/// A climb continues at this fraction of its mean rate, or more.
 inline constexpr double least_of_climb = 0.25;
 /// A height held for this time before the landing is one of work, however low [s].
 inline constexpr double min_work_hold_s = 90.0;
