@@ -30,8 +30,7 @@ struct PowerLevels {
     double percent(double power_w) const { return units::percentage(power_w - idle_w, running_w - idle_w); }
 };
 
-/// Idle and running power of the record; std::nullopt if they do not differ enough. Where a rotorcraft hovers all the
-/// time, or at the altitude at which it rests, its current shows it.
+/// Idle and running power, of a rotorcraft by its current; std::nullopt if they do not differ enough.
 std::optional<PowerLevels> power_levels(const SelectedTracks& tracks, const Track& altitude_m) {
     const auto& power = tracks["power_w"];
     constexpr std::size_t enough = 20;
