@@ -13,15 +13,17 @@ std::size_t first_at_or_after(const std::vector<double>& time_s, double t) {
     return static_cast<std::size_t>(std::lower_bound(time_s.begin(), time_s.end(), t) - time_s.begin());
 }
 
-/// The samples before gaps in which bytes of the log are damaged.
-std::vector<std::size_t> samples_before_damage(const FlightSeries& series, const std::vector<double>& time_s,
-                                               double gap_s) {
+/// The samples before intervals in which bytes of the log are damaged and a sample is lost.
+std::vector<std::size_t> samples_before_damage(const FlightSeries& series, const std::vector<double>& time_s) {
+    constexpr double lost_intervals = 1.5;
+    const double lost_s = lost_intervals * median_interval_s(time_s);
     std::vector<std::size_t> before;
     for (const auto& skipped : series.skipped) {
         if (skipped.unit != telemetry::SkippedLines::Unit::byte) continue;
         for (const auto& at : skipped.lines) {
             const auto next = first_at_or_after(time_s, at.time_s);
-            if (next > 0 && next < time_s.size() && time_s[next] - time_s[next - 1] > gap_s) before.push_back(next - 1);
+            if (next > 0 && next < time_s.size() && time_s[next] - time_s[next - 1] > lost_s)
+                before.push_back(next - 1);
         }
     }
     std::ranges::sort(before);
@@ -44,7 +46,7 @@ PowerStatistics::PowerStatistics(const FlightSeries& series)
     : power_(power_track(series)),
       counter_wh_(sample_selected_track(series, "energy_wh", power_.time_s)),
       gap_s_(gap_threshold_s(power_.time_s)),
-      lost_(samples_before_damage(series, power_.time_s, gap_s_)) {}
+      lost_(samples_before_damage(series, power_.time_s)) {}
 
 PhaseStatistics PowerStatistics::between(double start_s, double end_s) const {
     PhaseStatistics statistics;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "telemetry/autopilot_data.h"
+#include "telemetry/autopilot_log.h"
 
 #include <cstdint>
 #include <cstring>

@@ -154,7 +154,7 @@ class DataflashReader {
     }
 
     void finish() {
-        for (auto& table : rows_.tables()) apply_units(table);
+        for (auto& table : rows_.end()) apply_units(table);
         for (const auto& format : formats_) rows_.list(format);
     }
 

@@ -118,13 +118,18 @@ void RowCollector::list(const LoggedMessage& message) {
     for (const auto& field : message.fields) listed.fields.push_back(field.name);
 }
 
-AutopilotLog RowCollector::take(bool as_lines) {
+std::vector<MessageTable>& RowCollector::end() {
     if (pending_ && std::isnan(last_s_))
-        append(*pending_);  // the only row
+        append(*pending_);
     else
         drop(pending_);
+    pending_.reset();
+    return sender_.tables;
+}
+
+AutopilotLog RowCollector::take(bool as_lines) {
+    auto& tables = end();
     count_gap(after_last_s);
-    auto& tables = sender_.tables;
     for (std::size_t t = 0; t < tables.size(); ++t) {
         std::size_t column = 0;
         std::erase_if(tables[t].columns, [&](const Column&) { return !is_bound_[t][column++]; });

@@ -57,7 +57,8 @@ class RowCollector {
     void skip(std::size_t offset, std::size_t count);
     /// The time of the last row; NaN before the first.
     double last_s() const { return last_s_; }
-    std::vector<MessageTable>& tables() { return sender_.tables; }
+    /// The tables after the last row; one whose time nothing confirms is left out, unless it is the only one.
+    std::vector<MessageTable>& end();
     /// Lists a message, if the log has any.
     void list(const LoggedMessage& message);
     LogFacts& facts() { return result_.facts; }
