@@ -156,7 +156,8 @@ FlightSeries family_series(telemetry::AutopilotLog read, const LogFamily& family
     series.start_clock_s = start_clock_s(series.tracks);
     std::erase_if(series.tracks, [](const Track& track) { return track.name == utc_track; });
     sort_tracks(series.tracks);
-    if (!assumed.empty()) series.notes.push_back(fmt::format("the log states no units: {}", fmt::join(assumed, ", ")));
+    if (family.unstated_units == LogFamily::Unstated::noted && !assumed.empty())
+        series.notes.push_back(fmt::format("the log states no units: {}", fmt::join(assumed, ", ")));
     if (read.facts.dropouts > 0)
         series.notes.push_back(fmt::format("the logger lost data {} times, for {:.1f} s in all", read.facts.dropouts,
                                            read.facts.dropout_s));

@@ -83,6 +83,7 @@ TEST(LogFamily, WithoutACurrentSensorHasNoPower) {
 
 TEST(Batteries, InParallelAreSummed) {
     const auto series = series_of(test::ulog_log(50), "x.ulg");
+    EXPECT_TRUE(series.notes.empty()) << "the names of ULog's fields state their units";
     const auto power = power_track(series);
     ASSERT_EQ(power.time_s.size(), 50U);
     EXPECT_NEAR(power.value[0], 22.0 * 15.0, 1e-6);
