@@ -5,6 +5,7 @@
 #include "base/statistics.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -148,8 +149,7 @@ std::vector<double> aligned_one_by_one(std::span<const DischargeRecord> records,
     JointCircuitFit growing;
     growing.fit.weights = weights;
     std::vector<double> initial_ah(records.size(), 0.0);
-    std::size_t next_fit = 1;
-    std::size_t next_search = 1;
+    std::size_t next_fit = 0;
     for (const auto at : fullest_first(records)) {
         auto& aligned = growing.records.emplace_back(AlignedRecord{&records[at], 0.0, 0.0, 0.0, 0.0});
         aligned.resistance_ohm = growing.fit.resistance_ohm;
@@ -157,15 +157,14 @@ std::vector<double> aligned_one_by_one(std::span<const DischargeRecord> records,
         initial_ah[at] = aligned.initial_charge_ah;
         place_knots(growing, max_segments);
         const auto count = growing.records.size();
-        if (count < next_fit) continue;
-        next_fit = count + std::max<std::size_t>(1, count / growth_between_fits);
         // The time constant is searched for again at every doubling; in between it is known well enough.
-        if (count >= next_search) {
-            next_search = 2 * count;
+        if (std::has_single_bit(count))
             search_time_constant(growing);
-        } else {
+        else if (count >= next_fit)
             least_squares(growing, linear_only);
-        }
+        else
+            continue;
+        next_fit = count + (count + growth_between_fits - 1) / growth_between_fits;
     }
     return initial_ah;
 }

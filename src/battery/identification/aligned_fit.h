@@ -2,8 +2,7 @@
 
 #include "battery/identification/circuit_problem.h"
 
-#include <functional>
-#include <optional>
+#include <cstddef>
 #include <span>
 #include <vector>
 

@@ -10,32 +10,15 @@ namespace {
 
 constexpr double unknown_log = 10.0;  // a factor of e^10: not determined
 
-/// The changes of the parameters with twice the segments: the curve's model error.
-struct FinerCurveChanges {
-    Eigen::VectorXd common;
-    Eigen::VectorXd initial_charge_ah;
-};
-
-FinerCurveChanges changes_by_finer_curve(const JointCircuitFit& joint) {
-    auto finer = joint;
-    const auto knots = std::ssize(joint.fit.knots_ah);
-    place_knots(finer, 2 * static_cast<int>(knots - 1));
-    least_squares(finer, {});
-    const auto& [before, after] = std::tie(joint.fit, finer.fit);
-    FinerCurveChanges changes{Eigen::VectorXd::Zero(knots + common_columns),
-                              Eigen::VectorXd(std::ssize(joint.records))};
-    for (Eigen::Index k = 0; k < knots; ++k) {
-        const auto knot = static_cast<std::size_t>(k);
-        changes.common[k] = after.open_circuit_v[2 * knot] - before.open_circuit_v[knot];
-    }
-    changes.common[knots + resistance_column] = after.resistance_ohm - before.resistance_ohm;
-    changes.common[knots + rc_column] = after.rc_resistance_ohm - before.rc_resistance_ohm;
-    changes.common[knots + time_constant_column] =
-        after.rc_time_constant_s > 0.0 ? std::log(after.rc_time_constant_s / before.rc_time_constant_s) : unknown_log;
-    for (std::size_t r = 0; r < joint.records.size(); ++r)
-        changes.initial_charge_ah[static_cast<Eigen::Index>(r)] =
-            finer.records[r].initial_charge_ah - joint.records[r].initial_charge_ah;
-    return changes;
+/// The common parameters of a fit, with the curve at every n-th of its knots.
+Eigen::VectorXd common_values(const CircuitFit& fit, Eigen::Index n) {
+    const auto knots = (std::ssize(fit.knots_ah) - 1) / n + 1;
+    Eigen::VectorXd values = Eigen::VectorXd::Zero(knots + common_columns);
+    for (Eigen::Index k = 0; k < knots; ++k) values[k] = fit.open_circuit_v[static_cast<std::size_t>(n * k)];
+    values[knots + resistance_column] = fit.resistance_ohm;
+    values[knots + rc_column] = fit.rc_resistance_ohm;
+    values[knots + time_constant_column] = std::log(fit.rc_time_constant_s);
+    return values;
 }
 
 }  // namespace
@@ -45,8 +28,12 @@ CircuitErrors circuit_errors(const JointCircuitFit& joint) {
     const auto found = parameter_errors(normal_equations(joint, {}), fit.weights.sample_error_v);
     const auto knots = std::ssize(fit.knots_ah);
     const double t = student_t_half_width(found.degrees_of_freedom);
-    const auto finer = changes_by_finer_curve(joint);
-    const Eigen::VectorXd half_width = t * found.common + finer.common.cwiseAbs();
+    // How far twice the segments move the parameters is the curve's model error.
+    auto finer = joint;
+    place_knots(finer, 2 * static_cast<int>(knots - 1));
+    least_squares(finer, {});
+    const Eigen::VectorXd half_width =
+        t * found.common + (common_values(finer.fit, 2) - common_values(fit, 1)).cwiseAbs();
     const auto around = [](double value, double half) { return Interval{std::max(0.0, value - half), value + half}; };
     CircuitErrors errors;
     errors.resistance_ohm = around(fit.resistance_ohm, half_width[knots + resistance_column]);
@@ -64,9 +51,11 @@ CircuitErrors circuit_errors(const JointCircuitFit& joint) {
     // Correlations are the jackknife's.
     const Eigen::MatrixXd unit = found.common_changes.topRows(knots).rowwise().normalized();
     errors.open_circuit_covariance_v2 = of_knots.asDiagonal() * (unit * unit.transpose()) * of_knots.asDiagonal();
-    const Eigen::VectorXd charge_error_ah =
-        (t * found.own.row(charge_column).transpose() + finer.initial_charge_ah.cwiseAbs()) / normal_half_width();
-    errors.initial_charge_error_ah.assign(charge_error_ah.begin(), charge_error_ah.end());
+    for (std::size_t r = 0; r < records.size(); ++r) {
+        const double moved_ah = std::abs(finer.records[r].initial_charge_ah - records[r].initial_charge_ah);
+        const double half_ah = t * found.own(charge_column, static_cast<Eigen::Index>(r)) + moved_ah;
+        errors.initial_charge_error_ah.push_back(half_ah / normal_half_width());
+    }
     return errors;
 }
 

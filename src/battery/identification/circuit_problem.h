@@ -4,8 +4,6 @@
 #include "battery/identified_battery.h"
 
 #include <cstddef>
-#include <optional>
-#include <span>
 #include <vector>
 
 #include <Eigen/Core>
