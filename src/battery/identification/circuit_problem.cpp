@@ -12,6 +12,7 @@ namespace {
 
 constexpr int max_steps = 30;
 constexpr int max_halvings = 3;
+constexpr double negligible_gain = 0.01;  // in squares of a sample's error: a tenth of a standard error, or less
 
 /// The inverse of a symmetric matrix; zeros for parameters that are fixed.
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& normal) {
@@ -121,8 +122,8 @@ NormalEquations least_squares(JointCircuitFit& joint, const FreeParameters& free
         constexpr double little = 1e-9;
         if (-step.objective_change < little * problem.objective) break;
         step = limited(std::move(step), joint);
-        bool helps = false;
-        for (int halved = 0; halved < max_halvings && !helps; ++halved) {
+        double gain_v2 = 0.0;
+        for (int halved = 0; halved < max_halvings && !(gain_v2 > 0.0); ++halved) {
             auto tried = moved(joint, step, free);
             step.common /= 2.0;
             step.own /= 2.0;
@@ -131,12 +132,12 @@ NormalEquations least_squares(JointCircuitFit& joint, const FreeParameters& free
                 tried = moved(tried, step_of(normal_equations(tried, linear)), linear);
             }
             auto there = normal_equations(tried, free);
-            helps = there.objective < problem.objective;
-            if (!helps) continue;
+            gain_v2 = problem.objective - there.objective;
+            if (!(gain_v2 > 0.0)) continue;
             joint = std::move(tried);
             problem = std::move(there);
         }
-        if (!helps) break;
+        if (!(gain_v2 > negligible_gain * joint.fit.weights.sample_error_v * joint.fit.weights.sample_error_v)) break;
     }
     return problem;
 }
