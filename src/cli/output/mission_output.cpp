@@ -205,7 +205,13 @@ void print_packs(const StageCall& call, const mission::PackFlights& all, const s
     if (call.json) print_json(call, all);
     if (!all.suffice) throw NoResultError(describe(all));
     if (call.json) return;
-    for (const auto& flight : all.flights) note(call, describe(flight.flown.simulation.summary));
+    for (const auto& flight : all.flights) {
+        auto text = describe(flight.flown.simulation.summary);
+        if (flight.return_east_m)
+            text += fmt::format("; returns from {} ({:.0f} m east, {:.0f} m north of the start)", flight.return_from,
+                                *flight.return_east_m, *flight.return_north_m);
+        note(call, text);
+    }
     note(call, describe(all));
     note_power_model(call, all.setup);
 }
