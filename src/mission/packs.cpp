@@ -30,8 +30,8 @@ struct CruisePart : TimeInterval {
     std::size_t pack = 0;  ///< from 0
 };
 
-/// The schedule of a part of the cruise, which begins at `out_s` of the flight's; what runs at its ends also does on the
-/// ways there and home.
+/// The schedule of a part of the cruise, which begins at `out_s` of the flight's. What runs at its ends also runs on
+/// the ways there and home.
 Schedule schedule_of(const Schedule& whole, const CruisePart& part, double out_s, const PerPhase<double>& flown_s) {
     Schedule schedule;
     for (const auto phase : all_phases) {
@@ -161,8 +161,8 @@ class PackDivider {
         }
     }
 
-    /// The farthest position that a pack returns from with that margin; without any, `from_s`. As the way home may become
-    /// shorter, positions all along the cruise are tried.
+    /// The farthest position that a pack returns from with that margin; without any, `from_s`. The way home may become
+    /// shorter: positions all along the cruise are tried.
     double farthest_s(std::size_t pack, double from_s, double margin_percent) const {
         const double step_s = std::max(min_part_s, end_s_ / parts_tried);
         double best_s = from_s;
