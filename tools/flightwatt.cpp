@@ -1,16 +1,10 @@
 // The program: `flightwatt STAGE ...`. flightwatt-STAGE is a link to it.
 
-#include "base/error.h"
 #include "base/toml_reader.h"
 #include "cli/stage.h"
 #include "stages.h"
 
-#include <algorithm>
 #include <filesystem>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,5 @@
 // flightwatt battery: flights to the battery that they were flown on.
 
-#include "base/error.h"
 #include "battery/identification.h"
 #include "cli/output/battery_output.h"
 #include "cli/output/flight_options.h"
@@ -11,8 +10,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <optional>
-#include <utility>
 
 #include <fmt/format.h>
 

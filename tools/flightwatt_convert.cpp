@@ -1,7 +1,6 @@
 // flightwatt convert: a binary log as text: of Paparazzi as its own sd2log writes it, of other autopilots as a series.
 
 #include "base/atomic_file.h"
-#include "base/error.h"
 #include "base/overwrite_guard.h"
 #include "cli/stage.h"
 #include "flight/load_flight.h"
@@ -12,12 +11,7 @@
 #include <cstdint>
 #include <iterator>
 #include <map>
-#include <optional>
-#include <set>
-#include <string>
 #include <system_error>
-#include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

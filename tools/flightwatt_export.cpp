@@ -1,6 +1,5 @@
 // flightwatt export: flights, models and missions in the forms that other programs read.
 
-#include "base/error.h"
 #include "base/input_file.h"
 #include "base/units.h"
 #include "cli/options.h"
@@ -22,7 +21,6 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
-#include <set>
 #include <system_error>
 
 #include <fmt/format.h>

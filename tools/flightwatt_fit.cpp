@@ -1,7 +1,6 @@
 // flightwatt fit: several flights to a mechanical power model and Table I.
 
 #include "base/atomic_file.h"
-#include "base/error.h"
 #include "cli/output/fit_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/physical_output.h"
@@ -12,10 +11,7 @@
 #include "stages.h"
 
 #include <filesystem>
-#include <optional>
-#include <string>
 #include <tuple>
-#include <vector>
 
 #include <fmt/format.h>
 

@@ -1,15 +1,12 @@
 // A folder for an aircraft: its logs, fits and missions, and the commands that lead from one to the other.
 
 #include "base/atomic_file.h"
-#include "base/error.h"
 #include "cli/output/stage_options.h"
 #include "cli/stage.h"
 #include "stages.h"
 
 #include <array>
 #include <filesystem>
-#include <optional>
-#include <string>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,5 @@
 // A mission file to begin with: every key explained, made for the files that it names.
 
-#include "base/error.h"
 #include "battery/battery.h"
 #include "cli/output/mission_output.h"
 #include "cli/stage.h"
@@ -10,8 +9,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <string>
-#include <vector>
 
 #include <fmt/format.h>
 

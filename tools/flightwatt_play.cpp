@@ -1,6 +1,5 @@
 // flightwatt play: a log once more as it came in, over the links that flightwatt watch listens to.
 
-#include "base/error.h"
 #include "base/signal_watch.h"
 #include "cli/stage.h"
 #include "live/playback.h"
@@ -8,10 +7,6 @@
 #include "telemetry/binary_log.h"
 #include "telemetry/data_file.h"
 #include "telemetry/log_configuration.h"
-
-#include <optional>
-#include <string>
-#include <string_view>
 
 #include <fmt/format.h>
 

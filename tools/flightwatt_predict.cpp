@@ -1,6 +1,5 @@
 // flightwatt predict: the energy to the end of a flight that is in the air.
 
-#include "base/error.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/live_options.h"
 #include "cli/output/prediction_output.h"
@@ -9,8 +8,6 @@
 #include "flight/selected_track.h"
 #include "mechanical/prediction.h"
 #include "stages.h"
-
-#include <utility>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,5 @@
 // flightwatt replay: missions' schedules on the power that flights measured.
 
-#include "base/error.h"
 #include "cli/output/fit_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/mission_output.h"
@@ -11,8 +10,6 @@
 #include "mission/mission_file.h"
 #include "mission/replay.h"
 #include "stages.h"
-
-#include <set>
 
 #include <fmt/format.h>
 

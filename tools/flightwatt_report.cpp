@@ -1,8 +1,6 @@
 // flightwatt report: a batch's folder and missions to one HTML page, and to figures for papers.
 
-#include "base/error.h"
 #include "base/number.h"
-#include "base/text.h"
 #include "cli/output/mission_output.h"
 #include "cli/output/stage_options.h"
 #include "cli/stage.h"
@@ -20,10 +18,6 @@
 #include <ctime>
 #include <filesystem>
 #include <iterator>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include <fmt/chrono.h>
 #include <unistd.h>

@@ -1,7 +1,6 @@
 // flightwatt segment: take-off, cruise and landing of every sortie in a log, or in several.
 
 #include "base/csv.h"
-#include "base/error.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/segment_output.h"
 #include "cli/screen_table.h"
@@ -12,9 +11,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <sstream>
-#include <string>
 #include <system_error>
-#include <vector>
 
 #include <fmt/format.h>
 

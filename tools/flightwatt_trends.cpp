@@ -1,6 +1,5 @@
 // flightwatt trends: ageing of aircraft and pack over the dates of their flights.
 
-#include "base/error.h"
 #include "batch/trend.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/stage_options.h"
@@ -12,12 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

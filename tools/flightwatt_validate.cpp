@@ -1,6 +1,5 @@
 // flightwatt validate: leaves each flight out, fits the others and predicts its energy.
 
-#include "base/error.h"
 #include "cli/output/fit_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/prediction_output.h"
@@ -12,7 +11,6 @@
 #include "stages.h"
 
 #include <algorithm>
-#include <optional>
 
 #include <fmt/format.h>
 

@@ -1,7 +1,6 @@
 // flightwatt watch: the energy of a flight that is in the air, once a second.
 
 #include "base/atomic_file.h"
-#include "base/error.h"
 #include "base/signal_watch.h"
 #include "cli/output/live_options.h"
 #include "cli/output/watch_output.h"
@@ -13,13 +12,7 @@
 #include "stages.h"
 #include "telemetry/log_configuration.h"
 
-#include <chrono>
 #include <cmath>
-#include <functional>
-#include <memory>
-#include <optional>
-#include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 

@@ -1,7 +1,5 @@
 #include "base/number.h"
 
-#include <charconv>
-#include <cmath>
 #include <limits>
 
 namespace flightwatt::detail {

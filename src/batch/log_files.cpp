@@ -11,9 +11,7 @@
 
 #include <algorithm>
 #include <array>
-#include <string_view>
 #include <system_error>
-#include <unordered_set>
 #include <utility>
 
 #include <fmt/format.h>

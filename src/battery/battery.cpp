@@ -2,14 +2,11 @@
 
 #include "base/piecewise_linear.h"
 #include "base/text.h"
-#include "base/toml_reader.h"
 #include "base/units.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
-#include <memory>
 
 #include <fmt/format.h>
 

@@ -1,10 +1,8 @@
 #include "cli/stage.h"
 
 #include "base/atomic_file.h"
-#include "base/error.h"
 #include "base/overwrite_guard.h"
 #include "base/parallel.h"
-#include "base/text.h"
 #include "cli/terminal.h"
 
 #include <cerrno>

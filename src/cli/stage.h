@@ -5,7 +5,6 @@
 #include "cli/options.h"
 #include "record/record.h"
 
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>

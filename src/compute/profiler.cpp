@@ -2,10 +2,8 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "compute/power_sampler.h"
 #include "compute/profiling/component_run.h"
 #include "compute/profiling/profile_runs.h"
-#include "compute/profiling/run_statistics.h"
 #include "compute/sensors/power_trace.h"
 
 #include <algorithm>

@@ -4,7 +4,6 @@
 #include "exchange/autopilot_parameters.h"
 #include "exchange/estimators/pack_summary.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>

@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "live/sources.h"
 #include "live/sources/endpoints.h"
 #include "live/sources/message_readers.h"
 #include "telemetry/autopilot_log.h"

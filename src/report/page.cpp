@@ -9,8 +9,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
-#include <optional>
-#include <string>
 #include <system_error>
 
 #include <boost/algorithm/string/replace.hpp>

@@ -3,7 +3,6 @@
 #include "base/parallel.h"
 #include "cli/output/fit_output.h"
 #include "cli/output/physical_output.h"
-#include "mechanical/mechanical_model.h"
 #include "mechanical/table_one.h"
 #include "mission/mission_file.h"
 #include "mission/replay.h"
@@ -13,7 +12,6 @@
 #include <algorithm>
 #include <future>
 #include <iterator>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,7 +1,6 @@
 #include "report/trends_section.h"
 
 #include "base/error.h"
-#include "base/statistics.h"
 #include "base/units.h"
 #include "flight/flight_identity.h"
 

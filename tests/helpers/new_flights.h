@@ -6,7 +6,6 @@
 #include "mechanical/model_fit.h"
 #include "mechanical/prediction.h"
 #include "mission/plan.h"
-#include "mission/sampling/flight_outcomes.h"
 #include "mission/sampling/landing_distribution.h"
 #include "mission/simulation.h"
 

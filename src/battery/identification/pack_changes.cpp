@@ -3,7 +3,6 @@
 #include "base/statistics.h"
 #include "base/units.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <utility>
 

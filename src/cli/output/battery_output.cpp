@@ -2,7 +2,6 @@
 
 #include "base/statistics.h"
 #include "base/units.h"
-#include "cli/stage.h"
 
 #include <optional>
 #include <utility>

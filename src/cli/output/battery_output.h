@@ -1,7 +1,6 @@
 #pragma once
 
 #include "base/text_table.h"
-#include "battery/identification.h"
 #include "battery/identified_battery.h"
 #include "cli/stage.h"
 

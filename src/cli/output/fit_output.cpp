@@ -6,7 +6,6 @@
 #include "cli/output/physical_output.h"
 #include "mechanical/fit_records.h"
 #include "mechanical/mechanical_model.h"
-#include "mechanical/model_fit.h"
 #include "mechanical/prediction.h"
 
 #include <algorithm>

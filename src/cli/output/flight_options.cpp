@@ -4,15 +4,11 @@
 #include "base/toml_reader.h"
 #include "base/units.h"
 #include "batch/batch_run.h"
-#include "cli/stage.h"
 #include "cli/terminal.h"
 #include "flight/flight_identity.h"
 
-#include <algorithm>
-#include <set>
 #include <unordered_map>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 

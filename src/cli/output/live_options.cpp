@@ -4,9 +4,6 @@
 #include "base/number.h"
 #include "base/units.h"
 #include "cli/output/mission_output.h"
-#include "cli/stage.h"
-#include "live/prediction.h"
-#include "live/sources.h"
 #include "mechanical/mechanical_model.h"
 #include "mechanical/prediction.h"
 #include "mission/mission_file.h"
@@ -14,13 +11,9 @@
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 

@@ -2,7 +2,6 @@
 
 #include "cli/stage.h"
 #include "flight/flight_series.h"
-#include "flight/segmentation.h"
 #include "live/prediction.h"
 #include "live/sources.h"
 #include "mission/mission.h"

@@ -2,7 +2,6 @@
 
 #include "cli/screen_table.h"
 #include "cli/stage.h"
-#include "mission/disturbance.h"
 #include "mission/feasibility_limits.h"
 #include "mission/mission_file.h"
 #include "mission/packs.h"
@@ -11,7 +10,6 @@
 #include "mission/simulation.h"
 
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 namespace flightwatt::mechanical {

@@ -6,9 +6,7 @@
 #include "compute/profile_outcome.h"
 #include "compute/profile_tables.h"
 
-#include <cstddef>
 #include <string>
-#include <vector>
 
 namespace flightwatt::compute {
 Fields<LeaveOneOutErrors> record_fields(const LeaveOneOutErrors*);

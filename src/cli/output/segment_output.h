@@ -2,7 +2,6 @@
 
 #include "cli/screen_table.h"
 #include "flight/power_check.h"
-#include "flight/segmentation.h"
 
 #include <string>
 #include <vector>

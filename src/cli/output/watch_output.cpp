@@ -6,7 +6,6 @@
 #include "record/json_type.h"
 
 #include <algorithm>
-#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -6,7 +6,6 @@
 #include "live/live_flight.h"
 
 #include <chrono>
-#include <cstddef>
 #include <optional>
 #include <set>
 #include <string>

@@ -1,7 +1,6 @@
 #include "compute/powprofiler/powprofiler.h"
 
 #include "base/atomic_file.h"
-#include "base/error.h"
 #include "base/number.h"
 
 #include <map>

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <csignal>
 #include <limits>
-#include <utility>
 
 #include <fmt/format.h>
 

@@ -8,7 +8,6 @@
 #include <chrono>
 #include <exception>
 #include <limits>
-#include <optional>
 #include <random>
 #include <utility>
 

@@ -2,8 +2,6 @@
 
 #include "live/sources/ivy_protocol.h"
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <list>

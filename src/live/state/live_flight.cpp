@@ -4,8 +4,6 @@
 #include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
 #include "flight/selected_track.h"
-#include "live/state/alarms.h"
-#include "live/state/clock_filter.h"
 #include "live/state/moment.h"
 #include "live/state/telemetry_store.h"
 #include "mechanical/prediction.h"

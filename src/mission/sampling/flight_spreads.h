@@ -2,7 +2,6 @@
 
 #include "mission/mission.h"
 #include "mission/mission_summary.h"
-#include "mission/schedule.h"
 
 #include <cstddef>
 #include <limits>

@@ -8,7 +8,6 @@
 #include "report/batch_content.h"
 #include "report/figure.h"
 
-#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>

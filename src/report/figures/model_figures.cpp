@@ -1,6 +1,5 @@
 #include "base/statistics.h"
 #include "base/text.h"
-#include "base/units.h"
 #include "battery/identification.h"
 #include "mechanical/validation.h"
 #include "report/figures/flight_figures.h"

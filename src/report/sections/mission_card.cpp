@@ -1,4 +1,3 @@
-#include "base/duration_text.h"
 #include "base/text.h"
 #include "base/units.h"
 #include "report/html.h"

@@ -1,7 +1,5 @@
 #include "report/sections/page_data.h"
 
-#include "report/figures/mission_figures.h"
-
 #include <array>
 #include <cmath>
 
