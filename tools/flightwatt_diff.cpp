@@ -1,28 +1,76 @@
 // flightwatt diff: differences of two models, two batches or two missions, and their significance.
 
-#include "base/error.h"
 #include "base/input_file.h"
 #include "base/toml_reader.h"
+#include "base/units.h"
 #include "batch/batch_fit.h"
-#include "cli/output/difference_output.h"
 #include "cli/output/mission_output.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
+#include "mechanical/model_difference.h"
 #include "mission/mission_file.h"
 #include "mission/prepared_mission.h"
+#include "mission/sampled_flights.h"
 #include "stages.h"
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
-#include <string>
 #include <system_error>
-#include <utility>
+#include <tuple>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flightwatt::mechanical {
+
+Fields<Difference> record_fields(const Difference*) {
+    using R = Difference;
+    const auto basis = [](const R& r) {
+        const auto name = to_string(r.basis);
+        return name.empty() ? std::nullopt : std::optional(name);
+    };
+    return {field("part", &R::part, "the phase, `physical` or `mission`", column{}, csv_column{}),
+            field("quantity", &R::quantity, "name of the quantity", column{}, csv_column{}),
+            field("unit", &R::unit, "unit of the quantity", column{}, csv_column{}),
+            field("a", at(&R::a, &Estimate::value), "value of A", column{"", ".4g"}, csv_column{}),
+            field("a_interval_95", at(&R::a, &Estimate::interval), "", column{"a_low|a_high", ".4g"},
+                  csv_column{"a_low|a_high"}),
+            field("b", at(&R::b, &Estimate::value), "value of B", column{"", ".4g"}, csv_column{}),
+            field("b_interval_95", at(&R::b, &Estimate::interval), "", column{"b_low|b_high", ".4g"},
+                  csv_column{"b_low|b_high"}),
+            field(
+                "difference", [](const R& r) { return difference_of(r); }, "B less A", column{"", ".4g"}, csv_column{}),
+            field("difference_interval_95", &R::interval, "", column{"low|high", ".4g"}, csv_column{"low|high"}),
+            field(
+                "differs", [](const R& r) { return is_significant(r); }, "the interval excludes 0; null: no interval",
+                column{}, csv_column{}),
+            field("basis", basis, "`noise` or `flights`; null: no interval", column{}, csv_column{}),
+            field("at_s", &R::at_s, "of a curve: time of the largest difference", column{"", ".4g"}, csv_column{})};
+}
+
+}  // namespace flightwatt::mechanical
 
 namespace {
 
 using namespace flightwatt;
-using ComparedKind = cli::DifferenceKind;
+
+enum class ComparedKind { models, batches, missions };
+
+/// JSON of the stage.
+struct Differences {
+    ComparedKind kind = ComparedKind::models;
+    std::vector<mechanical::Difference> rows = {};
+};
+
+Fields<Differences> record_fields(const Differences*) {
+    using R = Differences;
+    const auto kind = [](const R& r) {
+        constexpr std::array kinds{"models", "batches", "missions"};
+        return std::string(kinds.at(static_cast<std::size_t>(r.kind)));
+    };
+    return {field("kind", kind, "`models`, `batches` or `missions`"), field("differences", &R::rows, "quantities")};
+}
 
 std::string_view name_of(ComparedKind kind) {
     return kind == ComparedKind::models    ? "a model"
@@ -47,8 +95,63 @@ mechanical::MechanicalModel read_model(const std::string& input, ComparedKind ki
     return std::move(fit->model);
 }
 
+using mechanical::Difference;
+using mechanical::Estimate;
+
+/// A computed quantity of two missions, without intervals.
+Difference computed(std::string part, std::string quantity, std::string unit, const std::optional<double>& a,
+                    const std::optional<double>& b) {
+    const auto estimate = [](const std::optional<double>& value) {
+        return value ? std::optional(Estimate{*value, {}}) : std::nullopt;
+    };
+    return {std::move(part), std::move(quantity), std::move(unit), estimate(a), estimate(b)};
+}
+
+double phase_energy_wh(const mission::SocCurve& curve, mission::Phase phase) {
+    double energy_j = 0.0;
+    for (std::size_t i = 1; i < curve.rows.size(); ++i) {
+        const auto& from = curve.rows[i - 1];
+        const auto& to = curve.rows[i];
+        if (from.phase == phase) energy_j += (to.time_s - from.time_s) * (from.power_w + to.power_w) / 2.0;
+    }
+    return units::wh_from_joule(energy_j);
+}
+
+/// Energy of each phase and the quantities of the whole mission. Intervals are those of `drawn`.
+std::vector<Difference> mission_difference(const mission::Simulation& a, const mission::Simulation& b,
+                                           const std::optional<mission::SampledDifference>& drawn) {
+    std::vector<Difference> all;
+    all.reserve(2 * mission::all_phases.size());
+    for (const auto phase : mission::all_phases) {
+        all.push_back(computed(std::string(to_string(phase)), "energy_wh", "Wh", phase_energy_wh(a.curve, phase),
+                               phase_energy_wh(b.curve, phase)));
+    }
+    using Intervals = mission::DrawnIntervals mission::SampledDifference::*;
+    const auto add = [&](const char* quantity, const char* unit, auto mission::MissionSummary::*member,
+                         Intervals intervals = nullptr) {
+        auto row = computed("mission", quantity, unit, a.summary.*member, b.summary.*member);
+        if (!row.a && !row.b) return;
+        if (drawn && intervals != nullptr && row.a && row.b) {
+            std::tie(row.a->interval, row.b->interval) = std::pair((*drawn.*intervals).a, (*drawn.*intervals).b);
+            row.interval = (*drawn.*intervals).difference;
+            row.basis = mechanical::DifferenceBasis::flights;
+        }
+        all.push_back(std::move(row));
+    };
+    using S = mission::MissionSummary;
+    using D = mission::SampledDifference;
+    add("duration_s", "s", &S::duration_s, &D::duration_s);
+    add("mechanical_energy_wh", "Wh", &S::mechanical_energy_wh, &D::mechanical_energy_wh);
+    add("compute_energy_wh", "Wh", &S::compute_energy_wh, &D::compute_energy_wh);
+    add("energy_wh", "Wh", &S::energy_wh, &D::energy_wh);
+    add("final_soc_percent", "%", &S::final_soc_percent, &D::final_soc_percent);
+    add("depleted_at_s", "s", &S::depleted_at_s);
+    add("utility", "", &S::utility);
+    return all;
+}
+
 /// Of two missions.
-std::vector<mechanical::Difference> mission_differences(const cli::StageCall& call) {
+std::vector<Difference> mission_differences(const cli::StageCall& call) {
     const auto a = mission::read_mission(call.inputs[0], {true, std::nullopt});
     const auto b = mission::read_mission(call.inputs[1], {true, std::nullopt});
     cli::warn_of_setup(call, setup_of(a));
@@ -59,12 +162,30 @@ std::vector<mechanical::Difference> mission_differences(const cli::StageCall& ca
     const auto flown_b = simulate_prepared(prepared_b).simulation;
     const auto drawn = sample_difference(prepared_a, prepared_b);
     if (drawn) cli::note(call, describe(*drawn));
-    return cli::mission_difference(flown_a, flown_b, drawn);
+    return mission_difference(flown_a, flown_b, drawn);
 }
 
 /// Of two models or batches.
-cli::Differences compare_models(const cli::StageCall& call, ComparedKind kind) {
+Differences compare_models(const cli::StageCall& call, ComparedKind kind) {
     return {kind, model_difference(read_model(call.inputs[0], kind), read_model(call.inputs[1], kind))};
+}
+
+/// Notes which quantities of two models differ: by more than flights do, and by more than the noise of their samples.
+void note_differences(const cli::StageCall& call, const std::vector<Difference>& rows) {
+    const auto compared = std::ranges::count_if(rows, [](const auto& row) { return is_significant(row).has_value(); });
+    if (compared == 0)
+        return cli::note(call,
+                         "no significance test: the models have no intervals; `flightwatt fit --errors` writes them");
+    for (const auto& [basis, than] : {std::pair{mechanical::DifferenceBasis::flights, "flights of one aircraft do"},
+                                      std::pair{mechanical::DifferenceBasis::noise, "the noise of their samples"}}) {
+        std::vector<std::string> differing;
+        for (const auto& row : rows)
+            if (row.basis == basis && is_significant(row).value_or(false))
+                differing.push_back(row.part + " " + row.quantity);
+        if (!differing.empty())
+            cli::note(call, fmt::format("differ by more than {} (of {} compared, one in 20 by chance): {}", than,
+                                        compared, fmt::join(differing, ", ")));
+    }
 }
 
 int show_difference(const cli::StageCall& call) {
@@ -78,7 +199,7 @@ int show_difference(const cli::StageCall& call) {
                                      name_of(kind), b, name_of(other)));
     }
     const auto differences =
-        kind == ComparedKind::missions ? cli::Differences{kind, mission_differences(call)} : compare_models(call, kind);
+        kind == ComparedKind::missions ? Differences{kind, mission_differences(call)} : compare_models(call, kind);
     const auto screen = screen_of(call);
     if (screen.is_terminal && !call.output && !call.json) {
         const auto table = table_of(differences.rows);
@@ -105,7 +226,7 @@ rest on narrow the intervals. Differences of missions are exact; if both state t
 duration, energies and final charge are those of 95 of 100 flights drawn for both (basis flights).)"};
     stage.min_inputs = 2;
     stage.max_inputs = 2;
-    stage.json_schema = cli::document_schema<cli::Differences>;
+    stage.json_schema = cli::document_schema<Differences>;
     stage.examples = {"flightwatt diff before.toml after.toml",
                       "flightwatt diff missions/a.toml missions/b.toml -o diff.csv"};
     stage.uses_threads = stage.shows_table = true;
