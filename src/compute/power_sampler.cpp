@@ -1,10 +1,6 @@
 #include "compute/power_sampler.h"
 
-#include "base/toml_reader.h"
-#include "compute/sensors/power_rails.h"
-
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -65,55 +61,6 @@ SamplerSettings read_sampler_settings(const TomlTable& root, const std::filesyst
     if (settings.kind == SamplerKind::recorded) settings.file = table.string("file");
     settings.idle_file = table.optional_string("idle_file").value_or("");
     return settings;
-}
-
-namespace {
-
-struct Sensor {
-    SamplerKind kind;
-    std::vector<PowerRail> rails;
-};
-
-PowerSampler sampler_of(const Sensor& sensor, const std::vector<std::string>& wanted) {
-    std::vector<PowerRail> chosen;
-    std::vector<std::string> names;
-    std::vector<std::string> sources;
-    for (const auto& rail : sensor.rails) names.push_back(rail.name);
-    for (const auto index : rails_of_total(names, wanted)) {
-        chosen.push_back(sensor.rails[index]);
-        sources.push_back(fmt::format("{} ({})", chosen.back().name, chosen.back().source));
-    }
-    PowerSampler sampler;
-    sampler.kind = sensor.kind;
-    sampler.source = fmt::format("{}", fmt::join(sources, " + "));
-    sampler.read = [chosen]() -> std::vector<PowerReading> {
-        const auto before = std::chrono::steady_clock::now();
-        double power_w = 0.0;
-        for (const auto& rail : chosen) power_w += rail.read(before);
-        if (std::isnan(power_w)) return {};
-        // The time stamp is the middle of the reading.
-        return {{before + (std::chrono::steady_clock::now() - before) / 2, power_w}};
-    };
-    return sampler;
-}
-
-}  // namespace
-
-PowerSampler open_sampler(const SamplerSettings& settings) {
-    if (settings.kind == SamplerKind::command) return open_command_sampler(settings);
-    const std::vector<Sensor> sensors{{SamplerKind::ina3221, ina3221_rails(settings.sysfs)},
-                                      {SamplerKind::rapl, rapl_rails(settings.sysfs)}};
-    for (const auto& sensor : sensors) {
-        const bool is_wanted = settings.kind == SamplerKind::automatic || settings.kind == sensor.kind;
-        if (is_wanted && !sensor.rails.empty()) return sampler_of(sensor, settings.rails);
-    }
-    throw NoResultError(fmt::format(
-        "there is no {} below {} that can be read; searched for INA3221 (bus/i2c/drivers/ina3221*, bus/iio, "
-        "class/hwmon) and RAPL (class/powercap, often for root alone); a [sampler] of kind \"command\" reads any other "
-        "meter",
-        settings.kind == SamplerKind::automatic ? "power sensor"
-                                                : fmt::format("sensor of kind {}", to_string(settings.kind)),
-        settings.sysfs.string()));
 }
 
 }  // namespace flightwatt::compute

@@ -1,11 +1,11 @@
-#include "compute/sensors/power_rails.h"
-
 #include "base/error.h"
 #include "base/number.h"
 #include "base/units.h"
+#include "compute/power_sampler.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <optional>
@@ -30,6 +30,14 @@ using std::filesystem::path;
 using Clock = std::chrono::steady_clock;
 
 constexpr int channels = 3;  // of an INA3221
+
+/// A supply line of a board, or a part of its processor. `read` returns the power [W] now; of an energy counter the
+/// mean power since the last call, NaN at the first. Throws InputError naming the file.
+struct PowerRail {
+    std::string name;    ///< the board's or the driver's name for it, "VDD_IN", "package-0"
+    std::string source;  ///< the files
+    std::function<double(std::chrono::steady_clock::time_point)> read;
+};
 
 /// The first line; std::nullopt if it cannot be read.
 std::optional<std::string> sysfs_text(const path& file) {
@@ -131,8 +139,8 @@ std::vector<PowerRail> hwmon_rails(const path& sysfs) {
     return rails;
 }
 
-}  // namespace
-
+/// Indices of the rails whose sum is the power of the board: those `wanted`; else the total (VDD_IN, POM_5V_IN, ...);
+/// else the processor's packages; else all that no other rail feeds. Throws NoResultError for a missing one.
 std::vector<std::size_t> rails_of_total(const std::vector<std::string>& names, const std::vector<std::string>& wanted) {
     std::vector<std::size_t> chosen;
     for (const auto& name : wanted) {
@@ -155,11 +163,17 @@ std::vector<std::size_t> rails_of_total(const std::vector<std::string>& names, c
     return chosen;
 }
 
+/// TI INA3221 of NVIDIA's Jetsons, by NVIDIA's IIO driver (L4T up to 32; bus/i2c/drivers/ina3221x, bus/iio/devices:
+/// rail_name_0, in_power0_input [mW], else in_voltage0_input [mV] times in_current0_input [mA]), else by the kernel's
+/// hwmon driver (L4T from 34; Documentation/hwmon/ina3221: in1_label, in1_input [mV] times curr1_input [mA]; channels
+/// with in1_enable 0 are skipped).
 std::vector<PowerRail> ina3221_rails(const path& sysfs) {
     auto rails = iio_rails(sysfs);
     return rails.empty() ? hwmon_rails(sysfs) : rails;
 }
 
+/// Energy counters of Intel and AMD RAPL below class/powercap, intel-rapl:0 and below. They wrap at
+/// max_energy_range_uj.
 std::vector<PowerRail> rapl_rails(const path& sysfs) {
     std::vector<PowerRail> rails;
     // Not intel-rapl-mmio:0, which counts the package once more.
@@ -181,6 +195,53 @@ std::vector<PowerRail> rapl_rails(const path& sysfs) {
         rails.push_back({name, file.string(), std::move(mean_power_w)});
     }
     return rails;
+}
+
+struct Sensor {
+    SamplerKind kind;
+    std::vector<PowerRail> rails;
+};
+
+PowerSampler sampler_of(const Sensor& sensor, const std::vector<std::string>& wanted) {
+    std::vector<PowerRail> chosen;
+    std::vector<std::string> names;
+    std::vector<std::string> sources;
+    for (const auto& rail : sensor.rails) names.push_back(rail.name);
+    for (const auto index : rails_of_total(names, wanted)) {
+        chosen.push_back(sensor.rails[index]);
+        sources.push_back(fmt::format("{} ({})", chosen.back().name, chosen.back().source));
+    }
+    PowerSampler sampler;
+    sampler.kind = sensor.kind;
+    sampler.source = fmt::format("{}", fmt::join(sources, " + "));
+    sampler.read = [chosen]() -> std::vector<PowerReading> {
+        const auto before = std::chrono::steady_clock::now();
+        double power_w = 0.0;
+        for (const auto& rail : chosen) power_w += rail.read(before);
+        if (std::isnan(power_w)) return {};
+        // The time stamp is the middle of the reading.
+        return {{before + (std::chrono::steady_clock::now() - before) / 2, power_w}};
+    };
+    return sampler;
+}
+
+}  // namespace
+
+PowerSampler open_sampler(const SamplerSettings& settings) {
+    if (settings.kind == SamplerKind::command) return open_command_sampler(settings);
+    const std::vector<Sensor> sensors{{SamplerKind::ina3221, ina3221_rails(settings.sysfs)},
+                                      {SamplerKind::rapl, rapl_rails(settings.sysfs)}};
+    for (const auto& sensor : sensors) {
+        const bool is_wanted = settings.kind == SamplerKind::automatic || settings.kind == sensor.kind;
+        if (is_wanted && !sensor.rails.empty()) return sampler_of(sensor, settings.rails);
+    }
+    throw NoResultError(fmt::format(
+        "there is no {} below {} that can be read; searched for INA3221 (bus/i2c/drivers/ina3221*, bus/iio, "
+        "class/hwmon) and RAPL (class/powercap, often for root alone); a [sampler] of kind \"command\" reads any other "
+        "meter",
+        settings.kind == SamplerKind::automatic ? "power sensor"
+                                                : fmt::format("sensor of kind {}", to_string(settings.kind)),
+        settings.sysfs.string()));
 }
 
 }  // namespace flightwatt::compute
