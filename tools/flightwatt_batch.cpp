@@ -1,12 +1,11 @@
 // flightwatt batch: parse and segment every log, incrementally, and fit them.
 
 #include "base/atomic_file.h"
-#include "base/error.h"
 #include "base/overwrite_guard.h"
+#include "batch/batch_files.h"
 #include "batch/batch_fit.h"
 #include "batch/batch_run.h"
 #include "batch/manifest.h"
-#include "batch/write_guard.h"
 #include "cli/output/fit_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/physical_output.h"
@@ -21,7 +20,6 @@
 #include <filesystem>
 #include <iostream>
 #include <iterator>
-#include <optional>
 
 #include <fmt/format.h>
 

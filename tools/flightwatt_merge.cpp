@@ -1,11 +1,9 @@
 // flightwatt merge: the folders of several batches as one.
 
 #include "base/atomic_file.h"
-#include "base/error.h"
+#include "batch/batch_files.h"
 #include "batch/batch_fit.h"
 #include "batch/merge.h"
-#include "batch/write_guard.h"
-#include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
 #include "mechanical/validation.h"
@@ -14,8 +12,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
-#include <string>
-#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -2,9 +2,8 @@
 // waypoints for a mission.
 
 #include "base/csv.h"
-#include "base/duration_text.h"
-#include "base/error.h"
 #include "base/input_file.h"
+#include "base/text.h"
 #include "base/units.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/mission_output.h"

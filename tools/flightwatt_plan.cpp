@@ -1,8 +1,8 @@
 // A mission to the schedule of most utility that lands with the reserve; and what is feasible at most.
 
 #include "base/atomic_file.h"
-#include "base/duration_text.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "base/units.h"
 #include "cli/output/mission_output.h"
 #include "cli/screen_table.h"

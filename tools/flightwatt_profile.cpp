@@ -1,9 +1,8 @@
 // flightwatt profile: runs software over its quality of service and measures its power.
 
 #include "base/atomic_file.h"
-#include "base/error.h"
 #include "base/signal_watch.h"
-#include "batch/write_guard.h"
+#include "batch/batch_files.h"
 #include "cli/output/profile_output.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"

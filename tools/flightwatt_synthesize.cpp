@@ -2,13 +2,11 @@
 
 #include "base/atomic_file.h"
 #include "base/csv.h"
-#include "base/duration_text.h"
-#include "base/error.h"
 #include "base/overwrite_guard.h"
+#include "base/text.h"
 #include "cli/stage.h"
 #include "mechanical/mechanical_model.h"
 #include "stages.h"
-#include "synthetic/flight_spread.h"
 #include "synthetic/synthetic_flight.h"
 #include "synthetic/synthetic_log.h"
 

@@ -1,8 +1,8 @@
 #include "batch/batch_files.h"
 
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/fingerprint.h"
+#include "base/input_file.h"
 #include "base/overwrite_guard.h"
 #include "base/parallel.h"
 #include "base/text.h"
@@ -11,9 +11,13 @@
 #include "flight/series_file.h"
 #include "telemetry/log_configuration.h"
 
-#include <string_view>
+#include <cerrno>
+#include <cstring>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 namespace flightwatt::batch {
 namespace {
@@ -119,5 +123,23 @@ std::vector<StoredFlight> read_stored_flights(const std::filesystem::path& out, 
     }
     return flights;
 }
+
+FolderLock::FolderLock(const std::filesystem::path& folder)
+    : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (folder_ < 0) {
+        throw OutputError(fmt::format("cannot open the folder {}: {}", folder.string(), std::strerror(errno)));
+    }
+    if (::flock(folder_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+    ::close(folder_);
+    throw OutputError(
+        fmt::format("another run is writing into {}; wait for it, or choose another folder", folder.string()));
+}
+
+RemoveIfEmpty::~RemoveIfEmpty() {
+    std::error_code ignored;
+    std::filesystem::remove(folder, ignored);
+}
+
+FolderLock::~FolderLock() { ::close(folder_); }
 
 }  // namespace flightwatt::batch

@@ -29,4 +29,23 @@ struct StoredFlight {
 /// Without `with_series` they have neither series nor phases, which are verified nevertheless.
 std::vector<StoredFlight> read_stored_flights(const std::filesystem::path& out, bool with_series = true);
 
+/// Locks a folder against other runs of batch or profile (flock; ignored by file systems without locks). Throws
+/// OutputError if another run holds it, or the folder cannot be opened.
+class FolderLock {
+  public:
+    explicit FolderLock(const std::filesystem::path& folder);
+    ~FolderLock();
+    FolderLock(const FolderLock&) = delete;
+    FolderLock& operator=(const FolderLock&) = delete;
+
+  private:
+    int folder_ = -1;
+};
+
+/// Removes a folder at the end if it is empty.
+struct RemoveIfEmpty {
+    std::filesystem::path folder;
+    ~RemoveIfEmpty();
+};
+
 }  // namespace flightwatt::batch

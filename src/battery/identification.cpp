@@ -5,9 +5,8 @@
 #include "base/piecewise_linear.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "battery/identification/aligned_fit.h"
+#include "battery/identification/circuit_problem.h"
 #include "battery/identification/open_circuit.h"
-#include "battery/identification/state_of_health.h"
 
 #include <algorithm>
 #include <cmath>

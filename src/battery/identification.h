@@ -19,7 +19,7 @@ struct IdentificationOptions {
 };
 
 /// Identifies the Thévenin circuit of a battery from flights, with the charge missing at the start of each
-/// (aligned_fit.h). Capacity, and the charge missing from the fullest flight, come from
+/// (circuit_problem.h). Capacity, and the charge missing from the fullest flight, come from
 /// charts (chart_match.h); the flights' own estimate of the capacity is added even if another is given. Throws
 /// NoResultError where the flights determine no such circuit, and as estimate_capacity and require_possible_cells.
 BatteryIdentification identify_battery(std::span<const DischargeRecord> records, const IdentificationOptions& options);

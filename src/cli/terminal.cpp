@@ -1,6 +1,6 @@
 #include "cli/terminal.h"
 
-#include "base/duration_text.h"
+#include "base/text.h"
 
 #include <algorithm>
 #include <cmath>

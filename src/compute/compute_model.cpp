@@ -1,14 +1,15 @@
 #include "compute/compute_model.h"
 
+#include "base/number.h"
 #include "base/piecewise_linear.h"
 #include "base/units.h"
-#include "compute/qos_range.h"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 #include <stdexcept>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -44,6 +45,10 @@ void require_full_grid(const PowerProfile& profile, const std::vector<ProfileNod
         fmt::format("the grid is incomplete: there is no node at {}", text_of(grid_point(profile.axes, k))),
         fmt::format("profile every combination of the values, here {} nodes", fmt::join(counts, " x ")));
 }
+
+constexpr double rounding = 1e-9;  // of a step
+
+double rounded(double value) { return number_or_nan(fmt::format("{:.12g}", value)); }
 
 }  // namespace
 
@@ -155,6 +160,51 @@ std::string describe(const ComputeModel& model, const Configuration& configurati
         if (!running.qos.empty()) text += " " + format_qos(component.profile.parameters, running.qos, equals);
     }
     return text.empty() ? "nothing" : text;
+}
+
+std::vector<double> linear_range(double from, double to, double step) {
+    std::vector<double> values;
+    const double steps = std::floor((to - from) / step + rounding);
+    for (int i = 0; i <= steps; ++i) values.push_back(rounded(from + i * step));
+    return values;
+}
+
+std::vector<double> grid_point(const std::vector<std::vector<double>>& axes, std::size_t index) {
+    std::vector<double> point(axes.size());
+    for (std::size_t i = axes.size(); i-- > 0;) {
+        point[i] = axes[i][index % axes[i].size()];
+        index /= axes[i].size();
+    }
+    return point;
+}
+
+QosPoints cartesian_product(const std::vector<QosRange>& ranges) {
+    std::vector<std::vector<double>> axes;
+    std::size_t count = 1;
+    for (const auto& range : ranges) {
+        axes.push_back(range.values);
+        count *= range.values.size();
+    }
+    QosPoints points;
+    for (std::size_t i = 0; i < count; ++i) points.push_back(grid_point(axes, i));
+    return points;
+}
+
+std::string format_qos(const std::vector<std::string>& parameters, const std::vector<double>& qos,
+                       std::string_view equals, std::string_view between) {
+    std::vector<std::string> parts;
+    for (std::size_t i = 0; i < qos.size(); ++i) {
+        parts.push_back(fmt::format("{}{}{}", parameters[i], equals, qos[i]));
+    }
+    return fmt::format("{}", fmt::join(parts, between));
+}
+
+std::string substitute_qos(const std::string& text, const std::vector<std::string>& parameters,
+                           const std::vector<double>& qos) {
+    auto result = text;
+    for (std::size_t i = 0; i < parameters.size(); ++i)
+        boost::algorithm::replace_all(result, "{" + parameters[i] + "}", fmt::format("{}", qos[i]));
+    return result;
 }
 
 }  // namespace flightwatt::compute

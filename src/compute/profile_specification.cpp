@@ -2,7 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/toml_reader.h"
-#include "compute/qos_range.h"
+#include "compute/compute_model.h"
 
 #include <algorithm>
 #include <cctype>

@@ -1,7 +1,7 @@
 #include "mission/feasibility_limits.h"
 
-#include "base/duration_text.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "base/units.h"
 #include "mission/planning/planner.h"
 #include "mission/sampling/landing_distribution.h"
@@ -11,7 +11,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <variant>
 #include <vector>
 
 #include <boost/math/tools/toms748_solve.hpp>

@@ -1,6 +1,6 @@
 #include "mission/mission_summary.h"
 
-#include "base/duration_text.h"
+#include "base/text.h"
 
 #include <algorithm>
 #include <utility>

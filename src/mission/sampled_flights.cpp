@@ -4,7 +4,7 @@
 #include "base/units.h"
 #include "mission/plan.h"
 #include "mission/sampling/flight_draws.h"
-#include "mission/sampling/flight_outcomes.h"
+#include "mission/sampling/landing_distribution.h"
 
 #include <algorithm>
 #include <cmath>
@@ -101,7 +101,7 @@ std::vector<FlownQuantities> fly_compared(const PreparedMission& prepared, const
                                           const std::function<std::vector<double>(std::size_t)>& normals_of) {
     std::vector<FlownQuantities> flown(count);
     const FlightDraw draw = [&](std::size_t i, DrawnFlight& flight) {
-        apply_draw_to(prepared.setup, spreads, normals_of(i), flight.setup);
+        apply_draw(prepared.setup, spreads, normals_of(i), flight.setup);
         schedule_flight(prepared, {}, {}, flight);
         for (const auto& segment : flight.segments) {
             flown[i].mechanical_energy_wh += units::wh_from_joule(mechanical_energy_j(segment, segment.end_s));
@@ -159,7 +159,7 @@ MonteCarloResult sample_flights(const PreparedMission& prepared, const Disturban
     const auto times_s = band_times_s(prepared.setup, options.band_points);
     const auto normal_count = count_normals(prepared.setup);
     const FlightDraw draw = [&](std::size_t i, DrawnFlight& flight) {
-        apply_draw_to(prepared.setup, spreads, draw_normals(normal_count, options.seed, i), flight.setup);
+        apply_draw(prepared.setup, spreads, draw_normals(normal_count, options.seed, i), flight.setup);
         schedule_flight(prepared, disturbances, times_s, flight);
     };
     const auto landings = fly_drawn(prepared.setup, draw, 0, options.samples);

@@ -36,7 +36,7 @@ struct FlightTrendData {
 FlightTrendData extract_trend_data(const ReportFlight& flight);
 
 /// Adds resistance and capacity of each flight, by the common open-circuit curve of an aircraft's flights
-/// (battery/identification/state_of_health.h). `capacity_ah` is their mean capacity; without it, it may be a guess.
+/// (battery/identification/circuit_problem.h). `capacity_ah` is their mean capacity; without it, it may be a guess.
 /// Returns reasons for missing values, a line an aircraft. Aircraft with more than `max_flights` are skipped: the work
 /// grows with the square. Throws UsageError where flights draw more than the capacity.
 std::vector<std::string> add_state_of_health(std::vector<FlightTrendData>& flights, std::size_t max_flights,

@@ -1,6 +1,5 @@
-#include "batch/write_guard.h"
-
 #include "base/error.h"
+#include "batch/batch_files.h"
 #include "helpers/test_paths.h"
 
 #include <filesystem>

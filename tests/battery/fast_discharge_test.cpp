@@ -1,4 +1,4 @@
-#include "battery/fast_discharge.h"
+#include "battery/discharge.h"
 
 #include <cmath>
 #include <optional>

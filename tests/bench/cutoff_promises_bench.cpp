@@ -5,7 +5,7 @@
 #include "base/statistics.h"
 #include "helpers/battery_coverage.h"
 #include "mission/feasibility_limits.h"
-#include "mission/sampling/flight_outcomes.h"
+#include "mission/sampling/landing_distribution.h"
 #include "mission/simulation/load_segments.h"
 
 #include <cstdio>

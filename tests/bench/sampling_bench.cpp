@@ -1,9 +1,10 @@
 // Flights sampled by a single thread: of both battery kinds, and how far they are off Runge-Kutta.
 
+#include "helpers/drawn_mission.h"
 #include "log_passes.h"
 #include "mission/mission_file.h"
 #include "mission/sampling/flight_draws.h"
-#include "mission/sampling/flight_outcomes.h"
+#include "mission/sampling/landing_distribution.h"
 #include "mission/simulation.h"
 
 #include <algorithm>
@@ -25,7 +26,7 @@ struct Sampled {
           spreads(collect_uncertainty(mission.setup)) {}
 
     void draw(std::size_t number, DrawnFlight& flight) const {
-        apply_draw_to(mission.setup, spreads, draw_normals(count_normals(mission.setup), 1, number), flight.setup);
+        apply_draw(mission.setup, spreads, draw_normals(count_normals(mission.setup), 1, number), flight.setup);
         flight.segments = load_segments(
             flight.setup,
             rescale_to_flown_durations(mission.schedule, mission.setup.duration_s, flight.setup.duration_s));

@@ -1,4 +1,4 @@
-#include "compute/qos_range.h"
+#include "compute/compute_model.h"
 
 #include <string>
 #include <vector>

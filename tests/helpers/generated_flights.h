@@ -3,7 +3,7 @@
 #include "base/units.h"
 #include "helpers/made_up_flights.h"
 #include "mechanical/validation.h"
-#include "synthetic/flight_spread.h"
+#include "synthetic/synthetic_flight.h"
 
 #include <cstddef>
 #include <optional>

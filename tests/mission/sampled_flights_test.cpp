@@ -1,5 +1,6 @@
 #include "mission/sampled_flights.h"
 
+#include "helpers/drawn_mission.h"
 #include "helpers/paper_missions.h"
 #include "helpers/rejected.h"
 #include "helpers/steady_mission.h"

@@ -1,8 +1,7 @@
-#include "synthetic/flight_spread.h"
-
 #include "base/error.h"
 #include "helpers/made_up_flights.h"
 #include "mechanical/mechanical_model.h"
+#include "synthetic/synthetic_flight.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "battery/identification/aligned_fit.h"
+#include "battery/identification/circuit_problem.h"
 
 #include "base/error.h"
 #include "base/piecewise_linear.h"

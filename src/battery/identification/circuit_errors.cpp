@@ -1,5 +1,5 @@
 #include "base/statistics.h"
-#include "battery/identification/aligned_fit.h"
+#include "battery/identification/circuit_problem.h"
 
 #include <algorithm>
 #include <cmath>

@@ -113,4 +113,28 @@ struct ParameterErrors {
 };
 ParameterErrors parameter_errors(const NormalEquations& problem, double sample_error_v);
 
+/// Circuit and initial charges in one least squares (docs/methods.md): the charge missing at the start of each record
+/// but the reference's is a parameter. Gauss-Newton steps start from where each record's voltage fits best on the curve
+/// of the fuller ones. The curve has up to six equal segments of at least twenty samples each, and begins at charge 0.
+/// Throws NoResultError where the voltage does not fall with charge drawn, or with current.
+JointCircuitFit fit_circuit_jointly(std::span<const DischargeRecord> records, int cells);
+
+/// The fit without some records (in ascending order; one or more remain), which starts from the fit of all.
+JointCircuitFit fit_without(const JointCircuitFit& joint, std::span<const std::size_t> excluded);
+
+/// Errors of the fit by the jackknife over blocks of time (docs/methods.md).
+CircuitErrors circuit_errors(const JointCircuitFit& joint);
+
+/// State of health of a pack by one flight.
+struct FlightHealth {
+    std::optional<FlightResistance> resistance;
+    std::optional<FlightCapacity> capacity;  ///< only where it was asked for, and the flight determines it
+    double initial_charge_error_ah = 0.0;    ///< standard error with a resistance of its own
+};
+
+/// Of each record, from the joint fit with a series resistance of each and, `with_capacity`, a factor on the charge
+/// drawn (the mean of their logarithms is 0). Errors of capacities include 10 mV a cell over the voltage's fall. No
+/// resistance with a standard error above half of it, no capacity with an interval of more than 15 % to either side.
+std::vector<FlightHealth> estimate_state_of_health(JointCircuitFit joint, bool with_capacity);
+
 }  // namespace flightwatt::battery

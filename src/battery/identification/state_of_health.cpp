@@ -1,7 +1,6 @@
-#include "battery/identification/state_of_health.h"
-
 #include "base/piecewise_linear.h"
 #include "base/statistics.h"
+#include "battery/identification/circuit_problem.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "cli/output/prediction_output.h"
 
-#include "base/duration_text.h"
+#include "base/text.h"
 #include "base/units.h"
 
 #include <array>

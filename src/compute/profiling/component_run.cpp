@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/overwrite_guard.h"
 #include "compute/processes/supervised_processes.h"
-#include "compute/profiling/run_statistics.h"
+#include "compute/sensors/power_trace.h"
 
 #include <algorithm>
 #include <array>

@@ -6,8 +6,7 @@
 #include "base/fingerprint.h"
 #include "base/number.h"
 #include "base/overwrite_guard.h"
-#include "compute/profiling/run_statistics.h"
-#include "compute/qos_range.h"
+#include "compute/compute_model.h"
 #include "compute/sensors/power_trace.h"
 
 #include <algorithm>

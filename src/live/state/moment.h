@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 /// Functions of LiveFlight at one moment: phase, battery, start in the air.
 namespace flightwatt::live {
@@ -49,5 +50,11 @@ Prediction predict_airborne_start(const PredictionInput& input, const mechanical
 /// known otherwise.
 void estimate_soc_from_counter(const flight::Track& charge_ah, double capacity_ah, double initial_soc_percent,
                                LiveBattery& result);
+
+/// The alarms of a state, most severe first: silent link, probability of missing the reserve, voltage below the
+/// battery's model, power outside the model's 95 % interval. `before`: of the last state. A grade that was reached ends
+/// at half of its threshold, so that an alarm near it does not come and go.
+std::vector<Alarm> alarms_of(const LiveState& state, const std::optional<PredictionInput>& input,
+                             const std::vector<Alarm>& before);
 
 }  // namespace flightwatt::live

@@ -3,7 +3,6 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "mechanical/prediction.h"
-#include "mission/sampling/flight_spreads.h"
 #include "mission/simulation/load_segments.h"
 #include "path/cruise_path.h"
 
@@ -234,15 +233,8 @@ std::vector<double> draw_normals(std::size_t count, std::uint64_t seed, std::uin
     return normals;
 }
 
-MissionSetup apply_draw(const MissionSetup& mission, const FlightUncertainty& spreads,
-                        std::span<const double> normals) {
-    auto flight = mission;
-    apply_draw_to(mission, spreads, normals, flight);
-    return flight;
-}
-
-void apply_draw_to(const MissionSetup& mission, const FlightUncertainty& spreads, std::span<const double> normals,
-                   MissionSetup& flight) {
+void apply_draw(const MissionSetup& mission, const FlightUncertainty& spreads, std::span<const double> normals,
+                MissionSetup& flight) {
     const auto deviations = phase_deviations(spreads, normals);
     move_phases(mission, deviations, spreads.max_rise_w, flight);
     flight.battery = mission.battery;

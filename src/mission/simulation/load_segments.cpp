@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/piecewise_linear.h"
 #include "base/units.h"
-#include "battery/fast_discharge.h"
+#include "battery/discharge.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-#include "base/duration_text.h"
 #include "base/statistics.h"
+#include "base/text.h"
 #include "base/units.h"
 #include "battery/battery.h"
 #include "flight/flight_identity.h"

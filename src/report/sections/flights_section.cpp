@@ -1,5 +1,5 @@
-#include "base/duration_text.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "base/units.h"
 #include "flight/flight_identity.h"
 #include "flight/selected_track.h"

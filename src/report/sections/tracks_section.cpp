@@ -1,4 +1,4 @@
-#include "base/duration_text.h"
+#include "base/text.h"
 #include "base/units.h"
 #include "flight/selected_track.h"
 #include "report/sections/page_data.h"

@@ -1,6 +1,5 @@
-#include "battery/identification/state_of_health.h"
-
 #include "base/statistics.h"
+#include "battery/identification/circuit_problem.h"
 #include "helpers/aged_flights.h"
 #include "helpers/synthetic_discharge.h"
 

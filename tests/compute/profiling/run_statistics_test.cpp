@@ -1,4 +1,4 @@
-#include "compute/profiling/run_statistics.h"
+#include "compute/sensors/power_trace.h"
 
 #include <cmath>
 #include <random>

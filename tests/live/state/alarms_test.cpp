@@ -1,6 +1,6 @@
 // Alarms of states made by hand.
 
-#include "live/state/alarms.h"
+#include "live/state/moment.h"
 
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "live/state/clock_filter.h"
+#include "live/state/telemetry_store.h"
 
 #include <random>
 #include <vector>

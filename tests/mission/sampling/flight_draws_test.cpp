@@ -2,6 +2,7 @@
 
 #include "base/statistics.h"
 #include "battery/identification.h"
+#include "helpers/drawn_mission.h"
 #include "helpers/paper_missions.h"
 #include "helpers/steady_mission.h"
 #include "mission/sampling/flight_spreads.h"

@@ -1,7 +1,7 @@
-#include "mission/sampling/flight_outcomes.h"
-
+#include "helpers/drawn_mission.h"
 #include "helpers/generated_missions.h"
 #include "mission/sampling/flight_draws.h"
+#include "mission/sampling/landing_distribution.h"
 #include "mission/simulation.h"
 
 #include <algorithm>

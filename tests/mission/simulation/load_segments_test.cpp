@@ -1,5 +1,6 @@
 #include "mission/simulation/load_segments.h"
 
+#include "helpers/drawn_mission.h"
 #include "helpers/paper_missions.h"
 #include "helpers/rejected.h"
 #include "mission/prepared_mission.h"

@@ -1,13 +1,15 @@
+#include "report/figures/mission_figures.h"
+
 #include "base/statistics.h"
 #include "base/text.h"
-#include "compute/qos_range.h"
+#include "compute/compute_model.h"
 #include "mission/plan.h"
 #include "mission/prepared_mission.h"
 #include "mission/sampled_flights.h"
 #include "mission/schedule.h"
 #include "mission/simulation.h"
-#include "report/figures/mission_figures.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -115,6 +117,23 @@ VegaJson panel_of(const compute::Component& component, VegaJson panel) {
         {{"nodes", node_rows(profile).json()}, {"parameter", parameter}, {"component", valid_utf8(component.name)}});
 }
 
+using Missions = std::span<const SimulatedMission>;
+
+/// A bar for each segment of a schedule.
+VegaJson strip_rows(Missions missions) {
+    FigureData data({"start_s", "end_s", "compute_w"}, {"mission", "phase", "runs"});
+    for (const auto& simulated : missions) {
+        const auto& mission = simulated.mission;
+        const auto timeline = mission::timeline_of(mission.setup.duration_s);
+        for (const auto& segment : mission.schedule) {
+            const double start_s = timeline.start_s[segment.phase];
+            data.add({start_s + segment.start_s, start_s + segment.end_s, power_w(mission.setup.compute, segment.run)},
+                     {simulated.title, phase_word(segment.phase), describe(mission.setup.compute, segment.run)});
+        }
+    }
+    return data.json();
+}
+
 }  // namespace
 
 std::optional<QosMap> qos_map(const mission::MissionSetup& mission) {
@@ -202,6 +221,37 @@ Figure profile_figure(const compute::ComputeModel& compute, const std::string& i
     auto panels = VegaJson::array();
     for (const auto& component : compute.components) panels.push_back(panel_of(component, figure.spec["concat"][0]));
     figure.spec["concat"] = panels;
+    return figure;
+}
+
+Figure schedule_figure(Missions missions, const VegaJson& data, const std::string& id) {
+    const auto& phases = data.front()["phases"];
+    const bool are_common =
+        std::ranges::all_of(data, [&](const VegaJson& mission) { return mission["phases"] == phases; });
+    double end_s = 0.0;
+    auto titles = VegaJson::array();
+    auto shown = VegaJson::array();
+    std::string description = "State of charge over the mission.";
+    bool has_software = false;
+    for (const auto& mission : missions) {
+        end_s = std::max(end_s, mission.simulation.summary.duration_s);
+        titles.push_back(mission.title);
+        shown.push_back({{"title", mission.title}});
+        description += fmt::format(" {}.", describe(mission.simulation.summary));
+        has_software = has_software || !mission.mission.setup.compute.components.empty();
+    }
+    std::string caption =
+        "A click on the legend hides a mission. Shaded, where uncertainty is known: 5 to 95 % of the drawn flights. "
+        "Dashed horizontal lines: the reserve.";
+    if (has_software) caption += " Below: the schedules, coloured by their power.";
+    auto figure = new_figure("schedule", id, caption, description,
+                             {{"end_s", end_s},
+                              {"titles", titles},
+                              {"shown", shown},
+                              {"missions", data},
+                              {"phases", are_common ? VegaJson{{"values", phases}} : VegaJson()},
+                              {"strip", strip_rows(missions)}});
+    if (!has_software) figure.spec["vconcat"].erase(1);
     return figure;
 }
 
