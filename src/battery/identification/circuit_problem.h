@@ -4,6 +4,7 @@
 #include "battery/identified_battery.h"
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
