@@ -89,7 +89,7 @@ FlightBin motion_bin(const MotionTracks& tracks, const flight::PhaseSegment& spa
     return bin;
 }
 
-/// A rotorcraft seldom has an airspeed sensor; wings are carried by airspeed alone.
+/// Most rotorcraft have no airspeed sensor.
 std::string_view speed_of(const flight::SelectedTracks& tracks) {
     const bool by_ground = tracks.series().firmware == "rotorcraft" && tracks["airspeed_m_per_s"].empty();
     return by_ground ? "ground_speed_m_per_s" : "airspeed_m_per_s";

@@ -1,7 +1,7 @@
 #include "mission/packs.h"
 
-#include "base/duration_text.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "base/units.h"
 #include "mission/planning/planner.h"
 

@@ -27,7 +27,12 @@ inline mechanical::MeasuredFlight measured(const std::string& name,
     if (until_s) {
         flight.flown = mechanical::FlightProgress{};
         flight.flown->until_s = *until_s;
-        flight.flown->cruise_energy_wh = units::wh_from_joule(energy_j(truth[flight::Phase::cruise].fourier, *until_s));
+        const auto& takeoff = truth[flight::Phase::takeoff];
+        const double cruise_wh = units::wh_from_joule(energy_j(truth[flight::Phase::cruise].fourier, *until_s));
+        flight.flown->cruise_energy_wh = cruise_wh;
+        flight.flown->phases[flight::Phase::takeoff] = {
+            takeoff.duration_s, units::wh_from_joule(energy_j(takeoff.fourier, takeoff.duration_s))};
+        flight.flown->phases[flight::Phase::cruise] = {*until_s, cruise_wh};
     }
     return flight;
 }

@@ -119,13 +119,17 @@ TEST(RotorcraftModel, IntervalsShowExtrapolation) {
 TEST(RotorcraftModel, WingsHaveNoRotorTerms) {
     std::mt19937 random(3);
     auto flights = flights_of({0.0, 0.1, 0.2, 0.3}, true, random);
-    for (const auto& trial : fit_physical_model(flights).trials)
-        if (trial.term == PowerTerm::induced || trial.term == PowerTerm::turn)
+    for (const auto& trial : fit_physical_model(flights).trials) {
+        if (trial.term == PowerTerm::induced || trial.term == PowerTerm::turn) {
             EXPECT_EQ(trial.reason, "not tried: rotors carry, not wings");
+        }
+    }
     for (auto& flight : flights) flight.is_rotorcraft = false;
-    for (const auto& trial : fit_physical_model(flights).trials)
-        if (trial.term == PowerTerm::hover || trial.term == PowerTerm::blade)
+    for (const auto& trial : fit_physical_model(flights).trials) {
+        if (trial.term == PowerTerm::hover || trial.term == PowerTerm::blade) {
             EXPECT_EQ(trial.reason, "not tried: wings carry, not rotors");
+        }
+    }
 }
 
 /// Eight real flights with different payloads: what the first minute tells halves the error at least.

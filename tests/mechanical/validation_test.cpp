@@ -147,7 +147,7 @@ TEST(Validation, IntervalsCoverAFewGeneratedFlights) {
     for (const auto* model : {"fourier", "in_flight"}) {
         const auto errors = errors_in_half_widths(model, 300.0);
         EXPECT_LE(errors[15], 1.0) << model;
-        EXPECT_GT(errors[10], 0.17) << model;
+        EXPECT_GT(errors[10], 0.15) << model;
         EXPECT_LT(errors[10], 0.42) << model;
     }
 }
