@@ -1,8 +1,10 @@
 #include "exchange/model_text.h"
 
 #include "base/text.h"
+#include "base/units.h"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <string_view>
 #include <vector>
@@ -127,6 +129,18 @@ std::string curve_functions(const mechanical::MechanicalModel& model, const std:
         prefix, durations, values, order);
 }
 
+/// The induced power of its rotors, by Glauert.
+std::string hover_term(const mechanical::PhysicalModel& physical) {
+    if (!physical.load.rotors) return "0.0";
+    const double hover_w = mechanical::induced_power_w(physical.load, 0.0);
+    const double weight_n =
+        (physical.load.rotors->mass_kg + physical.load.payload_kg) * units::standard_gravity_m_per_s2;
+    const double velocity_square = std::pow(hover_w / weight_n, 2);
+    return fmt::format("{} / sqrt(0.5 * airspeed * airspeed + sqrt(0.25 * pow(airspeed, 4.0) + {}))",
+                       toml_real(physical.coefficients[mechanical::PowerTerm::hover] * weight_n * velocity_square),
+                       toml_real(velocity_square * velocity_square));
+}
+
 std::string motion_function(const mechanical::PhysicalModel& physical, const std::string& prefix) {
     using mechanical::PowerTerm;
     const auto& c = physical.coefficients;
@@ -136,12 +150,14 @@ std::string motion_function(const mechanical::PhysicalModel& physical, const std
         "static inline double {0}_motion_power_w(double airspeed, double climb, double load_factor) {{\n"
         "    const double power_w = {5} * airspeed * airspeed * airspeed + {6} / airspeed +\n"
         "                           {7} * (load_factor * load_factor - 1.0) / airspeed + {8} * climb +\n"
-        "                           {9} * (climb < 0.0 ? climb : 0.0) + {10};\n"
+        "                           {9} * (climb < 0.0 ? climb : 0.0) + {10} + {11} * airspeed * airspeed +\n"
+        "                           {12};\n"
         "    return power_w > 0.0 ? power_w : 0.0;\n}}\n\n",
         prefix, physical.airspeed_m_per_s.low, physical.airspeed_m_per_s.high, physical.climb_m_per_s.low,
         physical.climb_m_per_s.high, toml_real(c[PowerTerm::drag]), toml_real(c[PowerTerm::induced]),
         toml_real(c[PowerTerm::turn]), toml_real(c[PowerTerm::climb]), toml_real(c[PowerTerm::descent]),
-        toml_real(c[PowerTerm::constant]));
+        toml_real(c[PowerTerm::constant] + c[PowerTerm::payload] * physical.load.payload_kg),
+        toml_real(c[PowerTerm::blade]), hover_term(physical));
 }
 
 }  // namespace

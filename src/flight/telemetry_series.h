@@ -1,13 +1,15 @@
 #pragma once
 
 #include "flight/flight_series.h"
-#include "telemetry/telemetry_log.h"
+#include "telemetry/autopilot_log.h"
 
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace flightwatt::flight {
+
+struct LogFamily;
 
 /// The first restart of a sender's clock: a row more than a minute before a row that precedes it in the file (another
 /// recording), or ten rows more than 2 s before (an overlapping recording). The latter count only between neighbours
@@ -23,5 +25,8 @@ std::vector<std::string> telemetry_senders(const telemetry::TelemetryLog& log);
 
 /// The series of one aircraft; without tracks if it sent nothing. Checks nothing: see require_power.
 FlightSeries flight_series(const telemetry::TelemetryLog& log, const std::string& aircraft_id);
+
+/// The series of an autopilot's log, of one aircraft.
+FlightSeries family_series(telemetry::AutopilotLog log, const LogFamily& family);
 
 }  // namespace flightwatt::flight

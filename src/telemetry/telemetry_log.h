@@ -61,6 +61,28 @@ struct TelemetryLog {
     std::size_t lines = 0;
 };
 
+/// What the log of another autopilot states in addition to the columns of its messages.
+struct LogFacts {
+    std::map<std::string, std::string> information;  ///< ULog's, by key: "sys_uuid"
+    std::map<std::string, double> parameters;
+    std::vector<std::string> texts;  ///< messages to the user, at most a thousand
+    std::size_t dropouts = 0;        ///< times at which ULog's logger lost data
+    double dropout_s = 0.0;          ///< in all
+};
+
+/// A message, its number in the log, and its fields.
+struct AutopilotMessage {
+    std::string name;
+    std::size_t count = 0;
+    std::vector<std::string> fields;
+};
+
+struct AutopilotLog {
+    TelemetryLog log = {};  ///< of one sender, with an empty id
+    LogFacts facts = {};
+    std::vector<AutopilotMessage> messages = {};  ///< all, the most frequent first
+};
+
 /// Reads the requested messages of a Paparazzi .data text. `data_file` is named in errors, `configuration` is that of
 /// the .log. Throws InputError for a text without a telemetry line, and for more than 300 senders.
 TelemetryLog read_telemetry(std::string_view text, const std::filesystem::path& data_file,

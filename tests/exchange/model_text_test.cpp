@@ -98,6 +98,7 @@ TEST(CHeader, KeepsEveryTermOfAMotion) {
     double value = 0.1;
     model.physical->terms = {mechanical::all_power_terms.begin(), mechanical::all_power_terms.end()};
     for (const auto term : mechanical::all_power_terms) model.physical->coefficients[term] = value *= 1.7;
+    model.physical->load = {0.3, mechanical::RotorLoading{2.5, 0.4}};
     const auto numbers = printed_by(model,
                                     "p(synthetic_wing_motion_power_w(12.0, -1.0, 1.3));\n"
                                     "p(synthetic_wing_motion_power_w(12.0, 1.0, 1.3));\n");

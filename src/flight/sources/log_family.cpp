@@ -1,7 +1,6 @@
 #include "flight/sources/log_family.h"
 
 #include "flight/sources/derived_tracks.h"
-#include "flight/telemetry_series.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +8,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace flightwatt::flight {
 namespace {
@@ -105,16 +103,6 @@ void add_tracks(const FamilyTrack& of, const MessageTable& table, const Instance
     }
 }
 
-/// Unix time of the log's second 0: by the first time of this century.
-std::optional<double> start_clock_s(const std::vector<Track>& tracks) {
-    constexpr double first_s = 946'684'800.0;   // 2000
-    constexpr double last_s = 4'102'444'800.0;  // 2100
-    for (const auto& track : tracks)
-        for (std::size_t i = 0; track.name == utc_track && i < track.value.size(); ++i)
-            if (track.value[i] > first_s && track.value[i] < last_s) return track.value[i] - track.time_s[i];
-    return std::nullopt;
-}
-
 }  // namespace
 
 std::set<std::string> add_family_tracks(const telemetry::SenderLog& sender, const LogFamily& family,
@@ -138,30 +126,6 @@ void sort_tracks(std::vector<Track>& tracks) {
     const auto& names = track_names();
     std::ranges::stable_sort(tracks, {},
                              [&](const Track& track) { return std::ranges::find(names, track.name) - names.begin(); });
-}
-
-FlightSeries family_series(telemetry::AutopilotLog read, const LogFamily& family) {
-    FlightSeries series;
-    auto& log = read.log;
-    const auto& sender = log.senders.front();
-    series.file = log.data_file.string();
-    series.flight = log.flight;
-    series.skipped = std::move(log.skipped);
-    series.current_origin = CurrentOrigin::sensor;
-    series.clock_restart = find_clock_restart(sender);
-    family.describe(read, series);
-    const auto is_synthetic_text = [](const std::string& text) { return text.find("SYNTHETIC:") != std::string::npos; };
-    if (std::ranges::any_of(read.facts.texts, is_synthetic_text)) series.aircraft_name += "_synthetic";
-    const auto assumed = add_family_tracks(sender, family, series.firmware, series.tracks);
-    series.start_clock_s = start_clock_s(series.tracks);
-    std::erase_if(series.tracks, [](const Track& track) { return track.name == utc_track; });
-    sort_tracks(series.tracks);
-    if (family.unstated_units == LogFamily::Unstated::noted && !assumed.empty())
-        series.notes.push_back(fmt::format("the log states no units: {}", fmt::join(assumed, ", ")));
-    if (read.facts.dropouts > 0)
-        series.notes.push_back(fmt::format("the logger lost data {} times, for {:.1f} s in all", read.facts.dropouts,
-                                           read.facts.dropout_s));
-    return series;
 }
 
 std::vector<telemetry::MessageRequest> family_messages(const LogFamily& family) {

@@ -66,9 +66,6 @@ std::set<std::string> add_family_tracks(const telemetry::SenderLog& sender, cons
 /// In the order of track_names(), of equal names in the order that they have.
 void sort_tracks(std::vector<Track>& tracks);
 
-/// The series of an autopilot's log.
-FlightSeries family_series(telemetry::AutopilotLog log, const LogFamily& family);
-
 /// The messages and fields of a family's series.
 std::vector<telemetry::MessageRequest> family_messages(const LogFamily& family);
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "telemetry/autopilot_log.h"
 #include "telemetry/message_dictionary.h"
+#include "telemetry/telemetry_log.h"
 #include "telemetry/text/skip_counter.h"
 
 #include <cstddef>
