@@ -35,7 +35,7 @@ battery::IdentificationOptions identification_options(const cli::StageCall& call
 std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call, cli::FlightArguments flights) {
     flights.load.flight_required =
         false;  // without altitude, power faults are not detected; the battery can be identified
-    std::optional<InputError> last_refusal;
+    std::vector<InputError> refusals;
     const auto read = [&](const std::string& file, const flight::LoadedFlight& loaded) {
         try {
             if (!loaded.exclusion.empty()) {
@@ -45,14 +45,14 @@ std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call, c
             for (const auto& text : found.notes) cli::warn(call, fmt::format("{}: {}", file, text));
             return std::move(found.records);
         } catch (const InputError& error) {
-            if (call.inputs.size() == 1) throw;
-            cli::warn(call, fmt::format("excluded: {}", error.what()));
-            last_refusal = error;
+            refusals.push_back(error);
             return std::vector<battery::DischargeRecord>{};
         }
     };
     auto records = cli::from_flights<battery::DischargeRecord>(call, flights, read);
-    if (records.empty() && last_refusal) throw InputError(*last_refusal);
+    if (records.empty() && refusals.size() == 1) throw InputError(refusals.front());
+    for (const auto& refusal : refusals) cli::warn(call, fmt::format("excluded: {}", refusal.what()));
+    if (records.empty() && !refusals.empty()) throw InputError({}, "no flight can be used");
     return records;
 }
 

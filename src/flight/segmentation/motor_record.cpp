@@ -200,9 +200,10 @@ MotorRecord motor_record(const SelectedTracks& tracks, const Track& altitude_m) 
     }
     record.indicator = MotorIndicator::power;
     record.evidence = fmt::format("power: idle {:.1f} W, running {:.1f} W", levels->idle_w, levels->running_w);
-    record.warnings.push_back(fmt::format(
-        "{}: the motor runs above {:.1f} W ({})", no_throttle,
-        std::lerp(levels->idle_w, levels->running_w, idle_power_percent / units::percent_per_whole), record.evidence));
+    const double above_w = std::lerp(levels->idle_w, levels->running_w, idle_power_percent / units::percent_per_whole);
+    if (tracks.series().firmware != "rotorcraft")  // in the air, these always draw much
+        record.warnings.push_back(
+            fmt::format("{}: the motor runs above {:.1f} W ({})", no_throttle, above_w, record.evidence));
     record.percent.time_s = power.time_s;
     for (const double power_w : power.value) record.percent.value.push_back(levels->percent(power_w));
     return record;
