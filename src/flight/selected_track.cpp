@@ -283,7 +283,8 @@ void require_power(const FlightSeries& series, const std::string& messages) {
     const auto reasons = no_power_reason(series);
     const auto reason = reasons.empty() ? "" : fmt::format(" ({})", reasons);
     const bool is_paparazzi = !series.aircraft_name.starts_with("Ardu") && !series.aircraft_name.starts_with("PX4");
-    throw InputError({series.file}, fmt::format("has no measured power of aircraft {}{}", series.aircraft_id, reason),
+    const auto whose = series.aircraft_id.empty() ? "" : " of aircraft " + series.aircraft_id;
+    throw InputError({series.file}, fmt::format("has no measured power{}{}", whose, reason),
                      fmt::format("expected {}{}{}",
                                  is_paparazzi ? "ENERGY with power, BAT or ENERGY with current, ESC or POWER_DEVICE"
                                               : "BAT, CURR or battery_status with current",
