@@ -27,8 +27,7 @@ std::vector<std::size_t> samples_before_damage(const FlightSeries& series, const
         }
     }
     std::ranges::sort(before);
-    const auto repeated = std::ranges::unique(before);
-    before.erase(repeated.begin(), repeated.end());
+    before.erase(std::unique(before.begin(), before.end()), before.end());
     return before;
 }
 
