@@ -188,7 +188,9 @@ const LogFamily& paparazzi_family() {
         },
         {},
         nullptr,
-        {},
+        {{"ESC", {"amps", "power", "node_id", "motor_id"}},
+         {"POWER_DEVICE", {"node_id", "circuit", "current"}},
+         {"TAKEOFF", {"cpu_time"}}},
         LogFamily::Unstated::unused};
     return family;
 }
@@ -242,28 +244,9 @@ std::optional<ClockRestart> find_clock_restart(const telemetry::SenderLog& sende
 }
 
 std::vector<telemetry::MessageRequest> flight_messages() {
-    return {
-        {"ENERGY", {"throttle", "voltage", "bat", "current", "amp", "power", "charge", "energy"}},
-        {"BAT", {"throttle", "voltage", "amps", "energy"}},
-        {"ESC", {"amps", "bat_volts", "power", "rpm", "node_id", "motor_id"}},
-        {"MOTOR", {"rpm"}},
-        {"POWER_DEVICE", {"node_id", "circuit", "current", "voltage"}},
-        {"COMMANDS", {"values[0]"}},
-        {"ESTIMATOR", {"z", "z_dot"}},
-        {"GPS", {"utm_east", "utm_north", "course", "alt", "speed", "climb", "utm_zone"}},
-        {"GPS_INT", {"lat", "lon", "hmsl", "ecef_xd", "ecef_yd", "ecef_zd"}},
-        {"GPS_LLA", {"lat", "lon"}},
-        {"AIR_DATA", {"temp", "amsl_baro", "airspeed"}},
-        {"AIRSPEED", {"airspeed"}},
-        {"ROTORCRAFT_FP", {"east", "north", "up", "vup", "phi", "psi", "thrust"}},
-        {"ATTITUDE", {"phi", "psi"}},
-        {"NAVIGATION", {"cur_block", "pos_x", "pos_y"}},
-        {"NAVIGATION_REF", {"ground_alt"}},
-        {"PPRZ_MODE", {"ap_mode"}},
-        {"ROVER_STATUS", {"ap_mode"}},
-        {"TAKEOFF", {"cpu_time"}},
-        {"WIND_INFO", {"east", "north"}},
-    };
+    auto requests = family_messages(paparazzi_family());
+    std::ranges::find(requests, "COMMANDS", &telemetry::MessageRequest::message)->fields = {"values[0]"};
+    return requests;
 }
 
 std::vector<std::string> telemetry_senders(const telemetry::TelemetryLog& log) {
