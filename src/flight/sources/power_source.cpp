@@ -44,14 +44,6 @@ bool is_unmeasured_battery(const Track& power) {
     return power.empty() && !power.device.empty() && power.source.find(" * ") != std::string::npos;
 }
 
-/// Of a user's CSV or of another autopilot: no message of Paparazzi has it.
-bool is_foreign(const Track& power) {
-    if (!power.device.empty()) return is_unmeasured_battery(power);
-    const bool is_product = power.source.find(" * ") != std::string::npos &&
-                            (power.source.starts_with("ENERGY.") || power.source.starts_with("BAT."));
-    return power.source != "ENERGY.power" && !is_product;
-}
-
 /// A track without a message: of a user's CSV.
 const Track* find_plain(const FlightSeries& series, std::string_view name) {
     return find_track(series, name, [](const Track& track) {
@@ -191,23 +183,19 @@ TrackSelection select_power(const FlightSeries& series) {
         choice.rejected_sources.emplace_back("the batteries' power is 0 throughout");
         return choice;
     }
-    for (const auto& track : series.tracks)
-        if (track.name == "power_w" && is_foreign(track) && take(series, track, choice)) return choice;
     const auto* product = find_product(series, "ENERGY.");
-    if (const auto* power = find_source(series, "ENERGY.power")) {
-        if (product != nullptr && contradicts(*power, *product)) {
+    for (const auto& track : series.tracks) {
+        if (track.name != "power_w" || !(track.device.empty() || is_unmeasured_battery(track))) continue;
+        const bool is_power = track.source == "ENERGY.power";
+        if (is_power && product != nullptr && contradicts(track, *product))
             choice.rejected_sources.emplace_back("ENERGY.power is not voltage times current");
-        } else if (take(series, *power, choice, contradicted_times(series, power->source))) {
+        else if (take(series, track, choice,
+                      is_power ? contradicted_times(series, track.source) : std::vector<double>{}))
             return choice;
-        }
     }
-    if (product != nullptr && take(series, *product, choice)) return choice;
     const auto is_bat = [](const Track& track) { return track.source.starts_with("BAT."); };
-    if (std::ranges::any_of(series.tracks, is_bat)) {
-        const auto* bat = find_product(series, "BAT.");
-        if (bat == nullptr) choice.rejected_sources.emplace_back("BAT has no current");
-        if (bat != nullptr && take(series, *bat, choice)) return choice;
-    }
+    if (find_product(series, "BAT.") == nullptr && std::ranges::any_of(series.tracks, is_bat))
+        choice.rejected_sources.emplace_back("BAT has no current");
     for (const auto* message : {"ESC", "POWER_DEVICE"}) {
         auto sum = sum_over_devices(series, "power_w", message);
         if (!sum.ambiguity.empty()) choice.rejected_sources.push_back(std::move(sum.ambiguity));
