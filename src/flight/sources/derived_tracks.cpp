@@ -25,21 +25,10 @@ using units::Quantity;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  // make_track drops NaN
 
-/// The first of `fields` with the given quantity, or nullptr.
-const Column* first_column(const MessageTable& table, std::initializer_list<const char*> fields, Quantity quantity) {
-    for (const auto* field : fields) {
-        const auto* column = table.column(field);
-        if (column != nullptr && column->quantity == quantity) return column;
-    }
-    return nullptr;
-}
-
-const Column* voltage_of(const MessageTable& table) {
-    return first_column(table, {"voltage", "bat", "bat_volts"}, Quantity::volt);
-}
-
-const Column* current_of(const MessageTable& table) {
-    return first_column(table, {"current", "amp", "amps"}, Quantity::ampere);
+/// The column with the given quantity, or nullptr.
+const Column* column_of(const MessageTable& table, const char* field, Quantity quantity) {
+    const auto* column = table.column(field);
+    return column != nullptr && column->quantity == quantity ? column : nullptr;
 }
 
 std::vector<double> products(const Column& a, const Column& b) {
@@ -94,14 +83,15 @@ void add_devices(std::vector<Track>& tracks, const DeviceMessage& message, const
 }
 
 void add_device_message(std::vector<Track>& tracks, const MessageTable* table,
-                        std::initializer_list<const char*> id_fields) {
+                        std::initializer_list<const char*> id_fields, const char* voltage_field,
+                        const char* current_field) {
     if (table == nullptr) return;
     DeviceMessage message{*table, {}};
     for (const auto* field : id_fields)
         if (const auto* column = table->column(field)) message.ids.push_back(column);
-    const auto* voltage = voltage_of(*table);
-    const auto* current = current_of(*table);
-    if (const auto* power = first_column(*table, {"power"}, Quantity::watt)) {
+    const auto* voltage = column_of(*table, voltage_field, Quantity::volt);
+    const auto* current = column_of(*table, current_field, Quantity::ampere);
+    if (const auto* power = column_of(*table, "power", Quantity::watt)) {
         add_devices(tracks, message, "power_w", table->message, power->values);
     } else if (voltage != nullptr && current != nullptr) {
         add_devices(tracks, message, "power_w", table->message, products(*voltage, *current));
@@ -141,8 +131,8 @@ void add_derived_tracks(std::vector<Track>& tracks, const SenderLog& sender) {
         std::vector<double> ones(takeoff->time_s.size(), 1.0);
         tracks.push_back(make_candidate("takeoff", "TAKEOFF", *takeoff, ones, Merge::latest));
     }
-    add_device_message(tracks, sender.table("ESC"), {"node_id", "motor_id"});
-    add_device_message(tracks, sender.table("POWER_DEVICE"), {"node_id", "circuit"});
+    add_device_message(tracks, sender.table("ESC"), {"node_id", "motor_id"}, "bat_volts", "amps");
+    add_device_message(tracks, sender.table("POWER_DEVICE"), {"node_id", "circuit"}, "voltage", "current");
 }
 
 }  // namespace flightwatt::flight

@@ -27,10 +27,6 @@ const Track* find_track(const FlightSeries& series, std::string_view name, const
     return found == series.tracks.end() ? nullptr : &*found;
 }
 
-const Track* find_source(const FlightSeries& series, std::string_view source) {
-    return find_track(series, "power_w", [&](const Track& track) { return track.source == source; });
-}
-
 /// Voltage times current of one message; nullptr if it lacks one of them.
 const Track* find_product(const FlightSeries& series, std::string_view message) {
     return find_track(series, "power_w", [&](const Track& track) {
@@ -142,7 +138,8 @@ std::vector<double> contradicted_times(const FlightSeries& series, std::string_v
         const auto* power = find_plain(series, "power_w");
         return power == nullptr ? std::vector<double>{} : inconsistent_times(*power, plain_product(series));
     }
-    const auto* power = find_source(series, "ENERGY.power");
+    const auto* power =
+        find_track(series, "power_w", [](const Track& track) { return track.source == "ENERGY.power"; });
     const auto* product = find_product(series, "ENERGY.");
     if (power == nullptr || product == nullptr || !source.starts_with("ENERGY.")) return {};
     return inconsistent_times(*power, *product);
