@@ -118,8 +118,7 @@ mechanical::RemainingCruise predict_phases(const PredictionInput& input, const F
     }
     of_flight[flight::Phase::cruise] = {flown.cruise_s(), flown.cruise_energy_wh};
     const auto rest = predict_remaining_flight(model, correlate_phases(input.model), of_flight,
-                                               {{0.0, prediction.remaining_s, input.landing_s}},
-                                               input.level.value_or(mechanical::CruisePrior::curve));
+                                               {{0.0, prediction.remaining_s, input.landing_s}}, input.prior);
     prediction.landing = rest.phases[flight::Phase::landing].energy;
     prediction.remaining_energy = rest.total;
     return rest.phases[flight::Phase::cruise];
@@ -170,7 +169,8 @@ void require_predicting(const PredictionInput& input, const std::string& file) {
 
 PredictionInput unchecked_input(const mission::MissionSetup& setup) {
     require_single_flight(setup);
-    PredictionInput input{setup.mechanical.value(), {}, setup.duration_s[flight::Phase::landing]};
+    PredictionInput input{setup.mechanical.value(), mechanical::CruisePrior::curve,
+                          setup.duration_s[flight::Phase::landing]};
     input.limits = {setup.cutoff_voltage_v, setup.reserve_soc_percent};
     if (setup.cruise_path)
         input.path = std::make_shared<const path::PathForecast>(*setup.cruise_path->plan);
@@ -311,14 +311,10 @@ BatteryPrediction forecast_battery(const battery::Battery& battery, const batter
                                          prediction.cruise.remaining_mean_w * (prediction.overtime_s ? 1.0 : factor),
                                          limits);
     };
+    const auto& interval = battery.intervals.capacity_ah;
     auto smaller = battery;
-    BatteryPrediction result;
-    result.limits = limits;
-    result.worst_uses_min_capacity = battery.intervals.capacity_ah.has_value();
-    if (result.worst_uses_min_capacity) smaller.capacity_ah = battery.intervals.capacity_ah->low;
-    result.expected = forecast(battery, 1.0);
-    result.worst = forecast(smaller, high_energy_factor(prediction));
-    return result;
+    if (interval) smaller.capacity_ah = interval->low;
+    return {forecast(battery, 1.0), forecast(smaller, high_energy_factor(prediction)), limits, interval.has_value()};
 }
 
 ReturnDeadline latest_return(const PredictionInput& input, const Prediction& prediction, battery::BatteryState now) {
@@ -396,12 +392,9 @@ PredictionInput path_input_from_mission(const mission::MissionSetup& setup, cons
 }
 
 PredictionInput input_from_model(mechanical::MechanicalModel model, const std::string& file, double remaining_s) {
-    PredictionInput input;
     for (const auto phase : {flight::Phase::cruise, flight::Phase::landing}) require_interval(model, phase, file);
-    input.model = std::move(model);
-    input.remaining_s = remaining_s;
-    input.landing_s = input.model.phases[flight::Phase::landing].duration_s;
-    return input;
+    const double landing_s = model.phases[flight::Phase::landing].duration_s;
+    return {std::move(model), mechanical::CruisePrior::curve, landing_s, remaining_s};
 }
 
 }  // namespace flightwatt::live

@@ -19,7 +19,7 @@ namespace flightwatt::live {
 /// The inputs of a prediction, except for the flight itself.
 struct PredictionInput {
     mechanical::MechanicalModel model;
-    std::optional<mechanical::CruisePrior> level = {};  ///< none: the curve
+    mechanical::CruisePrior prior = mechanical::CruisePrior::curve;
     double landing_s = 0.0;
     std::optional<double> remaining_s = {};               ///< of the cruise, from now on
     std::optional<double> cruise_s = {};                  ///< else: of the whole cruise; none: of the path

@@ -187,7 +187,7 @@ Prediction predict_airborne_start(const PredictionInput& input, const mechanical
                                   bool has_cruise_start, const std::optional<path::PathFix>& fix,
                                   Diagnostics& remarks) {
     auto ahead = input;
-    if (!ahead.level) ahead.level = mechanical::CruisePrior::constant;  // the position on the curve is not known
+    ahead.prior = mechanical::CruisePrior::constant;  // the position on the curve is not known
     double max_s = 0.0;
     if (!input.remaining_s && !has_cruise_start)
         max_s = (input.path ? input.path->flown().duration_s : input.cruise_s.value()) - flown.cruise_s();
