@@ -8,11 +8,11 @@
 #include "mechanical/prediction.h"
 #include "mission/mission_file.h"
 #include "telemetry/binary_log.h"
+#include "telemetry/data_file.h"
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <utility>
 
 #include <fmt/format.h>
@@ -57,13 +57,9 @@ PredictionInput read_model_basis(const StageCall& call, const BasisArguments& ar
 
 /// Whether the file that is to be followed is binary: by its content, and while it has none by its name.
 bool is_binary_log(const std::filesystem::path& path) {
-    constexpr std::size_t enough = 65'536;
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) return false;  // rejected when it is followed
-    std::string bytes(enough, '\0');
-    std::ifstream file(path, std::ios::binary);
-    file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, file.gcount())));
+    const auto bytes = telemetry::beginning_of_file(path);
     if (!bytes.empty()) return telemetry::detect_binary_framing(bytes).has_value();
     const auto ending = path.extension().string();
     return ending == ".LOG" || ending == ".tlm" || ending == ".TLM" || ending == ".bin";
