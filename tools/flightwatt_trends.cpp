@@ -100,27 +100,18 @@ void note_trends(const cli::StageCall& call, const std::vector<report::FlightTre
         cli::note(call, fmt::format("in no trend, as neither clock nor name contains the date: {}",
                                     fmt::join(undated, ", ")));
     }
-    std::size_t tested = 0;
+    const auto tested = std::ranges::count_if(trends, [](const auto& row) { return row.answer.trend.has_value(); });
     std::vector<std::string> changing;
-    for (const auto& row : trends) {
-        const auto& trend = row.answer.trend;
-        if (!trend) continue;
-        ++tested;
-        if (!is_significant(*trend)) continue;
-        const auto shown = [](double per_day) { return report::shown_days * std::abs(per_day); };
-        const auto [least, most] = std::minmax({shown(trend->low_per_day), shown(trend->high_per_day)});
-        changing.push_back(fmt::format("{} of {} {} by {:.3g} in {} days ({:.3g} to {:.3g})", row.quantity,
-                                       row.aircraft, trend_direction(row), shown(trend->per_day), report::shown_days,
-                                       least, most));
-    }
-    for (const auto& text : changing) cli::note(call, text);
+    for (const auto& row : trends)
+        if (row.answer.trend && is_significant(*row.answer.trend))
+            changing.push_back(fmt::format("{} of {} {}", row.quantity, row.aircraft, trend_direction(row)));
     if (tested == 0)
         cli::note(call, "no trend can be determined: " + trends.front().answer.no_trend_reason);
     else if (changing.empty())
         cli::note(call, fmt::format("none of {} quantities has a trend beyond its 95 % interval", tested));
     else
-        cli::note(call, fmt::format("{} of {} quantities have a trend; one in 20 has one by chance", changing.size(),
-                                    tested));
+        cli::note(call, fmt::format("{} of {} quantities have a trend; one in 20 has one by chance: {}",
+                                    changing.size(), tested, fmt::join(changing, ", ")));
 }
 
 int show_trends(const cli::StageCall& call, const TrendsArguments& arguments) {
