@@ -109,7 +109,6 @@ MessageCsv as_csv(const telemetry::MessageTable& table) {
         for (const auto* column : columns) result.csv += "," + cell(column->values[row], column->quantity.has_value());
         result.csv += '\n';
     }
-    result.rows = table.time_s.size();
     return result;
 }
 

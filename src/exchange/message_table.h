@@ -13,7 +13,6 @@ namespace flightwatt::exchange {
 struct MessageCsv {
     std::string csv;
     std::vector<std::string> left_out;  ///< fields without a number in any row: texts and arrays
-    std::size_t rows = 0;
 };
 
 /// All rows of a message of one sender, each field in the base unit of its quantity (ENERGY.voltage in V: voltage_v).

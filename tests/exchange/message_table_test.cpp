@@ -26,8 +26,7 @@ TEST(MessageTable, HasTimeFirstAndEveryFieldInItsBaseUnit) {
     const auto table = message_table(flight::FlightFile(test::sample(1)), "GPS", std::nullopt);
     const auto csv = parse_csv(table.csv, "gps.csv");
     EXPECT_EQ(csv.columns.front(), "time_s");
-    EXPECT_EQ(csv.rows.size(), table.rows);
-    EXPECT_GT(table.rows, 100U);
+    EXPECT_GT(csv.rows.size(), 100U);
     // utm_east is logged in cm, speed in cm/s.
     const auto east = column_index(csv, "utm_east_m");
     EXPECT_GT(cell_number(csv, csv.rows[0], east), 1e5);
