@@ -39,12 +39,9 @@ Fields<Difference> record_fields(const Difference*) {
             field("b", at(&R::b, &Estimate::value), "value of B", column{"", ".4g"}, csv_column{}),
             field("b_interval_95", at(&R::b, &Estimate::interval), "", column{"b_low|b_high", ".4g"},
                   csv_column{"b_low|b_high"}),
-            field(
-                "difference", [](const R& r) { return difference_of(r); }, "B less A", column{"", ".4g"}, csv_column{}),
+            field("difference", difference_of, "B less A", column{"", ".4g"}, csv_column{}),
             field("difference_interval_95", &R::interval, "", column{"low|high", ".4g"}, csv_column{"low|high"}),
-            field(
-                "differs", [](const R& r) { return is_significant(r); }, "the interval excludes 0; null: no interval",
-                column{}, csv_column{}),
+            field("differs", is_significant, "the interval excludes 0; null: no interval", column{}, csv_column{}),
             field("basis", basis, "`noise` or `flights`; null: no interval", column{}, csv_column{}),
             field("at_s", &R::at_s, "of a curve: time of the largest difference", column{"", ".4g"}, csv_column{})};
 }

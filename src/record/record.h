@@ -147,6 +147,12 @@ auto field(const std::string& key, F get, const std::string& description = {}, c
         key, description, [get](const R& record) { return JsonType<T>::write(get(record)); }, changes...);
 }
 
+template <typename R, typename T>
+auto field(const std::string& key, T (*get)(const R&), const std::string& description = {}, const auto&... changes) {
+    return field(
+        key, [get](const R& record) { return get(record); }, description, changes...);
+}
+
 /// The fields of a record within the record as fields of its own. `get` returns a pointer to it; where that is nullptr
 /// they have no value.
 template <typename F>

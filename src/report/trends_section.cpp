@@ -212,8 +212,7 @@ Fields<AircraftTrend> record_fields(const AircraftTrend*) {
                   not_in_json{}),
             field("significant", at(&R::answer, &A::trend, batch::is_significant), "the interval excludes 0"),
             field("no_trend_reason", at(&R::answer, &A::no_trend_reason), "reason without a trend"),
-            field(
-                "trend", [](const R& trend) { return trend_direction(trend); }, "", column{}, not_in_json{})};
+            field("trend", trend_direction, "", column{}, not_in_json{})};
 }
 
 std::optional<Section> trends_section(const std::vector<AircraftTrend>& trends) {

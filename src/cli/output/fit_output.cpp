@@ -38,8 +38,7 @@ Fields<FlightContribution> record_fields(const FlightContribution*) {
 }
 
 Fields<ModelValidation> record_fields(const ModelValidation*) {
-    return {field(
-                "default_model", [](const ModelValidation& r) { return default_model(r); }, "model of missions"),
+    return {field("default_model", default_model, "model of missions"),
             field("scores", &ModelValidation::scores, "hold-out errors")};
 }
 

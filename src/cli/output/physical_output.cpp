@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -81,7 +80,7 @@ std::vector<TermOutput> term_outputs(const mechanical::PhysicalModel& model) {
     return terms;
 }
 
-std::string_view error_basis(const mechanical::PhysicalFit& fit) {
+std::string error_basis(const mechanical::PhysicalFit& fit) {
     return fit.phases_decided ? "mean power of phases" : "bins";
 }
 
@@ -153,9 +152,7 @@ Fields<PhysicalFit> record_fields(const PhysicalFit*) {
             field("airspeed_m_per_s", at(&R::model, &M::airspeed_m_per_s, range), "range of the airspeed"),
             field("climb_m_per_s", at(&R::model, &M::climb_m_per_s, range), "range of the climb rate"),
             field("mean_airspeed_m_per_s", at(&R::model, &M::mean_airspeed_m_per_s), "mean airspeed"),
-            field(
-                "hold_out", [](const R& fit) { return std::string(cli::error_basis(fit)); },
-                "`mean power of phases`, or `bins` of a single flight"),
+            field("hold_out", cli::error_basis, "`mean power of phases`, or `bins` of a single flight"),
             field("trials", &R::trials, "terms that were tried"),
             field("speed_to_fly", &R::speeds, "null: the flights do not determine drag and induced drag")};
 }

@@ -207,8 +207,7 @@ Fields<BatteryPrediction> record_fields(const BatteryPrediction*) {
     using R = BatteryPrediction;
     return {
         field("initial_soc_percent", &R::initial_soc_percent, "at the beginning of the log"),
-        field(
-            "soc_now_percent", [](const R& r) { return r.expected.soc_now_percent; }, "now"),
+        field("soc_now_percent", at(&R::expected, &battery::LandingForecast::soc_now_percent), "now"),
         field("at_landing", &R::expected, "as expected"),
         field("at_landing_high_energy", &R::worst, "at the high end of the energy and the low end of the capacity")};
 }

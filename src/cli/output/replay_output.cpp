@@ -65,8 +65,8 @@ std::vector<std::string> missions_of(Replays replays) {
     return names;
 }
 
-std::string_view outcome_name(ComparisonOutcome outcome) {
-    constexpr std::array<std::string_view, 3> names{"better", "tie", "worse"};
+std::string outcome_name(ComparisonOutcome outcome) {
+    constexpr std::array names{"better", "tie", "worse"};
     return names.at(static_cast<std::size_t>(outcome));
 }
 
@@ -185,9 +185,7 @@ namespace flightwatt::mission {
 Fields<Comparison> record_fields(const Comparison*) {
     using R = Comparison;
     return {field("flight", &R::flight, "name of the flight"),
-            field(
-                "outcome", [](const R& r) { return std::string(cli::outcome_name(r.outcome)); },
-                "of replanning: `better`, `tie` or `worse`"),
+            field("outcome", at(&R::outcome, cli::outcome_name), "of replanning: `better`, `tie` or `worse`"),
             field("replanned_keeps_reserve", &R::replanned_keeps_reserve, "replanning keeps the reserve"),
             field("baseline_keeps_reserve", &R::baseline_keeps_reserve, "the baseline keeps the reserve"),
             field("more_utility", &R::more_utility, "replanned less baseline"),
@@ -206,9 +204,8 @@ Fields<Replay> record_fields(const Replay*) {
             field("mission", &R::mission, "name of the mission", column{}),
             field("model", &R::model, "name of the model", column{}),
             field("model_flights", &R::model_flights, "flights of the model's fit"),
-            field(
-                "training_overlap", [](const R& r) { return cli::overlap_text(r); },
-                "the flight is part of the fit: `no`, `yes` or `unknown`", column{"fitted to it"}),
+            field("training_overlap", cli::overlap_text, "the flight is part of the fit: `no`, `yes` or `unknown`",
+                  column{"fitted to it"}),
             field("planned_s", at(&R::planned_s, cli::by_phase), "planned durations"),
             field("flown_s", at(&R::flown_s, cli::by_phase), "measured durations"),
             field("planned_total_s", at(&R::planned_s, cli::total_s), "their sum", column{"planned s", ".0f"},
@@ -221,20 +218,15 @@ Fields<Replay> record_fields(const Replay*) {
             field("counter_energy_wh", &R::counter_energy_wh, "by the autopilot's counter", column{"counter Wh"}),
             field("gaps", &R::gaps, "gaps in the measured power", column{}),
             field("longest_gap_s", &R::max_gap_s, "the longest of them", column{"longest gap s"}),
-            field(
-                "bound", [](const R& replay) { return cli::proven_bound(replay); }, "no schedule has a greater utility",
-                column{"", ".4f"}),
+            field("bound", cli::proven_bound, "no schedule has a greater utility", column{"", ".4f"}),
             field("notes", &R::notes, "adjustments of mission or flight"),
-            field(
-                "schedules", [](const R& replay) { return cli::schedules_of(replay); }, "results by schedule")};
+            field("schedules", cli::schedules_of, "results by schedule")};
 }
 
 Fields<mission::Replays> record_fields(const mission::Replays*) {
     using R = mission::Replays;
     return {field("replays", &R::replays, "each mission on each flight"),
-            field(
-                "comparisons", [](const R& r) { return cli::comparisons_of(r.replays); },
-                "replanning in flight compared with plans"),
+            field("comparisons", at(&R::replays, cli::comparisons_of), "replanning in flight compared with plans"),
             field("not_replayed", &R::not_replayed, "missions that were not simulated")};
 }
 

@@ -35,9 +35,8 @@ Fields<IdleCurrent> record_fields(const IdleCurrent*) {
 
 Fields<PowerReport> record_fields(const PowerReport*) {
     using R = PowerReport;
-    return {field(
-                "current_origin", [](const R& r) { return std::string(to_string(r.origin)); },
-                "measured, or computed from throttle"),
+    return {field("current_origin", at(&R::origin, [](auto origin) { return std::string(to_string(origin)); }),
+                  "measured, or computed from throttle"),
             field("idle_current", &R::idle, "current on the ground"),
             field("energy_closure_percent", &R::energy_closure_percent, "integral of power over the counter, less 100"),
             field("charge_closure_percent", &R::charge_closure_percent, "the same of current and charge"),
@@ -157,8 +156,7 @@ Fields<SegmentedFlight> record_fields(const SegmentedFlight*) {
             field("synthetic", at(&R::series, &S::aircraft_name, flight::is_synthetic), "made by `synthesize`"),
             field("power_source", at(&R::series, source), "message of the power"),
             field("motor_evidence", at(&R::phases, &P::motor_source), "signal of the running motor"),
-            field(
-                "sorties", [](const R& r) { return sortie_outputs(r); }, "flights of the log"),
+            field("sorties", sortie_outputs, "flights of the log"),
             field("rejected_activities", at(&R::phases, &P::ground_events), "the motor ran without a flight"),
             field("power", &R::power, "the power record"),
             field("warnings", &R::warnings, "warnings")};
