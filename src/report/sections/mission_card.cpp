@@ -179,18 +179,4 @@ MissionCard mission_card(const SimulatedMission& simulated, const MissionAssessm
             .notes = notes_of(simulated, answer)};
 }
 
-std::vector<std::string> card_lines(const SimulatedMission& simulated, const MissionAssessment& answer) {
-    const auto card = mission_card(simulated, answer);
-    std::vector<std::string> lines{
-        fmt::format("{}: {}", capitalized(card.words), card.lead),
-        fmt::format("Probability: {}: {}", describe_aim(simulated.simulation.summary.reserve_soc_percent),
-                    card.probability)};
-    if (!card.reach.empty())
-        lines.push_back(fmt::format("{}: {}{}", card.reach_name, card.reach,
-                                    card.planned.empty() ? "" : fmt::format(" (planned: {})", card.planned)));
-    if (!card.help.empty()) lines.push_back(card.help);
-    lines.insert(lines.end(), card.notes.begin(), card.notes.end());
-    return lines;
-}
-
 }  // namespace flightwatt::report

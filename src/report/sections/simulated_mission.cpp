@@ -158,7 +158,6 @@ Fields<MissionOutput> record_fields(const MissionOutput*) {
     const auto probability = [](const S& summary) {
         return summary.samples ? std::optional(summary.samples->probability_below_reserve) : std::nullopt;
     };
-    const auto card = [](const R& r) { return card_lines(*r.simulated, *r.assessment); };
     return {field("mission", at(&R::simulated, &M::title), "title of the mission"),
             field("final_soc_percent", of(&S::final_soc_percent), "null: the battery cannot deliver the power"),
             field("reserve_soc_percent", of(&S::reserve_soc_percent), "reserve of the mission"),
@@ -168,7 +167,6 @@ Fields<MissionOutput> record_fields(const MissionOutput*) {
             field("reach", at(&R::assessment, &A::reach), "largest feasible mission, as modelled"),
             field("reach_with_95_percent", at(&R::assessment, &A::reach_at_95_percent), "with that probability"),
             field("min_capacity_ah", at(&R::assessment, &A::capacity_ah), "smallest battery; null: its own suffices"),
-            field("card", card, "text of its card"),
             field("with_capacity_of_flights", of(&S::by_flights), "with the pack's capacity by flights, if it differs",
                   optional_key{})};
 }

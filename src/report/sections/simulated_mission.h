@@ -77,9 +77,6 @@ MissionCard mission_card(const SimulatedMission& simulated, const MissionAssessm
 /// "keeps the reserve of 20 %", "the battery lasts".
 std::string describe_aim(double reserve_soc_percent);
 
-/// The card as sentences.
-std::vector<std::string> card_lines(const SimulatedMission& simulated, const MissionAssessment& answer);
-
 /// "12 %", "under 1 %", "over 99 %".
 std::string probability_text(double probability);
 

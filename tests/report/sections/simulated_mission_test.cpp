@@ -5,14 +5,31 @@
 #include "base/error.h"
 #include "helpers/paper_missions.h"
 #include "mission/feasibility_limits.h"
+#include "report/html.h"
 
 #include <memory>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace flightwatt::report {
 namespace {
+
+/// The card as sentences.
+std::vector<std::string> card_lines(const SimulatedMission& simulated, const MissionAssessment& answer) {
+    const auto card = mission_card(simulated, answer);
+    std::vector<std::string> lines{
+        fmt::format("{}: {}", capitalized(card.words), card.lead),
+        fmt::format("Probability: {}: {}", describe_aim(simulated.simulation.summary.reserve_soc_percent),
+                    card.probability)};
+    if (!card.reach.empty())
+        lines.push_back(fmt::format("{}: {}{}", card.reach_name, card.reach,
+                                    card.planned.empty() ? "" : fmt::format(" (planned: {})", card.planned)));
+    if (!card.help.empty()) lines.push_back(card.help);
+    lines.insert(lines.end(), card.notes.begin(), card.notes.end());
+    return lines;
+}
 
 TEST(SimulateForReport, TellsMissionsOfOneNameApart) {
     const auto missions = simulate_for_report({test::paper_mission("phased"), test::paper_mission("phased")});
