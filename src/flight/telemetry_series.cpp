@@ -122,11 +122,6 @@ const LogFamily& paparazzi_family() {
     const std::vector<FamilySource> utm{{"utm_east"}, {"utm_north"}, {"utm_zone"}};
     static const LogFamily family{
         {
-            {"altitude_m", "ESTIMATOR", {{"z", "m"}}},
-            {"altitude_m", "ROTORCRAFT_FP", {{"up", "m"}}},
-            {"altitude_m", "GPS", {{"alt", "m"}}},
-            {"altitude_m", "GPS_INT", {{"hmsl", "m"}}},
-            {"altitude_m", "AIR_DATA", {{"amsl_baro", "m"}}},
             {"throttle_percent", "ENERGY", {{"throttle", "%"}}},
             {"throttle_percent", "BAT", {{"throttle", "%"}}},
             {"voltage_v", "ENERGY", {{"voltage", "V"}}},
@@ -147,6 +142,11 @@ const LogFamily& paparazzi_family() {
             {"charge_ah", "ENERGY", {{"energy", "Ah"}}, latest},
             {"charge_ah", "BAT", {{"energy", "Ah"}}, latest},
             {"energy_wh", "ENERGY", {{"energy", "Wh"}}, latest},
+            {"altitude_m", "ESTIMATOR", {{"z", "m"}}},
+            {"altitude_m", "ROTORCRAFT_FP", {{"up", "m"}}},
+            {"altitude_m", "GPS", {{"alt", "m"}}},
+            {"altitude_m", "GPS_INT", {{"hmsl", "m"}}},
+            {"altitude_m", "AIR_DATA", {{"amsl_baro", "m"}}},
             {"east_m", "NAVIGATION", {{"pos_x", "m"}}},
             {"east_m", "ROTORCRAFT_FP", {{"east", "m"}}},
             {"east_m", "GPS", {{"utm_east", "m"}}},
