@@ -14,9 +14,12 @@
 #include <mutex>
 #include <utility>
 
+#include <Eigen/LU>
+
 namespace flightwatt::battery {
 namespace {
 
+constexpr double looked_ahead_s = 30.0;
 constexpr double unreadable_v = 0.01;  // smaller differences between resting voltages are not significant
 
 double highest_resting_v(std::span<const DischargeRecord> records) {
@@ -175,31 +178,61 @@ double resting_charge_ah(const DischargeRecord& record, const JointCircuitFit& a
     return interpolate_clamped(rising_v, falling_ah, reference_v - below_v);
 }
 
-/// Mean square errors of a predicted voltage.
-struct VoltageErrors {
-    double all_v2 = 0.0;
-    double load_v2 = 0.0;  ///< from the first load on
-};
-
-/// Before the first load the voltage is `above_v` above the curve.
-VoltageErrors errors_of(const PredictedVoltage& predicted, const DischargeRecord& record, double above_v) {
-    double rest_squares = 0.0;
-    double load_squares = 0.0;
-    double loaded = 0.0;
-    for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-        if (!record.used[i]) continue;
-        const double error_v = record.voltage_v[i] - predicted.voltage_v[i];
-        const bool rests = i < record.rest_samples;
-        (rests ? rest_squares : load_squares) += std::pow(rests ? error_v - above_v : error_v, 2);
-        if (!rests) loaded += 1.0;
+/// Measured less predicted [V] at used samples from the index `first` on. Before the first load the voltage is
+/// `above_v` above the curve.
+Eigen::VectorXd errors_v(const std::vector<double>& predicted_v, const DischargeRecord& record, std::size_t first,
+                         double above_v = 0.0) {
+    std::vector<double> errors;
+    for (std::size_t i = first; i < predicted_v.size(); ++i) {
+        const double rest_v = i < record.rest_samples ? above_v : 0.0;
+        if (record.used[i]) errors.push_back(record.voltage_v[i] - predicted_v[i] - rest_v);
     }
-    return {(rest_squares + load_squares) / static_cast<double>(used_sample_count(record)),
-            load_squares / std::max(1.0, loaded)};
+    return Eigen::Map<const Eigen::VectorXd>(errors.data(), std::ssize(errors));
+}
+
+double root_mean_square(const Eigen::VectorXd& values) {
+    return values.norm() / std::sqrt(std::max(1.0, static_cast<double>(values.size())));
+}
+
+/// The voltage of a record in flight, predicted `ahead_s` before each sample: offset, resistance and slope of the curve
+/// follow the samples from the first load to then (docs/methods.md, Eq. 27c).
+std::vector<double> predict_voltage_ahead(const Battery& battery, const DischargeRecord& record,
+                                          const std::vector<double>& model_v, double ahead_s) {
+    constexpr double memory_s = 20.0;          // a sample counts by exp(-age / memory_s)
+    constexpr double slope_sd_v = 0.6;         // a cell, of the fall of the curve from full to empty
+    constexpr double sample_sd_v = 0.01;       // a cell, of the voltage about the circuit
+    constexpr double sample_settling_s = 3.0;  // for which neighbours share that error
+    const auto first = record.rest_samples;
+    const int cells = battery.cells.value_or(1);
+    const auto settled_a = rc_branch_current_a(record, battery.thevenin.value().rc_time_constant_s);
+    const auto row = [&](std::size_t i) {  // derivatives by offset [V], relative resistance and slope [V/Ah]
+        const double rc_v = battery.thevenin->rc_resistance_ohm * settled_a[i];
+        return Eigen::Vector3d(1.0, -battery.resistance_ohm * record.current_a[i] - rc_v,
+                               record.charge_ah[first] - record.charge_ah[i]);
+    };
+    const Eigen::Vector3d prior_sd(cells * chart_sd_v, default_scatter_fraction,
+                                   cells * slope_sd_v / battery.capacity_ah);
+    const Eigen::Matrix3d prior = prior_sd.cwiseAbs2().cwiseInverse().asDiagonal();
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d score = Eigen::Vector3d::Zero();
+    auto voltage_v = model_v;
+    std::size_t next = first;  // the first sample that is not known yet
+    for (std::size_t i = first; i < voltage_v.size(); ++i) {
+        for (; record.time_s[next] <= record.time_s[i] - ahead_s; ++next) {
+            const double step_s = record.time_s[next] - record.time_s[std::max<std::size_t>(next, 1) - 1];
+            const double decay = std::exp(-step_s / memory_s);
+            const double share = record.used[next] ? std::min(step_s / sample_settling_s, 1.0) : 0.0;
+            const Eigen::Vector3d weighted = share / std::pow(cells * sample_sd_v, 2) * row(next);
+            information = decay * information + weighted * row(next).transpose();
+            score = decay * score + (record.voltage_v[next] - model_v[next]) * weighted;
+        }
+        if (next > first) voltage_v[i] += row(i).dot((prior + information).inverse() * score);
+    }
+    return voltage_v;
 }
 
 double beyond_percent(const BatteryIdentification& identified, const DischargeRecord& record,
-                      double initial_charge_ah) {
-    const auto predicted = predict_voltage(identified.battery, record, initial_charge_ah);
+                      const PredictedVoltage& predicted) {
     double beyond = 0.0;
     for (std::size_t i = 0; i < record.time_s.size(); ++i)
         if (record.used[i] && predicted.soc_percent[i] < identified.observed_min_soc_percent) beyond += 1.0;
@@ -211,11 +244,17 @@ LeaveOneOutCheck checked(const IdentificationResult& common, const DischargeReco
     LeaveOneOutCheck check;
     check.flight = record.flight;
     check.initial_charge_ah = identified.curve_start_depletion_ah + resting_charge_ah(record, common.fitted.aligned);
-    const auto errors = errors_of(predict_voltage(identified.battery, record, check.initial_charge_ah), record,
-                                  identified.fit.common_rest_offset_v);
-    check.voltage_rms_v = std::sqrt(errors.all_v2);
-    check.load_rms_v = std::sqrt(errors.load_v2);
-    check.extrapolated_percent = beyond_percent(identified, record, check.initial_charge_ah);
+    const auto predicted = predict_voltage(identified.battery, record, check.initial_charge_ah);
+    check.voltage_rms_v =
+        root_mean_square(errors_v(predicted.voltage_v, record, 0, identified.fit.common_rest_offset_v));
+    const auto under_load = errors_v(predicted.voltage_v, record, record.rest_samples);
+    check.load_rms_v = root_mean_square(under_load);
+    check.load_mean_error_v = under_load.cwiseAbs().mean();
+    const auto first = std::ranges::lower_bound(record.time_s, record.time_s[record.rest_samples] + looked_ahead_s);
+    const auto ahead = errors_v(predict_voltage_ahead(identified.battery, record, predicted.voltage_v, looked_ahead_s),
+                                record, static_cast<std::size_t>(first - record.time_s.begin()));
+    check.ahead_error_v = ahead.size() > 0 ? ahead.cwiseAbs().mean() : 0.0;
+    check.extrapolated_percent = beyond_percent(identified, record, predicted);
     return check;
 }
 

@@ -113,6 +113,8 @@ struct LeaveOneOutCheck {
     std::string flight;
     double voltage_rms_v = 0.0;         ///< of all samples, predicted before take-off
     double load_rms_v = 0.0;            ///< of those under load
+    double load_mean_error_v = 0.0;     ///< mean |error| of those under load
+    double ahead_error_v = 0.0;         ///< the same, predicted in flight 30 s before each sample
     double initial_charge_ah = 0.0;     ///< missing from the full pack, by the others and its rest before take-off
     double extrapolated_percent = 0.0;  ///< of its samples: with more charge drawn than in any other flight
 };

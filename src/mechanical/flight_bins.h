@@ -37,9 +37,6 @@ struct BinnedFlight {
     AircraftLoad load = {};
 };
 
-/// Length of a bin: longer than gusts and the exchange of height and speed, shorter than manoeuvres.
-inline constexpr double default_bin_s = 30.0;
-
 /// Each span in equal bins of about `bin_s`. A bin counts where power, airspeed (of a rotorcraft without one, ground
 /// speed) and altitude were measured in half of its seconds or more (a sample within 5 s). Its terms:
 ///   drag, induced   means of V^3 and 1/V of the airspeed's samples (1/V at half their median or more: below, the wing

@@ -97,12 +97,16 @@ double covariance_of_means_w2(const DriftProcess& drift, double first_s, double 
     return drift.sd_w * drift.sd_w * part(first_s) * part(second_s);
 }
 
+double drift_variance_w2(const PhysicalModel& model, double duration_s) {
+    return variance_of_mean_w2({model.drift_sd_w, model.correlation_s}, duration_s) / weight_of_bin(duration_s);
+}
+
 ConstantPower predicted_power(const PhysicalModel& model, const TermValues& mean_values, double duration_s) {
     const double sum_w = sum_of_terms_w(model, mean_values);
     ConstantPower power{std::max(sum_w, 0.0), std::nullopt, model.degrees_of_freedom};
     if (!model.level_sd) return power;
     const double between_w2 = std::pow(*model.level_sd * sum_w, 2) + coefficient_variance_w2(model, mean_values);
-    const double drift_w2 = variance_of_mean_w2({model.drift_sd_w, model.correlation_s}, duration_s);
+    const double drift_w2 = drift_variance_w2(model, duration_s);
     const double variance_w2 = between_w2 + drift_w2;
     power.sd_w = std::sqrt(variance_w2);
     if (variance_w2 > 0.0)

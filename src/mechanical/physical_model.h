@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -147,6 +148,15 @@ struct DriftProcess {
 
 /// Variance [W^2] of the mean over `duration_s` (docs/methods.md, Eq. 17).
 double variance_of_mean_w2(const DriftProcess& drift, double duration_s);
+
+/// Length of a bin: longer than gusts and the exchange of height and speed, shorter than manoeuvres.
+inline constexpr double default_bin_s = 30.0;
+
+/// Shorter bins weigh in proportion, as gusts and manoeuvres do not average out over them.
+inline double weight_of_bin(double duration_s) { return std::min(1.0, duration_s / default_bin_s); }
+
+/// Variance [W^2] of the model's drift as the mean over `duration_s`, which may be less than a bin.
+double drift_variance_w2(const PhysicalModel& model, double duration_s);
 
 /// Covariance [W^2] of the means over two durations, the second of which follows the first.
 double covariance_of_means_w2(const DriftProcess& drift, double first_s, double second_s);

@@ -264,6 +264,19 @@ TEST(Identification, GivesBackWhatSynthesizedLogsWereMadeOf) {
     }
 }
 
+TEST(Identification, FollowsThePackInFlight) {
+    std::vector<DischargeRecord> records;
+    for (const std::size_t seed : {1U, 2U, 3U})
+        records.push_back(test::discharge_record(synthetic_discharge(known_pack(), {}, seed)));
+    auto& other = records.back();  // a pack with half as much resistance again
+    for (std::size_t i = 0; i < other.time_s.size(); ++i)
+        other.voltage_v[i] -= 0.5 * known_pack().resistance_ohm * other.current_a[i];
+    const auto check = leave_one_out(records, {}).back();
+    EXPECT_GT(check.load_mean_error_v, 0.05);
+    EXPECT_GT(check.ahead_error_v, 0.0);
+    EXPECT_LT(check.ahead_error_v, 0.5 * check.load_mean_error_v);
+}
+
 TEST(Identification, ForetellsRealFlights) {
     FLIGHTWATT_NEEDS_SHARED();
     std::vector<DischargeRecord> records;

@@ -74,6 +74,8 @@ TEST(PhysicalModel, AddsTheCausesOfItsUncertainty) {
     EXPECT_GT(of.degrees_of_freedom, 4.0);
     EXPECT_LT(of.degrees_of_freedom, 10.0);
     EXPECT_GT(predicted_power(some_model(), values, 60.0).sd_w, of.sd_w);
+    const DriftProcess drift{some_model().drift_sd_w, some_model().correlation_s};
+    EXPECT_DOUBLE_EQ(drift_variance_w2(some_model(), 15.0), 2.0 * variance_of_mean_w2(drift, 15.0)) << "half a bin";
     auto single = some_model();
     single.level_sd.reset();
     EXPECT_FALSE(predicted_power(single, values, 600.0).sd_w.has_value());

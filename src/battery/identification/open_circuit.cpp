@@ -14,14 +14,18 @@ namespace flightwatt::battery {
 namespace {
 
 constexpr double max_high_voltage_cell_v = 4.45;
-constexpr double min_fraction = 0.03;  // of the charge: less does not determine the capacity
+constexpr double full_high_voltage_cell_v = 4.38;  // charged to 4.35 V, with an error of the sensor
+constexpr double nearly_empty_percent = 25.0;      // less is no charge to take off with
+constexpr double min_fraction = 0.03;              // of the charge: less does not determine the capacity
 constexpr double flown_fraction = 0.95;
 constexpr double added_step_percent = 5.0;
 
 }  // namespace
 
 int lipo_cells(double resting_voltage_v) {
-    return static_cast<int>(std::max(1.0, std::ceil(resting_voltage_v / max_charged_cell_v)));
+    const int cells = static_cast<int>(std::max(1.0, std::ceil(resting_voltage_v / max_charged_cell_v)));
+    const bool nearly_empty = resting_voltage_v / cells <= chart_voltage_v(Chemistry::lipo, nearly_empty_percent);
+    return nearly_empty && resting_voltage_v <= (cells - 1) * full_high_voltage_cell_v ? std::max(1, cells - 1) : cells;
 }
 
 void require_possible_cells(double resting_voltage_v, int cells) {

@@ -10,7 +10,7 @@
 
 namespace flightwatt::battery {
 
-/// The number of cells of a charged pack that rests at this voltage: at most 4.25 V a cell.
+/// The number of cells of a charged pack at rest: up to 4.25 V each, or 4.38 V where one more had 25 % or less left.
 int lipo_cells(double resting_voltage_v);
 
 /// No lithium cell rests below or above these.

@@ -39,6 +39,9 @@ Fields<LeaveOneOutCheck> record_fields(const LeaveOneOutCheck*) {
         field("voltage_rms_mv", at(&R::voltage_rms_v, units::mv_from_v), "error", column_if_any("leave-one-out mV")),
         field("load_voltage_rms_mv", at(&R::load_rms_v, units::mv_from_v), "error from the first load on",
               column_if_any("under load mV")),
+        field("load_mean_error_mv", at(&R::load_mean_error_v, units::mv_from_v), "mean |error| from the first load on"),
+        field("ahead_30_s_error_mv", at(&R::ahead_error_v, units::mv_from_v), "mean |error| 30 s ahead in flight",
+              column_if_any("30 s ahead mV")),
         field("extrapolated_percent", &R::extrapolated_percent, "part of its charge that no other flight reached",
               column_if_any("extrapolated %", ".0f"))};
 }

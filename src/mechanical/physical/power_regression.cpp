@@ -111,16 +111,17 @@ PosteriorPower posterior_power(const PhysicalModel& model, const ParameterDistri
     power.level = parameters.mean[parameters.mean.size() - 1];
     auto gradient = gradient_of(model, ahead.mean_terms);
     double mean_w = power.model_w + gradient.dot(parameters.mean);
-    double drift_w2 = variance_of_mean_w2({model.drift_sd_w, model.correlation_s}, ahead.duration_s);
+    double drift_w2 = drift_variance_w2(model, ahead.duration_s);
     if (!flown.empty()) {
         const auto& last = flown.back();
-        const double remaining = std::exp(-std::max(now_s - last.middle_s(), 0.0) / model.correlation_s) *
-                                 -std::expm1(-ahead.duration_s / model.correlation_s) * model.correlation_s /
-                                 ahead.duration_s;
+        const double fading = std::exp(-std::max(now_s - last.middle_s(), 0.0) / model.correlation_s) *
+                              -std::expm1(-ahead.duration_s / model.correlation_s) * model.correlation_s /
+                              ahead.duration_s;
+        const double remaining = fading * weight_of_bin(last.duration_s);
         const auto last_gradient = gradient_of(model, last.values);
         mean_w += remaining * (last.power_w - sum_of_terms_w(model, last.values) - last_gradient.dot(parameters.mean));
         gradient -= remaining * last_gradient;
-        drift_w2 -= remaining * remaining * model.drift_sd_w * model.drift_sd_w;
+        drift_w2 -= fading * remaining * model.drift_sd_w * model.drift_sd_w;
     }
     power.mean_w = std::max(mean_w, 0.0);
     power.parameter_sd_w = std::sqrt(std::max(gradient.dot(parameters.covariance * gradient), 0.0));
@@ -157,7 +158,7 @@ NormalEquations accumulate_normal_equations(std::span<const FlightBin> bins, dou
             response = (response - correlation * bins[i - 1].power_w) / std::sqrt(innovation);
             sums.log_determinant += std::log(innovation);
         }
-        const double weight = std::sqrt(std::min(1.0, bins[i].duration_s / default_bin_s));
+        const double weight = std::sqrt(weight_of_bin(bins[i].duration_s));
         column *= weight;
         response *= weight;
         sums.products += column * column.transpose();

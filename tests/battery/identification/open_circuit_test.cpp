@@ -43,7 +43,8 @@ TEST(Charts, Rise) {
 TEST(LipoCells, AreAsManyAsTheRestingVoltageNeeds) {
     EXPECT_EQ(lipo_cells(12.6), 3);
     EXPECT_EQ(lipo_cells(12.75), 3) << "4.25 V a cell is still charged";
-    EXPECT_EQ(lipo_cells(12.76), 4);
+    EXPECT_EQ(lipo_cells(12.76), 3) << "four would be nearly empty";
+    EXPECT_EQ(lipo_cells(13.15), 4);
     EXPECT_EQ(lipo_cells(4.2), 1);
     EXPECT_EQ(lipo_cells(16.8), 4);
     EXPECT_EQ(lipo_cells(25.2), 6);
@@ -76,7 +77,9 @@ TEST(LipoCells, AreDoubtfulOutsideOfTheChart) {
 
 TEST(LipoCells, MayBeOneLessOfHighVoltage) {
     const double full_v = 6.0 * 4.35;  // six cells that a guess takes for seven
-    ASSERT_EQ(lipo_cells(full_v), 7);
+    EXPECT_EQ(lipo_cells(full_v), 6) << "seven would be nearly empty";
+    EXPECT_EQ(lipo_cells(6.0 * 4.38 - 1e-9), 7) << "more than a quarter is left in seven";
+    EXPECT_EQ(lipo_cells(5.0 * 4.381), 6) << "more than full high-voltage cells";
     EXPECT_EQ(cells_warning(full_v, 7, false),
               "7 cells assumed, at 3.73 V each; 6 full high-voltage cells rest at 4.35 V each: give --cells");
     EXPECT_EQ(cells_warning(full_v, 7, true), "") << "seven were given";
