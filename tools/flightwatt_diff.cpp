@@ -17,7 +17,6 @@
 #include <array>
 #include <filesystem>
 #include <system_error>
-#include <tuple>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -114,34 +113,24 @@ double phase_energy_wh(const mission::SocCurve& curve, mission::Phase phase) {
     return units::wh_from_joule(energy_j);
 }
 
-/// Energy of each phase and the quantities of the whole mission. Intervals are those of `drawn`.
-std::vector<Difference> mission_difference(const mission::Simulation& a, const mission::Simulation& b,
-                                           const std::optional<mission::SampledDifference>& drawn) {
+/// Energy of each phase and the quantities of the whole mission, without intervals.
+std::vector<Difference> mission_difference(const mission::Simulation& a, const mission::Simulation& b) {
     std::vector<Difference> all;
     all.reserve(2 * mission::all_phases.size());
     for (const auto phase : mission::all_phases) {
         all.push_back(computed(std::string(to_string(phase)), "energy_wh", "Wh", phase_energy_wh(a.curve, phase),
                                phase_energy_wh(b.curve, phase)));
     }
-    using Intervals = mission::DrawnIntervals mission::SampledDifference::*;
-    const auto add = [&](const char* quantity, const char* unit, auto mission::MissionSummary::*member,
-                         Intervals intervals = nullptr) {
+    const auto add = [&](const char* quantity, const char* unit, auto mission::MissionSummary::*member) {
         auto row = computed("mission", quantity, unit, a.summary.*member, b.summary.*member);
-        if (!row.a && !row.b) return;
-        if (drawn && intervals != nullptr && row.a && row.b) {
-            std::tie(row.a->interval, row.b->interval) = std::pair((*drawn.*intervals).a, (*drawn.*intervals).b);
-            row.interval = (*drawn.*intervals).difference;
-            row.basis = mechanical::DifferenceBasis::flights;
-        }
-        all.push_back(std::move(row));
+        if (row.a || row.b) all.push_back(std::move(row));
     };
     using S = mission::MissionSummary;
-    using D = mission::SampledDifference;
-    add("duration_s", "s", &S::duration_s, &D::duration_s);
-    add("mechanical_energy_wh", "Wh", &S::mechanical_energy_wh, &D::mechanical_energy_wh);
-    add("compute_energy_wh", "Wh", &S::compute_energy_wh, &D::compute_energy_wh);
-    add("energy_wh", "Wh", &S::energy_wh, &D::energy_wh);
-    add("final_soc_percent", "%", &S::final_soc_percent, &D::final_soc_percent);
+    add("duration_s", "s", &S::duration_s);
+    add("mechanical_energy_wh", "Wh", &S::mechanical_energy_wh);
+    add("compute_energy_wh", "Wh", &S::compute_energy_wh);
+    add("energy_wh", "Wh", &S::energy_wh);
+    add("final_soc_percent", "%", &S::final_soc_percent);
     add("depleted_at_s", "s", &S::depleted_at_s);
     add("utility", "", &S::utility);
     return all;
@@ -153,13 +142,8 @@ std::vector<Difference> mission_differences(const cli::StageCall& call) {
     const auto b = mission::read_mission(call.inputs[1], {true, std::nullopt});
     cli::warn_of_setup(call, setup_of(a));
     cli::warn_of_setup(call, setup_of(b));
-    const auto prepared_a = prepare_mission(a);
-    const auto prepared_b = prepare_mission(b);
-    const auto flown_a = simulate_prepared(prepared_a).simulation;
-    const auto flown_b = simulate_prepared(prepared_b).simulation;
-    const auto drawn = sample_difference(prepared_a, prepared_b);
-    if (drawn) cli::note(call, describe(*drawn));
-    return mission_difference(flown_a, flown_b, drawn);
+    const auto flown_a = simulate_prepared(prepare_mission(a)).simulation;
+    return mission_difference(flown_a, simulate_prepared(prepare_mission(b)).simulation);
 }
 
 /// Of two models or batches.
@@ -219,8 +203,8 @@ int flightwatt::stages::diff_stage(int argc, char** argv) {
         R"(Compares two mechanical models, two folders of flightwatt batch, or two missions: B minus A with its 95 %
 interval, and whether that excludes 0. Intervals of coefficients follow from the noise of the samples (basis noise),
 those of durations, mean powers, energies and physical terms from the variability between flights (basis flights). Flights that both models
-rest on narrow the intervals. Differences of missions are exact; if both state the variability of flights, the intervals of
-duration, energies and final charge are those of 95 of 100 flights drawn for both (basis flights).)"};
+rest on narrow the intervals. Differences of missions are those of the missions as computed, without intervals:
+`flightwatt simulate --samples N` draws the flights of each.)"};
     stage.min_inputs = 2;
     stage.max_inputs = 2;
     stage.json_schema = cli::document_schema<Differences>;

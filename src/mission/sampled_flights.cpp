@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -86,69 +85,6 @@ void require_samples(const SamplingOptions& options) {
         fmt::format("{} samples make no distribution; expected 2 to {:.0f}", options.samples, max_samples));
 }
 
-/// What two missions are compared by, of one drawn flight.
-struct FlownQuantities {
-    double duration_s = 0.0;
-    double mechanical_energy_wh = 0.0;
-    double compute_energy_wh = 0.0;
-    double energy_wh = 0.0;
-    double final_soc_percent = 0.0;
-};
-
-/// Of flights of one of them, each by the numbers that `normals_of` gives it.
-std::vector<FlownQuantities> fly_compared(const PreparedMission& prepared, const FlightUncertainty& spreads,
-                                          std::size_t count,
-                                          const std::function<std::vector<double>(std::size_t)>& normals_of) {
-    std::vector<FlownQuantities> flown(count);
-    const FlightDraw draw = [&](std::size_t i, DrawnFlight& flight) {
-        apply_draw(prepared.setup, spreads, normals_of(i), flight.setup);
-        schedule_flight(prepared, {}, {}, flight);
-        for (const auto& segment : flight.segments) {
-            flown[i].mechanical_energy_wh += units::wh_from_joule(mechanical_energy_j(segment, segment.end_s));
-            flown[i].compute_energy_wh += units::wh_from_joule(compute_energy_j(segment, segment.end_s));
-        }
-        flown[i].duration_s = timeline_of(flight.setup.duration_s).duration_s;
-        flown[i].energy_wh = flown[i].mechanical_energy_wh + flown[i].compute_energy_wh;
-    };
-    const auto landings = fly_drawn(prepared.setup, draw, 0, count);
-    for (std::size_t i = 0; i < count; ++i)
-        flown[i].final_soc_percent = landings[i].battery_failure ? 0.0 : landings[i].final_soc_percent;
-    return flown;
-}
-
-Interval middle_95(std::vector<double> values) {
-    std::ranges::sort(values);
-    return {quantile(values, 0.025), quantile(values, 0.975)};
-}
-
-DrawnIntervals intervals_of(const std::vector<FlownQuantities>& of_a, const std::vector<FlownQuantities>& of_b,
-                            double FlownQuantities::*quantity) {
-    std::vector<double> a;
-    std::vector<double> b;
-    std::vector<double> difference;
-    for (std::size_t i = 0; i < of_a.size(); ++i) {
-        a.push_back(of_a[i].*quantity);
-        b.push_back(of_b[i].*quantity);
-        difference.push_back(b.back() - a.back());
-    }
-    return {middle_95(a), middle_95(b), middle_95(difference)};
-}
-
-/// Names the sources that vary jointly in both missions and those that vary independently.
-void name_sources(const MissionSetup& a, const MissionSetup& b, const CommonSources& common,
-                  SampledDifference& difference) {
-    const auto add = [&](bool is_shared, const std::string& name) {
-        (is_shared ? difference.shared_sources : difference.independent_sources).push_back(name);
-    };
-    if (a.mechanical || b.mechanical) add(common.mechanical, "mechanical model");
-    add(common.battery, "battery");
-    for (std::size_t i = 0; i < common.components.size(); ++i)
-        add(common.components[i].has_value(), b.compute.components[i].name);
-    if (a.cruise_path && b.cruise_path) add(true, "wind");
-    if (a.uncertainty.initial_soc_sd_percent > 0.0 && b.uncertainty.initial_soc_sd_percent > 0.0)
-        add(true, "initial charge");
-}
-
 }  // namespace
 
 MonteCarloResult sample_flights(const PreparedMission& prepared, const Disturbances& disturbances,
@@ -183,45 +119,6 @@ MonteCarloResult sample_flights(const PreparedMission& prepared, const Disturban
     count_landings(landings, flights);
     flights.bands = bands_of(landings, times_s);
     return flights;
-}
-
-std::optional<SampledDifference> sample_difference(const PreparedMission& a, const PreparedMission& b,
-                                                   const SamplingOptions& options) {
-    require_samples(options);
-    const auto spreads_a = collect_uncertainty(a.setup);
-    const auto spreads_b = collect_uncertainty(b.setup);
-    if (spreads_a.sources.varied.empty() || spreads_b.sources.varied.empty()) return std::nullopt;
-    const auto common = common_sources(a.setup, b.setup);
-    const auto other_seed = ~options.seed;  // of sources that are not common
-    const auto normals_of_a = [&](std::size_t i) { return draw_normals(count_normals(a.setup), options.seed, i); };
-    const auto of_a = fly_compared(a, spreads_a, options.samples, normals_of_a);
-    const auto of_b = fly_compared(b, spreads_b, options.samples, [&](std::size_t i) {
-        return correlated_normals(a.setup, b.setup, common, normals_of_a(i),
-                                  draw_normals(count_normals(b.setup), other_seed, i));
-    });
-    SampledDifference difference;
-    difference.samples = options.samples;
-    difference.duration_s = intervals_of(of_a, of_b, &FlownQuantities::duration_s);
-    difference.mechanical_energy_wh = intervals_of(of_a, of_b, &FlownQuantities::mechanical_energy_wh);
-    difference.compute_energy_wh = intervals_of(of_a, of_b, &FlownQuantities::compute_energy_wh);
-    difference.energy_wh = intervals_of(of_a, of_b, &FlownQuantities::energy_wh);
-    difference.final_soc_percent = intervals_of(of_a, of_b, &FlownQuantities::final_soc_percent);
-    difference.sources_a = spreads_a.sources;
-    difference.sources_b = spreads_b.sources;
-    name_sources(a.setup, b.setup, common, difference);
-    return difference;
-}
-
-std::string describe(const SampledDifference& difference) {
-    const auto list = [](const char* what, const std::vector<std::string>& names) {
-        return names.empty() ? "" : fmt::format("; {}: {}", what, fmt::join(names, ", "));
-    };
-    const auto a = describe(difference.sources_a);
-    const auto b = describe(difference.sources_b);
-    return fmt::format("intervals hold 95 in 100 of {} flights drawn for both{}{}; {}", difference.samples,
-                       list("varying jointly in both", difference.shared_sources),
-                       list("varying independently in each", difference.independent_sources),
-                       a == b ? a : fmt::format("a: {}; b: {}", a, b));
 }
 
 std::string describe(const MonteCarloResult& flights) {

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,29 +23,8 @@ struct SamplingOptions {
 MonteCarloResult sample_flights(const PreparedMission& prepared, const Disturbances& disturbances,
                                 const SamplingOptions& options);
 
-/// 95 % intervals over the flights of two missions, and of the difference b - a.
-struct DrawnIntervals {
-    Interval a, b, difference;
-};
-
-/// Two missions on flights drawn for both. Common sources (the same mechanical model, battery, profile of a component,
-/// the wind) vary jointly, the others independently.
-struct SampledDifference {
-    std::size_t samples = 0;
-    DrawnIntervals duration_s, mechanical_energy_wh, compute_energy_wh, energy_wh, final_soc_percent;
-    UncertaintySources sources_a, sources_b;
-    std::vector<std::string> shared_sources;  ///< "mechanical model", "battery" ...
-    std::vector<std::string> independent_sources;
-};
-
-/// Simulates both with common random numbers (docs/methods.md, Two missions); a failed battery has 0 % left. None if
-/// the variability of one of them is unknown. Throws as sample_flights for a number of samples.
-std::optional<SampledDifference> sample_difference(const PreparedMission& a, const PreparedMission& b,
-                                                   const SamplingOptions& options = {});
-
 /// Text for people.
 std::string describe(const MonteCarloResult& flights);
-std::string describe(const SampledDifference& difference);
 
 /// time_s,soc_p05_percent,soc_p50_percent,soc_p95_percent
 std::string to_csv(const std::vector<SocBand>& bands);

@@ -130,50 +130,5 @@ TEST(SampledFlights, SayWhatIsDrawnAndWhatIsNot) {
     EXPECT_EQ(spreads.sources.fixed.size(), 10U);
 }
 
-/// A cruise of so long at 20 W +- 5 %, that keeps 36 kJ.
-Mission cruise_of(double duration_s) {
-    auto mission = gaussian_depletion(0.0);
-    mission.setup.duration_s[flight::Phase::cruise] = duration_s;
-    mission.schedule = {{flight::Phase::cruise, 0.0, duration_s, {}}};
-    return mission;
-}
-
-TEST(SampleDifference, OfOneAircraftIsThatOfTheDay) {
-    const auto drawn =
-        sample_difference(prepare_mission(cruise_of(1000.0)), prepare_mission(cruise_of(1100.0)), {20000, 1});
-    ASSERT_TRUE(drawn);
-    EXPECT_EQ(drawn->shared_sources, (std::vector<std::string>{"mechanical model", "battery"}));
-    EXPECT_TRUE(drawn->independent_sources.empty());
-    // 100 s at 20 W, and 5 % of that: the closed form; of 36 kJ.
-    constexpr double more_percent = 2000.0 / 360.0;
-    const auto& soc = drawn->final_soc_percent.difference;
-    EXPECT_NEAR(soc.low, -more_percent * (1.0 + 1.96 * 0.05), 0.02);
-    EXPECT_NEAR(soc.high, -more_percent * (1.0 - 1.96 * 0.05), 0.02);
-    const auto& energy = drawn->energy_wh.difference;
-    EXPECT_NEAR(energy.high, 2000.0 / 3600.0 * (1.0 + 1.96 * 0.05), 0.002);
-    EXPECT_NEAR(drawn->final_soc_percent.a.low, 100.0 - 20000.0 / 360.0 * (1.0 + 1.96 * 0.05), 0.2);
-    EXPECT_EQ(drawn->duration_s.difference.low, 100.0);
-    EXPECT_EQ(drawn->compute_energy_wh.difference.high, 0.0);
-}
-
-TEST(SampleDifference, OfTwoAircraftIsWider) {
-    auto other = cruise_of(1000.0);
-    other.setup.mechanical->phases[flight::Phase::cruise].fourier.a0_w = 22.0;
-    const auto drawn = sample_difference(prepare_mission(cruise_of(1000.0)), prepare_mission(other), {20000, 1});
-    ASSERT_TRUE(drawn);
-    EXPECT_EQ(drawn->shared_sources, (std::vector<std::string>{"battery"}));
-    EXPECT_EQ(drawn->independent_sources, (std::vector<std::string>{"mechanical model"}));
-    const double sd_wh = std::hypot(1.0, 1.1) / 3.6;
-    EXPECT_NEAR(drawn->energy_wh.difference.low, 2.0 / 3.6 - 1.96 * sd_wh, 0.02);
-    EXPECT_NEAR(drawn->energy_wh.difference.high, 2.0 / 3.6 + 1.96 * sd_wh, 0.02);
-    EXPECT_NE(describe(*drawn).find("varying independently in each: mechanical model"), std::string::npos);
-}
-
-TEST(SampleDifference, IsUnknownWhereOneDoesNotSayHowFlightsDiffer) {
-    EXPECT_FALSE(sample_difference(prepare_mission(cruise_of(1000.0)), prepare_mission(test::steady_mission())));
-    const auto prepared = prepare_mission(test::steady_mission());
-    EXPECT_THROW(sample_difference(prepared, prepared, {1, 1}), UsageError);
-}
-
 }  // namespace
 }  // namespace flightwatt::mission

@@ -174,55 +174,14 @@ constexpr std::size_t of_wind = 2;
 constexpr double min_initial_soc_percent = 0.1;
 
 /// Numbers of the phases, the battery and the components before this one.
-std::size_t normals_before_component(const MissionSetup& mission, std::size_t component) {
-    std::size_t count = phase_quantities + of_battery;
-    for (std::size_t i = 0; i < component; ++i) count += 1 + mission.compute.components[i].profile.power_w.size();
-    return count;
-}
-
-std::size_t normals_before_wind(const MissionSetup& mission) {
-    return normals_before_component(mission, mission.compute.components.size());
-}
-
 bool initial_charge_varies(const MissionSetup& mission) { return mission.uncertainty.initial_soc_sd_percent > 0.0; }
 
 }  // namespace
 
 std::size_t count_normals(const MissionSetup& mission) {
-    return normals_before_wind(mission) + (mission.cruise_path ? of_wind : 0) +
-           (initial_charge_varies(mission) ? 1 : 0);
-}
-
-CommonSources common_sources(const MissionSetup& a, const MissionSetup& b) {
-    CommonSources common;
-    common.mechanical = a.mechanical && b.mechanical && to_toml(*a.mechanical) == to_toml(*b.mechanical);
-    common.battery = to_toml(a.battery) == to_toml(b.battery);
-    const auto& of_a = a.compute.components;
-    for (const auto& component : b.compute.components) {
-        const auto same = std::ranges::find_if(of_a, [&](const auto& other) {
-            return other.name == component.name && other.profile.power_w == component.profile.power_w;
-        });
-        common.components.push_back(same == of_a.end() ? std::nullopt
-                                                       : std::optional<std::size_t>(same - of_a.begin()));
-    }
-    return common;
-}
-
-std::vector<double> correlated_normals(const MissionSetup& a, const MissionSetup& b, const CommonSources& common,
-                                       std::span<const double> of_a, std::vector<double> own) {
-    const auto take = [&](std::size_t from, std::size_t to, std::size_t count) {
-        std::ranges::copy(of_a.subspan(from, count), own.begin() + static_cast<std::ptrdiff_t>(to));
-    };
-    if (common.mechanical) take(0, 0, phase_quantities);
-    if (common.battery) take(phase_quantities, phase_quantities, of_battery);
-    for (std::size_t i = 0; i < common.components.size(); ++i) {
-        if (const auto& same = common.components[i])
-            take(normals_before_component(a, *same), normals_before_component(b, i),
-                 normals_before_component(b, i + 1) - normals_before_component(b, i));
-    }
-    if (a.cruise_path && b.cruise_path) take(normals_before_wind(a), normals_before_wind(b), of_wind);
-    if (initial_charge_varies(a) && initial_charge_varies(b)) own.back() = of_a.back();
-    return own;
+    std::size_t count = phase_quantities + of_battery;
+    for (const auto& component : mission.compute.components) count += 1 + component.profile.power_w.size();
+    return count + (mission.cruise_path ? of_wind : 0) + (initial_charge_varies(mission) ? 1 : 0);
 }
 
 std::vector<double> draw_normals(std::size_t count, std::uint64_t seed, std::uint64_t index) {

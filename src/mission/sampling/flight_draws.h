@@ -24,17 +24,4 @@ std::vector<double> draw_normals(std::size_t count, std::uint64_t seed, std::uin
 void apply_draw(const MissionSetup& mission, const FlightUncertainty& spreads, std::span<const double> normals,
                 MissionSetup& flight);
 
-/// Sources that two missions have in common.
-struct CommonSources {
-    bool mechanical = false;
-    bool battery = false;
-    std::vector<std::optional<std::size_t>> components;  ///< of each of b's the one of a with its profile
-};
-CommonSources common_sources(const MissionSetup& a, const MissionSetup& b);
-
-/// Numbers of b for a flight with the numbers `of_a` in a: these for common sources, `own` ones for the others. The
-/// wind is common if both have a path.
-std::vector<double> correlated_normals(const MissionSetup& a, const MissionSetup& b, const CommonSources& common,
-                                       std::span<const double> of_a, std::vector<double> own);
-
 }  // namespace flightwatt::mission
