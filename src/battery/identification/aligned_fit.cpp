@@ -1,8 +1,7 @@
-#include "battery/identification/circuit_problem.h"
-
 #include "base/error.h"
 #include "base/piecewise_linear.h"
 #include "base/statistics.h"
+#include "battery/identification/circuit_problem.h"
 
 #include <algorithm>
 #include <bit>

@@ -44,7 +44,7 @@ TEST_F(BatteryTables, HasARowAParameterAndAFlight) {
     const auto flights = flights_table(identified_, checks_);
     ASSERT_EQ(flights.rows.size(), 2U);
     EXPECT_EQ(flights.rows[0].size(), flights.header.size());
-    EXPECT_EQ(flights_table(identified_, {}).header.size() + 3, flights.header.size());
+    EXPECT_EQ(flights_table(identified_, {}).header.size() + 4, flights.header.size());
 }
 
 TEST_F(BatteryTables, HasTheTemperatureOfTheAirWhereItWasLogged) {
